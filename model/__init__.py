@@ -1,0 +1,2 @@
+# SPDX-License-Identifier: MIT
+"""Physics and inference: arrays in, arrays out; no file, clock, port or plot."""

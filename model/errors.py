@@ -1,0 +1,35 @@
+# SPDX-License-Identifier: MIT
+"""What can be wrong with numbers handed to the model."""
+
+
+class ModelError(Exception):
+    """Root of every error that `model` raises on purpose."""
+
+
+class DomainError(ModelError, ValueError):
+    """A number lies where the equation that received it does not hold."""
+
+
+class DefinitionMismatch(ModelError, ValueError):
+    """Slip ratios of two definitions met in one computation.
+
+    Attributes:
+        found: Definition of the slip ratio that was handed in.
+        expected: Definition that the receiver's parameters were fitted with.
+    """
+
+    def __init__(self, found: str, expected: str) -> None:
+        super().__init__(
+            f"slip ratio is given as '{found}' but '{expected}' is expected; "
+            f"convert it first with model.slip.convert_slip"
+        )
+        self.found = found
+        self.expected = expected
+
+
+class InsufficientData(ModelError, ValueError):
+    """The samples cannot determine what was asked of them."""
+
+
+class FitError(ModelError, RuntimeError):
+    """An optimiser or sampler failed; the message carries its evidence."""

@@ -1,0 +1,147 @@
+# SPDX-License-Identifier: MIT
+"""Slip-ratio definitions and the conversions between them.
+
+Every definition is a function of two speeds at the contact: v_l, at which the leg's material
+passes the contact (r·omega), and v_g, at which the ground does (the forward speed). All are zero
+without slip and positive when the leg's surface outruns the ground.
+"""
+
+from enum import StrEnum
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from model.errors import DefinitionMismatch, DomainError
+from model.slip.law import Array
+
+
+class SlipDefinition(StrEnum):
+    """What a slip ratio is divided by.
+
+    Attributes:
+        MATERIAL: (v_l - v_g) / v_l, Eq. (4-44): the rig's; Pacejka's theoretical slip. 1 when the
+            leg spins on the spot, minus infinity when it is locked.
+        TRAVEL: (v_l - v_g) / v_g, Eq. (4-29): tyre data. Infinite when the leg spins on the spot,
+            -1 when it is locked.
+        LARGER: (v_l - v_g) / max(v_l, v_g): soil bins. 1 spinning on the spot, -1 locked.
+    """
+
+    MATERIAL = "material"
+    TRAVEL = "travel"
+    LARGER = "larger"
+
+
+def slip_ratio(
+    speed_leg: ArrayLike, speed_ground: ArrayLike, definition: SlipDefinition | str
+) -> Array:
+    """Compute the slip ratio from the two surface speeds at the contact.
+
+    Args:
+        speed_leg: v_l = omega_l·r_l, Eq. (4-43) [m/s].
+        speed_ground: v_g = omega_g·r_g, Eq. (4-43) [m/s].
+        definition: What to divide by.
+
+    Returns:
+        Slip ratio [-]; infinite or NaN where the divisor is zero, as the arithmetic has it.
+
+    >>> slip_ratio(0.4, 0.3, "material").round(3), slip_ratio(0.4, 0.3, "travel").round(3)
+    (np.float64(0.25), np.float64(0.333))
+    """
+    v_l, v_g = np.asarray(speed_leg, dtype=float), np.asarray(speed_ground, dtype=float)
+    divisor = {
+        SlipDefinition.MATERIAL: v_l,
+        SlipDefinition.TRAVEL: v_g,
+        SlipDefinition.LARGER: np.maximum(v_l, v_g),
+    }[SlipDefinition(definition)]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return (v_l - v_g) / divisor
+
+
+def convert_slip(
+    slip: ArrayLike, source: SlipDefinition | str, target: SlipDefinition | str
+) -> Array:
+    """Convert slip ratios from one definition to another.
+
+    Goes by the material slip s = 1 - v_g/v_l, with travel slip = s/(1 - s).
+
+    Args:
+        slip: Slip ratio in `source`'s definition [-].
+        source: Definition of `slip`.
+        target: Definition wanted.
+
+    Returns:
+        Slip ratio in `target`'s definition, infinite at the limits named in `SlipDefinition` [-].
+
+    Raises:
+        DomainError: A slip ratio lies outside what its definition can take (a disc would turn
+            backwards).
+
+    >>> float(convert_slip(0.5, "material", "travel"))
+    1.0
+    """
+    source, target = SlipDefinition(source), SlipDefinition(target)
+    kappa = np.asarray(slip, dtype=float)
+    if source is target:
+        return kappa
+    _require_possible(kappa, source)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        if source is SlipDefinition.TRAVEL:
+            s = np.where(np.isposinf(kappa), 1.0, kappa / (1 + kappa))
+        elif source is SlipDefinition.LARGER:
+            s = np.where(kappa >= 0, kappa, kappa / (1 + kappa))
+        else:
+            s = kappa
+        travel = np.where(np.isneginf(s), -1.0, s / (1 - s))
+    if target is SlipDefinition.TRAVEL:
+        return travel
+    if target is SlipDefinition.LARGER:
+        return np.where(s >= 0, s, travel)
+    return s
+
+
+def walk_slip_from_material(slip: ArrayLike, leg_angle: ArrayLike) -> Array:
+    r"""Convert the rig's slip ratio to the walk's of Eq. (4-31) for a rolling leg.
+
+    .. math::
+        \kappa_{walk} = \frac{\kappa_{rig}}{1 + \sin\theta - \kappa_{rig}}
+
+    Eq. (4-31) divides by the hip-relative speed of the contact point, not by the material's flow
+    through the contact, so the same contact has a different number there.
+
+    Args:
+        slip: Material slip ratio, Eq. (4-44) [-].
+        leg_angle: Leg angle theta, pi/2 when the toe points straight down [rad].
+
+    Returns:
+        The walk's slip ratio kappa_R [-].
+    """
+    kappa = np.asarray(slip, dtype=float)
+    return kappa / (1 + np.sin(np.asarray(leg_angle, dtype=float)) - kappa)
+
+
+def require_definition(found: SlipDefinition | str, expected: SlipDefinition | str) -> None:
+    """Refuse slip ratios of another definition.
+
+    Raises:
+        DefinitionMismatch: The two differ.
+    """
+    if SlipDefinition(found) is not SlipDefinition(expected):
+        raise DefinitionMismatch(str(found), str(expected))
+
+
+_LOWER = {
+    SlipDefinition.MATERIAL: -np.inf,
+    SlipDefinition.TRAVEL: -1.0,
+    SlipDefinition.LARGER: -1.0,
+}
+_UPPER = {SlipDefinition.MATERIAL: 1.0, SlipDefinition.TRAVEL: np.inf, SlipDefinition.LARGER: 1.0}
+
+
+def _require_possible(kappa: Array, definition: SlipDefinition) -> None:
+    impossible = (kappa < _LOWER[definition]) | (kappa > _UPPER[definition])
+    if np.any(impossible):
+        raise DomainError(
+            f"slip ratio {kappa[impossible].flat[0]:.4g} is outside "
+            f"[{_LOWER[definition]:g}, {_UPPER[definition]:g}], all that '{definition}' slip "
+            f"can be while both discs turn forward; check the definition or leave these rows out"
+        )

@@ -1,0 +1,85 @@
+# SPDX-License-Identifier: MIT
+"""What every slip law is: traction force from slip ratio and normal force."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Protocol, TypeAlias
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+Array: TypeAlias = NDArray[np.float64]
+Values: TypeAlias = Sequence[ArrayLike] | Array
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """One parameter of a slip law.
+
+    Attributes:
+        name: Spelled-out name, unique within the law.
+        symbol: The source's symbol.
+        unit: Unit as pint spells it; "dimensionless" where there is none.
+        lower: Greatest lower bound of the support (excluded).
+        upper: Least upper bound of the support (excluded).
+        meaning: One line a newcomer can read.
+    """
+
+    name: str
+    symbol: str
+    unit: str
+    lower: float
+    upper: float
+    meaning: str
+
+
+class SlipLaw(Protocol):
+    """Longitudinal traction as a function of slip ratio and normal force.
+
+    `values` holds one entry a parameter, in the order of `parameters`; an entry is a number or an
+    array that broadcasts against `slip` and `load`, so that a whole ensemble of parameter vectors
+    is evaluated in one call: entries of shape (walkers, 1) against slip of shape (n,).
+
+    Sign: a positive slip ratio (the leg's surface outruns the ground) drives the robot forward
+    with a positive force. Every law is odd in slip.
+    """
+
+    @property
+    def name(self) -> str:
+        """Name under which the law is chosen and stored."""
+        ...
+
+    @property
+    def parameters(self) -> tuple[Parameter, ...]:
+        """The law's parameters, in the order of `values`."""
+        ...
+
+    def force(self, slip: ArrayLike, load: ArrayLike, values: Values) -> Array:
+        """Compute the traction force.
+
+        Args:
+            slip: Slip ratio in the definition the values were fitted with [-].
+            load: Normal force, positive [N].
+            values: Parameter values, one entry a parameter.
+
+        Returns:
+            Traction force, in the shape the arguments broadcast to [N].
+        """
+        ...
+
+    def slip_derivative(self, slip: ArrayLike, load: ArrayLike, values: Values) -> Array:
+        """Compute the derivative of the force with respect to slip ratio [N]."""
+        ...
+
+    def valid(self, load: ArrayLike, values: Values) -> NDArray[np.bool_]:
+        """Tell where the curve has the shape the law promises (inside its support)."""
+        ...
+
+
+def inside_support(law: SlipLaw, values: Values) -> NDArray[np.bool_]:
+    """Tell where every value lies inside its parameter's open support."""
+    verdicts = [
+        (parameter.lower < np.asarray(value)) & (np.asarray(value) < parameter.upper)
+        for parameter, value in zip(law.parameters, values, strict=True)
+    ]
+    return np.logical_and.reduce(np.broadcast_arrays(*verdicts))

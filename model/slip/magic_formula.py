@@ -1,0 +1,189 @@
+# SPDX-License-Identifier: MIT
+"""Pacejka's Magic Formula, with the peak force proportional to load."""
+
+import math
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from model.slip.law import Array, Parameter, Values
+
+
+def magic_formula(
+    kappa: ArrayLike, B: ArrayLike, C: ArrayLike, D: ArrayLike, E: ArrayLike
+) -> Array:
+    r"""Compute the traction force of Eq. (4-23).
+
+    .. math::
+        f = D \sin\bigl(C \arctan(B\kappa - E (B\kappa - \arctan B\kappa))\bigr)
+
+    The source's text lost the two pairs of brackets; its listing has them. Odd in `kappa` and
+    `D`; slope B·C·D at the origin. For E <= 1 the arctangent's argument grows with slip and
+    |f| <= |D|; above, the curve turns over and changes sign at large slip.
+
+    Args:
+        kappa: Slip ratio [-].
+        B: Stiffness factor [-].
+        C: Shape factor [-].
+        D: Peak force [N].
+        E: Curvature factor [-].
+
+    Returns:
+        Traction force [N].
+
+    >>> float(magic_formula(0.1, B=34.34, C=1.564, D=1.0, E=0.0).round(4))
+    0.9036
+    """
+    Bk = np.asarray(B) * np.asarray(kappa)
+    phi = Bk - np.asarray(E) * (Bk - np.arctan(Bk))
+    return np.asarray(D) * np.sin(np.asarray(C) * np.arctan(phi))
+
+
+def magic_formula_slope(
+    kappa: ArrayLike, B: ArrayLike, C: ArrayLike, D: ArrayLike, E: ArrayLike
+) -> Array:
+    r"""Compute the derivative of Eq. (4-23) with respect to slip ratio [N].
+
+    .. math::
+        f' = D \cos(C \arctan\varphi)\, \frac{C}{1+\varphi^2}\, \varphi', \qquad
+        \varphi' = B\Bigl(1 - E\,\frac{(B\kappa)^2}{1+(B\kappa)^2}\Bigr)
+    """
+    B, C, E = np.asarray(B), np.asarray(C), np.asarray(E)
+    Bk = B * np.asarray(kappa)
+    phi = Bk - E * (Bk - np.arctan(Bk))
+    phi_slope = B * (1 - E * Bk**2 / (1 + Bk**2))
+    return np.asarray(D) * np.cos(C * np.arctan(phi)) * C / (1 + phi**2) * phi_slope
+
+
+def curvature_from_peak(B: ArrayLike, C: ArrayLike, x_m: ArrayLike) -> Array:
+    r"""Compute the curvature factor that puts the peak at slip x_m, Eq. (4-27).
+
+    .. math::
+        E = \frac{B x_m - \tan\frac{\pi}{2C}}{B x_m - \arctan B x_m}
+
+    Holds for C > 1 (below, the curve has no peak). E tends to minus infinity as x_m tends to 0.
+    E <= 1, so that x_m is the only peak, needs tan(pi/2C) >= arctan(B x_m): at every x_m only if
+    C < 1.56472; the source's 1.564 is 0.0007 below.
+
+    >>> float(curvature_from_peak(34.34, 1.564, 0.0066 * 6.63).round(3))
+    -0.134
+    """
+    Bx = np.asarray(B) * np.asarray(x_m)
+    return (Bx - np.tan(np.pi / (2 * np.asarray(C)))) / (Bx - np.arctan(Bx))
+
+
+@dataclass(frozen=True)
+class MagicFormula:
+    """The Magic Formula as a slip law, with D = mu * Fn.
+
+    It is parametrised by what data determine best: the slip stiffness K = B·C·mu (slope at zero
+    slip for each newton of load) in place of B.
+
+    Attributes:
+        curvature: "peak" (E from the peak's position, which grows with load: x_m = c·Fn),
+            "constant" (one E at every load), or a number, the E to keep fixed.
+        load_sensitivity: Let mu and K vary with load as (Fn / reference_load) to a power.
+        reference_load: Load at which mu and K have their printed values when `load_sensitivity`
+            is set [N].
+    """
+
+    curvature: Literal["peak", "constant"] | float = "peak"
+    load_sensitivity: bool = False
+    reference_load: float = 1.0
+
+    name = "magic-formula"
+
+    @property
+    def parameters(self) -> tuple[Parameter, ...]:
+        """The law's parameters, in the order of `values`."""
+        return (
+            *_COMMON,
+            *((_CURVATURE[self.curvature],) if isinstance(self.curvature, str) else ()),
+            *(_SENSITIVITY if self.load_sensitivity else ()),
+        )
+
+    def coefficients(self, load: ArrayLike, values: Values) -> tuple[Array, Array, Array, Array]:
+        """Compute the plain B, C, D, E at a load.
+
+        Args:
+            load: Normal force [N].
+            values: Parameter values, one entry a parameter.
+
+        Returns:
+            B [-], C [-], D [N] and E [-], each broadcasting against `load` and the values.
+        """
+        Fn = np.asarray(load, dtype=float)
+        K, C, mu = (np.asarray(value, dtype=float) for value in values[:3])
+        if self.load_sensitivity:
+            ratio = Fn / self.reference_load
+            mu = mu * ratio ** np.asarray(values[-2])
+            K = K * ratio ** np.asarray(values[-1])
+        B = K / (C * mu)
+        if self.curvature == "peak":
+            E = curvature_from_peak(B, C, np.asarray(values[3]) * Fn)
+        elif self.curvature == "constant":
+            E = np.asarray(values[3], dtype=float)
+        else:
+            E = np.asarray(self.curvature, dtype=float)
+        return B, C, mu * Fn, E
+
+    def force(self, slip: ArrayLike, load: ArrayLike, values: Values) -> Array:
+        """Compute the traction force, Eq. (4-23) [N]; see `SlipLaw.force`."""
+        return magic_formula(slip, *self.coefficients(load, values))
+
+    def slip_derivative(self, slip: ArrayLike, load: ArrayLike, values: Values) -> Array:
+        """Compute the derivative of the force with respect to slip ratio [N]."""
+        return magic_formula_slope(slip, *self.coefficients(load, values))
+
+    def valid(self, load: ArrayLike, values: Values) -> NDArray[np.bool_]:
+        """Tell where E <= 1, so that the curve has one peak and keeps its sign."""
+        return self.coefficients(load, values)[3] <= 1.0
+
+    def peak_slip(self, load: ArrayLike, values: Values) -> Array:
+        """Compute the slip ratio at which the force peaks (inf where C <= 1: no peak) [-]."""
+        B, C, _, E = self.coefficients(load, values)
+        return peak_slip(B, C, E)
+
+
+def peak_slip(B: ArrayLike, C: ArrayLike, E: ArrayLike) -> Array:
+    r"""Find the slip ratio of the peak, the inverse of Eq. (4-27) [-].
+
+    Solves Bx - E (Bx - arctan Bx) = tan(pi/2C) by bisection, since the left side grows with x for
+    E <= 1. Infinite where C <= 1, or where E = 1 keeps the left side below the right.
+
+    >>> float(peak_slip(34.34, 1.564, -0.1344).round(4))
+    0.0438
+    """
+    B, C, E = np.broadcast_arrays(*(np.asarray(a, dtype=float) for a in (B, C, E)))
+    with np.errstate(invalid="ignore", divide="ignore"):
+        target = np.where(C > 1, np.tan(np.pi / (2 * C)), np.inf)
+    low, high = np.zeros_like(target), np.full_like(target, 1e9)
+    for _ in range(120):  # halves in the logarithm and in the value: to the last bit from 1e9
+        middle = np.where(low > 0, np.sqrt(low * high), np.minimum(high * 1e-3, 1.0))
+        below = middle - E * (middle - np.arctan(middle)) < target
+        low, high = np.where(below, middle, low), np.where(below, high, middle)
+    return np.where(high >= 1e9, np.inf, high) / B
+
+
+_COMMON = (
+    Parameter("slip_stiffness", "K", "dimensionless", 0.0, math.inf,
+              "slope of traction over load at zero slip, B·C·mu"),
+    Parameter("shape", "C", "dimensionless", 1.0, 2.0,
+              "shape factor: how far the curve falls behind its peak"),
+    Parameter("friction", "mu", "dimensionless", 0.0, math.inf,
+              "peak traction over load, D / Fn"),
+)  # fmt: skip
+_CURVATURE = {
+    "peak": Parameter("peak_slip_per_load", "x_m/Fn", "1/newton", 0.0, math.inf,
+                      "slip ratio of the peak for each newton of load"),
+    "constant": Parameter("curvature", "E", "dimensionless", -math.inf, 1.0,
+                          "curvature factor: how sharp the peak is"),
+}  # fmt: skip
+_SENSITIVITY = (
+    Parameter("friction_load_exponent", "a_mu", "dimensionless", -math.inf, math.inf,
+              "friction grows with load to this power"),
+    Parameter("stiffness_load_exponent", "a_K", "dimensionless", -math.inf, math.inf,
+              "slip stiffness grows with load to this power"),
+)  # fmt: skip

@@ -1,0 +1,2 @@
+# SPDX-License-Identifier: MIT
+"""The two-disc slip rig: a leg disc pressed on a ground disc, forces and both speeds recorded."""

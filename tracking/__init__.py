@@ -1,0 +1,2 @@
+# SPDX-License-Identifier: MIT
+"""Photographs in, walked path out."""

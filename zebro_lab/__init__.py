@@ -1,0 +1,2 @@
+# SPDX-License-Identifier: MIT
+"""The lab bench: files, order and people."""

@@ -1,0 +1,2 @@
+# SPDX-License-Identifier: MIT
+"""The commands: each file parses, calls one stage and prints."""

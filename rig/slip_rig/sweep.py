@@ -1,0 +1,398 @@
+# SPDX-License-Identifier: MIT
+"""A simulated sweep of the two-disc rig: what its sensors would log if the slip law were known.
+
+The force model is the one that a calibration assumes, so the truth lies inside the fitted family:
+coverage and recovery can be judged against it. Not modelled: quantisation, dropped samples,
+saturation, temperature drift within a run, wear, play, and the transients between set-points.
+"""
+
+from dataclasses import dataclass, fields, replace
+from typing import TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.signal import lfilter
+
+from model.bayes.samples import SlipSamples
+from model.errors import DomainError
+from model.slip.definition import SlipDefinition, slip_ratio
+from model.slip.law import Array, SlipLaw, Values
+from model.slip.magic_formula import MagicFormula
+
+Column: TypeAlias = Array | NDArray[np.int64]
+
+SOURCE_LAW = MagicFormula(curvature="peak")
+SOURCE_VALUES: tuple[float, ...] = (34.34 * 1.564 * 0.3798, 1.564, 0.3798, 0.0066)
+"""Values of `SOURCE_LAW`: B and C of Eq. (4-45); D = 0.3798·Fn and x_m = 0.0066·Fn, Listing A.20.
+
+K = B·C·mu [-], C [-], mu [-], x_m/Fn [1/N].
+"""
+
+
+def _require(holds: bool, name: str, value: float, expected: str) -> None:
+    if not holds:
+        raise DomainError(f"{name} is {value:g}; expected {expected}")
+
+
+@dataclass(frozen=True)
+class SweepPlan:
+    """What is commanded: each slip ratio at each load, the loads outermost, one run a point.
+
+    The defaults are the source's rig (section 4-6): 62 slip ratios, four loads.
+
+    Attributes:
+        slips: Material slip ratios, Eq. (4-44) [-].
+        loads: Normal forces away from the ground disc's bump [N].
+        duration: Length of a run [s].
+        rate: Samples in a second [Hz].
+        omega_leg: Speed of the leg disc [rad/s].
+        radius_leg: Radius of the leg disc [m].
+        radius_ground: Radius of the ground disc [m].
+
+    Raises:
+        DomainError: A run has fewer than two samples, or a number is not positive that must be.
+
+    >>> SweepPlan().n_runs, SweepPlan().n_samples
+    (248, 250)
+    """
+
+    slips: tuple[float, ...] = tuple(np.linspace(0.0, 1.0, 62).tolist())
+    loads: tuple[float, ...] = (2.13, 6.63, 8.13, 12.75)
+    duration: float = 1.0
+    rate: float = 250.0
+    omega_leg: float = 12.0
+    radius_leg: float = 0.035
+    radius_ground: float = 0.12
+
+    def __post_init__(self) -> None:
+        for name in ("duration", "rate", "omega_leg", "radius_leg", "radius_ground"):
+            _require(getattr(self, name) > 0, name, getattr(self, name), "above 0")
+        for load in self.loads:
+            _require(load > 0, "loads", load, "above 0 N")
+        for slip in self.slips:
+            _require(slip <= 1, "slips", slip, "at most 1, where the ground disc stands still")
+        _require(self.n_samples >= 2, "duration·rate", self.n_samples, "at least 2 samples a run")
+
+    @property
+    def n_runs(self) -> int:
+        """Count the runs."""
+        return len(self.loads) * len(self.slips)
+
+    @property
+    def n_samples(self) -> int:
+        """Count the samples of one run."""
+        return round(self.duration * self.rate)
+
+    @property
+    def speed_leg(self) -> float:
+        """Compute the surface speed of the leg disc, v_l = omega_l·r_l, Eq. (4-43) [m/s]."""
+        return self.omega_leg * self.radius_leg
+
+    def set_points(self) -> tuple[Array, Array]:
+        """Return the commanded load [N] and slip ratio [-] of every run, each of shape (runs,)."""
+        load, slip = np.meshgrid(self.loads, self.slips, indexing="ij")
+        return load.ravel(), slip.ravel()
+
+    def run_names(self) -> tuple[str, ...]:
+        """Name every run after its set-point."""
+        return tuple(
+            f"Fn {load:g} N, slip {slip:.4f}" for load, slip in zip(*self.set_points(), strict=True)
+        )
+
+
+@dataclass(frozen=True)
+class RigImperfections:
+    """The truth of everything that is not the slip law; the defaults are a perfect rig.
+
+    Attributes:
+        gain_traction: Relative gain error g_t of the traction channel [-].
+        gain_normal: Relative gain error g_n of the normal channel [-].
+        bias_normal: Bias b_n of the normal channel, added to what it reads [N].
+        crosstalk: Traction c that the normal channel fails to see as load [-].
+        offset_sd: Standard deviation tau of the traction zero between runs [N].
+        noise_sd0: Traction noise without traction, marginal standard deviation s0 [N].
+        noise_sd1: Growth s1 of that standard deviation with the traction [-].
+        noise_correlation_time: Time T in which the noise forgets itself: AR(1) with
+            rho = exp(-dt/T); 0 is white [s].
+        speed_noise: Standard deviation of each disc's white speed-sensor noise [rad/s].
+        slip_wander_sd: Standard deviation of the true slip ratio about its set-point, seen by
+            sensors and force alike; none at slip 1, where the ground disc is held still [-].
+        slip_wander_time: Correlation time of that wander, an Ornstein-Uhlenbeck process [s].
+        bump_height: Rise of the load at the top of the ground disc's bump, over the load [-].
+        bump_width: Angle of the ground disc under the whole bump [rad].
+
+    Raises:
+        DomainError: A spread, time or height is negative, or a gain leaves no signal.
+    """
+
+    gain_traction: float = 0.0
+    gain_normal: float = 0.0
+    bias_normal: float = 0.0
+    crosstalk: float = 0.0
+    offset_sd: float = 0.0
+    noise_sd0: float = 0.0
+    noise_sd1: float = 0.0
+    noise_correlation_time: float = 0.0
+    speed_noise: float = 0.0
+    slip_wander_sd: float = 0.0
+    slip_wander_time: float = 0.0
+    bump_height: float = 0.0
+    bump_width: float = 1.0
+
+    def __post_init__(self) -> None:
+        for name in ("gain_traction", "gain_normal"):
+            _require(getattr(self, name) > -1, name, getattr(self, name), "above -1")
+        for name in _NOT_NEGATIVE:
+            _require(getattr(self, name) >= 0, name, getattr(self, name), "0 or more")
+
+
+_SIGNED = {"gain_traction", "gain_normal", "bias_normal", "crosstalk"}
+_NOT_NEGATIVE = tuple(f.name for f in fields(RigImperfections) if f.name not in _SIGNED)
+
+TYPICAL_RIG = RigImperfections(
+    offset_sd=0.05,
+    noise_sd0=0.03,
+    noise_sd1=0.02,
+    noise_correlation_time=0.05,
+    speed_noise=0.02,
+    slip_wander_sd=0.003,
+    slip_wander_time=0.15,
+    bump_height=0.6,
+)
+"""A rig like the source's under a perfectly calibrated load cell."""
+
+
+@dataclass(frozen=True)
+class SimulatedSweep:
+    """What a simulated sweep logged, and what was true while it did.
+
+    Attributes:
+        samples: The log as a calibration takes it: slip from both measured disc speeds.
+        table: The log as a recorder writes it, canonical columns `t` (runs on through the whole
+            sweep) [s], `omega_leg`, `omega_ground` [rad/s], `normal_force`, `traction_force` [N]
+            and `run` (index of the set-point), each of shape (n,).
+        slip_true: True slip ratio, shape (n,) [-].
+        load_true: True normal force, shape (n,) [N].
+        offset_true: True traction zero b_run of every run, shape (runs,) [N].
+    """
+
+    samples: SlipSamples
+    table: dict[str, Column]
+    slip_true: Array
+    load_true: Array
+    offset_true: Array
+
+
+def draw_imperfections(
+    rng: np.random.Generator,
+    *,
+    gain_sd: float = 0.005,
+    bias_sd: float = 0.05,
+    crosstalk_sd: float = 0.005,
+) -> RigImperfections:
+    """Draw a load cell's calibration errors around 0; everything else is `TYPICAL_RIG`.
+
+    A calibration has priors on these errors. It can only cover the truth at its nominal rate, seed
+    after seed, where the truth is drawn from those priors.
+
+    Args:
+        rng: Source of randomness.
+        gain_sd: Standard deviation of both channels' gain errors [-].
+        bias_sd: Standard deviation of the normal channel's bias [N].
+        crosstalk_sd: Standard deviation of the crosstalk [-].
+
+    Returns:
+        The imperfections of one rig.
+    """
+    return replace(
+        TYPICAL_RIG,
+        gain_traction=rng.normal(0.0, gain_sd),
+        gain_normal=rng.normal(0.0, gain_sd),
+        bias_normal=rng.normal(0.0, bias_sd),
+        crosstalk=rng.normal(0.0, crosstalk_sd),
+    )
+
+
+def simulate_sweep(
+    law: SlipLaw,
+    values: Values,
+    *,
+    plan: SweepPlan,
+    imperfections: RigImperfections,
+    rng: np.random.Generator,
+) -> SimulatedSweep:
+    r"""Simulate what a sweep would log.
+
+    .. math::
+        F_t = (1 + g_t)\,f(\kappa, F_n) + b_{run} + e, \qquad
+        F_n = (1 + g_n)\,F_{n,measured} - b_n + c\,F_t
+
+    with f the law at the true slip and load, b_run ~ N(0, tau²), and e an AR(1) process of
+    marginal standard deviation s0 + s1·|(1 + g_t)·f|, stationary and new in each run.
+
+    Args:
+        law: The true slip law, in the material slip ratio.
+        values: Its parameter values, numbers.
+        plan: What is commanded.
+        imperfections: What the rig adds.
+        rng: Source of randomness: the same state gives the same sweep.
+
+    Returns:
+        The log and its truth.
+    """
+    slip = _wander_slip(plan, imperfections, rng)
+    omega_ground = plan.speed_leg * (1 - slip) / plan.radius_ground
+    load = _ride_bump(omega_ground, plan, imperfections, rng)
+    offset = rng.normal(0.0, imperfections.offset_sd, plan.n_runs)
+    force = (1 + imperfections.gain_traction) * law.force(slip, load, values)
+    traction_force = force + offset[:, None] + _force_noise(force, plan, imperfections, rng)
+    normal_force = measured_load(load, traction_force, imperfections=imperfections)
+    table: dict[str, Column] = {
+        "t": np.arange(slip.size) / plan.rate,
+        "omega_leg": plan.omega_leg + rng.normal(0.0, imperfections.speed_noise, slip.size),
+        "omega_ground": omega_ground.ravel()
+        + rng.normal(0.0, imperfections.speed_noise, slip.size),
+        "normal_force": normal_force.ravel(),
+        "traction_force": traction_force.ravel(),
+        "run": np.repeat(np.arange(plan.n_runs), plan.n_samples),
+    }
+    samples = samples_from_table(table, plan)
+    return SimulatedSweep(samples, table, slip.ravel(), load.ravel(), offset)
+
+
+def samples_from_table(table: dict[str, Column], plan: SweepPlan) -> SlipSamples:
+    """Turn a sweep's log into samples, with slip from both measured disc speeds, Eq. (4-44).
+
+    Args:
+        table: Canonical columns, as in `SimulatedSweep.table`.
+        plan: What was commanded: the radii and the names of the runs.
+
+    Returns:
+        The samples, in the material slip ratio.
+    """
+    slip = slip_ratio(
+        table["omega_leg"] * plan.radius_leg,
+        table["omega_ground"] * plan.radius_ground,
+        SlipDefinition.MATERIAL,
+    )
+    return SlipSamples(
+        slip=slip,
+        normal_force=np.asarray(table["normal_force"], dtype=float),
+        traction_force=np.asarray(table["traction_force"], dtype=float),
+        run=np.asarray(table["run"], dtype=np.intp),
+        run_names=plan.run_names(),
+        definition=SlipDefinition.MATERIAL,
+        time=np.asarray(table["t"], dtype=float),
+    )
+
+
+def measured_load(
+    load_true: Array, traction_force: Array, *, imperfections: RigImperfections
+) -> Array:
+    r"""Compute what the normal channel reads: the inverse of `true_load`.
+
+    .. math::
+        F_{n,measured} = \frac{F_n + b_n - c\,F_t}{1 + g_n}
+
+    Args:
+        load_true: True normal force F_n [N].
+        traction_force: Measured traction force F_t [N].
+        imperfections: Carries g_n, b_n and c.
+
+    Returns:
+        Measured normal force [N].
+    """
+    truth = imperfections
+    seen = load_true + truth.bias_normal - truth.crosstalk * traction_force
+    return seen / (1 + truth.gain_normal)
+
+
+def true_load(
+    normal_force: Array, traction_force: Array, *, imperfections: RigImperfections
+) -> Array:
+    r"""Compute the true load from both measured forces.
+
+    .. math::
+        F_n = (1 + g_n)\,F_{n,measured} - b_n + c\,F_t
+
+    Args:
+        normal_force: Measured normal force [N].
+        traction_force: Measured traction force F_t [N].
+        imperfections: Carries g_n, b_n and c.
+
+    Returns:
+        True normal force [N].
+    """
+    truth = imperfections
+    return (
+        (1 + truth.gain_normal) * normal_force
+        - truth.bias_normal
+        + truth.crosstalk * traction_force
+    )
+
+
+def lag_one_correlation(interval: float, correlation_time: float) -> float:
+    """Compute rho = exp(-dt/T), an AR(1)'s correlation from one sample to the next [-].
+
+    Args:
+        interval: Time dt between samples [s].
+        correlation_time: Time T in which the process forgets itself; 0 is white noise [s].
+
+    >>> round(lag_one_correlation(0.004, 0.05), 4), lag_one_correlation(0.004, 0.0)
+    (0.9231, 0.0)
+    """
+    return float(np.exp(-interval / correlation_time)) if correlation_time > 0 else 0.0
+
+
+def bump_rise(angle: Array, *, height: float, width: float) -> Array:
+    """Compute the relative rise of the load on the ground disc's bump, a raised cosine.
+
+    Args:
+        angle: Ground-disc angle from the top of the bump, any number of turns [rad].
+        height: Rise at the top, over the load [-].
+        width: Angle under the whole bump [rad].
+
+    Returns:
+        Rise over the load, 0 off the bump [-].
+
+    >>> bump_rise(np.array([0.0, 0.25, 0.5]), height=0.6, width=1.0).round(3).tolist()
+    [0.6, 0.3, 0.0]
+    """
+    from_top = np.abs((angle + np.pi) % (2 * np.pi) - np.pi)
+    inside = np.minimum(from_top / (width / 2), 1.0) if width > 0 else np.ones_like(from_top)
+    return height / 2 * (1 + np.cos(np.pi * inside))
+
+
+def _wander_slip(plan: SweepPlan, truth: RigImperfections, rng: np.random.Generator) -> Array:
+    """Simulate the true slip ratio, shape (runs, samples) [-]."""
+    _, slip = plan.set_points()
+    rho = lag_one_correlation(1 / plan.rate, truth.slip_wander_time)
+    wander = truth.slip_wander_sd * _stationary_ar1(rho, plan, rng)
+    turning = slip < 1  # a drive told to stand still holds its shaft
+    return slip[:, None] + wander * turning[:, None]
+
+
+def _ride_bump(
+    omega_ground: Array, plan: SweepPlan, truth: RigImperfections, rng: np.random.Generator
+) -> Array:
+    """Simulate the true load, shape (runs, samples) [N]; the disc turns on from run to run."""
+    load, _ = plan.set_points()
+    turned = np.cumsum(omega_ground.ravel()).reshape(omega_ground.shape) / plan.rate
+    angle = rng.uniform(0.0, 2 * np.pi) + turned
+    return load[:, None] * (1 + bump_rise(angle, height=truth.bump_height, width=truth.bump_width))
+
+
+def _force_noise(
+    force: Array, plan: SweepPlan, truth: RigImperfections, rng: np.random.Generator
+) -> Array:
+    """Simulate the traction channel's noise, shape (runs, samples) [N]."""
+    rho = lag_one_correlation(1 / plan.rate, truth.noise_correlation_time)
+    size = truth.noise_sd0 + truth.noise_sd1 * np.abs(force)
+    return size * _stationary_ar1(rho, plan, rng)
+
+
+def _stationary_ar1(rho: float, plan: SweepPlan, rng: np.random.Generator) -> Array:
+    """Draw one AR(1) path of unit marginal variance a run, shape (runs, samples)."""
+    shock = rng.standard_normal((plan.n_runs, plan.n_samples))
+    shock[:, 1:] *= np.sqrt(1 - rho**2)  # the first sample already has the marginal variance
+    return np.asarray(lfilter([1.0], [1.0, -rho], shock, axis=1))

@@ -1,0 +1,166 @@
+# SPDX-License-Identifier: MIT
+"""The posterior of a slip law: blocks, law and priors put together."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from model.bayes.blocks import SlipBlocks
+from model.bayes.likelihood import NUISANCE, run_log_likelihood
+from model.bayes.priors import BelowOne, HalfNormal, LogNormal, Normal, Prior, Uniform
+from model.slip.law import Array, Parameter, SlipLaw
+
+
+@dataclass(frozen=True)
+class LoadCell:
+    """What is known of the load cell before the fit, from its certificate or a check with weights.
+
+    Attributes:
+        zero_stability: Scale of the force offset between runs (half-normal) [N].
+        gain_sd: Standard deviation of each channel's relative gain error [-].
+        bias_sd: Standard deviation of the normal channel's zero error [N].
+        crosstalk_sd: Standard deviation of the traction seen by the normal channel [-].
+    """
+
+    zero_stability: float = 0.15
+    gain_sd: float = 0.005
+    bias_sd: float = 0.05
+    crosstalk_sd: float = 0.005
+
+
+def default_priors(law: SlipLaw, blocks: SlipBlocks, load_cell: LoadCell) -> dict[str, Prior]:
+    """Choose a weakly informative prior for every parameter of a law and of the measurement.
+
+    Only scales come from the data: the largest load (for the peak's place) and the largest force
+    (for the noise). What the load cell does is as informative as its certificate.
+
+    Args:
+        law: The slip law.
+        blocks: The block means.
+        load_cell: What is known of the load cell.
+    """
+    load_scale = float(np.median(blocks.normal_force))
+    force_scale = float(np.abs(blocks.traction_force).max())
+    known: dict[str, Prior] = {
+        "slip_stiffness": LogNormal(10.0, 1.5),
+        "shape": Uniform(1.0, 2.0),
+        "friction": LogNormal(0.6, 0.7),
+        "kinetic_friction": LogNormal(0.6, 0.7),
+        "peak_slip_per_load": LogNormal(0.1 / load_scale, 1.0),
+        "curvature": BelowOne(1.0, 1.0),
+        "friction_load_exponent": Normal(0.0, 0.2),
+        "stiffness_load_exponent": Normal(0.0, 0.3),
+        "gain_traction": Normal(0.0, load_cell.gain_sd),
+        "gain_normal": Normal(0.0, load_cell.gain_sd),
+        "bias_normal": Normal(0.0, load_cell.bias_sd),
+        "crosstalk": Normal(0.0, load_cell.crosstalk_sd),
+        "noise_floor": LogNormal(0.02 * force_scale, 1.5),
+        "noise_slope": HalfNormal(0.05),
+        "noise_correlation": Uniform(-0.5, 0.99),
+        "offset_spread": HalfNormal(load_cell.zero_stability),
+    }
+    return {p.name: known.get(p.name) or _vague(p) for p in (*law.parameters, *NUISANCE)}
+
+
+def _vague(parameter: Parameter) -> Prior:
+    """Return a broad prior over a parameter's support, for laws this module does not know."""
+    if np.isfinite([parameter.lower, parameter.upper]).all():
+        return Uniform(parameter.lower, parameter.upper)
+    if parameter.lower == 0:
+        return LogNormal(1.0, 1.5)
+    return Normal(0.0, 1.0)
+
+
+@dataclass(frozen=True)
+class SlipPosterior:
+    """Posterior density in the standard normal coordinates z of the free parameters.
+
+    Attributes:
+        blocks: The block means.
+        law: The slip law.
+        priors: Prior of each parameter by name.
+        fixed: Value of each parameter that is not sampled, by name.
+    """
+
+    blocks: SlipBlocks
+    law: SlipLaw
+    priors: Mapping[str, Prior]
+    fixed: Mapping[str, float] = field(default_factory=dict)
+
+    @cached_property
+    def parameters(self) -> tuple[Parameter, ...]:
+        """All parameters: the law's, then the measurement's."""
+        return (*self.law.parameters, *NUISANCE)
+
+    @cached_property
+    def free(self) -> tuple[Parameter, ...]:
+        """The parameters that are sampled, in the order of z."""
+        return tuple(p for p in self.parameters if p.name not in self.fixed)
+
+    @cached_property
+    def _check_loads(self) -> Array:
+        return np.quantile(self.blocks.normal_force, [0.0, 0.25, 0.5, 0.75, 1.0])
+
+    def values(self, z: Array) -> Array:
+        """Map coordinates of shape (w, d) to all parameter values, shape (w, k + 8)."""
+        columns = iter(np.moveaxis(z, -1, 0))
+        return np.stack(
+            [
+                np.full(z.shape[:-1], self.fixed[p.name])
+                if p.name in self.fixed
+                else self.priors[p.name].value(next(columns))
+                for p in self.parameters
+            ],
+            axis=-1,
+        )
+
+    def coordinates(self, values: Mapping[str, float]) -> Array:
+        """Map free parameters' values by name to coordinates; the prior median where absent."""
+        return np.array(
+            [
+                self.priors[p.name].coordinate(values[p.name]) if p.name in values else 0.0
+                for p in self.free
+            ],
+            dtype=float,
+        )
+
+    def log_prior(self, z: Array) -> Array:
+        """Compute the log prior density of z, shape (w,); -inf where the law loses its shape."""
+        k = len(self.law.parameters)
+        law_values = self.values(z)[:, :k].T[:, :, None]
+        with np.errstate(all="ignore"):
+            valid = np.all(self.law.valid(self._check_loads, law_values), axis=-1)
+        log_density = -0.5 * np.sum(z**2 + np.log(2 * np.pi), axis=1)
+        return np.where(valid, log_density, -np.inf)
+
+    def log_density(self, z: Array) -> Array:
+        """Compute the log posterior density of z up to a constant.
+
+        Args:
+            z: Coordinates, shape (w, d).
+
+        Returns:
+            Log density, shape (w,); -inf out of support, never NaN.
+        """
+        log_density = self.log_prior(z)
+        inside = np.isfinite(log_density)
+        if inside.any():
+            with np.errstate(all="ignore"):
+                log_density[inside] += self.run_log_likelihood(z[inside]).sum(axis=1)
+        return np.where(np.isfinite(log_density), log_density, -np.inf)
+
+    def run_log_likelihood(self, z: Array) -> Array:
+        """Compute the log density of each run's blocks, shape (w, n_runs)."""
+        return run_log_likelihood(self.blocks, self.law, self.values(z))
+
+    def without_runs(self, left_out: NDArray[np.bool_]) -> "SlipPosterior":
+        """Return the same posterior without the data of some runs.
+
+        Args:
+            left_out: Which runs to leave out, shape (n_runs,).
+        """
+        kept = self.blocks.select_runs(~left_out)
+        return SlipPosterior(kept, self.law, self.priors, self.fixed)

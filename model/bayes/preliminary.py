@@ -1,0 +1,142 @@
+# SPDX-License-Identifier: MIT
+"""A quick least-squares fit: where to start, and how long the residuals remember."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.optimize import least_squares
+
+from model.bayes.blocks import SlipBlocks, block_means, slip_noise_variance
+from model.bayes.priors import Prior
+from model.bayes.samples import SlipSamples
+from model.slip.law import Array, SlipLaw
+
+N_TRIALS = 400
+N_CLIMBS = 5
+MAX_BLOCKS = 3000
+MAX_SLIP_SPREAD = 0.3  # of the curve's slip scale within a block: the quadrature is good to 1e-3
+MIN_BLOCKS_PER_RUN = 5
+
+
+def least_squares_values(
+    blocks: SlipBlocks, law: SlipLaw, *, priors: dict[str, Prior], rng: np.random.Generator
+) -> Array:
+    """Fit a law's parameters to block means by robust least squares from many starts.
+
+    Args:
+        blocks: The block means.
+        law: The slip law.
+        priors: Priors of the law's parameters by name; they regularise weakly.
+        rng: Draws the starting points from the priors.
+
+    Returns:
+        Values of the law's parameters, shape (k,).
+    """
+    chosen = [priors[p.name] for p in law.parameters]
+    scale = float(np.std(blocks.traction_force)) / 20
+
+    def values(z: Array) -> Array:
+        return np.array([prior.value(x) for prior, x in zip(chosen, z, strict=True)])
+
+    def misfit(z: Array) -> Array:
+        with np.errstate(all="ignore"):
+            force = law.force(blocks.slip, blocks.normal_force, values(z))
+        return np.append((blocks.traction_force - np.nan_to_num(force)) / scale, z)
+
+    trials = np.vstack([np.zeros(len(chosen)), rng.standard_normal((N_TRIALS, len(chosen)))])
+    ranked = sorted(trials, key=lambda z: float(np.abs(misfit(z)).sum()))
+    climbs = [least_squares(misfit, z, loss="soft_l1", max_nfev=100) for z in ranked[:N_CLIMBS]]
+    return values(min(climbs, key=lambda fit: fit.cost).x)
+
+
+def correlation_time(residual: Array, slices: list[slice]) -> float:
+    """Estimate the integrated autocorrelation time of residuals, run means removed [samples].
+
+    One plus twice the sum of the autocorrelation pooled over runs, up to Sokal's window (the first
+    lag beyond five times the sum so far). 1 for white noise.
+
+    Args:
+        residual: Residual of each sample, shape (n,).
+        slices: One slice a run.
+    """
+    centred = [residual[part] - residual[part].mean() for part in slices]
+    longest = max(len(part) for part in centred)
+    total = np.zeros(longest)
+    for part in centred:
+        spectrum = np.fft.rfft(part, 2 * len(part))
+        total[: len(part)] += np.fft.irfft(np.abs(spectrum) ** 2)[: len(part)]
+    if total[0] <= 0:
+        return 1.0
+    time = 2 * np.cumsum(total / total[0]) - 1
+    beyond = np.arange(longest) >= 5 * time
+    window = int(np.argmax(beyond)) if beyond.any() else longest - 1
+    return max(1.0, float(time[window]))
+
+
+@dataclass(frozen=True)
+class BlockChoice:
+    """The block length, and why.
+
+    Attributes:
+        length: Samples in a block.
+        correlation: Integrated autocorrelation time of the residuals [samples].
+        reason: One line for the person.
+    """
+
+    length: int
+    correlation: float
+    reason: str
+
+
+def choose_block_length(
+    samples: SlipSamples, law: SlipLaw, *, priors: dict[str, Prior], rng: np.random.Generator
+) -> BlockChoice:
+    """Choose how many samples to average, from the autocorrelation of the residuals.
+
+    Long enough that noise of successive blocks is nearly independent, that the slip sensors' noise
+    averages to a tenth of the curve's slip scale, and that there are at most 3,000 blocks; but
+    short enough that slip stays within 0.3 slip scales in a block and a run keeps 5 blocks.
+
+    Args:
+        samples: The samples.
+        law: The slip law the residuals are taken from.
+        priors: Priors of the law's parameters by name.
+        rng: Source of randomness of the preliminary fit.
+    """
+    run_length = int(np.median([part.stop - part.start for part in samples.slices()]))
+    longest = max(1, run_length // MIN_BLOCKS_PER_RUN)
+    coarse = block_means(samples, max(1, min(longest, len(samples) // 1000)))
+    values = least_squares_values(coarse, law, priors=priors, rng=rng)
+    residual = samples.traction_force - law.force(samples.slip, samples.normal_force, values)
+    correlation = correlation_time(residual, samples.slices())
+    slip_scale = _slip_scale(law, values, float(np.median(samples.normal_force)))
+    noise = float(np.median(slip_noise_variance(samples)))
+    wanted = {
+        "the residuals' correlation time": int(np.ceil(correlation)),
+        "the slip sensors' noise": int(np.ceil(noise * (10 / slip_scale) ** 2)),
+        f"the limit of {MAX_BLOCKS} blocks": int(np.ceil(len(samples) / MAX_BLOCKS)),
+    }
+    reason, length = max(wanted.items(), key=lambda item: item[1])
+    if length > longest:
+        reason, length = f"the need for {MIN_BLOCKS_PER_RUN} blocks a run", longest
+    steady = _steady_length(samples, length, MAX_SLIP_SPREAD * slip_scale)
+    if steady < length:
+        reason, length = "the pace at which slip is swept", steady
+    return BlockChoice(length, correlation, reason)
+
+
+def _slip_scale(law: SlipLaw, values: Array, load: float) -> float:
+    """Return the slip at which a line of the initial slope would reach the largest force."""
+    slip = np.geomspace(1e-4, 1.0, 200)
+    largest = float(np.max(law.force(slip, load, values)))
+    return largest / float(law.slip_derivative(0.0, load, values))
+
+
+def _steady_length(samples: SlipSamples, length: int, largest_spread: float) -> int:
+    """Shorten a block until slip stays within a spread in nine blocks of ten."""
+    while length > 1:
+        wander = np.sqrt(block_means(samples, length).slip_wander)
+        if np.quantile(wander, 0.9) <= largest_spread:
+            break
+        length = max(1, length // 2)
+    return length

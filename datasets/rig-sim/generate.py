@@ -1,0 +1,129 @@
+# SPDX-License-Identifier: MIT
+"""Make the simulated rig sweep in this folder: `python datasets/rig-sim/generate.py`.
+
+Everything follows from `SEED`: the load cell's errors are drawn first, the sweep after.
+"""
+
+import hashlib
+import os
+import tempfile
+from dataclasses import asdict
+from pathlib import Path
+
+import numpy as np
+import pyarrow as pa
+import pyarrow.parquet as pq
+
+from rig.slip_rig.sweep import (
+    SOURCE_LAW,
+    SOURCE_VALUES,
+    RigImperfections,
+    SimulatedSweep,
+    SweepPlan,
+    draw_imperfections,
+    simulate_sweep,
+)
+
+SEED = 2020
+PLAN = SweepPlan()
+SOURCE = "sim:rig-sweep"
+
+UNITS = {
+    "t": "s",
+    "omega_leg": "rad/s",
+    "omega_ground": "rad/s",
+    "normal_force": "N",
+    "traction_force": "N",
+    "run": "",
+}
+TYPES = {  # float32 rounds at 1e-6 of what a sensor's noise already blurs; time has no noise
+    "t": pa.float64(),
+    "omega_leg": pa.float32(),
+    "omega_ground": pa.float32(),
+    "normal_force": pa.float32(),
+    "traction_force": pa.float32(),
+    "run": pa.int16(),
+}
+
+
+def simulate() -> tuple[SimulatedSweep, RigImperfections]:
+    """Draw the rig's errors and simulate its sweep.
+
+    Returns:
+        The sweep and the errors it was made with.
+    """
+    rng = np.random.default_rng(SEED)
+    imperfections = draw_imperfections(rng)
+    sweep = simulate_sweep(
+        SOURCE_LAW, SOURCE_VALUES, plan=PLAN, imperfections=imperfections, rng=rng
+    )
+    return sweep, imperfections
+
+
+def tables(sweep: SimulatedSweep) -> dict[str, pa.Table]:
+    """Cut the log into one table a load, by file name."""
+    fields = [pa.field(name, kind, metadata={"unit": UNITS[name]}) for name, kind in TYPES.items()]
+    schema = pa.schema(fields, metadata={"source": SOURCE, "note": "simulated, not measured"})
+    whole = pa.table({name: sweep.table[name] for name in TYPES}).cast(schema)
+    rows = len(PLAN.slips) * PLAN.n_samples
+    return {
+        f"simulated_load_{load:05.2f}N.parquet": whole.slice(rows * position, rows)
+        for position, load in enumerate(PLAN.loads)
+    }
+
+
+def truth(imperfections: RigImperfections) -> str:
+    """Write the true values as TOML: those of the law, and those of the rig."""
+    law = {p.name: v for p, v in zip(SOURCE_LAW.parameters, SOURCE_VALUES, strict=True)}
+    lines = ["# The true values behind this simulated sweep; written by generate.py."]
+    lines += [f'source = "{SOURCE}"', f"seed = {SEED}"]
+    lines += ["", f"[{SOURCE_LAW.name}]", *(f"{name} = {value!r}" for name, value in law.items())]
+    errors = asdict(imperfections)
+    lines += ["", "[rig]", *(f"{name} = {value!r}" for name, value in errors.items())]
+    return "\n".join(lines) + "\n"
+
+
+def manifest(folder: Path) -> str:
+    """Write the SHA-256 of every file of the folder, but for the manifest itself, as TOML."""
+    files = sorted(p for p in folder.glob("[!.]*") if p.is_file() and p.name != "manifest.toml")
+    hashes = (f'"{p.name}" = "{hashlib.sha256(p.read_bytes()).hexdigest()}"' for p in files)
+    return "\n".join(["[files]", *hashes]) + "\n"
+
+
+def write(folder: Path) -> None:
+    """Write every generated file into a folder; each replaces its forerunner whole.
+
+    Args:
+        folder: Existing folder.
+    """
+    sweep, imperfections = simulate()
+    for name, table in tables(sweep).items():
+        sink = pa.BufferOutputStream()
+        splittable = [column for column in table.column_names if column != "run"]
+        pq.write_table(
+            table, sink, compression="zstd", compression_level=19,
+            use_dictionary=["run"], use_byte_stream_split=splittable,
+        )  # fmt: skip
+        _replace(folder / name, sink.getvalue().to_pybytes())
+    _replace(folder / "truth.toml", truth(imperfections).encode())
+    _replace(folder / "manifest.toml", manifest(folder).encode())
+
+
+def _replace(path: Path, content: bytes) -> None:
+    """Write a file so that a reader, or an interruption, never meets half of it."""
+    handle, temporary = tempfile.mkstemp(dir=path.parent, prefix=".")
+    try:
+        with os.fdopen(handle, "wb") as file:
+            file.write(content)
+        Path(temporary).chmod(0o644)
+        Path(temporary).replace(path)
+    except BaseException:
+        Path(temporary).unlink(missing_ok=True)
+        raise
+
+
+if __name__ == "__main__":
+    here = Path(__file__).parent
+    write(here)
+    for made in sorted(here.iterdir()):
+        print(f"{made.stat().st_size:>9,} B  {made.name}")

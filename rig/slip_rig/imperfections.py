@@ -1,0 +1,178 @@
+# SPDX-License-Identifier: MIT
+"""What stands between the slip law and the log of a simulated rig: bump, wander, noise, errors."""
+
+from dataclasses import dataclass, fields, replace
+
+import numpy as np
+
+from model.errors import DomainError
+from model.slip.law import Array
+
+
+@dataclass(frozen=True)
+class RigImperfections:
+    """The truth of everything that is not the slip law; the defaults are a perfect rig.
+
+    Attributes:
+        gain_traction: Relative gain error g_t of the traction channel [-].
+        gain_normal: Relative gain error g_n of the normal channel [-].
+        bias_normal: Bias b_n of the normal channel, added to what it reads [N].
+        crosstalk: Traction c that the normal channel fails to see as load [-].
+        offset_sd: Standard deviation tau of the traction zero between runs [N].
+        noise_sd0: Traction noise without traction, marginal standard deviation s0 [N].
+        noise_sd1: Growth s1 of that standard deviation with the traction [-].
+        noise_correlation_time: Time T in which the noise forgets itself: AR(1) with
+            rho = exp(-dt/T); 0 is white [s].
+        speed_noise: Standard deviation of each disc's white speed-sensor noise [rad/s].
+        slip_wander_sd: Standard deviation of the true slip ratio about its set-point, seen by
+            sensors and force alike; none at slip 1, where the ground disc is held still [-].
+        slip_wander_time: Correlation time of that wander, an Ornstein-Uhlenbeck process [s].
+        bump_height: Rise of the load at the top of the ground disc's bump, over the load [-].
+        bump_width: Angle of the ground disc under the whole bump [rad].
+
+    Raises:
+        DomainError: A spread, time or height is negative, or a gain leaves no signal.
+    """
+
+    gain_traction: float = 0.0
+    gain_normal: float = 0.0
+    bias_normal: float = 0.0
+    crosstalk: float = 0.0
+    offset_sd: float = 0.0
+    noise_sd0: float = 0.0
+    noise_sd1: float = 0.0
+    noise_correlation_time: float = 0.0
+    speed_noise: float = 0.0
+    slip_wander_sd: float = 0.0
+    slip_wander_time: float = 0.0
+    bump_height: float = 0.0
+    bump_width: float = 1.0
+
+    def __post_init__(self) -> None:
+        for name in ("gain_traction", "gain_normal"):
+            if not getattr(self, name) > -1:
+                raise DomainError(f"{name} is {getattr(self, name):g}; expected above -1")
+        for name in _NOT_NEGATIVE:
+            if not getattr(self, name) >= 0:
+                raise DomainError(f"{name} is {getattr(self, name):g}; expected 0 or more")
+
+
+_SIGNED = {"gain_traction", "gain_normal", "bias_normal", "crosstalk"}
+_NOT_NEGATIVE = tuple(f.name for f in fields(RigImperfections) if f.name not in _SIGNED)
+
+TYPICAL_RIG = RigImperfections(
+    offset_sd=0.05,
+    noise_sd0=0.03,
+    noise_sd1=0.02,
+    noise_correlation_time=0.05,
+    speed_noise=0.02,
+    slip_wander_sd=0.003,
+    slip_wander_time=0.15,
+    bump_height=0.6,
+)
+"""A rig like the source's under a perfectly calibrated load cell."""
+
+
+def draw_imperfections(
+    rng: np.random.Generator,
+    *,
+    gain_sd: float = 0.005,
+    bias_sd: float = 0.05,
+    crosstalk_sd: float = 0.005,
+) -> RigImperfections:
+    """Draw a load cell's calibration errors around 0; everything else is `TYPICAL_RIG`.
+
+    A calibration has priors on these errors. It can only cover the truth at its nominal rate, seed
+    after seed, where the truth is drawn from those priors.
+
+    Args:
+        rng: Source of randomness.
+        gain_sd: Standard deviation of both channels' gain errors [-].
+        bias_sd: Standard deviation of the normal channel's bias [N].
+        crosstalk_sd: Standard deviation of the crosstalk [-].
+
+    Returns:
+        The imperfections of one rig.
+    """
+    return replace(
+        TYPICAL_RIG,
+        gain_traction=rng.normal(0.0, gain_sd),
+        gain_normal=rng.normal(0.0, gain_sd),
+        bias_normal=rng.normal(0.0, bias_sd),
+        crosstalk=rng.normal(0.0, crosstalk_sd),
+    )
+
+
+def measured_load(
+    load_true: Array, traction_force: Array, *, imperfections: RigImperfections
+) -> Array:
+    r"""Compute what the normal channel reads: the inverse of `true_load`.
+
+    .. math::
+        F_{n,measured} = \frac{F_n + b_n - c\,F_t}{1 + g_n}
+
+    Args:
+        load_true: True normal force F_n [N].
+        traction_force: Measured traction force F_t [N].
+        imperfections: Carries g_n, b_n and c.
+
+    Returns:
+        Measured normal force [N].
+    """
+    seen = load_true + imperfections.bias_normal - imperfections.crosstalk * traction_force
+    return seen / (1 + imperfections.gain_normal)
+
+
+def true_load(
+    normal_force: Array, traction_force: Array, *, imperfections: RigImperfections
+) -> Array:
+    r"""Compute the true load from both measured forces.
+
+    .. math::
+        F_n = (1 + g_n)\,F_{n,measured} - b_n + c\,F_t
+
+    Args:
+        normal_force: Measured normal force [N].
+        traction_force: Measured traction force F_t [N].
+        imperfections: Carries g_n, b_n and c.
+
+    Returns:
+        True normal force [N].
+    """
+    return (
+        (1 + imperfections.gain_normal) * normal_force
+        - imperfections.bias_normal
+        + imperfections.crosstalk * traction_force
+    )
+
+
+def lag_one_correlation(interval: float, correlation_time: float) -> float:
+    """Compute rho = exp(-dt/T), an AR(1)'s correlation from one sample to the next [-].
+
+    Args:
+        interval: Time dt between samples [s].
+        correlation_time: Time T in which the process forgets itself; 0 is white noise [s].
+
+    >>> round(lag_one_correlation(0.004, 0.05), 4), lag_one_correlation(0.004, 0.0)
+    (0.9231, 0.0)
+    """
+    return float(np.exp(-interval / correlation_time)) if correlation_time > 0 else 0.0
+
+
+def bump_rise(angle: Array, *, height: float, width: float) -> Array:
+    """Compute the relative rise of the load on the ground disc's bump, a raised cosine.
+
+    Args:
+        angle: Ground-disc angle from the top of the bump, any number of turns [rad].
+        height: Rise at the top, over the load [-].
+        width: Angle under the whole bump [rad].
+
+    Returns:
+        Rise over the load, 0 off the bump [-].
+
+    >>> bump_rise(np.array([0.0, 0.25, 0.5]), height=0.6, width=1.0).round(3).tolist()
+    [0.6, 0.3, 0.0]
+    """
+    from_top = np.abs((angle + np.pi) % (2 * np.pi) - np.pi)
+    inside = np.minimum(from_top / (width / 2), 1.0) if width > 0 else np.ones_like(from_top)
+    return height / 2 * (1 + np.cos(np.pi * inside))

@@ -1,0 +1,142 @@
+# SPDX-License-Identifier: MIT
+import hashlib
+import importlib.util
+import re
+import tomllib
+from pathlib import Path
+
+import numpy as np
+import pyarrow.parquet as pq
+import pytest
+
+from model.slip.definition import slip_ratio
+from rig.slip_rig.sweep import SOURCE_LAW, SOURCE_VALUES
+
+FOLDER = Path(__file__).parents[2] / "datasets" / "rig-sim"
+COMMITTED = sorted(FOLDER.glob("*.parquet"))
+
+
+@pytest.fixture(scope="module")
+def generator():
+    spec = importlib.util.spec_from_file_location("rig_sim_generate", FOLDER / "generate.py")
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+@pytest.fixture(scope="module")
+def truth():
+    return tomllib.loads((FOLDER / "truth.toml").read_text(encoding="utf-8"))
+
+
+@pytest.fixture(scope="module")
+def regenerated(generator, tmp_path_factory):
+    folder = tmp_path_factory.mktemp("rig-sim")
+    generator.write(folder)
+    return folder
+
+
+def committed_column(name):
+    return np.concatenate([pq.read_table(path)[name].to_numpy() for path in COMMITTED])
+
+
+def test_there_is_one_file_a_load_and_all_are_small(generator):
+    assert len(COMMITTED) == len(generator.PLAN.loads)
+    assert sum(path.stat().st_size for path in COMMITTED) < 5e6
+
+
+def test_generating_again_gives_the_committed_numbers(regenerated):
+    assert [p.name for p in sorted(regenerated.glob("*.parquet"))] == [p.name for p in COMMITTED]
+    for path in COMMITTED:
+        old, new = pq.read_table(path), pq.read_table(regenerated / path.name)
+        assert new.schema.equals(old.schema, check_metadata=True)
+        for name in old.column_names:
+            # a last bit may turn with the processor's sine; float32 keeps 6e-8 of a value
+            np.testing.assert_allclose(
+                new[name].to_numpy(), old[name].to_numpy(), rtol=3e-7, atol=1e-7
+            )
+
+
+def test_generating_again_gives_the_committed_truth_and_leaves_no_litter(regenerated):
+    assert (regenerated / "truth.toml").read_text() == (FOLDER / "truth.toml").read_text()
+    names = {path.name for path in COMMITTED} | {"truth.toml", "manifest.toml"}
+    assert {path.name for path in regenerated.iterdir()} == names
+
+
+def test_the_manifest_hashes_every_file_that_was_generated(regenerated):
+    hashes = tomllib.loads((regenerated / "manifest.toml").read_text())["files"]
+    assert set(hashes) == {p.name for p in regenerated.iterdir()} - {"manifest.toml"}
+    for name, expected in hashes.items():
+        assert hashlib.sha256((regenerated / name).read_bytes()).hexdigest() == expected
+
+
+def test_an_interrupted_write_keeps_the_old_file(generator, tmp_path, monkeypatch):
+    path = tmp_path / "kept"
+    path.write_text("old")
+    monkeypatch.setattr(Path, "chmod", lambda *_: (_ for _ in ()).throw(KeyboardInterrupt))
+    with pytest.raises(KeyboardInterrupt):
+        generator._replace(path, b"new")
+    assert [p.name for p in tmp_path.iterdir()] == ["kept"]
+    assert path.read_text() == "old"
+
+
+def test_rounding_to_single_precision_is_far_below_the_sensors_noise(generator):
+    exact, rig = generator.simulate()
+    for name, noise in [
+        ("omega_leg", rig.speed_noise),
+        ("omega_ground", rig.speed_noise),
+        ("normal_force", rig.noise_sd0),
+        ("traction_force", rig.noise_sd0),
+    ]:
+        rounding = np.abs(committed_column(name) - exact.table[name]).max()
+        assert rounding < 1e-4 * noise
+    np.testing.assert_array_equal(committed_column("t"), exact.table["t"])
+    np.testing.assert_array_equal(committed_column("run"), exact.table["run"])
+
+
+def test_every_place_that_names_the_source_says_simulated(generator, truth):
+    columns = tomllib.loads((FOLDER / "columns.toml").read_text(encoding="utf-8"))
+    assert columns["source"] == truth["source"] == generator.SOURCE == "sim:rig-sweep"
+    for path in COMMITTED:
+        assert pq.read_schema(path).metadata[b"source"] == b"sim:rig-sweep"
+        assert path.name.startswith("simulated")
+    assert "SIMULATED" in (FOLDER / "README.md").read_text(encoding="utf-8").splitlines()[0]
+
+
+def test_columns_toml_states_the_plans_radii(generator):
+    constants = tomllib.loads((FOLDER / "columns.toml").read_text(encoding="utf-8"))["constants"]
+    assert constants == {
+        "radius_leg": f"{generator.PLAN.radius_leg * 1000:g} mm",
+        "radius_ground": f"{generator.PLAN.radius_ground * 1000:g} mm",
+    }
+
+
+def test_truth_toml_states_the_law_and_the_rig(generator, truth):
+    _, rig = generator.simulate()
+    assert list(truth[SOURCE_LAW.name].values()) == list(SOURCE_VALUES)
+    assert list(truth[SOURCE_LAW.name]) == [p.name for p in SOURCE_LAW.parameters]
+    for name, value in truth["rig"].items():
+        assert getattr(rig, name) == value
+
+
+def test_the_readme_tabulates_the_true_values(truth):
+    text = (FOLDER / "README.md").read_text(encoding="utf-8")
+    rows = re.findall(r"^\|[^|]*\|[^|]*\|\s*(-?[\d.]+)[^|]*\|$", text, flags=re.MULTILINE)
+    promised = [*truth[SOURCE_LAW.name].values(), *truth["rig"].values()]
+    np.testing.assert_allclose([float(value) for value in rows], promised, atol=5.1e-7)
+
+
+def test_the_committed_log_follows_the_true_law(truth):
+    rig = truth["rig"]
+    Fn, Ft = committed_column("normal_force"), committed_column("traction_force")
+    slip = slip_ratio(
+        committed_column("omega_leg") * 0.035, committed_column("omega_ground") * 0.12, "material"
+    )
+    load = (1 + rig["gain_normal"]) * Fn - rig["bias_normal"] + rig["crosstalk"] * Ft
+    force = (1 + rig["gain_traction"]) * SOURCE_LAW.force(slip, load, SOURCE_VALUES)
+    late = slip > 0.3  # where the blur of the measured slip hardly moves the force
+    residual = (Ft - force)[late]
+    noise = rig["noise_sd0"] + rig["noise_sd1"] * np.abs(force[late])
+    promised = np.sqrt(np.mean(noise**2) + rig["offset_sd"] ** 2)
+    assert residual.std() == pytest.approx(promised, rel=0.1)
+    assert abs(residual.mean()) < 4 * rig["offset_sd"] / np.sqrt(248 * 0.7)

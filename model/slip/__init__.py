@@ -1,17 +1,32 @@
 # SPDX-License-Identifier: MIT
 """Slip laws, slip-ratio definitions and the curve that carries both."""
 
+from model.slip.brush import Brush
+from model.slip.coulomb import CoulombStribeck
 from model.slip.definition import SlipDefinition, convert_slip, require_definition, slip_ratio
+from model.slip.lateral import lateral_slip, slip_angle
 from model.slip.law import Parameter, SlipLaw
+from model.slip.laws import LAWS, slip_law
 from model.slip.magic_formula import MagicFormula, magic_formula
+from model.slip.read_off import Coefficients, CurveFeatures, curve_features, read_off
 
 __all__ = [
+    "LAWS",
+    "Brush",
+    "Coefficients",
+    "CoulombStribeck",
+    "CurveFeatures",
     "MagicFormula",
     "Parameter",
     "SlipDefinition",
     "SlipLaw",
     "convert_slip",
+    "curve_features",
+    "lateral_slip",
     "magic_formula",
+    "read_off",
     "require_definition",
+    "slip_angle",
+    "slip_law",
     "slip_ratio",
 ]

@@ -1,0 +1,187 @@
+# SPDX-License-Identifier: MIT
+"""Coulomb friction with Stribeck's fall from static to kinetic, smooth at zero slip."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from model.slip.law import Array, Parameter, Values
+
+
+def breakaway_slip(K: ArrayLike, mu: ArrayLike) -> Array:
+    r"""Compute the slip ratio at which static friction is fully developed.
+
+    .. math::
+        \kappa_c = \frac{3\mu}{2K}
+
+    Args:
+        K: Slip stiffness, slope of traction over load at zero slip [-].
+        mu: Static friction, peak traction over load [-].
+
+    Returns:
+        Break-away slip ratio kappa_c [-].
+    """
+    return 1.5 * np.asarray(mu, dtype=float) / np.asarray(K, dtype=float)
+
+
+def regularised_sign(kappa: ArrayLike, kappa_c: ArrayLike) -> Array:
+    r"""Compute the sign of the slip, with a cubic in place of its step.
+
+    .. math::
+        \sigma(u) = \tfrac12 (3u - u^3), \qquad u = \kappa/\kappa_c \text{ held to } [-1, 1]
+
+    The rise of contact models in multibody codes. It is complete at kappa_c, where its slope is
+    zero, unlike tanh or u/sqrt(1 + u²), which only approach one and so would leave the peak of the
+    law below its static friction by an amount without a closed form.
+
+    Args:
+        kappa: Slip ratio [-].
+        kappa_c: Slip ratio at which the rise is complete [-].
+
+    Returns:
+        A number in [-1, 1], odd in `kappa` [-].
+    """
+    u = np.clip(np.asarray(kappa) / np.asarray(kappa_c), -1.0, 1.0)
+    return 0.5 * u * (3 - u**2)
+
+
+def stribeck_fall(kappa: ArrayLike, kappa_c: ArrayLike, kappa_s: ArrayLike, q: ArrayLike) -> Array:
+    r"""Compute the share of static friction left at a slip ratio.
+
+    .. math::
+        \beta(\kappa) = q + (1 - q)\,e^{-z^2}, \qquad
+        z = \frac{\max(|\kappa| - \kappa_c,\ 0)}{\kappa_s}
+
+    Args:
+        kappa: Slip ratio [-].
+        kappa_c: Slip ratio at which the fall begins [-].
+        kappa_s: Stribeck slip, over which 63 % of the static excess is lost [-].
+        q: Kinetic over static friction [-].
+
+    Returns:
+        A number in (q, 1], even in `kappa` [-].
+    """
+    q = np.asarray(q)
+    return q + (1 - q) * np.exp(-(_slip_past_breakaway(kappa, kappa_c, kappa_s) ** 2))
+
+
+def coulomb_stribeck(
+    kappa: ArrayLike, K: ArrayLike, mu: ArrayLike, q: ArrayLike, kappa_s: ArrayLike
+) -> Array:
+    r"""Compute traction over load.
+
+    .. math::
+        f / F_n = \mu\, \sigma(\kappa/\kappa_c)\, \beta(\kappa)
+
+    Rises with slope K at zero slip, peaks at mu where the slip is kappa_c, falls to q·mu. Odd,
+    analytic at zero slip and once continuously differentiable everywhere.
+
+    Args:
+        kappa: Slip ratio [-].
+        K: Slip stiffness, slope at zero slip [-].
+        mu: Static friction, the peak [-].
+        q: Kinetic over static friction; 1 gives plain Coulomb friction [-].
+        kappa_s: Stribeck slip [-].
+
+    Returns:
+        Traction force over normal force [-].
+
+    >>> float(coulomb_stribeck(0.03, K=20.0, mu=0.4, q=0.7, kappa_s=0.1))
+    0.4
+    >>> float(coulomb_stribeck(1.0, K=20.0, mu=0.4, q=0.7, kappa_s=0.1).round(6))
+    0.28
+    """
+    kappa_c = breakaway_slip(K, mu)
+    rise = regularised_sign(kappa, kappa_c)
+    return np.asarray(mu) * rise * stribeck_fall(kappa, kappa_c, kappa_s, q)
+
+
+def coulomb_stribeck_slope(
+    kappa: ArrayLike, K: ArrayLike, mu: ArrayLike, q: ArrayLike, kappa_s: ArrayLike
+) -> Array:
+    r"""Compute the derivative of `coulomb_stribeck` with respect to slip ratio [-].
+
+    .. math::
+        \frac{f'}{F_n} = K (1 - u^2) - 2 \mu (1 - q) \frac{z}{\kappa_s} e^{-z^2}
+
+    The first term lives on the rise only, the second on the fall only; both vanish at kappa_c.
+    """
+    kappa_c = breakaway_slip(K, mu)
+    u = np.clip(np.asarray(kappa) / kappa_c, -1.0, 1.0)
+    z = _slip_past_breakaway(kappa, kappa_c, kappa_s)
+    fall = 2 * np.asarray(mu) * (1 - np.asarray(q)) * z / np.asarray(kappa_s) * np.exp(-(z**2))
+    return np.asarray(K) * (1 - u**2) - fall
+
+
+def _slip_past_breakaway(kappa: ArrayLike, kappa_c: ArrayLike, kappa_s: ArrayLike) -> Array:
+    # 40 Stribeck slips out exp(-z²) is zero in double precision; the bound keeps infinite slip
+    # (a locked leg by material slip) from giving inf·0.
+    past = (np.abs(np.asarray(kappa)) - np.asarray(kappa_c)) / np.asarray(kappa_s)
+    return np.clip(past, 0.0, 40.0)
+
+
+@dataclass(frozen=True)
+class CoulombStribeck:
+    """Coulomb friction, static at break-away and kinetic far out, as a slip law.
+
+    Attributes:
+        stribeck: Let the traction fall from static to kinetic friction. Without it the traction
+            stays at its peak: plain Coulomb friction, regularised.
+    """
+
+    stribeck: bool = True
+
+    name = "coulomb-stribeck"
+
+    @property
+    def parameters(self) -> tuple[Parameter, ...]:
+        """The law's parameters, in the order of `values`."""
+        return (*_COMMON, *(_STRIBECK if self.stribeck else ()))
+
+    def coefficients(self, values: Values) -> tuple[Array, Array, Array, Array]:
+        """Spell out K, mu, q and kappa_s, with q = 1 where there is no fall.
+
+        Args:
+            values: Parameter values, one entry a parameter.
+
+        Returns:
+            K [-], mu [-], q [-] and kappa_s [-].
+        """
+        K, mu = (np.asarray(value, dtype=float) for value in values[:2])
+        if not self.stribeck:
+            return K, mu, np.array(1.0), np.array(1.0)
+        return K, mu, np.asarray(values[2], dtype=float), np.asarray(values[3], dtype=float)
+
+    def force(self, slip: ArrayLike, load: ArrayLike, values: Values) -> Array:
+        """Compute the traction force [N]; see `SlipLaw.force`."""
+        return np.asarray(load) * coulomb_stribeck(slip, *self.coefficients(values))
+
+    def slip_derivative(self, slip: ArrayLike, load: ArrayLike, values: Values) -> Array:
+        """Compute the derivative of the force with respect to slip ratio [N]."""
+        return np.asarray(load) * coulomb_stribeck_slope(slip, *self.coefficients(values))
+
+    def valid(self, load: ArrayLike, values: Values) -> NDArray[np.bool_]:
+        """Tell where the curve has its shape: everywhere inside the support."""
+        return np.ones(np.broadcast(load, *values).shape, dtype=bool)
+
+    def peak_slip(self, load: ArrayLike, values: Values) -> Array:
+        """Compute the slip ratio at which the force peaks (inf where it never falls) [-]."""
+        K, mu, _, _ = self.coefficients(values)
+        peak = breakaway_slip(K, mu) if self.stribeck else np.array(math.inf)
+        return np.broadcast_to(peak, np.broadcast(load, *values).shape)
+
+
+_COMMON = (
+    Parameter("slip_stiffness", "K", "dimensionless", 0.0, math.inf,
+              "slope of traction over load at zero slip"),
+    Parameter("friction", "mu", "dimensionless", 0.0, math.inf,
+              "static friction: peak traction over load"),
+)  # fmt: skip
+_STRIBECK = (
+    Parameter("kinetic_ratio", "q", "dimensionless", 0.0, 1.0,
+              "kinetic over static friction: traction far out over its peak"),
+    Parameter("stribeck_slip", "kappa_s", "dimensionless", 0.0, math.inf,
+              "slip past the peak over which 63 % of the fall happens"),
+)  # fmt: skip

@@ -1,0 +1,52 @@
+# SPDX-License-Identifier: MIT
+"""The slip laws by name."""
+
+from collections.abc import Mapping
+from dataclasses import fields
+from difflib import get_close_matches
+from types import MappingProxyType
+from typing import Any
+
+from model.errors import DomainError
+from model.slip.brush import Brush
+from model.slip.coulomb import CoulombStribeck
+from model.slip.law import SlipLaw
+from model.slip.magic_formula import MagicFormula
+
+LAWS: Mapping[str, type[MagicFormula | CoulombStribeck | Brush]] = MappingProxyType(
+    {law.name: law for law in (MagicFormula, CoulombStribeck, Brush)}
+)
+
+
+def slip_law(name: str, **options: Any) -> SlipLaw:
+    """Make the slip law of a name.
+
+    A law is stored as its name and its fields: `slip_law(law.name, **dataclasses.asdict(law))`
+    gives it back.
+
+    Args:
+        name: A key of `LAWS`.
+        options: The law's own options, such as `curvature` of the Magic Formula.
+
+    Returns:
+        The law.
+
+    Raises:
+        DomainError: There is no such law, or it has no such option.
+
+    >>> [parameter.name for parameter in slip_law("brush", kinetic=True).parameters]
+    ['slip_stiffness', 'friction', 'kinetic_ratio']
+    """
+    _require_known("slip law", name, tuple(LAWS))
+    known = tuple(field.name for field in fields(LAWS[name]))
+    for option in options:
+        _require_known(f"option of the slip law '{name}'", option, known)
+    return LAWS[name](**options)
+
+
+def _require_known(what: str, found: str, known: tuple[str, ...]) -> None:
+    if found in known:
+        return
+    nearest = get_close_matches(found, known, n=1, cutoff=0.3)
+    hint = f"; did you mean '{nearest[0]}'?" if nearest else ""
+    raise DomainError(f"'{found}' is no {what}; there are {', '.join(known)}{hint}")

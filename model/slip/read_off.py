@@ -1,0 +1,229 @@
+# SPDX-License-Identifier: MIT
+"""The Magic Formula's coefficients, read off a slip curve by four of its features."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from model.errors import DomainError
+from model.slip.law import Array
+from model.slip.magic_formula import curvature_from_peak
+
+_UNSETTLED = 0.05  # of the peak: what a curve may still have to fall at its end
+_RISE_TERMS = 3  # kappa, kappa³, kappa⁵: the slope is then within 0.1 % up to half the peak
+
+
+@dataclass(frozen=True)
+class CurveFeatures:
+    """What one reads off a slip curve at one load, Fig. 4-5.
+
+    Attributes:
+        peak_force: D, greatest force [N].
+        peak_slip: x_m, slip ratio of the greatest force [-].
+        asymptote: y_a, force towards infinite slip [N].
+        slope: H, slope at zero slip [N].
+    """
+
+    peak_force: float
+    peak_slip: float
+    asymptote: float
+    slope: float
+
+
+@dataclass(frozen=True)
+class Coefficients:
+    """Plain coefficients of the Magic Formula at one load.
+
+    Attributes:
+        B: Stiffness factor [-].
+        C: Shape factor [-].
+        D: Peak force [N].
+        E: Curvature factor [-].
+    """
+
+    B: float
+    C: float
+    D: float
+    E: float
+
+
+def shape_factor(y_a: ArrayLike, D: ArrayLike, *, has_peak: bool = True) -> Array:
+    r"""Compute the shape factor from peak and asymptote, Eq. (4-25).
+
+    .. math::
+        C = 1 \pm \Bigl(1 - \frac{2}{\pi} \arcsin\frac{y_a}{D}\Bigr)
+
+    The source's text lost the leading 1 (Pacejka has it): without it C would be below one and the
+    curve without a peak. Inverts y_a = D sin(pi C/2), which Eq. (4-23) tends to for E < 1.
+
+    Args:
+        y_a: Force towards infinite slip, from 0 to D [N].
+        D: Peak force [N].
+        has_peak: Whether the curve peaks (upper sign) or only rises (lower sign: D is then a
+            level that it never reaches).
+
+    Returns:
+        Shape factor, in [1, 2] with a peak and in [0, 1] without [-].
+
+    Raises:
+        DomainError: The asymptote is negative or above the peak.
+
+    >>> float(shape_factor(0.6326, 1.0).round(3))
+    1.564
+    """
+    y_a, D = np.asarray(y_a, dtype=float), np.asarray(D, dtype=float)
+    if np.any((y_a < 0) | (y_a > D)):
+        raise DomainError(
+            f"asymptote {y_a} N lies outside 0 to the peak, {D} N; a Magic Formula with C "
+            f"between 1 and 2 settles in between: smooth the curve, or give its features by hand"
+        )
+    deviation = 1 - 2 / np.pi * np.arcsin(y_a / D)
+    return 1 + deviation if has_peak else 1 - deviation
+
+
+def stiffness_factor(H: ArrayLike, C: ArrayLike, D: ArrayLike) -> Array:
+    r"""Compute the stiffness factor from the slope at zero slip, Eq. (4-26).
+
+    .. math::
+        B = \frac{H}{C D}
+
+    Args:
+        H: Slope of the force at zero slip [N].
+        C: Shape factor [-].
+        D: Peak force [N].
+
+    Returns:
+        Stiffness factor [-].
+    """
+    return np.asarray(H, dtype=float) / (np.asarray(C) * np.asarray(D))
+
+
+def coefficients_from_features(features: CurveFeatures) -> Coefficients:
+    """Compute B, C, D, E from a curve's features: C, then B, then E.
+
+    Args:
+        features: Peak, its slip, asymptote and initial slope.
+
+    Returns:
+        The Magic Formula's coefficients.
+
+    Raises:
+        DomainError: The asymptote does not suit the peak, Eq. (4-25), or the peak lies too far
+            out for the other three, so that Eq. (4-27) gives E > 1 and a curve that changes sign.
+    """
+    D = features.peak_force
+    C = float(shape_factor(features.asymptote, D))
+    B = float(stiffness_factor(features.slope, C, D))
+    E = float(curvature_from_peak(B, C, features.peak_slip))
+    if E > 1:
+        raise DomainError(
+            f"curvature E = {E:.4g} exceeds 1: a peak at slip {features.peak_slip:.4g} is too far "
+            f"out for B = {B:.4g} and C = {C:.4g}; check the slope at zero slip "
+            f"({features.slope:.4g} N) and the asymptote ({features.asymptote:.4g} N)"
+        )
+    return Coefficients(B, C, D, E)
+
+
+def curve_features(slip: ArrayLike, force: ArrayLike) -> CurveFeatures:
+    """Find the features of a slip curve at one load.
+
+    Takes the curve at its word: smooth a measured one first. The peak is the vertex of the
+    parabola through the highest sample and its neighbours; the slope that of an odd polynomial
+    through the rise up to half the peak; the asymptote is extrapolated from the outer half of the
+    slip range, where the Magic Formula falls as 1/slip.
+
+    Args:
+        slip: Slip ratio, increasing from zero or above, shape (n,) [-].
+        force: Traction force, positive, shape (n,) [N].
+
+    Returns:
+        Peak, its slip, asymptote and initial slope.
+
+    Raises:
+        DomainError: The arrays do not describe a curve, it has no peak within its range, too few
+            samples on the rise, or is still falling at its end.
+    """
+    kappa, f = _as_curve(slip, force)
+    x_m, D = _vertex(kappa, f)
+    return CurveFeatures(D, x_m, _asymptote(kappa, f, x_m, D), _initial_slope(kappa, f, D))
+
+
+def read_off(slip: ArrayLike, force: ArrayLike) -> Coefficients:
+    """Read the Magic Formula's coefficients off a slip curve at one load.
+
+    The source's way, and a start for a fit; it knows no uncertainty. See `curve_features` for
+    what it asks of the curve.
+
+    Args:
+        slip: Slip ratio, increasing from zero or above, shape (n,) [-].
+        force: Traction force, positive, shape (n,) [N].
+
+    Returns:
+        B, C, D and E.
+
+    Raises:
+        DomainError: See `curve_features` and `coefficients_from_features`.
+    """
+    return coefficients_from_features(curve_features(slip, force))
+
+
+def _as_curve(slip: ArrayLike, force: ArrayLike) -> tuple[Array, Array]:
+    kappa, f = np.asarray(slip, dtype=float), np.asarray(force, dtype=float)
+    if kappa.ndim != 1 or kappa.shape != f.shape:
+        raise DomainError(
+            f"slip has shape {kappa.shape} and force {f.shape}; one curve is two arrays of one "
+            f"length"
+        )
+    if not (np.all(np.isfinite(kappa)) and np.all(np.isfinite(f))):
+        raise DomainError("the curve has NaN or infinite samples; leave them out")
+    if len(kappa) < 2 or kappa[0] < 0 or np.any(np.diff(kappa) <= 0):
+        raise DomainError(
+            f"{len(kappa)} slip ratios that do not increase from zero or above; sort them, average "
+            f"repeated ones, and read the braking side off as (-slip, -force)"
+        )
+    return kappa, f
+
+
+def _vertex(kappa: Array, f: Array) -> tuple[float, float]:
+    top = int(np.argmax(f))
+    if top in (0, len(f) - 1) or f[top] <= 0:
+        raise DomainError(
+            f"no peak within slip {kappa[0]:.4g} to {kappa[-1]:.4g}: the greatest force, "
+            f"{f[top]:.4g} N, is at slip {kappa[top]:.4g}; measure further out, or fit a law "
+            f"without a peak"
+        )
+    around = slice(top - 1, top + 2)
+    shift = kappa[around] - kappa[top]  # centred, or the parabola's terms cancel
+    curvature, gradient, _ = np.polyfit(shift, f[around], 2)
+    offset = -gradient / (2 * curvature)
+    return float(kappa[top] + offset), float(f[top] + gradient * offset / 2)
+
+
+def _initial_slope(kappa: Array, f: Array, D: float) -> float:
+    end = int(np.argmax(f > D / 2))
+    rise = slice(1 if kappa[0] == 0 else 0, end)
+    reach, count = kappa[end], len(kappa[rise])
+    if count < _RISE_TERMS:
+        raise DomainError(
+            f"{count} samples between zero slip and {reach:.4g}, where the force passes half its "
+            f"peak; the slope at zero slip needs {_RISE_TERMS}: measure smaller slip ratios"
+        )
+    odd = (kappa[rise, None] / reach) ** (2 * np.arange(_RISE_TERMS) + 1)
+    return float(np.linalg.lstsq(odd, f[rise])[0][0] / reach)
+
+
+def _asymptote(kappa: Array, f: Array, x_m: float, D: float) -> float:
+    tail = kappa >= kappa[-1] / 2
+    if kappa[-1] < 2 * x_m or np.count_nonzero(tail) < 2:
+        raise DomainError(
+            f"the curve ends at slip {kappa[-1]:.4g} with its peak at {x_m:.4g}: too near to see "
+            f"what it falls to; measure to twice the peak's slip at least"
+        )
+    y_a = float(np.polyfit(1 / kappa[tail], f[tail], 1)[1])
+    if abs(f[-1] - y_a) > _UNSETTLED * D:
+        raise DomainError(
+            f"asymptote not reached: at slip {kappa[-1]:.4g} the force is {f[-1]:.4g} N and heads "
+            f"for {y_a:.4g} N, more than {_UNSETTLED:.0%} of the peak away; measure further out"
+        )
+    return y_a

@@ -1,0 +1,117 @@
+# SPDX-License-Identifier: MIT
+import numpy as np
+import pytest
+from hypothesis import assume, given
+from hypothesis import strategies as st
+
+from model.errors import DomainError
+from model.slip import Brush, CurveFeatures, curve_features, magic_formula, read_off
+from model.slip.magic_formula import peak_slip
+from model.slip.read_off import coefficients_from_features, shape_factor, stiffness_factor
+
+FAR = np.geomspace(1e-4, 1e3, 4000)
+
+
+@given(st.floats(5, 60), st.floats(1.1, 1.9), st.floats(0.5, 50), st.floats(-3, 0.8))
+def test_magic_formula_sampled_far_out_gives_its_coefficients_back(B, C, D, E):
+    assume(peak_slip(B, C, E) < 5)
+    read = read_off(FAR, magic_formula(FAR, B, C, D, E))
+    np.testing.assert_allclose(read.B, B, rtol=5e-3)
+    np.testing.assert_allclose(read.C, C, atol=2e-4)
+    np.testing.assert_allclose(read.D, D, rtol=1e-5)
+    np.testing.assert_allclose(read.E, E, atol=0.01 * (1 + abs(E)))
+
+
+def test_rig_range_to_slip_one_is_far_enough_for_the_source_curve():
+    slip = np.linspace(0, 1, 501)
+    read = read_off(slip, magic_formula(slip, 34.34, 1.564, 2.518, -0.1344))
+    np.testing.assert_allclose((read.B, read.C, read.D), (34.34, 1.564, 2.518), rtol=1e-3)
+    np.testing.assert_allclose(read.E, -0.1344, atol=0.01)
+
+
+@given(st.floats(1.0, 1.999))
+def test_eq_4_25_inverts_the_asymptote(C):
+    assert shape_factor(np.sin(np.pi * C / 2), 1.0) == pytest.approx(C, abs=1e-7)
+
+
+@given(st.floats(0.001, 1.0))
+def test_lower_sign_of_eq_4_25_inverts_the_asymptote_of_a_rising_curve(C):
+    assert shape_factor(np.sin(np.pi * C / 2), 1.0, has_peak=False) == pytest.approx(C, abs=1e-7)
+
+
+def test_without_the_lost_leading_one_the_shape_would_have_no_peak():
+    assert shape_factor(0.6326, 1.0) - 1 < 1 < shape_factor(0.6326, 1.0)
+
+
+@given(st.floats(5, 60), st.floats(1.1, 1.9), st.floats(0.5, 50))
+def test_eq_4_26_inverts_the_slope_at_zero_slip(B, C, D):
+    assert stiffness_factor(B * C * D, C, D) == pytest.approx(B)
+
+
+def test_features_are_those_of_the_curve():
+    found = curve_features(FAR, magic_formula(FAR, 34.34, 1.564, 2.5, 0.0))
+    expected = (2.5, peak_slip(34.34, 1.564, 0.0), 2.5 * np.sin(1.564 * np.pi / 2))
+    assert (found.peak_force, found.peak_slip, found.asymptote) == pytest.approx(expected, rel=1e-4)
+    assert found.slope == pytest.approx(34.34 * 1.564 * 2.5, rel=1e-3)
+
+
+def test_noise_of_a_filtered_curve_moves_the_coefficients_little():
+    slip = np.linspace(0, 1, 1001)
+    noise = 0.002 * np.random.default_rng(4).standard_normal(len(slip))
+    read = read_off(slip, magic_formula(slip, 34.34, 1.564, 2.5, 0.0) + noise)
+    np.testing.assert_allclose((read.B, read.C, read.D), (34.34, 1.564, 2.5), rtol=0.02)
+
+
+@pytest.mark.parametrize("reach", [0.01, 0.04])
+def test_curve_that_ends_before_its_peak_is_refused(reach):
+    slip = np.linspace(0, reach, 50)
+    with pytest.raises(DomainError, match=f"no peak within slip 0 to {reach}"):
+        read_off(slip, magic_formula(slip, 34.34, 1.564, 2.5, 0.0))
+
+
+def test_curve_without_a_peak_is_refused():
+    with pytest.raises(DomainError, match="fit a law without a peak"):
+        read_off(FAR, Brush().force(FAR, 5.0, (20.0, 0.4)) * (1 + 1e-9 * FAR))
+
+
+def test_curve_that_ends_just_behind_its_peak_is_refused():
+    slip = np.linspace(0, 0.06, 100)
+    with pytest.raises(DomainError, match="twice the peak's slip"):
+        read_off(slip, magic_formula(slip, 34.34, 1.564, 2.5, 0.0))
+
+
+def test_curve_still_falling_at_its_end_is_refused():
+    slip = np.linspace(0, 0.2, 200)
+    with pytest.raises(DomainError, match=r"asymptote not reached: at slip 0\.2"):
+        read_off(slip, magic_formula(slip, 34.34, 1.564, 2.5, 0.0))
+
+
+def test_rise_without_samples_is_refused():
+    slip = np.linspace(0, 1, 40)
+    with pytest.raises(DomainError, match="measure smaller slip ratios"):
+        read_off(slip, magic_formula(slip, 34.34, 1.564, 2.5, 0.0))
+
+
+@pytest.mark.parametrize("asymptote", [-0.1, 2.6])
+def test_asymptote_beyond_the_peak_or_below_zero_is_refused(asymptote):
+    with pytest.raises(DomainError, match="lies outside 0 to the peak"):
+        shape_factor(asymptote, 2.5)
+
+
+def test_peak_too_far_out_for_the_rest_is_refused():
+    with pytest.raises(DomainError, match="exceeds 1"):
+        coefficients_from_features(CurveFeatures(2.5, 5.0, 0.5, 134.0))
+
+
+@pytest.mark.parametrize(
+    ("slip", "force", "message"),
+    [
+        ([0.0, 0.1], [0.0], "one curve is two arrays"),
+        ([0.0, np.nan, 0.2], [0.0, 1.0, 1.0], "NaN or infinite"),
+        ([0.0, 0.2, 0.1], [0.0, 1.0, 1.0], "do not increase"),
+        ([-0.1, 0.0, 0.1], [-1.0, 0.0, 1.0], "do not increase from zero"),
+    ],
+)
+def test_what_is_no_curve_is_refused(slip, force, message):
+    with pytest.raises(DomainError, match=message):
+        read_off(slip, force)

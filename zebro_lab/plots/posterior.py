@@ -1,0 +1,178 @@
+# SPDX-License-Identifier: MIT
+"""A posterior's draws: all pairs of parameters, and the chains they came from."""
+
+import math
+import textwrap
+from collections.abc import Sequence
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
+from numpy.typing import ArrayLike
+from scipy.ndimage import gaussian_filter
+
+from model.slip.law import Array
+from zebro_lab.plots.sheet import BLUE, CYCLE, RED, legend_below, new_figure, styled
+
+_REGIONS = ("#CCE3F0", "#66AAD1")  # blue, mixed with white: 90 % and 50 % of the draws
+
+
+@styled
+def corner(
+    draws: Array,
+    *,
+    labels: Sequence[str],
+    title: str,
+    simulated: bool,
+    truth: ArrayLike | None = None,
+) -> Figure:
+    """Draw every marginal and every pair of parameters of a posterior.
+
+    Args:
+        draws: Posterior draws, shape (n_draws, k).
+        labels: Axis label of each parameter with its unit, k of them; see `parameter_labels`.
+        title: Title of the figure.
+        simulated: Say so in the title.
+        truth: True values where they are known, shape (k,); NaN for an unknown one.
+
+    Returns:
+        The figure: densities on the diagonal, titled with median and central 90 %; regions of
+        highest density with 50 % and 90 % of the draws below it.
+    """
+    k = draws.shape[1]
+    known = np.full(k, np.nan) if truth is None else np.asarray(truth, dtype=float)
+    side = max(7.0, 1.75 * k)
+    figure = new_figure(title, simulated, width=side, height=side)
+    panels = figure.subplots(k, k, squeeze=False, sharex="col")
+    edges = [_edges(np.append(draws[:, i], known[i])) for i in range(k)]
+    for row in range(k):
+        for column in range(k):
+            axes: Axes = panels[row, column]
+            if column > row:
+                axes.remove()
+                continue
+            if column == row:
+                _draw_marginal(axes, draws[:, row], edges[row], known[row])
+            else:
+                _draw_pair(axes, draws[:, [column, row]], (edges[column], edges[row]))
+                axes.axvline(known[column], color=RED, lw=1.0)
+                axes.axhline(known[row], color=RED, lw=1.0)
+            _label_corner(axes, labels, row, column)
+    figure.align_labels()
+    legend_below(figure, columns=3)
+    return figure
+
+
+@styled
+def traces(chains: Array, *, labels: Sequence[str], title: str, simulated: bool = False) -> Figure:
+    """Draw the draws of every parameter in order, one colour for each independent ensemble.
+
+    Args:
+        chains: Draws, shape (n_ensembles, n_draws, k).
+        labels: Axis label of each parameter with its unit, k of them; see `parameter_labels`.
+        title: Title of the figure.
+        simulated: Say so in the title.
+
+    Returns:
+        The figure: a row for each parameter, densities left, traces right. Ensembles that agree
+        lie on one another. Long chains are thinned to about 2,000 points a line.
+    """
+    n_ensembles, n_draws, k = chains.shape
+    figure = new_figure(title, simulated, width=7.5, height=1.2 + 1.35 * k)
+    panels = figure.subplots(k, 2, squeeze=False, width_ratios=(1, 2.4))
+    kept = np.arange(0, n_draws, max(1, n_draws // 2000))
+    for row, (density, trace) in enumerate(panels):
+        edges = _edges(chains[:, :, row])
+        for ensemble in range(n_ensembles):
+            colour = CYCLE[ensemble % len(CYCLE)]
+            name = f"ensemble {ensemble + 1}" if row == 0 else None
+            heights = _density(chains[ensemble, :, row], edges)
+            density.plot(_middles(edges), heights, color=colour, lw=1.2, label=name)
+            trace.plot(kept, chains[ensemble, kept, row], color=colour, lw=0.4, alpha=0.8)
+        density.spines["left"].set_visible(False)
+        density.set(yticks=[], ylim=(0, None), xlabel=labels[row].replace("\n", " "))
+        density.xaxis.set_major_locator(MaxNLocator(4))
+        trace.yaxis.set_major_locator(MaxNLocator(4))
+        trace.tick_params(labelbottom=row == k - 1)
+        trace.set(xlim=(0, max(1, n_draws - 1)), ylabel=labels[row].split("\n")[-1])
+    panels[0, 0].set_title("density", loc="left")
+    panels[0, 1].set_title("trace", loc="left")
+    panels[-1, 1].set_xlabel("draw [-]")
+    legend_below(figure, columns=min(n_ensembles, 4))
+    return figure
+
+
+def _edges(values: Array) -> Array:
+    finite = values[np.isfinite(values)]
+    margin = 0.1 * float(np.ptp(finite)) or 0.05 * float(abs(finite.flat[0])) or 1.0
+    return np.linspace(finite.min() - margin, finite.max() + margin, 41)
+
+
+def _middles(edges: Array) -> Array:
+    return (edges[1:] + edges[:-1]) / 2
+
+
+def _density(values: Array, edges: Array) -> Array:
+    heights, _ = np.histogram(values, edges, density=True)
+    return gaussian_filter(heights, _bandwidth(values, edges, power=1 / 5), mode="constant")
+
+
+def _bandwidth(values: Array, edges: Array, *, power: float) -> float:
+    """Return Scott's kernel width in bins: sd times n to minus `power`, 1/(4 + dimensions)."""
+    return float(np.std(values)) * len(values) ** -power / float(edges[1] - edges[0])
+
+
+def _draw_marginal(axes: Axes, values: Array, edges: Array, truth: float) -> None:
+    axes.fill_between(_middles(edges), _density(values, edges), color=BLUE, alpha=0.45, lw=0)
+    low, median, high = np.quantile(values, (0.05, 0.5, 0.95))
+    axes.axvline(median, color=BLUE, lw=1.2, label="median")
+    for edge in (low, high):
+        axes.axvline(edge, color=BLUE, lw=0.9, ls="--", label="central 90 %")
+    if np.isfinite(truth):
+        axes.axvline(truth, color=RED, lw=1.2, label="truth")
+    digits = 1 - math.floor(math.log10(high - low)) if high > low else 3
+    low, median, high = (f"{value:.{max(digits, 0)}f}" for value in (low, median, high))
+    axes.set_title(f"{median}\n[{low}, {high}]", fontsize=8)
+    axes.set(yticks=[], ylim=(0, None))
+    axes.spines["left"].set_visible(False)
+
+
+def _draw_pair(axes: Axes, values: Array, edges: tuple[Array, Array]) -> None:
+    counts, _, _ = np.histogram2d(*values.T, bins=edges)
+    widths = [
+        _bandwidth(each, bins, power=1 / 6) for each, bins in zip(values.T, edges, strict=True)
+    ]
+    smooth = gaussian_filter(counts, widths, mode="constant")
+    falling = np.sort(smooth, axis=None)[::-1]
+    held = np.cumsum(falling) / falling.sum()
+    half, most = (float(falling[np.searchsorted(held, mass)]) for mass in (0.5, 0.9))
+    x, y = _middles(edges[0]), _middles(edges[1])
+    stray = values[:: max(1, len(values) // 1000)]
+    axes.plot(*stray.T, ls="none", marker=".", ms=2, color="0.6", zorder=0)
+    if most < half < falling[0]:  # not when all draws are one point
+        axes.contourf(x, y, smooth.T, levels=[most, half, falling[0]], colors=_REGIONS)
+    for colour, mass in zip(_REGIONS, (90, 50), strict=True):
+        axes.fill_between([], [], color=colour, lw=0, label=f"region of {mass} % of the draws")
+    axes.set_ylim(edges[1][0], edges[1][-1])
+
+
+def _label_corner(axes: Axes, labels: Sequence[str], row: int, column: int) -> None:
+    axes.xaxis.set_major_locator(MaxNLocator(3))
+    axes.tick_params(axis="x", labelrotation=35, labelsize=8)
+    axes.tick_params(axis="y", labelsize=8)
+    if row == len(labels) - 1:
+        axes.set_xlabel(_wrapped(labels[column]))
+    else:
+        axes.tick_params(axis="x", labelbottom=False)
+    if column < row:
+        axes.yaxis.set_major_locator(MaxNLocator(3))
+        if column == 0:
+            axes.set_ylabel(_wrapped(labels[row]))
+        else:
+            axes.tick_params(axis="y", labelleft=False)
+
+
+def _wrapped(label: str) -> str:
+    """Break a label's words over lines no wider than a panel; a line's symbol and unit stay."""
+    return "\n".join(textwrap.fill(line, 18, break_long_words=False) for line in label.split("\n"))

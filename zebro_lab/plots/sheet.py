@@ -1,0 +1,142 @@
+# SPDX-License-Identifier: MIT
+"""What every picture shares: colours, paper, title, legend, labels, and the PNG it ends as.
+
+Colours are Okabe and Ito's and viridis: they stay apart for colour-blind readers and in grey print.
+"""
+
+import math
+import re
+from collections.abc import Sequence
+from os import PathLike
+from typing import Protocol
+
+import numpy as np
+from matplotlib import style
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+from pint import Unit
+
+from model.slip.law import Array, Parameter
+
+BLUE, RED = "#0072B2", "#D55E00"
+CYCLE = (BLUE, "#E69F00", "#009E73", RED, "#CC79A7", "#56B4E9", "#000000", "#999999")
+NARROW = 0.15  # a peak in the first 15 % of the tested slip is drawn once more, close up
+
+# A decorator. The reader's own matplotlibrc neither shows in the pictures nor is changed by them.
+styled = style.context(
+    [
+        "default",
+        {
+            "font.size": 9.0,
+            "axes.titlesize": 9.0,
+            "figure.titlesize": 11.0,
+            "legend.frameon": False,
+            "axes.spines.top": False,
+            "axes.spines.right": False,
+        },
+    ]
+)
+
+
+class Blocks(Protocol):
+    """Block means of a rig experiment, as the fit saw them.
+
+    Attributes:
+        slip: Mean slip ratio of each block in `definition`, shape (n,) [-].
+        normal_force: Mean normal force, shape (n,) [N].
+        traction_force: Mean traction force, positive when driving, shape (n,) [N].
+        run: Index of the run each block belongs to, non-decreasing, shape (n,).
+        definition: What the slip ratios are divided by.
+    """
+
+    @property
+    def slip(self) -> Array: ...  # noqa: D102 - the class docstring says it
+    @property
+    def normal_force(self) -> Array: ...  # noqa: D102
+    @property
+    def traction_force(self) -> Array: ...  # noqa: D102
+    @property
+    def run(self) -> NDArray[np.intp]: ...  # noqa: D102
+    @property
+    def definition(self) -> str: ...  # noqa: D102
+
+
+def parameter_labels(parameters: Sequence[Parameter]) -> tuple[str, ...]:
+    r"""Spell each parameter's name, symbol and unit as a two-line axis label.
+
+    >>> from model.slip import MagicFormula
+    >>> parameter_labels(MagicFormula().parameters)[3]
+    'peak slip per load\n$x_m/F_n$ [1/N]'
+    """
+    return tuple(
+        f"{each.name.replace('_', ' ')}\n${_mathtext(each.symbol)}$ [{_short(each.unit)}]"
+        for each in parameters
+    )
+
+
+def new_figure(title: str, simulated: bool, *, width: float, height: float) -> Figure:
+    """Return an empty figure on white paper, sides in inches, marked when simulated."""
+    figure = Figure(figsize=(width, height), dpi=150, layout="constrained", facecolor="white")
+    FigureCanvasAgg(figure)
+    figure.suptitle(f"{title} (simulated)" if simulated else title)
+    return figure
+
+
+@styled
+def save(figure: Figure, path: str | PathLike[str]) -> None:
+    """Write a figure as PNG at its own resolution, whatever the path's suffix.
+
+    The bytes depend on the figure alone: no time stamp and no library version goes in.
+
+    Args:
+        figure: What to write.
+        path: Where to; its folder exists.
+    """
+    figure.savefig(path, format="png", dpi="figure", metadata={"Software": "zebro-lab"})
+
+
+def legend_below(figure: Figure, *, columns: int) -> None:
+    """List what the panels drew, each entry once, under all of them."""
+    entries = {
+        label: handle
+        for axes in figure.axes
+        for handle, label in zip(*axes.get_legend_handles_labels(), strict=True)
+    }
+    figure.legend(entries.values(), entries.keys(), loc="outside lower center", ncols=columns)
+
+
+def slip_label(blocks: Blocks) -> str:
+    """Name the slip axis with the definition its ratios are in."""
+    return f"slip ratio, {blocks.definition} definition [-]"
+
+
+def point_alpha(count: int) -> float:
+    """Return the opacity at which this many points still show their density."""
+    return float(np.clip(12 / math.sqrt(max(count, 1)), 0.15, 0.8))
+
+
+def plain(value: float) -> str:
+    """Spell a number with three significant digits and no exponent up to a million.
+
+    >>> plain(1148.3), plain(0.01442)
+    ('1150', '0.0144')
+    """
+    return f"{float(f'{value:.3g}'):g}"
+
+
+def slip_grid(slip: Array, count: int) -> Array:
+    """Span the tested slip, three times as densely in the part where peaks are narrow."""
+    low, high = float(slip.min()), float(slip.max())
+    reach = NARROW * max(-low, high)
+    narrow = np.linspace(max(low, -reach), min(high, reach), count)
+    inside = narrow[(low <= narrow) & (narrow <= high)]
+    return np.unique(np.concatenate([np.linspace(low, high, count), inside]))
+
+
+def _mathtext(symbol: str) -> str:
+    return re.sub(r"\b([A-Z])n\b", r"\1_n", re.sub(r"(?<![a-z])mu\b", r"{\\mu}", symbol))
+
+
+def _short(unit: str) -> str:
+    return f"{Unit(unit):~P}" or "-"

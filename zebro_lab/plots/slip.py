@@ -1,0 +1,182 @@
+# SPDX-License-Identifier: MIT
+"""Slip curves: one panel for each tested load."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
+from numpy.typing import ArrayLike, NDArray
+
+from model.slip.law import Array, SlipLaw
+from zebro_lab.plots.sheet import (
+    BLUE,
+    NARROW,
+    RED,
+    Blocks,
+    legend_below,
+    new_figure,
+    plain,
+    point_alpha,
+    slip_grid,
+    slip_label,
+    styled,
+)
+
+_QUANTILES = (0.05, 0.25, 0.5, 0.75, 0.95)
+_NEAR_LOAD = 0.1  # further off its nominal load than this, a block need not lie on the curve
+
+
+@styled
+def slip_curves(
+    blocks: Blocks,
+    law: SlipLaw,
+    *,
+    draws: Array,
+    load_levels: ArrayLike,
+    title: str,
+    simulated: bool,
+) -> Figure:
+    """Draw data and posterior slip curves, one panel for each tested load.
+
+    Each block goes to the nearest load level; blocks whose load is more than 10 % off it are
+    hollow, since the curve is not theirs. The bands are of the curve (parameters alone), without
+    noise and run offsets. Where a peak lies in the first 15 % of the tested slip a second panel
+    beside each shows that part.
+
+    Args:
+        blocks: Block means.
+        law: Slip law the draws are of.
+        draws: Posterior draws of the law's parameters, shape (n_draws, k).
+        load_levels: Nominal loads, shape (n_levels,) [N].
+        title: Title of the figure.
+        simulated: Say so in the title.
+
+    Returns:
+        The figure.
+    """
+    curves = _load_curves(blocks, law, draws, np.sort(np.ravel(np.asarray(load_levels, float))))
+    reach = _narrow_reach(blocks, curves)
+    groups = math.ceil(math.sqrt(len(curves))) if reach is None else 1 + (len(curves) > 4)
+    rows, width = math.ceil(len(curves) / groups), 1 if reach is None else 2
+    figure = new_figure(
+        title, simulated, width=max(7.0, 3.2 * groups * width), height=1.2 + 2.2 * max(rows, 1.6)
+    )
+    grid = figure.add_gridspec(rows, groups * width)
+    for index, curve in enumerate(curves):
+        row, column = index // groups, index % groups * width
+        whole = figure.add_subplot(grid[row, column])
+        _draw_load_curve(whole, blocks, curve)
+        panels = [whole]
+        if reach is None:
+            whole.set_title(f"{_load_text(blocks, curve)}\n{_peak_text(curve)}", loc="left")
+        else:
+            whole.set_title(_load_text(blocks, curve), loc="left")
+            panels.append(figure.add_subplot(grid[row, column + 1], sharey=whole))
+            _draw_close_up(panels[1], blocks, curve, reach)
+        if column == 0:
+            whole.set_ylabel("traction force [N]")
+        if index + groups >= len(curves):  # nothing below
+            for axes in panels:
+                axes.set_xlabel(slip_label(blocks))
+    legend_below(figure, columns=3)
+    return figure
+
+
+@dataclass(frozen=True)
+class _LoadCurve:
+    """The posterior curve at one nominal load, with the blocks nearest to it."""
+
+    load: float
+    rows: NDArray[np.bool_]
+    slip: Array
+    bands: Array  # shape (5, m): `_QUANTILES` of the traction force [N]
+
+    def peaks(self) -> list[int]:
+        """Index the extrema of the median curve that lie inside the tested range."""
+        median = self.bands[2]
+        tops = (int(np.argmax(median)), int(np.argmin(median)))
+        return [top for top in tops if 0 < top < len(median) - 1]
+
+    def main_peak(self) -> tuple[float, float] | None:
+        """Return slip and force of the driving peak, else of the braking one, else None."""
+        if not (peaks := self.peaks()):
+            return None
+        return float(self.slip[peaks[0]]), float(self.bands[2, peaks[0]])
+
+
+def _load_curves(blocks: Blocks, law: SlipLaw, draws: Array, levels: Array) -> list[_LoadCurve]:
+    nearest = np.argmin(np.abs(blocks.normal_force[:, None] - levels), axis=1)
+    values = draws.T[:, :, None]
+    curves = []
+    for index, load in enumerate(levels):
+        rows = nearest == index
+        slip = slip_grid(blocks.slip[rows] if rows.any() else blocks.slip, 250)
+        bands = np.quantile(law.force(slip, load, values), _QUANTILES, axis=0)
+        curves.append(_LoadCurve(float(load), rows, slip, bands))
+    return curves
+
+
+def _narrow_reach(blocks: Blocks, curves: Sequence[_LoadCurve]) -> tuple[float, float] | None:
+    """Return the slip to look at closely, None where no peak is narrow."""
+    reach = NARROW * float(np.abs(blocks.slip).max())
+    peaks = [peak for curve in curves if (peak := curve.main_peak())]
+    if not any(abs(slip) < reach for slip, _ in peaks):
+        return None
+    low, high = float(blocks.slip.min()), float(blocks.slip.max())
+    return max(-reach, min(low, 0.0)), min(reach, max(high, 0.0))
+
+
+def _draw_load_curve(axes: Axes, blocks: Blocks, curve: _LoadCurve) -> None:
+    near = np.abs(blocks.normal_force - curve.load) <= _NEAR_LOAD * curve.load
+    slip, force = blocks.slip, blocks.traction_force
+    on, off = curve.rows & near, curve.rows & ~near
+    alpha = point_alpha(int(curve.rows.sum()))
+    axes.scatter(
+        slip[on], force[on], s=12, color="0.35", alpha=alpha, linewidths=0,
+        label="block means" if on.any() else None,
+    )  # fmt: skip
+    axes.scatter(
+        slip[off], force[off], s=12, facecolors="none", edgecolors="0.35", alpha=alpha,
+        linewidths=0.6, label="block means, load more than 10 % off" if off.any() else None,
+    )  # fmt: skip
+    low, lower, median, upper, high = curve.bands
+    axes.fill_between(curve.slip, low, high, color=BLUE, alpha=0.25, lw=0, label="90 % of curves")
+    axes.fill_between(
+        curve.slip, lower, upper, color=BLUE, alpha=0.45, lw=0, label="50 % of curves"
+    )
+    axes.plot(curve.slip, median, color=BLUE, lw=1.4, label="posterior median")
+    if peaks := curve.peaks():
+        axes.plot(
+            curve.slip[peaks], median[peaks], ls="none", marker="D", ms=5, color=RED,
+            mec="white", mew=0.6, label="peak",
+        )  # fmt: skip
+    axes.axhline(0, color="0.6", lw=0.5, zorder=0)
+
+
+def _draw_close_up(
+    axes: Axes, blocks: Blocks, curve: _LoadCurve, reach: tuple[float, float]
+) -> None:
+    _draw_load_curve(axes, blocks, curve)
+    margin = 0.02 * (reach[1] - reach[0])
+    axes.set_xlim(reach[0] - margin, reach[1])
+    axes.set_title(_peak_text(curve), loc="left")
+    axes.tick_params(labelleft=False)
+    axes.xaxis.set_major_locator(MaxNLocator(4))
+
+
+def _load_text(blocks: Blocks, curve: _LoadCurve) -> str:
+    loads = blocks.normal_force[curve.rows]
+    if not len(loads):
+        return f"load {curve.load:g} N (no blocks)"
+    ends = dict.fromkeys((plain(loads.min()), plain(loads.max())))  # one where they round alike
+    return f"load {curve.load:g} N ({len(loads)} blocks, {'–'.join(ends)} N)"
+
+
+def _peak_text(curve: _LoadCurve) -> str:
+    if (peak := curve.main_peak()) is None:
+        return "no peak in the tested slip"
+    return f"peak {plain(peak[1])} N at slip {plain(peak[0])}"

@@ -1,0 +1,68 @@
+# SPDX-License-Identifier: MIT
+"""The slip surface: traction over slip and load."""
+
+from typing import cast
+
+import numpy as np
+from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
+from mpl_toolkits.mplot3d import Axes3D
+from numpy.typing import ArrayLike
+
+from model.slip.law import SlipLaw
+from zebro_lab.plots.sheet import (
+    Blocks,
+    legend_below,
+    new_figure,
+    point_alpha,
+    slip_grid,
+    slip_label,
+    styled,
+)
+
+
+@styled
+def slip_surface(
+    blocks: Blocks, law: SlipLaw, *, values: ArrayLike, title: str, simulated: bool
+) -> Figure:
+    """Draw traction over slip and load as a surface, with the block means (compare Fig. 4-15).
+
+    Args:
+        blocks: Block means.
+        law: Slip law.
+        values: Parameter values of the law, shape (k,).
+        title: Title of the figure.
+        simulated: Say so in the title.
+
+    Returns:
+        The figure. The surface covers the tested slip and load; a single load gets a margin of a
+        fifth either side, to have a surface at all. Points behind it show through.
+    """
+    load_low, load_high = float(blocks.normal_force.min()), float(blocks.normal_force.max())
+    if load_high - load_low < 0.1 * load_high:
+        load_low, load_high = 0.8 * load_low, 1.2 * load_high
+    slip, load = np.meshgrid(slip_grid(blocks.slip, 60), np.linspace(load_low, load_high, 25))
+    force = law.force(slip, load, np.asarray(values, dtype=float))
+    figure = new_figure(title, simulated, width=7.0, height=5.0)
+    axes = cast("Axes3D", figure.add_subplot(projection="3d", computed_zorder=False))
+    axes.plot_surface(
+        slip, load, force, cmap="viridis", linewidth=0, antialiased=False, rstride=1, cstride=1
+    )
+    for row in range(0, len(load), 4):
+        axes.plot(slip[row], load[row], force[row], color="white", lw=0.6)
+    axes.plot(
+        blocks.slip, blocks.normal_force, blocks.traction_force, ls="none", marker="o", ms=2.8,
+        mew=0.2, mec="white", color="black", alpha=point_alpha(len(blocks.slip)),
+        label="block means",
+    )  # fmt: skip
+    axes.set_xlabel(slip_label(blocks), labelpad=8)
+    axes.set_ylabel("normal force [N]", labelpad=6)
+    axes.set_zlabel("traction force [N]", labelpad=8)
+    axes.zaxis.set_tick_params(pad=5)
+    for axis in (axes.xaxis, axes.yaxis, axes.zaxis):
+        axis.set_major_locator(MaxNLocator(5))
+    axes.view_init(elev=24, azim=-125)
+    # matplotlib's default makes checkers think zoom an int
+    axes.set_box_aspect((1.25, 1.0, 0.75), zoom=1.06)  # pyright: ignore[reportArgumentType]
+    legend_below(figure, columns=1)
+    return figure

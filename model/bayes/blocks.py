@@ -59,6 +59,13 @@ class SlipBlocks:
         """Count the runs."""
         return len(self.run_names)
 
+    def slip_variance(self) -> Array:
+        """Return the variance of the true slip of a sample around `slip`, shape (n,) [-].
+
+        Wander and both errors together: what a bent curve must be averaged over.
+        """
+        return self.slip_wander + self.slip_error + self.run_slip_error[self.run]
+
     def run_starts(self) -> NDArray[np.intp]:
         """Return the index of each run's first block and, last, the number of blocks."""
         return np.searchsorted(self.run, np.arange(self.n_runs + 1))

@@ -3,6 +3,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from scipy.optimize import minimize
@@ -155,12 +156,10 @@ def importance_draws(
     """
     import arviz as az
 
-    proposal = multivariate_t(laplace.mode, laplace.covariance, df=8, seed=rng)
-    z = np.atleast_2d(proposal.rvs(n)).reshape(n, -1)
-    log_density_values = np.concatenate(
-        [log_density(part) for part in np.array_split(z, n // 64 + 1)]
-    )
-    ratio = log_density_values - proposal.logpdf(z)
+    proposal: Any = multivariate_t(laplace.mode, laplace.covariance, df=8, seed=rng)
+    z: Array = np.asarray(proposal.rvs(size=n)).reshape((n, len(laplace.mode)))
+    batches = np.array_split(z, n // 64 + 1)
+    ratio = np.concatenate([log_density(batch) for batch in batches]) - proposal.logpdf(z)
     ratio = np.where(np.isfinite(ratio), ratio, -1e6 + ratio[np.isfinite(ratio)].max())
     smoothed, pareto_k = az.psislw(ratio)
     weights = np.exp(np.asarray(smoothed))

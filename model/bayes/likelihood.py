@@ -6,7 +6,7 @@ For block j of run i
 .. math::
     F_{ij} = (1+g_t)\,\bar f\bigl(\kappa_{ij}, (1+g_n) F_n - b_n + c F\bigr) + b_i + e_{ij},
 
-with the law averaged over the wander of slip within the block, a run offset
+with the law averaged over the spread of the true slip, a run offset
 :math:`b_i \sim N(0, \tau^2)`, noise e of marginal standard deviation :math:`s_0 + s_1 |f|` that is
 AR(1) after standardising, and the slip errors of `SlipBlocks` entering through the law's slope.
 Offset, shared slip error and noise are integrated out exactly by a Kalman filter of each run.
@@ -65,8 +65,8 @@ def predict_blocks(blocks: SlipBlocks, law: SlipLaw, values: Array) -> Predictio
     r"""Compute expected force, its slope in slip and the noise size of every block.
 
     The mean of the law over a block is a three-point Gauss-Hermite rule in slip at
-    :math:`\kappa, \kappa \pm \sqrt{3}\,\omega` (exact to fifth order in the wander
-    :math:`\omega`), plus :math:`f_{\kappa n}\,\mathrm{cov}(\kappa, F_n)` with
+    :math:`\kappa, \kappa \pm \sqrt{3}\,\omega` (exact to fifth order in the spread
+    :math:`\omega` of the true slip around the block's), plus :math:`f_{\kappa n}\,\mathrm{cov}(\kappa, F_n)` with
     :math:`f_{\kappa n} \approx f_\kappa / F_n`, the force being proportional to load to first
     order. The same order gives the derivative in load, f / F_n, of the Jacobian.
 
@@ -80,7 +80,7 @@ def predict_blocks(blocks: SlipBlocks, law: SlipLaw, values: Array) -> Predictio
     g_t, g_n, b_n, c, s_0, s_1 = values[:, k : k + 6].T[:, :, None]
     # A load cell bias can push the lightest loads through zero; no law is defined there.
     load = np.maximum((1 + g_n) * blocks.normal_force - b_n + c * blocks.traction_force, 1e-9)
-    half_width = np.sqrt(3 * np.maximum(blocks.slip_wander, 1e-12))
+    half_width = np.sqrt(3 * np.maximum(blocks.slip_variance(), 1e-12))
     above = law.force(blocks.slip + half_width, load, law_values)
     centre = law.force(blocks.slip, load, law_values)
     below = law.force(blocks.slip - half_width, load, law_values)

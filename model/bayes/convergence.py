@@ -1,0 +1,110 @@
+# SPDX-License-Identifier: MIT
+"""Has the sampler converged? R-hat between ensembles, effective sizes, chain length and error."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import arviz as az
+import numpy as np
+
+from model.bayes.sampler import Chains, autocorrelation_times
+from model.slip.law import Array
+
+MAX_R_HAT = 1.01
+MIN_ESS = 400.0
+MIN_LENGTH = 50.0  # autocorrelation times
+MAX_MCSE = 0.05  # of the posterior standard deviation
+BURN_IN = 5.0  # autocorrelation times; the starts are nearly posterior draws
+
+
+@dataclass(frozen=True)
+class Convergence:
+    """The evidence, each array of shape (d,).
+
+    Attributes:
+        burn_in: Kept steps left out at the start.
+        length: Kept steps behind them.
+        autocorrelation_time: Integrated autocorrelation time [kept steps].
+        r_hat: Rank-normalised split R-hat between ensembles (never between walkers, which are
+            not independent) [-].
+        ess_bulk: Effective sample size of the bulk [-].
+        ess_tail: Effective sample size of the 5 % and 95 % quantiles [-].
+        mcse: Monte Carlo error of the mean over the posterior standard deviation [-].
+    """
+
+    burn_in: int
+    length: int
+    autocorrelation_time: Array
+    r_hat: Array
+    ess_bulk: Array
+    ess_tail: Array
+    mcse: Array
+
+    def failures(self) -> list[str]:
+        """Name every rule that is broken, with its figure; empty when converged."""
+        length = float((self.length / self.autocorrelation_time).min())
+        at_most = [
+            ("R-hat between ensembles", float(self.r_hat.max()), MAX_R_HAT),
+            ("Monte Carlo error over posterior spread", float(self.mcse.max()), MAX_MCSE),
+        ]
+        at_least = [
+            ("bulk effective sample size", float(self.ess_bulk.min()), MIN_ESS),
+            ("tail effective sample size", float(self.ess_tail.min()), MIN_ESS),
+            ("chain length in autocorrelation times", length, MIN_LENGTH),
+        ]
+        return [
+            *(f"{rule} is {x:.3f}, wanted <= {limit:g}" for rule, x, limit in at_most if x > limit),
+            *(
+                f"{rule} is {x:.0f}, wanted >= {limit:g}"
+                for rule, x, limit in at_least
+                if x < limit
+            ),
+        ]
+
+    @property
+    def converged(self) -> bool:
+        """Tell whether every rule holds."""
+        return not self.failures()
+
+    def fraction_done(self) -> float:
+        """Estimate how far the chains are on the way to the length and sizes asked for."""
+        lengths = self.length / self.autocorrelation_time
+        return float(
+            min(
+                lengths.min() / MIN_LENGTH,
+                self.ess_bulk.min() / MIN_ESS,
+                self.ess_tail.min() / MIN_ESS,
+                1.0,
+            )
+        )
+
+
+def assess(chains: Chains) -> Convergence:
+    """Judge the chains.
+
+    Args:
+        chains: Chains of at least 8 steps.
+    """
+    times = autocorrelation_times(chains.z)
+    burn_in = int(min(np.ceil(BURN_IN * times.max()), chains.n_steps // 2))
+    kept = chains.z[:, burn_in:]
+    walkers = az.convert_to_dataset(_as_chains(kept))
+    ensembles = az.convert_to_dataset(kept.reshape(len(kept), -1, kept.shape[-1]))
+    return Convergence(
+        burn_in=burn_in,
+        length=kept.shape[1],
+        autocorrelation_time=times,
+        r_hat=_array(az.rhat(ensembles, method="rank")),
+        ess_bulk=_array(az.ess(walkers, method="bulk")),
+        ess_tail=_array(az.ess(walkers, method="tail")),
+        mcse=1 / np.sqrt(_array(az.ess(walkers, method="mean"))),
+    )
+
+
+def _array(dataset: Any) -> Array:
+    return np.asarray(dataset["x"])
+
+
+def _as_chains(z: Array) -> Array:
+    """Reorder (ensembles, steps, walkers, d) to ArviZ's (chains, draws, d), a walker a chain."""
+    return np.moveaxis(z, 2, 1).reshape(-1, z.shape[1], z.shape[3])

@@ -1,0 +1,99 @@
+# SPDX-License-Identifier: MIT
+"""What can be wrong with what people hand in; each message is one line."""
+
+from os import PathLike
+
+
+class ZebroLabError(Exception):
+    """Root of every error that `zebro_lab` raises on purpose."""
+
+
+class DataError(ZebroLabError, ValueError):
+    """A table or a recording does not hold what is needed.
+
+    The message begins with the place, as far as it is known: file, column, row.
+
+    Attributes:
+        problem: What was found, what was expected, what to try.
+        file: File that is at fault.
+        column: Column, by its name in that file.
+        row: Data row, 1 for the first row below the header.
+        line: Line of the text file, 1 for its first.
+        value: Value that was found.
+        unit: Unit of `value`, as the file has it.
+
+    >>> str(DataError("is not a number", file="rig.csv", column="FZ", row=3, line=4))
+    "rig.csv, column 'FZ', row 3 (line 4): is not a number"
+    """
+
+    def __init__(
+        self,
+        problem: str,
+        *,
+        file: str | PathLike[str] | None = None,
+        column: str | None = None,
+        row: int | None = None,
+        line: int | None = None,
+        value: object = None,
+        unit: str | None = None,
+    ) -> None:
+        place = [str(file)] if file is not None else []
+        if column is not None:
+            place.append(f"column '{column}'")
+        if row is not None:
+            place.append(f"row {row}" + (f" (line {line})" if line is not None else ""))
+        super().__init__(_one_line(", ".join(place), problem))
+        self.problem = problem
+        self.file = file
+        self.column = column
+        self.row = row
+        self.line = line
+        self.value = value
+        self.unit = unit
+
+
+class SettingsError(ZebroLabError, ValueError):
+    """A settings file or an option says something that cannot be followed.
+
+    Attributes:
+        problem: What was found, what was expected, what to try.
+        file: Settings file; None for an option.
+        key: Dotted key inside the file, or the option.
+
+    >>> str(SettingsError("expected a number", file="columns.toml", key="runs.gap"))
+    'columns.toml, runs.gap: expected a number'
+    """
+
+    def __init__(
+        self, problem: str, *, file: str | PathLike[str] | None = None, key: str | None = None
+    ) -> None:
+        place = ", ".join(str(part) for part in (file, key) if part is not None)
+        super().__init__(_one_line(place, problem))
+        self.problem = problem
+        self.file = file
+        self.key = key
+
+
+class UnitError(ZebroLabError, ValueError):
+    """A unit is unknown, or measures something else.
+
+    Attributes:
+        unit: The unit, as it was written.
+    """
+
+    def __init__(self, problem: str, *, unit: str) -> None:
+        super().__init__(problem)
+        self.unit = unit
+
+
+class NotFound(ZebroLabError, FileNotFoundError):
+    """A file or folder that was named does not exist."""
+
+
+class AlreadyExists(ZebroLabError, FileExistsError):
+    """Writing would destroy what is already there."""
+
+
+def _one_line(place: str, problem: str) -> str:
+    # Messages of foreign libraries, quoted in ours, often run over several lines.
+    return " ".join(f"{place}: {problem}".split() if place else problem.split())

@@ -1,0 +1,134 @@
+# SPDX-License-Identifier: MIT
+"""A table as its file has it: names and numbers, without meaning."""
+
+import gzip
+import re
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import IO, TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from zebro_lab.columns import nearest
+from zebro_lab.errors import DataError
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+
+@dataclass(frozen=True)
+class RawTable:
+    """A table as its file has it.
+
+    Attributes:
+        path: The file, or the run folder.
+        columns: Columns by name, numbers or texts, each of shape (n,).
+        repeated: Names that head more than one column, and so name none.
+        source: Source the file itself states; None where it does not.
+        decimal_comma: Numbers may be written 0,5.
+        notes: What a person should know about how the file was read.
+        header_line: Line of the header in a text file, 1 for the first; None for others.
+    """
+
+    path: Path
+    columns: "Mapping[str, pd.Series]"
+    repeated: frozenset[str] = frozenset()
+    source: str | None = None
+    decimal_comma: bool = False
+    notes: tuple[str, ...] = ()
+    header_line: int | None = None
+
+    def __len__(self) -> int:
+        """Count the data rows."""
+        return len(next(iter(self.columns.values()), ()))
+
+    def column(self, name: str) -> "pd.Series":
+        """Return a column.
+
+        Raises:
+            DataError: The file has none, or more than one, of that name.
+        """
+        if name in self.repeated:
+            raise DataError(
+                "heads more than one column; give each a name of its own",
+                file=self.path, column=name,
+            )  # fmt: skip
+        if name not in self.columns:
+            raise DataError(
+                f"missing; {nearest(name, list(self.columns))}", file=self.path, column=name
+            )
+        return self.columns[name]
+
+    def numbers(self, name: str) -> NDArray[np.float64]:
+        """Return a column as numbers, NaN where a cell is empty, shape (n,).
+
+        Raises:
+            DataError: The column is missing, or a cell holds no number.
+        """
+        import pandas as pd
+
+        cells = self.column(name)
+        if pd.api.types.is_datetime64_any_dtype(cells) or pd.api.types.is_timedelta64_dtype(cells):
+            raise DataError("holds dates, expected numbers", file=self.path, column=name)
+        empty = cells.isna().to_numpy()
+        values = _as_numbers(cells)
+        bad = np.isnan(values) & ~empty
+        if bad.any() and self.decimal_comma and not _has_points(cells):
+            values = _as_numbers(cells.str.replace(",", ".", regex=False))
+            bad = np.isnan(values) & ~empty
+        if bad.any():
+            raise self._not_a_number(name, int(np.argmax(bad)))
+        return values
+
+    def line(self, row: int) -> int | None:
+        """Find the line of a text file that holds a data row (1 for the first).
+
+        Reads the file again, since only errors ask; None where rows are no lines.
+        """
+        if self.header_line is None:
+            return None
+        with open_unpacked(self.path) as file:
+            for number, line in enumerate(file, start=1):
+                row -= number > self.header_line and bool(line.strip())
+                if row == 0:
+                    return number
+        return None
+
+    def _not_a_number(self, name: str, index: int) -> DataError:
+        text = str(self.column(name).iloc[index])
+        if re.fullmatch(r"\s*[-+]?\d+,\d+\s*", text):
+            advice = "; write decimals with a point"
+        elif index == 0:
+            advice = "; delete a row of units, give them in columns.toml"
+        else:
+            advice = "; correct or delete the row"
+        return DataError(
+            f"'{text}' is not a number{advice}",
+            file=self.path, column=name, row=index + 1, line=self.line(index + 1), value=text,
+        )  # fmt: skip
+
+
+@contextmanager
+def open_unpacked(path: Path) -> Iterator[IO[bytes]]:
+    """Open a file for reading, unpacking it where its name ends in .gz."""
+    with path.open("rb") as file:
+        if path.name.lower().endswith(".gz"):
+            with gzip.open(file) as unpacked:
+                yield unpacked  # pyright: ignore[reportReturnType]
+        else:
+            yield file
+
+
+def _as_numbers(cells: "pd.Series") -> NDArray[np.float64]:
+    """Convert cells to numbers, NaN where one is empty or holds no number."""
+    import pandas as pd
+
+    return np.asarray(pd.to_numeric(cells, errors="coerce"), dtype=float)
+
+
+def _has_points(cells: "pd.Series") -> bool:
+    # 1,234.5 and 1.234,5 are both possible: where points occur, a comma is not the decimal sign.
+    return bool(cells.str.contains(".", regex=False, na=False).any())

@@ -17,7 +17,7 @@ from model.bayes.samples import SlipSamples
 from model.slip.definition import SlipDefinition
 from model.slip.law import Array
 
-MIN_SAMPLES_FOR_OWN_NOISE = 100  # a run this long estimates its noise variance to about 20 %
+STANDS_OUT = 4.0  # standard errors: one block of pure noise in 10,000 claims wander it has not
 
 
 @dataclass(frozen=True)
@@ -101,9 +101,9 @@ def slip_noise_variance(samples: SlipSamples) -> Array:
     r"""Estimate the variance of the slip sensors' white noise, for each run.
 
     The nugget of the variogram: half the variance of the differences at lag 1 and 2, drawn on to
-    lag 0, :math:`2\gamma_1 - \gamma_2`. Slow wander and steady sweeps cancel in it. Runs too short
-    for an estimate of their own take the median over runs; runs of fewer than 8 samples say
-    nothing and count as noise-free.
+    lag 0, :math:`2\gamma_1 - \gamma_2`. Slow wander and steady sweeps cancel in it. Its sampling
+    variance for white noise is :math:`7\sigma^4/n`; runs that differ by no more share one value.
+    Runs of fewer than 8 samples take it; where all are that short, slip counts as noise-free.
 
     Args:
         samples: The samples.
@@ -112,10 +112,13 @@ def slip_noise_variance(samples: SlipSamples) -> Array:
         Noise variance of one sample's slip ratio, shape (n_runs,) [-].
     """
     lengths = np.array([part.stop - part.start for part in samples.slices()])
-    nuggets = np.array([_nugget(samples.slip[part]) for part in samples.slices()])
     enough = lengths >= 8
-    pooled = float(np.median(nuggets[enough])) if enough.any() else 0.0
-    return np.where(lengths >= MIN_SAMPLES_FOR_OWN_NOISE, nuggets, pooled)
+    if not enough.any():
+        return np.zeros(samples.n_runs)
+    nuggets = np.array([_nugget(samples.slip[part]) for part in samples.slices()])
+    typical = float(np.median(nuggets[enough]))
+    own = _shrink(nuggets, 7 * typical**2 / lengths, typical)
+    return np.where(enough, np.maximum(own, 0.0), typical)
 
 
 def _nugget(slip: Array) -> float:
@@ -124,6 +127,24 @@ def _nugget(slip: Array) -> float:
     gamma_1 = 0.5 * np.var(slip[1:] - slip[:-1])
     gamma_2 = 0.5 * np.var(slip[2:] - slip[:-2])
     return max(0.0, float(2 * gamma_1 - gamma_2))
+
+
+def _shrink(estimates: Array, sampling_variance: Array, typical: float) -> Array:
+    """Pull estimates towards a typical one by as much as their scatter is sampling error.
+
+    Empirical Bayes: runs under the same conditions lend each other precision; runs that really
+    differ keep their own. The scatter is taken robustly, from the median absolute deviation.
+
+    Args:
+        estimates: One estimate a run, shape (n_runs,).
+        sampling_variance: Variance each would have if all runs were alike, shape (n_runs,).
+        typical: What to pull towards.
+    """
+    scatter = (1.4826 * np.median(np.abs(estimates - typical))) ** 2
+    if scatter == 0:
+        return np.full_like(estimates, typical)
+    own = np.maximum(0.0, 1.0 - sampling_variance / scatter)
+    return typical + own * (estimates - typical)
 
 
 def block_means(samples: SlipSamples, length: int) -> SlipBlocks:
@@ -186,23 +207,21 @@ def _calibrate_slip(
     :math:`\omega^2 + \sigma^2/n`, so that
     :math:`E[\kappa|\hat\kappa] = m + \lambda(\hat\kappa - m)`,
     :math:`\lambda = \omega^2/(\omega^2 + \sigma^2/n)`. Its error has a part of its own in each
-    block, variance :math:`\lambda\sigma^2/n`, and one the run shares, that of m. A likelihood
+    block, variance :math:`\lambda\sigma^2/n`, and one the run shares,
+    :math:`(1-\lambda)\sigma^2/N`, so that the run's mean errs by :math:`\sigma^2/N`. A likelihood
     that took the measured slip at its word, or gave the true one a flat prior, would flatten the
     curve.
     """
-    starts = np.searchsorted(run, np.arange(run[-1] + 2))
-    calibrated, own_error = slip.copy(), np.zeros_like(slip)
-    shared_error = np.zeros(len(starts) - 1)
-    for index in range(len(starts) - 1):
-        part = slice(starts[index], starts[index + 1])
-        error = noise[index] / count[part].mean()
-        total = np.var(slip[part], ddof=1) if starts[index + 1] - starts[index] > 1 else 0.0
-        weight = max(0.0, 1.0 - error / total) if total > 0 else 0.0
-        middle = np.average(slip[part], weights=count[part])
-        calibrated[part] = middle + weight * (slip[part] - middle)
-        own_error[part] = weight * error
-        shared_error[index] = (1 - weight) ** 2 * noise[index] / count[part].sum()
-    return calibrated, own_error, shared_error
+    n_blocks, n_samples = np.bincount(run), np.bincount(run, count)
+    middle = np.bincount(run, slip * count) / n_samples
+    error = noise * n_blocks / n_samples
+    total = np.bincount(run, (slip - middle[run]) ** 2) / np.maximum(n_blocks - 1, 1)
+    typical = float(np.median(total))
+    spread = _shrink(total, 2 * typical**2 / np.maximum(n_blocks - 1, 1), typical)
+    true_spread = np.maximum(np.where(n_blocks > 1, spread, 0.0) - error, 0.0)
+    weight = true_spread / np.maximum(true_spread + error, 1e-300)
+    calibrated = middle[run] + weight[run] * (slip - middle[run])
+    return calibrated, (weight * error)[run], (1 - weight) * noise / n_samples
 
 
 def _wander(spread: Array, count: NDArray[np.intp], run: NDArray[np.intp], noise: Array) -> Array:
@@ -211,7 +230,11 @@ def _wander(spread: Array, count: NDArray[np.intp], run: NDArray[np.intp], noise
     A block whose spread stands out of the noise keeps its own; the others share their run's mean,
     because clipping each at zero would invent wander where there is only noise.
     """
+    if not (count > 1).any():
+        return np.zeros_like(spread)
     excess = np.where(count > 1, spread - noise[run], 0.0)
-    shared = np.maximum(np.bincount(run, excess) / np.bincount(run), 0.0)[run]
-    stands_out = excess > 3 * noise[run] * np.sqrt(2 / np.maximum(count - 1, 1))
-    return np.where(stands_out, excess, shared)
+    error = noise[run] * np.sqrt(2 / np.maximum(count - 1, 1))
+    of_run = np.bincount(run, excess) / np.bincount(run)
+    error_of_run = np.bincount(run, error**2) / np.bincount(run) ** 2
+    shared = np.maximum(_shrink(of_run, error_of_run, float(np.median(of_run))), 0.0)[run]
+    return np.where(excess - shared > STANDS_OUT * error, excess, shared)

@@ -137,7 +137,7 @@ class WeightedDraws:
 
     def resample(self, n: int, *, rng: np.random.Generator) -> Array:
         """Draw n equally weighted coordinates, shape (n, d)."""
-        return self.z[rng.choice(len(self.z), n, p=self.weights)]
+        return self.z[rng.choice(len(self.z), size=n, p=self.weights)]
 
 
 def importance_draws(
@@ -156,8 +156,9 @@ def importance_draws(
     """
     import arviz as az
 
-    proposal: Any = multivariate_t(laplace.mode, laplace.covariance, df=8, seed=rng)
-    z: Array = np.asarray(proposal.rvs(size=n)).reshape((n, len(laplace.mode)))
+    frozen: Any = multivariate_t  # scipy's stub has the covariance as an int
+    proposal = frozen(laplace.mode, laplace.covariance, df=8, seed=rng)
+    z: Array = np.asarray(proposal.rvs(size=n), dtype=float).reshape(n, -1)
     batches = np.array_split(z, n // 64 + 1)
     ratio = np.concatenate([log_density(batch) for batch in batches]) - proposal.logpdf(z)
     ratio = np.where(np.isfinite(ratio), ratio, -1e6 + ratio[np.isfinite(ratio)].max())

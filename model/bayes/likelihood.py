@@ -66,9 +66,10 @@ def predict_blocks(blocks: SlipBlocks, law: SlipLaw, values: Array) -> Predictio
 
     The mean of the law over a block is a three-point Gauss-Hermite rule in slip at
     :math:`\kappa, \kappa \pm \sqrt{3}\,\omega` (exact to fifth order in the spread
-    :math:`\omega` of the true slip around the block's), plus :math:`f_{\kappa n}\,\mathrm{cov}(\kappa, F_n)` with
-    :math:`f_{\kappa n} \approx f_\kappa / F_n`, the force being proportional to load to first
-    order. The same order gives the derivative in load, f / F_n, of the Jacobian.
+    :math:`\omega` of the true slip around the block's), plus
+    :math:`f_{\kappa n}\,\mathrm{cov}(\kappa, F_n)`. The force is proportional to load to first
+    order: :math:`f_{\kappa n} \approx f_\kappa / F_n`, and in the Jacobian
+    :math:`f_n \approx f / F_n`.
 
     Args:
         blocks: The block means, n of them.

@@ -1,0 +1,101 @@
+# SPDX-License-Identifier: MIT
+"""Leave runs out, fit the rest, predict what was left out: the run is the unit of replication."""
+
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from model.bayes.laplace import find_mode
+from model.bayes.likelihood import run_log_likelihood
+from model.bayes.posterior import SlipPosterior
+from model.bayes.samples import SlipSamples
+from model.slip.law import Array, SlipLaw
+
+MAX_SINGLE_FOLDS = 20
+N_GROUPED_FOLDS = 10
+
+
+@dataclass(frozen=True)
+class CrossValidation:
+    """How well a law predicts runs it has not seen.
+
+    Attributes:
+        fold: Fold in which each run was left out, shape (n_runs,).
+        values: Posterior mode without each fold's runs, shape (n_folds, k + 8).
+        log_density: Log predictive density of each run's blocks at that mode, shape (n_runs,).
+    """
+
+    fold: NDArray[np.intp]
+    values: Array
+    log_density: Array
+
+    @property
+    def scheme(self) -> str:
+        """Describe how runs were left out."""
+        n_folds = len(self.values)
+        if n_folds == len(self.fold):
+            return f"leave one run out, {n_folds} runs"
+        return f"leave out runs in {n_folds} interleaved groups of {len(self.fold)} runs"
+
+    def predict(self, samples: SlipSamples, law: SlipLaw) -> Array:
+        """Predict every sample's traction from the fit that has not seen its run, shape (n,) [N].
+
+        Args:
+            samples: The samples, of the same runs.
+            law: The slip law.
+        """
+        predicted = np.empty(len(samples))
+        for index, part in enumerate(samples.slices()):
+            values = self.values[self.fold[index]]
+            predicted[part] = measured_force(
+                law, values, samples.slip[part], samples.normal_force[part]
+            )
+        return predicted
+
+
+def measured_force(law: SlipLaw, values: Array, slip: Array, normal_force: Array) -> Array:
+    """Predict measured traction from measured slip and load, run offset and crosstalk apart [N].
+
+    Args:
+        law: The slip law, of k parameters.
+        values: Law and measurement parameters, shape (k + 8,).
+        slip: Slip ratio, shape (n,) [-].
+        normal_force: Measured normal force, shape (n,) [N].
+    """
+    k = len(law.parameters)
+    g_t, g_n, b_n = values[k : k + 3]
+    load = np.maximum((1 + g_n) * normal_force - b_n, 1e-9)
+    return (1 + g_t) * law.force(slip, load, values[:k])
+
+
+def r_squared(measured: Array, predicted: Array) -> float:
+    """Compute the fraction of the variance of `measured` that `predicted` explains [-]."""
+    return float(
+        1 - np.sum((measured - predicted) ** 2) / np.sum((measured - measured.mean()) ** 2)
+    )
+
+
+def cross_validate(posterior: SlipPosterior, mode: Array, *, threads: int = 2) -> CrossValidation:
+    """Fit the posterior's mode without each fold of runs.
+
+    Up to 20 runs are left out one by one, more in 10 interleaved groups.
+
+    Args:
+        posterior: The posterior of all runs, at least two.
+        mode: Coordinates of its mode, where each fit starts, shape (d,).
+        threads: Folds fitted at once.
+    """
+    n_runs = posterior.blocks.n_runs
+    n_folds = n_runs if n_runs <= MAX_SINGLE_FOLDS else N_GROUPED_FOLDS
+    fold = np.arange(n_runs) % n_folds
+
+    def fit(index: int) -> Array:
+        kept = posterior.without_runs(fold == index)
+        return posterior.values(find_mode(kept.log_density, mode[None]).mode[None])[0]
+
+    with ThreadPoolExecutor(threads) as pool:
+        values = np.stack(list(pool.map(fit, range(n_folds))))
+    density = run_log_likelihood(posterior.blocks, posterior.law, values)
+    return CrossValidation(fold, values, density[fold, np.arange(n_runs)])

@@ -1,0 +1,175 @@
+# SPDX-License-Identifier: MIT
+"""From samples to a posterior ready to sample: choose blocks, law and starting point."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from model.bayes.blocks import SlipBlocks, block_means
+from model.bayes.cross_validation import CrossValidation, cross_validate
+from model.bayes.laplace import Laplace, find_mode
+from model.bayes.posterior import LoadCell, SlipPosterior, default_priors
+from model.bayes.preliminary import BlockChoice, choose_block_length, least_squares_values
+from model.bayes.samples import SlipSamples
+from model.errors import InsufficientData
+from model.slip.law import SlipLaw
+
+CLEAR_WIN = 2.0  # standard errors by which a law must predict better to be preferred
+
+
+@dataclass(frozen=True)
+class PreparedFit:
+    """One law, ready to sample.
+
+    Attributes:
+        posterior: Blocks, law and priors.
+        laplace: Laplace approximation at the mode.
+        cross_validation: Prediction of left-out runs; None for a single run.
+        block_choice: The block length and why.
+    """
+
+    posterior: SlipPosterior
+    laplace: Laplace
+    cross_validation: CrossValidation | None
+    block_choice: BlockChoice
+
+
+def scaled_load_cell(samples: SlipSamples, known: Mapping[str, float]) -> LoadCell:
+    """Complete what is known of a load cell by defaults in proportion to the forces measured.
+
+    The defaults are those of a small cell (0.15 N zero stability, 0.05 N bias), but no less than
+    0.5 % of the largest traction and 0.2 % of the largest load: a tyre bench has a larger one.
+
+    Args:
+        samples: The samples.
+        known: Fields of `LoadCell` that are known, by name.
+    """
+    defaults = {
+        "zero_stability": max(0.15, 0.005 * float(np.abs(samples.traction_force).max())),
+        "bias_sd": max(0.05, 0.002 * float(samples.normal_force.max())),
+    }
+    return LoadCell(**{**defaults, **known})
+
+
+def prepare_fit(
+    samples: SlipSamples,
+    law: SlipLaw,
+    *,
+    load_cell: LoadCell,
+    rng: np.random.Generator,
+    block_length: int | None = None,
+    threads: int = 2,
+) -> PreparedFit:
+    """Average the samples, put the posterior together, find its mode and cross-validate it.
+
+    Args:
+        samples: The samples.
+        law: The slip law.
+        load_cell: What is known of the load cell.
+        rng: Source of randomness of the starting points.
+        block_length: Samples in a block; chosen from the residuals when None.
+        threads: Folds of the cross-validation fitted at once.
+
+    Raises:
+        InsufficientData: There are no more samples than parameters of the law.
+        FitError: No mode was found.
+    """
+    _require_enough(samples, law)
+    everything = block_means(samples, 1 if len(samples) < 1000 else len(samples) // 1000)
+    priors = default_priors(law, everything, load_cell)
+    if block_length is None:
+        choice = choose_block_length(samples, law, priors=priors, rng=rng)
+    else:
+        choice = BlockChoice(block_length, float("nan"), "the length asked for")
+    blocks = block_means(samples, choice.length)
+    fixed = _not_identified(blocks)
+    posterior = SlipPosterior(blocks, law, priors, fixed)
+    starts = _starting_points(posterior, rng)
+    laplace = find_mode(posterior.log_density, starts)
+    validation = (
+        cross_validate(posterior, laplace.mode, threads=threads) if blocks.n_runs > 1 else None
+    )
+    return PreparedFit(posterior, laplace, validation, choice)
+
+
+def _require_enough(samples: SlipSamples, law: SlipLaw) -> None:
+    needed = len(law.parameters) + 2
+    if len(samples) < needed:
+        raise InsufficientData(
+            f"{len(samples)} samples cannot determine the {len(law.parameters)} parameters of "
+            f"'{law.name}' and its noise; at least {needed} are needed"
+        )
+
+
+def _not_identified(blocks: SlipBlocks) -> dict[str, float]:
+    """Fix what single-block runs cannot tell apart: an offset from noise, and its correlation."""
+    if len(blocks) > blocks.n_runs:
+        return {}
+    return {"noise_correlation": 0.0, "offset_spread": 0.0}
+
+
+def _starting_points(posterior: SlipPosterior, rng: np.random.Generator) -> np.ndarray:
+    """Start from least squares, with noise guessed from its residual, small and large."""
+    blocks, law = posterior.blocks, posterior.law
+    values = least_squares_values(blocks, law, priors=dict(posterior.priors), rng=rng)
+    force = law.force(blocks.slip, blocks.normal_force, values)
+    size = float(np.std(blocks.traction_force - force))
+    names = [parameter.name for parameter in law.parameters]
+    known = dict(zip(names, map(float, values), strict=True))
+    return np.stack(
+        [
+            posterior.coordinates({**known, "noise_floor": size * share, "noise_slope": 0.01})
+            for share in (0.3, 1.0)
+        ]
+    )
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """Laws compared on runs they have not seen.
+
+    Attributes:
+        names: Name of each law.
+        log_density: Log predictive density of all left-out runs under each law [-].
+        difference: Its excess over the chosen law's [-].
+        standard_error: Standard error of that excess, from the scatter between runs [-].
+        chosen: Index of the chosen law.
+    """
+
+    names: tuple[str, ...]
+    log_density: tuple[float, ...]
+    difference: tuple[float, ...]
+    standard_error: tuple[float, ...]
+    chosen: int
+
+
+def compare(names: Sequence[str], fits: Sequence[PreparedFit]) -> Comparison:
+    """Choose the law that predicts left-out runs best; the first unless another wins clearly.
+
+    All fits must have the same blocks. A single run cannot be left out: the first law is kept.
+
+    Args:
+        names: Name of each law, simplest first.
+        fits: A fit for each.
+    """
+    validations = [fit.cross_validation for fit in fits]
+    n_runs = fits[0].posterior.blocks.n_runs
+    density = np.stack([np.zeros(n_runs) if v is None else v.log_density for v in validations])
+    chosen = 0
+    for index in range(1, len(fits)):
+        gain = density[index] - density[chosen]
+        if gain.sum() > CLEAR_WIN * _standard_error(gain):
+            chosen = index
+    excess = density - density[chosen]
+    return Comparison(
+        names=tuple(names),
+        log_density=tuple(density.sum(axis=1)),
+        difference=tuple(excess.sum(axis=1)),
+        standard_error=tuple(_standard_error(row) for row in excess),
+        chosen=chosen,
+    )
+
+
+def _standard_error(differences: np.ndarray) -> float:
+    return float(np.sqrt(len(differences)) * np.std(differences))

@@ -1,0 +1,174 @@
+# SPDX-License-Identifier: MIT
+"""What the fit leaves over: whitened residuals, run means, and structure along the curve."""
+
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+from scipy.linalg import solve_triangular, toeplitz
+from scipy.stats import binomtest, f, norm
+
+from model.bayes.blocks import SlipBlocks
+from model.bayes.likelihood import Prediction, predict_blocks
+from model.slip.law import Array, SlipLaw
+
+SLIP_BINS = 8
+LOAD_GAP = 1.15  # run medians further apart than this ratio are different loads
+MAX_LOAD_LEVELS = 8
+
+
+@dataclass(frozen=True)
+class Residuals:
+    """What the fit leaves over.
+
+    Attributes:
+        whitened: Residual of each block divided by its predictive standard deviation given the
+            blocks before it in its run; white N(0, 1) if the model holds, shape (n,).
+        lag_one: Correlation of successive whitened residuals within runs [-].
+        run_score: Deviation of each run's mean over its predictive standard deviation,
+            shape (n_runs,).
+        inside: Fraction of run means within their predictive 90 % interval [-].
+        inside_p: Two-sided binomial p-value of that fraction against 90 %.
+        misfit: Root-mean-square residual that is a function of slip and load, over the peak
+            force: what no repetition would average away [-].
+        misfit_p: p-value of that structure against the scatter between runs.
+        r_squared: Fraction of the variance of the block means explained, in sample [-].
+        rmse: Root-mean-square residual of block means [N].
+        rmse_over_load: The same of traction over load [-].
+    """
+
+    whitened: Array
+    lag_one: float
+    run_score: Array
+    inside: float
+    inside_p: float
+    misfit: float
+    misfit_p: float
+    r_squared: float
+    rmse: float
+    rmse_over_load: float
+
+
+def analyse_residuals(blocks: SlipBlocks, law: SlipLaw, values: Array) -> Residuals:
+    """Compute everything of `Residuals` from posterior draws.
+
+    Args:
+        blocks: The block means.
+        law: The slip law, of k parameters.
+        values: Posterior draws of law and measurement parameters, shape (w, k + 8).
+    """
+    centre = values.mean(axis=0, keepdims=True)
+    predicted = predict_blocks(blocks, law, centre)
+    residual = blocks.traction_force - predicted.force[0]
+    factors = _covariance_factors(blocks, predicted, centre[0])
+    run_spread = blocks.run_mean(predict_blocks(blocks, law, values).force).std(axis=0)
+    score = _run_scores(blocks, residual, factors, run_spread)
+    inside = int(np.sum(np.abs(score) <= norm.ppf(0.95)))
+    whitened = _whiten(blocks, residual, factors)
+    misfit, misfit_p = _structure(blocks, residual)
+    variance = np.mean((blocks.traction_force - blocks.traction_force.mean()) ** 2)
+    return Residuals(
+        whitened=whitened,
+        lag_one=lag_one_correlation(whitened, blocks),
+        run_score=score,
+        inside=inside / blocks.n_runs,
+        inside_p=float(binomtest(inside, blocks.n_runs, 0.9).pvalue),
+        misfit=misfit / float(np.abs(predicted.force).max()),
+        misfit_p=misfit_p,
+        r_squared=float(1 - np.mean(residual**2) / variance),
+        rmse=float(np.sqrt(np.mean(residual**2))),
+        rmse_over_load=float(np.sqrt(np.mean((residual / blocks.normal_force) ** 2))),
+    )
+
+
+def _covariance_factors(blocks: SlipBlocks, predicted: Prediction, values: Array) -> list[Array]:
+    """Return the Cholesky factor of each run's predictive covariance, offset included.
+
+    Built densely from its definition, not by the likelihood's filter: one checks the other.
+    """
+    rho, tau = values[-2], values[-1]
+    starts = blocks.run_starts()
+    factors = []
+    for index in range(blocks.n_runs):
+        part = slice(starts[index], starts[index + 1])
+        s, g = predicted.noise[0, part], predicted.slope[0, part]
+        covariance = np.outer(s, s) * toeplitz(rho ** np.arange(len(s))) + tau**2
+        covariance += np.outer(g, g) * blocks.run_slip_error[index]
+        covariance += np.diag(g**2 * blocks.slip_error[part])
+        factors.append(np.linalg.cholesky(covariance))
+    return factors
+
+
+def _whiten(blocks: SlipBlocks, residual: Array, factors: list[Array]) -> Array:
+    parts = np.split(residual, blocks.run_starts()[1:-1])
+    return np.concatenate(
+        [solve_triangular(L, r, lower=True) for L, r in zip(factors, parts, strict=True)]
+    )
+
+
+def _run_scores(
+    blocks: SlipBlocks, residual: Array, factors: list[Array], run_spread: Array
+) -> Array:
+    sizes = np.diff(blocks.run_starts())
+    scatter = np.array([np.linalg.norm(L.sum(axis=0)) for L in factors]) / sizes
+    return blocks.run_mean(residual) / np.hypot(scatter, run_spread)
+
+
+def lag_one_correlation(values: Array, blocks: SlipBlocks) -> float:
+    """Compute the correlation of successive values within runs; 0 where no run has two blocks.
+
+    Args:
+        values: One value a block, of mean zero, shape (n,).
+        blocks: The blocks.
+    """
+    same_run = np.diff(blocks.run) == 0
+    if not same_run.any():
+        return 0.0
+    return float(np.mean((values[1:] * values[:-1])[same_run]) / np.mean(values**2))
+
+
+def load_levels(blocks: SlipBlocks) -> Array:
+    """Find the loads that were set, from the runs' median loads, shape (n_levels,) [N].
+
+    Runs whose medians differ by less than 15 % were made at one load. Where that leaves more than
+    8 levels (the load was swept), 8 quantiles stand for them.
+    """
+    starts = blocks.run_starts()
+    medians = np.array([np.median(blocks.normal_force[a:b]) for a, b in pairwise(starts)])
+    ordered = np.sort(medians)
+    breaks = np.flatnonzero(ordered[1:] > LOAD_GAP * ordered[:-1]) + 1
+    levels = np.array([np.median(group) for group in np.split(ordered, breaks)])
+    if len(levels) > MAX_LOAD_LEVELS:
+        return np.quantile(
+            blocks.normal_force, (np.arange(MAX_LOAD_LEVELS) + 0.5) / MAX_LOAD_LEVELS
+        )
+    return levels
+
+
+def nearest_level(load: Array, levels: Array) -> Array:
+    """Return the index of the level nearest to each load, in ratio."""
+    return np.argmin(np.abs(np.log(load[:, None] / levels)), axis=1)
+
+
+def _structure(blocks: SlipBlocks, residual: Array) -> tuple[float, float]:
+    """Split the residual into a part that repeats along the curve and the scatter between runs.
+
+    A one-way analysis of variance: the groups are bins of slip at each load, a group's replicates
+    the means of the runs in it. Returns the standard deviation of the repeating part [N] and the
+    p-value of the F test.
+    """
+    level = nearest_level(np.maximum(blocks.normal_force, 1e-9), load_levels(blocks))
+    edges = np.unique(np.quantile(blocks.slip, np.linspace(0, 1, SLIP_BINS + 1)[1:-1]))
+    group = level * (SLIP_BINS + 1) + np.searchsorted(edges, blocks.slip, side="right")
+    cells, index = np.unique(np.stack([group, blocks.run]), axis=1, return_inverse=True)
+    means = np.bincount(index.ravel(), residual) / np.bincount(index.ravel())
+    _, member = np.unique(cells[0], return_inverse=True)
+    size = np.bincount(member)
+    centre = np.bincount(member, means) / size
+    spare = len(means) - len(size)
+    if spare < 1:
+        return 0.0, 1.0
+    between = np.sum(size * centre**2) / len(size)
+    within = np.sum((means - centre[member]) ** 2) / spare
+    repeating = max(0.0, float(between - within) / float(size.mean()))
+    return float(np.sqrt(repeating)), float(f.sf(between / max(within, 1e-300), len(size), spare))

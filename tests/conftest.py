@@ -1,0 +1,33 @@
+# SPDX-License-Identifier: MIT
+"""Where the tests find reference data, and what every test shares."""
+
+import os
+from pathlib import Path
+
+import pytest
+from hypothesis import settings
+
+REFERENCE = Path(os.environ.get("ZEBRO_LAB_SHARED", Path(__file__).parents[2] / "shared"))
+
+settings.register_profile("lab", deadline=None, derandomize=True)
+settings.load_profile("lab")
+
+
+@pytest.fixture(scope="session")
+def shared() -> Path:
+    """Return the folder of reference data; skip where this machine has none."""
+    if not REFERENCE.is_dir():
+        pytest.skip(
+            f"no reference data at {REFERENCE}; set ZEBRO_LAB_SHARED to the folder that holds it"
+        )
+    return REFERENCE
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_makereport(item, call):
+    """Turn a skip into a failure where the reference data exists: nothing excuses it there."""
+    report = yield
+    if report.skipped and REFERENCE.is_dir() and not hasattr(report, "wasxfail"):
+        report.outcome = "failed"
+        report.longrepr = f"skipped although reference data exists: {report.longrepr}"
+    return report

@@ -61,6 +61,15 @@ class Convergence:
             ),
         ]
 
+    def summary(self) -> str:
+        """Say the figures in one line."""
+        length = float((self.length / self.autocorrelation_time).min())
+        return (
+            f"R-hat {self.r_hat.max():.3f}, bulk ESS {self.ess_bulk.min():.0f}, tail ESS "
+            f"{self.ess_tail.min():.0f}, {length:.0f} autocorrelation times, Monte Carlo error "
+            f"{self.mcse.max():.1%} of the spread"
+        )
+
     @property
     def converged(self) -> bool:
         """Tell whether every rule holds."""

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from model.bayes.laplace import find_mode
+from model.bayes.laplace import climb
 from model.bayes.likelihood import run_log_likelihood
 from model.bayes.posterior import SlipPosterior
 from model.bayes.samples import SlipSamples
@@ -93,7 +93,7 @@ def cross_validate(posterior: SlipPosterior, mode: Array, *, threads: int = 2) -
 
     def fit(index: int) -> Array:
         kept = posterior.without_runs(fold == index)
-        return posterior.values(find_mode(kept.log_density, mode[None]).mode[None])[0]
+        return posterior.values(climb(kept.log_density, mode[None])[None])[0]
 
     with ThreadPoolExecutor(threads) as pool:
         values = np.stack(list(pool.map(fit, range(n_folds))))

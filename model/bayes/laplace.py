@@ -70,17 +70,31 @@ def find_mode(log_density: LogDensity, starts: Array) -> Laplace:
     Raises:
         FitError: No start lies inside the support.
     """
-    heights = log_density(starts)
-    inside = starts[np.isfinite(heights)]
+    best, covariance = _newton(log_density, climb(log_density, starts))
+    return Laplace(best, covariance, float(log_density(best[None])[0]))
+
+
+def climb(log_density: LogDensity, starts: Array) -> Array:
+    """Climb from several starting points and return the coordinates of the highest top.
+
+    Args:
+        log_density: Log density of coordinates (w, d), -inf out of support.
+        starts: Starting points, shape (m, d).
+
+    Returns:
+        Coordinates, shape (d,).
+
+    Raises:
+        FitError: No start lies inside the support.
+    """
+    inside = starts[np.isfinite(log_density(starts))]
     if len(inside) == 0:
         raise FitError(
             f"the posterior is zero at all {len(starts)} starting points; the law cannot take a "
             "shape its priors allow on these loads"
         )
-    climbs = [_climb(log_density, start) for start in inside]
-    best = max(climbs, key=lambda z: float(log_density(z[None])[0]))
-    best, covariance = _newton(log_density, best)
-    return Laplace(best, covariance, float(log_density(best[None])[0]))
+    tops = [_climb(log_density, start) for start in inside]
+    return max(tops, key=lambda z: float(log_density(z[None])[0]))
 
 
 def _climb(log_density: LogDensity, start: Array) -> Array:

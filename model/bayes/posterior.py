@@ -48,7 +48,7 @@ def default_priors(law: SlipLaw, blocks: SlipBlocks, load_cell: LoadCell) -> dic
         "slip_stiffness": LogNormal(10.0, 1.5),
         "shape": Uniform(1.0, 2.0),
         "friction": LogNormal(0.6, 0.7),
-        "kinetic_friction": LogNormal(0.6, 0.7),
+        "stribeck_slip": LogNormal(0.1, 1.0),
         "peak_slip_per_load": LogNormal(0.1 / load_scale, 1.0),
         "curvature": BelowOne(1.0, 1.0),
         "friction_load_exponent": Normal(0.0, 0.2),

@@ -9,6 +9,7 @@ from scipy.optimize import least_squares
 from model.bayes.blocks import SlipBlocks, block_means, slip_noise_variance
 from model.bayes.priors import Prior
 from model.bayes.samples import SlipSamples
+from model.errors import FitError
 from model.slip.law import Array, SlipLaw
 
 N_TRIALS = 400
@@ -30,7 +31,10 @@ def least_squares_values(
         rng: Draws the starting points from the priors.
 
     Returns:
-        Values of the law's parameters, shape (k,).
+        Values of the law's parameters, inside its support, shape (k,).
+
+    Raises:
+        FitError: The priors allow no valid shape at these loads.
     """
     chosen = [priors[p.name] for p in law.parameters]
     scale = float(np.std(blocks.traction_force)) / 20
@@ -43,10 +47,21 @@ def least_squares_values(
             force = law.force(blocks.slip, blocks.normal_force, values(z))
         return np.append((blocks.traction_force - np.nan_to_num(force)) / scale, z)
 
+    def valid(z: Array) -> bool:
+        with np.errstate(all="ignore"):
+            return bool(np.all(law.valid(loads, values(z))))
+
+    loads = np.quantile(blocks.normal_force, [0.0, 0.25, 0.5, 0.75, 1.0])
     trials = np.vstack([np.zeros(len(chosen)), rng.standard_normal((N_TRIALS, len(chosen)))])
-    ranked = sorted(trials, key=lambda z: float(np.abs(misfit(z)).sum()))
-    climbs = [least_squares(misfit, z, loss="soft_l1", max_nfev=100) for z in ranked[:N_CLIMBS]]
-    return values(min(climbs, key=lambda fit: fit.cost).x)
+    ranked = sorted(filter(valid, trials), key=lambda z: float(np.abs(misfit(z)).sum()))
+    if not ranked:
+        raise FitError(
+            f"no parameters that the priors of '{law.name}' allow give it its shape at loads of "
+            f"{loads[0]:g} to {loads[-1]:g} N; check the unit of the load"
+        )
+    climbs = [least_squares(misfit, z, loss="soft_l1", max_nfev=100).x for z in ranked[:N_CLIMBS]]
+    candidates = [*filter(valid, climbs), ranked[0]]
+    return values(min(candidates, key=lambda z: float(np.abs(misfit(z)).sum())))
 
 
 def correlation_time(residual: Array, slices: list[slice]) -> float:

@@ -2,7 +2,6 @@
 """What the fit leaves over: whitened residuals, run means, and structure along the curve."""
 
 from dataclasses import dataclass
-from itertools import pairwise
 
 import numpy as np
 from scipy.linalg import solve_triangular, toeplitz
@@ -13,7 +12,8 @@ from model.bayes.likelihood import Prediction, predict_blocks
 from model.slip.law import Array, SlipLaw
 
 SLIP_BINS = 8
-LOAD_GAP = 1.15  # run medians further apart than this ratio are different loads
+LOAD_GAP = 1.1
+RARE_LEVEL = 0.05
 MAX_LOAD_LEVELS = 8
 
 
@@ -57,12 +57,10 @@ def analyse_residuals(blocks: SlipBlocks, law: SlipLaw, values: Array) -> Residu
         law: The slip law, of k parameters.
         values: Posterior draws of law and measurement parameters, shape (w, k + 8).
     """
-    centre = values.mean(axis=0, keepdims=True)
-    predicted = predict_blocks(blocks, law, centre)
-    residual = blocks.traction_force - predicted.force[0]
-    factors = _covariance_factors(blocks, predicted, centre[0])
-    run_spread = blocks.run_mean(predict_blocks(blocks, law, values).force).std(axis=0)
-    score = _run_scores(blocks, residual, factors, run_spread)
+    predicted = predict_blocks(blocks, law, values)
+    residual = blocks.traction_force - predicted.force.mean(axis=0)
+    factors = _covariance_factors(blocks, predicted, values)
+    score = _run_scores(blocks, residual, factors, blocks.run_mean(predicted.force).std(axis=0))
     inside = int(np.sum(np.abs(score) <= norm.ppf(0.95)))
     whitened = _whiten(blocks, residual, factors)
     misfit, misfit_p = _structure(blocks, residual)
@@ -73,7 +71,7 @@ def analyse_residuals(blocks: SlipBlocks, law: SlipLaw, values: Array) -> Residu
         run_score=score,
         inside=inside / blocks.n_runs,
         inside_p=float(binomtest(inside, blocks.n_runs, 0.9).pvalue),
-        misfit=misfit / float(np.abs(predicted.force).max()),
+        misfit=misfit / float(np.abs(predicted.force.mean(axis=0)).max()),
         misfit_p=misfit_p,
         r_squared=float(1 - np.mean(residual**2) / variance),
         rmse=float(np.sqrt(np.mean(residual**2))),
@@ -82,16 +80,17 @@ def analyse_residuals(blocks: SlipBlocks, law: SlipLaw, values: Array) -> Residu
 
 
 def _covariance_factors(blocks: SlipBlocks, predicted: Prediction, values: Array) -> list[Array]:
-    """Return the Cholesky factor of each run's predictive covariance, offset included.
+    """Return the Cholesky factor of each run's covariance at the posterior mean, offset included.
 
     Built densely from its definition, not by the likelihood's filter: one checks the other.
     """
-    rho, tau = values[-2], values[-1]
+    rho, tau = values[:, -2].mean(), values[:, -1].mean()
+    noise, slope = predicted.noise.mean(axis=0), predicted.slope.mean(axis=0)
     starts = blocks.run_starts()
     factors = []
     for index in range(blocks.n_runs):
         part = slice(starts[index], starts[index + 1])
-        s, g = predicted.noise[0, part], predicted.slope[0, part]
+        s, g = noise[part], slope[part]
         covariance = np.outer(s, s) * toeplitz(rho ** np.arange(len(s))) + tau**2
         covariance += np.outer(g, g) * blocks.run_slip_error[index]
         covariance += np.diag(g**2 * blocks.slip_error[part])
@@ -128,21 +127,20 @@ def lag_one_correlation(values: Array, blocks: SlipBlocks) -> float:
 
 
 def load_levels(blocks: SlipBlocks) -> Array:
-    """Find the loads that were set, from the runs' median loads, shape (n_levels,) [N].
+    """Find the loads that were set, shape (n_levels,) [N].
 
-    Runs whose medians differ by less than 15 % were made at one load. Where that leaves more than
-    8 levels (the load was swept), 8 quantiles stand for them.
+    A run's load is the lower quartile of its blocks' (a bump on a disc only adds to it). Runs whose
+    loads differ by less than 10 % were made at one; a level that fewer than one run in twenty
+    share (a disc that stood still on its bump) is none. Where more than 8 are left the load was
+    swept, and 8 quantiles stand for it.
     """
-    starts = blocks.run_starts()
-    medians = np.array([np.median(blocks.normal_force[a:b]) for a, b in pairwise(starts)])
-    ordered = np.sort(medians)
-    breaks = np.flatnonzero(ordered[1:] > LOAD_GAP * ordered[:-1]) + 1
-    levels = np.array([np.median(group) for group in np.split(ordered, breaks)])
-    if len(levels) > MAX_LOAD_LEVELS:
-        return np.quantile(
-            blocks.normal_force, (np.arange(MAX_LOAD_LEVELS) + 0.5) / MAX_LOAD_LEVELS
-        )
-    return levels
+    parts = np.split(blocks.normal_force, blocks.run_starts()[1:-1])
+    ordered = np.sort([np.quantile(part, 0.25) for part in parts])
+    groups = np.split(ordered, np.flatnonzero(ordered[1:] > LOAD_GAP * ordered[:-1]) + 1)
+    levels = np.array([np.median(g) for g in groups if len(g) >= RARE_LEVEL * blocks.n_runs])
+    if 1 <= len(levels) <= MAX_LOAD_LEVELS:
+        return levels
+    return np.quantile(blocks.normal_force, (np.arange(MAX_LOAD_LEVELS) + 0.5) / MAX_LOAD_LEVELS)
 
 
 def nearest_level(load: Array, levels: Array) -> Array:

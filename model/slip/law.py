@@ -75,6 +75,10 @@ class SlipLaw(Protocol):
         """Tell where the curve has the shape the law promises (inside its support)."""
         ...
 
+    def peak_slip(self, load: ArrayLike, values: Values) -> Array:
+        """Compute the slip ratio at which the force is largest, infinite where it never falls."""
+        ...
+
 
 def inside_support(law: SlipLaw, values: Values) -> NDArray[np.bool_]:
     """Tell where every value lies inside its parameter's open support."""

@@ -1,0 +1,162 @@
+# SPDX-License-Identifier: MIT
+"""Posterior draws summarised: parameters, the plain coefficients, agreement of two engines."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from model.bayes.convergence import Convergence
+from model.bayes.laplace import WeightedDraws
+from model.bayes.posterior import SlipPosterior
+from model.bayes.sampler import Chains
+from model.slip.law import Array, Parameter, SlipLaw
+from model.slip.magic_formula import MagicFormula
+
+MAX_PARETO_K = 0.7
+
+
+@dataclass(frozen=True)
+class Draws:
+    """Draws of a posterior.
+
+    Attributes:
+        z: Coordinates of the free parameters, shape (ensembles, n, d).
+        values: Values of all parameters, shape (ensembles, n, k + 8).
+        log_density: Log posterior density, shape (ensembles, n).
+    """
+
+    z: Array
+    values: Array
+    log_density: Array
+
+    @property
+    def flat(self) -> Array:
+        """All values without regard to ensemble, shape (ensembles · n, k + 8)."""
+        return self.values.reshape(-1, self.values.shape[-1])
+
+
+def thin_draws(
+    posterior: SlipPosterior, chains: Chains, convergence: Convergence, *, n: int
+) -> Draws:
+    """Pick evenly spaced draws behind the burn-in.
+
+    Args:
+        posterior: The posterior that was sampled.
+        chains: The chains.
+        convergence: Says where the burn-in ends.
+        n: Draws wanted of each ensemble, at most.
+    """
+    kept = chains.z[:, convergence.burn_in :]
+    ensembles, steps, walkers, d = kept.shape
+    picked = np.linspace(0, steps * walkers - 1, min(n, steps * walkers)).round().astype(int)
+    z = kept.reshape(ensembles, -1, d)[:, picked]
+    density = chains.log_density[:, convergence.burn_in :].reshape(ensembles, -1)[:, picked]
+    values = posterior.values(z.reshape(-1, d)).reshape(ensembles, len(picked), -1)
+    return Draws(z, values, density)
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """One quantity's posterior.
+
+    Attributes:
+        parameter: What it is.
+        mean: Posterior mean.
+        sd: Posterior standard deviation.
+        low: 5 % quantile.
+        median: Median.
+        high: 95 % quantile.
+    """
+
+    parameter: Parameter
+    mean: float
+    sd: float
+    low: float
+    median: float
+    high: float
+
+
+def estimate(parameter: Parameter, draws: Array) -> Estimate:
+    """Summarise draws of one quantity, shape (n,)."""
+    low, median, high = np.quantile(draws, [0.05, 0.5, 0.95])
+    mean, sd = np.mean(draws), np.std(draws)
+    return Estimate(parameter, *(float(x) for x in (mean, sd, low, median, high)))
+
+
+def contraction(posterior: SlipPosterior, draws: Draws) -> dict[str, float]:
+    """Compute how far the data narrowed each prior: 1 - posterior over prior variance of z."""
+    variances = draws.z.reshape(-1, draws.z.shape[-1]).var(axis=0)
+    return {p.name: float(1 - v) for p, v in zip(posterior.free, variances, strict=True)}
+
+
+def curve_estimates(law: SlipLaw, values: Array, load: float) -> list[Estimate]:
+    """Summarise the curve at one load: plain B, C, D, E where there are such, peak and slope.
+
+    Args:
+        law: The slip law, of k parameters.
+        values: Posterior draws of its parameters, shape (w, k).
+        load: Normal force [N].
+    """
+    columns = values.T
+    quantities: list[tuple[Parameter, Array]] = []
+    if isinstance(law, MagicFormula):
+        coefficients = law.coefficients(load, columns)
+        quantities += zip(_PLAIN, coefficients, strict=True)
+    peak = law.peak_slip(load, columns)
+    top = law.force(np.where(np.isfinite(peak), peak, 1e6), load, columns)
+    slope = law.slip_derivative(0.0, load, columns)
+    quantities += zip(_FEATURES, (peak, top, slope), strict=True)
+    n = len(values)
+    return [estimate(p, np.broadcast_to(np.asarray(x), n)) for p, x in quantities]
+
+
+@dataclass(frozen=True)
+class Agreement:
+    """How two engines' answers to one posterior compare, over its free parameters.
+
+    Attributes:
+        mean: Largest difference of means over the posterior standard deviation [-].
+        spread: Largest relative difference of standard deviations [-].
+        pareto_k: Tail index of the importance weights; above 0.7 they cannot be compared [-].
+    """
+
+    mean: float
+    spread: float
+    pareto_k: float
+
+    @property
+    def comparable(self) -> bool:
+        """Tell whether importance sampling worked."""
+        return self.pareto_k < MAX_PARETO_K
+
+
+def agreement(draws: Draws, weighted: WeightedDraws) -> Agreement:
+    """Compare the sampler's draws with weighted draws of the Laplace approximation."""
+    z = draws.z.reshape(-1, draws.z.shape[-1])
+    mean = weighted.weights @ weighted.z
+    sd = np.sqrt(weighted.weights @ (weighted.z - mean) ** 2)
+    return Agreement(
+        mean=float(np.max(np.abs(z.mean(axis=0) - mean) / z.std(axis=0))),
+        spread=float(np.max(np.abs(sd / z.std(axis=0) - 1))),
+        pareto_k=weighted.pareto_k,
+    )
+
+
+def posterior_moments(draws: Draws, names: Mapping[str, int]) -> tuple[Array, Array]:
+    """Return mean, shape (m,), and covariance, shape (m, m), of some parameters by column."""
+    chosen = draws.flat[:, list(names.values())]
+    return chosen.mean(axis=0), np.atleast_2d(np.cov(chosen.T))
+
+
+_PLAIN = (
+    Parameter("stiffness_factor", "B", "dimensionless", 0.0, np.inf, "stiffness factor"),
+    Parameter("shape_factor", "C", "dimensionless", 1.0, 2.0, "shape factor"),
+    Parameter("peak_factor", "D", "newton", 0.0, np.inf, "peak force"),
+    Parameter("curvature_factor", "E", "dimensionless", -np.inf, 1.0, "curvature factor"),
+)
+_FEATURES = (
+    Parameter("peak_slip", "x_m", "dimensionless", 0.0, np.inf, "slip ratio of the peak"),
+    Parameter("peak_force", "F_max", "newton", 0.0, np.inf, "largest traction force"),
+    Parameter("initial_slope", "BCD", "newton", 0.0, np.inf, "slope at zero slip"),
+)

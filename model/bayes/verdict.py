@@ -1,0 +1,205 @@
+# SPDX-License-Identifier: MIT
+"""One verdict on a fit: did it converge, may it be trusted, and what to do next."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from model.bayes.blocks import SlipBlocks
+from model.bayes.convergence import Convergence
+from model.bayes.likelihood import predict_blocks
+from model.bayes.residuals import Residuals, load_levels, nearest_level
+from model.slip.law import Array, SlipLaw
+
+MAX_LAG_ONE = 0.05
+MIN_P = 0.01
+MAX_MISFIT = 0.05  # of the peak force
+MISFIT_P = 1e-3
+MAX_OFFSET_SHARE = 0.2
+MAX_OFFSET_RATIO = 3.0  # a half-normal exceeds three scales once in 370
+MIN_CONTRACTION = 0.75  # the posterior half as wide as the prior
+MIN_REACH = 2.5  # peak slips: where the curve has fallen clearly behind its peak
+
+
+@dataclass(frozen=True)
+class Check:
+    """One question asked of a fit.
+
+    Attributes:
+        name: What was asked.
+        passed: Whether the answer is good.
+        evidence: The figure and its limit.
+        advice: What to do when it is not.
+    """
+
+    name: str
+    passed: bool
+    evidence: str
+    advice: str
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """What a fit is worth.
+
+    Attributes:
+        convergence: Checks of the sampler.
+        trust: Checks of the model against the data.
+        weak: Parameters that the data hardly inform, by name, each with the reason.
+    """
+
+    convergence: tuple[Check, ...]
+    trust: tuple[Check, ...]
+    weak: Mapping[str, str]
+
+    @property
+    def converged(self) -> bool:
+        """Tell whether the sampler's answer is that of the posterior."""
+        return all(check.passed for check in self.convergence)
+
+    @property
+    def trustworthy(self) -> bool:
+        """Tell whether the posterior describes the data."""
+        return self.converged and all(check.passed for check in self.trust)
+
+    def headline(self) -> str:
+        """Say it in one line."""
+        if not self.converged:
+            return "NOT CONVERGED: do not use these numbers"
+        if not self.trustworthy:
+            return "converged, but NOT TRUSTWORTHY: the model does not describe these data"
+        if self.weak:
+            return f"converged and trustworthy; weakly identified: {', '.join(self.weak)}"
+        return "converged and trustworthy"
+
+    def next_steps(self) -> tuple[str, ...]:
+        """Say what to do, most urgent first."""
+        failed = [c.advice for c in (*self.convergence, *self.trust) if not c.passed]
+        return tuple(dict.fromkeys([*failed, *(reason for reason in self.weak.values())]))
+
+
+def judge(
+    *,
+    blocks: SlipBlocks,
+    law: SlipLaw,
+    values: Array,
+    contraction: Mapping[str, float],
+    convergence: Convergence,
+    residuals: Residuals,
+    offset_scale: float,
+) -> Verdict:
+    """Put the verdict together.
+
+    Args:
+        blocks: The block means.
+        law: The slip law, of k parameters.
+        values: Posterior draws of law and measurement parameters, shape (w, k + 8).
+        contraction: 1 - posterior variance over prior variance of each sampled parameter, by
+            name [-].
+        convergence: Evidence on the sampler.
+        residuals: What the fit leaves over.
+        offset_scale: Scale of the prior on the run offsets' spread [N].
+    """
+    return Verdict(
+        convergence=_convergence_checks(convergence),
+        trust=(
+            _whiteness(residuals, blocks),
+            _run_means(residuals, blocks),
+            _shape(residuals, values, law, blocks),
+            _offsets(blocks, law, values, offset_scale),
+        ),
+        weak=_weak(blocks, law, values, contraction),
+    )
+
+
+def _convergence_checks(convergence: Convergence) -> tuple[Check, ...]:
+    advice = "sample longer: --resume with a larger --max-steps"
+    failures = convergence.failures()
+    if failures:
+        return tuple(Check("sampler", False, failure, advice) for failure in failures)
+    return (Check("sampler", True, convergence.summary(), advice),)
+
+
+def _whiteness(residuals: Residuals, blocks: SlipBlocks) -> Check:
+    pairs = max(1, len(blocks) - blocks.n_runs)
+    limit = max(MAX_LAG_ONE, 2.6 / np.sqrt(pairs))
+    return Check(
+        "residuals are white",
+        abs(residuals.lag_one) < limit,
+        f"lag-1 correlation of whitened residuals {residuals.lag_one:+.3f}, limit {limit:.2f}",
+        "residuals of successive blocks still go together: look at residuals.png for what the "
+        "law misses; intervals are too narrow",
+    )
+
+
+def _run_means(residuals: Residuals, blocks: SlipBlocks) -> Check:
+    return Check(
+        "run means are predicted",
+        residuals.inside_p > MIN_P,
+        f"{residuals.inside:.0%} of {blocks.n_runs} run means inside their 90 % interval "
+        f"(p = {residuals.inside_p:.2g})",
+        "run means scatter otherwise than the model says: look for runs that do not belong",
+    )
+
+
+def _shape(residuals: Residuals, values: Array, law: SlipLaw, blocks: SlipBlocks) -> Check:
+    return Check(
+        "the law has the data's shape",
+        not (residuals.misfit > MAX_MISFIT and residuals.misfit_p < MISFIT_P),
+        f"misfit that repeats along the curve {residuals.misfit:.1%} of the peak force, limit "
+        f"{MAX_MISFIT:.0%} (p = {residuals.misfit_p:.2g})",
+        "a bad fit: the curve misses the data by the same amount again and again; check the slip "
+        "definition, fit driving and braking apart, or try another --law",
+    )
+
+
+def _offsets(blocks: SlipBlocks, law: SlipLaw, values: Array, scale: float) -> Check:
+    tau = float(values[:, -1].mean())
+    means = blocks.run_mean(predict_blocks(blocks, law, values).force.mean(axis=0))
+    curve = float(np.std(means))
+    share = tau**2 / (tau**2 + curve**2) if tau > 0 else 0.0
+    return Check(
+        "the curve, not the run offsets, carries the data",
+        share <= MAX_OFFSET_SHARE and tau <= MAX_OFFSET_RATIO * scale,
+        f"run offsets {tau:.3g} N against {curve:.3g} N of curve between runs "
+        f"({share:.0%} of the variance, limit {MAX_OFFSET_SHARE:.0%}); prior scale {scale:.3g} N",
+        "the run offsets carry the curve: tare before each run and state the load cell's zero "
+        "stability, or vary slip within runs",
+    )
+
+
+def _weak(
+    blocks: SlipBlocks, law: SlipLaw, values: Array, contraction: Mapping[str, float]
+) -> dict[str, str]:
+    names = [parameter.name for parameter in law.parameters]
+    weak = {
+        name: f"{name}: the data narrow its prior by {max(contraction[name], 0):.0%} only; read "
+        "peak force and initial slope instead"
+        for name in names
+        if contraction.get(name, 1.0) < MIN_CONTRACTION
+    }
+    reach = slip_reach(blocks, law, values)
+    if "shape" in names and reach < MIN_REACH:
+        reason = (
+            f"shape C and peak factor D cannot be told apart: slip ends at {reach:.1f} times the "
+            f"peak's slip, {MIN_REACH:g} are needed; read peak force and initial slope instead"
+        )
+        weak |= {"shape": reason, "friction": reason}
+    return weak
+
+
+def slip_reach(blocks: SlipBlocks, law: SlipLaw, values: Array) -> float:
+    """Compute how many times the peak's slip was reached, at the load where it is most [-].
+
+    Args:
+        blocks: The block means.
+        law: The slip law, of k parameters.
+        values: Posterior draws, shape (w, k + 8).
+    """
+    levels = load_levels(blocks)
+    nearest = nearest_level(np.maximum(blocks.normal_force, 1e-9), levels)
+    k = len(law.parameters)
+    peak = np.median(law.peak_slip(levels, values[:, :k].T[:, :, None]), axis=0)
+    largest = [np.abs(blocks.slip[nearest == i]).max(initial=0.0) for i in range(len(levels))]
+    return float(np.max(np.array(largest) / peak))

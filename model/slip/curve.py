@@ -1,0 +1,53 @@
+# SPDX-License-Identifier: MIT
+"""A fitted slip curve: a law, its values, and what they are good for."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from model.slip.definition import SlipDefinition, require_definition
+from model.slip.law import Array, SlipLaw
+
+
+@dataclass(frozen=True)
+class SlipCurve:
+    """A law with the values that data gave it.
+
+    Attributes:
+        law: The slip law, of k parameters.
+        values: Posterior mean of its parameters, shape (k,).
+        covariance: Posterior covariance of its parameters, shape (k, k).
+        definition: What the slip ratios are divided by.
+        load_range: Smallest and largest load that was tested [N].
+        slip_range: Smallest and largest slip ratio that was tested [-].
+    """
+
+    law: SlipLaw
+    values: Array
+    covariance: Array
+    definition: SlipDefinition
+    load_range: tuple[float, float]
+    slip_range: tuple[float, float]
+
+    def force(self, slip: ArrayLike, load: ArrayLike, *, definition: SlipDefinition | str) -> Array:
+        """Compute the traction force at the posterior mean.
+
+        Args:
+            slip: Slip ratio [-].
+            load: Normal force [N].
+            definition: What `slip` is divided by.
+
+        Returns:
+            Traction force [N].
+
+        Raises:
+            DefinitionMismatch: The curve was fitted in another definition.
+        """
+        require_definition(definition, self.definition)
+        return self.law.force(slip, load, self.values)
+
+    def untested_loads(self, load: ArrayLike) -> NDArray[np.bool_]:
+        """Tell which loads lie outside the tested range."""
+        Fn = np.asarray(load, dtype=float)
+        return (Fn < self.load_range[0]) | (Fn > self.load_range[1])

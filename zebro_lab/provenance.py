@@ -1,0 +1,41 @@
+# SPDX-License-Identifier: MIT
+"""Where numbers come from: hashes of files, versions of software."""
+
+import hashlib
+import json
+import platform
+from collections.abc import Iterable, Mapping
+from importlib.metadata import version
+from pathlib import Path
+
+RECORDED = ("zebro-lab", "numpy", "scipy", "emcee", "arviz", "numba")
+
+
+def file_hash(path: Path) -> str:
+    """Compute the SHA-256 of a file, in hexadecimal."""
+    with path.open("rb") as file:
+        return hashlib.file_digest(file, "sha256").hexdigest()
+
+
+def file_hashes(paths: Iterable[Path]) -> dict[str, str]:
+    """Compute the SHA-256 of files, by their path as given."""
+    return {str(path): file_hash(path) for path in paths}
+
+
+def fingerprint(hashes: Mapping[str, str], settings: Mapping[str, object]) -> str:
+    """Hash data and settings together; file names and places do not count, contents do.
+
+    Args:
+        hashes: SHA-256 of each data file.
+        settings: Everything else that decides the numbers, as JSON can hold it.
+    """
+    content = {"data": sorted(hashes.values()), "settings": dict(settings)}
+    return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
+
+
+def software() -> dict[str, str]:
+    """Name the versions that decide the numbers."""
+    return {
+        "python": platform.python_version(),
+        **{name: version(name) for name in RECORDED},
+    }

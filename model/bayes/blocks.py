@@ -12,12 +12,13 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.stats import chi2
 
 from model.bayes.samples import SlipSamples
 from model.slip.definition import SlipDefinition
 from model.slip.law import Array
 
-STANDS_OUT = 4.0  # standard errors: one block of pure noise in 10,000 claims wander it has not
+BY_CHANCE = 1e-6  # one block that falsely claims wander can cost hundreds of nats in a steep place
 
 
 @dataclass(frozen=True)
@@ -225,16 +226,22 @@ def _calibrate_slip(
 
 
 def _wander(spread: Array, count: NDArray[np.intp], run: NDArray[np.intp], noise: Array) -> Array:
-    """Return the variance of the true slip within each block.
+    """Return the variance of the true slip around its mean in each block.
 
-    A block whose spread stands out of the noise keeps its own; the others share their run's mean,
-    because clipping each at zero would invent wander where there is only noise.
+    A block whose spread noise would not give by chance keeps its own; the others share their run's
+    mean, because clipping each at zero would invent wander where there is only noise. Both tails
+    count: to keep only the large ones would invent it, too.
     """
     if not (count > 1).any():
         return np.zeros_like(spread)
+    spare = np.maximum(count - 1, 1)
     excess = np.where(count > 1, spread - noise[run], 0.0)
-    error = noise[run] * np.sqrt(2 / np.maximum(count - 1, 1))
+    error = noise[run] * np.sqrt(2 / spare)
     of_run = np.bincount(run, excess) / np.bincount(run)
     error_of_run = np.bincount(run, error**2) / np.bincount(run) ** 2
     shared = np.maximum(_shrink(of_run, error_of_run, float(np.median(of_run))), 0.0)[run]
-    return np.where(excess - shared > STANDS_OUT * error, excess, shared)
+    # Normal quantiles will not do: the spread of few samples is far from normal.
+    by_noise = (spread - shared) * spare / np.maximum(noise[run], 1e-300)
+    own = (by_noise < chi2.ppf(BY_CHANCE, spare)) | (by_noise > chi2.isf(BY_CHANCE, spare))
+    # Around the block's own mean a variance is smaller by 1/n than around the true one.
+    return np.where(own, np.maximum(excess, 0.0), shared) * (1 - 1 / count)

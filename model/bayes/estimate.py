@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Posterior draws summarised: parameters, the plain coefficients, agreement of two engines."""
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -141,12 +140,6 @@ def agreement(draws: Draws, weighted: WeightedDraws) -> Agreement:
         spread=float(np.max(np.abs(sd / z.std(axis=0) - 1))),
         pareto_k=weighted.pareto_k,
     )
-
-
-def posterior_moments(draws: Draws, names: Mapping[str, int]) -> tuple[Array, Array]:
-    """Return mean, shape (m,), and covariance, shape (m, m), of some parameters by column."""
-    chosen = draws.flat[:, list(names.values())]
-    return chosen.mean(axis=0), np.atleast_2d(np.cov(chosen.T))
 
 
 _PLAIN = (

@@ -27,12 +27,14 @@ class PreparedFit:
         laplace: Laplace approximation at the mode.
         cross_validation: Prediction of left-out runs; None for a single run.
         block_choice: The block length and why.
+        load_cell: What was taken as known of the load cell.
     """
 
     posterior: SlipPosterior
     laplace: Laplace
     cross_validation: CrossValidation | None
     block_choice: BlockChoice
+    load_cell: LoadCell
 
 
 def scaled_load_cell(samples: SlipSamples, known: Mapping[str, float]) -> LoadCell:
@@ -90,7 +92,7 @@ def prepare_fit(
     validation = (
         cross_validate(posterior, laplace.mode, threads=threads) if blocks.n_runs > 1 else None
     )
-    return PreparedFit(posterior, laplace, validation, choice)
+    return PreparedFit(posterior, laplace, validation, choice, load_cell)
 
 
 def _require_enough(samples: SlipSamples, law: SlipLaw) -> None:

@@ -12,7 +12,7 @@ from typing import Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.special import log_ndtr, ndtr, ndtri, ndtri_exp
+from scipy.special import erf, erfinv, log_ndtr, ndtr, ndtri, ndtri_exp
 
 from model.slip.law import Array
 
@@ -120,12 +120,15 @@ class HalfNormal:
 
     def value(self, z: ArrayLike) -> Array:
         """Map a standard normal coordinate to the value."""
-        # The upper-tail probability of |N| is Phi(-z): exact in both tails, unlike (1 + Phi(z))/2.
-        return -self.scale * ndtri_exp(log_ndtr(-np.asarray(z, dtype=float)) - math.log(2))
+        # |N| has lower tail Phi(z) and upper tail Phi(-z); each keeps its digits where it is small.
+        z = np.asarray(z, dtype=float)
+        small = math.sqrt(2) * erfinv(ndtr(z))
+        return self.scale * np.where(z < 0, small, -ndtri_exp(log_ndtr(-z) - math.log(2)))
 
     def coordinate(self, value: ArrayLike) -> Array:
         """Map a value to its coordinate."""
-        return -ndtri(2 * ndtr(-np.asarray(value, dtype=float) / self.scale))
+        x = np.asarray(value, dtype=float) / self.scale
+        return np.where(x < 0.67, ndtri(erf(x / math.sqrt(2))), -ndtri(2 * ndtr(-x)))
 
     def describe(self) -> str:
         """Spell the distribution out."""

@@ -1,0 +1,266 @@
+# SPDX-License-Identifier: MIT
+"""The sole owner of the format of a calibration folder: `slip.toml`, tables, draws, manifest."""
+
+import csv
+import io
+import json
+import tomllib
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from model.bayes.convergence import Convergence
+from model.bayes.estimate import Agreement, Draws, Estimate
+from model.bayes.fit import Comparison, PreparedFit
+from model.bayes.residuals import Residuals
+from model.bayes.verdict import Verdict
+from model.errors import ModelError
+from model.slip.curve import SlipCurve
+from model.slip.definition import SlipDefinition
+from model.slip.laws import slip_law
+from zebro_lab.errors import DataError
+from zebro_lab.provenance import file_hash, software
+
+if TYPE_CHECKING:
+    from model.bayes.posterior import SlipPosterior
+
+SCHEMA = 1
+SLIP_TOML = "slip.toml"
+OWNED = ("slip.toml", "summary.csv", "posterior.nc", "manifest.json", "*.png")
+"""What a calibration writes; an earlier run's files of these names are replaced."""
+
+
+SUMMARY_COLUMNS = (
+    "parameter", "symbol", "unit", "mean", "sd", "q05", "median", "q95", "prior", "contraction",
+    "r_hat", "ess_bulk", "ess_tail", "autocorrelation_time", "mcse_over_sd",
+)  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Calibration:
+    """A finished fit.
+
+    Attributes:
+        fit: Posterior, mode, cross-validation and block length.
+        comparison: The laws that were compared; None where one was asked for.
+        draws: Posterior draws.
+        parameters: Posterior of every parameter.
+        levels: Loads that were set, shape (m,) [N].
+        curves: Posterior of the curve's features at each load level.
+        convergence: Evidence on the sampler.
+        residuals: What the fit leaves over.
+        agreement: How the second engine's answer compares.
+        verdict: What the fit is worth.
+        contraction: 1 - posterior over prior variance of each sampled parameter, by name.
+        r_squared: Variance of left-out samples explained; None for a single run [-].
+        source: Where the data come from: "real", "sim:...", "unknown".
+        seconds: Time the sampler took [s].
+    """
+
+    fit: PreparedFit
+    comparison: Comparison | None
+    draws: Draws
+    parameters: Sequence[Estimate]
+    levels: np.ndarray
+    curves: Sequence[Sequence[Estimate]]
+    convergence: Convergence
+    residuals: Residuals
+    agreement: Agreement
+    verdict: Verdict
+    contraction: Mapping[str, float]
+    r_squared: float | None
+    source: str
+    seconds: float
+
+    @property
+    def posterior(self) -> "SlipPosterior":
+        """The posterior that was sampled."""
+        return self.fit.posterior
+
+    @property
+    def simulated(self) -> bool:
+        """Tell whether any of the data is simulated."""
+        return "sim:" in self.source
+
+
+def write_tables(folder: Path, calibration: Calibration, *, inputs: Mapping[str, str]) -> None:
+    """Write everything but the pictures and the manifest.
+
+    Args:
+        folder: Folder to write into.
+        calibration: The finished fit.
+        inputs: SHA-256 of each file that was read.
+    """
+    (folder / SLIP_TOML).write_text(_slip_toml(calibration, inputs))
+    (folder / "summary.csv").write_text(_summary_csv(calibration))
+    _write_posterior(folder / "posterior.nc", calibration)
+
+
+def write_manifest(
+    folder: Path, *, inputs: Mapping[str, str], settings: Mapping[str, object], source: str
+) -> None:
+    """Write `manifest.json`: hashes of what was read and of what was written, versions, settings.
+
+    Args:
+        folder: Folder with everything else in it already.
+        inputs: SHA-256 of each file that was read.
+        settings: What the fit was asked to do.
+        source: Where the data come from.
+    """
+    outputs = {path.name: file_hash(path) for path in sorted(folder.iterdir()) if path.is_file()}
+    content = {
+        "schema": SCHEMA,
+        "kind": "calibration",
+        "source": source,
+        "settings": settings,
+        "inputs": inputs,
+        "outputs": outputs,
+        "software": software(),
+    }
+    (folder / "manifest.json").write_text(json.dumps(content, indent=2) + "\n")
+
+
+def read_slip(path: Path) -> SlipCurve:
+    """Read the slip curve of a calibration.
+
+    Args:
+        path: A `slip.toml`, or the folder that holds it.
+
+    Raises:
+        DataError: It is missing, damaged, or of a later schema.
+    """
+    file = path / SLIP_TOML if path.is_dir() else path
+    try:
+        content = tomllib.loads(file.read_text())
+        if content["schema"] != SCHEMA:
+            raise DataError(
+                f"has schema {content['schema']}, this version reads {SCHEMA}; update zebro-lab",
+                file=file,
+            )
+        options = {k: v for k, v in content["law"].items() if k != "name"}
+        law = slip_law(content["law"]["name"], **options)
+        return SlipCurve(
+            law=law,
+            values=np.array([content["parameters"][p.name]["mean"] for p in law.parameters]),
+            covariance=np.array(content["covariance"]["matrix"], dtype=float),
+            definition=SlipDefinition(content["slip_definition"]),
+            load_range=tuple(content["tested"]["normal_force"]),
+            slip_range=tuple(content["tested"]["slip_ratio"]),
+        )
+    except (OSError, KeyError, TypeError, ValueError, ModelError) as error:
+        if isinstance(error, DataError):
+            raise
+        raise DataError(
+            f"is no slip calibration ({type(error).__name__}: {error}); "
+            "name a slip.toml or the folder that calibrate-slip wrote",
+            file=file,
+        ) from error
+
+
+def _slip_toml(calibration: Calibration, inputs: Mapping[str, str]) -> str:
+    import tomlkit
+
+    blocks, law = calibration.posterior.blocks, calibration.posterior.law
+    k = len(law.parameters)
+    document = tomlkit.document()
+    document.add(tomlkit.comment("Slip curve fitted by calibrate-slip. SI units."))
+    if calibration.simulated:
+        document.add(tomlkit.comment("SIMULATED data: nothing here was measured."))
+    verdict = calibration.verdict
+    content: dict[str, Any] = {
+        "schema": SCHEMA,
+        "source": calibration.source,
+        "slip_definition": str(blocks.definition),
+        "verdict": {
+            "headline": verdict.headline(),
+            "converged": verdict.converged,
+            "trustworthy": verdict.trustworthy,
+            "weakly_identified": list(verdict.weak),
+            "next_steps": list(verdict.next_steps()),
+        },
+        "law": {"name": law.name, **asdict(law)},  # pyright: ignore[reportArgumentType]
+        "parameters": {
+            e.parameter.name: {
+                "symbol": e.parameter.symbol, "unit": e.parameter.unit, "mean": e.mean,
+                "sd": e.sd, "q05": e.low, "median": e.median, "q95": e.high,
+            }
+            for e in calibration.parameters
+        },
+        "covariance": {
+            "order": [p.name for p in law.parameters],
+            "matrix": np.atleast_2d(np.cov(calibration.draws.flat[:, :k].T)).tolist(),
+        },
+        "curve": [
+            {"normal_force": float(load), **{e.parameter.name: e.median for e in row}}
+            for load, row in zip(calibration.levels, calibration.curves, strict=True)
+        ],
+        "tested": {
+            "normal_force": [float(blocks.normal_force.min()), float(blocks.normal_force.max())],
+            "slip_ratio": [float(blocks.slip.min()), float(blocks.slip.max())],
+            "samples": int(blocks.count.sum()),
+            "runs": blocks.n_runs,
+            "block_length": calibration.fit.block_choice.length,
+        },
+        "data": {Path(name).name: digest for name, digest in inputs.items()},
+    }  # fmt: skip
+    document.update(content)
+    return tomlkit.dumps(document)
+
+
+def _summary_csv(calibration: Calibration) -> str:
+    convergence = calibration.convergence
+    free = {p.name: i for i, p in enumerate(calibration.posterior.free)}
+    text = io.StringIO()
+    table = csv.writer(text, lineterminator="\n")
+    table.writerow(SUMMARY_COLUMNS)
+    for e in calibration.parameters:
+        name, i = e.parameter.name, free.get(e.parameter.name)
+        numbers = [e.mean, e.sd, e.low, e.median, e.high]
+        diagnostics = ["fixed"] + [""] * 6 if i is None else [
+            calibration.posterior.priors[name].describe(), f"{calibration.contraction[name]:.4f}",
+            f"{convergence.r_hat[i]:.4f}", f"{convergence.ess_bulk[i]:.0f}",
+            f"{convergence.ess_tail[i]:.0f}", f"{convergence.autocorrelation_time[i]:.1f}",
+            f"{convergence.mcse[i]:.4f}",
+        ]  # fmt: skip
+        values = [f"{x:.8g}" for x in numbers]
+        table.writerow([name, e.parameter.symbol, e.parameter.unit, *values, *diagnostics])
+    return text.getvalue()
+
+
+def _write_posterior(path: Path, calibration: Calibration) -> None:
+    """Write the draws as ArviZ InferenceData; a chain is an ensemble."""
+    import arviz as az
+
+    posterior, draws = calibration.posterior, calibration.draws
+    blocks = posterior.blocks
+    attributes = {
+        "source": calibration.source,
+        "slip_definition": str(blocks.definition),
+        "law": posterior.law.name,
+        "verdict": calibration.verdict.headline(),
+    }
+    data = az.from_dict(
+        posterior={
+            p.name: draws.values[..., i]
+            for i, p in enumerate(posterior.parameters)
+            if p.name not in posterior.fixed
+        },
+        sample_stats={"lp": draws.log_density},
+        observed_data={"traction_force": blocks.traction_force},
+        constant_data={
+            "slip_ratio": blocks.slip,
+            "normal_force": blocks.normal_force,
+            "run": blocks.run,
+            "samples": blocks.count,
+        },
+        coords={"block": np.arange(len(blocks))},
+        dims={
+            name: ["block"]
+            for name in ("traction_force", "slip_ratio", "normal_force", "run", "samples")
+        },
+        attrs=attributes,
+    )
+    data.to_netcdf(str(path), engine="h5netcdf")

@@ -1,0 +1,39 @@
+# SPDX-License-Identifier: MIT
+"""`zebro-lab COMMAND`: every command of the lab."""
+
+from typing import Annotated
+
+import typer
+
+from zebro_lab.cli.calibrate import EPILOG, calibrate
+from zebro_lab.cli.errors import run
+from zebro_lab.cli.init import init
+
+app = typer.Typer(add_completion=False, rich_markup_mode=None, no_args_is_help=True)
+app.command(epilog=EPILOG)(calibrate)
+app.command()(init)
+
+
+def _print_version(wanted: bool) -> None:
+    if wanted:
+        from importlib.metadata import version
+
+        typer.echo(f"zebro-lab {version('zebro-lab')}")
+        raise typer.Exit
+
+
+@app.callback()
+def zebro_lab(
+    version: Annotated[
+        bool,
+        typer.Option(
+            "--version", callback=_print_version, is_eager=True, help="Print the version."
+        ),
+    ] = False,
+) -> None:
+    """Measure how a six-legged robot's feet slip and predict where it will walk."""
+
+
+def main() -> None:
+    """Run `zebro-lab`."""
+    run(app)

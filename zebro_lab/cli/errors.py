@@ -1,0 +1,34 @@
+# SPDX-License-Identifier: MIT
+"""How a command ends: one line for a known error, a traceback for an unknown one."""
+
+import sys
+from collections.abc import Callable
+
+import typer
+
+
+def run(app: typer.Typer) -> None:
+    """Run a Typer app; known errors become one line on stderr and exit code 1."""
+    _guard(lambda: app())
+
+
+def _guard(command: Callable[[], object]) -> None:
+    try:
+        command()
+    except Exception as error:
+        if not _is_known(error):
+            raise
+        sys.stderr.write(f"error: {error}\n")
+        raise SystemExit(1) from None
+
+
+def _is_known(error: Exception) -> bool:
+    # The roots are looked up among what is loaded: importing them here would slow --help down.
+    roots = [
+        getattr(sys.modules.get(module), name, None)
+        for module, name in (
+            ("zebro_lab.errors", "ZebroLabError"),
+            ("model.errors", "ModelError"),
+        )
+    ]
+    return any(root is not None and isinstance(error, root) for root in roots)

@@ -1,0 +1,69 @@
+# SPDX-License-Identifier: MIT
+"""A progress bar with the time left on a terminal, silence in a pipe, and polite stopping."""
+
+import signal
+from collections.abc import Iterator
+from contextlib import contextmanager
+from types import FrameType
+
+from rich.console import Console
+from rich.progress import BarColumn, Progress, TaskID, TextColumn, TimeElapsedColumn
+from rich.progress import TimeRemainingColumn as TimeLeftColumn
+
+
+class ProgressBar:
+    """A watcher that draws on a terminal and notes Ctrl-C and SIGTERM as a wish to stop."""
+
+    def __init__(self, progress: Progress) -> None:
+        self._progress = progress
+        self._task: TaskID | None = None
+        self._what = ""
+        self._stop = False
+
+    def step(self, what: str, fraction: float | None) -> None:
+        """Show what is going on, and how far it is (None: unknown)."""
+        if what != self._what:
+            if self._task is not None:
+                self._progress.update(self._task, total=1.0, completed=1.0)
+            self._task = self._progress.add_task(what, total=None if fraction is None else 1.0)
+            self._what = what
+        if fraction is not None and self._task is not None:
+            self._progress.update(self._task, completed=fraction)
+
+    def stop_requested(self) -> bool:
+        """Tell whether somebody asked to stop."""
+        return self._stop
+
+    def request_stop(self, _signal: int, _frame: FrameType | None) -> None:
+        """Note the wish to stop; a second one is obeyed at once."""
+        if self._stop:
+            raise KeyboardInterrupt
+        self._stop = True
+
+
+@contextmanager
+def progress_bar(console: Console) -> Iterator[ProgressBar]:
+    """Show progress on a console while the body runs.
+
+    Args:
+        console: Where to draw; nothing is drawn unless it is a terminal.
+
+    Yields:
+        The watcher to hand to a stage.
+    """
+    columns = (
+        TextColumn("{task.description}"),
+        BarColumn(),
+        TextColumn("{task.percentage:>3.0f} %"),
+        TimeElapsedColumn(),
+        TextColumn("left"),
+        TimeLeftColumn(),
+    )
+    with Progress(*columns, console=console, disable=not console.is_terminal) as progress:
+        bar = ProgressBar(progress)
+        earlier = {s: signal.signal(s, bar.request_stop) for s in (signal.SIGINT, signal.SIGTERM)}
+        try:
+            yield bar
+        finally:
+            for number, handler in earlier.items():
+                signal.signal(number, handler)

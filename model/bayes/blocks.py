@@ -117,7 +117,8 @@ def slip_noise_variance(samples: SlipSamples) -> Array:
     if not enough.any():
         return np.zeros(samples.n_runs)
     nuggets = np.array([_nugget(samples.slip[part]) for part in samples.slices()])
-    typical = float(np.median(nuggets[enough]))
+    # Twice the squared mean over the variance are a chi-square's degrees of freedom: 2n/7.
+    typical = _median_variance(nuggets[enough], 2 * lengths[enough] / 7)
     own = _shrink(nuggets, 7 * typical**2 / lengths, typical)
     return np.where(enough, np.maximum(own, 0.0), typical)
 
@@ -128,6 +129,13 @@ def _nugget(slip: Array) -> float:
     gamma_1 = 0.5 * np.var(slip[1:] - slip[:-1])
     gamma_2 = 0.5 * np.var(slip[2:] - slip[:-2])
     return max(0.0, float(2 * gamma_1 - gamma_2))
+
+
+def _median_variance(estimates: Array, freedom: Array) -> float:
+    """Return the median of variance estimates, each put right for the skew of its chi-square."""
+    if len(estimates) == 0:
+        return 0.0
+    return float(np.median(estimates * freedom / chi2.median(freedom)))
 
 
 def _shrink(estimates: Array, sampling_variance: Array, typical: float) -> Array:
@@ -216,9 +224,10 @@ def _calibrate_slip(
     n_blocks, n_samples = np.bincount(run), np.bincount(run, count)
     middle = np.bincount(run, slip * count) / n_samples
     error = noise * n_blocks / n_samples
-    total = np.bincount(run, (slip - middle[run]) ** 2) / np.maximum(n_blocks - 1, 1)
-    typical = float(np.median(total))
-    spread = _shrink(total, 2 * typical**2 / np.maximum(n_blocks - 1, 1), typical)
+    spare = np.maximum(n_blocks - 1, 1)
+    total = np.bincount(run, (slip - middle[run]) ** 2) / spare
+    typical = _median_variance(total[n_blocks > 1], spare[n_blocks > 1])
+    spread = _shrink(total, 2 * typical**2 / spare, typical)
     true_spread = np.maximum(np.where(n_blocks > 1, spread, 0.0) - error, 0.0)
     weight = true_spread / np.maximum(true_spread + error, 1e-300)
     calibrated = middle[run] + weight[run] * (slip - middle[run])
@@ -226,22 +235,24 @@ def _calibrate_slip(
 
 
 def _wander(spread: Array, count: NDArray[np.intp], run: NDArray[np.intp], noise: Array) -> Array:
-    """Return the variance of the true slip around its mean in each block.
+    r"""Return the variance of the true slip around its mean in each block.
 
-    A block whose spread noise would not give by chance keeps its own; the others share their run's
-    mean, because clipping each at zero would invent wander where there is only noise. Both tails
-    count: to keep only the large ones would invent it, too.
+    Each block's own estimate, the spread s² less the noise :math:`\sigma^2`, is drawn towards the
+    mean :math:`\bar w` of its run, by as much as its sampling variance
+    :math:`(2\sigma^4 + 4\bar w\sigma^2)/(n-1)` outweighs the variance :math:`\bar w^2` that
+    slow wander has between blocks. Clipping each estimate at zero, or keeping only the large ones,
+    would invent wander where there is only noise. A block that stands out of all this had a jump.
     """
     if not (count > 1).any():
         return np.zeros_like(spread)
     spare = np.maximum(count - 1, 1)
     excess = np.where(count > 1, spread - noise[run], 0.0)
-    error = noise[run] * np.sqrt(2 / spare)
     of_run = np.bincount(run, excess) / np.bincount(run)
-    error_of_run = np.bincount(run, error**2) / np.bincount(run) ** 2
+    error_of_run = np.bincount(run, 2 * noise[run] ** 2 / spare) / np.bincount(run) ** 2
     shared = np.maximum(_shrink(of_run, error_of_run, float(np.median(of_run))), 0.0)[run]
-    # Normal quantiles will not do: the spread of few samples is far from normal.
-    by_noise = (spread - shared) * spare / np.maximum(noise[run], 1e-300)
-    own = (by_noise < chi2.ppf(BY_CHANCE, spare)) | (by_noise > chi2.isf(BY_CHANCE, spare))
+    error = 2 * noise[run] * (noise[run] + 2 * shared) / spare
+    own = shared**2 / np.maximum(shared**2 + error, 1e-300)
+    jump = spread * spare > (noise[run] + shared) * chi2.isf(BY_CHANCE, spare)
+    wander = np.where(jump, excess, shared + own * (excess - shared))
     # Around the block's own mean a variance is smaller by 1/n than around the true one.
-    return np.where(own, np.maximum(excess, 0.0), shared) * (1 - 1 / count)
+    return np.maximum(wander, 0.0) * (1 - 1 / count)

@@ -6,6 +6,7 @@ from typing import Any
 
 import arviz as az
 import numpy as np
+import xarray as xr
 
 from model.bayes.sampler import Chains, autocorrelation_times
 from model.slip.law import Array
@@ -97,8 +98,8 @@ def assess(chains: Chains) -> Convergence:
     times = autocorrelation_times(chains.z)
     burn_in = int(min(np.ceil(BURN_IN * times.max()), chains.n_steps // 2))
     kept = chains.z[:, burn_in:]
-    walkers = az.convert_to_dataset(_as_chains(kept))
-    ensembles = az.convert_to_dataset(kept.reshape(len(kept), -1, kept.shape[-1]))
+    walkers = _dataset(_as_chains(kept))
+    ensembles = _dataset(kept.reshape(len(kept), -1, kept.shape[-1]))
     return Convergence(
         burn_in=burn_in,
         length=kept.shape[1],
@@ -108,6 +109,10 @@ def assess(chains: Chains) -> Convergence:
         ess_tail=_array(az.ess(walkers, method="tail")),
         mcse=1 / np.sqrt(_array(az.ess(walkers, method="mean"))),
     )
+
+
+def _dataset(chains: Array) -> xr.Dataset:
+    return xr.Dataset({"x": (("chain", "draw", "coordinate"), chains)})
 
 
 def _array(dataset: Any) -> Array:

@@ -60,7 +60,7 @@ def prepare_fit(
     *,
     load_cell: LoadCell,
     rng: np.random.Generator,
-    block_length: int | None = None,
+    block_choice: BlockChoice | None = None,
     threads: int = 2,
 ) -> PreparedFit:
     """Average the samples, put the posterior together, find its mode and cross-validate it.
@@ -70,7 +70,7 @@ def prepare_fit(
         law: The slip law.
         load_cell: What is known of the load cell.
         rng: Source of randomness of the starting points.
-        block_length: Samples in a block; chosen from the residuals when None.
+        block_choice: The block length; chosen from the residuals when None.
         threads: Folds of the cross-validation fitted at once.
 
     Raises:
@@ -80,10 +80,7 @@ def prepare_fit(
     _require_enough(samples, law)
     everything = block_means(samples, 1 if len(samples) < 1000 else len(samples) // 1000)
     priors = default_priors(law, everything, load_cell)
-    if block_length is None:
-        choice = choose_block_length(samples, law, priors=priors, rng=rng)
-    else:
-        choice = BlockChoice(block_length, float("nan"), "the length asked for")
+    choice = block_choice or choose_block_length(samples, law, priors=priors, rng=rng)
     blocks = block_means(samples, choice.length)
     fixed = _not_identified(blocks)
     posterior = SlipPosterior(blocks, law, priors, fixed)

@@ -94,12 +94,13 @@ class BlockChoice:
 
     Attributes:
         length: Samples in a block.
-        correlation: Integrated autocorrelation time of the residuals [samples].
+        correlation: Integrated autocorrelation time of the residuals; None where the length was
+            not chosen from it [samples].
         reason: One line for the person.
     """
 
     length: int
-    correlation: float
+    correlation: float | None
     reason: str
 
 

@@ -39,8 +39,8 @@ def _print_data(console: Console, calibration: Calibration, data: RigData) -> No
         f"{kind}, source '{data.source}': {len(data.samples)} samples in {blocks.n_runs} runs",
         *data.notes,
         f"slip definition: {blocks.definition}",
-        f"{len(blocks)} block means of about {choice.length} samples, set by {choice.reason}; "
-        f"residuals' correlation time {choice.correlation:.0f} samples",
+        f"{len(blocks)} block means of about {choice.length} samples, set by {choice.reason}"
+        + ("" if choice.correlation is None else f" (correlated over {choice.correlation:.0f})"),
     ]
     if calibration.comparison is not None:
         lines += _comparison_lines(calibration)
@@ -54,7 +54,7 @@ def _comparison_lines(calibration: Calibration) -> list[str]:
         return []
     chosen = comparison.names[comparison.chosen]
     others = [
-        f"'{name}' predicts left-out runs by {-difference:+.0f} ± {error:.0f} log units less"
+        f"'{name}' predicts left-out runs worse by {-difference:.0f} ± {error:.0f} log units"
         for i, (name, difference, error) in enumerate(
             zip(comparison.names, comparison.difference, comparison.standard_error, strict=True)
         )

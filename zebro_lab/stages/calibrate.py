@@ -22,6 +22,7 @@ from model.bayes.estimate import (
 from model.bayes.fit import Comparison, PreparedFit, compare, prepare_fit, scaled_load_cell
 from model.bayes.laplace import importance_draws
 from model.bayes.posterior import LoadCell
+from model.bayes.preliminary import BlockChoice
 from model.bayes.residuals import analyse_residuals, load_levels
 from model.bayes.sampler import Chains, advance, start_chains
 from model.bayes.samples import SlipSamples
@@ -209,13 +210,14 @@ def _choose_law(
 ) -> tuple[PreparedFit, Comparison | None]:
     laws = _candidates(request, samples)
     fits: list[PreparedFit] = []
-    length = request.block_length
+    asked = request.block_length
+    choice = None if asked is None else BlockChoice(asked, None, "the length asked for")
     for name, law in laws.items():
         watcher.step(f"preparing: {name}", None)
         fit = prepare_fit(
-            samples, law, load_cell=cell, rng=rng, block_length=length, threads=request.threads
+            samples, law, load_cell=cell, rng=rng, block_choice=choice, threads=request.threads
         )
-        length = fit.block_choice.length  # laws are compared on the same blocks
+        choice = fit.block_choice  # laws are compared on the same blocks
         fits.append(fit)
     if len(fits) == 1:
         return fits[0], None

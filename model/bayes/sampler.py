@@ -16,7 +16,7 @@ from emcee.autocorr import integrated_time
 from emcee.moves import DEMove
 
 from model.bayes.laplace import Laplace
-from model.errors import FitError
+from model.errors import DomainError, FitError
 from model.slip.law import Array
 
 MOVES = [(DEMove(), 1.0)]
@@ -121,7 +121,12 @@ def advance(
 
     Returns:
         The longer chains.
+
+    Raises:
+        DomainError: No step is asked for.
     """
+    if steps < 1:
+        raise DomainError(f"steps is {steps}; expected 1 or more")
 
     def walk(ensemble: int) -> EnsembleSampler:
         return _walk(log_density, chains, ensemble=ensemble, steps=steps)
@@ -163,7 +168,7 @@ def _walk(
 
 def _kept(stored: Array | None) -> Array:
     if stored is None:
-        raise FitError("the sampler kept no step; ask it for one step or more")
+        raise FitError("the sampler kept no step although it was asked to store them")
     return stored
 
 

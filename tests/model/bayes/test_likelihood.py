@@ -1,0 +1,318 @@
+# SPDX-License-Identifier: MIT
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from scipy.linalg import block_diag, toeplitz
+from scipy.stats import multivariate_normal
+
+from model.bayes.blocks import SlipBlocks
+from model.bayes.likelihood import (
+    NUISANCE,
+    log_likelihood,
+    predict_blocks,
+    run_log_likelihood,
+)
+from model.slip import CoulombStribeck, MagicFormula, SlipDefinition
+
+LAW = MagicFormula(curvature=0.0)  # proportional to load exactly, as the Jacobian assumes
+LAW_VALUES = (20.0, 1.5, 0.38)
+SLIP_SCALE = LAW_VALUES[2] / LAW_VALUES[0]  # where the initial slope would reach the peak
+SIZES = (1, 4, 9, 1, 6)
+
+
+def parameters(**nuisance):
+    """Return one parameter vector, shape (1, k + 8); noise 0.1 N, the rest 0 unless named."""
+    known = {"noise_floor": 0.1, **nuisance}
+    return np.array([[*LAW_VALUES, *(known.get(p.name, 0.0) for p in NUISANCE)]])
+
+
+def blocks(sizes=SIZES, seed=0, **replaced):
+    rng = np.random.default_rng(seed)
+    n = sum(sizes)
+    exact = SlipBlocks(
+        slip=rng.uniform(-0.1, 0.5, n),
+        normal_force=rng.uniform(2.0, 10.0, n),
+        traction_force=rng.uniform(-1.0, 4.0, n),
+        count=np.full(n, 10),
+        run=np.repeat(np.arange(len(sizes)), sizes),
+        run_names=tuple(f"run {index}" for index in range(len(sizes))),
+        definition=SlipDefinition.MATERIAL,
+        slip_wander=np.zeros(n),
+        slip_error=np.zeros(n),
+        slip_load_covariance=np.zeros(n),
+        run_slip_error=np.zeros(len(sizes)),
+    )
+    return replace(exact, **replaced)
+
+
+def single_blocks(slip, load, force):
+    """Return runs of one block each: as many one-dimensional densities."""
+    n = np.broadcast(slip, load, force).size
+    full = {
+        name: np.broadcast_to(np.asarray(column, dtype=float), n)
+        for name, column in (("slip", slip), ("normal_force", load), ("traction_force", force))
+    }
+    return blocks((1,) * n, **full)
+
+
+def blurred_blocks(sizes=SIZES, seed=0):
+    """Return blocks with every kind of slip error, some of them zero."""
+    rng = np.random.default_rng(seed + 1)
+    n = sum(sizes)
+    own = rng.uniform(0.0, 1e-4, n) * (rng.random(n) < 0.7)
+    shared = rng.uniform(0.0, 1e-4, len(sizes)) * (rng.random(len(sizes)) < 0.7)
+    wander = rng.uniform(0.0, 1e-4, n)
+    return blocks(sizes, seed, slip_error=own, run_slip_error=shared, slip_wander=wander)
+
+
+def dense_covariances(data, predicted, *, rho, tau):
+    """Build every run's covariance from the data model, term by term."""
+    covariances = []
+    for run in range(data.n_runs):
+        rows = data.run == run
+        s, g = predicted.noise[0, rows], predicted.slope[0, rows]
+        powers = np.power(rho, np.arange(len(s)), dtype=float)  # 0**0 is 1: white noise
+        correlated = np.diag(s) @ toeplitz(powers) @ np.diag(s)
+        offset = tau**2 * np.ones((len(s), len(s)))
+        shared_error = data.run_slip_error[run] * np.outer(g, g)
+        own_error = np.diag(g**2 * data.slip_error[rows])
+        covariances.append(correlated + offset + shared_error + own_error)
+    return covariances
+
+
+def dense_log_densities(data, values):
+    predicted = predict_blocks(data, LAW, values)
+    residual = data.traction_force - predicted.force[0]
+    covariances = dense_covariances(data, predicted, rho=values[0, -2], tau=values[0, -1])
+    return [
+        multivariate_normal(cov=covariance).logpdf(residual[data.run == run])
+        + predicted.log_jacobian[0, data.run == run].sum()
+        for run, covariance in enumerate(covariances)
+    ]
+
+
+# --- the filter
+
+
+@given(
+    seed=st.integers(0, 1000),
+    rho=st.one_of(st.just(0.0), st.floats(-0.95, 0.98)),
+    tau=st.one_of(st.just(0.0), st.floats(0.0, 2.0)),
+    noise_floor=st.floats(0.02, 1.0),
+    noise_slope=st.floats(0.0, 0.3),
+    gain=st.floats(-0.1, 0.1),
+    bias=st.floats(-0.5, 0.5),
+    crosstalk=st.floats(-0.1, 0.1),
+)
+def test_the_filter_is_the_dense_gaussian_of_the_definition(seed, rho, tau, gain, **other):
+    values = parameters(
+        noise_correlation=rho,
+        offset_spread=tau,
+        gain_traction=gain,
+        gain_normal=-gain,
+        noise_floor=other["noise_floor"],
+        noise_slope=other["noise_slope"],
+        bias_normal=other["bias"],
+        crosstalk=other["crosstalk"],
+    )
+    data = blurred_blocks(seed=seed)
+    found = run_log_likelihood(data, LAW, values)[0]
+    np.testing.assert_allclose(found, dense_log_densities(data, values), rtol=1e-9, atol=1e-7)
+
+
+def test_slip_errors_enter_the_filter_and_not_only_the_mean():
+    values = parameters(offset_spread=0.1, noise_correlation=0.5)
+    sharp = blurred_blocks()
+    blurred = replace(
+        sharp, slip_error=sharp.slip_error + 1e-3, run_slip_error=sharp.run_slip_error + 1e-3
+    )
+    for data in (sharp, blurred):
+        expected = dense_log_densities(data, values)
+        np.testing.assert_allclose(run_log_likelihood(data, LAW, values)[0], expected, rtol=1e-9)
+    difference = log_likelihood(sharp, LAW, values) - log_likelihood(blurred, LAW, values)
+    assert abs(difference[0]) > 1.0
+
+
+def test_many_parameter_vectors_at_once_are_each_on_its_own():
+    rng = np.random.default_rng(3)
+    values = parameters(noise_correlation=0.4, offset_spread=0.2) * rng.uniform(0.9, 1.1, (7, 1))
+    data = blurred_blocks()
+    one_by_one = [run_log_likelihood(data, LAW, row[None])[0] for row in values]
+    np.testing.assert_array_equal(run_log_likelihood(data, LAW, values), one_by_one)
+
+
+# --- runs
+
+
+def test_runs_are_independent_and_their_log_densities_add():
+    values = parameters(noise_correlation=0.7, offset_spread=0.3)
+    data = blurred_blocks()
+    whole = run_log_likelihood(data, LAW, values)[0]
+    for run in range(data.n_runs):
+        alone = data.select_runs(np.arange(data.n_runs) == run)
+        np.testing.assert_allclose(log_likelihood(alone, LAW, values), whole[run], rtol=1e-12)
+    np.testing.assert_allclose(log_likelihood(data, LAW, values), whole.sum(), rtol=1e-12)
+
+
+@given(order=st.permutations(range(len(SIZES))))
+def test_the_order_of_the_runs_changes_nothing(order):
+    values = parameters(noise_correlation=0.7, offset_spread=0.3, crosstalk=0.02)
+    data = blurred_blocks()
+    rows = np.concatenate([np.flatnonzero(data.run == run) for run in order])
+    columns = ("slip", "normal_force", "traction_force", "count", "slip_wander", "slip_error")
+    shuffled = replace(
+        data,
+        **{name: getattr(data, name)[rows] for name in columns},
+        run=np.repeat(np.arange(len(SIZES)), [SIZES[run] for run in order]),
+        run_slip_error=data.run_slip_error[list(order)],
+    )
+    before = run_log_likelihood(data, LAW, values)[0]
+    np.testing.assert_allclose(run_log_likelihood(shuffled, LAW, values)[0], before[list(order)])
+
+
+def test_a_likelihood_of_all_runs_is_one_gaussian_of_blocks_on_a_diagonal():
+    values = parameters(noise_correlation=-0.3, offset_spread=0.3)
+    data = blurred_blocks()
+    predicted = predict_blocks(data, LAW, values)
+    covariance = block_diag(*dense_covariances(data, predicted, rho=-0.3, tau=0.3))
+    residual = data.traction_force - predicted.force[0]
+    expected = multivariate_normal(cov=covariance).logpdf(residual)
+    np.testing.assert_allclose(log_likelihood(data, LAW, values)[0], expected, rtol=1e-10)
+
+
+# --- crosstalk
+
+
+def density_integral(values, *, jacobian):
+    """Integrate one block's density over the traction it might have measured."""
+    force = np.linspace(-2.0, 6.0, 8001)
+    data = single_blocks(0.05, 5.0, force)
+    log_density = run_log_likelihood(data, LAW, values)[0]
+    if not jacobian:
+        log_density = log_density - predict_blocks(data, LAW, values).log_jacobian[0]
+    return np.trapezoid(np.exp(log_density), force)
+
+
+@pytest.mark.parametrize("crosstalk", [-0.3, 0.0, 0.3])
+@pytest.mark.parametrize("noise_slope", [0.0, 0.1])
+def test_the_density_of_traction_integrates_to_one_under_crosstalk(crosstalk, noise_slope):
+    values = parameters(crosstalk=crosstalk, noise_slope=noise_slope, gain_traction=0.1)
+    assert density_integral(values, jacobian=True) == pytest.approx(1.0, abs=1e-3)
+
+
+def test_without_its_jacobian_crosstalk_would_gain_probability_from_nothing():
+    values = parameters(crosstalk=0.3)
+    assert density_integral(values, jacobian=False) > 1.1
+    assert density_integral(parameters(crosstalk=-0.3), jacobian=False) < 0.95
+
+
+def test_without_crosstalk_there_is_no_jacobian():
+    predicted = predict_blocks(blocks(), LAW, parameters(gain_traction=0.2))
+    np.testing.assert_array_equal(predicted.log_jacobian, 0.0)
+
+
+# --- the law averaged over a block
+
+
+def numeric_mean(slip, sd, load):
+    """Average the law over Gaussian slip by a fine Riemann sum."""
+    deviation = np.linspace(-8.0, 8.0, 4001)
+    weight = np.exp(-0.5 * deviation**2)
+    weight /= weight.sum()
+    return LAW.force(slip[:, None] + sd * deviation, load, LAW_VALUES) @ weight
+
+
+def averaging_error(spread):
+    """Return the largest error of a block's mean force along the curve, over the peak force."""
+    slip = np.linspace(-0.1, 0.3, 81)
+    data = single_blocks(slip, 5.0, 1.0)
+    data = replace(data, slip_wander=np.full(len(data), (spread * SLIP_SCALE) ** 2))
+    found = predict_blocks(data, LAW, parameters()).force[0]
+    peak = LAW_VALUES[2] * 5.0
+    return np.abs(found - numeric_mean(slip, spread * SLIP_SCALE, 5.0)).max() / peak
+
+
+@pytest.mark.parametrize(("spread", "tolerance"), [(0.05, 1e-6), (0.3, 1e-3), (1.0, 0.04)])
+def test_a_blocks_mean_force_is_the_law_averaged_over_its_wander(spread, tolerance):
+    assert averaging_error(spread) < tolerance
+
+
+def test_the_averaging_is_exact_to_fifth_order_in_the_spread():
+    assert 45 < averaging_error(0.2) / averaging_error(0.1) < 80  # 2**6 in the limit
+
+
+def test_the_law_at_the_mean_slip_would_be_a_hundred_times_worse():
+    slip = np.linspace(-0.1, 0.3, 81)
+    blunt = LAW.force(slip, 5.0, LAW_VALUES) - numeric_mean(slip, 0.3 * SLIP_SCALE, 5.0)
+    assert np.abs(blunt).max() / (LAW_VALUES[2] * 5.0) > 100 * averaging_error(0.3) / 5
+
+
+def test_wander_and_both_slip_errors_blunt_the_curve_alike():
+    kinds = ({"slip_wander": 3e-5}, {"slip_error": 3e-5}, {"run_slip_error": 3e-5})
+    data = blocks()
+    forces = [
+        predict_blocks(
+            replace(data, **{name: np.full_like(getattr(data, name), size)}), LAW, parameters()
+        ).force
+        for kind in kinds
+        for name, size in kind.items()
+    ]
+    np.testing.assert_allclose(forces[1], forces[0], rtol=1e-12)
+    np.testing.assert_allclose(forces[2], forces[0], rtol=1e-12)
+
+
+@pytest.mark.parametrize("law", [LAW, MagicFormula(), CoulombStribeck(stribeck=False)])
+def test_without_wander_a_block_is_the_law_itself_and_its_slope(law):
+    known = {"slip_stiffness": 20.0, "shape": 1.5, "friction": 0.38, "peak_slip_per_load": 0.0066}
+    law_values = [known[p.name] for p in law.parameters]
+    values = np.array([[*law_values, *parameters()[0, len(LAW_VALUES) :]]])
+    data = blocks()
+    predicted = predict_blocks(data, law, values)
+    arguments = (data.slip, data.normal_force, law_values)
+    np.testing.assert_allclose(predicted.force[0], law.force(*arguments), rtol=1e-6)
+    slope = law.slip_derivative(*arguments)
+    np.testing.assert_allclose(predicted.slope[0], slope, rtol=1e-6, atol=1e-6)
+
+
+def test_slip_and_load_that_vary_together_add_their_covariance():
+    rng = np.random.default_rng(8)
+    slip, load = rng.multivariate_normal([1e-4, 5.0], [[1e-10, 5e-6], [5e-6, 1.0]], 400).T
+    data = single_blocks(slip.mean(), load.mean(), 1.0)
+    covariance = np.mean((slip - slip.mean()) * (load - load.mean()))
+    data = replace(data, slip_load_covariance=np.array([covariance]))
+    found = predict_blocks(data, LAW, parameters()).force[0, 0]
+    in_line = LAW.force(slip, load, LAW_VALUES).mean()  # at so little slip the law is a line
+    assert found == pytest.approx(in_line, rel=1e-5)
+    assert found != pytest.approx(LAW.force(slip.mean(), load.mean(), LAW_VALUES), rel=1e-3)
+
+
+# --- the load cell
+
+
+def test_gains_bias_and_crosstalk_act_where_the_data_model_puts_them():
+    values = parameters(gain_traction=0.1, gain_normal=0.2, bias_normal=0.3, crosstalk=0.05)
+    data = blocks()
+    load = 1.2 * data.normal_force - 0.3 + 0.05 * data.traction_force
+    expected = 1.1 * LAW.force(data.slip, load, LAW_VALUES)
+    np.testing.assert_allclose(predict_blocks(data, LAW, values).force[0], expected, rtol=1e-6)
+
+
+def test_a_gain_common_to_both_channels_cancels_in_the_friction():
+    gain = 0.02
+    data = blocks()
+    both = predict_blocks(data, LAW, parameters(gain_traction=gain, gain_normal=-gain / (1 + gain)))
+    neither = predict_blocks(data, LAW, parameters())
+    np.testing.assert_allclose(both.force, neither.force, rtol=1e-12)
+
+
+def test_a_bias_that_pushes_the_load_through_zero_leaves_a_finite_density():
+    values = parameters(bias_normal=50.0, noise_slope=0.1)
+    assert np.all(np.isfinite(run_log_likelihood(blocks(), LAW, values)))
+
+
+def test_noise_is_the_floor_plus_the_slope_times_the_model_force():
+    predicted = predict_blocks(blocks(), LAW, parameters(noise_slope=0.2))
+    np.testing.assert_allclose(predicted.noise, 0.1 + 0.2 * np.abs(predicted.force))

@@ -89,13 +89,19 @@ def contraction(posterior: SlipPosterior, draws: Draws) -> dict[str, float]:
     return {p.name: float(1 - v) for p, v in zip(posterior.free, variances, strict=True)}
 
 
-def curve_estimates(law: SlipLaw, values: Array, load: float) -> list[Estimate]:
+def curve_estimates(
+    law: SlipLaw, values: Array, *, load: float, slip_limit: float
+) -> list[Estimate]:
     """Summarise the curve at one load: plain B, C, D, E where there are such, peak and slope.
+
+    The largest force is taken within the tested slip, so that it stays known where the data end
+    before the peak and D does not.
 
     Args:
         law: The slip law, of k parameters.
         values: Posterior draws of its parameters, shape (w, k).
         load: Normal force [N].
+        slip_limit: Largest slip ratio that was tested, in size [-].
     """
     columns = values.T
     quantities: list[tuple[Parameter, Array]] = []
@@ -103,9 +109,9 @@ def curve_estimates(law: SlipLaw, values: Array, load: float) -> list[Estimate]:
         coefficients = law.coefficients(load, columns)
         quantities += zip(_PLAIN, coefficients, strict=True)
     peak = law.peak_slip(load, columns)
-    top = law.force(np.where(np.isfinite(peak), peak, 1e6), load, columns)
+    largest = law.force(np.minimum(peak, slip_limit), load, columns)
     slope = law.slip_derivative(0.0, load, columns)
-    quantities += zip(_FEATURES, (peak, top, slope), strict=True)
+    quantities += zip(_FEATURES, (peak, largest, slope), strict=True)
     n = len(values)
     return [estimate(p, np.broadcast_to(np.asarray(x), n)) for p, x in quantities]
 
@@ -150,6 +156,13 @@ _PLAIN = (
 )
 _FEATURES = (
     Parameter("peak_slip", "x_m", "dimensionless", 0.0, np.inf, "slip ratio of the peak"),
-    Parameter("peak_force", "F_max", "newton", 0.0, np.inf, "largest traction force"),
+    Parameter(
+        "largest_force",
+        "F_max",
+        "newton",
+        0.0,
+        np.inf,
+        "largest traction force within the tested slip",
+    ),
     Parameter("initial_slope", "BCD", "newton", 0.0, np.inf, "slope at zero slip"),
 )

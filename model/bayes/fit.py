@@ -25,7 +25,7 @@ class PreparedFit:
     Attributes:
         posterior: Blocks, law and priors.
         laplace: Laplace approximation at the mode.
-        cross_validation: Prediction of left-out runs; None for a single run.
+        cross_validation: Prediction of left-out runs; None for a single run or where not asked for.
         block_choice: The block length and why.
         load_cell: What was taken as known of the load cell.
     """
@@ -61,6 +61,7 @@ def prepare_fit(
     load_cell: LoadCell,
     rng: np.random.Generator,
     block_choice: BlockChoice | None = None,
+    validate: bool = True,
     threads: int = 2,
 ) -> PreparedFit:
     """Average the samples, put the posterior together, find its mode and cross-validate it.
@@ -71,6 +72,7 @@ def prepare_fit(
         load_cell: What is known of the load cell.
         rng: Source of randomness of the starting points.
         block_choice: The block length; chosen from the residuals when None.
+        validate: Whether to cross-validate; studies over many data sets do without.
         threads: Folds of the cross-validation fitted at once.
 
     Raises:
@@ -87,7 +89,9 @@ def prepare_fit(
     starts = _starting_points(posterior, rng)
     laplace = find_mode(posterior.log_density, starts)
     validation = (
-        cross_validate(posterior, laplace.mode, threads=threads) if blocks.n_runs > 1 else None
+        cross_validate(posterior, laplace.mode, threads=threads)
+        if validate and blocks.n_runs > 1
+        else None
     )
     return PreparedFit(posterior, laplace, validation, choice, load_cell)
 

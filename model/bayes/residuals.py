@@ -148,6 +148,15 @@ def nearest_level(load: Array, levels: Array) -> Array:
     return np.argmin(np.abs(np.log(load[:, None] / levels)), axis=1)
 
 
+def largest_slips(blocks: SlipBlocks) -> Array:
+    """Return the largest slip ratio tested at each of `load_levels`, in size, shape (n_levels,)."""
+    levels = load_levels(blocks)
+    nearest = nearest_level(np.maximum(blocks.normal_force, 1e-9), levels)
+    return np.array(
+        [np.abs(blocks.slip[nearest == i]).max(initial=0.0) for i in range(len(levels))]
+    )
+
+
 def _structure(blocks: SlipBlocks, residual: Array) -> tuple[float, float]:
     """Split the residual into a part that repeats along the curve and the scatter between runs.
 

@@ -19,7 +19,7 @@ from model.bayes.laplace import Laplace
 from model.errors import DomainError, FitError
 from model.slip.law import Array
 
-MOVES = [(DEMove(), 1.0)]
+MOVES = ((DEMove, 1.0),)
 """A quarter of the stretch move's autocorrelation time in 12 dimensions. No snooker move: emcee's,
 up to 3.1.6, misses half the exponent of its acceptance ratio and narrows every spread by 7 %."""
 
@@ -152,7 +152,8 @@ def _walk(
     log_density: Callable[[Array], Array], chains: Chains, *, ensemble: int, steps: int
 ) -> EnsembleSampler:
     _, _, walkers, d = chains.z.shape
-    sampler = EnsembleSampler(walkers, d, log_density, moves=MOVES, vectorize=True)
+    moves = [(move(), share) for move, share in MOVES]  # a move has state: one for each ensemble
+    sampler = EnsembleSampler(walkers, d, log_density, moves=moves, vectorize=True)
     state = State(
         chains.z[ensemble, -1],
         log_prob=chains.log_density[ensemble, -1],

@@ -9,7 +9,7 @@ import numpy as np
 from model.bayes.blocks import SlipBlocks
 from model.bayes.convergence import Convergence
 from model.bayes.likelihood import predict_blocks
-from model.bayes.residuals import Residuals, load_levels, nearest_level
+from model.bayes.residuals import Residuals, largest_slips, load_levels
 from model.slip.law import Array, SlipLaw
 
 MAX_LAG_ONE = 0.05
@@ -65,13 +65,12 @@ class Verdict:
 
     def headline(self) -> str:
         """Say it in one line."""
+        weak = f"; weakly identified: {', '.join(self.weak)}" if self.weak else ""
         if not self.converged:
             return "NOT CONVERGED: do not use these numbers"
         if not self.trustworthy:
-            return "converged, but NOT TRUSTWORTHY: the model does not describe these data"
-        if self.weak:
-            return f"converged and trustworthy; weakly identified: {', '.join(self.weak)}"
-        return "converged and trustworthy"
+            return "converged, but NOT TRUSTWORTHY: the model does not describe these data" + weak
+        return "converged and trustworthy" + weak
 
     def next_steps(self) -> tuple[str, ...]:
         """Say what to do, most urgent first."""
@@ -175,7 +174,7 @@ def _weak(
     names = [parameter.name for parameter in law.parameters]
     weak = {
         name: f"{name}: the data narrow its prior by {max(contraction[name], 0):.0%} only; read "
-        "peak force and initial slope instead"
+        "F_max and BCD, peak force and initial slope, instead"
         for name in names
         if contraction.get(name, 1.0) < MIN_CONTRACTION
     }
@@ -183,7 +182,8 @@ def _weak(
     if "shape" in names and reach < MIN_REACH:
         reason = (
             f"shape C and peak factor D cannot be told apart: slip ends at {reach:.1f} times the "
-            f"peak's slip, {MIN_REACH:g} are needed; read peak force and initial slope instead"
+            f"peak's slip, {MIN_REACH:g} are needed; read F_max and BCD, peak force and initial "
+            "slope, instead"
         )
         weak |= {"shape": reason, "friction": reason}
     return weak
@@ -197,9 +197,6 @@ def slip_reach(blocks: SlipBlocks, law: SlipLaw, values: Array) -> float:
         law: The slip law, of k parameters.
         values: Posterior draws, shape (w, k + 8).
     """
-    levels = load_levels(blocks)
-    nearest = nearest_level(np.maximum(blocks.normal_force, 1e-9), levels)
     k = len(law.parameters)
-    peak = np.median(law.peak_slip(levels, values[:, :k].T[:, :, None]), axis=0)
-    largest = [np.abs(blocks.slip[nearest == i]).max(initial=0.0) for i in range(len(levels))]
-    return float(np.max(np.array(largest) / peak))
+    peak = np.median(law.peak_slip(load_levels(blocks), values[:, :k].T[:, :, None]), axis=0)
+    return float(np.max(largest_slips(blocks) / peak))

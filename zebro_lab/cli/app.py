@@ -9,7 +9,12 @@ from zebro_lab.cli.calibrate import EPILOG, calibrate
 from zebro_lab.cli.errors import run
 from zebro_lab.cli.init import init
 
-app = typer.Typer(add_completion=False, rich_markup_mode=None, no_args_is_help=True)
+app = typer.Typer(
+    add_completion=False,
+    rich_markup_mode=None,
+    pretty_exceptions_enable=False,
+    no_args_is_help=True,
+)
 app.command(epilog=EPILOG)(calibrate)
 app.command()(init)
 

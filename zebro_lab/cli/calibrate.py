@@ -24,7 +24,7 @@ Exit codes: 0 converged (read the verdict), 1 error, 2 usage, 3 not converged (r
 and marked), 130 stopped (a checkpoint is kept for --resume).
 """
 
-app = typer.Typer(add_completion=False, rich_markup_mode=None)
+app = typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions_enable=False)
 
 
 @app.command(epilog=EPILOG)

@@ -54,7 +54,8 @@ def _comparison_lines(calibration: Calibration) -> list[str]:
         return []
     chosen = comparison.names[comparison.chosen]
     others = [
-        f"'{name}' predicts left-out runs worse by {-difference:.0f} ± {error:.0f} log units"
+        f"'{name}' predicts left-out runs {'worse' if difference < 0 else 'better, not clearly,'} "
+        f"by {abs(difference):.0f} ± {error:.0f} log units"
         for i, (name, difference, error) in enumerate(
             zip(comparison.names, comparison.difference, comparison.standard_error, strict=True)
         )
@@ -146,5 +147,15 @@ def _print_verdict(console: Console, calibration: Calibration) -> None:
     for check in (*verdict.convergence, *verdict.trust):
         mark = "ok  " if check.passed else "FAIL"
         console.print(Text(f"  {mark} {check.name}: {check.evidence}"))
+    if verdict.weak:
+        for load, row in zip(calibration.levels, calibration.curves, strict=True):
+            known = {e.parameter.symbol: e for e in row}
+            force, slope = known["F_max"], known["BCD"]
+            console.print(
+                Text(
+                    f"  at {load:.4g} N: peak force within tested slip {force.median:.4g} N "
+                    f"({_interval(force)}), initial slope {slope.median:.4g} N ({_interval(slope)})"
+                )
+            )
     for step in verdict.next_steps():
         console.print(Text(f"  next: {step}"))

@@ -23,7 +23,7 @@ from model.bayes.fit import Comparison, PreparedFit, compare, prepare_fit, scale
 from model.bayes.laplace import importance_draws
 from model.bayes.posterior import LoadCell
 from model.bayes.preliminary import BlockChoice
-from model.bayes.residuals import analyse_residuals, load_levels
+from model.bayes.residuals import analyse_residuals, largest_slips, load_levels
 from model.bayes.sampler import Chains, advance, start_chains
 from model.bayes.samples import SlipSamples
 from model.bayes.verdict import judge
@@ -284,7 +284,10 @@ def _conclude(
             for i, parameter in enumerate(posterior.parameters)
         ],
         levels=levels,
-        curves=[curve_estimates(posterior.law, draws.flat[:, :k], load) for load in levels],
+        curves=[
+            curve_estimates(posterior.law, draws.flat[:, :k], load=load, slip_limit=float(limit))
+            for load, limit in zip(levels, largest_slips(posterior.blocks), strict=True)
+        ],
         convergence=convergence,
         residuals=residuals,
         agreement=agreement(draws, weighted),

@@ -68,7 +68,7 @@ def test_a_correlated_gaussian_is_reproduced():
 
 
 def test_emcees_snooker_move_would_have_failed_that(monkeypatch):
-    monkeypatch.setattr(sampler, "MOVES", [(DEMove(), 0.8), (DESnookerMove(), 0.2)])
+    monkeypatch.setattr(sampler, "MOVES", ((DEMove, 0.8), (DESnookerMove, 0.2)))
     chains = advance(log_density, start(thin=5), steps=250)
     _, spread = errors(chains, 50)
     # The day emcee's move is mended this fails, and MOVES may have its snooker back.

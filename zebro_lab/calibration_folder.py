@@ -204,10 +204,17 @@ def _slip_toml(calibration: Calibration, inputs: Mapping[str, str]) -> str:
             "runs": blocks.n_runs,
             "block_length": calibration.fit.block_choice.length,
         },
-        "data": {Path(name).name: digest for name, digest in inputs.items()},
+        "data": dict(zip(_distinct_names(list(inputs)), inputs.values(), strict=True)),
     }  # fmt: skip
     document.update(content)
     return tomlkit.dumps(document)
+
+
+def _distinct_names(paths: Sequence[str]) -> list[str]:
+    """Shorten paths to their last parts, as few as tell them apart: every run has a log.mcap."""
+    depths = range(1, max((len(Path(path).parts) for path in paths), default=1) + 1)
+    shortened = ([str(Path(*Path(path).parts[-depth:])) for path in paths] for depth in depths)
+    return next((names for names in shortened if len(set(names)) == len(names)), list(paths))
 
 
 def _summary_csv(calibration: Calibration) -> str:

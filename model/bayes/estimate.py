@@ -77,9 +77,15 @@ class Estimate:
 
 
 def estimate(parameter: Parameter, draws: Array) -> Estimate:
-    """Summarise draws of one quantity, shape (n,)."""
-    low, median, high = np.quantile(draws, [0.05, 0.5, 0.95])
-    mean, sd = np.mean(draws), np.std(draws)
+    """Summarise draws of one quantity, shape (n,).
+
+    Draws may be infinite, as the peak's slip of a curve without a peak; then so is the mean, and
+    there is no standard deviation (NaN).
+    """
+    # Order statistics themselves: between infinite ones there is nothing to interpolate.
+    low, median, high = np.quantile(draws, [0.05, 0.5, 0.95], method="inverted_cdf")
+    with np.errstate(invalid="ignore"):
+        mean, sd = np.mean(draws), np.std(draws)
     return Estimate(parameter, *(float(x) for x in (mean, sd, low, median, high)))
 
 

@@ -39,6 +39,8 @@ class ProgressBar:
         if self._stop:
             raise KeyboardInterrupt
         self._stop = True
+        if self._progress.console.is_terminal:
+            self._progress.console.print("stopping; once more to quit at once")
 
 
 @contextmanager

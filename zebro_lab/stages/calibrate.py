@@ -41,7 +41,7 @@ from zebro_lab.calibration_folder import (
 from zebro_lab.calibration_pictures import draw_calibration
 from zebro_lab.checkpoint import FILE as CHECKPOINT
 from zebro_lab.checkpoint import load_checkpoint, save_checkpoint
-from zebro_lab.errors import SettingsError, ZebroLabError
+from zebro_lab.errors import AlreadyExists, SettingsError, ZebroLabError
 from zebro_lab.provenance import file_hashes, fingerprint
 from zebro_lab.tables import RigData, read_rig_data
 
@@ -54,15 +54,17 @@ IMPORTANCE_DRAWS = 4000
 
 
 class Stopped(ZebroLabError):
-    """The fit was stopped on request; a checkpoint is on disk.
+    """The fit was stopped on request.
 
     Attributes:
-        checkpoint: Where the fit stands.
+        checkpoint: Where the fit stands; None when sampling had not begun and nothing was written.
     """
 
-    def __init__(self, checkpoint: Path) -> None:
+    def __init__(self, checkpoint: Path | None) -> None:
         super().__init__(
-            f"stopped; {checkpoint} keeps the fit: the same command with --resume goes on"
+            "stopped before sampling began; nothing was written"
+            if checkpoint is None
+            else f"stopped; {checkpoint} keeps the fit: the same command with --resume goes on"
         )
         self.checkpoint = checkpoint
 
@@ -142,8 +144,12 @@ def calibrate(request: CalibrationRequest, watcher: Watcher) -> tuple[Calibratio
     Raises:
         ZebroLabError: The data or the request cannot be used; nothing was written.
         ModelError: The fit failed; nothing was written.
-        Stopped: The watcher asked to stop; a checkpoint was written.
+        Stopped: The watcher asked to stop; once sampling had begun a checkpoint was written.
     """
+    if request.out.exists() and not request.out.is_dir():
+        raise AlreadyExists(
+            f"{request.out} is a file where the calibration is to be written; name another --out"
+        )
     watcher.step("reading", None)
     data = read_rig_data(
         request.data, columns=request.columns, slip_definition=request.slip_definition
@@ -155,10 +161,11 @@ def calibrate(request: CalibrationRequest, watcher: Watcher) -> tuple[Calibratio
     cell = scaled_load_cell(data.samples, {**data.load_cell, **request.load_cell})
     fit, comparison = _choose_law(request, data.samples, cell, rng, watcher)
     began = time.monotonic()
+    judging = rng.spawn(1)[0]  # its draws are the same whether or not the fit was resumed
     chains, convergence = _sample(request, fit, earlier, mark, rng, watcher)
     seconds = time.monotonic() - began
     watcher.step("judging", None)
-    calibration = _conclude(fit, comparison, chains, convergence, data, seconds, rng)
+    calibration = _conclude(fit, comparison, chains, convergence, data, seconds, judging)
     watcher.step("drawing", None)
     _write(request, calibration, inputs)
     if convergence.converged:
@@ -214,6 +221,8 @@ def _choose_law(
     choice = None if asked is None else BlockChoice(asked, None, "the length asked for")
     for name, law in laws.items():
         watcher.step(f"preparing: {name}", None)
+        if watcher.stop_requested():
+            raise Stopped(None)
         fit = prepare_fit(
             samples, law, load_cell=cell, rng=rng, block_choice=choice, threads=request.threads
         )
@@ -239,22 +248,33 @@ def _sample(
         density, fit.laplace, ensembles=request.ensembles, thin=THIN, rng=rng
     )
     most = max(request.max_steps // THIN, FIRST_LOOK)
-    look, saved = max(FIRST_LOOK, chains.n_steps), time.monotonic()
+    look, saved = _look_from(chains.n_steps - CHUNK + 1), time.monotonic()
     watcher.step("sampling", 0.0)
     while True:
-        if chains.n_steps >= look:
+        if chains.n_steps >= min(look, most):
             convergence = assess(chains)
             if convergence.converged or chains.n_steps >= most:
                 return chains, convergence
             fraction = max(convergence.fraction_done(), chains.n_steps / most)
             watcher.step("sampling", fraction)
-            look = min(most, int(chains.n_steps * 1.2))
+            look = _look_from(chains.n_steps + 1)
         if watcher.stop_requested():
             raise Stopped(save_checkpoint(request.out, chains, fingerprint=mark))
         chains = advance(density, chains, steps=CHUNK, threads=request.threads)
         if time.monotonic() - saved > CHECKPOINT_SECONDS:
             save_checkpoint(request.out, chains, fingerprint=mark)
             saved = time.monotonic()
+
+
+def _look_from(n_steps: int) -> int:
+    """Return the first of the fixed steps, each a fifth beyond the last, at which to judge.
+
+    Fixed, so that a fit that was stopped and resumed ends where one that was not would have.
+    """
+    look = FIRST_LOOK
+    while look < n_steps:
+        look = int(look * 1.2)
+    return look
 
 
 def _conclude(

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Rig data in, calibration folder out: read, prepare, sample, judge, write."""
 
+import math
 import time
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
@@ -201,11 +202,14 @@ def _curvature(text: str) -> Literal["peak", "constant"] | float:
     if text == "peak" or text == "constant":
         return text
     try:
-        return float(text)
-    except ValueError as error:
+        number = float(text)
+    except ValueError:
+        number = math.nan
+    if not -math.inf < number < 1:  # at 1 and above the curve has no peak, or changes its sign
         raise SettingsError(
             f"--curvature is '{text}'; expected auto, peak, constant or a number below 1"
-        ) from error
+        )
+    return number
 
 
 def _choose_law(

@@ -1,0 +1,199 @@
+# SPDX-License-Identifier: MIT
+"""The whole calibration on simulated sweeps of known truth: is it right, and is it sharp?
+
+One seed proves nothing: a posterior may miss by its own spread. So the seeds are judged together,
+by the chi-square of all posteriors against the truth, and how wide the posteriors are is asked
+apart, since wide enough ones are never wrong.
+"""
+
+import time
+from dataclasses import dataclass
+
+import numpy as np
+import pytest
+from scipy.stats import chi2
+
+from model.bayes.convergence import Convergence, assess
+from model.bayes.estimate import Agreement, Estimate, agreement, estimate, thin_draws
+from model.bayes.fit import PreparedFit, prepare_fit
+from model.bayes.laplace import importance_draws
+from model.bayes.posterior import LoadCell
+from model.bayes.sampler import Chains, advance, start_chains
+from model.slip.law import Array
+from rig.slip_rig.sweep import (
+    SOURCE_LAW,
+    SOURCE_VALUES,
+    SweepPlan,
+    draw_imperfections,
+    simulate_sweep,
+)
+
+pytestmark = pytest.mark.long
+
+N_SEEDS = 20
+LOAD_CELL = LoadCell(zero_stability=0.1, gain_sd=0.005, bias_sd=0.05, crosstalk_sd=0.005)
+TRUTH = np.array(SOURCE_VALUES)
+LAW = SOURCE_LAW.parameters
+
+ENOUGH_ESS = 6000.0
+"""The engines are to agree to 5 % in spread over 20 seeds times 12 parameters, of which the
+largest of 240 deviations counts: 3 standard errors of a spread, 1/sqrt(2 ESS), are 3 % here."""
+IMPORTANCE_DRAWS = 20_000
+CHUNK = 100  # kept steps between two looks at the chains
+MOST_STEPS = 3000
+THIN = 5
+ENSEMBLES = 4
+
+
+@dataclass(frozen=True)
+class Recovery:
+    """One seed's posterior beside the truth.
+
+    Attributes:
+        seed: Seed of the sweep and of its fit.
+        chi_square: Squared distance of the truth from the posterior mean of the logarithms, in
+            their posterior covariance.
+        z: Posterior mean less truth over posterior spread, of the logarithms, shape (k,).
+        estimates: Each law parameter's posterior.
+        convergence: Evidence on the sampler.
+        engines: How the sampler compares with importance sampling.
+        seconds: Wall time of the fit.
+    """
+
+    seed: int
+    chi_square: float
+    z: Array
+    estimates: list[Estimate]
+    convergence: Convergence
+    engines: Agreement
+    seconds: float
+
+    @property
+    def covered(self) -> list[bool]:
+        """Tell which 90 % intervals contain the truth."""
+        return [e.low < truth < e.high for e, truth in zip(self.estimates, TRUTH, strict=True)]
+
+    @property
+    def half_widths(self) -> Array:
+        """Half the 90 % intervals over the truth, shape (k,)."""
+        return np.array([e.high - e.low for e in self.estimates]) / 2 / TRUTH
+
+    def row(self) -> str:
+        """Write the seed as a row of the table."""
+        figures = [
+            f"{self.seed}",
+            f"{self.chi_square:.2f}",
+            f"{chi2.sf(self.chi_square, len(LAW)):.3f}",
+            *(f"{z:+.2f}" for z in self.z),
+            "yes" if self.convergence.converged else "NO",
+            f"{self.engines.mean:.3f}",
+            f"{self.engines.spread:.1%}",
+            f"{self.engines.pareto_k:.2f}",
+            f"{self.seconds:.0f}",
+        ]
+        return f"| {' | '.join(figures)} |"
+
+
+def say(line: str) -> None:
+    print(line, flush=True)  # noqa: T201 the table is what `make test-long` is run for
+
+
+def walk(fit: PreparedFit, rng: np.random.Generator) -> tuple[Chains, Convergence]:
+    density = fit.posterior.log_density
+    chains = start_chains(density, fit.laplace, ensembles=ENSEMBLES, thin=THIN, rng=rng)
+    while True:
+        chains = advance(density, chains, steps=CHUNK)
+        convergence = assess(chains)
+        enough = convergence.converged and convergence.ess_bulk.min() >= ENOUGH_ESS
+        if enough or chains.n_steps > MOST_STEPS:
+            return chains, convergence
+
+
+def recover(seed: int) -> Recovery:
+    rng = np.random.default_rng(seed)
+    sweep = simulate_sweep(
+        SOURCE_LAW, SOURCE_VALUES, plan=SweepPlan(), imperfections=draw_imperfections(rng), rng=rng
+    )
+    began = time.perf_counter()
+    fit = prepare_fit(sweep.samples, SOURCE_LAW, load_cell=LOAD_CELL, rng=rng, validate=False)
+    chains, convergence = walk(fit, rng)
+    seconds = time.perf_counter() - began
+    draws = thin_draws(fit.posterior, chains, convergence, n=chains.z[0].size)
+    weighted = importance_draws(fit.posterior.log_density, fit.laplace, n=IMPORTANCE_DRAWS, rng=rng)
+    law_values = draws.flat[:, : len(LAW)]
+    miss = np.log(law_values).mean(axis=0) - np.log(TRUTH)
+    covariance = np.cov(np.log(law_values), rowvar=False)
+    return Recovery(
+        seed=seed,
+        chi_square=float(miss @ np.linalg.solve(covariance, miss)),
+        z=miss / np.sqrt(np.diag(covariance)),
+        estimates=[estimate(p, column) for p, column in zip(LAW, law_values.T, strict=True)],
+        convergence=convergence,
+        engines=agreement(draws, weighted),
+        seconds=seconds,
+    )
+
+
+def recover_all(seeds: range) -> list[Recovery]:
+    """Fit every seed; print a row as each is done, and a summary of the parameters."""
+    titles = [
+        "seed", "χ²", "p", *(f"z of {p.symbol}" for p in LAW), "converged", "means apart [sd]",
+        "sds apart", "Pareto k", "seconds",
+    ]  # fmt: skip
+    say(f"\n\n| {' | '.join(titles)} |\n|{'---:|' * len(titles)}")
+    recoveries = []
+    for seed in seeds:
+        recoveries.append(recover(seed))
+        say(recoveries[-1].row())
+    say(summary(recoveries))
+    return recoveries
+
+
+def joint(recoveries: list[Recovery]) -> tuple[float, int, float]:
+    """Return the chi-square of all seeds, its degrees of freedom and p."""
+    total, freedom = sum(r.chi_square for r in recoveries), len(LAW) * len(recoveries)
+    return total, freedom, float(chi2.sf(total, freedom))
+
+
+def summary(recoveries: list[Recovery]) -> str:
+    total, freedom, p = joint(recoveries)
+    covered = np.sum([r.covered for r in recoveries], axis=0)
+    widths = np.array([r.half_widths for r in recoveries])
+    lines = [
+        f"\nJoint χ² {total:.1f} of {freedom}, p = {p:.3f}.\n",
+        "| parameter | truth | 90 % intervals that contain it | half-width, median | largest |",
+        "|---|---:|---:|---:|---:|",
+    ]
+    lines += [
+        f"| {p.name} {p.symbol} | {truth:.4g} | {n} of {len(recoveries)} | {np.median(w):.1%} | "
+        f"{w.max():.1%} |"
+        for p, truth, n, w in zip(LAW, TRUTH, covered, widths.T, strict=True)
+    ]
+    return "\n".join(lines)
+
+
+@pytest.fixture(scope="module")
+def recoveries() -> list[Recovery]:
+    return recover_all(range(N_SEEDS))
+
+
+def test_every_seed_converges(recoveries):
+    assert [r.seed for r in recoveries if not r.convergence.converged] == []
+
+
+def test_truth_lies_where_the_posteriors_say(recoveries):
+    total, freedom, p = joint(recoveries)
+    assert p > 0.01, f"chi-square {total:.1f} of {freedom}"
+
+
+@pytest.mark.parametrize(("name", "widest"), [("friction", 0.02), ("slip_stiffness", 0.15)])
+def test_posteriors_are_sharp(recoveries, name, widest):
+    index = [parameter.name for parameter in LAW].index(name)
+    assert max(r.half_widths[index] for r in recoveries) <= widest
+
+
+def test_two_engines_give_the_same_posterior(recoveries):
+    comparable = [r.engines for r in recoveries if r.engines.comparable]
+    assert len(comparable) > N_SEEDS / 2, "importance sampling failed on most seeds"
+    assert max(engines.mean for engines in comparable) <= 0.1
+    assert max(engines.spread for engines in comparable) <= 0.05

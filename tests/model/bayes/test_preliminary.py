@@ -1,0 +1,197 @@
+# SPDX-License-Identifier: MIT
+from dataclasses import replace
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from scipy.signal import lfilter
+
+from model.bayes.blocks import block_means
+from model.bayes.posterior import LoadCell, default_priors
+from model.bayes.preliminary import (
+    MAX_BLOCKS,
+    MAX_SLIP_SPREAD,
+    MIN_BLOCKS_PER_RUN,
+    choose_block_length,
+    correlation_time,
+    least_squares_values,
+)
+from model.bayes.samples import SlipSamples
+from model.slip import SlipDefinition
+from rig.slip_rig.imperfections import TYPICAL_RIG, RigImperfections
+from rig.slip_rig.sweep import SOURCE_LAW, SOURCE_VALUES, SweepPlan, simulate_sweep
+
+PERFECT = RigImperfections()
+PLAN = SweepPlan(slips=tuple(np.linspace(0, 0.8, 20)), loads=(2.13, 12.75), duration=0.8)
+SLIP_SCALE = SOURCE_VALUES[2] / SOURCE_VALUES[0]
+
+
+def sweep(imperfections, *, plan=PLAN, seed=0):
+    rng = np.random.default_rng(seed)
+    log = simulate_sweep(SOURCE_LAW, SOURCE_VALUES, plan=plan, imperfections=imperfections, rng=rng)
+    return log.samples
+
+
+def priors_of(samples):
+    return default_priors(SOURCE_LAW, block_means(samples, 10), LoadCell())
+
+
+def fitted(samples, *, length=10, seed=0):
+    return least_squares_values(
+        block_means(samples, length),
+        SOURCE_LAW,
+        priors=priors_of(samples),
+        rng=np.random.default_rng(seed),
+    )
+
+
+def choice(samples):
+    rng = np.random.default_rng(0)
+    return choose_block_length(samples, SOURCE_LAW, priors=priors_of(samples), rng=rng)
+
+
+def ar1(rho, shape, seed=0):
+    shock = np.random.default_rng(seed).standard_normal(shape)
+    shock[:, 1:] *= np.sqrt(1 - rho**2)
+    return lfilter([1.0], [1.0, -rho], shock, axis=1)
+
+
+# --- least squares
+
+
+def test_a_perfect_rigs_law_is_read_back():
+    np.testing.assert_allclose(fitted(sweep(PERFECT)), SOURCE_VALUES, rtol=0.03)
+
+
+def test_different_random_starts_lead_to_the_same_fit():
+    samples = sweep(TYPICAL_RIG)
+    np.testing.assert_allclose(fitted(samples, seed=1), fitted(samples, seed=2), rtol=1e-3)
+
+
+def test_a_spoilt_run_hardly_moves_the_fit():
+    samples = sweep(TYPICAL_RIG)
+    spoilt = samples.traction_force + 5.0 * (samples.run == 25)
+    moved = fitted(replace(samples, traction_force=spoilt))
+    assert moved[2] == pytest.approx(SOURCE_VALUES[2], rel=0.03)
+
+
+# --- correlation time
+
+
+@pytest.mark.parametrize("rho", [0.5, 0.9, 0.97])
+def test_correlation_time_of_an_ar1_is_the_known_one(rho):
+    paths = ar1(rho, (20, 5000))
+    slices = [slice(5000 * run, 5000 * (run + 1)) for run in range(20)]
+    found = correlation_time(paths.ravel(), slices)
+    assert found == pytest.approx((1 + rho) / (1 - rho), rel=0.1)
+
+
+def test_white_residuals_forget_themselves_at_once():
+    slices = [slice(1000 * run, 1000 * (run + 1)) for run in range(20)]
+    assert correlation_time(ar1(0.0, (20, 1000)).ravel(), slices) == pytest.approx(1.0, abs=0.1)
+
+
+def test_run_offsets_are_no_memory():
+    slices = [slice(1000 * run, 1000 * (run + 1)) for run in range(20)]
+    paths = ar1(0.5, (20, 1000))
+    offset = 100 * np.random.default_rng(1).standard_normal((20, 1))
+    found = [correlation_time(x.ravel(), slices) for x in (paths, paths + offset)]
+    assert found[1] == pytest.approx(found[0], rel=1e-9)
+
+
+def test_runs_of_different_length_pool_their_correlation():
+    lengths = [400, 20_000, 50, 40_000]
+    edges = np.append(0, np.cumsum(lengths))
+    paths = np.concatenate([ar1(0.8, (1, n), seed=n)[0] for n in lengths])
+    slices = [slice(a, b) for a, b in pairwise(edges)]
+    assert correlation_time(paths, slices) == pytest.approx(9.0, rel=0.15)
+
+
+def test_residuals_of_nothing_have_the_shortest_time():
+    assert correlation_time(np.zeros(10), [slice(0, 5), slice(5, 10)]) == 1.0
+
+
+# --- block length
+
+
+def blocks_a_run(samples, length):
+    return np.bincount(block_means(samples, length).run).min()
+
+
+def test_blocks_last_as_long_as_the_noise_remembers():
+    rig = replace(PERFECT, noise_sd0=0.05, noise_correlation_time=0.05)
+    plan = replace(PLAN, slips=PLAN.slips[::2], duration=8.0)
+    chosen = choice(sweep(rig, plan=plan))
+    rho = np.exp(-0.004 / 0.05)
+    # With each run's mean goes some of its memory: an eighth of it in runs 80 times as long.
+    assert chosen.correlation == pytest.approx((1 + rho) / (1 - rho), rel=0.15)
+    assert chosen.length == int(np.ceil(chosen.correlation))
+    assert chosen.reason == "the residuals' correlation time"
+
+
+@pytest.mark.parametrize("time", [0.2, 2.0])
+def test_however_long_the_memory_a_run_keeps_five_blocks(time):
+    samples = sweep(replace(PERFECT, noise_sd0=0.05, noise_correlation_time=time))
+    assert blocks_a_run(samples, choice(samples).length) >= MIN_BLOCKS_PER_RUN
+
+
+def test_however_noisy_the_slip_sensors_a_run_keeps_five_blocks():
+    samples = sweep(replace(PERFECT, noise_sd0=0.05, speed_noise=0.1))
+    chosen = choice(samples)
+    assert chosen.length == PLAN.n_samples // MIN_BLOCKS_PER_RUN
+    assert blocks_a_run(samples, chosen.length) == MIN_BLOCKS_PER_RUN
+    assert chosen.reason == "the need for 5 blocks a run"
+
+
+def test_noisy_slip_sensors_ask_for_longer_blocks():
+    quiet = replace(PERFECT, noise_sd0=0.05)
+    noisy = replace(quiet, speed_noise=0.02)
+    chosen = choice(sweep(noisy))
+    assert chosen.length > choice(sweep(quiet)).length
+    noise = (0.02 / 12) ** 2 * (3.43**2 + 0.5)
+    assert chosen.reason == "the slip sensors' noise"
+    assert chosen.length == pytest.approx(noise / (SLIP_SCALE / 10) ** 2, rel=0.3)
+
+
+def test_there_are_never_more_blocks_than_the_limit():
+    plan = replace(PLAN, rate=1000.0)
+    samples = sweep(replace(PERFECT, noise_sd0=0.05), plan=plan)
+    chosen = choice(samples)
+    assert len(block_means(samples, chosen.length)) <= MAX_BLOCKS
+    assert chosen.reason == f"the limit of {MAX_BLOCKS} blocks"
+
+
+def swept(seconds, *, rate=500, correlation=0.98):
+    """Return samples of runs that sweep slip from -0.3 to 0.3 under slowly forgetting noise."""
+    n = int(seconds * rate)
+    slip = np.tile(np.linspace(-0.3, 0.3, n), 4)
+    load = np.repeat([3.0, 6.0, 9.0, 12.0], n)
+    noise = 0.05 * ar1(correlation, (4, n)).ravel()
+    return SlipSamples(
+        slip=slip,
+        normal_force=load,
+        traction_force=SOURCE_LAW.force(slip, load, SOURCE_VALUES) + noise,
+        run=np.repeat(np.arange(4), n),
+        run_names=("a", "b", "c", "d"),
+        definition=SlipDefinition.MATERIAL,
+    )
+
+
+def test_a_fast_sweep_of_slip_shortens_the_blocks_to_its_pace():
+    samples = swept(1.0)
+    chosen = choice(samples)
+    spread = np.sqrt(block_means(samples, chosen.length).slip_wander)
+    assert np.quantile(spread, 0.9) <= MAX_SLIP_SPREAD * SLIP_SCALE * 1.1
+    assert chosen.reason == "the pace at which slip is swept"
+    assert chosen.length < chosen.correlation
+
+
+def test_a_slow_sweep_keeps_the_blocks_the_noise_asks_for():
+    chosen = choice(swept(20.0))
+    assert chosen.reason == "the residuals' correlation time"
+    assert chosen.length == int(np.ceil(chosen.correlation))
+
+
+def test_three_samples_a_run_are_still_blocks():
+    chosen = choice(sweep(replace(PERFECT, noise_sd0=0.05), plan=replace(PLAN, duration=0.012)))
+    assert chosen.length == 1

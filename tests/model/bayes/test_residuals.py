@@ -1,0 +1,282 @@
+# SPDX-License-Identifier: MIT
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy import stats
+from scipy.linalg import cholesky, toeplitz
+
+from model.bayes.blocks import SlipBlocks
+from model.bayes.likelihood import NUISANCE, log_likelihood, predict_blocks
+from model.bayes.posterior import LoadCell, default_priors
+from model.bayes.preliminary import least_squares_values
+from model.bayes.residuals import (
+    analyse_residuals,
+    lag_one_correlation,
+    largest_slips,
+    load_levels,
+    nearest_level,
+)
+from model.slip import MagicFormula, SlipDefinition
+
+LAW = MagicFormula(curvature=0.0)
+LAW_VALUES = (20.0, 1.5, 0.38)
+LOADS = (2.13, 6.63, 12.75)
+SIZE = 6
+
+
+def parameters(law_values=LAW_VALUES, **nuisance):
+    known = {
+        "noise_floor": 0.02,
+        "noise_slope": 0.01,
+        "noise_correlation": 0.6,
+        "offset_spread": 0.05,
+        **nuisance,
+    }
+    return np.array([[*law_values, *(known.get(p.name, 0.0) for p in NUISANCE)]])
+
+
+def blocks(slips, loads, rng, *, size=SIZE, repeats=1):
+    """Return blocks with slip errors and wander, a run a set-point, no traction yet."""
+    load, slip = (np.tile(a.ravel(), repeats) for a in np.meshgrid(loads, slips, indexing="ij"))
+    n_runs, n = len(slip), len(slip) * size
+    run = np.repeat(np.arange(n_runs), size)
+    return SlipBlocks(
+        slip=slip[run] + 0.003 * rng.standard_normal(n),
+        normal_force=load[run] * rng.uniform(0.98, 1.1, n),
+        traction_force=np.zeros(n),
+        count=np.full(n, 10),
+        run=run,
+        run_names=tuple(map(str, range(n_runs))),
+        definition=SlipDefinition.MATERIAL,
+        slip_wander=np.full(n, 4e-6),
+        slip_error=np.full(n, 1e-6),
+        slip_load_covariance=np.zeros(n),
+        run_slip_error=np.full(n_runs, 5e-7),
+    )
+
+
+def with_traction(data, rng, values=None, law=LAW):
+    """Draw the tractions from the data model, run by run from its dense covariance."""
+    values = parameters() if values is None else values
+    predicted = predict_blocks(data, law, values)
+    rho, tau = values[0, -2:]
+    force = predicted.force[0].copy()
+    for run in range(data.n_runs):
+        rows = data.run == run
+        s, g = predicted.noise[0, rows], predicted.slope[0, rows]
+        covariance = np.outer(s, s) * toeplitz(np.power(rho, np.arange(len(s)), dtype=float))
+        covariance += tau**2 + data.run_slip_error[run] * np.outer(g, g)
+        covariance += np.diag(g**2 * data.slip_error[rows])
+        force[rows] += cholesky(covariance, lower=True) @ rng.standard_normal(len(s))
+    return replace(data, traction_force=force)
+
+
+def sweep(seed=0, *, values=None, slips=None, repeats=1):
+    rng = np.random.default_rng(seed)
+    slips = np.linspace(0.0, 0.6, 30) if slips is None else slips
+    return with_traction(blocks(slips, LOADS, rng, repeats=repeats), rng, values)
+
+
+def own_lag_one(data, residuals):
+    """Return the lag-one correlation of residuals as a share of its standard error."""
+    pairs = len(data) - data.n_runs
+    return residuals.lag_one * np.sqrt(pairs)
+
+
+# --- the model's own data
+
+
+def test_whitened_residuals_of_the_models_own_data_are_white_and_standard_normal():
+    data = sweep()
+    found = analyse_residuals(data, LAW, parameters())
+    assert stats.kstest(found.whitened, "norm").pvalue > 0.01
+    assert abs(own_lag_one(data, found)) < 3
+    assert found.whitened.shape == (len(data),)
+
+
+def test_whitened_residuals_carry_the_likelihood():
+    data = sweep()
+    values = parameters()
+    whitened = analyse_residuals(data, LAW, values).whitened
+    shifted = replace(data, traction_force=predict_blocks(data, LAW, values).force[0])
+    exponent = log_likelihood(shifted, LAW, values) - log_likelihood(data, LAW, values)
+    np.testing.assert_allclose(0.5 * np.sum(whitened**2), exponent, rtol=1e-9)
+
+
+def test_ninety_of_a_hundred_run_means_lie_inside_their_interval():
+    inside, below = 0.0, 0
+    for seed in range(10):
+        found = analyse_residuals(sweep(seed), LAW, parameters())
+        inside += found.inside / 10
+        below += found.inside_p < 0.01
+        assert abs(found.run_score.mean()) < 0.4
+    assert inside == pytest.approx(0.9, abs=0.03)  # of 900 runs
+    assert below == 0
+
+
+def test_a_run_means_interval_widens_with_the_posteriors_spread():
+    data = sweep()
+    sure = analyse_residuals(data, LAW, parameters())
+    rng = np.random.default_rng(1)
+    draws = np.repeat(parameters(), 200, axis=0)
+    draws[:, 2] *= rng.normal(1.0, 0.05, 200)
+    unsure = analyse_residuals(data, LAW, draws)
+    assert np.abs(unsure.run_score).mean() < 0.8 * np.abs(sure.run_score).mean()
+
+
+def test_the_true_law_leaves_no_structure():
+    found = [analyse_residuals(sweep(seed), LAW, parameters()) for seed in range(20)]
+    assert max(residuals.misfit for residuals in found) < 0.02
+    p_values = [residuals.misfit_p for residuals in found]
+    assert stats.kstest(p_values, "uniform").pvalue > 0.01
+
+
+def test_figures_of_fit_are_those_of_the_block_residuals():
+    data = sweep()
+    found = analyse_residuals(data, LAW, parameters())
+    residual = data.traction_force - predict_blocks(data, LAW, parameters()).force[0]
+    assert found.rmse == pytest.approx(residual.std(), rel=0.01)
+    assert found.r_squared == pytest.approx(
+        1 - residual.var() / data.traction_force.var(), abs=1e-3
+    )
+    over_load = np.sqrt(np.mean((residual / data.normal_force) ** 2))
+    assert found.rmse_over_load == pytest.approx(over_load)
+
+
+# --- what is wrong is found
+
+
+@pytest.mark.parametrize("ignored", ["noise_correlation", "offset_spread"])
+def test_correlation_that_the_values_ignore_is_found(ignored):
+    data = sweep(values=parameters(offset_spread=0.1))
+    blind = analyse_residuals(data, LAW, parameters(**{"offset_spread": 0.1, ignored: 0.0}))
+    assert own_lag_one(data, blind) > 5
+
+
+def test_offsets_that_the_values_ignore_push_run_means_out_of_their_intervals():
+    data = sweep(values=parameters(offset_spread=0.2))
+    blind = analyse_residuals(data, LAW, parameters(offset_spread=0.0))
+    assert blind.inside < 0.7
+    assert blind.inside_p < 1e-3
+    assert analyse_residuals(data, LAW, parameters(offset_spread=0.2)).inside_p > 0.01
+
+
+def test_a_wrong_shape_is_reported_as_misfit():
+    data = sweep()
+    wrong = analyse_residuals(data, LAW, parameters((20.0, 1.9, 0.38)))
+    assert wrong.misfit > 0.05
+    assert wrong.misfit_p < 1e-3
+
+
+def refitted(data):
+    """Return the law's best values for these data, the measurement's left as they are."""
+    priors = default_priors(LAW, data, LoadCell())
+    values = least_squares_values(data, LAW, priors=priors, rng=np.random.default_rng(0))
+    return parameters(tuple(values))
+
+
+def test_an_odd_law_fitted_to_a_lopsided_curve_is_reported_as_misfit():
+    data = sweep(slips=np.linspace(-0.6, 0.6, 60))
+    braking = data.slip < 0
+    lopsided = replace(data, traction_force=np.where(braking, 0.6, 1.0) * data.traction_force)
+    found = analyse_residuals(lopsided, LAW, refitted(lopsided))
+    assert found.misfit > 0.05
+    assert found.misfit_p < 1e-3
+    whole = analyse_residuals(data, LAW, refitted(data))
+    assert whole.misfit < 0.02
+
+
+def test_misfit_measures_what_repeats_and_not_the_scatter_of_runs():
+    noisy = parameters(offset_spread=0.4)
+    found = analyse_residuals(sweep(values=noisy), LAW, noisy)
+    assert found.rmse > 0.3
+    assert found.misfit < 0.03
+    assert found.misfit_p > 0.01
+
+
+def test_the_misfits_size_is_the_planted_one():
+    data = sweep()
+    planted = np.where(data.normal_force > 10, 0.3, -0.3)
+    found = analyse_residuals(
+        replace(data, traction_force=data.traction_force + planted), LAW, parameters()
+    )
+    peak = np.abs(predict_blocks(data, LAW, parameters()).force).max()
+    assert found.misfit * peak == pytest.approx(0.3, rel=0.1)
+
+
+def test_where_nothing_is_repeated_there_is_no_claim_of_misfit():
+    rng = np.random.default_rng(2)
+    data = with_traction(blocks(np.array([0.05]), LOADS, rng), rng)
+    found = analyse_residuals(data, LAW, parameters((5.0, 1.2, 0.9)))
+    assert (found.misfit, found.misfit_p) == (0.0, 1.0)
+
+
+# --- lag-one correlation
+
+
+@settings(max_examples=30)
+@given(rho=st.floats(-0.9, 0.9), seed=st.integers(0, 20))
+def test_lag_one_correlation_of_ar1_values_is_rho(rho, seed):
+    rng = np.random.default_rng(seed)
+    data = blocks(np.linspace(0, 1, 20), LOADS, rng, size=100)
+    root = np.linalg.cholesky(toeplitz(np.power(rho, np.arange(100), dtype=float)))
+    values = (rng.standard_normal((data.n_runs, 100)) @ root.T).ravel()
+    assert lag_one_correlation(values, data) == pytest.approx(rho, abs=0.06)
+
+
+def test_the_step_from_one_run_to_the_next_does_not_count():
+    rng = np.random.default_rng(3)
+    data = blocks(np.linspace(0, 1, 20), LOADS, rng, size=2)
+    alternating = np.tile([1.0, -1.0], data.n_runs)
+    assert lag_one_correlation(alternating, data) == pytest.approx(-1.0)
+    stepping = np.repeat(np.tile([1.0, -1.0], data.n_runs // 2), 2)
+    assert lag_one_correlation(stepping, data) == pytest.approx(1.0)
+
+
+def test_runs_of_one_block_have_no_lag_one_correlation():
+    rng = np.random.default_rng(4)
+    data = blocks(np.linspace(0, 1, 20), LOADS, rng, size=1)
+    assert lag_one_correlation(rng.standard_normal(len(data)), data) == 0.0
+
+
+# --- load levels
+
+
+@given(order=st.permutations([2.13, 6.63, 8.13, 12.75]))
+def test_the_loads_that_were_set_are_found_whatever_their_order(order):
+    data = blocks(np.linspace(0, 1, 10), np.array(order), np.random.default_rng(5))
+    found = load_levels(data)
+    np.testing.assert_allclose(found, [2.13, 6.63, 8.13, 12.75], rtol=0.1)
+
+
+def test_a_swept_load_is_stood_for_by_quantiles():
+    data = blocks(np.array([0.1]), np.geomspace(1.0, 100.0, 25), np.random.default_rng(6))
+    found = load_levels(data)
+    assert len(found) == 8
+    assert np.all(np.diff(found) > 0)
+    np.testing.assert_allclose(
+        np.mean(data.normal_force <= found[:, None], axis=1), (np.arange(8) + 0.5) / 8, atol=0.01
+    )
+
+
+def test_the_nearest_level_is_the_nearest_in_ratio():
+    nearest = nearest_level(np.array([1.0, 9.0, 11.0, 99.0]), np.array([1.0, 10.0, 12.0]))
+    assert nearest.tolist() == [0, 1, 2, 2]
+    assert nearest_level(np.array([3.5]), np.array([2.0, 6.0])).tolist() == [1]  # √12 is the middle
+
+
+def test_the_largest_slip_of_each_load_is_taken_in_size_and_by_itself():
+    rng = np.random.default_rng(7)
+    light = blocks(np.linspace(-0.6, 0.2, 9), np.array([2.0]), rng)
+    heavy = blocks(np.linspace(-0.1, 0.3, 9), np.array([10.0]), rng)
+    both = replace(
+        light,
+        slip=np.concatenate([light.slip, heavy.slip]),
+        normal_force=np.concatenate([light.normal_force, heavy.normal_force]),
+        run=np.concatenate([light.run, heavy.run + light.n_runs]),
+        run_names=light.run_names + heavy.run_names,
+    )
+    np.testing.assert_allclose(largest_slips(both), [0.6, 0.3], atol=0.02)

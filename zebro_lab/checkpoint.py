@@ -51,7 +51,8 @@ def load_checkpoint(folder: Path, *, fingerprint: str) -> Chains:
     if not path.is_file():
         raise DataError("no stopped fit to resume; run without --resume", file=path)
     try:
-        with np.load(path, allow_pickle=False) as stored:
+        # A file of our own: numpy leaves the one it opens open when the archive is damaged.
+        with path.open("rb") as file, np.load(file, allow_pickle=False) as stored:
             arrays = {name: stored[name] for name in stored.files}
         found = str(arrays.pop("fingerprint"))
         chains = Chains(**{**arrays, "thin": int(arrays["thin"])})

@@ -1,0 +1,178 @@
+# SPDX-License-Identifier: MIT
+"""Print the evidence that the decision records quote.
+
+Usage: .venv/bin/python docs/decisions/evidence.py {snooker,pooling,jacobian} [SEEDS]
+
+`pooling` and `jacobian` fit simulated sweeps by the Laplace approximation, with one idea of the
+likelihood changed at a time, and compare with the truth. Everything is simulated.
+"""
+
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import replace
+from functools import partial
+from typing import Any
+
+import emcee
+import numpy as np
+from emcee.moves import DEMove, DESnookerMove, StretchMove
+from scipy.stats import chi2
+
+from model.bayes import blocks as block_module
+from model.bayes import likelihood as likelihood_module
+from model.bayes.blocks import SlipBlocks
+from model.bayes.laplace import find_mode
+from model.bayes.posterior import LoadCell, SlipPosterior, default_priors
+from model.slip.law import Array, SlipLaw
+from rig.slip_rig.imperfections import lag_one_correlation
+from rig.slip_rig.sweep import (
+    SOURCE_LAW,
+    SOURCE_VALUES,
+    RigImperfections,
+    SweepPlan,
+    draw_imperfections,
+    simulate_sweep,
+)
+
+BLOCK_LENGTH = 21  # samples; `calibrate-slip datasets/rig-sim` chooses as much
+JUDGED = (*(p.name for p in SOURCE_LAW.parameters),
+          "gain_traction", "gain_normal", "bias_normal", "crosstalk")  # fmt: skip
+
+
+def snooker(seeds: int) -> None:
+    """Sample a 12-dimensional standard Gaussian, whose spread is 1."""
+    print(f"emcee {emcee.__version__}, 12 dimensions, 36 walkers, 20000 steps, {seeds} seeds")
+    kinds = {
+        "DEMove 0.8 + DESnookerMove 0.2": [(DEMove(), 0.8), (DESnookerMove(), 0.2)],
+        "DEMove": [(DEMove(), 1.0)],
+        "StretchMove": [(StretchMove(), 1.0)],
+    }
+    for name, moves in kinds.items():
+        spreads, times = zip(*(_sample_gaussian(moves, s) for s in range(seeds)), strict=True)
+        print(
+            f"{name:<32} standard deviation {np.mean(spreads):.3f}, "
+            f"autocorrelation time {np.mean(times):.0f} steps"
+        )
+
+
+def _sample_gaussian(moves: list[Any], seed: int) -> tuple[float, float]:
+    np.random.seed(seed)  # noqa: NPY002 (emcee reads the legacy state)
+    sampler = emcee.EnsembleSampler(
+        36, 12, lambda z: -0.5 * np.sum(z**2, axis=1), moves=moves, vectorize=True
+    )
+    sampler.run_mcmc(np.random.standard_normal((36, 12)), 20_000)  # noqa: NPY002
+    time = float(np.mean(sampler.get_autocorr_time(quiet=True)))
+    return float(sampler.get_chain(discard=1000, flat=True).std()), time
+
+
+def pooling(seeds: int) -> None:
+    """Judge the calibration of slips, with the noise of the force at its true values."""
+    fit = partial(_scores, true_noise=True)
+    _print_scores("slip noise pooled between runs", seeds, fit)
+    with _no_pooling():
+        _print_scores("not pooled", seeds, fit)
+    _print_scores("true slip given", seeds, partial(fit, true_slip=True))
+
+
+def jacobian(seeds: int) -> None:
+    """Judge the likelihood's Jacobian, everything free."""
+    _print_scores("Jacobian as it is", seeds, _scores)
+    for name, change in (("none", np.zeros_like), ("by a difference in load", None)):
+        with _other_jacobian(change):
+            _print_scores(name, seeds, _scores)
+
+
+def _print_scores(name: str, seeds: int, fit: Callable[[int], tuple[float, float, float]]) -> None:
+    z, crosstalk, joint = (np.array(x) for x in zip(*map(fit, range(seeds)), strict=True))
+    p = chi2.sf(joint.sum(), seeds * len(JUDGED))
+    print(
+        f"{name:<32} z of slip stiffness: mean {z.mean():+.2f}, sd {z.std():.2f}; crosstalk's mode "
+        f"{crosstalk.mean():+.4f}; joint chi-square p = {p:.1e} ({seeds} sweeps)"
+    )
+
+
+def _scores(
+    seed: int, *, true_slip: bool = False, true_noise: bool = False
+) -> tuple[float, float, float]:
+    """Return the z-score of slip stiffness, crosstalk's posterior mode and the joint chi-square."""
+    rng = np.random.default_rng(seed)
+    truth = draw_imperfections(rng)
+    sweep = simulate_sweep(
+        SOURCE_LAW, SOURCE_VALUES, plan=SweepPlan(), imperfections=truth, rng=rng
+    )
+    slip = sweep.slip_true if true_slip else sweep.samples.slip
+    blocks = block_module.block_means(replace(sweep.samples, slip=slip), BLOCK_LENGTH)
+    priors = default_priors(SOURCE_LAW, blocks, LoadCell(zero_stability=0.1))
+    noise = _block_noise(truth)
+    posterior = SlipPosterior(blocks, SOURCE_LAW, priors, noise if true_noise else {})
+    true_values = dict(zip(JUDGED, SOURCE_VALUES, strict=False))
+    true_values |= {name: getattr(truth, name) for name in JUDGED[4:]}
+    start = posterior.coordinates({**true_values, **noise})
+    laplace = find_mode(posterior.log_density, start[None])
+    judged = [i for i, p in enumerate(posterior.free) if p.name in JUDGED]
+    error = laplace.mode[judged] - start[judged]
+    covariance = laplace.covariance[np.ix_(judged, judged)]
+    return (
+        float(error[0] / np.sqrt(covariance[0, 0])),
+        float(priors["crosstalk"].value(laplace.mode[judged[-1]])),
+        float(error @ np.linalg.solve(covariance, error)),
+    )
+
+
+def _block_noise(truth: RigImperfections) -> dict[str, float]:
+    """Return what the noise of the samples is for means of blocks."""
+    rho = lag_one_correlation(1 / SweepPlan().rate, truth.noise_correlation_time)
+    n = np.arange(BLOCK_LENGTH)
+    within = np.sum(rho ** np.abs(n[:, None] - n))
+    across = np.sum(rho ** (BLOCK_LENGTH + n[:, None] - n))
+    shrunk = np.sqrt(within) / BLOCK_LENGTH
+    return {
+        "noise_floor": truth.noise_sd0 * shrunk,
+        "noise_slope": truth.noise_sd1 * shrunk,
+        "noise_correlation": across / within,
+        "offset_spread": truth.offset_sd,
+    }
+
+
+@contextmanager
+def _no_pooling() -> Iterator[None]:
+    """Let every run keep its own estimate of slip noise and wander."""
+    pooled = block_module._shrink
+    block_module._shrink = lambda estimates, sampling_variance, typical: estimates
+    try:
+        yield
+    finally:
+        block_module._shrink = pooled
+
+
+@contextmanager
+def _other_jacobian(change: Callable[[Array], Array] | None) -> Iterator[None]:
+    """Change the log Jacobian, or take it from a central difference of the force in the load."""
+    whole = likelihood_module.predict_blocks
+
+    def changed(blocks: SlipBlocks, law: SlipLaw, values: Array) -> likelihood_module.Prediction:
+        prediction = whole(blocks, law, values)
+        if change is not None:
+            return replace(prediction, log_jacobian=change(prediction.log_jacobian))
+        k = len(law.parameters)
+        step = 1e-4 * blocks.normal_force  # in the measured load, (1 + g_n) of the true one
+        above, below = (
+            whole(replace(blocks, normal_force=blocks.normal_force + s), law, values).force
+            for s in (step, -step)
+        )
+        gain, crosstalk = 1 + values[:, k + 1, None], values[:, k + 3, None]
+        slope = (above - below) / (2 * step * gain)
+        return replace(prediction, log_jacobian=np.log1p(-crosstalk * slope))
+
+    likelihood_module.predict_blocks = changed
+    try:
+        yield
+    finally:
+        likelihood_module.predict_blocks = whole
+
+
+if __name__ == "__main__":
+    _, what, *rest = sys.argv
+    commands = {"snooker": snooker, "pooling": pooling, "jacobian": jacobian}
+    commands[what](int(rest[0]) if rest else 20)

@@ -2,8 +2,8 @@
 """A stopped fit on disk: plain arrays, no pickle, tied to its data and settings."""
 
 import io
-import zipfile
 from pathlib import Path
+from zipfile import BadZipFile
 
 import numpy as np
 
@@ -12,6 +12,8 @@ from zebro_lab.atomic import atomic_write_bytes
 from zebro_lab.errors import DataError
 
 FILE = "checkpoint.npz"
+_DAMAGE = (OSError, EOFError, LookupError, RuntimeError, TypeError, ValueError, BadZipFile)
+"""What numpy and zipfile raise on archives with a byte or their end changed."""
 
 
 def save_checkpoint(folder: Path, chains: Chains, *, fingerprint: str) -> Path:
@@ -56,7 +58,7 @@ def load_checkpoint(folder: Path, *, fingerprint: str) -> Chains:
             arrays = {name: stored[name] for name in stored.files}
         found = str(arrays.pop("fingerprint"))
         chains = Chains(**{**arrays, "thin": int(arrays["thin"])})
-    except (OSError, ValueError, KeyError, TypeError, EOFError, zipfile.BadZipFile) as error:
+    except _DAMAGE as error:
         raise DataError(
             f"is no checkpoint of this program ({error}); remove it and start anew", file=path
         ) from error

@@ -1,0 +1,236 @@
+# SPDX-License-Identifier: MIT
+"""Every check of the verdict planted once, and whole fits that must not be trusted."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from model.bayes.blocks import SlipBlocks
+from model.bayes.convergence import Convergence
+from model.bayes.fit import prepare_fit
+from model.bayes.laplace import importance_draws
+from model.bayes.posterior import LoadCell
+from model.bayes.preliminary import BlockChoice
+from model.bayes.residuals import Residuals, analyse_residuals
+from model.bayes.verdict import Check, Verdict, judge, slip_reach
+from model.slip import Brush, MagicFormula
+from model.slip.definition import SlipDefinition
+from rig.slip_rig.imperfections import TYPICAL_RIG
+from rig.slip_rig.sweep import SOURCE_LAW, SOURCE_VALUES, SweepPlan, simulate_sweep
+
+CONVERGED = Convergence(
+    burn_in=50, length=1000, autocorrelation_time=np.full(10, 10.0), r_hat=np.full(10, 1.001),
+    ess_bulk=np.full(10, 5000.0), ess_tail=np.full(10, 4000.0), mcse=np.full(10, 0.01),
+)  # fmt: skip
+CLEAN = Residuals(
+    whitened=np.zeros(48), lag_one=0.0, run_score=np.zeros(12), inside=11 / 12, inside_p=1.0,
+    misfit=0.001, misfit_p=0.5, r_squared=0.999, rmse=0.01, rmse_over_load=0.002,
+)  # fmt: skip
+LAW = MagicFormula("constant")
+RIG_VALUES = (34.34 * 1.564 * 0.38, 1.564, 0.38, 0.0)
+TYRE_VALUES = (20.0, 1.4, 1.2, 0.2)  # its peak lies at slip 0.16
+WELL_INFORMED = dict.fromkeys(("slip_stiffness", "shape", "friction", "curvature"), 0.99)
+
+
+def sweep_blocks(largest_slip: float, *, load: float = 6.0, per_run: int = 4) -> SlipBlocks:
+    """Make 12 runs of evenly spaced slip set-points."""
+    slip = np.repeat(np.linspace(largest_slip / 12, largest_slip, 12), per_run)
+    zeros = np.zeros(len(slip))
+    return SlipBlocks(
+        slip=slip, normal_force=zeros + load, traction_force=zeros,
+        count=np.full(len(slip), 50), run=np.repeat(np.arange(12), per_run),
+        run_names=tuple("abcdefghijkl"), definition=SlipDefinition.MATERIAL, slip_wander=zeros,
+        slip_error=zeros, slip_load_covariance=zeros, run_slip_error=np.zeros(12),
+    )  # fmt: skip
+
+
+def draws(law_values: tuple[float, ...], *, offset_spread: float = 0.05) -> np.ndarray:
+    """Repeat one parameter vector, of a perfect load cell, as if it were draws."""
+    measurement = (0.0, 0.0, 0.0, 0.0, 0.02, 0.01, 0.1, offset_spread)
+    return np.tile([*law_values, *measurement], (5, 1))
+
+
+def verdict_on(**changes) -> Verdict:
+    """Judge a fit that nothing is wrong with, but for the changes."""
+    case = {
+        "blocks": sweep_blocks(0.9), "law": LAW, "values": draws(RIG_VALUES),
+        "contraction": WELL_INFORMED, "convergence": CONVERGED, "residuals": CLEAN,
+        "offset_scale": 0.1,
+    }  # fmt: skip
+    return judge(**(case | changes))
+
+
+def failed(verdict: Verdict) -> list[Check]:
+    return [check for check in (*verdict.convergence, *verdict.trust) if not check.passed]
+
+
+def test_fit_without_fault_is_trusted():
+    verdict = verdict_on()
+    assert verdict.trustworthy
+    assert verdict.headline() == "converged and trustworthy"
+    assert verdict.next_steps() == ()
+
+
+CONVERGENCE_FAULTS = {
+    "R-hat between ensembles is 1.020, wanted <= 1.01": {"r_hat": np.array([1.0, 1.02])},
+    "Monte Carlo error over posterior spread is 0.060": {"mcse": np.array([0.01, 0.06])},
+    "bulk effective sample size is 399, wanted >= 400": {"ess_bulk": np.array([5e3, 399.0])},
+    "tail effective sample size is 120, wanted >= 400": {"ess_tail": np.array([120.0, 5e3])},
+    "chain length in autocorrelation times is 40, wanted >= 50": {"length": 400},
+}
+
+
+@pytest.mark.parametrize("evidence", CONVERGENCE_FAULTS)
+def test_broken_rule_of_convergence_is_named_with_its_figure(evidence):
+    verdict = verdict_on(convergence=replace(CONVERGED, **CONVERGENCE_FAULTS[evidence]))
+    assert not verdict.converged
+    assert not verdict.trustworthy
+    assert [check.evidence.startswith(evidence) for check in failed(verdict)] == [True]
+    assert verdict.headline().startswith("NOT CONVERGED")
+    assert "--resume" in verdict.next_steps()[0]
+
+
+TRUST_FAULTS = {
+    "residuals are white": ({"lag_one": 0.5}, "intervals are too narrow"),
+    "run means are predicted": ({"inside": 0.4, "inside_p": 1e-4}, "runs that do not belong"),
+    "the law has the data's shape": ({"misfit": 0.12, "misfit_p": 1e-6}, "a bad fit"),
+}
+
+
+@pytest.mark.parametrize("check", TRUST_FAULTS)
+def test_fault_in_the_residuals_costs_the_trust_but_not_the_convergence(check):
+    changes, advice = TRUST_FAULTS[check]
+    verdict = verdict_on(residuals=replace(CLEAN, **changes))
+    assert [c.name for c in failed(verdict)] == [check]
+    assert verdict.converged
+    assert not verdict.trustworthy
+    assert "NOT TRUSTWORTHY" in verdict.headline()
+    assert advice in verdict.next_steps()[0]
+
+
+@pytest.mark.parametrize("sign", [-1, 1])
+def test_correlation_of_either_sign_is_no_white_noise(sign):
+    assert failed(verdict_on(residuals=replace(CLEAN, lag_one=sign * 0.6)))
+
+
+def test_correlation_is_judged_by_how_many_pairs_there_are():
+    few, many = sweep_blocks(0.9), sweep_blocks(0.9, per_run=400)
+    slight = replace(CLEAN, lag_one=0.1)
+    assert not failed(verdict_on(residuals=slight, blocks=few))
+    assert failed(verdict_on(residuals=slight, blocks=many))
+
+
+def test_trials_of_one_block_cannot_be_correlated():
+    verdict = verdict_on(blocks=sweep_blocks(0.9, per_run=1), residuals=replace(CLEAN, lag_one=0.9))
+    assert verdict.trustworthy
+
+
+@pytest.mark.parametrize("changes", [{"misfit": 0.3, "misfit_p": 0.2},
+                                     {"misfit": 0.01, "misfit_p": 1e-9}])  # fmt: skip
+def test_misfit_must_be_both_large_and_beyond_chance(changes):
+    assert verdict_on(residuals=replace(CLEAN, **changes)).trustworthy
+
+
+def test_offsets_as_large_as_the_curve_carry_it():
+    verdict = verdict_on(values=draws(RIG_VALUES, offset_spread=1.8), offset_scale=5.0)
+    (check,) = failed(verdict)
+    assert check.name == "the curve, not the run offsets, carries the data"
+    assert "run offsets 1.8 N" in check.evidence
+    assert "the run offsets carry the curve" in verdict.next_steps()[0]
+
+
+def test_offsets_far_beyond_the_load_cells_stability_are_not_believed():
+    small_beside_the_curve = draws(RIG_VALUES, offset_spread=0.04)
+    assert verdict_on(values=small_beside_the_curve, offset_scale=0.02).trustworthy
+    assert failed(verdict_on(values=small_beside_the_curve, offset_scale=0.01))
+
+
+def test_sweep_that_stops_before_the_peak_names_shape_and_friction_weak():
+    verdict = verdict_on(blocks=sweep_blocks(0.15, load=1500.0), values=draws(TYRE_VALUES),
+                         offset_scale=10.0)  # fmt: skip
+    assert set(verdict.weak) == {"shape", "friction"}
+    assert "cannot be told apart" in verdict.weak["shape"]
+    assert "peak force and initial slope" in verdict.weak["friction"]
+    assert verdict.trustworthy
+    assert verdict.headline().endswith("weakly identified: shape, friction")
+    assert len(verdict.next_steps()) == 1, "one reason is said once"
+
+
+def test_reach_is_counted_in_peak_slips_of_either_sign():
+    peak = float(LAW.peak_slip(6.0, RIG_VALUES))
+    blocks = sweep_blocks(3.0 * peak)
+    assert slip_reach(blocks, LAW, draws(RIG_VALUES)) == pytest.approx(3.0)
+    braking = replace(blocks, slip=-blocks.slip)
+    assert slip_reach(braking, LAW, draws(RIG_VALUES)) == pytest.approx(3.0)
+
+
+@pytest.mark.parametrize(("reach", "weak"), [(2.4, True), (2.6, False)])
+def test_curve_is_told_from_its_peak_two_and_a_half_peak_slips_out(reach, weak):
+    peak = float(LAW.peak_slip(6.0, RIG_VALUES))
+    assert ("shape" in verdict_on(blocks=sweep_blocks(reach * peak)).weak) == weak
+
+
+def test_parameter_that_stays_as_wide_as_its_prior_is_weak():
+    verdict = verdict_on(contraction=WELL_INFORMED | {"curvature": 0.3})
+    assert list(verdict.weak) == ["curvature"]
+    assert "30% only" in verdict.weak["curvature"]
+
+
+def test_contraction_below_zero_reads_as_none():
+    assert "0% only" in verdict_on(contraction=WELL_INFORMED | {"shape": -0.04}).weak["shape"]
+
+
+def test_law_without_a_shape_factor_needs_no_reach():
+    verdict = verdict_on(law=Brush(), values=draws((20.0, 0.38)), blocks=sweep_blocks(0.1))
+    assert verdict.weak == {}
+
+
+def test_failed_fit_keeps_its_weak_parameters_in_the_headline():
+    verdict = verdict_on(
+        residuals=replace(CLEAN, misfit=0.2, misfit_p=1e-9),
+        contraction=WELL_INFORMED | {"shape": 0.1},
+    )
+    assert "NOT TRUSTWORTHY" in verdict.headline()
+    assert verdict.headline().endswith("weakly identified: shape")
+
+
+# Whole fits of simulated sweeps; the sampler's evidence is taken as good.
+
+
+def verdict_on_sweep(*, offset_sd: float, zero_stability: float, seed: int = 1) -> Verdict:
+    """Fit a simulated sweep of one set-point a run by the second engine and judge it."""
+    rng = np.random.default_rng(seed)
+    plan = SweepPlan(slips=tuple(np.linspace(0.005, 0.9, 12) ** 1.5), loads=(4.0, 12.0), rate=100.0)
+    rig = replace(TYPICAL_RIG, offset_sd=offset_sd)
+    sweep = simulate_sweep(SOURCE_LAW, SOURCE_VALUES, plan=plan, imperfections=rig, rng=rng)
+    fit = prepare_fit(
+        sweep.samples, SOURCE_LAW, load_cell=LoadCell(zero_stability=zero_stability), rng=rng,
+        block_choice=BlockChoice(20, None, "as planned"), threads=1,
+    )  # fmt: skip
+    weighted = importance_draws(fit.posterior.log_density, fit.laplace, n=1000, rng=rng)
+    z = weighted.resample(400, rng=rng)
+    values = fit.posterior.values(z)
+    names = [parameter.name for parameter in fit.posterior.free]
+    return judge(
+        blocks=fit.posterior.blocks,
+        law=SOURCE_LAW,
+        values=values,
+        contraction=dict(zip(names, 1 - z.var(axis=0), strict=True)),
+        convergence=CONVERGED,
+        residuals=analyse_residuals(fit.posterior.blocks, SOURCE_LAW, values),
+        offset_scale=zero_stability,
+    )
+
+
+def test_typical_rig_is_trusted():
+    verdict = verdict_on_sweep(offset_sd=0.05, zero_stability=0.1)
+    assert verdict.trustworthy, failed(verdict)
+    assert "shape" not in verdict.weak
+
+
+@pytest.mark.parametrize("zero_stability", [5.0, 0.1])
+def test_offsets_that_swallow_the_curve_are_found_under_any_prior(zero_stability):
+    verdict = verdict_on_sweep(offset_sd=1.5, zero_stability=zero_stability)
+    assert not verdict.trustworthy
+    assert any("the run offsets carry the curve" in step for step in verdict.next_steps())

@@ -1,0 +1,49 @@
+# SPDX-License-Identifier: MIT
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from model.errors import DefinitionMismatch
+from model.slip.curve import SlipCurve
+from model.slip.definition import SlipDefinition
+from model.slip.magic_formula import MagicFormula
+
+VALUES = np.array([20.4, 1.56, 0.38, 0.0066])
+CURVE = SlipCurve(
+    law=MagicFormula(),
+    values=VALUES,
+    covariance=np.diag(VALUES / 100) ** 2,
+    definition=SlipDefinition.MATERIAL,
+    load_range=(2.0, 13.0),
+    slip_range=(0.0, 1.0),
+)
+
+
+@given(st.floats(-1, 1), st.floats(0.1, 50))
+def test_force_is_that_of_the_law_at_its_values(slip, load):
+    force = CURVE.force(slip, load, definition="material")
+    assert force == CURVE.law.force(slip, load, VALUES)
+
+
+@pytest.mark.parametrize("definition", [SlipDefinition.TRAVEL, "larger"])
+def test_slip_of_another_definition_is_refused(definition):
+    with pytest.raises(DefinitionMismatch) as caught:
+        CURVE.force(0.1, 5.0, definition=definition)
+    assert (caught.value.found, caught.value.expected) == (str(definition), "material")
+
+
+def test_slip_of_no_definition_is_refused():
+    with pytest.raises(ValueError, match="materiel"):
+        CURVE.force(0.1, 5.0, definition="materiel")
+
+
+@given(st.lists(st.floats(0, 30), min_size=1))
+def test_untested_loads_are_those_outside_the_range(loads):
+    expected = [not 2.0 <= load <= 13.0 for load in loads]
+    assert CURVE.untested_loads(loads).tolist() == expected
+
+
+def test_ends_of_the_tested_range_were_tested():
+    assert not CURVE.untested_loads([2.0, 13.0]).any()
+    assert CURVE.untested_loads(np.nextafter([2.0, 13.0], [0.0, 20.0])).all()

@@ -140,17 +140,8 @@ def read_slip(path: Path) -> SlipCurve:
                 f"has schema {content['schema']}, this version reads {SCHEMA}; update zebro-lab",
                 file=file,
             )
-        options = {k: v for k, v in content["law"].items() if k != "name"}
-        law = slip_law(content["law"]["name"], **options)
-        return SlipCurve(
-            law=law,
-            values=np.array([content["parameters"][p.name]["mean"] for p in law.parameters]),
-            covariance=np.array(content["covariance"]["matrix"], dtype=float),
-            definition=SlipDefinition(content["slip_definition"]),
-            load_range=tuple(content["tested"]["normal_force"]),
-            slip_range=tuple(content["tested"]["slip_ratio"]),
-        )
-    except (OSError, KeyError, TypeError, ValueError, ModelError) as error:
+        return _curve(content)
+    except (OSError, AttributeError, KeyError, TypeError, ValueError, ModelError) as error:
         if isinstance(error, DataError):
             raise
         raise DataError(
@@ -158,6 +149,30 @@ def read_slip(path: Path) -> SlipCurve:
             "name a slip.toml or the folder that calibrate-slip wrote",
             file=file,
         ) from error
+
+
+def _curve(content: Mapping[str, Any]) -> SlipCurve:
+    options = {k: v for k, v in content["law"].items() if k != "name"}
+    law = slip_law(content["law"]["name"], **options)
+    k, tested = len(law.parameters), content["tested"]
+    means = [content["parameters"][p.name]["mean"] for p in law.parameters]
+    load_low, load_high = _numbers(tested["normal_force"], (2,)).tolist()
+    slip_low, slip_high = _numbers(tested["slip_ratio"], (2,)).tolist()
+    return SlipCurve(
+        law=law,
+        values=_numbers(means, (k,)),
+        covariance=_numbers(content["covariance"]["matrix"], (k, k)),
+        definition=SlipDefinition(content["slip_definition"]),
+        load_range=(load_low, load_high),
+        slip_range=(slip_low, slip_high),
+    )
+
+
+def _numbers(found: object, shape: tuple[int, ...]) -> np.ndarray:
+    numbers = np.array(found, dtype=float)
+    if numbers.shape != shape:
+        raise ValueError(f"expected numbers of shape {shape}, found {numbers.shape}")
+    return numbers
 
 
 def _slip_toml(calibration: Calibration, inputs: Mapping[str, str]) -> str:

@@ -162,21 +162,27 @@ def start_and_signal(number: signal.Signals, command: list[str], out: Path) -> t
     return process.returncode, stdout, stderr
 
 
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
-def test_stopped_fit_exits_130_and_resumes_to_convergence(sweep, tmp_path, number):
+@pytest.fixture(params=[signal.SIGINT, signal.SIGTERM], ids=lambda number: number.name)
+def stopped(request, sweep, tmp_path) -> tuple[tuple[object, ...], Path, tuple[int, str, str]]:
+    """Return the arguments of a fit that was asked to stop, its folder and how it ended."""
     out = tmp_path / "out"
     arguments = (sweep, "--out", out, *SMALL_FIT)
-    code, stdout, stderr = start_and_signal(number, patched(LOOK_OFTEN, *arguments), out)
-    assert (code, stdout) == (130, "")
+    return arguments, out, start_and_signal(request.param, patched(LOOK_OFTEN, *arguments), out)
+
+
+def test_stopped_fit_exits_130_with_a_checkpoint_alone_and_says_how_to_go_on(stopped):
+    _, out, ending = stopped
     checkpoint = out / "checkpoint.npz"
-    assert stderr == (
-        f"stopped; {checkpoint} keeps the fit: the same command with --resume goes on\n"
-    )
+    message = f"stopped; {checkpoint} keeps the fit: the same command with --resume goes on\n"
+    assert ending == (130, "", message)
     assert names(out) == {"checkpoint.npz"}
     with np.load(checkpoint, allow_pickle=False) as stored:
         assert np.isfinite(stored["z"]).all()
-    if number is signal.SIGTERM:
-        return  # resumes alike
+
+
+@pytest.mark.parametrize("stopped", [signal.SIGINT], indirect=True)
+def test_stopped_fit_resumes_to_convergence(stopped):
+    arguments, out, _ = stopped
     resumed = subprocess.run(
         patched(EASILY_PLEASED, *arguments, "--resume"),
         capture_output=True, text=True, check=False, timeout=500,

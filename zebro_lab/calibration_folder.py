@@ -29,7 +29,10 @@ if TYPE_CHECKING:
 
 SCHEMA = 1
 SLIP_TOML = "slip.toml"
-OWNED = ("slip.toml", "summary.csv", "posterior.nc", "manifest.json", "*.png")
+PICTURES = ("curves", "surface", "corner", "traces", "residuals")
+OWNED = (
+    "slip.toml", "summary.csv", "posterior.nc", "manifest.json", *(f"{n}.png" for n in PICTURES)
+)  # fmt: skip
 """What a calibration writes; an earlier run's files of these names are replaced."""
 
 

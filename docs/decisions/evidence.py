@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
 """Print the evidence that the decision records quote.
 
-Usage: .venv/bin/python docs/decisions/evidence.py {snooker,pooling,jacobian} [SEEDS]
+Usage: .venv/bin/python docs/decisions/evidence.py {snooker,pooling,crosstalk} [SEEDS]
 
-`pooling` and `jacobian` fit simulated sweeps by the Laplace approximation, with one idea of the
+`pooling` and `crosstalk` fit simulated sweeps by the Laplace approximation, with one idea of the
 likelihood changed at a time, and compare with the truth. Everything is simulated.
 """
 
@@ -75,12 +75,11 @@ def pooling(seeds: int) -> None:
     _print_scores("true slip given", seeds, partial(fit, true_slip=True))
 
 
-def jacobian(seeds: int) -> None:
-    """Judge the likelihood's Jacobian, everything free."""
-    _print_scores("Jacobian as it is", seeds, _scores)
-    for name, change in (("none", np.zeros_like), ("by a difference in load", None)):
-        with _other_jacobian(change):
-            _print_scores(name, seeds, _scores)
+def crosstalk(seeds: int) -> None:
+    """Judge which traction crosstalk puts into the load, everything free."""
+    _print_scores("expected traction", seeds, _scores)
+    with _measured_traction():
+        _print_scores("measured traction", seeds, _scores)
 
 
 def _print_scores(name: str, seeds: int, fit: Callable[[int], tuple[float, float, float]]) -> None:
@@ -147,23 +146,17 @@ def _no_pooling() -> Iterator[None]:
 
 
 @contextmanager
-def _other_jacobian(change: Callable[[Array], Array] | None) -> Iterator[None]:
-    """Change the log Jacobian, or take it from a central difference of the force in the load."""
+def _measured_traction() -> Iterator[None]:
+    """Put the measured traction into the load, with no Jacobian."""
     whole = likelihood_module.predict_blocks
 
     def changed(blocks: SlipBlocks, law: SlipLaw, values: Array) -> likelihood_module.Prediction:
-        prediction = whole(blocks, law, values)
-        if change is not None:
-            return replace(prediction, log_jacobian=change(prediction.log_jacobian))
         k = len(law.parameters)
-        step = 1e-4 * blocks.normal_force  # in the measured load, (1 + g_n) of the true one
-        above, below = (
-            whole(replace(blocks, normal_force=blocks.normal_force + s), law, values).force
-            for s in (step, -step)
-        )
         gain, crosstalk = 1 + values[:, k + 1, None], values[:, k + 3, None]
-        slope = (above - below) / (2 * step * gain)
-        return replace(prediction, log_jacobian=np.log1p(-crosstalk * slope))
+        load = blocks.normal_force + crosstalk * blocks.traction_force / gain
+        without = values.copy()
+        without[:, k + 3] = 0.0
+        return whole(replace(blocks, normal_force=load), law, without)
 
     likelihood_module.predict_blocks = changed
     try:
@@ -174,5 +167,5 @@ def _other_jacobian(change: Callable[[Array], Array] | None) -> Iterator[None]:
 
 if __name__ == "__main__":
     _, what, *rest = sys.argv
-    commands = {"snooker": snooker, "pooling": pooling, "jacobian": jacobian}
+    commands = {"snooker": snooker, "pooling": pooling, "crosstalk": crosstalk}
     commands[what](int(rest[0]) if rest else 20)

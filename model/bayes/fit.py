@@ -12,7 +12,7 @@ from model.bayes.laplace import Laplace, find_mode
 from model.bayes.posterior import LoadCell, SlipPosterior, default_priors
 from model.bayes.preliminary import BlockChoice, choose_block_length, least_squares_values
 from model.bayes.samples import SlipSamples
-from model.errors import InsufficientData
+from model.errors import DomainError, InsufficientData
 from model.slip.law import SlipLaw
 
 CLEAR_WIN = 2.0  # standard errors by which a law must predict better to be preferred
@@ -155,7 +155,16 @@ def compare(names: Sequence[str], fits: Sequence[PreparedFit]) -> Comparison:
     Args:
         names: Name of each law, simplest first.
         fits: A fit for each.
+
+    Raises:
+        DomainError: The fits were made on different blocks, whose densities do not compare.
     """
+    lengths = sorted({len(fit.posterior.blocks) for fit in fits})
+    if len(lengths) > 1:
+        raise DomainError(
+            f"the laws were fitted to {' and '.join(map(str, lengths))} blocks; expected the same "
+            "blocks; hand the first fit's block_choice to the others"
+        )
     validations = [fit.cross_validation for fit in fits]
     n_runs = fits[0].posterior.blocks.n_runs
     density = np.stack([np.zeros(n_runs) if v is None else v.log_density for v in validations])

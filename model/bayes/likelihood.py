@@ -4,7 +4,7 @@ r"""The likelihood of block means: one slip law seen through a load cell and two
 For block j of run i
 
 .. math::
-    F_{ij} = (1+g_t)\,\bar f\bigl(\kappa_{ij}, (1+g_n) F_n - b_n + c F\bigr) + b_i + e_{ij},
+    F_{ij} = (1+g_t)\,\bar f\bigl(\kappa_{ij}, (1+g_n) F_n - b_n + c (1+g_t) f\bigr) + b_i + e_{ij},
 
 with the law averaged over the spread of the true slip, a run offset
 :math:`b_i \sim N(0, \tau^2)`, noise e of marginal standard deviation :math:`s_0 + s_1 |f|` that is
@@ -49,16 +49,11 @@ class Prediction:
         force: Expected measured traction, run offset apart [N].
         slope: Derivative of `force` with respect to slip [N].
         noise: Marginal standard deviation of the correlated noise [N].
-        log_jacobian: Log of the derivative of the residual with respect to the measured traction
-            [-]. It is not 0 because crosstalk puts the measured traction into the load; left out,
-            the likelihood is no density of the traction, and crosstalk grows to whatever shrinks
-            the noise.
     """
 
     force: Array
     slope: Array
     noise: Array
-    log_jacobian: Array
 
 
 def predict_blocks(blocks: SlipBlocks, law: SlipLaw, values: Array) -> Prediction:
@@ -67,9 +62,13 @@ def predict_blocks(blocks: SlipBlocks, law: SlipLaw, values: Array) -> Predictio
     The mean of the law over a block is a three-point Gauss-Hermite rule in slip at
     :math:`\kappa, \kappa \pm \sqrt{3}\,\omega` (exact to fifth order in the spread
     :math:`\omega` of the true slip around the block's), plus
-    :math:`f_{\kappa n}\,\mathrm{cov}(\kappa, F_n)`. The force is proportional to load to first
-    order: :math:`f_{\kappa n} \approx f_\kappa / F_n`, and in the Jacobian
-    :math:`f_n \approx f / F_n`.
+    :math:`f_{\kappa n}\,\mathrm{cov}(\kappa, F_n)`, with :math:`f_{\kappa n} \approx
+    f_\kappa / F_n`, the force being proportional to load to first order.
+
+    Crosstalk takes the expected traction for the measured one. With the measured one in the load,
+    the density of the traction would have a Jacobian, and whatever error was made in that,
+    crosstalk would grow until it balanced: n blocks outweigh any prior. The two differ by
+    c·f_n, a five-hundredth, of the noise.
 
     Args:
         blocks: The block means, n of them.
@@ -80,7 +79,8 @@ def predict_blocks(blocks: SlipBlocks, law: SlipLaw, values: Array) -> Predictio
     law_values = values[:, :k].T[:, :, None]
     g_t, g_n, b_n, c, s_0, s_1 = values[:, k : k + 6].T[:, :, None]
     # A load cell bias can push the lightest loads through zero; no law is defined there.
-    load = np.maximum((1 + g_n) * blocks.normal_force - b_n + c * blocks.traction_force, 1e-9)
+    load = np.maximum((1 + g_n) * blocks.normal_force - b_n, 1e-9)
+    load = np.maximum(load + c * (1 + g_t) * law.force(blocks.slip, load, law_values), 1e-9)
     half_width = np.sqrt(3 * np.maximum(blocks.slip_variance(), 1e-12))
     above = law.force(blocks.slip + half_width, load, law_values)
     centre = law.force(blocks.slip, load, law_values)
@@ -88,12 +88,7 @@ def predict_blocks(blocks: SlipBlocks, law: SlipLaw, values: Array) -> Predictio
     slope = (above - below) / (2 * half_width)
     mean = (above + 4 * centre + below) / 6 + slope / load * blocks.slip_load_covariance
     force = (1 + g_t) * mean
-    return Prediction(
-        force=force,
-        slope=(1 + g_t) * slope,
-        noise=s_0 + s_1 * np.abs(force),
-        log_jacobian=np.log1p(-c * force / load),
-    )
+    return Prediction(force, (1 + g_t) * slope, s_0 + s_1 * np.abs(force))
 
 
 def run_log_likelihood(blocks: SlipBlocks, law: SlipLaw, values: Array) -> Array:
@@ -109,11 +104,10 @@ def run_log_likelihood(blocks: SlipBlocks, law: SlipLaw, values: Array) -> Array
     """
     predicted = predict_blocks(blocks, law, values)
     rho, tau = values[:, -2], values[:, -1]
-    starts = blocks.run_starts()
     return _filter_runs(
         blocks.traction_force - predicted.force, predicted.noise, predicted.slope,
-        blocks.slip_error, blocks.run_slip_error, starts, rho, tau,
-    ) + np.add.reduceat(predicted.log_jacobian, starts[:-1], axis=1)  # fmt: skip
+        blocks.slip_error, blocks.run_slip_error, blocks.run_starts(), rho, tau,
+    )  # fmt: skip
 
 
 def log_likelihood(blocks: SlipBlocks, law: SlipLaw, values: Array) -> Array:

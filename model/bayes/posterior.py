@@ -34,7 +34,7 @@ class LoadCell:
 def default_priors(law: SlipLaw, blocks: SlipBlocks, load_cell: LoadCell) -> dict[str, Prior]:
     """Choose a weakly informative prior for every parameter of a law and of the measurement.
 
-    Only scales come from the data: the largest load (for the peak's place) and the largest force
+    Only scales come from the data: the median load (for the peak's place) and the largest force
     (for the noise). What the load cell does is as informative as its certificate.
 
     Args:

@@ -34,7 +34,7 @@ def calibrate(
     ],
     out: Annotated[Path, typer.Option(help="Calibration folder to write.")] = Path("calibration"),
     columns: Annotated[
-        Path | None, typer.Option(help="columns.toml for tables that have none beside them.")
+        Path | None, typer.Option(help="columns.toml to use in place of those beside the tables.")
     ] = None,
     slip_definition: Annotated[
         str | None, typer.Option(help="Fit in this definition: material, travel or larger.")

@@ -171,9 +171,9 @@ def _draw_close_up(
 def _load_text(blocks: Blocks, curve: _LoadCurve) -> str:
     loads = blocks.normal_force[curve.rows]
     if not len(loads):
-        return f"load {curve.load:g} N (no blocks)"
+        return f"load {curve.load:.4g} N (no blocks)"
     ends = dict.fromkeys((plain(loads.min()), plain(loads.max())))  # one where they round alike
-    return f"load {curve.load:g} N ({len(loads)} blocks, {'–'.join(ends)} N)"
+    return f"load {curve.load:.4g} N ({len(loads)} blocks, {'–'.join(ends)} N)"
 
 
 def _peak_text(curve: _LoadCurve) -> str:

@@ -51,7 +51,8 @@ CHUNK = 20  # kept steps between looks at the clock, the keyboard and the bar
 FIRST_LOOK = 100  # kept steps before convergence is judged for the first time
 CHECKPOINT_SECONDS = 5.0
 DRAWS_PER_ENSEMBLE = 1000
-IMPORTANCE_DRAWS = 4000
+IMPORTANCE_DRAWS = 10_000
+FEW_BLOCKS = 500  # below, numpy's calls are so short that threads only wait for each other
 
 
 class Stopped(ZebroLabError):
@@ -252,6 +253,7 @@ def _sample(
         density, fit.laplace, ensembles=request.ensembles, thin=THIN, rng=rng
     )
     most = max(request.max_steps // THIN, FIRST_LOOK)
+    threads = 1 if len(fit.posterior.blocks) < FEW_BLOCKS else request.threads
     look, saved = _look_from(chains.n_steps - CHUNK + 1), time.monotonic()
     watcher.step("sampling", 0.0)
     while True:
@@ -264,7 +266,7 @@ def _sample(
             look = _look_from(chains.n_steps + 1)
         if watcher.stop_requested():
             raise Stopped(save_checkpoint(request.out, chains, fingerprint=mark))
-        chains = advance(density, chains, steps=CHUNK, threads=request.threads)
+        chains = advance(density, chains, steps=CHUNK, threads=threads)
         if time.monotonic() - saved > CHECKPOINT_SECONDS:
             save_checkpoint(request.out, chains, fingerprint=mark)
             saved = time.monotonic()

@@ -24,7 +24,7 @@ from model.bayes import sampler
 from model.bayes.convergence import assess
 from model.bayes.fit import PreparedFit, prepare_fit
 from model.bayes.laplace import importance_draws
-from model.bayes.likelihood import log_likelihood, predict_blocks
+from model.bayes.likelihood import load_rule, log_likelihood, predict_blocks
 from model.bayes.posterior import LoadCell, SlipPosterior
 from model.bayes.priors import HalfNormal, LogNormal, Normal, Prior, Uniform
 from model.bayes.samples import SlipSamples
@@ -99,7 +99,7 @@ def dense_log_likelihood(posterior: SlipPosterior, values: Array) -> float:
     blocks = posterior.blocks
     predicted = predict_blocks(blocks, posterior.law, values[None])
     rho, tau = values[-2:]
-    total = float(predicted.log_jacobian.sum())
+    total = 0.0
     starts = blocks.run_starts()
     for i, (first, end) in enumerate(pairwise(starts)):
         part = slice(first, end)
@@ -182,11 +182,23 @@ def jax_log_density(posterior: SlipPosterior) -> Callable[[Any], Any]:
 
     blocks = posterior.blocks
     shape = (blocks.n_runs, -1)
-    slip, load, traction, slip_error, covariance, spread = (
+    rule = load_rule(blocks)
+    spread = np.sqrt(3 * np.maximum(blocks.slip_variance() - rule.slip_variance, 1e-12))
+    slip, load, traction, slip_error, spread = (
         jnp.asarray(x.reshape(shape))
         for x in (
-            blocks.slip, blocks.normal_force, blocks.traction_force, blocks.slip_error,
-            blocks.slip_load_covariance, np.sqrt(3 * np.maximum(blocks.slip_variance(), 1e-12)),
+            blocks.slip,
+            blocks.normal_force,
+            blocks.traction_force,
+            blocks.slip_error,
+            spread,
+        )
+    )
+    light, heavy, share, slip_light, slip_heavy, slip_per_load = (
+        jnp.asarray(x.reshape(shape))
+        for x in (
+            rule.light, rule.heavy, rule.heavy_share,
+            rule.slip_light, rule.slip_heavy, rule.slip_per_load,
         )
     )  # fmt: skip
     lag = np.abs(np.subtract.outer(np.arange(slip.shape[1]), np.arange(slip.shape[1])))
@@ -202,17 +214,20 @@ def jax_log_density(posterior: SlipPosterior) -> Callable[[Any], Any]:
             jax_value(prior, z[i]) for i, prior in enumerate(priors)
         )
         B = K / (C * mu)
-        true_load = jnp.maximum((1 + g_n) * load - b_n + c * traction, 1e-9)
-        E = curvature(B, C, x * true_load)
 
-        def force(kappa: Any) -> Any:
+        def force(kappa: Any, measured_load: Any) -> Any:
+            true_load = jnp.maximum((1 + g_n) * measured_load - b_n, 1e-9)
+            E = curvature(B, C, x * true_load)
             Bk = B * kappa
-            return mu * true_load * jnp.sin(C * jnp.arctan(Bk - E * (Bk - jnp.arctan(Bk))))
+            f = mu * true_load * jnp.sin(C * jnp.arctan(Bk - E * (Bk - jnp.arctan(Bk))))
+            return (1 + g_t) * f
 
-        above, centre, below = force(slip + spread), force(slip), force(slip - spread)
+        above, centre, below = (force(slip + s * spread, load) for s in (1, 0, -1))
+        at_light, at_heavy = force(slip_light, light), force(slip_heavy, heavy)
         slope = (above - below) / (2 * spread)
-        mean = (1 + g_t) * ((above + 4 * centre + below) / 6 + slope / true_load * covariance)
-        slope = (1 + g_t) * slope
+        mean = at_light + share * (at_heavy - at_light) + (above - 2 * centre + below) / 6
+        slope_in_load = (at_heavy - at_light) / (heavy - light) - slope * slip_per_load
+        mean = mean + slope_in_load / (1 + g_n) * c * mean
         noise = s_0 + s_1 * jnp.abs(mean)
         dense = (
             noise[:, :, None] * noise[:, None, :] * rho**lag
@@ -225,10 +240,9 @@ def jax_log_density(posterior: SlipPosterior) -> Callable[[Any], Any]:
         log_determinant = 2 * jnp.log(jnp.diagonal(factor, axis1=1, axis2=2)).sum()
         size = slip.size
         likelihood = -0.5 * ((white**2).sum() + log_determinant + size * jnp.log(2 * jnp.pi))
-        jacobian = jnp.log1p(-c * mean / true_load).sum()
         prior = -0.5 * (z**2 + jnp.log(2 * jnp.pi)).sum()
         inside = (curvature(B, C, x * check_loads) <= 1).all()
-        return jnp.where(inside, likelihood + jacobian + prior, -jnp.inf)
+        return jnp.where(inside, likelihood + prior, -jnp.inf)
 
     return log_density
 

@@ -35,6 +35,8 @@ class SlipBlocks:
         definition: What the slip ratios are divided by.
         slip_wander: Variance of the true slip within the block, shape (n,) [-].
         slip_error: Variance of the error of `slip`, independent between blocks, shape (n,) [-].
+        load_variance: Variance of the load within the block, shape (n,) [N^2].
+        load_skewness: Skewness of the load within the block, shape (n,) [-].
         slip_load_covariance: Covariance of slip and load within the block, shape (n,) [N].
         run_slip_error: Variance of the error of `slip` that a run shares, shape (n_runs,) [-].
     """
@@ -48,6 +50,8 @@ class SlipBlocks:
     definition: SlipDefinition
     slip_wander: Array
     slip_error: Array
+    load_variance: Array
+    load_skewness: Array
     slip_load_covariance: Array
     run_slip_error: Array
 
@@ -93,6 +97,8 @@ class SlipBlocks:
             definition=self.definition,
             slip_wander=self.slip_wander[rows],
             slip_error=self.slip_error[rows],
+            load_variance=self.load_variance[rows],
+            load_skewness=self.load_skewness[rows],
             slip_load_covariance=self.slip_load_covariance[rows],
             run_slip_error=self.run_slip_error[keep],
         )
@@ -175,6 +181,7 @@ def block_means(samples: SlipSamples, length: int) -> SlipBlocks:
     slip_deviation = samples.slip - np.repeat(slip, count)
     load_deviation = samples.normal_force - np.repeat(load, count)
     spread = np.add.reduceat(slip_deviation**2, starts[:-1]) / np.maximum(count - 1, 1)
+    load_variance = _mean(load_deviation**2, starts)
     calibrated, slip_error, run_slip_error = _calibrate_slip(slip, count, run, noise)
     return SlipBlocks(
         slip=calibrated,
@@ -186,6 +193,8 @@ def block_means(samples: SlipSamples, length: int) -> SlipBlocks:
         definition=samples.definition,
         slip_wander=_wander(spread, count, run, noise),
         slip_error=slip_error,
+        load_variance=load_variance,
+        load_skewness=_skewness(_mean(load_deviation**3, starts), load_variance),
         slip_load_covariance=_mean(slip_deviation * load_deviation, starts),
         run_slip_error=run_slip_error,
     )
@@ -204,6 +213,12 @@ def _block_starts(samples: SlipSamples, length: int) -> tuple[NDArray[np.intp], 
 
 def _mean(values: Array, starts: NDArray[np.intp]) -> Array:
     return np.add.reduceat(values, starts[:-1]) / np.diff(starts)
+
+
+def _skewness(third_moment: Array, variance: Array) -> Array:
+    """Return the skewness, 0 where nothing varies."""
+    varies = variance > 1e-12 * variance.max(initial=1e-300)
+    return np.where(varies, third_moment / np.where(varies, variance, 1.0) ** 1.5, 0.0)
 
 
 def _calibrate_slip(

@@ -59,16 +59,16 @@ class Prediction:
 def predict_blocks(blocks: SlipBlocks, law: SlipLaw, values: Array) -> Prediction:
     r"""Compute expected force, its slope in slip and the noise size of every block.
 
-    The mean of the law over a block is a three-point Gauss-Hermite rule in slip at
-    :math:`\kappa, \kappa \pm \sqrt{3}\,\omega` (exact to fifth order in the spread
-    :math:`\omega` of the true slip around the block's), plus
-    :math:`f_{\kappa n}\,\mathrm{cov}(\kappa, F_n)`, with :math:`f_{\kappa n} \approx
-    f_\kappa / F_n`, the force being proportional to load to first order.
+    The mean of the law over a block is that over its loads, slip following load by regression, plus
+    what the spread of slip at one load adds to it, :math:`(f_+ - 2 f_0 + f_-)/6` at
+    :math:`\kappa, \kappa \pm \sqrt{3}\,\omega` (three-point Gauss-Hermite, exact to fifth order in
+    :math:`\omega`). The load's rule has two points and the mean, variance and skewness of the
+    block's loads: a bump on a disc is skewed, and the peak's place makes force bend in load.
 
-    Crosstalk takes the expected traction for the measured one. With the measured one in the load,
-    the density of the traction would have a Jacobian, and whatever error was made in that,
-    crosstalk would grow until it balanced: n blocks outweigh any prior. The two differ by
-    c·f_n, a five-hundredth, of the noise.
+    Crosstalk puts the expected traction into the load, by the slope of force in load. With the
+    measured one there the density of the traction would have a Jacobian, and an error in that is
+    multiplied by the number of blocks. The two differ by :math:`c\,f_n`, a five-hundredth, of the
+    noise.
 
     Args:
         blocks: The block means, n of them.
@@ -78,17 +78,65 @@ def predict_blocks(blocks: SlipBlocks, law: SlipLaw, values: Array) -> Predictio
     k = len(law.parameters)
     law_values = values[:, :k].T[:, :, None]
     g_t, g_n, b_n, c, s_0, s_1 = values[:, k : k + 6].T[:, :, None]
-    # A load cell bias can push the lightest loads through zero; no law is defined there.
-    load = np.maximum((1 + g_n) * blocks.normal_force - b_n, 1e-9)
-    load = np.maximum(load + c * (1 + g_t) * law.force(blocks.slip, load, law_values), 1e-9)
-    half_width = np.sqrt(3 * np.maximum(blocks.slip_variance(), 1e-12))
-    above = law.force(blocks.slip + half_width, load, law_values)
-    centre = law.force(blocks.slip, load, law_values)
-    below = law.force(blocks.slip - half_width, load, law_values)
+    rule = load_rule(blocks)
+
+    def force_at(slip: Array, load: Array) -> Array:
+        # A load cell bias can push the lightest loads through zero; no law is defined there.
+        true_load = np.maximum((1 + g_n) * load - b_n, 1e-9)
+        return (1 + g_t) * law.force(slip, true_load, law_values)
+
+    half_width = np.sqrt(3 * np.maximum(blocks.slip_variance() - rule.slip_variance, 1e-12))
+    offsets = np.array([1.0, 0.0, -1.0])[:, None, None]  # one call: the load's part is shared
+    above, centre, below = force_at(blocks.slip + offsets * half_width, blocks.normal_force)
+    light = force_at(rule.slip_light, rule.light)
+    heavy = force_at(rule.slip_heavy, rule.heavy)
+    mean = light + rule.heavy_share * (heavy - light) + (above - 2 * centre + below) / 6
     slope = (above - below) / (2 * half_width)
-    mean = (above + 4 * centre + below) / 6 + slope / load * blocks.slip_load_covariance
-    force = (1 + g_t) * mean
-    return Prediction(force, (1 + g_t) * slope, s_0 + s_1 * np.abs(force))
+    slope_in_load = (heavy - light) / (rule.heavy - rule.light) - slope * rule.slip_per_load
+    force = mean + slope_in_load / (1 + g_n) * c * mean
+    return Prediction(force, slope, s_0 + s_1 * np.abs(force))
+
+
+@dataclass(frozen=True)
+class LoadRule:
+    """Two loads for each block, with its mean, variance and skewness; each of shape (n,).
+
+    Attributes:
+        light: The lighter load, as measured [N].
+        heavy: The heavier load, as measured [N].
+        heavy_share: Share of the block at the heavier load [-].
+        slip_light: Slip ratio at the lighter load [-].
+        slip_heavy: Slip ratio at the heavier load [-].
+        slip_per_load: Slope of slip over load within the block [1/N].
+        slip_variance: Variance of slip that follows load [-].
+    """
+
+    light: Array
+    heavy: Array
+    heavy_share: Array
+    slip_light: Array
+    slip_heavy: Array
+    slip_per_load: Array
+    slip_variance: Array
+
+
+def load_rule(blocks: SlipBlocks) -> LoadRule:
+    """Build the two-point rule of each block's loads, slip following load by regression."""
+    # A block at one load is given a little spread, so that the slope in load stays defined.
+    spread = np.maximum(np.sqrt(blocks.load_variance), 1e-3 * blocks.normal_force)
+    half = 0.5 * blocks.load_skewness
+    root = np.sqrt(1 + half**2)
+    up, down = spread * (half + root), spread * (half - root)
+    per_load = blocks.slip_load_covariance / spread**2
+    return LoadRule(
+        light=blocks.normal_force + down,
+        heavy=blocks.normal_force + up,
+        heavy_share=0.5 * (1 - half / root),
+        slip_light=blocks.slip + per_load * down,
+        slip_heavy=blocks.slip + per_load * up,
+        slip_per_load=per_load,
+        slip_variance=per_load**2 * spread**2,
+    )
 
 
 def run_log_likelihood(blocks: SlipBlocks, law: SlipLaw, values: Array) -> Array:

@@ -130,8 +130,8 @@ class SlipPosterior:
     def log_prior(self, z: Array) -> Array:
         """Compute the log prior density of z, shape (w,); -inf where the law loses its shape."""
         k = len(self.law.parameters)
-        law_values = self.values(z)[:, :k].T[:, :, None]
-        with np.errstate(all="ignore"):
+        with np.errstate(all="ignore"):  # an optimiser may try coordinates beyond any number
+            law_values = self.values(z)[:, :k].T[:, :, None]
             valid = np.all(self.law.valid(self._check_loads, law_values), axis=-1)
         log_density = -0.5 * np.sum(z**2 + np.log(2 * np.pi), axis=1)
         return np.where(valid, log_density, -np.inf)

@@ -77,8 +77,11 @@ def curvature_from_peak(B: ArrayLike, C: ArrayLike, x_m: ArrayLike) -> Array:
 def _minus_arctan(x: Array) -> Array:
     # x - arctan(x); the difference loses its digits at small x (and is zero below 1e-8, the
     # loads of a leg about to lift off), its series is exact to 3e-13 up to 0.01.
-    series = x**3 * (1 / 3 - x**2 / 5 + x**4 / 7)
-    return np.where(np.abs(x) < 0.01, series, x - np.arctan(x))
+    difference = x - np.arctan(x)
+    small = np.abs(x) < 0.01
+    if not small.any():  # powers cost more than the arctangent
+        return difference
+    return np.where(small, x**3 * (1 / 3 - x**2 / 5 + x**4 / 7), difference)
 
 
 @dataclass(frozen=True)

@@ -4,6 +4,9 @@
 One seed proves nothing: a posterior may miss by its own spread. So the seeds are judged together,
 by the chi-square of all posteriors against the truth, and how wide the posteriors are is asked
 apart, since wide enough ones are never wrong.
+
+Every seed is judged by the Laplace approximation with importance weights, and the first few are
+sampled by emcee, too: both engines are to give the same posterior.
 """
 
 import time
@@ -31,13 +34,14 @@ from rig.slip_rig.sweep import (
 pytestmark = pytest.mark.long
 
 N_SEEDS = 20
+N_SAMPLED = 4
 LOAD_CELL = LoadCell(zero_stability=0.1, gain_sd=0.005, bias_sd=0.05, crosstalk_sd=0.005)
 TRUTH = np.array(SOURCE_VALUES)
 LAW = SOURCE_LAW.parameters
 
-ENOUGH_ESS = 6000.0
-"""The engines are to agree to 5 % in spread over 20 seeds times 12 parameters, of which the
-largest of 240 deviations counts: 3 standard errors of a spread, 1/sqrt(2 ESS), are 3 % here."""
+ENOUGH_ESS = 5000.0
+"""The engines are to agree to 5 % in spread over the sampled seeds times 12 parameters, of which the
+largest deviation counts: 3 standard errors of a spread, 1/sqrt(2 ESS), are 3 % here."""
 IMPORTANCE_DRAWS = 20_000
 CHUNK = 100  # kept steps between two looks at the chains
 MOST_STEPS = 3000
@@ -55,17 +59,19 @@ class Recovery:
             their posterior covariance.
         z: Posterior mean less truth over posterior spread, of the logarithms, shape (k,).
         estimates: Each law parameter's posterior.
-        convergence: Evidence on the sampler.
-        engines: How the sampler compares with importance sampling.
-        seconds: Wall time of the fit.
+        pareto_k: Tail index of the importance weights.
+        convergence: Evidence on the sampler; None where it was not run.
+        engines: How the sampler compares with importance sampling; None where it was not run.
+        seconds: Wall time.
     """
 
     seed: int
     chi_square: float
     z: Array
     estimates: list[Estimate]
-    convergence: Convergence
-    engines: Agreement
+    pareto_k: float
+    convergence: Convergence | None
+    engines: Agreement | None
     seconds: float
 
     @property
@@ -85,10 +91,16 @@ class Recovery:
             f"{self.chi_square:.2f}",
             f"{chi2.sf(self.chi_square, len(LAW)):.3f}",
             *(f"{z:+.2f}" for z in self.z),
-            "yes" if self.convergence.converged else "NO",
-            f"{self.engines.mean:.3f}",
-            f"{self.engines.spread:.1%}",
-            f"{self.engines.pareto_k:.2f}",
+            f"{self.pareto_k:.2f}",
+            *(
+                ("", "", "")
+                if self.convergence is None or self.engines is None
+                else (
+                    "yes" if self.convergence.converged else "NO",
+                    f"{self.engines.mean:.3f}",
+                    f"{self.engines.spread:.1%}",
+                )
+            ),
             f"{self.seconds:.0f}",
         ]
         return f"| {' | '.join(figures)} |"
@@ -116,29 +128,33 @@ def recover(seed: int) -> Recovery:
     )
     began = time.perf_counter()
     fit = prepare_fit(sweep.samples, SOURCE_LAW, load_cell=LOAD_CELL, rng=rng, validate=False)
-    chains, convergence = walk(fit, rng)
-    seconds = time.perf_counter() - began
-    draws = thin_draws(fit.posterior, chains, convergence, n=chains.z[0].size)
-    weighted = importance_draws(fit.posterior.log_density, fit.laplace, n=IMPORTANCE_DRAWS, rng=rng)
-    law_values = draws.flat[:, : len(LAW)]
+    posterior = fit.posterior
+    weighted = importance_draws(posterior.log_density, fit.laplace, n=IMPORTANCE_DRAWS, rng=rng)
+    law_values = posterior.values(weighted.resample(IMPORTANCE_DRAWS, rng=rng))[:, : len(LAW)]
     miss = np.log(law_values).mean(axis=0) - np.log(TRUTH)
     covariance = np.cov(np.log(law_values), rowvar=False)
+    convergence, engines = None, None
+    if seed < N_SAMPLED:
+        chains, convergence = walk(fit, rng)
+        draws = thin_draws(posterior, chains, convergence, n=chains.z[0].size)
+        engines = agreement(draws, weighted)
     return Recovery(
         seed=seed,
         chi_square=float(miss @ np.linalg.solve(covariance, miss)),
         z=miss / np.sqrt(np.diag(covariance)),
         estimates=[estimate(p, column) for p, column in zip(LAW, law_values.T, strict=True)],
+        pareto_k=weighted.pareto_k,
         convergence=convergence,
-        engines=agreement(draws, weighted),
-        seconds=seconds,
+        engines=engines,
+        seconds=time.perf_counter() - began,
     )
 
 
 def recover_all(seeds: range) -> list[Recovery]:
     """Fit every seed; print a row as each is done, and a summary of the parameters."""
     titles = [
-        "seed", "χ²", "p", *(f"z of {p.symbol}" for p in LAW), "converged", "means apart [sd]",
-        "sds apart", "Pareto k", "seconds",
+        "seed", "χ²", "p", *(f"z of {p.symbol}" for p in LAW), "Pareto k", "emcee converged",
+        "means apart [sd]", "sds apart", "seconds",
     ]  # fmt: skip
     say(f"\n\n| {' | '.join(titles)} |\n|{'---:|' * len(titles)}")
     recoveries = []
@@ -177,8 +193,14 @@ def recoveries() -> list[Recovery]:
     return recover_all(range(N_SEEDS))
 
 
-def test_every_seed_converges(recoveries):
-    assert [r.seed for r in recoveries if not r.convergence.converged] == []
+def test_every_sampled_seed_converges(recoveries):
+    sampled = [r for r in recoveries if r.convergence is not None]
+    assert len(sampled) == N_SAMPLED
+    assert all(r.convergence.converged for r in sampled)
+
+
+def test_importance_weights_are_to_be_trusted(recoveries):
+    assert max(r.pareto_k for r in recoveries) < 0.7
 
 
 def test_truth_lies_where_the_posteriors_say(recoveries):
@@ -193,7 +215,7 @@ def test_posteriors_are_sharp(recoveries, name, widest):
 
 
 def test_two_engines_give_the_same_posterior(recoveries):
-    comparable = [r.engines for r in recoveries if r.engines.comparable]
-    assert len(comparable) > N_SEEDS / 2, "importance sampling failed on most seeds"
-    assert max(engines.mean for engines in comparable) <= 0.1
-    assert max(engines.spread for engines in comparable) <= 0.05
+    engines = [r.engines for r in recoveries if r.engines is not None]
+    assert len(engines) == N_SAMPLED
+    assert max(agreement.mean for agreement in engines) <= 0.1
+    assert max(agreement.spread for agreement in engines) <= 0.05

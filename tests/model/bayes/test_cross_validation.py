@@ -103,6 +103,8 @@ def test_without_crosstalk_and_wander_the_prediction_is_the_likelihoods(posterio
         posterior.blocks,
         slip_wander=np.zeros(len(posterior.blocks)),
         slip_error=np.zeros(len(posterior.blocks)),
+        load_variance=np.zeros(len(posterior.blocks)),
+        load_skewness=np.zeros(len(posterior.blocks)),
         slip_load_covariance=np.zeros(len(posterior.blocks)),
         run_slip_error=np.zeros(posterior.blocks.n_runs),
     )

@@ -37,7 +37,8 @@ def posterior() -> SlipPosterior:
         slip=np.tile(np.linspace(0.01, 0.4, 4), 2), normal_force=np.full(n, 5.0),
         traction_force=np.full(n, 1.5), count=np.full(n, 10), run=np.repeat([0, 1], 4),
         run_names=("a", "b"), definition=SlipDefinition.MATERIAL, slip_wander=zeros,
-        slip_error=zeros, slip_load_covariance=zeros, run_slip_error=np.zeros(2),
+        slip_error=zeros, load_variance=zeros, load_skewness=zeros, slip_load_covariance=zeros,
+        run_slip_error=np.zeros(2),
     )  # fmt: skip
     law = Brush()
     priors = default_priors(law, blocks, LoadCell())

@@ -63,6 +63,8 @@ def naive_fit(samples, length, fit, **fixed):
         slip=np.add.reduceat(samples.slip, starts) / blocks.count,
         slip_wander=nothing,
         slip_error=nothing,
+        load_variance=nothing,
+        load_skewness=nothing,
         slip_load_covariance=nothing,
         run_slip_error=np.zeros(blocks.n_runs),
     )
@@ -220,7 +222,8 @@ def test_what_is_known_goes_before_every_default():
 @pytest.fixture(scope="module")
 def peak_law_data():
     """Return fits of two laws to data of the second, whose peak moves with the load."""
-    plan = replace(SMALL, slips=(0.01, 0.02, 0.04, 0.06, 0.08, 0.12, 0.2, 0.7), duration=0.6)
+    slips = (0.005, 0.01, 0.015, 0.02, 0.03, 0.04, 0.05, 0.06, 0.08, 0.1, 0.12, 0.2, 0.4, 0.7)
+    plan = replace(SMALL, slips=slips, duration=0.6)
     samples = simulated(plan=plan)
     laws = (MagicFormula(curvature=0.0), SOURCE_LAW)
     return [prepared(samples, law, choice=TEN, validate=True) for law in laws]

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from scipy.linalg import block_diag, toeplitz
-from scipy.stats import multivariate_normal
+from scipy.stats import multivariate_normal, skew
 
 from model.bayes.blocks import SlipBlocks
 from model.bayes.likelihood import (
@@ -16,6 +16,7 @@ from model.bayes.likelihood import (
     run_log_likelihood,
 )
 from model.slip import CoulombStribeck, MagicFormula, SlipDefinition
+from rig.slip_rig.imperfections import bump_rise
 
 LAW = MagicFormula(curvature=0.0)  # proportional to load exactly, as the covariance term assumes
 LAW_VALUES = (20.0, 1.5, 0.38)
@@ -42,6 +43,8 @@ def blocks(sizes=SIZES, seed=0, **replaced):
         definition=SlipDefinition.MATERIAL,
         slip_wander=np.zeros(n),
         slip_error=np.zeros(n),
+        load_variance=np.zeros(n),
+        load_skewness=np.zeros(n),
         slip_load_covariance=np.zeros(n),
         run_slip_error=np.zeros(len(sizes)),
     )
@@ -270,11 +273,32 @@ def test_slip_and_load_that_vary_together_add_their_covariance():
     slip, load = rng.multivariate_normal([1e-4, 5.0], [[1e-10, 5e-6], [5e-6, 1.0]], 400).T
     data = single_blocks(slip.mean(), load.mean(), 1.0)
     covariance = np.mean((slip - slip.mean()) * (load - load.mean()))
-    data = replace(data, slip_load_covariance=np.array([covariance]))
+    data = replace(
+        data,
+        slip_load_covariance=np.array([covariance]),
+        load_variance=np.array([np.var(load)]),
+        load_skewness=np.array([skew(load)]),
+    )
     found = predict_blocks(data, LAW, parameters()).force[0, 0]
     in_line = LAW.force(slip, load, LAW_VALUES).mean()  # at so little slip the law is a line
     assert found == pytest.approx(in_line, rel=1e-5)
     assert found != pytest.approx(LAW.force(slip.mean(), load.mean(), LAW_VALUES), rel=1e-3)
+
+
+def test_a_load_that_bumps_is_averaged_over_with_its_skewness():
+    angle = np.linspace(0.0, 1.5, 400)  # a bump of 60 % under two thirds of the block
+    load = 5.0 * (1 + bump_rise(angle - 0.6, height=0.6, width=1.0))
+    law, law_values = MagicFormula("peak"), (20.0, 1.56, 0.38, 0.0066)
+    values = np.array([[*law_values, *parameters()[0, len(LAW_VALUES) :]]])
+    data = replace(
+        single_blocks(0.03, load.mean(), 1.0),
+        load_variance=np.array([np.var(load)]),
+        load_skewness=np.array([skew(load)]),
+    )
+    expected = law.force(0.03, load, law_values).mean()
+    found = predict_blocks(data, law, values).force[0, 0]
+    at_the_mean = law.force(0.03, load.mean(), law_values)
+    assert abs(found - expected) < 0.1 * abs(at_the_mean - expected)
 
 
 # --- the load cell

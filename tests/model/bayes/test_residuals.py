@@ -53,6 +53,8 @@ def blocks(slips, loads, rng, *, size=SIZE, repeats=1):
         definition=SlipDefinition.MATERIAL,
         slip_wander=np.full(n, 4e-6),
         slip_error=np.full(n, 1e-6),
+        load_variance=np.zeros(n),
+        load_skewness=np.zeros(n),
         slip_load_covariance=np.zeros(n),
         run_slip_error=np.full(n_runs, 5e-7),
     )

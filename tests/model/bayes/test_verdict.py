@@ -41,7 +41,8 @@ def sweep_blocks(largest_slip: float, *, load: float = 6.0, per_run: int = 4) ->
         slip=slip, normal_force=zeros + load, traction_force=zeros,
         count=np.full(len(slip), 50), run=np.repeat(np.arange(12), per_run),
         run_names=tuple("abcdefghijkl"), definition=SlipDefinition.MATERIAL, slip_wander=zeros,
-        slip_error=zeros, slip_load_covariance=zeros, run_slip_error=np.zeros(12),
+        slip_error=zeros, load_variance=zeros, load_skewness=zeros, slip_load_covariance=zeros,
+        run_slip_error=np.zeros(12),
     )  # fmt: skip
 
 

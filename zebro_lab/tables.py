@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
+from model.bayes.blocks import slip_noise_variance
 from model.bayes.samples import SlipSamples
 from model.slip.definition import SlipDefinition
 from model.slip.law import Array
@@ -30,6 +31,7 @@ from zebro_lab.table_files import read_table_file, table_stem
 _LEAST_SAMPLES = 20  # of a recording: fewer say nothing about its noise
 _LEAST_TRIALS = 8  # averages over trials: more than any law has parameters
 _CONSTANT_SLIP = 1e-6  # range of slip ratio below which there is no curve to see
+_NOISE_ALONE = 1.1  # a spread of slip that sensor noise explains up to a tenth
 
 
 @dataclass(frozen=True)
@@ -233,6 +235,14 @@ def _require_informative(samples: SlipSamples, parts: Sequence[_Part]) -> None:
         raise DataError(
             f"slip ratio is {samples.slip[0]:g} in all {len(samples)} rows; "
             f"a curve needs several set-points, check the column or add other runs",
+            file=where,
+        )
+    noise = float(np.sqrt(np.mean(slip_noise_variance(samples))))
+    if np.std(samples.slip) <= _NOISE_ALONE * noise:
+        raise DataError(
+            f"slip ratio stays at {samples.slip.mean():.4g} within its sensors' noise of "
+            f"{noise:.2g}; a curve needs several set-points, add other runs"
+            + ("" if trials else ", or say [runs] each_row = true if every row is a trial"),
             file=where,
         )
 

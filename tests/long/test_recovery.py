@@ -40,8 +40,8 @@ TRUTH = np.array(SOURCE_VALUES)
 LAW = SOURCE_LAW.parameters
 
 ENOUGH_ESS = 5000.0
-"""The engines are to agree to 5 % in spread over the sampled seeds times 12 parameters, of which the
-largest deviation counts: 3 standard errors of a spread, 1/sqrt(2 ESS), are 3 % here."""
+"""The engines are to agree to 5 % in spread over the sampled seeds times 12 parameters, of which
+the largest deviation counts: 3 standard errors of a spread, 1/sqrt(2 ESS), are 3 % here."""
 IMPORTANCE_DRAWS = 20_000
 CHUNK = 100  # kept steps between two looks at the chains
 MOST_STEPS = 3000

@@ -71,6 +71,10 @@ CSV_FAULTS: dict[str, tuple[pd.DataFrame, str]] = {
     "zero load": (put("normal_force", 12, 0), "normal force is 0 N"),
     "wrong sign": (good().assign(normal_force=-5.0), "sign = -1"),
     "constant slip": (good().assign(slip_ratio=0.1), "slip ratio is 0.1 in all 30 rows"),
+    "constant slip seen by noisy sensors": (
+        good().assign(slip_ratio=0.1 + np.random.default_rng(5).normal(0, 0.006, N)),
+        "within its sensors' noise",
+    ),
     "two definitions in a file": (
         put("slip_definition", 9, "travel"),
         "column 'slip_definition', row 9 (line 10): two slip definitions in one file",

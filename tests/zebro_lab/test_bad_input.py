@@ -72,7 +72,15 @@ CSV_FAULTS: dict[str, tuple[pd.DataFrame, str]] = {
     "wrong sign": (good().assign(normal_force=-5.0), "sign = -1"),
     "constant slip": (good().assign(slip_ratio=0.1), "slip ratio is 0.1 in all 30 rows"),
     "constant slip seen by noisy sensors": (
-        good().assign(slip_ratio=0.1 + np.random.default_rng(5).normal(0, 0.006, N)),
+        pd.DataFrame(
+            {
+                "t": np.arange(2000) * 0.01,
+                "slip_ratio": np.random.default_rng(5).normal(0.1, 0.006, 2000),
+                "normal_force": 5.0,
+                "traction_force": 1.0,
+                "slip_definition": "material",
+            }
+        ),
         "within its sensors' noise",
     ),
     "two definitions in a file": (

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 from emcee import EnsembleSampler, State
 from emcee.autocorr import integrated_time
-from emcee.moves import DEMove
+from emcee.moves import DEMove, KDEMove
 
 from model.bayes.laplace import Laplace
 from model.errors import DomainError, FitError
@@ -22,6 +22,11 @@ from model.slip.law import Array
 MOVES = ((DEMove, 1.0),)
 """A quarter of the stretch move's autocorrelation time in 12 dimensions. No snooker move: emcee's,
 up to 3.1.6, misses half the exponent of its acceptance ratio and narrows every spread by 7 %."""
+
+JUMPS = ((DEMove, 0.6), (KDEMove, 0.4))
+"""For large ensembles: a density estimated from the other walkers proposes jumps between modes."""
+
+CROWD = 24  # walkers a dimension from which such an estimate is any good
 
 START_WIDTH = 1.2  # of the Laplace approximation's: R-hat wants starts at least as wide as the end
 
@@ -52,9 +57,15 @@ class Chains:
         return self.z.shape[1]
 
 
-def walker_count(d: int) -> int:
-    """Choose the number of walkers for d dimensions: three a dimension, even, at least 32."""
-    return max(32, 2 * ((3 * d + 1) // 2))
+def walker_count(d: int, *, crowd: bool = False) -> int:
+    """Choose the number of walkers for d dimensions: even, at least 32.
+
+    Args:
+        d: Dimensions.
+        crowd: Take 24 a dimension, in place of three, and jump between modes: where data are few,
+            modes are many, and a density that is quick to evaluate pays for it.
+    """
+    return CROWD * d + CROWD * d % 2 if crowd else max(32, 2 * ((3 * d + 1) // 2))
 
 
 def start_chains(
@@ -64,6 +75,7 @@ def start_chains(
     ensembles: int,
     thin: int,
     rng: np.random.Generator,
+    crowd: bool = False,
 ) -> Chains:
     """Draw every walker's start from a widened Laplace approximation.
 
@@ -73,6 +85,7 @@ def start_chains(
         ensembles: How many independent ensembles.
         thin: Sampler moves for each kept step.
         rng: Source of randomness, of the starts and of each ensemble's seed.
+        crowd: Many walkers that jump between modes; see `walker_count`.
 
     Returns:
         Chains of one step.
@@ -81,7 +94,7 @@ def start_chains(
         FitError: Too few of the draws lie inside the support.
     """
     d = len(laplace.mode)
-    walkers = walker_count(d)
+    walkers = walker_count(d, crowd=crowd)
     drawn = rng.multivariate_normal(
         laplace.mode, START_WIDTH**2 * laplace.covariance, size=8 * ensembles * walkers
     )
@@ -152,7 +165,8 @@ def _walk(
     log_density: Callable[[Array], Array], chains: Chains, *, ensemble: int, steps: int
 ) -> EnsembleSampler:
     _, _, walkers, d = chains.z.shape
-    moves = [(move(), share) for move, share in MOVES]  # a move has state: one for each ensemble
+    kinds = JUMPS if walkers >= CROWD * d else MOVES
+    moves = [(move(), share) for move, share in kinds]  # a move has state: one for each ensemble
     sampler = EnsembleSampler(walkers, d, log_density, moves=moves, vectorize=True)
     state = State(
         chains.z[ensemble, -1],

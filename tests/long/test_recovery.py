@@ -34,7 +34,7 @@ from rig.slip_rig.sweep import (
 pytestmark = pytest.mark.long
 
 N_SEEDS = 20
-N_SAMPLED = 4
+N_SAMPLED = 2
 LOAD_CELL = LoadCell(zero_stability=0.1, gain_sd=0.005, bias_sd=0.05, crosstalk_sd=0.005)
 TRUTH = np.array(SOURCE_VALUES)
 LAW = SOURCE_LAW.parameters

@@ -47,12 +47,13 @@ from zebro_lab.provenance import file_hashes, fingerprint
 from zebro_lab.tables import RigData, read_rig_data
 
 THIN = 5  # sampler moves a kept step
+CROWD_THIN = 15
 CHUNK = 20  # kept steps between looks at the clock, the keyboard and the bar
 FIRST_LOOK = 100  # kept steps before convergence is judged for the first time
 CHECKPOINT_SECONDS = 5.0
 DRAWS_PER_ENSEMBLE = 1000
 IMPORTANCE_DRAWS = 10_000
-FEW_BLOCKS = 500  # below, numpy's calls are so short that threads only wait for each other
+FEW_BLOCKS = 500  # below, walkers are cheap, and numpy's calls so short that threads only wait
 
 
 class Stopped(ZebroLabError):
@@ -249,11 +250,17 @@ def _sample(
 ) -> tuple[Chains, Convergence]:
     """Walk until converged or out of steps, with a checkpoint every few seconds."""
     density = fit.posterior.log_density
+    few = len(fit.posterior.blocks) < FEW_BLOCKS
     chains = earlier or start_chains(
-        density, fit.laplace, ensembles=request.ensembles, thin=THIN, rng=rng
+        density,
+        fit.laplace,
+        ensembles=request.ensembles,
+        thin=CROWD_THIN if few else THIN,
+        rng=rng,
+        crowd=few,
     )
-    most = max(request.max_steps // THIN, FIRST_LOOK)
-    threads = 1 if len(fit.posterior.blocks) < FEW_BLOCKS else request.threads
+    most = max(request.max_steps // chains.thin, FIRST_LOOK)
+    threads = 1 if few else request.threads
     look, saved = _look_from(chains.n_steps - CHUNK + 1), time.monotonic()
     watcher.step("sampling", 0.0)
     while True:

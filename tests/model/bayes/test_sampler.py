@@ -213,3 +213,16 @@ def test_autocorrelation_time_of_ar1_chains_is_the_known_one():
     np.testing.assert_allclose(times, (1 + rho) / (1 - rho), rtol=0.15)
     worst = np.max([autocorrelation_times(chain[None]) for chain in z], axis=0)
     np.testing.assert_array_equal(times, worst)
+
+
+def test_a_crowd_finds_the_weights_of_two_modes():
+    def two_modes(z):
+        right = np.log(0.3) - 0.5 * ((z - 3) ** 2).sum(axis=1)
+        return np.logaddexp(right, np.log(0.7) - 0.5 * ((z + 3) ** 2).sum(axis=1))
+
+    on_the_right = Laplace(np.full(2, 3.0), np.eye(2), 0.0)
+    rng = np.random.default_rng(0)
+    chains = start_chains(two_modes, on_the_right, ensembles=4, thin=5, rng=rng, crowd=True)
+    chains = advance(two_modes, chains, steps=500)
+    assert chains.z.shape[2] == walker_count(2, crowd=True)
+    assert np.mean(chains.z[:, 100:, :, 0] > 0) == pytest.approx(0.3, abs=0.03)

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: MIT
 """Print the evidence that the decision records quote.
 
-Usage: .venv/bin/python docs/decisions/evidence.py {snooker,pooling,crosstalk} [SEEDS]
+Usage: .venv/bin/python docs/decisions/evidence.py {snooker,pooling,crosstalk,bump} [SEEDS]
 
-`pooling` and `crosstalk` fit simulated sweeps by the Laplace approximation, with one idea of the
-likelihood changed at a time, and compare with the truth. Everything is simulated.
+`pooling`, `crosstalk` and `bump` fit simulated sweeps by the Laplace approximation, with one idea of
+the likelihood changed at a time, and compare with the truth. Everything is simulated.
 """
 
 import sys
@@ -25,7 +25,7 @@ from model.bayes.blocks import SlipBlocks
 from model.bayes.laplace import find_mode
 from model.bayes.posterior import LoadCell, SlipPosterior, default_priors
 from model.slip.law import Array, SlipLaw
-from rig.slip_rig.imperfections import lag_one_correlation
+from rig.slip_rig.imperfections import TYPICAL_RIG, lag_one_correlation
 from rig.slip_rig.sweep import (
     SOURCE_LAW,
     SOURCE_VALUES,
@@ -80,6 +80,30 @@ def crosstalk(seeds: int) -> None:
     _print_scores("expected traction", seeds, _scores)
     with _measured_traction():
         _print_scores("measured traction", seeds, _scores)
+
+
+def bump(seeds: int) -> None:
+    """Judge blocks that hold a bump of the load, at 1 kHz, the load cell perfect and known so."""
+    plan = SweepPlan(duration=4.0, rate=1000.0)
+    truth = replace(TYPICAL_RIG, offset_sd=0.1, noise_correlation_time=-0.001 / np.log(0.98))
+    known = dict.fromkeys(JUDGED[4:], 0.0)
+    for length in (333, 160, 80):
+        scores = []
+        for seed in range(seeds):
+            rng = np.random.default_rng(seed)
+            sweep = simulate_sweep(
+                SOURCE_LAW, SOURCE_VALUES, plan=plan, imperfections=truth, rng=rng
+            )
+            blocks = block_module.block_means(sweep.samples, length)
+            priors = default_priors(SOURCE_LAW, blocks, LoadCell())
+            posterior = SlipPosterior(blocks, SOURCE_LAW, priors, known)
+            values = dict(zip(JUDGED, SOURCE_VALUES, strict=False))
+            start = posterior.coordinates({**values, "noise_floor": 0.01, "offset_spread": 0.1})
+            laplace = find_mode(posterior.log_density, start[None])
+            spread = np.sqrt(np.diag(laplace.covariance))
+            scores.append(((laplace.mode - start) / spread)[:4])
+        means = " ".join(f"{z:+.2f}" for z in np.mean(scores, axis=0))
+        print(f"{length:>4} samples a block: mean z of K, C, mu, x_m/Fn {means} ({seeds} sweeps)")
 
 
 def _print_scores(name: str, seeds: int, fit: Callable[[int], tuple[float, float, float]]) -> None:
@@ -167,5 +191,5 @@ def _measured_traction() -> Iterator[None]:
 
 if __name__ == "__main__":
     _, what, *rest = sys.argv
-    commands = {"snooker": snooker, "pooling": pooling, "crosstalk": crosstalk}
+    commands = {"snooker": snooker, "pooling": pooling, "crosstalk": crosstalk, "bump": bump}
     commands[what](int(rest[0]) if rest else 20)

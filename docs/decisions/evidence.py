@@ -3,8 +3,8 @@
 
 Usage: .venv/bin/python docs/decisions/evidence.py {snooker,pooling,crosstalk,bump} [SEEDS]
 
-`pooling`, `crosstalk` and `bump` fit simulated sweeps by the Laplace approximation, with one idea of
-the likelihood changed at a time, and compare with the truth. Everything is simulated.
+`pooling`, `crosstalk` and `bump` fit simulated sweeps by the Laplace approximation, with one idea
+of the likelihood changed at a time, and compare with the truth. Everything is simulated.
 """
 
 import sys

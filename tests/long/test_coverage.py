@@ -194,9 +194,9 @@ def pooled(replicates: list[dict[str, Fit]], arm: str) -> float:
 
 def table(replicates: list[dict[str, Fit]]) -> str:
     lines = [
-        f"\n\nFraction of {len(replicates)} replicates, {len(of_arm(replicates, INDEPENDENT))} in the "
-        "last column, whose 90 % interval contains the truth, and (median half-width over the "
-        "truth).\n",
+        f"\n\nFraction of {len(replicates)} replicates whose 90 % interval contains the truth, and "
+        f"(median half-width over the truth); {len(of_arm(replicates, INDEPENDENT))} replicates in "
+        "the last column.\n",
         f"| quantity | truth | {' | '.join(ARMS)} |",
         f"|---|---:|{'---:|' * len(ARMS)}",
     ]

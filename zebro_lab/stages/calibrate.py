@@ -47,13 +47,16 @@ from zebro_lab.provenance import file_hashes, fingerprint
 from zebro_lab.tables import RigData, read_rig_data
 
 THIN = 5  # sampler moves a kept step
+CROWD_BLOCKS = (
+    60  # up to a few dozen trials, many shapes fit and walkers cost nothing: take a crowd
+)
 CROWD_THIN = 15
 CHUNK = 20  # kept steps between looks at the clock, the keyboard and the bar
 FIRST_LOOK = 100  # kept steps before convergence is judged for the first time
 CHECKPOINT_SECONDS = 5.0
 DRAWS_PER_ENSEMBLE = 1000
 IMPORTANCE_DRAWS = 10_000
-FEW_BLOCKS = 500  # below, walkers are cheap, and numpy's calls so short that threads only wait
+FEW_BLOCKS = 500  # below, numpy's calls are so short that threads only wait for each other
 
 
 class Stopped(ZebroLabError):
@@ -250,17 +253,18 @@ def _sample(
 ) -> tuple[Chains, Convergence]:
     """Walk until converged or out of steps, with a checkpoint every few seconds."""
     density = fit.posterior.log_density
-    few = len(fit.posterior.blocks) < FEW_BLOCKS
+    n_blocks = len(fit.posterior.blocks)
+    crowd = n_blocks <= CROWD_BLOCKS
     chains = earlier or start_chains(
         density,
         fit.laplace,
         ensembles=request.ensembles,
-        thin=CROWD_THIN if few else THIN,
+        thin=CROWD_THIN if crowd else THIN,
         rng=rng,
-        crowd=few,
+        crowd=crowd,
     )
     most = max(request.max_steps // chains.thin, FIRST_LOOK)
-    threads = 1 if few else request.threads
+    threads = 1 if n_blocks < FEW_BLOCKS else request.threads
     look, saved = _look_from(chains.n_steps - CHUNK + 1), time.monotonic()
     watcher.step("sampling", 0.0)
     while True:

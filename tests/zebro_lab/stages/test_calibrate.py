@@ -197,11 +197,12 @@ def test_second_fit_replaces_its_forerunner_and_leaves_foreign_files(
 ):
     out = tmp_path / "out"
     out.mkdir()
-    for name in ("slip.toml", "old.png", "notes.txt"):
+    foreign = {"my-photo.png", "notes.txt"}
+    for name in ("slip.toml", "curves.png", *foreign):  # nothing draws a curves.png here
         (out / name).write_text("not this fit's")
     calibrate(request_for(out, max_steps=1), Watcher())
-    assert {path.name for path in out.iterdir()} == TABLES | {"checkpoint.npz", "notes.txt"}
-    assert (out / "notes.txt").read_text() == "not this fit's"
+    assert {path.name for path in out.iterdir()} == TABLES | {"checkpoint.npz"} | foreign
+    assert {(out / name).read_text() for name in foreign} == {"not this fit's"}
     assert read_slip(out).law.name == "magic-formula"
 
 

@@ -20,7 +20,8 @@ FIELDS = ("t", "omega_leg", "omega_ground", "normal_force", "traction_force")
 def make_table(n: int) -> SlipRigTable:
     rng = np.random.default_rng(n)
     return SlipRigTable(
-        np.arange(n) * 1e-3, 12 + rng.normal(size=n) / 10, 3 + rng.normal(size=n) / 10,
+        np.arange(n) * 1e-3, 12 + rng.normal(size=n) / 10,
+        np.linspace(3.5, 1.5, n) + rng.normal(size=n) / 10,
         6 + rng.normal(size=n) / 10, rng.normal(size=n),
     )  # fmt: skip
 

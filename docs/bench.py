@@ -247,14 +247,19 @@ def jax_log_density(posterior: SlipPosterior) -> Callable[[Any], Any]:
     return log_density
 
 
-def ensembles(fit: PreparedFit, move: type) -> tuple[float, float, float]:
-    """Walk emcee ensembles with one kind of move; return smallest ESS, seconds, R-hat."""
+def ensembles(fit: PreparedFit, move: type, *, jumps: bool) -> tuple[float, float, float]:
+    """Walk emcee ensembles with one kind of move, with or without jumps; ESS, seconds, R-hat."""
     ours, sampler.MOVES = sampler.MOVES, ((move, 1.0),)
     try:
         density, rng = fit.posterior.log_density, np.random.default_rng(SEED)
         began = time.perf_counter()
-        chains = sampler.start_chains(density, fit.laplace, ensembles=ENSEMBLES, thin=THIN, rng=rng)
-        chains = sampler.advance(density, chains, steps=KEPT_STEPS)
+        approximation = fit.approximation
+        chains = sampler.start_chains(
+            density, approximation, ensembles=ENSEMBLES, thin=THIN, rng=rng
+        )
+        chains = sampler.advance(
+            density, chains, steps=KEPT_STEPS, approximation=approximation if jumps else None
+        )
         seconds = time.perf_counter() - began
     finally:
         sampler.MOVES = ours
@@ -266,7 +271,10 @@ def importance(fit: PreparedFit) -> tuple[float, float, float]:
     """Weight draws of the Laplace approximation; return Kish's ESS, seconds, Pareto's k."""
     began = time.perf_counter()
     weighted = importance_draws(
-        fit.posterior.log_density, fit.laplace, n=IMPORTANCE_DRAWS, rng=np.random.default_rng(SEED)
+        fit.posterior.log_density,
+        fit.approximation,
+        n=IMPORTANCE_DRAWS,
+        rng=np.random.default_rng(SEED),
     )
     seconds = time.perf_counter() - began
     return 1 / float(np.sum(weighted.weights**2)), seconds, weighted.pareto_k
@@ -303,8 +311,11 @@ def nuts(fit: PreparedFit) -> tuple[float, float, float, float]:
 def time_samplers(fit: PreparedFit) -> None:
     importance_ess, importance_seconds, pareto_k = importance(fit)
     figures = [
-        (f"emcee {move.__name__}, {ENSEMBLES} ensembles, 2 threads", *ensembles(fit, move))
-        for move in (DEMove, StretchMove)
+        (
+            f"emcee {move.__name__}{' and jumps' * jumps}, {ENSEMBLES} ensembles, 2 threads",
+            *ensembles(fit, move, jumps=jumps),
+        )
+        for move, jumps in ((DEMove, True), (DEMove, False), (StretchMove, False))
     ]
     note = ""
     try:

@@ -23,7 +23,7 @@ fit = prepare_fit(samples, SOURCE_LAW, load_cell=load_cell, rng=rng, validate=Fa
 print(f"{len(fit.posterior.blocks)} block means, length set by {fit.block_choice.reason}")
 
 density = fit.posterior.log_density
-weighted = importance_draws(density, fit.laplace, n=2000, rng=rng)
+weighted = importance_draws(density, fit.approximation, n=2000, rng=rng)
 print(f"Pareto k {weighted.pareto_k:.2f} (above 0.7 the weights are not to be trusted)")
 
 values = fit.posterior.values(weighted.resample(2000, rng=rng))

@@ -8,13 +8,16 @@ import numpy as np
 
 from model.bayes.blocks import SlipBlocks, block_means
 from model.bayes.cross_validation import CrossValidation, cross_validate
-from model.bayes.laplace import Laplace, find_mode
+from model.bayes.laplace import Laplace, LaplaceMixture, find_modes
 from model.bayes.posterior import LoadCell, SlipPosterior, default_priors
 from model.bayes.preliminary import BlockChoice, choose_block_length, least_squares_values
 from model.bayes.samples import SlipSamples
 from model.errors import DomainError, InsufficientData
 from model.slip.law import SlipLaw
 
+FEW_BLOCKS = 500
+PRIOR_DRAWS = 400
+PRIOR_STARTS = 12  # of the draws, from the best to the worst, where to climb from as well
 CLEAR_WIN = 2.0  # standard errors by which a law must predict better to be preferred
 
 
@@ -24,17 +27,22 @@ class PreparedFit:
 
     Attributes:
         posterior: Blocks, law and priors.
-        laplace: Laplace approximation at the mode.
+        approximation: Laplace approximations at the modes, the highest first.
         cross_validation: Prediction of left-out runs; None for a single run or where not asked for.
         block_choice: The block length and why.
         load_cell: What was taken as known of the load cell.
     """
 
     posterior: SlipPosterior
-    laplace: Laplace
+    approximation: LaplaceMixture
     cross_validation: CrossValidation | None
     block_choice: BlockChoice
     load_cell: LoadCell
+
+    @property
+    def laplace(self) -> Laplace:
+        """The Laplace approximation at the highest mode."""
+        return self.approximation.modes[0]
 
 
 def scaled_load_cell(samples: SlipSamples, known: Mapping[str, float]) -> LoadCell:
@@ -87,13 +95,13 @@ def prepare_fit(
     fixed = _not_identified(blocks)
     posterior = SlipPosterior(blocks, law, priors, fixed)
     starts = _starting_points(posterior, rng)
-    laplace = find_mode(posterior.log_density, starts)
+    modes = LaplaceMixture(find_modes(posterior.log_density, starts))
     validation = (
-        cross_validate(posterior, laplace.mode, threads=threads)
+        cross_validate(posterior, modes.modes[0].mode, threads=threads)
         if validate and blocks.n_runs > 1
         else None
     )
-    return PreparedFit(posterior, laplace, validation, choice, load_cell)
+    return PreparedFit(posterior, modes, validation, choice, load_cell)
 
 
 def _require_enough(samples: SlipSamples, law: SlipLaw) -> None:
@@ -113,19 +121,26 @@ def _not_identified(blocks: SlipBlocks) -> dict[str, float]:
 
 
 def _starting_points(posterior: SlipPosterior, rng: np.random.Generator) -> np.ndarray:
-    """Start from least squares, with noise guessed from its residual, small and large."""
+    """Start from least squares and, where a climb costs little, from draws of the prior too.
+
+    Few data allow several shapes, each a mode of the posterior that one start would not see.
+    """
     blocks, law = posterior.blocks, posterior.law
     values = least_squares_values(blocks, law, priors=dict(posterior.priors), rng=rng)
     force = law.force(blocks.slip, blocks.normal_force, values)
     size = float(np.std(blocks.traction_force - force))
     names = [parameter.name for parameter in law.parameters]
     known = dict(zip(names, map(float, values), strict=True))
-    return np.stack(
-        [
-            posterior.coordinates({**known, "noise_floor": size * share, "noise_slope": 0.01})
-            for share in (0.3, 1.0)
-        ]
-    )
+    near = [
+        posterior.coordinates({**known, "noise_floor": size * share, "noise_slope": 0.01})
+        for share in (0.3, 1.0)
+    ]
+    if len(blocks) > FEW_BLOCKS:
+        return np.stack(near)
+    drawn = rng.standard_normal((PRIOR_DRAWS, len(posterior.free)))
+    heights = posterior.log_density(drawn)
+    ranked = drawn[np.argsort(-heights)][: np.isfinite(heights).sum()]
+    return np.vstack([*near, ranked[:: max(1, len(ranked) // PRIOR_STARTS)]])
 
 
 @dataclass(frozen=True)

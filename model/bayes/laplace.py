@@ -3,16 +3,20 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 from scipy.optimize import minimize
+from scipy.special import logsumexp
 from scipy.stats import multivariate_t
 
 from model.errors import FitError
 from model.slip.law import Array
 
 LogDensity = Callable[[Array], Array]
+SAME_TOP = 0.05  # coordinates closer than this are one top, reached twice
+NEGLIGIBLE = 10.0  # nats of evidence below the best mode's, at which another is left out
 STEP = 1e-4  # coordinates are of unit scale a priori; central differences err by about its square
 
 
@@ -37,6 +41,50 @@ class Laplace:
             d * np.log(2 * np.pi) + np.linalg.slogdet(self.covariance)[1]
         )
 
+    def distance(self, z: Array) -> float:
+        """Compute the Mahalanobis distance of coordinates z from the mode [-]."""
+        away = z - self.mode
+        return float(np.sqrt(away @ np.linalg.solve(self.covariance, away)))
+
+
+@dataclass(frozen=True)
+class LaplaceMixture:
+    """A mixture of heavy-tailed Laplace approximations, one a mode of the posterior.
+
+    Attributes:
+        modes: The approximations, each widened to a Student-t with 8 degrees of freedom.
+    """
+
+    modes: tuple[Laplace, ...]
+
+    @cached_property
+    def weights(self) -> Array:
+        """Weight of each mode by evidence, no less than a tenth of an equal share, shape (m,)."""
+        evidence = np.array([laplace.log_evidence() for laplace in self.modes])
+        share = np.exp(evidence - evidence.max())
+        share = np.maximum(share / share.sum(), 0.1 / len(share))
+        return share / share.sum()
+
+    @cached_property
+    def _parts(self) -> list[Any]:
+        frozen: Any = multivariate_t  # scipy's stub has the covariance as an int
+        return [frozen(laplace.mode, laplace.covariance, df=8) for laplace in self.modes]
+
+    def draw(self, n: int, *, rng: np.random.Generator) -> Array:
+        """Draw n coordinates, shape (n, d)."""
+        counts = rng.multinomial(n, self.weights)
+        parts = [
+            np.reshape(part.rvs(size=count, random_state=rng), (count, -1))
+            for part, count in zip(self._parts, counts, strict=True)
+            if count
+        ]
+        return rng.permutation(np.concatenate(parts))
+
+    def log_pdf(self, z: Array) -> Array:
+        """Compute the log density of coordinates z of shape (w, d), shape (w,)."""
+        parts = np.stack([np.reshape(part.logpdf(z), len(z)) for part in self._parts], axis=1)
+        return np.asarray(logsumexp(parts + np.log(self.weights), axis=1))
+
 
 def gradient(log_density: LogDensity, z: Array) -> Array:
     """Compute the gradient by central differences, in one batched call, shape (d,)."""
@@ -53,7 +101,8 @@ def hessian(log_density: LogDensity, z: Array, *, step: float = 1e-3) -> Array:
     corners = [z + a * e[rows] + b * e[columns] for a in (1, -1) for b in (1, -1)]
     pp, pm, mp, mm = np.split(log_density(np.concatenate(corners)), 4)
     matrix = np.zeros((d, d))
-    matrix[rows, columns] = (pp - pm - mp + mm) / (4 * step**2)
+    with np.errstate(invalid="ignore"):  # infinities across the edge of the support
+        matrix[rows, columns] = (pp - pm - mp + mm) / (4 * step**2)
     return matrix + np.triu(matrix, 1).T
 
 
@@ -70,8 +119,38 @@ def find_mode(log_density: LogDensity, starts: Array) -> Laplace:
     Raises:
         FitError: No start lies inside the support.
     """
-    best, covariance = _newton(log_density, climb(log_density, starts))
-    return Laplace(best, covariance, float(log_density(best[None])[0]))
+    return _laplace(log_density, climb(log_density, starts))
+
+
+def find_modes(log_density: LogDensity, starts: Array) -> tuple[Laplace, ...]:
+    """Climb from several starting points and approximate the posterior at every mode found.
+
+    Args:
+        log_density: Log density of coordinates (w, d), -inf out of support.
+        starts: Starting points, shape (m, d).
+
+    Returns:
+        The distinct modes that hold a share of the posterior worth visiting, the highest first.
+
+    Raises:
+        FitError: No start lies inside the support.
+    """
+    tops: list[Array] = []
+    for top in _tops(log_density, starts):
+        if all(np.linalg.norm(top - known) > SAME_TOP for known in tops):
+            tops.append(top)
+    distinct: list[Laplace] = []
+    for laplace in (_laplace(log_density, top) for top in tops):
+        if all(known.distance(laplace.mode) > 1 for known in distinct):
+            distinct.append(laplace)
+    least = max(laplace.log_evidence() for laplace in distinct) - NEGLIGIBLE
+    worthy = [laplace for laplace in distinct if laplace.log_evidence() > least]
+    return tuple(sorted(worthy, key=lambda laplace: -laplace.log_density))
+
+
+def _laplace(log_density: LogDensity, top: Array) -> Laplace:
+    mode, covariance = _newton(log_density, top)
+    return Laplace(mode, covariance, float(log_density(mode[None])[0]))
 
 
 def climb(log_density: LogDensity, starts: Array) -> Array:
@@ -87,6 +166,11 @@ def climb(log_density: LogDensity, starts: Array) -> Array:
     Raises:
         FitError: No start lies inside the support.
     """
+    return _tops(log_density, starts)[0]
+
+
+def _tops(log_density: LogDensity, starts: Array) -> list[Array]:
+    """Climb from every starting point inside the support; return the tops, the highest first."""
     inside = starts[np.isfinite(log_density(starts))]
     if len(inside) == 0:
         raise FitError(
@@ -94,7 +178,7 @@ def climb(log_density: LogDensity, starts: Array) -> Array:
             "shape its priors allow on these loads"
         )
     tops = [_climb(log_density, start) for start in inside]
-    return max(tops, key=lambda z: float(log_density(z[None])[0]))
+    return sorted(tops, key=lambda z: -float(log_density(z[None])[0]))
 
 
 def _climb(log_density: LogDensity, start: Array) -> Array:
@@ -155,26 +239,23 @@ class WeightedDraws:
 
 
 def importance_draws(
-    log_density: LogDensity, laplace: Laplace, *, n: int, rng: np.random.Generator
+    log_density: LogDensity, proposal: LaplaceMixture, *, n: int, rng: np.random.Generator
 ) -> WeightedDraws:
-    """Draw from a heavy-tailed Laplace approximation and weight by the posterior.
+    """Draw from a mixture of Laplace approximations and weight by the posterior.
 
-    Pareto-smoothed importance sampling (Vehtari et al. 2024): the second engine, which shares
-    nothing with the sampler but the density.
+    Pareto-smoothed importance sampling (Vehtari et al. 2024): the second engine.
 
     Args:
         log_density: Log density of coordinates (w, d).
-        laplace: The approximation to draw from, widened to a Student-t with 8 degrees of freedom.
+        proposal: What to draw from.
         n: Number of draws.
         rng: Source of randomness.
     """
     import arviz as az
 
-    frozen: Any = multivariate_t  # scipy's stub has the covariance as an int
-    proposal = frozen(laplace.mode, laplace.covariance, df=8, seed=rng)
-    z: Array = np.asarray(proposal.rvs(size=n), dtype=float).reshape(n, -1)
+    z = proposal.draw(n, rng=rng)
     batches = np.array_split(z, n // 64 + 1)
-    ratio = np.concatenate([log_density(batch) for batch in batches]) - proposal.logpdf(z)
+    ratio = np.concatenate([log_density(batch) for batch in batches]) - proposal.log_pdf(z)
     ratio = np.where(np.isfinite(ratio), ratio, -1e6 + ratio[np.isfinite(ratio)].max())
     smoothed, pareto_k = az.psislw(ratio)
     weights = np.exp(np.asarray(smoothed))

@@ -13,9 +13,9 @@ from typing import Any
 import numpy as np
 from emcee import EnsembleSampler, State
 from emcee.autocorr import integrated_time
-from emcee.moves import DEMove, KDEMove
+from emcee.moves import DEMove, MHMove
 
-from model.bayes.laplace import Laplace
+from model.bayes.laplace import LaplaceMixture
 from model.errors import DomainError, FitError
 from model.slip.law import Array
 
@@ -23,12 +23,7 @@ MOVES = ((DEMove, 1.0),)
 """A quarter of the stretch move's autocorrelation time in 12 dimensions. No snooker move: emcee's,
 up to 3.1.6, misses half the exponent of its acceptance ratio and narrows every spread by 7 %."""
 
-JUMPS = ((DEMove, 0.6), (KDEMove, 0.4))
-"""For large ensembles: a density estimated from the other walkers proposes jumps between modes."""
-
-CROWD = 24  # walkers a dimension from which such an estimate is any good
-
-START_WIDTH = 1.2  # of the Laplace approximation's: R-hat wants starts at least as wide as the end
+JUMP_SHARE = 0.3  # of all moves: to a draw of the Laplace approximations, between modes if need be
 
 
 @dataclass(frozen=True)
@@ -57,35 +52,27 @@ class Chains:
         return self.z.shape[1]
 
 
-def walker_count(d: int, *, crowd: bool = False) -> int:
-    """Choose the number of walkers for d dimensions: even, at least 32.
-
-    Args:
-        d: Dimensions.
-        crowd: Take 24 a dimension, in place of three, and jump between modes: where data are few,
-            modes are many, and a density that is quick to evaluate pays for it.
-    """
-    return CROWD * d + CROWD * d % 2 if crowd else max(32, 2 * ((3 * d + 1) // 2))
+def walker_count(d: int) -> int:
+    """Choose the number of walkers for d dimensions: even, three a dimension, at least 32."""
+    return max(32, 2 * ((3 * d + 1) // 2))
 
 
 def start_chains(
     log_density: Callable[[Array], Array],
-    laplace: Laplace,
+    approximation: LaplaceMixture,
     *,
     ensembles: int,
     thin: int,
     rng: np.random.Generator,
-    crowd: bool = False,
 ) -> Chains:
-    """Draw every walker's start from a widened Laplace approximation.
+    """Draw every walker's start from the widened Laplace approximations.
 
     Args:
         log_density: Log density of coordinates (w, d).
-        laplace: The approximation at the posterior's mode.
+        approximation: The approximation at the posterior's modes.
         ensembles: How many independent ensembles.
         thin: Sampler moves for each kept step.
         rng: Source of randomness, of the starts and of each ensemble's seed.
-        crowd: Many walkers that jump between modes; see `walker_count`.
 
     Returns:
         Chains of one step.
@@ -93,11 +80,9 @@ def start_chains(
     Raises:
         FitError: Too few of the draws lie inside the support.
     """
-    d = len(laplace.mode)
-    walkers = walker_count(d, crowd=crowd)
-    drawn = rng.multivariate_normal(
-        laplace.mode, START_WIDTH**2 * laplace.covariance, size=8 * ensembles * walkers
-    )
+    d = len(approximation.modes[0].mode)
+    walkers = walker_count(d)
+    drawn = approximation.draw(8 * ensembles * walkers, rng=rng)
     heights = np.concatenate([log_density(part) for part in np.array_split(drawn, 8 * ensembles)])
     inside = np.flatnonzero(np.isfinite(heights))[: ensembles * walkers]
     if len(inside) < ensembles * walkers:
@@ -119,7 +104,12 @@ def start_chains(
 
 
 def advance(
-    log_density: Callable[[Array], Array], chains: Chains, *, steps: int, threads: int = 2
+    log_density: Callable[[Array], Array],
+    chains: Chains,
+    *,
+    steps: int,
+    approximation: LaplaceMixture | None = None,
+    threads: int = 2,
 ) -> Chains:
     """Walk every ensemble on, the ensembles shared among threads.
 
@@ -130,6 +120,7 @@ def advance(
         log_density: Log density of coordinates (w, d); numpy and numba release the GIL in it.
         chains: Where the ensembles stand.
         steps: Kept steps to add.
+        approximation: Where to jump now and then; None for none.
         threads: Ensembles to advance at once.
 
     Returns:
@@ -142,7 +133,7 @@ def advance(
         raise DomainError(f"steps is {steps}; expected 1 or more")
 
     def walk(ensemble: int) -> EnsembleSampler:
-        return _walk(log_density, chains, ensemble=ensemble, steps=steps)
+        return _walk(log_density, chains, approximation, ensemble=ensemble, steps=steps)
 
     with ThreadPoolExecutor(threads) as pool:
         walked = list(pool.map(walk, range(len(chains.z))))
@@ -162,11 +153,20 @@ def advance(
 
 
 def _walk(
-    log_density: Callable[[Array], Array], chains: Chains, *, ensemble: int, steps: int
+    log_density: Callable[[Array], Array],
+    chains: Chains,
+    approximation: LaplaceMixture | None,
+    *,
+    ensemble: int,
+    steps: int,
 ) -> EnsembleSampler:
     _, _, walkers, d = chains.z.shape
-    kinds = JUMPS if walkers >= CROWD * d else MOVES
-    moves = [(move(), share) for move, share in kinds]  # a move has state: one for each ensemble
+    moves: list[tuple[Any, float]] = [  # a move has state: one for each ensemble
+        (move(), share) for move, share in MOVES
+    ]
+    if approximation is not None:
+        moves = [(move, (1 - JUMP_SHARE) * share) for move, share in moves]
+        moves.append((MHMove(_jump_to(approximation)), JUMP_SHARE))
     sampler = EnsembleSampler(walkers, d, log_density, moves=moves, vectorize=True)
     state = State(
         chains.z[ensemble, -1],
@@ -179,6 +179,19 @@ def _walk(
         state, steps, thin_by=chains.thin, skip_initial_state_check=True, store=True, progress=False
     )
     return sampler
+
+
+def _jump_to(
+    approximation: LaplaceMixture,
+) -> Callable[[Array, np.random.RandomState], tuple[Array, Array]]:
+    """Return a proposal that forgets where a walker is: an independent draw, weighed by density."""
+
+    def propose(z: Array, rng: np.random.RandomState) -> tuple[Array, Array]:
+        # A generator of its own: RandomState hides half a pair of normals from its state array.
+        drawn = approximation.draw(len(z), rng=np.random.default_rng(rng.randint(2**31)))
+        return drawn, approximation.log_pdf(z) - approximation.log_pdf(drawn)
+
+    return propose
 
 
 def _kept(stored: Array | None) -> Array:

@@ -28,7 +28,7 @@ import pytest
 
 from model.bayes.blocks import block_means
 from model.bayes.fit import prepare_fit
-from model.bayes.laplace import Laplace, find_mode, importance_draws
+from model.bayes.laplace import LaplaceMixture, find_mode, importance_draws
 from model.bayes.posterior import LoadCell, SlipPosterior
 from model.bayes.samples import SlipSamples
 from model.slip.law import Array
@@ -111,14 +111,19 @@ def in_chunks(density: Callable[[Array], Array]) -> Callable[[Array], Array]:
 
 
 def conclude(
-    posterior: SlipPosterior, laplace: Laplace, *, n: int, rng: np.random.Generator, began: float
+    posterior: SlipPosterior,
+    modes: LaplaceMixture,
+    *,
+    n: int,
+    rng: np.random.Generator,
+    began: float,
 ) -> Fit:
-    weighted = importance_draws(in_chunks(posterior.log_density), laplace, n=n, rng=rng)
+    weighted = importance_draws(in_chunks(posterior.log_density), modes, n=n, rng=rng)
     values = posterior.values(weighted.resample(N_INTERVAL_DRAWS, rng=rng))
     read = quantities(values[:, : len(LAW_SYMBOLS)])
     ends = {name: np.quantile(draws, [0.05, 0.95]) for name, draws in read.items()}
     names = [parameter.name for parameter in posterior.parameters]
-    mode = posterior.values(laplace.mode[None])[0]
+    mode = posterior.values(modes.modes[0].mode[None])[0]
     return Fit(
         intervals={name: (float(low), float(high)) for name, (low, high) in ends.items()},
         mode=dict(zip(names, map(float, mode), strict=True)),
@@ -131,7 +136,7 @@ def calibrate(samples: SlipSamples, rng: np.random.Generator) -> tuple[SlipPoste
     began = time.perf_counter()
     fit = prepare_fit(samples, SOURCE_LAW, load_cell=LOAD_CELL, rng=rng, validate=False)
     posterior = fit.posterior
-    return posterior, conclude(posterior, fit.laplace, n=N_DRAWS, rng=rng, began=began)
+    return posterior, conclude(posterior, fit.approximation, n=N_DRAWS, rng=rng, began=began)
 
 
 def refit(
@@ -145,7 +150,7 @@ def refit(
     began = time.perf_counter()
     density = in_chunks(posterior.log_density)
     laplace = find_mode(density, posterior.coordinates(start)[None])
-    return conclude(posterior, laplace, n=n, rng=rng, began=began)
+    return conclude(posterior, LaplaceMixture((laplace,)), n=n, rng=rng, began=began)
 
 
 def replicate(seed: int) -> dict[str, Fit]:

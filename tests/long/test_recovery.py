@@ -112,9 +112,9 @@ def say(line: str) -> None:
 
 def walk(fit: PreparedFit, rng: np.random.Generator) -> tuple[Chains, Convergence]:
     density = fit.posterior.log_density
-    chains = start_chains(density, fit.laplace, ensembles=ENSEMBLES, thin=THIN, rng=rng)
+    chains = start_chains(density, fit.approximation, ensembles=ENSEMBLES, thin=THIN, rng=rng)
     while True:
-        chains = advance(density, chains, steps=CHUNK)
+        chains = advance(density, chains, steps=CHUNK, approximation=fit.approximation)
         convergence = assess(chains)
         enough = convergence.converged and convergence.ess_bulk.min() >= ENOUGH_ESS
         if enough or chains.n_steps > MOST_STEPS:
@@ -129,7 +129,9 @@ def recover(seed: int) -> Recovery:
     began = time.perf_counter()
     fit = prepare_fit(sweep.samples, SOURCE_LAW, load_cell=LOAD_CELL, rng=rng, validate=False)
     posterior = fit.posterior
-    weighted = importance_draws(posterior.log_density, fit.laplace, n=IMPORTANCE_DRAWS, rng=rng)
+    weighted = importance_draws(
+        posterior.log_density, fit.approximation, n=IMPORTANCE_DRAWS, rng=rng
+    )
     law_values = posterior.values(weighted.resample(IMPORTANCE_DRAWS, rng=rng))[:, : len(LAW)]
     miss = np.log(law_values).mean(axis=0) - np.log(TRUTH)
     covariance = np.cov(np.log(law_values), rowvar=False)

@@ -47,10 +47,6 @@ from zebro_lab.provenance import file_hashes, fingerprint
 from zebro_lab.tables import RigData, read_rig_data
 
 THIN = 5  # sampler moves a kept step
-CROWD_BLOCKS = (
-    60  # up to a few dozen trials, many shapes fit and walkers cost nothing: take a crowd
-)
-CROWD_THIN = 15
 CHUNK = 20  # kept steps between looks at the clock, the keyboard and the bar
 FIRST_LOOK = 100  # kept steps before convergence is judged for the first time
 CHECKPOINT_SECONDS = 5.0
@@ -253,18 +249,11 @@ def _sample(
 ) -> tuple[Chains, Convergence]:
     """Walk until converged or out of steps, with a checkpoint every few seconds."""
     density = fit.posterior.log_density
-    n_blocks = len(fit.posterior.blocks)
-    crowd = n_blocks <= CROWD_BLOCKS
     chains = earlier or start_chains(
-        density,
-        fit.laplace,
-        ensembles=request.ensembles,
-        thin=CROWD_THIN if crowd else THIN,
-        rng=rng,
-        crowd=crowd,
+        density, fit.approximation, ensembles=request.ensembles, thin=THIN, rng=rng
     )
     most = max(request.max_steps // chains.thin, FIRST_LOOK)
-    threads = 1 if n_blocks < FEW_BLOCKS else request.threads
+    threads = 1 if len(fit.posterior.blocks) < FEW_BLOCKS else request.threads
     look, saved = _look_from(chains.n_steps - CHUNK + 1), time.monotonic()
     watcher.step("sampling", 0.0)
     while True:
@@ -277,7 +266,9 @@ def _sample(
             look = _look_from(chains.n_steps + 1)
         if watcher.stop_requested():
             raise Stopped(save_checkpoint(request.out, chains, fingerprint=mark))
-        chains = advance(density, chains, steps=CHUNK, threads=threads)
+        chains = advance(
+            density, chains, steps=CHUNK, approximation=fit.approximation, threads=threads
+        )
         if time.monotonic() - saved > CHECKPOINT_SECONDS:
             save_checkpoint(request.out, chains, fingerprint=mark)
             saved = time.monotonic()
@@ -307,7 +298,9 @@ def _conclude(
     draws = thin_draws(posterior, chains, convergence, n=DRAWS_PER_ENSEMBLE)
     some = draws.flat[:: max(1, len(draws.flat) // 400)]
     residuals = analyse_residuals(posterior.blocks, posterior.law, some)
-    weighted = importance_draws(posterior.log_density, fit.laplace, n=IMPORTANCE_DRAWS, rng=rng)
+    weighted = importance_draws(
+        posterior.log_density, fit.approximation, n=IMPORTANCE_DRAWS, rng=rng
+    )
     narrowed = contraction(posterior, draws)
     levels = load_levels(posterior.blocks)
     k = len(posterior.law.parameters)

@@ -5,7 +5,15 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy import stats
 
-from model.bayes.laplace import find_mode, gradient, hessian, importance_draws
+from model.bayes.laplace import (
+    Laplace,
+    LaplaceMixture,
+    find_mode,
+    find_modes,
+    gradient,
+    hessian,
+    importance_draws,
+)
 from model.errors import FitError
 
 
@@ -119,7 +127,48 @@ def test_a_mode_on_the_edge_of_the_support_still_has_a_finite_covariance():
     assert 0 <= found.mode[0] < 1
 
 
+# --- several modes
+
+
+def test_each_mode_is_listed_once_the_highest_first():
+    modes = find_modes(two_hills, np.array([[-2.2], [2.3], [-1.8], [1.9]]))
+    assert [float(m.mode[0]) for m in modes] == pytest.approx([2.0, -2.0], abs=1e-3)
+    np.testing.assert_allclose(LaplaceMixture(modes).weights, [0.75, 0.25], atol=1e-2)
+
+
+def test_a_mode_that_holds_nothing_is_left_out():
+    def one_hill_and_a_bump(z):
+        hills = stats.norm.logpdf(z[:, :1], [-2.0, 2.0], 0.3) - np.array([15.0, 0.0])
+        return np.logaddexp(*hills.T)
+
+    assert len(find_modes(one_hill_and_a_bump, np.array([[-2.0], [2.0]]))) == 1
+
+
+def test_a_slight_mode_keeps_a_tenth_of_an_equal_share():
+    heavy, light = (Laplace(np.zeros(1), np.eye(1), height) for height in (0.0, -9.0))
+    assert LaplaceMixture((heavy, light)).weights[1] == pytest.approx(0.05, rel=0.06)
+
+
+@given(st.integers(0, 20))
+def test_a_mixtures_density_is_that_of_its_draws(seed):
+    rng = np.random.default_rng(seed)
+    modes = tuple(Laplace(np.array([x]), np.eye(1) * v, -1.0) for x, v in ((-2, 0.1), (2, 0.5)))
+    mixture = LaplaceMixture(modes)
+    grid = np.linspace(-40, 40, 8001)
+    density = np.exp(mixture.log_pdf(grid[:, None]))
+    cumulative = np.cumsum(density) * (grid[1] - grid[0])
+    assert cumulative[-1] == pytest.approx(1.0, abs=1e-3)
+    drawn = mixture.draw(400, rng=rng)[:, 0]
+    assert stats.kstest(drawn, lambda x: np.interp(x, grid, cumulative)).pvalue > 1e-4
+
+
 # --- importance sampling
+
+
+def test_weights_of_two_modes_are_those_of_the_density():
+    modes = LaplaceMixture(find_modes(two_hills, np.array([[-2.2], [2.3]])))
+    drawn = importance_draws(two_hills, modes, n=4000, rng=np.random.default_rng(6))
+    assert drawn.weights[drawn.z[:, 0] > 0].sum() == pytest.approx(0.75, abs=0.01)
 
 
 def test_weighted_draws_have_the_mean_and_spread_of_a_skewed_density():
@@ -130,7 +179,9 @@ def test_weighted_draws_have_the_mean_and_spread_of_a_skewed_density():
     exact_sd = stats.loggamma(6).std()
     laplace = find_mode(log_gamma, np.zeros((1, 2)))
     assert laplace.mode[0] == pytest.approx(0.0, abs=1e-4)
-    drawn = importance_draws(log_gamma, laplace, n=20_000, rng=np.random.default_rng(0))
+    drawn = importance_draws(
+        log_gamma, LaplaceMixture((laplace,)), n=20_000, rng=np.random.default_rng(0)
+    )
     mean = drawn.weights @ drawn.z
     sd = np.sqrt(drawn.weights @ (drawn.z - mean) ** 2)
     assert mean == pytest.approx([exact_mean, exact_mean], abs=0.02)
@@ -144,14 +195,18 @@ def test_a_density_far_wider_than_its_laplace_approximation_is_reported():
         return stats.cauchy.logpdf(z[:, 0], scale=0.2)
 
     laplace = find_mode(cauchy, np.zeros((1, 1)))
-    drawn = importance_draws(cauchy, laplace, n=4000, rng=np.random.default_rng(1))
+    drawn = importance_draws(
+        cauchy, LaplaceMixture((laplace,)), n=4000, rng=np.random.default_rng(1)
+    )
     assert drawn.pareto_k > 0.7
 
 
 def test_draws_out_of_support_carry_no_weight():
     laplace = find_mode(positive_only, np.array([[0.5]]))
     wide = type(laplace)(laplace.mode, 4 * np.eye(1), laplace.log_density)
-    drawn = importance_draws(positive_only, wide, n=4000, rng=np.random.default_rng(2))
+    drawn = importance_draws(
+        positive_only, LaplaceMixture((wide,)), n=4000, rng=np.random.default_rng(2)
+    )
     outside = drawn.z[:, 0] <= 0
     assert outside.mean() > 0.1
     np.testing.assert_array_equal(drawn.weights[outside], 0.0)
@@ -161,9 +216,9 @@ def test_draws_out_of_support_carry_no_weight():
 
 
 def test_the_same_generator_gives_the_same_draws():
-    laplace = find_mode(two_hills, np.array([[2.0]]))
+    modes = LaplaceMixture(find_modes(two_hills, np.array([[2.0]])))
     one, same = (
-        importance_draws(two_hills, laplace, n=500, rng=np.random.default_rng(4)) for _ in range(2)
+        importance_draws(two_hills, modes, n=500, rng=np.random.default_rng(4)) for _ in range(2)
     )
     np.testing.assert_array_equal(one.z, same.z)
     np.testing.assert_array_equal(one.weights, same.weights)

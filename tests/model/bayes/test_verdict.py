@@ -209,7 +209,7 @@ def verdict_on_sweep(*, offset_sd: float, zero_stability: float, seed: int = 1) 
         sweep.samples, SOURCE_LAW, load_cell=LoadCell(zero_stability=zero_stability), rng=rng,
         block_choice=BlockChoice(20, None, "as planned"), threads=1,
     )  # fmt: skip
-    weighted = importance_draws(fit.posterior.log_density, fit.laplace, n=1000, rng=rng)
+    weighted = importance_draws(fit.posterior.log_density, fit.approximation, n=1000, rng=rng)
     z = weighted.resample(400, rng=rng)
     values = fit.posterior.values(z)
     names = [parameter.name for parameter in fit.posterior.free]

@@ -71,7 +71,7 @@ def judged(data: RigData, law: MagicFormula) -> Judged:
     cell = scaled_load_cell(data.samples, data.load_cell)
     fit = prepare_fit(data.samples, law, load_cell=cell, rng=rng)
     posterior = fit.posterior
-    weighted = importance_draws(posterior.log_density, fit.laplace, n=1000, rng=rng)
+    weighted = importance_draws(posterior.log_density, fit.approximation, n=1000, rng=rng)
     z = weighted.resample(400, rng=rng)
     values = posterior.values(z)
     residuals = analyse_residuals(posterior.blocks, law, values)

@@ -1,0 +1,2 @@
+# SPDX-License-Identifier: MIT
+"""Gaits: which leg is where, when."""

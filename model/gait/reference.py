@@ -1,0 +1,80 @@
+# SPDX-License-Identifier: MIT
+"""What every gait yields: leg angles as functions of time."""
+
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from model.errors import DomainError
+from model.slip.law import Array
+
+
+class LegReference(Protocol):
+    """Angles and speeds of six legs over time.
+
+    Angles are unwrapped: a leg that walks forward only ever grows, by 2 pi a cycle.
+    """
+
+    @property
+    def period(self) -> float | None:
+        """Time after which every leg has turned by 2 pi and all begins anew; None if never [s]."""
+        ...
+
+    def angles(self, t: ArrayLike) -> Array:
+        """Compute the leg angles at times t of shape (n,), shape (n, 6) [rad]."""
+        ...
+
+    def speeds(self, t: ArrayLike) -> Array:
+        """Compute the leg speeds at times t, from the right at a kink, shape (n, 6) [rad/s]."""
+        ...
+
+
+@dataclass(frozen=True)
+class SampledReference:
+    """Leg angles given at instants, straight lines between them: a measured log, or any table.
+
+    Attributes:
+        t: Times, strictly increasing, shape (m,) [s].
+        theta: Unwrapped leg angles, shape (m, 6) [rad].
+
+    Raises:
+        DomainError: The times do not increase, or shapes do not match.
+    """
+
+    t: Array
+    theta: Array
+
+    def __post_init__(self) -> None:
+        """Refuse samples that are no function of time."""
+        if self.t.ndim != 1 or len(self.t) < 2 or self.theta.shape != (len(self.t), 6):
+            raise DomainError(
+                f"times have shape {self.t.shape} and leg angles {self.theta.shape}; "
+                "expected (m,) and (m, 6) with m at least 2"
+            )
+        steps = np.diff(self.t)
+        if not np.all(steps > 0):
+            worst = int(np.argmin(steps > 0))
+            raise DomainError(
+                f"time goes from {self.t[worst]:g} to {self.t[worst + 1]:g} s at sample "
+                f"{worst + 1}; expected increasing times"
+            )
+
+    @property
+    def period(self) -> float | None:
+        """None: a log does not repeat."""
+        return None
+
+    def angles(self, t: ArrayLike) -> Array:
+        """Interpolate the leg angles; held still before the first and after the last sample."""
+        at = np.atleast_1d(np.asarray(t, dtype=float))
+        return np.column_stack([np.interp(at, self.t, column) for column in self.theta.T])
+
+    def speeds(self, t: ArrayLike) -> Array:
+        """Compute the slope of the line at times t; zero outside the samples [rad/s]."""
+        at = np.atleast_1d(np.asarray(t, dtype=float))
+        index = np.searchsorted(self.t, at, side="right") - 1
+        slopes = np.diff(self.theta, axis=0) / np.diff(self.t)[:, None]
+        padded = np.vstack([np.zeros(6), slopes, np.zeros(6)])
+        return padded[index + 1]

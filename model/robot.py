@@ -1,0 +1,110 @@
+# SPDX-License-Identifier: MIT
+"""The robot: where its hips are, the shape of its legs, and what it weighs."""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from model.errors import DomainError
+from model.slip.law import Array
+
+N_LEGS = 6
+LEFT = (0, 2, 4)  # indices of legs 1, 3, 5
+RIGHT = (1, 3, 5)  # indices of legs 2, 4, 6
+GRAVITY = 9.81  # m/s2, the listing's
+
+HIP_X, HIP_Y = 0.097, 0.1156  # Listing A.1; the text's w/2 puts hip_y at 0.1256 m
+
+
+def _source_hips() -> Array:
+    x, y = (HIP_X, HIP_X, 0.0, 0.0, -HIP_X, -HIP_X), (HIP_Y, -HIP_Y) * 3
+    return np.column_stack([x, y, np.zeros(N_LEGS)])
+
+
+@dataclass(frozen=True)
+class Robot:
+    """A rigid body on six massless legs, each an arc of a circle from its hip to its toe.
+
+    The defaults are the source's robot, Listing A.1.
+
+    Attributes:
+        hips: Hip positions in the body frame by leg, shape (6, 3) [m].
+        leg_radius: Radius of the arc [m].
+        leg_arc: Angle of the arc; pi in the source's model, about 200 degrees on its robot [rad].
+        mass: Mass of the body [kg].
+        body_size: Length, width and height of the body, shape (3,) [m].
+        inertia: Principal moments of inertia about x, y and z; those of a uniform cuboid of
+            `body_size` when None, Eq. (4-9) [kg m2].
+        leg_offset: Angle of each leg beyond the one it reports, shape (6,) [rad].
+
+    Raises:
+        DomainError: A length, mass or inertia is not positive, or the arc is no arc.
+    """
+
+    hips: Array = field(default_factory=_source_hips)
+    leg_radius: float = 0.035
+    leg_arc: float = np.pi
+    mass: float = 2.17
+    body_size: tuple[float, float, float] = (0.194, 0.2512, 0.069)
+    inertia: tuple[float, float, float] | None = None
+    leg_offset: Array = field(default_factory=lambda: np.zeros(N_LEGS))
+
+    def __post_init__(self) -> None:
+        """Refuse a robot that cannot be."""
+        object.__setattr__(self, "hips", np.asarray(self.hips, dtype=float))
+        object.__setattr__(self, "leg_offset", np.asarray(self.leg_offset, dtype=float))
+        if self.hips.shape != (N_LEGS, 3):
+            raise DomainError(f"hips have shape {self.hips.shape}; expected (6, 3)")
+        if self.leg_offset.shape != (N_LEGS,):
+            raise DomainError(f"leg_offset has shape {self.leg_offset.shape}; expected (6,)")
+        positive = {
+            "mass": (self.mass, "kg"),
+            "leg_radius": (self.leg_radius, "m"),
+            **{f"body_size[{i}]": (size, "m") for i, size in enumerate(self.body_size)},
+            **{f"inertia[{i}]": (x, "kg m2") for i, x in enumerate(self.inertia or ())},
+        }
+        for name, (value, unit) in positive.items():
+            if not (value > 0 and np.isfinite(value)):
+                raise DomainError(f"{name} is {value:g} {unit}; expected more than zero")
+        if not np.pi / 2 <= self.leg_arc < 2 * np.pi:
+            raise DomainError(
+                f"leg_arc is {np.degrees(self.leg_arc):g} degrees; expected 90 to 360 "
+                "(a half circle is 180)"
+            )
+
+    @property
+    def principal_inertia(self) -> Array:
+        """Moments of inertia about the body's axes, shape (3,) [kg m2]."""
+        return (
+            cuboid_inertia(self.mass, self.body_size)
+            if self.inertia is None
+            else np.array(self.inertia)
+        )
+
+    @property
+    def toe_beyond(self) -> float:
+        """Angle of the arc beyond a half circle; negative for a shorter one [rad]."""
+        return self.leg_arc - np.pi
+
+    @property
+    def track(self) -> float:
+        """Distance between the left and right hips, averaged over the legs [m]."""
+        y = self.hips[:, 1]
+        return float(y[list(LEFT)].mean() - y[list(RIGHT)].mean())
+
+
+def cuboid_inertia(mass: float, size: tuple[float, float, float]) -> Array:
+    r"""Compute the principal moments of inertia of a uniform cuboid, Eq. (4-9) [kg m2].
+
+    .. math::
+        I_{xx} = m (w^2 + h^2)/12, \quad I_{yy} = m (l^2 + h^2)/12, \quad I_{zz} = m (w^2 + l^2)/12
+
+    Args:
+        mass: Mass [kg].
+        size: Length l, width w and height h [m].
+
+    >>> cuboid_inertia(2.17, (0.194, 0.2512, 0.069)).round(5).tolist()
+    [0.01227, 0.00767, 0.01822]
+    """
+    l, w, h = size  # noqa: E741 the source's symbol
+    return mass / 12 * np.array([w**2 + h**2, l**2 + h**2, w**2 + l**2])

@@ -1,0 +1,2 @@
+# SPDX-License-Identifier: MIT
+"""Walks: from leg angles to a path."""

@@ -1,0 +1,75 @@
+# SPDX-License-Identifier: MIT
+"""A walked path: where the body was, and what each leg did, at every instant."""
+
+from dataclasses import dataclass, fields
+
+import numpy as np
+from numpy.typing import NDArray
+
+from model.slip.law import Array
+
+
+@dataclass(frozen=True)
+class WalkPath:
+    """What a walking model says, sample by sample.
+
+    Attributes:
+        t: Times, shape (n,) [s].
+        position: Body centre in the inertial frame, shape (n, 3) [m].
+        orientation: Roll, pitch and yaw, R = Rz(yaw) Ry(pitch) Rx(roll); yaw unwrapped,
+            shape (n, 3) [rad].
+        theta: Leg angles, shape (n, 6) [rad].
+        contact: Which legs press on the ground, shape (n, 6).
+        slip_velocity: Velocity of each leg's material contact point over the ground, forward and
+            to the left of the heading; zero in the air, NaN where a model has none,
+            shape (n, 6, 2) [m/s].
+        slip_ratio: Longitudinal slip ratio in the model's own definition; NaN in the air and
+            where a model has none, shape (n, 6) [-].
+        normal_force: Normal force of the ground on each leg, shape (n, 6) [N].
+        traction_force: Traction force of the ground on each leg, forward and to the left of the
+            heading, shape (n, 6, 2) [N].
+    """
+
+    t: Array
+    position: Array
+    orientation: Array
+    theta: Array
+    contact: NDArray[np.bool_]
+    slip_velocity: Array
+    slip_ratio: Array
+    normal_force: Array
+    traction_force: Array
+
+    @property
+    def yaw(self) -> Array:
+        """Heading, unwrapped, shape (n,) [rad]."""
+        return self.orientation[:, 2]
+
+    def part(self, keep: slice | NDArray[np.bool_] | NDArray[np.intp]) -> "WalkPath":
+        """Return some of the samples."""
+        return WalkPath(**{f.name: getattr(self, f.name)[keep] for f in fields(self)})
+
+    @property
+    def length(self) -> float:
+        """Length of the walked line over the ground [m]."""
+        return float(np.linalg.norm(np.diff(self.position[:, :2], axis=0), axis=1).sum())
+
+
+def turning_radius(position_xy: Array, yaw: Array) -> float:
+    r"""Compute the radius of the circle that leads from the first pose to the last.
+
+    .. math::
+        R = \frac{|\Delta p|}{2 \sin(\Delta\psi / 2)}
+
+    Exact for a circular arc, and for whole strides of a constant gait, whose poses lie on one.
+
+    Args:
+        position_xy: Positions, shape (n, 2) [m].
+        yaw: Unwrapped heading, shape (n,) [rad].
+
+    Returns:
+        Radius, positive for a left turn, infinite for a straight line [m].
+    """
+    chord = float(np.linalg.norm(position_xy[-1] - position_xy[0]))
+    half = 0.5 * float(yaw[-1] - yaw[0])
+    return np.inf if np.sin(half) == 0 else chord / (2 * np.sin(half))

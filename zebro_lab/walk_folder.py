@@ -1,0 +1,248 @@
+# SPDX-License-Identifier: MIT
+"""The sole owner of the format of a walk folder: `path.csv` and `manifest.json`."""
+
+import json
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from model.robot import N_LEGS
+from model.slip.law import Array
+from model.walk.path import WalkPath
+from zebro_lab.atomic import atomic_folder
+from zebro_lab.errors import AlreadyExists, DataError, NotFound
+from zebro_lab.provenance import file_hash, software
+from zebro_lab.raw_table import RawTable
+from zebro_lab.table_files import read_table_file
+
+SCHEMA = 1
+PATH_CSV = "path.csv"
+MANIFEST = "manifest.json"
+KINDS = ("walk", "predict")
+PICTURES = (
+    "path", "motion", "orientation", "slip_ratio", "normal_force", "traction_force",
+    "paired_traction", "gantt",
+)  # fmt: skip
+ANIMATIONS = ("animation.mp4", "animation.gif")
+OWNED = (PATH_CSV, MANIFEST, *(f"{name}.png" for name in PICTURES), *ANIMATIONS)
+"""What a walk writes; an earlier walk's files of these names are replaced."""
+
+_DIGITS = "%.10g"  # far below what any model means, far above what a float loses
+
+
+@dataclass(frozen=True)
+class _Block:
+    """Neighbouring columns that hold one attribute of a path.
+
+    Attributes:
+        columns: Their names.
+        values: The attribute, one column each, shape (n, len(columns)).
+        may_be_empty: Cells may hold no number, where a model has none.
+    """
+
+    columns: tuple[str, ...]
+    values: Callable[[WalkPath], Array]
+    may_be_empty: bool = False
+
+
+def _legs(name: str) -> tuple[str, ...]:
+    return tuple(f"{name}{leg}" for leg in range(1, N_LEGS + 1))
+
+
+_BLOCKS = (
+    _Block(("t",), lambda path: path.t[:, None]),
+    _Block(("x", "y", "z"), lambda path: path.position),
+    _Block(("roll", "pitch", "yaw"), lambda path: path.orientation),
+    _Block(_legs("theta"), lambda path: path.theta),
+    _Block(_legs("contact"), lambda path: path.contact.astype(float)),
+    _Block(_legs("slip_x"), lambda path: path.slip_velocity[..., 0], may_be_empty=True),
+    _Block(_legs("slip_y"), lambda path: path.slip_velocity[..., 1], may_be_empty=True),
+    _Block(_legs("normal"), lambda path: path.normal_force, may_be_empty=True),
+    _Block(_legs("force_x"), lambda path: path.traction_force[..., 0], may_be_empty=True),
+    _Block(_legs("force_y"), lambda path: path.traction_force[..., 1], may_be_empty=True),
+    _Block(_legs("slip_ratio"), lambda path: path.slip_ratio, may_be_empty=True),
+)
+COLUMNS = tuple(name for block in _BLOCKS for name in block.columns)
+"""The columns of `path.csv`, in order."""
+
+
+def write_path(file: Path, path: WalkPath) -> None:
+    """Write a path as CSV in SI with the columns `COLUMNS`; what a model does not have is empty."""
+    import pandas as pd
+
+    columns: dict[str, Array] = {}
+    for block in _BLOCKS:
+        values = block.values(path)
+        columns.update({name: values[:, i] for i, name in enumerate(block.columns)})
+    table = pd.DataFrame(columns)
+    table[list(_legs("contact"))] = table[list(_legs("contact"))].astype(np.int8)
+    table.to_csv(file, index=False, float_format=_DIGITS, lineterminator="\n")
+
+
+@contextmanager
+def walk_folder(
+    out: Path,
+    path: WalkPath,
+    *,
+    kind: str,
+    source: str,
+    settings: Mapping[str, object],
+    inputs: Mapping[str, str],
+) -> Iterator[Path]:
+    """Write a walk folder so that it appears finished or not at all.
+
+    The body adds pictures to the draft; the manifest, which lists them, comes last.
+
+    Args:
+        out: Folder to make or to renew.
+        path: The walked path.
+        kind: One of `KINDS`.
+        source: "sim:" and the model that walked.
+        settings: What the walk was asked to be, as JSON can hold it.
+        inputs: SHA-256 of each file that was read.
+
+    Yields:
+        The draft, for pictures.
+
+    Raises:
+        AlreadyExists: `out` is a file, or the result of another command.
+    """
+    _require_ours(out)
+    with atomic_folder(out, replaces=OWNED, marker=MANIFEST) as draft:
+        write_path(draft / PATH_CSV, path)
+        yield draft
+        content = {
+            "schema": SCHEMA,
+            "kind": kind,
+            "source": source,
+            "settings": settings,
+            "inputs": inputs,
+            "outputs": {p.name: file_hash(p) for p in sorted(draft.iterdir()) if p.is_file()},
+            "software": software(),
+        }
+        (draft / MANIFEST).write_text(json.dumps(content, indent=2) + "\n")
+
+
+def read_walk(path: Path) -> WalkPath:
+    """Read a path back.
+
+    Args:
+        path: A walk folder, or its `path.csv`.
+
+    Raises:
+        NotFound: There is no such file.
+        DataError: A column is missing or unknown, a cell holds no number, or time does not
+            increase; the message names file, row and column.
+    """
+    file = path / PATH_CSV if path.is_dir() else path
+    if not file.exists():
+        raise NotFound(f"{file}: no such file; name a folder that walk or predict wrote")
+    table = read_table_file(file)
+    numbers = np.column_stack([
+        _numbers(table, name, may_be_empty=block.may_be_empty)
+        for block in _BLOCKS
+        for name in block.columns
+    ])  # fmt: skip
+    require_increasing(table, "t", numbers[:, 0])
+    return _path_from(numbers)
+
+
+def read_walk_manifest(folder: Path) -> Mapping[str, Any]:
+    """Read the manifest of a walk folder.
+
+    Raises:
+        NotFound: There is none.
+        DataError: It is damaged, of a later schema, or that of another command.
+    """
+    file = folder / MANIFEST
+    try:
+        content = json.loads(file.read_text(encoding="utf-8"))
+    except FileNotFoundError as error:
+        raise NotFound(f"{folder} is no walk folder: it has no {MANIFEST}") from error
+    except (OSError, ValueError) as error:
+        raise DataError(f"cannot be read as JSON: {error}", file=file) from error
+    if not isinstance(content, dict) or content.get("kind") not in KINDS:
+        raise DataError(f"is not of a walk; expected kind {' or '.join(KINDS)}", file=file)
+    if content.get("schema") != SCHEMA:
+        raise DataError(
+            f"has schema {content.get('schema')}, this version reads {SCHEMA}; update zebro-lab",
+            file=file,
+        )
+    return content
+
+
+def require_increasing(table: RawTable, column: str, t: Array) -> None:
+    """Refuse times that stand still or run backwards.
+
+    Args:
+        table: Table to name.
+        column: Its column of times.
+        t: Times by row, shape (n,) [s].
+
+    Raises:
+        DataError: A time is not later than the one before.
+    """
+    later = np.diff(t) > 0
+    if later.all():
+        return
+    index = int(np.argmin(later)) + 1
+    raise cell_error(
+        table,
+        column,
+        index,
+        f"time goes from {t[index - 1]:g} to {t[index]:g} s; expected increasing times: "
+        "sort the rows, delete repeated ones",
+    )
+
+
+def cell_error(table: RawTable, column: str, index: int, problem: str) -> DataError:
+    """Make the error that names a cell; `index` counts data rows from 0."""
+    return DataError(
+        problem, file=table.path, column=column, row=index + 1, line=table.line(index + 1)
+    )
+
+
+def _numbers(table: RawTable, name: str, *, may_be_empty: bool) -> Array:
+    values = table.numbers(name)
+    bad = np.isinf(values) if may_be_empty else ~np.isfinite(values)
+    if bad.any():
+        index = int(np.argmax(bad))
+        found = "infinite" if np.isinf(values[index]) else "empty"
+        raise cell_error(table, name, index, f"is {found}; expected a finite number")
+    return values
+
+
+def _path_from(numbers: Array) -> WalkPath:
+    parts: dict[str, Array] = {}
+    first = 0
+    for block in _BLOCKS:
+        width = len(block.columns)
+        parts[block.columns[0]] = numbers[:, first : first + width]
+        first += width
+    return WalkPath(
+        t=parts["t"][:, 0],
+        position=parts["x"],
+        orientation=parts["roll"],
+        theta=parts["theta1"],
+        contact=parts["contact1"] != 0,
+        slip_velocity=np.stack([parts["slip_x1"], parts["slip_y1"]], axis=-1),
+        slip_ratio=parts["slip_ratio1"],
+        normal_force=parts["normal1"],
+        traction_force=np.stack([parts["force_x1"], parts["force_y1"]], axis=-1),
+    )
+
+
+def _require_ours(out: Path) -> None:
+    """Refuse to renew what another command wrote: its manifest would be replaced by ours."""
+    if not (out / MANIFEST).exists():
+        return
+    try:
+        read_walk_manifest(out)
+    except DataError as error:
+        raise AlreadyExists(
+            f"{out} holds the result of another command ({error.problem}); name another --out"
+        ) from error

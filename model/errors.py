@@ -33,3 +33,7 @@ class InsufficientData(ModelError, ValueError):
 
 class FitError(ModelError, RuntimeError):
     """An optimiser or sampler failed; the message carries its evidence."""
+
+
+class WalkError(ModelError, RuntimeError):
+    """A walk could not be computed to its end; the message says when and in what state."""

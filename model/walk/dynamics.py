@@ -1,0 +1,261 @@
+# SPDX-License-Identifier: MIT
+"""The walking model: a rigid body whose position-controlled legs slip by a measured law.
+
+Leg angles are inputs. Each leg touches the ground at its lowest point, with a stiff and damped
+normal force and a traction vector against the slip vector of the material contact point; force
+alone decides what is in contact. Where this departs from the source's model, and why, is in
+`docs/theory.md`.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from model.errors import DomainError, WalkError
+from model.gait.reference import LegReference
+from model.robot import GRAVITY, N_LEGS, Robot
+from model.slip.law import Array
+from model.walk.ground import FLAT, Ground
+from model.walk.path import WalkPath
+from model.walk.step import Contacts, State, body_arrays, run_steps
+from model.walk.traction import TractionTable
+
+SETTLE_STEP = 0.005  # s
+SETTLE_TIME = 1.0  # s
+N_STRETCH = 14
+
+
+@dataclass(frozen=True)
+class DynamicsOptions:
+    """How the walk is computed.
+
+    Attributes:
+        dt: Length of a step [s].
+        stiffness: Normal force for each metre of sinkage; a leg sinks micrometres [N/m].
+        damping: Normal force for each metre a second of sinking; about critical for a third of
+            the body's mass, so that legs do not bounce [N s/m].
+    """
+
+    dt: float = 0.001
+    stiffness: float = 2e5
+    damping: float = 200.0
+
+    def __post_init__(self) -> None:
+        """Refuse a computation that cannot be."""
+        for name, unit in (("dt", "s"), ("stiffness", "N/m"), ("damping", "N s/m")):
+            value = getattr(self, name)
+            if not (value > 0 and np.isfinite(value)):
+                raise DomainError(f"{name} is {value:g} {unit}; expected more than zero")
+
+
+DEFAULT_OPTIONS = DynamicsOptions()
+
+
+@dataclass(frozen=True)
+class Start:
+    """Where a walk starts.
+
+    Attributes:
+        x: Position of the body's centre [m].
+        y: Position of the body's centre [m].
+        yaw: Heading [rad].
+        height: Height of the body's centre, with the body level and at rest, to be dropped from;
+            None to stand on the legs as they are, settled [m].
+        velocity: Velocity of the body [m/s].
+    """
+
+    x: float = 0.0
+    y: float = 0.0
+    yaw: float = 0.0
+    height: float | None = None
+    velocity: tuple[float, float, float] = (0.0, 0.0, 0.0)
+
+
+ORIGIN = Start()
+
+
+def walk(
+    robot: Robot,
+    reference: LegReference,
+    table: TractionTable,
+    *,
+    duration: float,
+    ground: Ground = FLAT,
+    start: Start = ORIGIN,
+    options: DynamicsOptions = DEFAULT_OPTIONS,
+) -> WalkPath:
+    """Walk for a time, sampled at every step.
+
+    Args:
+        robot: The robot.
+        reference: Its leg angles over time.
+        table: The slip law; see `model.walk.traction`.
+        duration: Time walked, from the reference's time zero on [s].
+        ground: The ground.
+        start: Where it starts.
+        options: How it is computed.
+
+    Returns:
+        The path, its first sample the settled start.
+
+    Raises:
+        DomainError: The duration is shorter than a step.
+        WalkError: A step diverged; says when and in what state.
+    """
+    t = step_times(duration, options.dt)
+    theta = reference.angles(t) + robot.leg_offset
+    state = start_state(robot, theta[0], table, ground, start, options)
+    pose, legs = np.empty((len(t) - 1, 7)), np.empty((len(t) - 1, N_LEGS, 6))
+    first = np.concatenate([state.p, state.q])
+    contacts = Contacts(options.stiffness, options.damping)
+    done = run_steps(
+        body_arrays(robot), table, ground, contacts, state, theta, options.dt, pose, legs
+    )
+    if done < len(pose):
+        raise diverged(t[done], pose[done - 1] if done else first)
+    return _path(t, np.vstack([first, pose]), theta, legs)
+
+
+def step_times(duration: float, dt: float) -> Array:
+    """Return the times of all steps, as many whole ones as the duration holds [s]."""
+    n = round(duration / dt) if duration > 0 and np.isfinite(duration) else 0
+    if n < 1:
+        raise DomainError(f"duration is {duration:g} s; expected at least a step of {dt:g} s")
+    return dt * np.arange(n + 1)
+
+
+def diverged(t: float, pose: Array) -> WalkError:
+    """Return the error of a step that stopped being finite."""
+    x, y, z = pose[:3]
+    return WalkError(
+        f"the walk diverged at t = {t:.4g} s, with the body at x {x:.4g}, y {y:.4g}, z {z:.4g} m; "
+        "look at the leg angles there, or take a smaller dt"
+    )
+
+
+def start_state(
+    robot: Robot,
+    theta: Array,
+    table: TractionTable,
+    ground: Ground,
+    start: Start,
+    options: DynamicsOptions,
+) -> State:
+    """Stand the robot on its legs, or hold it above them, at the start's place and heading.
+
+    Args:
+        robot: The robot.
+        theta: Leg angles to stand on, shape (6,) [rad].
+        table: The slip law.
+        ground: The ground.
+        start: Where to stand.
+        options: How the walk is computed.
+    """
+    half = 0.5 * start.yaw
+    highest = float(ground.height.max())
+    reach = 2 * robot.leg_radius + 0.5 * robot.body_size[2]
+    state = State(
+        p=np.array([start.x, start.y, highest + reach if start.height is None else start.height]),
+        q=np.array([np.cos(half), 0.0, 0.0, np.sin(half)]),
+        v=np.array(start.velocity, dtype=float),
+        w=np.zeros(3),
+        stretch=np.zeros((N_STRETCH, 3)),
+    )
+    if start.height is not None:
+        return state
+    return _settled(robot, theta, table, ground, state, options)
+
+
+def _settled(
+    robot: Robot,
+    theta: Array,
+    table: TractionTable,
+    ground: Ground,
+    state: State,
+    options: DynamicsOptions,
+) -> State:
+    """Let the robot down on legs that do not turn, and put it back where it was to start."""
+    x, y = state.p[:2]
+    yaw = 2 * np.arctan2(state.q[3], state.q[0])
+    velocity = state.v.copy()
+    state.v[:] = 0.0
+    n = round(SETTLE_TIME / SETTLE_STEP)
+    pose = np.empty((n, 7))
+    contacts = Contacts(options.stiffness, options.damping)
+    still = np.tile(theta, (n + 1, 1))
+    run_steps(
+        body_arrays(robot), table, ground, contacts, state, still, SETTLE_STEP, pose,
+        np.empty((0, N_LEGS, 6)),
+    )  # fmt: skip
+    turned = yaw - roll_pitch_yaw(state.q[None])[0, 2]
+    state.p[:2] = x, y
+    state.q[:] = _turn(state.q, turned)
+    state.v[:] = velocity
+    state.w[:] = 0.0
+    state.stretch[:] = 0.0
+    return state
+
+
+def _turn(q: Array, yaw: float) -> Array:
+    """Turn an orientation about the vertical."""
+    c, s = np.cos(0.5 * yaw), np.sin(0.5 * yaw)
+    w, x, y, z = q
+    return np.array([c * w - s * z, c * x - s * y, c * y + s * x, c * z + s * w])
+
+
+def roll_pitch_yaw(q: Array) -> Array:
+    """Read roll, pitch and yaw off unit quaternions (w, x, y, z), R = Rz(yaw) Ry(pitch) Rx(roll).
+
+    Args:
+        q: Quaternions, shape (n, 4).
+
+    Returns:
+        Angles, yaw unwrapped, shape (n, 3) [rad].
+    """
+    w, x, y, z = q.T
+    roll = np.arctan2(2 * (y * z + w * x), 1 - 2 * (x * x + y * y))
+    pitch = np.arcsin(np.clip(2 * (w * y - x * z), -1.0, 1.0))
+    yaw = np.unwrap(np.arctan2(2 * (x * y + w * z), 1 - 2 * (y * y + z * z)))
+    return np.column_stack([roll, pitch, yaw])
+
+
+def _path(t: Array, pose: Array, theta: Array, legs: Array) -> WalkPath:
+    orientation = roll_pitch_yaw(pose[:, 3:])
+    standing = np.zeros((1, N_LEGS, 6))
+    standing[..., 5] = np.nan
+    legs = np.concatenate([standing, legs])
+    load: NDArray[np.float64] = legs[..., 0]
+    return WalkPath(
+        t=t,
+        position=pose[:, :3],
+        orientation=orientation,
+        theta=theta,
+        contact=load > 0,
+        slip_velocity=_to_heading(legs[..., 3:5], orientation[:, 2]),
+        slip_ratio=legs[..., 5],
+        normal_force=load,
+        traction_force=_to_heading(legs[..., 1:3], orientation[:, 2]),
+    )
+
+
+def _to_heading(vectors: Array, yaw: Array) -> Array:
+    """Turn world vectors (n, 6, 2) into forward and left of the heading."""
+    c, s = np.cos(yaw)[:, None], np.sin(yaw)[:, None]
+    x, y = vectors[..., 0], vectors[..., 1]
+    return np.stack([c * x + s * y, c * y - s * x], axis=-1)
+
+
+def energy(robot: Robot, path: WalkPath, dt: float) -> Array:
+    """Compute the body's kinetic and potential energy between samples, shape (n - 1,) [J].
+
+    Rotation is left out: for a body that slides or falls without turning.
+
+    Args:
+        robot: The robot.
+        path: The path.
+        dt: Its step [s].
+    """
+    velocity = np.diff(path.position, axis=0) / dt
+    kinetic = 0.5 * robot.mass * np.sum(velocity**2, axis=1)
+    return kinetic + robot.mass * GRAVITY * path.position[1:, 2]

@@ -1,0 +1,61 @@
+# SPDX-License-Identifier: MIT
+"""The ground under a walk: flat, or a height function sampled on a grid."""
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+
+from model.errors import DomainError
+from model.slip.law import Array
+
+
+class Ground(NamedTuple):
+    """Heights on a square grid, bilinear between; one height everywhere if the grid has one.
+
+    A named tuple because numba takes one as it is.
+
+    Attributes:
+        x: Position of the grid's first row [m].
+        y: Position of the grid's first column [m].
+        step: Distance between neighbours [m].
+        height: Heights, rows along x, columns along y, shape (m, n) [m].
+    """
+
+    x: float
+    y: float
+    step: float
+    height: Array
+
+
+FLAT = Ground(0.0, 0.0, 1.0, np.zeros((1, 1)))
+
+
+def sample_ground(
+    height: Callable[[Array, Array], Array],
+    *,
+    x: tuple[float, float],
+    y: tuple[float, float],
+    step: float = 0.005,
+) -> Ground:
+    """Sample a height function; beyond the area the ground goes on as at its edge.
+
+    Args:
+        height: Height at x and y, arrays of one shape [m].
+        x: First and last x [m].
+        y: First and last y [m].
+        step: Distance between samples; a leg's radius is 0.035 m [m].
+
+    Raises:
+        DomainError: The area is empty or a height is not finite.
+    """
+    if not (x[1] - x[0] > step > 0 and y[1] - y[0] > step):
+        raise DomainError(f"ground from x {x} to y {y} in steps of {step:g} m has no area")
+    grid = np.meshgrid(np.arange(*x, step), np.arange(*y, step), indexing="ij")
+    heights = np.asarray(height(*grid), dtype=float)
+    if heights.shape != grid[0].shape or not np.isfinite(heights).all():
+        raise DomainError(
+            "the height function must give one finite height for each position; "
+            f"it gave shape {heights.shape} for {grid[0].shape}"
+        )
+    return Ground(float(x[0]), float(y[0]), step, heights)

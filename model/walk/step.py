@@ -1,0 +1,391 @@
+# SPDX-License-Identifier: MIT
+"""The loop over steps, compiled, and the arrays it works on."""
+
+from typing import NamedTuple
+
+import numba
+import numpy as np
+from numpy.typing import NDArray
+
+from model.robot import GRAVITY, Robot
+from model.slip.law import Array
+from model.walk.ground import Ground
+from model.walk.kernel import (
+    N_CONTACTS,
+    N_LEGS,
+    ROLLING,
+    add_contact,
+    find_contacts,
+    point_velocity,
+    rotate,
+    rotation_matrix,
+    solve_positive,
+    toe_traction,
+    traction_secant,
+)
+from model.walk.traction import TractionTable
+
+ROUNDS = 2  # solves a step: one to settle which contacts press and how hard, one to go by it
+FINE_STEP = 0.0005  # s, where contacts change: two tripods on the ground at once is soon over
+FINE_TIME = 0.005  # s, after a change
+BRISTLE_STIFFNESS = 0.1  # of the normal stiffness
+
+
+class Body(NamedTuple):
+    """A robot as numba takes it; see `Robot`.
+
+    Attributes:
+        hips: Hip positions, shape (6, 3) [m].
+        leg_radius: Radius of the legs' arcs [m].
+        toe_beyond: Angle of the arcs beyond a half circle [rad].
+        mass: Mass [kg].
+        inertia: Principal moments of inertia, shape (3,) [kg m2].
+        half_size: Half the body's length, width and height, shape (3,) [m].
+    """
+
+    hips: Array
+    leg_radius: float
+    toe_beyond: float
+    mass: float
+    inertia: Array
+    half_size: Array
+
+
+class Contacts(NamedTuple):
+    """How hard contacts are.
+
+    Attributes:
+        stiffness: Normal force for each metre of sinkage [N/m].
+        damping: Normal force for each metre a second of sinking [N s/m].
+    """
+
+    stiffness: float
+    damping: float
+
+
+class State(NamedTuple):
+    """What a step starts from; every array is overwritten by the next one.
+
+    Attributes:
+        p: Position of the body [m].
+        q: Its orientation as a unit quaternion (w, x, y, z), body to world.
+        v: Velocity [m/s].
+        w: Angular velocity in the world frame [rad/s].
+        stretch: Stretch of each contact's bristle, shape (14, 3) [m].
+    """
+
+    p: Array
+    q: Array
+    v: Array
+    w: Array
+    stretch: Array
+
+
+class Work(NamedTuple):
+    """What a step fills in, one row a contact: six legs, then eight corners of the body.
+
+    Attributes:
+        place: Contact from the body's centre, world frame, shape (14, 3) [m].
+        velocity: Velocity of its material point relative to the body, shape (14, 3) [m/s].
+        normal: Normal of the ground, shape (14, 3) [-].
+        gap: Distance over the ground, negative below it, shape (14,) [m].
+        flow: Radius of the arc where a leg rolls, else zero, shape (14,) [m].
+        kind: HIP, ROLLING or TOE, shape (14,).
+        load: Normal force, zero in the air, shape (14,) [N].
+        secant: Traction over slip velocity, shape (14,) [N s/m].
+        R: Rotation of the body, body to world, shape (3, 3).
+        A: Matrix of the step, lower half, shape (6, 6).
+        b: Its right side and solution, shape (6,).
+    """
+
+    place: Array
+    velocity: Array
+    normal: Array
+    gap: Array
+    flow: Array
+    kind: NDArray[np.int64]
+    load: Array
+    secant: Array
+    R: Array
+    A: Array
+    b: Array
+
+
+def body_arrays(robot: Robot) -> Body:
+    """Put a robot into the arrays of the compiled loop."""
+    return Body(
+        robot.hips, robot.leg_radius, robot.toe_beyond, robot.mass,
+        robot.principal_inertia, 0.5 * np.array(robot.body_size),
+    )  # fmt: skip
+
+
+jit = numba.njit(cache=True, nogil=True, error_model="numpy")
+
+
+@jit
+def run_steps(
+    body: Body,
+    table: TractionTable,
+    ground: Ground,
+    contacts: Contacts,
+    state: State,
+    theta: Array,
+    dt: float,
+    pose: Array,
+    legs: Array,
+) -> int:
+    """Walk through leg angles at equal steps.
+
+    A step in which a contact begins or ends is taken again in finer ones, and so are those that
+    follow for a few milliseconds.
+
+    Args:
+        body: The robot.
+        table: The slip law.
+        ground: The ground.
+        contacts: How hard contacts are.
+        state: Where to start; left where the walk ended.
+        theta: Leg angles at every step's start and the last one's end, shape (n + 1, 6) [rad].
+        dt: Length of a step [s].
+        pose: Filled at each step's end: position and quaternion, shape (n, 7).
+        legs: Filled at each step's end: normal force, traction (world x, y), slip velocity (world
+            x, y) and slip ratio (NaN unless rolling) of each leg, shape (n, 6, 6); or shape
+            (0, 6, 6) not to keep them.
+
+    Returns:
+        Steps walked: n, or fewer where the state stopped being finite.
+    """
+    work = _new_work()
+    before = _new_state()
+    speed = np.empty(N_LEGS)
+    loaded = np.zeros(N_CONTACTS)
+    parts = max(int(np.ceil(dt / FINE_STEP - 1e-9)), 1)
+    fine_steps = int(np.ceil(FINE_TIME / dt))
+    fine_left = fine_steps
+    for step in range(theta.shape[0] - 1):
+        for i in range(N_LEGS):
+            speed[i] = (theta[step + 1, i] - theta[step, i]) / dt
+        _copy_state(state, before)
+        loaded[:] = work.load
+        if fine_left == 0 or parts == 1:
+            one_step(body, table, ground, contacts, state, work, theta[step + 1], speed, dt)
+            if parts > 1 and _contacts_changed(work.load, loaded):
+                _copy_state(before, state)
+                work.load[:] = loaded
+                fine_left = fine_steps
+        if fine_left > 0 and parts > 1:
+            for part in range(parts):
+                angles = theta[step] + (part + 1) / parts * (theta[step + 1] - theta[step])
+                one_step(body, table, ground, contacts, state, work, angles, speed, dt / parts)
+            fine_left = fine_steps if _contacts_changed(work.load, loaded) else fine_left - 1
+        if not np.isfinite(state.p.sum() + state.w.sum()):
+            return step
+        pose[step, :3] = state.p
+        pose[step, 3:] = state.q
+        if len(legs):
+            _keep_legs(legs[step], state, work, speed)
+    return theta.shape[0] - 1
+
+
+@jit
+def one_step(body, table, ground, contacts, state, work, theta, speed, dt):
+    """Take one linearly implicit step; see `model.walk.kernel`.
+
+    Args:
+        body: The robot.
+        table: The slip law.
+        ground: The ground.
+        contacts: How hard contacts are.
+        state: State at the start, left at the end.
+        work: Filled with what the contacts did.
+        theta: Leg angles at the end, shape (6,) [rad].
+        speed: Leg speeds in the step, shape (6,) [rad/s].
+        dt: Length of the step [s].
+    """
+    rotation_matrix(state.q, work.R)
+    n = find_contacts(
+        body, ground, state.p, work.R, theta, speed, work.place, work.velocity, work.normal,
+        work.gap, work.kind, work.flow,
+    )  # fmt: skip
+    for i in range(n, N_CONTACTS):
+        work.load[i] = 0.0
+    for i in range(n):
+        if work.load[i] == 0.0 or work.kind[i] == ROLLING:  # nothing that a bristle could hold
+            state.stretch[i, :] = 0.0
+    for i in range(3):
+        work.b[i], work.b[3 + i] = state.v[i], state.w[i]
+    v, w, force, P = np.empty(3), np.empty(3), np.empty(3), np.empty((3, 3))
+    inertia, gyro = np.empty((3, 3)), np.empty(3)
+    _world_inertia(work.R, body.inertia, inertia)
+    _gyroscopic(inertia, state.w, gyro)
+    for _ in range(ROUNDS):
+        for i in range(3):
+            v[i], w[i] = work.b[i], work.b[3 + i]
+        _inertial_part(body.mass, inertia, gyro, state, dt, work.A, work.b)
+        for i in range(n):
+            if contact_force(table, contacts, state, work, i, speed, v, w, dt, P, force):
+                add_contact(work.A, work.b, dt, work.place[i], P, force)
+        solve_positive(work.A, work.b, 6)
+    for i in range(3):
+        state.v[i], state.w[i] = work.b[i], work.b[3 + i]
+        state.p[i] += dt * state.v[i]
+    rotate(state.q, state.w, dt)
+    if table.bristle:
+        for i in range(n):
+            _stretch_bristle(table, contacts, state, work, i, dt, force)
+
+
+@jit
+def contact_force(table, contacts, state, work, i, speed, v, w, dt, P, force):
+    """Linearise the force of contact i about a guess of the step's final velocities.
+
+    Args:
+        table: The slip law.
+        contacts: How hard contacts are.
+        state: State at the step's start.
+        work: The contacts; load and secant of this one are filled in.
+        i: Which contact.
+        speed: Leg speeds in the step, shape (6,) [rad/s].
+        v: Guess of the final velocity [m/s].
+        w: Guess of the final angular velocity [rad/s].
+        dt: Length of the step [s].
+        P: Filled: the force falls by P times the velocity of the body at the contact, (3, 3).
+        force: Filled: force at no such velocity, shape (3,) [N].
+
+    Returns:
+        Whether the contact presses.
+    """
+    k, c = contacts
+    m, u = work.normal[i], work.velocity[i]
+    point_velocity(v, w, work.place[i], u, force)
+    rise = force[0] * m[0] + force[1] * m[1] + force[2] * m[2]
+    u_n = u[0] * m[0] + u[1] * m[1] + u[2] * m[2]
+    load = -k * (work.gap[i] + dt * (rise - u_n)) - c * rise
+    work.load[i] = max(load, 0.0)
+    if load <= 0.0:
+        return False
+    slip = np.sqrt(max(force[0] ** 2 + force[1] ** 2 + force[2] ** 2 - rise**2, 0.0))
+    flow = abs(leg_turn(work.R, speed, w, i)) * work.flow[i] if i < N_LEGS else 0.0
+    G = traction_secant(table, work.kind[i], load, slip, flow)
+    pull = 0.0
+    if table.bristle and work.kind[i] != ROLLING:
+        stretched = 0.0
+        for a in range(3):
+            stretched += (state.stretch[i, a] + dt * (force[a] - rise * m[a])) ** 2
+        if BRISTLE_STIFFNESS * k * np.sqrt(stretched) <= load * toe_traction(table, load):
+            pull = BRISTLE_STIFFNESS * k
+            G = pull * dt
+    work.secant[i] = G
+    for a in range(3):
+        push = (-k * work.gap[i] - c * u_n) * m[a]
+        force[a] = push - pull * state.stretch[i, a] - G * (u[a] - u_n * m[a])
+        for d in range(3):
+            P[a, d] = (k * dt + c - G) * m[a] * m[d]
+        P[a, a] += G
+    return True
+
+
+@jit
+def leg_turn(R, speed, w, i):
+    """Compute the speed at which leg i turns relative to the ground, about the body's y axis."""
+    return speed[i] + R[0, 1] * w[0] + R[1, 1] * w[1] + R[2, 1] * w[2]
+
+
+@jit
+def _inertial_part(mass, inertia, gyro, state, dt, A, b):
+    A[:, :] = 0.0
+    for i in range(3):
+        A[i, i] = mass
+        b[i] = mass * state.v[i]
+        b[3 + i] = dt * gyro[i]
+        for j in range(i + 1):
+            A[3 + i, 3 + j] = inertia[i, j]
+        for j in range(3):
+            b[3 + i] += inertia[i, j] * state.w[j]
+    b[2] -= dt * mass * GRAVITY
+
+
+@jit
+def _stretch_bristle(table, contacts, state, work, i, dt, point):
+    """Stretch a bristle by the step's slip, and let it slide where traction is used up."""
+    if work.load[i] == 0.0 or work.kind[i] == ROLLING:
+        return
+    point_velocity(state.v, state.w, work.place[i], work.velocity[i], point)
+    m = work.normal[i]
+    rise = point[0] * m[0] + point[1] * m[1] + point[2] * m[2]
+    stretched = 0.0
+    for a in range(3):
+        state.stretch[i, a] += dt * (point[a] - rise * m[a])
+        stretched += state.stretch[i, a] ** 2
+    longest = work.load[i] * toe_traction(table, work.load[i])
+    longest /= BRISTLE_STIFFNESS * contacts.stiffness
+    if np.sqrt(stretched) > longest:
+        state.stretch[i, :] *= longest / np.sqrt(stretched)
+
+
+@jit
+def _contacts_changed(load, loaded):
+    return np.any((load > 0) != (loaded > 0))
+
+
+@jit
+def _new_work():
+    n = N_CONTACTS
+    return Work(
+        np.empty((n, 3)), np.empty((n, 3)), np.empty((n, 3)), np.empty(n), np.empty(n),
+        np.zeros(n, dtype=np.int64), np.zeros(n), np.zeros(n), np.empty((3, 3)),
+        np.empty((6, 6)), np.empty(6),
+    )  # fmt: skip
+
+
+@jit
+def _new_state():
+    return State(np.empty(3), np.empty(4), np.empty(3), np.empty(3), np.empty((N_CONTACTS, 3)))
+
+
+@jit
+def _copy_state(state, to):
+    to.p[:] = state.p
+    to.q[:] = state.q
+    to.v[:] = state.v
+    to.w[:] = state.w
+    to.stretch[:] = state.stretch
+
+
+@jit
+def _world_inertia(R, principal, out):
+    for i in range(3):
+        for j in range(3):
+            out[i, j] = 0.0
+            for a in range(3):
+                out[i, j] += R[i, a] * principal[a] * R[j, a]
+
+
+@jit
+def _gyroscopic(inertia, w, out):
+    """Fill with -w × (I w), the moment that turns the axis of a turning body [N m]."""
+    L0 = inertia[0, 0] * w[0] + inertia[0, 1] * w[1] + inertia[0, 2] * w[2]
+    L1 = inertia[1, 0] * w[0] + inertia[1, 1] * w[1] + inertia[1, 2] * w[2]
+    L2 = inertia[2, 0] * w[0] + inertia[2, 1] * w[1] + inertia[2, 2] * w[2]
+    out[0] = -(w[1] * L2 - w[2] * L1)
+    out[1] = -(w[2] * L0 - w[0] * L2)
+    out[2] = -(w[0] * L1 - w[1] * L0)
+
+
+@jit
+def _keep_legs(out, state, work, speed):
+    point = np.empty(3)
+    R = work.R
+    for i in range(N_LEGS):
+        out[i, :] = 0.0
+        out[i, 5] = np.nan
+        if work.load[i] == 0.0:
+            continue
+        point_velocity(state.v, state.w, work.place[i], work.velocity[i], point)
+        out[i, 0] = work.load[i]
+        out[i, 1], out[i, 2] = -work.secant[i] * point[0], -work.secant[i] * point[1]
+        out[i, 3], out[i, 4] = point[0], point[1]
+        if work.kind[i] == ROLLING:
+            forward = np.sqrt(R[0, 0] ** 2 + R[1, 0] ** 2)
+            along = (point[0] * R[0, 0] + point[1] * R[1, 0]) / forward
+            out[i, 5] = -along / (leg_turn(R, speed, state.w, i) * work.flow[i])

@@ -1,0 +1,172 @@
+# SPDX-License-Identifier: MIT
+"""Traction over load as the walk needs it: any slip law, tabulated for a compiled loop."""
+
+from dataclasses import dataclass
+from typing import Literal, NamedTuple
+
+import numpy as np
+
+from model.errors import DomainError
+from model.slip.curve import SlipCurve
+from model.slip.definition import SlipDefinition, convert_slip
+from model.slip.law import Array, SlipLaw, Values
+
+ToeLaw = Literal["saturated", "peak", "bristle"]
+TOE_LAWS: tuple[ToeLaw, ...] = ("saturated", "peak", "bristle")
+
+N_LOADS = 33
+LOAD_RANGE = (0.01, 4.0)  # of the robot's weight; loads outside take the nearest row
+N_SLIPS = 257
+LARGEST_SLIP = 1e4  # a leg that hardly turns while it is dragged
+FAR_OUT = 1e9  # slip ratio at which every law is saturated
+
+
+class TractionTable(NamedTuple):
+    r"""Traction over load :math:`\varphi(x, N)` on a grid, odd in x, for the compiled loop.
+
+    Cubic Hermite in :math:`w = \operatorname{arsinh}(x / x_0)`, linear in the logarithm of load.
+    A named tuple because numba takes one as it is.
+
+    Attributes:
+        log_load: Logarithm of each row's load, ascending, shape (m,) [log N].
+        scale: Slip x_0 below which the grid is linear in slip [-].
+        step: Distance of columns in w [-].
+        phi: Traction over load, shape (m, n) [-].
+        slope: Its derivative with respect to w, shape (m, n) [-].
+        toe: Largest traction over load of a leg on its toe, shape (m,) [-].
+        by_velocity: Whether x is slip velocity over `speed_scale` instead of a slip ratio.
+        speed_scale: Slip velocity over which traction on a toe (or a velocity law) sets in [m/s].
+        bristle: Whether a toe sticks like a spring until its traction is used up.
+    """
+
+    log_load: Array
+    scale: float
+    step: float
+    phi: Array
+    slope: Array
+    toe: Array
+    by_velocity: bool
+    speed_scale: float
+    bristle: bool
+
+
+@dataclass(frozen=True)
+class VelocityCoulomb:
+    r"""Coulomb friction by slip velocity, the `coulomb:MU:V` of the command line.
+
+    .. math::
+        F = \mu N \frac{v}{\sqrt{v^2 + v_0^2}}
+
+    Attributes:
+        friction: Friction coefficient mu [-].
+        speed_scale: Velocity v_0 over which it sets in [m/s].
+
+    Raises:
+        DomainError: One of them is not positive.
+    """
+
+    friction: float
+    speed_scale: float = 0.001
+
+    def __post_init__(self) -> None:
+        """Refuse friction that is none."""
+        if not (self.friction > 0 and self.speed_scale > 0):
+            raise DomainError(
+                f"friction is {self.friction:g} and its velocity scale {self.speed_scale:g} m/s; "
+                "expected both above zero"
+            )
+
+    def table(self, *, weight: float, toe: ToeLaw = "saturated") -> TractionTable:
+        """Tabulate the law; `weight` [N] only sets the range of loads, of which it is free."""
+        _require_toe(toe)
+        scale, w = _grid(1.0)
+        x = scale * np.sinh(w)
+        phi = self.friction * x / np.sqrt(1 + x**2)
+        slope = self.friction / (1 + x**2) ** 1.5 * scale * np.cosh(w)
+        return TractionTable(
+            np.log([weight]), scale, float(w[1]), phi[None], slope[None],
+            np.array([self.friction]), True, self.speed_scale, toe == "bristle",
+        )  # fmt: skip
+
+
+def law_table(
+    law: SlipLaw,
+    values: Values,
+    *,
+    weight: float,
+    definition: SlipDefinition | str = SlipDefinition.MATERIAL,
+    toe: ToeLaw = "saturated",
+    speed_scale: float = 0.001,
+) -> TractionTable:
+    """Tabulate a slip law for a robot of some weight.
+
+    Slip ratios of the walk are material ones, |slip velocity| over the speed at which the leg's
+    arc passes the contact; a law of another definition is evaluated at the converted slip.
+
+    Args:
+        law: The slip law.
+        values: Its parameter values, shape (k,).
+        weight: Weight of the robot, which sets the range of loads [N].
+        definition: Definition that the values belong to.
+        toe: Traction of a leg on its toe, which does not roll and no rig has measured: the law's
+            at infinite slip ("saturated"), its peak, or a spring up to its peak ("bristle").
+        speed_scale: Slip velocity over which traction on a toe sets in [m/s].
+
+    Raises:
+        DomainError: The law loses its shape at these loads, or there is no such toe law.
+    """
+    _require_toe(toe)
+    loads = weight * np.geomspace(*LOAD_RANGE, N_LOADS)
+    if not np.all(law.valid(loads, values)):
+        worst = float(loads[~np.asarray(law.valid(loads, values))][0])
+        raise DomainError(
+            f"the parameters of '{law.name}' lose the law's shape at a load of {worst:g} N, which "
+            f"a robot of {weight:g} N puts on a leg; calibrate over these loads"
+        )
+    stiffness = float(np.max(law.slip_derivative(0.0, loads, values) / loads))
+    peak = _peak(law, values, loads)
+    scale, w = _grid(float(peak.max()) / stiffness)
+    x = scale * np.sinh(w)
+    definition = SlipDefinition(definition)
+    kappa = x if definition is SlipDefinition.MATERIAL else _converted(x, definition)
+    phi = law.force(kappa, loads[:, None], values) / loads[:, None]
+    slope = _column_slopes(phi, w)
+    slope[:, 0] = law.slip_derivative(0.0, loads, values) / loads * scale
+    saturated = law.force(FAR_OUT, loads, values) / loads
+    return TractionTable(
+        np.log(loads), scale, float(w[1]), phi, slope,
+        saturated if toe == "saturated" else peak, False, speed_scale, toe == "bristle",
+    )  # fmt: skip
+
+
+def curve_table(curve: SlipCurve, *, weight: float, toe: ToeLaw = "saturated") -> TractionTable:
+    """Tabulate a calibrated slip curve at its posterior mean; see `law_table`."""
+    return law_table(curve.law, curve.values, weight=weight, definition=curve.definition, toe=toe)
+
+
+def _grid(curve_scale: float) -> tuple[float, Array]:
+    scale = 0.1 * curve_scale
+    return scale, np.linspace(0, np.arcsinh(LARGEST_SLIP / scale), N_SLIPS)
+
+
+def _converted(x: Array, definition: SlipDefinition) -> Array:
+    # A leg dragged sideways can slip faster than its arc passes: there the law is saturated.
+    below_one = convert_slip(np.minimum(x, 1 - 1e-9), SlipDefinition.MATERIAL, definition)
+    return np.where(x < 1, below_one, np.maximum(x, below_one))
+
+
+def _peak(law: SlipLaw, values: Values, loads: Array) -> Array:
+    at = np.minimum(law.peak_slip(loads, values), FAR_OUT)
+    return np.asarray(law.force(at, loads, values)) / loads
+
+
+def _column_slopes(phi: Array, w: Array) -> Array:
+    """Differentiate rows by a spline through them; the grid is far finer than the curve."""
+    from scipy.interpolate import CubicSpline
+
+    return np.asarray(CubicSpline(w, phi, axis=1)(w, 1))
+
+
+def _require_toe(toe: str) -> None:
+    if toe not in TOE_LAWS:
+        raise DomainError(f"'{toe}' is no toe law; there are {', '.join(TOE_LAWS)}")

@@ -1,0 +1,85 @@
+# SPDX-License-Identifier: MIT
+"""What can be wrong with a device, its port or its profile; each message is one line."""
+
+from os import PathLike
+
+
+class RigError(Exception):
+    """Root of every error that `rig` raises on purpose."""
+
+
+class LinkError(RigError, ConnectionError):
+    """A port or bus cannot be opened, or is gone and nobody can wait for it."""
+
+
+class RigTimeout(RigError, TimeoutError):
+    """A device did not do within its time limit what it was asked.
+
+    Attributes:
+        waited: Time that was waited [s].
+    """
+
+    def __init__(self, problem: str, *, waited: float) -> None:
+        super().__init__(f"{problem} within {waited:g} s")
+        self.waited = waited
+
+
+class ProtocolError(RigError, ValueError):
+    """Bytes, or values to be made into bytes, are not of the device's protocol."""
+
+
+class DeviceMismatch(RigError, ValueError):
+    """Another device than the profile's answers at the port."""
+
+
+class DeviceFault(RigError, RuntimeError):
+    """A device reports a fault of its own.
+
+    Attributes:
+        status: Error or status word as the device sent it.
+    """
+
+    def __init__(self, problem: str, *, status: int) -> None:
+        super().__init__(problem)
+        self.status = status
+
+
+class LimitExceeded(RigError, ValueError):
+    """A set-point or a measured value lies outside its limit.
+
+    Attributes:
+        value: Value that was found.
+        limit: Limit that it broke.
+        unit: Unit of both.
+
+    >>> str(LimitExceeded("speed of the leg disc", value=31.0, limit=25.0, unit="rad/s"))
+    'speed of the leg disc is 31 rad/s; its limit is 25 rad/s'
+    """
+
+    def __init__(self, quantity: str, *, value: float, limit: float, unit: str) -> None:
+        super().__init__(f"{quantity} is {value:g} {unit}; its limit is {limit:g} {unit}")
+        self.value = value
+        self.limit = limit
+        self.unit = unit
+
+
+class ProfileError(RigError, ValueError):
+    """A device profile says something that cannot be followed.
+
+    Attributes:
+        problem: What was found, what was expected, what to try.
+        file: The profile.
+        key: Dotted key inside it.
+
+    >>> str(ProfileError("expected a number", file="mine.toml", key="legs.sign"))
+    'mine.toml, legs.sign: expected a number'
+    """
+
+    def __init__(
+        self, problem: str, *, file: str | PathLike[str] | None = None, key: str | None = None
+    ) -> None:
+        place = ", ".join(str(part) for part in (file, key) if part is not None)
+        super().__init__(" ".join(f"{place}: {problem}".split() if place else problem.split()))
+        self.problem = problem
+        self.file = file
+        self.key = key

@@ -1,0 +1,163 @@
+# SPDX-License-Identifier: MIT
+"""Profile of an inertial measurement unit: how its counts become an orientation."""
+
+import struct
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Final, Literal
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from rig.device import Sample
+from rig.profile import open_profile
+from rig.zebro.profile import Array
+
+NORM_TOLERANCE: Final = 0.05
+FIELDS: Final = 10
+
+
+@dataclass(frozen=True)
+class ImuProfile:
+    """An inertial measurement unit.
+
+    Attributes:
+        name: Name of the profile.
+        baudrate: Line rate [baud].
+        byte_order: Of values of two bytes.
+        quaternion_scale: Counts of a quaternion component of 1.
+        rate_scale: Counts of 1 rad/s.
+        force_scale: Counts of 1 m/s².
+        mounting: Quaternion w, x, y, z that turns the sensor's axes into the body's.
+        rate: Samples in a second [Hz].
+    """
+
+    name: str
+    baudrate: int
+    byte_order: Literal["little", "big"]
+    quaternion_scale: float
+    rate_scale: float
+    force_scale: float
+    mounting: tuple[float, ...]
+    rate: float
+
+    @property
+    def body(self) -> struct.Struct:
+        """Layout of a packet's body: quaternion, angular rate and specific force as counts."""
+        return struct.Struct(("<" if self.byte_order == "little" else ">") + f"{FIELDS}h")
+
+    def possible(self, counts: tuple[float, ...]) -> bool:
+        """Tell whether the quaternion has length 1, within `NORM_TOLERANCE`."""
+        norm = sum(count * count for count in counts[:4]) ** 0.5 / self.quaternion_scale
+        return abs(norm - 1) <= NORM_TOLERANCE
+
+
+@dataclass(frozen=True)
+class Orientation:
+    """What a unit measured, in the body's axes.
+
+    Attributes:
+        host_time: When the host read each sample, shape (n,) [s].
+        device_time: When the unit took it, shape (n,) [s].
+        roll: Shape (n,) [rad].
+        pitch: Shape (n,) [rad].
+        yaw: Unwrapped, from an arbitrary heading, shape (n,) [rad].
+        angular_rate: Of the body in its own axes, shape (n, 3) [rad/s].
+        specific_force: Acceleration less gravity, shape (n, 3) [m/s²].
+    """
+
+    host_time: Array
+    device_time: Array
+    roll: Array
+    pitch: Array
+    yaw: Array
+    angular_rate: Array
+    specific_force: Array
+
+
+def load_imu_profile(name: str) -> ImuProfile:
+    """Read the profile of an inertial measurement unit.
+
+    Args:
+        name: Name of a shipped profile, or path of a TOML file.
+
+    Returns:
+        The profile.
+
+    Raises:
+        ProfileError: Anything in it is missing, unknown or of the wrong kind.
+    """
+    table = open_profile(name, device="imu")
+    link, frame, scale, mounting, stream = (
+        table.table(key) for key in ("link", "frame", "scale", "mounting", "stream")
+    )
+    link.choice("kind", ("serial",))
+    quaternion = mounting.numbers("quaternion", 4)
+    if abs(sum(part * part for part in quaternion) - 1) > NORM_TOLERANCE:
+        raise mounting.fault(f"found {list(quaternion)}; expected length 1", "quaternion")
+    profile = ImuProfile(
+        name=Path(name).stem,
+        baudrate=link.whole("baudrate", least=1, most=20_000_000),
+        byte_order=frame.choice("byte_order", ("little", "big")),
+        quaternion_scale=scale.positive("quaternion"),
+        rate_scale=scale.positive("angular_rate"),
+        force_scale=scale.positive("specific_force"),
+        mounting=quaternion,
+        rate=stream.positive("rate"),
+    )
+    for part in (link, frame, scale, mounting, stream, table):
+        part.finish()
+    return profile
+
+
+def decode_orientation(profile: ImuProfile, samples: Sequence[Sample]) -> Orientation:
+    """Compute roll, pitch and yaw from raw counts, in the order of `docs/conventions.md`.
+
+    Args:
+        profile: Profile of the unit.
+        samples: Its samples, in order.
+
+    Returns:
+        Orientation, angular rate and specific force.
+    """
+    counts = np.array([sample.counts for sample in samples], dtype=float).reshape(-1, FIELDS)
+    mounting = Rotation.from_quat(profile.mounting, scalar_first=True)
+    measured = Rotation.from_quat(_unit(counts[:, :4]), scalar_first=True)
+    yaw, pitch, roll = (measured * mounting.inv()).as_euler("ZYX").T
+    return Orientation(
+        host_time=np.array([sample.host_time for sample in samples], dtype=float),
+        device_time=np.array([sample.device_time for sample in samples], dtype=float),
+        roll=roll,
+        pitch=pitch,
+        yaw=np.unwrap(yaw),
+        angular_rate=mounting.apply(counts[:, 4:7] / profile.rate_scale),
+        specific_force=mounting.apply(counts[:, 7:] / profile.force_scale),
+    )
+
+
+def encode_orientation(
+    profile: ImuProfile, rotation: Rotation, angular_rate: Array, specific_force: Array
+) -> tuple[int, ...]:
+    """Compute the counts of one reading; the inverse of `decode_orientation`.
+
+    Args:
+        profile: Profile of the unit.
+        rotation: Of the body in the inertial frame.
+        angular_rate: In the body's axes, shape (3,) [rad/s].
+        specific_force: In the body's axes, shape (3,) [m/s²].
+
+    Returns:
+        Ten counts, held to 16 bits.
+    """
+    mounting = Rotation.from_quat(profile.mounting, scalar_first=True)
+    values = np.concatenate([
+        profile.quaternion_scale * (rotation * mounting).as_quat(scalar_first=True),
+        profile.rate_scale * mounting.inv().apply(angular_rate),
+        profile.force_scale * mounting.inv().apply(specific_force),
+    ])  # fmt: skip
+    return tuple(int(count) for count in np.clip(np.rint(values), -32_768, 32_767))
+
+
+def _unit(quaternions: Array) -> Array:
+    return quaternions / np.linalg.norm(quaternions, axis=1, keepdims=True)

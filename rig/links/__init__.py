@@ -1,0 +1,2 @@
+# SPDX-License-Identifier: MIT
+"""Links: bytes and frames in, resynchronised, counted and time-stamped."""

@@ -1,0 +1,137 @@
+# SPDX-License-Identifier: MIT
+"""A CAN bus: frames read in bulk by the thread that wants them, every wait with a limit.
+
+No `can.Notifier`: its thread ends without a word when a listener raises.
+"""
+
+from typing import Final
+
+import can
+
+from rig.clock import SYSTEM_CLOCK, Clock
+from rig.errors import LinkError, RigTimeout
+
+WRITE_LIMIT: Final = 0.5
+RETRY_AFTER: Final = 0.25
+MOST_AT_ONCE: Final = 4096
+
+
+class CanLink:
+    """Frames to and from a CAN bus.
+
+    Args:
+        channel: `INTERFACE:CHANNEL` as python-can names them, such as `socketcan:can0`, or an open
+            bus, which is then used and closed but never reopened.
+        bitrate: Bit rate, for interfaces that set it [bit/s].
+        source: `real`, or `sim:WHAT` for a bus with twins on it.
+        clock: Host time.
+
+    Attributes:
+        reconnected: Times that the bus came back after it failed.
+        damaged: Error frames that the bus reported.
+    """
+
+    def __init__(
+        self,
+        channel: "str | can.BusABC",
+        *,
+        bitrate: int = 1_000_000,
+        source: str = "real",
+        clock: Clock = SYSTEM_CLOCK,
+    ) -> None:
+        self.source = source
+        self.reconnected = 0
+        self.damaged = 0
+        self._channel = channel
+        self._bitrate = bitrate
+        self._clock = clock
+        self._bus: can.BusABC | None = None
+        self._retry_at = 0.0
+
+    def open(self) -> None:
+        """Open the bus.
+
+        Raises:
+            LinkError: There is no such bus, or no right to open it.
+        """
+        try:
+            self._bus = self._connect()
+        except (can.CanError, OSError, ValueError, ImportError) as problem:
+            raise LinkError(
+                f"cannot open CAN bus {self._channel}: {problem}; name it INTERFACE:CHANNEL, such "
+                "as socketcan:can0, and bring it up first"
+            ) from problem
+
+    def close(self) -> None:
+        """Close the bus; closing twice is no fault."""
+        bus, self._bus = self._bus, None
+        if bus is not None:
+            bus.shutdown()
+
+    def read(self, timeout: float) -> list[can.Message]:
+        """Hand on all data frames there are, waiting at most `timeout` for the first [s]."""
+        if self._bus is None and not self._come_back(timeout):
+            return []
+        messages: list[can.Message] = []
+        bus, wait = self._bus, timeout
+        try:
+            while bus is not None and len(messages) < MOST_AT_ONCE:
+                message = bus.recv(wait)
+                if message is None:
+                    break
+                self._keep(message, messages)
+                wait = 0.0
+        except (can.CanError, OSError):
+            self._lose()
+        return messages
+
+    def write(self, can_id: int, data: bytes) -> bool:
+        """Send a frame with an 11-bit id; False while the bus is gone.
+
+        Raises:
+            RigTimeout: The bus is there but takes no frame: nobody acknowledges, or it is off.
+        """
+        if self._bus is None:
+            return False
+        message = can.Message(arbitration_id=can_id, data=data, is_extended_id=False)
+        try:
+            self._bus.send(message, timeout=WRITE_LIMIT)
+        except can.CanError as problem:
+            raise RigTimeout(
+                f"CAN bus {self._channel} did not take a frame ({problem}); check termination and "
+                "power,", waited=WRITE_LIMIT
+            ) from problem  # fmt: skip
+        except OSError:
+            self._lose()
+            return False
+        return True
+
+    def _keep(self, message: can.Message, messages: list[can.Message]) -> None:
+        if message.is_error_frame:
+            self.damaged += 1
+        elif not message.is_remote_frame and not message.is_extended_id:
+            messages.append(message)
+
+    def _connect(self) -> can.BusABC:
+        if isinstance(self._channel, can.BusABC):
+            return self._channel
+        interface, _, channel = self._channel.partition(":")
+        return can.Bus(channel=channel, interface=interface, bitrate=self._bitrate)
+
+    def _lose(self) -> None:
+        self.close()
+        self._retry_at = self._clock.now() + RETRY_AFTER
+
+    def _come_back(self, timeout: float) -> bool:
+        """Try to reopen a lost bus, at most every `RETRY_AFTER`; tell whether it is back."""
+        wait = self._retry_at - self._clock.now()
+        self._clock.sleep(min(max(wait, 0.0), timeout))
+        if wait > timeout or isinstance(self._channel, can.BusABC):
+            return False
+        self._retry_at = self._clock.now() + RETRY_AFTER
+        try:
+            self._bus = self._connect()
+        except (can.CanError, OSError, ValueError):
+            return False
+        self.reconnected += 1
+        return True

@@ -1,0 +1,167 @@
+# SPDX-License-Identifier: MIT
+"""A stream of one kind of packet over a byte link: legs, an IMU and the rig's board alike."""
+
+import struct
+from collections.abc import Callable
+from types import TracebackType
+from typing import Final, Self
+
+from rig.clock import SYSTEM_CLOCK, Clock
+from rig.device import Counters, Sample
+from rig.errors import DeviceMismatch
+from rig.links.byte_link import ByteLink
+from rig.links.framing import CobsFramer
+from rig.links.packet import (
+    CHECKSUM,
+    HEADER,
+    LONGEST_BODY,
+    TICK,
+    WRAP,
+    Kind,
+    Packet,
+    decode_packet,
+    encode_packet,
+)
+from rig.links.sequence import SequenceTracker, TimeUnwrapper
+
+LONGEST: Final = HEADER.size + LONGEST_BODY + CHECKSUM.size + 1
+FOREIGN_LIMIT: Final = 20
+"""So many packets of another device, and none of the one expected, make a mismatch."""
+
+
+def always(_: tuple[float, ...]) -> bool:
+    """Take any values."""
+    return True
+
+
+class PacketStream:
+    """Samples from packets of one kind; satisfies `rig.device.Stream`.
+
+    Args:
+        link: Bytes to and from the device.
+        name: Name of the stream.
+        kind: Kind of packet that carries the samples.
+        body: Layout of the packet's body; its fields are the sample's counts.
+        rate: Samples in a second; tells a loss from a restart [Hz].
+        possible: Tells whether counts can be; others are refused.
+        clock: Host time.
+    """
+
+    def __init__(
+        self,
+        link: ByteLink,
+        *,
+        name: str,
+        kind: Kind,
+        body: struct.Struct,
+        rate: float,
+        possible: Callable[[tuple[float, ...]], bool] = always,
+        clock: Clock = SYSTEM_CLOCK,
+    ) -> None:
+        self.name = name
+        self._link = link
+        self._kind = kind
+        self._body = body
+        self._possible = possible
+        self._clock = clock
+        self._framer = CobsFramer(longest=LONGEST)
+        self._tracker = SequenceTracker(modulus=WRAP, rate=rate)
+        self._device_time = TimeUnwrapper(modulus=WRAP, tick=TICK)
+        self._received = 0
+        self._refused = 0
+        self._foreign = 0
+        self._sent = 0
+        self._connections = 0
+
+    @property
+    def source(self) -> str:
+        """Where the samples come from."""
+        return self._link.source
+
+    @property
+    def counters(self) -> Counters:
+        """What happened so far."""
+        return Counters(
+            received=self._received,
+            lost=self._tracker.lost,
+            damaged=self._framer.damaged,
+            repeated=self._tracker.repeated,
+            refused=self._refused,
+            resynchronised=self._framer.resynchronised,
+            reconnected=self._link.reconnected,
+            restarted=self._tracker.restarted,
+        )
+
+    def read(self, timeout: float) -> list[Sample]:
+        """Hand on all samples that have arrived, waiting at most `timeout` for the first [s].
+
+        Raises:
+            DeviceMismatch: The port carries packets, and all are another device's.
+        """
+        data = self._link.read(timeout)
+        if self._link.reconnected != self._connections:
+            self._connections = self._link.reconnected
+            self._framer.reset()
+        now = self._clock.now()
+        samples = []
+        for content in self._framer.feed(data):
+            sample = self._sample(content, now)
+            if sample is not None:
+                samples.append(sample)
+        self._received += len(samples)
+        return samples
+
+    def send(self, kind: Kind, body: bytes = b"") -> bool:
+        """Send a packet to the device; False while the link is gone.
+
+        Args:
+            kind: What is asked.
+            body: Its values.
+
+        Returns:
+            Whether the link took it. Whether the device did, its stream shows.
+        """
+        ticks = int(self._clock.now() / TICK)
+        packet = Packet(kind, self._sent, ticks, body)
+        self._sent += 1
+        return self._link.write(encode_packet(packet))
+
+    def __enter__(self) -> Self:
+        self._link.open()
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self._link.close()
+
+    def _sample(self, content: bytes, now: float) -> Sample | None:
+        packet = decode_packet(content)
+        if packet is None:
+            self._framer.refuse()
+            return None
+        self._framer.accept()
+        if packet.kind != self._kind or len(packet.body) != self._body.size:
+            self._refuse_foreign(packet)
+            return None
+        counts = self._body.unpack(packet.body)
+        if not self._possible(counts):
+            self._refused += 1
+            return None
+        sequence = self._tracker.accept(packet.sequence, now)
+        if sequence is None:
+            return None
+        return Sample(now, self._device_time.unwrap(packet.ticks), sequence, counts)
+
+    def _refuse_foreign(self, packet: Packet) -> None:
+        self._refused += 1
+        self._foreign += 1
+        if self._received == 0 and self._foreign >= FOREIGN_LIMIT:
+            raise DeviceMismatch(
+                f"stream '{self.name}' found {self._foreign} whole packets of kind {packet.kind} "
+                f"with {len(packet.body)} bytes and none of kind {int(self._kind)} with "
+                f"{self._body.size}; are two ports swapped, or is it another profile?"
+            )

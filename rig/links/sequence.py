@@ -1,0 +1,100 @@
+# SPDX-License-Identifier: MIT
+"""Numbers and times that wrap: what is lost, doubled or late, and when a device began anew."""
+
+from typing import Final
+
+LATE_WINDOW: Final = 64
+"""A number up to this far back is an old sample; farther back the device has restarted."""
+SLACK: Final = 64
+
+
+class SequenceTracker:
+    """Follows the sample numbers of one stream.
+
+    A jump ahead is a loss as far as the device can have come since the read before, at twice its
+    rate; beyond that, or far back, the device has restarted, and how much is missing is unknown.
+    (Not since the last sample: samples of one read may have waited together in a buffer.)
+
+    Args:
+        modulus: At what the device's numbers wrap.
+        rate: Samples in a second; None where unknown, then only jumps back are restarts [Hz].
+
+    Attributes:
+        lost: Samples that are missing so far.
+        repeated: Samples refused so far: doubled or late.
+        restarted: Times that the device began to number anew.
+    """
+
+    def __init__(self, *, modulus: int, rate: float | None = None) -> None:
+        self.lost = 0
+        self.repeated = 0
+        self.restarted = 0
+        self._modulus = modulus
+        self._rate = rate
+        self._last: int | None = None
+        self._read_time = self._read_before = 0.0
+
+    def accept(self, number: int, host_time: float) -> int | None:
+        """Take the number of a sample.
+
+        Args:
+            number: As the device sent it.
+            host_time: When it was read [s].
+
+        Returns:
+            The number with wraps undone, larger than every earlier one; None where the sample is
+            to be refused.
+
+        >>> tracker = SequenceTracker(modulus=256)
+        >>> [tracker.accept(number, 0.0) for number in (254, 255, 2, 2, 3)]
+        [254, 255, 258, None, 259]
+        >>> tracker.lost, tracker.repeated
+        (2, 1)
+        """
+        if self._last is None:
+            self._last, self._read_time, self._read_before = number, host_time, host_time
+            return number
+        if host_time != self._read_time:
+            self._read_time, self._read_before = host_time, self._read_time
+        ahead = (number - self._last) % self._modulus
+        behind = self._modulus - ahead
+        if ahead == 0 or behind < min(LATE_WINDOW, self._modulus // 2):
+            self.repeated += 1
+            return None
+        if self._plausible(ahead, host_time - self._read_before):
+            self.lost += ahead - 1
+        else:
+            self.restarted += 1
+        self._last += ahead
+        return self._last
+
+    def _plausible(self, ahead: int, elapsed: float) -> bool:
+        if self._rate is None:
+            return ahead < self._modulus // 2
+        return ahead <= SLACK + 2 * self._rate * elapsed
+
+
+class TimeUnwrapper:
+    """Undoes the wraps of a device's clock; the time it gives never runs back.
+
+    Args:
+        modulus: At what the device's ticks wrap.
+        tick: Length of one tick [s].
+    """
+
+    def __init__(self, *, modulus: int, tick: float) -> None:
+        self._modulus = modulus
+        self._tick = tick
+        self._last: int | None = None
+
+    def unwrap(self, ticks: int) -> float:
+        """Compute the device time of a reading not older than the last [s].
+
+        >>> clock = TimeUnwrapper(modulus=1000, tick=0.001)
+        >>> [clock.unwrap(ticks) for ticks in (990, 999, 4)]
+        [0.99, 0.999, 1.004]
+        """
+        if self._last is None:
+            self._last = ticks
+        self._last += (ticks - self._last) % self._modulus
+        return self._last * self._tick

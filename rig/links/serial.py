@@ -1,0 +1,130 @@
+# SPDX-License-Identifier: MIT
+"""A serial port: bulk reads with a time limit, and a port that may be unplugged and come back."""
+
+import select
+import time
+from typing import Final, cast
+
+import serial
+
+from rig.clock import SYSTEM_CLOCK, Clock
+from rig.errors import LinkError, RigTimeout
+
+CHUNK: Final = 1 << 16
+RETRY_AFTER: Final = 0.25
+WRITE_LIMIT: Final = 1.0
+
+
+class SerialLink:
+    """Bytes to and from a serial port, or any URL that pyserial knows (`socket://host:port`).
+
+    Reads take all that is there: one system call for hundreds of frames. A port that goes away is
+    closed and reopened while the stream goes on; `reconnected` counts that.
+
+    Args:
+        port: Name of the port, or a URL.
+        baudrate: Line rate [baud].
+        source: `real`, or `sim:WHAT` for a port with a twin behind it.
+        clock: Host time.
+    """
+
+    def __init__(
+        self, port: str, *, baudrate: int, source: str = "real", clock: Clock = SYSTEM_CLOCK
+    ) -> None:
+        self.port = port
+        self.source = source
+        self.reconnected = 0
+        self._baudrate = baudrate
+        self._clock = clock
+        self._serial: serial.Serial | None = None
+        self._retry_at = 0.0
+
+    def open(self) -> None:
+        """Open the port.
+
+        Raises:
+            LinkError: There is no such port, it is taken, or there is no right to open it.
+        """
+        try:
+            self._serial = self._connect()
+        except (OSError, ValueError) as problem:
+            raise LinkError(
+                f"cannot open port {self.port}: {problem}; check the cable and the name, that no "
+                "other program has it, and on Linux that you are in the group that owns it"
+            ) from problem
+
+    def close(self) -> None:
+        """Close the port; closing twice is no fault."""
+        port, self._serial = self._serial, None
+        if port is not None:
+            port.close()
+
+    def read(self, timeout: float) -> bytes:
+        """Hand on all bytes there are, waiting at most `timeout` for the first [s]."""
+        if self._serial is None and not self._come_back(timeout):
+            return b""
+        port = self._serial
+        try:
+            return port.read(CHUNK) if port is not None and _readable(port, timeout) else b""
+        except OSError:  # serial.SerialException is one: unplugged
+            self._lose()
+            return b""
+
+    def write(self, data: bytes) -> bool:
+        """Send bytes; False while the port is gone.
+
+        Raises:
+            RigTimeout: The port is there but takes no bytes.
+        """
+        if self._serial is None:
+            return False
+        try:
+            self._serial.write(data)
+        except serial.SerialTimeoutException as problem:
+            raise RigTimeout(
+                f"port {self.port} did not take {len(data)} bytes", waited=WRITE_LIMIT
+            ) from problem
+        except OSError:
+            self._lose()
+            return False
+        return True
+
+    def _connect(self) -> serial.Serial:
+        opened = serial.serial_for_url(
+            self.port, do_not_open=True, baudrate=self._baudrate, timeout=0,
+            write_timeout=WRITE_LIMIT,
+        )  # fmt: skip
+        port = cast("serial.Serial", opened)  # the URL handlers look the same
+        if not self.port.startswith("socket:"):
+            port.exclusive = True  # two readers would each get half of the bytes
+        port.open()
+        return port
+
+    def _lose(self) -> None:
+        self.close()
+        self._retry_at = self._clock.now() + RETRY_AFTER
+
+    def _come_back(self, timeout: float) -> bool:
+        """Try to reopen a lost port, at most every `RETRY_AFTER`; tell whether it is back."""
+        wait = self._retry_at - self._clock.now()
+        self._clock.sleep(min(max(wait, 0.0), timeout))
+        if wait > timeout:
+            return False
+        self._retry_at = self._clock.now() + RETRY_AFTER
+        try:
+            self._serial = self._connect()
+        except (OSError, ValueError):
+            self._clock.sleep(max(timeout - max(wait, 0.0), 0.0))
+            return False
+        self.reconnected += 1
+        return True
+
+
+def _readable(port: serial.Serial, timeout: float) -> bool:
+    """Tell whether a port has bytes, waiting at most `timeout` [s]."""
+    if hasattr(port, "fileno"):
+        return bool(select.select([port], [], [], timeout)[0])
+    end = time.monotonic() + timeout  # ports of Windows cannot be waited for
+    while not port.in_waiting and time.monotonic() < end:
+        time.sleep(0.001)
+    return bool(port.in_waiting)

@@ -1,0 +1,235 @@
+# SPDX-License-Identifier: MIT
+"""Serves twins in real time: a pseudo-terminal or a loopback socket any program can open."""
+
+import contextlib
+import os
+import select
+import socket
+import sys
+import tempfile
+import threading
+from collections.abc import Callable
+from pathlib import Path
+from types import TracebackType
+from typing import Final, Protocol, Self
+
+from rig.clock import SYSTEM_CLOCK, Clock
+from rig.errors import LinkError
+from rig.links.byte_link import ByteTwin
+
+TICK: Final = 0.002
+"""How often a served twin is polled [s]."""
+JOIN_LIMIT: Final = 2.0
+
+
+class Ticker:
+    """Calls a function every tick from a thread of its own, until it is stopped.
+
+    Args:
+        tick: What to call; it gets the time [s].
+        clock: Host time.
+
+    Attributes:
+        failure: What the function raised; it is called no more then.
+    """
+
+    def __init__(self, tick: Callable[[float], None], *, clock: Clock = SYSTEM_CLOCK) -> None:
+        self.failure: BaseException | None = None
+        self._tick = tick
+        self._clock = clock
+        self._done = threading.Event()
+        self._thread = threading.Thread(target=self._run, daemon=True, name="twin")
+
+    def __enter__(self) -> Self:
+        self._thread.start()
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self._done.set()
+        self._thread.join(JOIN_LIMIT)
+
+    def _run(self) -> None:
+        try:
+            while not self._done.wait(TICK):
+                self._tick(self._clock.now())
+        except BaseException as failure:  # noqa: BLE001, RUF100 - kept for the owner to see
+            self.failure = failure
+
+
+class _End(Protocol):
+    """The twin's end of a port."""
+
+    port: str
+
+    def exchange(self, data: bytes) -> bytes:
+        """Send bytes and hand on those that came."""
+        ...
+
+    def close(self) -> None:
+        """Close the port."""
+        ...
+
+
+class _Terminal:
+    """A pseudo-terminal, under a name that stays when it is unplugged and plugged in again."""
+
+    def __init__(self, link: Path) -> None:
+        import tty
+
+        self._master, self._slave = os.openpty()  # the open slave keeps the master from hanging up
+        tty.setraw(self._slave)
+        os.set_blocking(self._master, False)
+        link.unlink(missing_ok=True)
+        link.symlink_to(os.ttyname(self._slave))
+        self._link = link
+        self.port = str(link)
+
+    def exchange(self, data: bytes) -> bytes:
+        with contextlib.suppress(BlockingIOError):  # a full buffer drops bytes, as a UART does
+            os.write(self._master, data)
+        try:
+            return os.read(self._master, 65_536)
+        except BlockingIOError:
+            return b""
+
+    def close(self) -> None:
+        self._link.unlink(missing_ok=True)
+        os.close(self._slave)
+        os.close(self._master)
+
+
+class _Socket:
+    """A listening socket on the loopback interface that serves one client at a time."""
+
+    def __init__(self, port: int = 0) -> None:
+        self._listener = socket.create_server(("127.0.0.1", port))
+        self._listener.setblocking(False)
+        self._client: socket.socket | None = None
+        self.number: int = self._listener.getsockname()[1]
+        self.port = f"socket://127.0.0.1:{self.number}"
+
+    def exchange(self, data: bytes) -> bytes:
+        if self._client is None and not self._accept():
+            return b""
+        try:
+            return self._through(data)
+        except OSError:
+            self._drop()
+            return b""
+
+    def close(self) -> None:
+        self._drop()
+        self._listener.close()
+
+    def _accept(self) -> bool:
+        try:
+            self._client, _ = self._listener.accept()
+        except BlockingIOError:
+            return False
+        self._client.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+        self._client.settimeout(1.0)
+        return True
+
+    def _through(self, data: bytes) -> bytes:
+        client = self._client
+        if client is None:
+            return b""
+        client.sendall(data)
+        if not select.select([client], [], [], 0)[0]:
+            return b""
+        received = client.recv(65_536)
+        if not received:
+            self._drop()
+        return received
+
+    def _drop(self) -> None:
+        client, self._client = self._client, None
+        if client is not None:
+            client.close()
+
+
+class PortServer:
+    """Serves a byte twin at a port: a context manager.
+
+    Args:
+        twin: The simulated device.
+        as_socket: Listen on `socket://` of the loopback interface in place of a pseudo-terminal;
+            always so where the system has none.
+        clock: Host time.
+
+    Attributes:
+        port: What a driver, or any program, opens.
+    """
+
+    def __init__(
+        self, twin: ByteTwin, *, as_socket: bool = False, clock: Clock = SYSTEM_CLOCK
+    ) -> None:
+        self.port = ""
+        self._twin = twin
+        self._as_socket = as_socket or sys.platform == "win32"
+        self._folder: tempfile.TemporaryDirectory[str] | None = None
+        self._number = 0
+        self._end: _End | None = None
+        self._lock = threading.Lock()
+        self._received = b""
+        self._ticker = Ticker(self._tick, clock=clock)
+
+    @property
+    def failure(self) -> BaseException | None:
+        """What the twin raised, if anything."""
+        return self._ticker.failure
+
+    def unplug(self) -> None:
+        """Take the port away while the twin goes on."""
+        with self._lock:
+            end, self._end = self._end, None
+            if end is not None:
+                end.close()
+
+    def plug_in(self) -> None:
+        """Bring the port back under its name.
+
+        Raises:
+            LinkError: The system gives no port.
+        """
+        with self._lock:
+            try:
+                self._end = self._make()
+            except OSError as problem:
+                raise LinkError(f"cannot make a port for a twin: {problem}") from problem
+            self.port = self._end.port
+
+    def __enter__(self) -> Self:
+        self.plug_in()
+        self._ticker.__enter__()
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self._ticker.__exit__(kind, error, trace)
+        self.unplug()
+        if self._folder is not None:
+            self._folder.cleanup()
+
+    def _make(self) -> _End:
+        if self._as_socket:
+            end = _Socket(self._number)
+            self._number = end.number
+            return end
+        if self._folder is None:
+            self._folder = tempfile.TemporaryDirectory(prefix="zebro-lab-twin-")
+        return _Terminal(Path(self._folder.name) / "port")
+
+    def _tick(self, now: float) -> None:
+        data = self._twin.poll(now, self._received)
+        with self._lock:
+            self._received = self._end.exchange(data) if self._end is not None else b""

@@ -1,0 +1,87 @@
+# SPDX-License-Identifier: MIT
+"""Commands to the robot: leg set-points of a gait, and stop."""
+
+import struct
+from typing import Final, Protocol
+
+from model.gait.reference import LegReference
+from rig.errors import LimitExceeded
+from rig.zebro.profile import LegProfile, encode_counts
+
+LONGEST_MOTION: Final = 65.535
+MILLISECOND: Final = 1e-3
+
+
+class LegCommands(Protocol):
+    """What can be asked of the robot's legs."""
+
+    @property
+    def profile(self) -> LegProfile:
+        """Profile of the robot."""
+        ...
+
+    def set_points(self, counts: tuple[int, ...], duration: float) -> bool:
+        """Turn every leg to a count, the short way round.
+
+        Args:
+            counts: Targets in the order of the wire.
+            duration: How long the motion takes [s].
+
+        Returns:
+            Whether the link took the command.
+
+        Raises:
+            LimitExceeded: The motion is longer than the protocol can say.
+            ProtocolError: This robot's link takes no commands.
+        """
+        ...
+
+    def stop(self) -> bool:
+        """Stop every leg where it is; tell whether the link took the command."""
+        ...
+
+
+def milliseconds(duration: float) -> int:
+    """Round the duration of a motion to what the protocols carry, 16 bits of milliseconds.
+
+    Args:
+        duration: How long a motion takes [s].
+
+    Returns:
+        The same [ms].
+
+    Raises:
+        LimitExceeded: It is negative, or too long.
+    """
+    if not 0 <= duration <= LONGEST_MOTION:
+        raise LimitExceeded("duration of a leg motion", value=duration, limit=LONGEST_MOTION,
+                            unit="s")  # fmt: skip
+    return round(duration / MILLISECOND)
+
+
+def set_point_body(profile: LegProfile) -> struct.Struct:
+    """Return the layout of a set-point packet: six targets [counts], then the duration [ms]."""
+    return struct.Struct(("<" if profile.byte_order == "little" else ">") + "7H")
+
+
+def follow(
+    legs: LegCommands, reference: LegReference, *, start: float, now: float, horizon: float
+) -> bool:
+    """Command where a gait has the legs a little later.
+
+    Called again and again, at most every `horizon`, it walks the robot. A leg moves less than half
+    a turn within the horizon, or it would take the wrong way round.
+
+    Args:
+        legs: The robot.
+        reference: The gait.
+        start: Host time at which the gait began [s].
+        now: Host time [s].
+        horizon: How far ahead the set-point lies, and how long the motion to it takes [s].
+
+    Returns:
+        Whether the link took the command.
+    """
+    theta = reference.angles(now - start + horizon)[0]
+    chosen = [theta[leg - 1] for leg in sorted(legs.profile.legs)]
+    return legs.set_points(encode_counts(legs.profile, chosen), horizon)

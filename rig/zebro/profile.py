@@ -1,0 +1,314 @@
+# SPDX-License-Identifier: MIT
+"""Profile of a robot's leg stream: how its bytes are read and its counts become leg angles."""
+
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any, Literal, TypeAlias
+
+import numpy as np
+import tomlkit
+from numpy.typing import NDArray
+
+from rig.device import Sample
+from rig.errors import ProtocolError
+from rig.profile import SCHEMA, Table, open_profile
+
+Array: TypeAlias = NDArray[np.float64]
+Layout: TypeAlias = Literal["packet", "can", "dump", "poll"]
+Order: TypeAlias = Literal["little", "big"]
+LINK_OF: dict[str, str] = {"packet": "serial", "dump": "serial", "poll": "serial", "can": "can"}
+DUMP_REGISTERS = 256
+
+
+@dataclass(frozen=True)
+class Registers:
+    """Where a register-based robot keeps what; each value takes two registers.
+
+    Attributes:
+        positions: First register of the position of each channel.
+        read_command: Byte that asks for registers.
+        write_command: Byte that writes registers.
+        set_points: First register of the set-point of each channel; empty where none is taken.
+        duration: First register of the duration of a motion [ms].
+        stop: Register that stops every leg when anything but 0 is written.
+    """
+
+    positions: tuple[int, ...] = ()
+    read_command: int = 0xF0
+    write_command: int = 0x0F
+    set_points: tuple[int, ...] = ()
+    duration: int = 0
+    stop: int = 0
+
+
+@dataclass(frozen=True)
+class CanIds:
+    """Arbitration ids of a robot on CAN.
+
+    Attributes:
+        clock: Device time of the positions that follow.
+        positions: Leg positions.
+        set_points: Targets of a motion.
+        stop: Stop every leg.
+    """
+
+    clock: int = 0x120
+    positions: int = 0x121
+    set_points: int = 0x110
+    stop: int = 0x100
+
+
+@dataclass(frozen=True)
+class LegProfile:
+    r"""A robot's leg stream.
+
+    Leg angle of a count n, with the leg's zero n_0, sign s and N counts a revolution:
+
+    .. math::
+        \theta = s\,\frac{2\pi}{N}\,(n - n_0)
+
+    Attributes:
+        name: Name of the profile.
+        layout: Form of the frames.
+        baudrate: Line rate of the serial port, or bit rate of the bus [1/s].
+        byte_order: Of values of several bytes.
+        legs: Leg number of each channel, in the order of the wire.
+        counts_per_revolution: Counts N of a whole turn; N itself reads as 0.
+        zero_counts: Count n_0 of each channel with its toe straight ahead.
+        sign: 1 for a channel whose count grows as the robot walks forward, else -1.
+        rate: Samples in a second [Hz].
+        registers: For the layouts `dump` and `poll`.
+        can_ids: For the layout `can`.
+    """
+
+    name: str
+    layout: Layout
+    baudrate: int
+    byte_order: Order
+    legs: tuple[int, ...]
+    counts_per_revolution: int
+    zero_counts: tuple[float, ...]
+    sign: tuple[int, ...]
+    rate: float
+    registers: Registers = Registers()
+    can_ids: CanIds = CanIds()
+
+    @property
+    def quantisation(self) -> float:
+        """Half a count as an angle: the error is uniform between minus and plus this [rad]."""
+        return float(np.pi / self.counts_per_revolution)
+
+    def possible(self, counts: tuple[float, ...]) -> bool:
+        """Tell whether every count is on the circle."""
+        return max(counts) <= self.counts_per_revolution and min(counts) >= 0
+
+
+@dataclass(frozen=True)
+class LegAngles:
+    """Leg angles of a stream.
+
+    Attributes:
+        host_time: When the host read each sample, shape (n,) [s].
+        device_time: When the device took it, NaN where unknown, shape (n,) [s].
+        legs: Leg number of each column, ascending.
+        theta: Unwrapped leg angles, shape (n, legs) [rad].
+        quantisation: Half a count: the error is uniform between minus and plus this [rad].
+    """
+
+    host_time: Array
+    device_time: Array
+    legs: tuple[int, ...]
+    theta: Array
+    quantisation: float
+
+
+def load_leg_profile(name: str) -> LegProfile:
+    """Read the profile of a leg stream.
+
+    Args:
+        name: Name of a shipped profile, or path of a TOML file.
+
+    Returns:
+        The profile.
+
+    Raises:
+        ProfileError: Anything in it is missing, unknown, of the wrong kind or contradictory.
+    """
+    table = open_profile(name, device="legs")
+    link, frame, legs, stream = (table.table(key) for key in ("link", "frame", "legs", "stream"))
+    layout: Layout = frame.choice("layout", ("packet", "can", "dump", "poll"))
+    kind = link.choice("kind", ("serial", "can"))
+    if kind != LINK_OF[layout]:
+        raise link.fault(f"is '{kind}'; the layout '{layout}' needs '{LINK_OF[layout]}'", "kind")
+    order = _order(legs)
+    registers = Registers()
+    if layout in ("dump", "poll"):
+        registers = _registers(frame, layout, len(order))
+    elif len(order) != 6:
+        raise legs.fault(f"has {len(order)} legs; the layout '{layout}' carries six", "order")
+    profile = LegProfile(
+        name=Path(name).stem,
+        layout=layout,
+        baudrate=link.whole("baudrate", least=1, most=20_000_000),
+        byte_order="little" if layout == "can" else frame.choice("byte_order", ("little", "big")),
+        legs=order,
+        counts_per_revolution=legs.whole(
+            "counts_per_revolution", least=2, most=100 if layout == "can" else 65_535
+        ),
+        zero_counts=_by_channel(legs.numbers("zero_counts", len(order)), order),
+        sign=_by_channel(legs.signs("sign", len(order)), order),
+        rate=stream.positive("rate"),
+        registers=registers,
+        can_ids=_can_ids(frame) if layout == "can" else CanIds(),
+    )
+    for part in (link, frame, legs, stream, table):
+        part.finish()
+    return profile
+
+
+def save_leg_profile(profile: LegProfile, path: Path) -> None:
+    """Write a profile, so that `load_leg_profile` gives it back.
+
+    Args:
+        profile: The profile; its name becomes the file's.
+        path: Where to write; a file that is there is replaced.
+    """
+    path.write_text(tomlkit.dumps(_as_document(profile)), encoding="utf-8")
+
+
+def decode_angles(profile: LegProfile, samples: Sequence[Sample]) -> LegAngles:
+    """Compute unwrapped leg angles from raw counts.
+
+    A leg is taken to have turned the short way between two samples, so that a gap in which it
+    turned half a revolution or more is bridged wrongly by whole turns; contacts do not mind.
+
+    Args:
+        profile: Profile of the stream; a corrected one repairs an old log.
+        samples: The stream's samples, in order.
+
+    Returns:
+        Angles, first sample of each leg in [-pi, pi).
+
+    Raises:
+        ProtocolError: The samples have another number of channels than the profile.
+    """
+    channels = len(profile.legs)
+    counts = np.array([sample.counts for sample in samples], dtype=float)
+    if len(samples) and counts.shape != (len(samples), channels):
+        raise ProtocolError(
+            f"samples have {len(samples[0].counts)} channels; "
+            f"profile '{profile.name}' has {channels}"
+        )
+    turns = (counts.reshape(-1, channels) - profile.zero_counts) / profile.counts_per_revolution
+    first = np.remainder(turns[:1] + 0.5, 1.0) - 0.5
+    steps = np.remainder(np.diff(turns, axis=0) + 0.5, 1.0) - 0.5
+    theta = 2 * np.pi * np.cumsum(np.vstack([first, steps]), axis=0) * profile.sign
+    columns = np.argsort(profile.legs)
+    return LegAngles(
+        host_time=np.array([sample.host_time for sample in samples], dtype=float),
+        device_time=np.array(
+            [np.nan if s.device_time is None else s.device_time for s in samples], dtype=float
+        ),
+        legs=tuple(sorted(profile.legs)),
+        theta=theta[:, columns],
+        quantisation=profile.quantisation,
+    )
+
+
+def encode_counts(profile: LegProfile, theta: Sequence[float] | Array) -> tuple[int, ...]:
+    """Compute the counts nearest to leg angles, in the order of the wire.
+
+    Args:
+        profile: Profile of the stream.
+        theta: Leg angles by ascending leg number, shape (legs,) [rad].
+
+    Returns:
+        Counts from 0 to below a revolution.
+    """
+    ascending = sorted(profile.legs)
+    by_channel = np.array([theta[ascending.index(leg)] for leg in profile.legs], dtype=float)
+    turns = by_channel * profile.sign / (2 * np.pi)
+    counts = np.rint(turns * profile.counts_per_revolution + profile.zero_counts)
+    return tuple(int(c) for c in np.remainder(counts, profile.counts_per_revolution))
+
+
+def _order(legs: Table) -> tuple[int, ...]:
+    found = legs.wholes("order", most=6)
+    if not found or sorted(set(found)) != sorted(found) or not set(found) <= set(range(1, 7)):
+        raise legs.fault(f"found {list(found)}; expected different leg numbers, 1 to 6", "order")
+    return found
+
+
+def _by_channel(by_leg: tuple[Any, ...], order: tuple[int, ...]) -> tuple[Any, ...]:
+    """Bring values that a person lists by ascending leg number into the order of the wire."""
+    ascending = sorted(order)
+    return tuple(by_leg[ascending.index(leg)] for leg in order)
+
+
+def _registers(frame: Table, layout: Layout, channels: int) -> Registers:
+    last = DUMP_REGISTERS - 2  # a value takes two
+    positions = frame.wholes("registers", most=last)
+    if len(positions) != channels:
+        raise frame.fault(f"has {len(positions)} registers for {channels} legs", "registers")
+    if layout == "dump":
+        return Registers(positions)
+    targets = frame.wholes("set_point_registers", most=last)
+    for key, found in (("registers", positions), ("set_point_registers", targets)):
+        if list(found) != list(range(found[0], found[0] + 2 * channels, 2)):
+            raise frame.fault(f"found {list(found)}; expected one run, two a leg", key)
+    duration = frame.whole("duration_register", most=last)
+    if duration != targets[-1] + 2:
+        raise frame.fault(
+            f"is {duration}; expected {targets[-1] + 2}, right after the set-points",
+            "duration_register",
+        )
+    return Registers(
+        positions,
+        read_command=frame.whole("read_command", most=255),
+        write_command=frame.whole("write_command", most=255),
+        set_points=targets,
+        duration=duration,
+        stop=frame.whole("stop_register", most=DUMP_REGISTERS - 1),
+    )
+
+
+def _can_ids(frame: Table) -> CanIds:
+    names = ("clock", "positions", "set_points", "stop")
+    ids = {name: frame.whole(f"{name}_id", most=0x7FF) for name in names}
+    if len(set(ids.values())) != len(ids):
+        raise frame.fault(f"found ids {sorted(ids.values())}; expected four different ones")
+    return CanIds(**ids)
+
+
+def _as_document(profile: LegProfile) -> dict[str, Any]:
+    ascending = sorted(profile.legs)
+    channel_of = [profile.legs.index(leg) for leg in ascending]
+    frame: dict[str, Any] = {"layout": profile.layout}
+    if profile.layout == "can":
+        frame |= {f"{name}_id": value for name, value in asdict(profile.can_ids).items()}
+    else:
+        frame["byte_order"] = profile.byte_order
+    if profile.layout in ("dump", "poll"):
+        frame["registers"] = list(profile.registers.positions)
+    if profile.layout == "poll":
+        frame |= {
+            "read_command": profile.registers.read_command,
+            "write_command": profile.registers.write_command,
+            "set_point_registers": list(profile.registers.set_points),
+            "duration_register": profile.registers.duration,
+            "stop_register": profile.registers.stop,
+        }
+    return {
+        "schema": SCHEMA,
+        "device": "legs",
+        "link": {"kind": LINK_OF[profile.layout], "baudrate": profile.baudrate},
+        "frame": frame,
+        "legs": {
+            "order": list(profile.legs),
+            "counts_per_revolution": profile.counts_per_revolution,
+            "zero_counts": [profile.zero_counts[channel] for channel in channel_of],
+            "sign": [profile.sign[channel] for channel in channel_of],
+        },
+        "stream": {"rate": profile.rate},
+    }

@@ -1,0 +1,205 @@
+# SPDX-License-Identifier: MIT
+"""Leg angles from registers: a leg module that dumps them, and a bridge that is asked for them.
+
+Neither form has a checksum, a number or a device time: what is lost is not seen, and a bit flipped
+inside a value is seen only where the value leaves the circle. Prefer a bridge that sends packets.
+"""
+
+import struct
+from types import TracebackType
+from typing import Final, Self
+
+from rig.clock import SYSTEM_CLOCK, Clock
+from rig.device import Counters, Sample
+from rig.errors import ProtocolError
+from rig.links.byte_link import ByteLink
+from rig.links.framing import TrailerFramer
+from rig.zebro.commands import milliseconds
+from rig.zebro.profile import DUMP_REGISTERS, LegProfile
+
+SYNC: Final = bytes.fromhex("FF4512EA4B")
+DUMP_LENGTH: Final = DUMP_REGISTERS + len(SYNC)
+ANSWER_LIMIT: Final = 0.05
+"""How long an answer to a poll may take [s]."""
+
+
+class _RegisterStream:
+    """What both forms share: a link, a profile and counters."""
+
+    def __init__(self, link: ByteLink, *, profile: LegProfile, name: str, clock: Clock) -> None:
+        self.name = name
+        self.profile = profile
+        self._link = link
+        self._clock = clock
+        self._received = 0
+        self._refused = 0
+
+    @property
+    def source(self) -> str:
+        """Where the samples come from."""
+        return self._link.source
+
+    def __enter__(self) -> Self:
+        self._link.open()
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self._link.close()
+
+    def _sample(self, counts: tuple[int, ...]) -> list[Sample]:
+        if not self.profile.possible(counts):
+            self._refused += 1
+            return []
+        self._received += 1
+        return [Sample(self._clock.now(), None, None, counts)]
+
+
+class DumpLegs(_RegisterStream):
+    """Stream of the layout `dump`: 256 registers and a trailer of five bytes, again and again.
+
+    Args:
+        link: Bytes from one leg module.
+        profile: Of the layout `dump`.
+        name: Name of the stream.
+        clock: Host time.
+    """
+
+    def __init__(
+        self,
+        link: ByteLink,
+        *,
+        profile: LegProfile,
+        name: str = "legs",
+        clock: Clock = SYSTEM_CLOCK,
+    ) -> None:
+        super().__init__(link, profile=profile, name=name, clock=clock)
+        self._framer = TrailerFramer(length=DUMP_LENGTH, trailer=SYNC)
+        self._connections = 0
+
+    @property
+    def counters(self) -> Counters:
+        """What happened so far."""
+        return Counters(
+            received=self._received,
+            damaged=self._framer.damaged,
+            refused=self._refused,
+            resynchronised=self._framer.resynchronised,
+            reconnected=self._link.reconnected,
+        )
+
+    def read(self, timeout: float) -> list[Sample]:
+        """Hand on all samples that have arrived, waiting at most `timeout` for the first [s]."""
+        data = self._link.read(timeout)
+        if self._link.reconnected != self._connections:
+            self._connections = self._link.reconnected
+            self._framer.reset()
+        samples = []
+        for registers in self._framer.feed(data):
+            counts = (
+                int.from_bytes(registers[first : first + 2], self.profile.byte_order)
+                for first in self.profile.registers.positions
+            )
+            samples += self._sample(tuple(counts))
+        return samples
+
+    def set_points(self, counts: tuple[int, ...], duration: float) -> bool:
+        """Refuse: a dump takes no commands."""
+        raise ProtocolError(
+            f"profile '{self.profile.name}' describes a dump, which takes no set-points; command "
+            "the robot over its ZebroBus"
+        )
+
+    def stop(self) -> bool:
+        """Tell that no command was taken: a dump only talks."""
+        return False
+
+
+class PolledLegs(_RegisterStream):
+    """Stream of the layout `poll`: read command, first register, number of registers; their values.
+
+    Every reading is asked for, at the profile's rate. Bytes that nobody asked for are thrown away
+    before each request, so that a late answer is never taken for the next one.
+
+    Args:
+        link: Bytes to and from the bridge.
+        profile: Of the layout `poll`.
+        name: Name of the stream.
+        clock: Host time.
+    """
+
+    def __init__(
+        self,
+        link: ByteLink,
+        *,
+        profile: LegProfile,
+        name: str = "legs",
+        clock: Clock = SYSTEM_CLOCK,
+    ) -> None:
+        super().__init__(link, profile=profile, name=name, clock=clock)
+        self._answer = struct.Struct(
+            ("<" if profile.byte_order == "little" else ">") + f"{len(profile.legs)}H"
+        )
+        self._next_at = clock.now()
+        self._damaged = 0
+        self._resynchronised = 0
+        self._astray = False
+
+    @property
+    def counters(self) -> Counters:
+        """What happened so far; an answer that did not come whole counts as damaged."""
+        return Counters(
+            received=self._received,
+            damaged=self._damaged,
+            refused=self._refused,
+            resynchronised=self._resynchronised,
+            reconnected=self._link.reconnected,
+        )
+
+    def read(self, timeout: float) -> list[Sample]:
+        """Ask once, when the next reading is due; none where that is beyond `timeout` [s]."""
+        now = self._clock.now()
+        wait = self._next_at - now
+        self._clock.sleep(min(max(wait, 0.0), timeout))
+        if wait > timeout:
+            return []
+        self._next_at = max(self._next_at, now) + 1 / self.profile.rate
+        answer = self._ask()
+        if answer is None:
+            self._damaged += 1
+            self._astray = True
+            return []
+        self._resynchronised += self._astray
+        self._astray = False
+        return self._sample(self._answer.unpack(answer))
+
+    def set_points(self, counts: tuple[int, ...], duration: float) -> bool:
+        """Turn every leg to a count; see `LegCommands.set_points`."""
+        values = (*counts, milliseconds(duration))
+        order = self.profile.byte_order
+        data = b"".join(value.to_bytes(2, order) for value in values)
+        return self._write(self.profile.registers.set_points[0], data)
+
+    def stop(self) -> bool:
+        """Stop every leg where it is; tell whether the link took the command."""
+        return self._write(self.profile.registers.stop, b"\x01")
+
+    def _write(self, first: int, data: bytes) -> bool:
+        head = bytes((self.profile.registers.write_command, first, len(data)))
+        return self._link.write(head + data)
+
+    def _ask(self) -> bytes | None:
+        self._link.read(0.0)  # leftovers of an answer that came too late
+        registers, size = self.profile.registers, self._answer.size
+        request = bytes((registers.read_command, registers.positions[0], size))
+        if not self._link.write(request):
+            return None
+        end = self._clock.now() + ANSWER_LIMIT
+        answer = b""
+        while len(answer) < size and (left := end - self._clock.now()) > 0:
+            answer += self._link.read(left)
+        return answer if len(answer) == size else None

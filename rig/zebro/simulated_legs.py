@@ -1,0 +1,176 @@
+# SPDX-License-Identifier: MIT
+"""Six simulated legs that follow a gait and count as the robot does; they speak no protocol.
+
+Not modelled: motor dynamics and load, drift of the robot's clock other than a constant rate error.
+"""
+
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+
+from model.gait.reference import LegReference
+from rig.errors import ProtocolError
+from rig.zebro.profile import Array, LegProfile, encode_counts
+
+FASTER: Final = 1.2
+"""A leg that speeds up by this factor from one frame to the next begins its flight."""
+
+
+@dataclass(frozen=True)
+class RobotImperfections:
+    """How the robot departs from its gait; the defaults follow it exactly.
+
+    Attributes:
+        jitter: Standard deviation of when a frame is taken, held below half a frame [s].
+        pause_probability: Probability that the robot pauses before a leg begins its flight.
+        pause: How long it then pauses [s].
+        clock_rate_error: Relative error of the robot's clock [-].
+
+    Raises:
+        ProtocolError: A number is negative, or a probability above 1.
+    """
+
+    jitter: float = 0.0
+    pause_probability: float = 0.0
+    pause: float = 0.2
+    clock_rate_error: float = 0.0
+
+    def __post_init__(self) -> None:
+        if not (self.jitter >= 0 and self.pause >= 0 and 0 <= self.pause_probability <= 1):
+            raise ProtocolError(
+                f"jitter is {self.jitter:g} s, pause {self.pause:g} s with probability "
+                f"{self.pause_probability:g}; expected 0 or more, and a probability"
+            )
+
+
+@dataclass(frozen=True)
+class Frame:
+    """What the robot reports at one instant.
+
+    Attributes:
+        number: Number of the frame, from 0.
+        device_time: By the robot's clock [s].
+        time: True time of the reading since the robot was switched on [s].
+        counts: In the order of the wire.
+    """
+
+    number: int
+    device_time: float
+    time: float
+    counts: tuple[int, ...]
+
+
+class SimulatedLegs:
+    """Six legs that follow a gait until they are commanded otherwise.
+
+    Args:
+        reference: The gait, any.
+        profile: How the robot counts; a driver may be given another profile on purpose.
+        imperfections: How it departs from the gait.
+        rng: Source of randomness.
+    """
+
+    def __init__(
+        self,
+        reference: LegReference,
+        *,
+        profile: LegProfile,
+        imperfections: RobotImperfections = RobotImperfections(),
+        rng: np.random.Generator,
+    ) -> None:
+        self.profile = profile
+        self._reference = reference
+        self._imperfections = imperfections
+        self._rng = rng
+        self._switched_on: float | None = None
+        self._number = 0
+        self._behind = 0.0
+        self._paused_until = 0.0
+        self._speeds = reference.speeds(0.0)[0]
+        self._motion: tuple[float, float, Array, Array] | None = None
+
+    def frames(self, now: float) -> list[Frame]:
+        """Report everything up to a time, one frame every 1/rate.
+
+        Args:
+            now: Time by the clock of whoever serves the twin [s].
+
+        Returns:
+            The frames since the last call.
+        """
+        time = self._since_start(now)
+        due = int(np.floor(time * self.profile.rate + 1e-9)) + 1
+        frames = [self._frame(number) for number in range(self._number, due)]
+        self._number = due
+        return frames
+
+    def restart(self) -> None:
+        """Begin anew, as after a loss of power: numbers and time from 0."""
+        self._switched_on = None
+        self._number = 0
+        self._behind = self._paused_until = 0.0
+
+    def angles(self, time: float) -> Array:
+        """Compute the true leg angles, shape (6,) [rad].
+
+        Args:
+            time: Since the robot was switched on [s].
+        """
+        if self._motion is not None:
+            start, duration, origin, target = self._motion
+            share = 1.0 if duration <= 0 else min(max((time - start) / duration, 0.0), 1.0)
+            return origin + share * (target - origin)
+        return self._reference.angles(max(time - self._behind, 0.0))[0]
+
+    def command(self, counts: tuple[int, ...], duration: float, now: float) -> None:
+        """Turn every leg to a count the short way round, and hold it there.
+
+        Args:
+            counts: Targets in the order of the wire.
+            duration: How long the motion takes [s].
+            now: Time by the clock of whoever serves the twin [s].
+        """
+        time = self._since_start(now)
+        origin = self.angles(time)
+        target = origin.copy()
+        for channel, leg in enumerate(self.profile.legs):
+            turn = 2 * np.pi / self.profile.counts_per_revolution
+            goal = (counts[channel] - self.profile.zero_counts[channel]) * turn
+            goal *= self.profile.sign[channel]
+            target[leg - 1] += np.remainder(goal - origin[leg - 1] + np.pi, 2 * np.pi) - np.pi
+        self._motion = (time, duration, origin, target)
+
+    def stop(self, now: float) -> None:
+        """Hold every leg where it is."""
+        time = self._since_start(now)
+        here = self.angles(time)
+        self._motion = (time, 0.0, here, here)
+
+    def _since_start(self, now: float) -> float:
+        if self._switched_on is None:
+            self._switched_on = now
+        return now - self._switched_on
+
+    def _frame(self, number: int) -> Frame:
+        half = 0.45 / self.profile.rate
+        jitter = self._imperfections.jitter * self._rng.standard_normal()
+        time = number / self.profile.rate + float(np.clip(jitter, -half, half))
+        self._pause(time)
+        theta = self.angles(time)
+        by_leg = [theta[leg - 1] for leg in sorted(self.profile.legs)]
+        device_time = max(time, 0.0) * (1 + self._imperfections.clock_rate_error)
+        return Frame(number, device_time, time, encode_counts(self.profile, by_leg))
+
+    def _pause(self, time: float) -> None:
+        """Now and then fall behind the gait when a leg is about to begin its flight."""
+        if self._imperfections.pause_probability == 0:
+            return
+        if time < self._paused_until:
+            self._behind += 1 / self.profile.rate
+            return
+        speeds = self._reference.speeds(max(time - self._behind, 0.0))[0]
+        begins = bool(np.any(speeds > FASTER * np.maximum(self._speeds, 1e-9)))
+        self._speeds = speeds
+        if begins and self._rng.random() < self._imperfections.pause_probability:
+            self._paused_until = time + self._imperfections.pause

@@ -21,7 +21,7 @@ N_LEGS = 6
 N_CONTACTS = 14  # legs, then the corners of the body
 HIP, ROLLING, TOE = 0, 1, 2
 
-jit = numba.njit(cache=True, nogil=True, error_model="numpy", fastmath=False)
+jit = numba.njit(cache=True, nogil=True, error_model="numpy", forceinline=True, fastmath=False)
 
 
 @jit
@@ -51,7 +51,7 @@ def rotate(q, w, dt):
 
 
 @jit
-def lowest_point(theta, down_x, down_z, r, toe_beyond):
+def lowest_point(theta, down_x, down_z, r, toe_cos, toe_sin):
     """Find a leg's lowest point in its plane, from the hip, with its state.
 
     Args:
@@ -59,7 +59,8 @@ def lowest_point(theta, down_x, down_z, r, toe_beyond):
         down_x: Component of "down" along the body's x axis [-].
         down_z: Component of "down" along the body's z axis [-].
         r: Radius of the arc [m].
-        toe_beyond: Angle of the arc beyond a half circle [rad].
+        toe_cos: Cosine of the arc's angle beyond a half circle [-].
+        toe_sin: Its sine [-].
 
     Returns:
         x and z from the hip in the body frame [m], and HIP, ROLLING or TOE.
@@ -67,15 +68,19 @@ def lowest_point(theta, down_x, down_z, r, toe_beyond):
     c, s = np.cos(theta), np.sin(theta)
     size = np.sqrt(down_x**2 + down_z**2)
     dx, dz = down_x / size, down_z / size
-    # phi is the angle back along the arc from the point opposite the hip to the bottom.
+    # phi is the angle back along the arc from the point opposite the hip to the bottom; the arc
+    # runs from the toe, as far on the other side as the arc is more than a half circle, to pi.
     cos_phi = dx * c - dz * s
     sin_phi = -(dx * s + dz * c)
-    phi = np.arctan2(sin_phi, cos_phi)
-    if phi >= -toe_beyond:
+    if toe_sin >= 0:
+        on_arc = sin_phi >= 0 or cos_phi >= toe_cos
+    else:
+        on_arc = sin_phi >= 0 and cos_phi <= toe_cos
+    if on_arc:
         return r * (c + dx), r * (-s + dz), ROLLING
-    # The toe is the end of the arc, phi = -toe_beyond; the hip is the other end, at the origin.
-    ct, st = np.cos(theta - toe_beyond), np.sin(theta - toe_beyond)
-    toe_x, toe_z = r * (c + ct), -r * (s + st)
+    # The hip is the arc's other end, at the origin.
+    toe_x = r * (c + c * toe_cos + s * toe_sin)
+    toe_z = -r * (s + s * toe_cos - c * toe_sin)
     if toe_x * dx + toe_z * dz >= 0:
         return toe_x, toe_z, TOE
     return 0.0, 0.0, HIP
@@ -119,9 +124,10 @@ def table_value(table, load, x):
 def load_row(table, load):
     """Return the row of a table below a load, and how far the load is towards the next."""
     m = len(table.log_load)
-    if m == 1 or load <= np.exp(table.log_load[0]):
+    if m == 1:
         return 0, 0.0
-    place = (np.log(load) - table.log_load[0]) / (table.log_load[1] - table.log_load[0])
+    first = table.log_load[0]
+    place = max((np.log(load) - first) / (table.log_load[1] - first), 0.0)
     row = min(int(place), m - 2)
     return row, min(place - row, 1.0)
 
@@ -208,7 +214,9 @@ def find_contacts(body, ground, p, R, theta, speed, place, velocity, normal, gap
     """
     down_x, down_z = -R[2, 0], -R[2, 2]
     for i in range(N_LEGS):
-        x, z, state[i] = lowest_point(theta[i], down_x, down_z, body.leg_radius, body.toe_beyond)
+        x, z, state[i] = lowest_point(
+            theta[i], down_x, down_z, body.leg_radius, body.toe_cos, body.toe_sin
+        )
         hip = body.hips[i]
         _to_world(R, hip[0] + x, hip[1], hip[2] + z, place[i])
         _to_world(R, speed[i] * z, 0.0, -speed[i] * x, velocity[i])  # speed about y, times (x, z)

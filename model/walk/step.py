@@ -37,7 +37,8 @@ class Body(NamedTuple):
     Attributes:
         hips: Hip positions, shape (6, 3) [m].
         leg_radius: Radius of the legs' arcs [m].
-        toe_beyond: Angle of the arcs beyond a half circle [rad].
+        toe_cos: Cosine of the arcs' angle beyond a half circle [-].
+        toe_sin: Its sine [-].
         mass: Mass [kg].
         inertia: Principal moments of inertia, shape (3,) [kg m2].
         half_size: Half the body's length, width and height, shape (3,) [m].
@@ -45,7 +46,8 @@ class Body(NamedTuple):
 
     hips: Array
     leg_radius: float
-    toe_beyond: float
+    toe_cos: float
+    toe_sin: float
     mass: float
     inertia: Array
     half_size: Array
@@ -96,6 +98,13 @@ class Work(NamedTuple):
         R: Rotation of the body, body to world, shape (3, 3).
         A: Matrix of the step, lower half, shape (6, 6).
         b: Its right side and solution, shape (6,).
+        v: Guess of the final velocity, shape (3,) [m/s].
+        w: Guess of the final angular velocity, shape (3,) [rad/s].
+        force: Force of a contact, shape (3,) [N].
+        point: Velocity of a material contact point, shape (3,) [m/s].
+        P: What that falls by with velocity, shape (3, 3) [N s/m].
+        inertia: Inertia in the world frame, shape (3, 3) [kg m2].
+        gyro: Gyroscopic moment, shape (3,) [N m].
     """
 
     place: Array
@@ -109,20 +118,28 @@ class Work(NamedTuple):
     R: Array
     A: Array
     b: Array
+    v: Array
+    w: Array
+    force: Array
+    point: Array
+    P: Array
+    inertia: Array
+    gyro: Array
 
 
 def body_arrays(robot: Robot) -> Body:
     """Put a robot into the arrays of the compiled loop."""
     return Body(
-        robot.hips, robot.leg_radius, robot.toe_beyond, robot.mass,
+        robot.hips, robot.leg_radius, float(np.cos(robot.toe_beyond)),
+        float(np.sin(robot.toe_beyond)), robot.mass,
         robot.principal_inertia, 0.5 * np.array(robot.body_size),
     )  # fmt: skip
 
 
-jit = numba.njit(cache=True, nogil=True, error_model="numpy")
+jit = numba.njit(cache=True, nogil=True, error_model="numpy", forceinline=True)
 
 
-@jit
+@numba.njit(cache=True, nogil=True, error_model="numpy")
 def run_steps(
     body: Body,
     table: TractionTable,
@@ -157,7 +174,7 @@ def run_steps(
     """
     work = _new_work()
     before = _new_state()
-    speed = np.empty(N_LEGS)
+    speed, angles = np.empty(N_LEGS), np.empty(N_LEGS)
     loaded = np.zeros(N_CONTACTS)
     parts = max(int(np.ceil(dt / FINE_STEP - 1e-9)), 1)
     fine_steps = int(np.ceil(FINE_TIME / dt))
@@ -175,7 +192,8 @@ def run_steps(
                 fine_left = fine_steps
         if fine_left > 0 and parts > 1:
             for part in range(parts):
-                angles = theta[step] + (part + 1) / parts * (theta[step + 1] - theta[step])
+                for i in range(N_LEGS):
+                    angles[i] = theta[step, i] + (part + 1) / parts * dt * speed[i]
                 one_step(body, table, ground, contacts, state, work, angles, speed, dt / parts)
             fine_left = fine_steps if _contacts_changed(work.load, loaded) else fine_left - 1
         if not np.isfinite(state.p.sum() + state.w.sum()):
@@ -211,20 +229,17 @@ def one_step(body, table, ground, contacts, state, work, theta, speed, dt):
         work.load[i] = 0.0
     for i in range(n):
         if work.load[i] == 0.0 or work.kind[i] == ROLLING:  # nothing that a bristle could hold
-            state.stretch[i, :] = 0.0
+            state.stretch[i, 0] = state.stretch[i, 1] = state.stretch[i, 2] = 0.0
     for i in range(3):
         work.b[i], work.b[3 + i] = state.v[i], state.w[i]
-    v, w, force, P = np.empty(3), np.empty(3), np.empty(3), np.empty((3, 3))
-    inertia, gyro = np.empty((3, 3)), np.empty(3)
+    v, w, inertia, gyro = work.v, work.w, work.inertia, work.gyro
     _world_inertia(work.R, body.inertia, inertia)
     _gyroscopic(inertia, state.w, gyro)
     for _ in range(ROUNDS):
         for i in range(3):
             v[i], w[i] = work.b[i], work.b[3 + i]
         _inertial_part(body.mass, inertia, gyro, state, dt, work.A, work.b)
-        for i in range(n):
-            if contact_force(table, contacts, state, work, i, speed, v, w, dt, P, force):
-                add_contact(work.A, work.b, dt, work.place[i], P, force)
+        add_contact_forces(table, contacts, state, work, n, speed, dt)
         solve_positive(work.A, work.b, 6)
     for i in range(3):
         state.v[i], state.w[i] = work.b[i], work.b[3 + i]
@@ -232,57 +247,54 @@ def one_step(body, table, ground, contacts, state, work, theta, speed, dt):
     rotate(state.q, state.w, dt)
     if table.bristle:
         for i in range(n):
-            _stretch_bristle(table, contacts, state, work, i, dt, force)
+            _stretch_bristle(table, contacts, state, work, i, dt)
 
 
 @jit
-def contact_force(table, contacts, state, work, i, speed, v, w, dt, P, force):
-    """Linearise the force of contact i about a guess of the step's final velocities.
+def add_contact_forces(table, contacts, state, work, n, speed, dt):
+    """Add the contacts' forces, linear in the final velocities about a guess, to a step's system.
 
     Args:
         table: The slip law.
         contacts: How hard contacts are.
         state: State at the step's start.
-        work: The contacts; load and secant of this one are filled in.
-        i: Which contact.
+        work: The contacts and the guess; load and secant of each contact are filled in.
+        n: How many contacts there are.
         speed: Leg speeds in the step, shape (6,) [rad/s].
-        v: Guess of the final velocity [m/s].
-        w: Guess of the final angular velocity [rad/s].
         dt: Length of the step [s].
-        P: Filled: the force falls by P times the velocity of the body at the contact, (3, 3).
-        force: Filled: force at no such velocity, shape (3,) [N].
-
-    Returns:
-        Whether the contact presses.
     """
-    k, c = contacts
-    m, u = work.normal[i], work.velocity[i]
-    point_velocity(v, w, work.place[i], u, force)
-    rise = force[0] * m[0] + force[1] * m[1] + force[2] * m[2]
-    u_n = u[0] * m[0] + u[1] * m[1] + u[2] * m[2]
-    load = -k * (work.gap[i] + dt * (rise - u_n)) - c * rise
-    work.load[i] = max(load, 0.0)
-    if load <= 0.0:
-        return False
-    slip = np.sqrt(max(force[0] ** 2 + force[1] ** 2 + force[2] ** 2 - rise**2, 0.0))
-    flow = abs(leg_turn(work.R, speed, w, i)) * work.flow[i] if i < N_LEGS else 0.0
-    G = traction_secant(table, work.kind[i], load, slip, flow)
-    pull = 0.0
-    if table.bristle and work.kind[i] != ROLLING:
-        stretched = 0.0
+    k, c = contacts.stiffness, contacts.damping
+    bristle = BRISTLE_STIFFNESS * k
+    v, w, P, force, point = work.v, work.w, work.P, work.force, work.point
+    for i in range(n):
+        point_velocity(v, w, work.place[i], work.velocity[i], point)
+        m0, m1, m2 = work.normal[i, 0], work.normal[i, 1], work.normal[i, 2]
+        u0, u1, u2 = work.velocity[i, 0], work.velocity[i, 1], work.velocity[i, 2]
+        rise = point[0] * m0 + point[1] * m1 + point[2] * m2
+        u_n = u0 * m0 + u1 * m1 + u2 * m2
+        load = -k * (work.gap[i] + dt * (rise - u_n)) - c * rise
+        work.load[i] = max(load, 0.0)
+        if load <= 0.0:
+            continue
+        x, y, z = point[0] - rise * m0, point[1] - rise * m1, point[2] - rise * m2
+        slip = np.sqrt(x * x + y * y + z * z)
+        flow = abs(leg_turn(work.R, speed, w, i)) * work.flow[i] if i < N_LEGS else 0.0
+        G, pull = traction_secant(table, work.kind[i], load, slip, flow), 0.0
+        if table.bristle and work.kind[i] != ROLLING:
+            s0, s1, s2 = state.stretch[i, 0], state.stretch[i, 1], state.stretch[i, 2]
+            stretched = np.sqrt((s0 + dt * x) ** 2 + (s1 + dt * y) ** 2 + (s2 + dt * z) ** 2)
+            if bristle * stretched <= load * toe_traction(table, load):
+                pull, G = bristle, bristle * dt
+        work.secant[i] = G
+        push = -k * work.gap[i] - c * u_n
         for a in range(3):
-            stretched += (state.stretch[i, a] + dt * (force[a] - rise * m[a])) ** 2
-        if BRISTLE_STIFFNESS * k * np.sqrt(stretched) <= load * toe_traction(table, load):
-            pull = BRISTLE_STIFFNESS * k
-            G = pull * dt
-    work.secant[i] = G
-    for a in range(3):
-        push = (-k * work.gap[i] - c * u_n) * m[a]
-        force[a] = push - pull * state.stretch[i, a] - G * (u[a] - u_n * m[a])
-        for d in range(3):
-            P[a, d] = (k * dt + c - G) * m[a] * m[d]
-        P[a, a] += G
-    return True
+            m_a = work.normal[i, a]
+            force[a] = push * m_a - G * (work.velocity[i, a] - u_n * m_a)
+            force[a] -= pull * state.stretch[i, a]
+            for d in range(3):
+                P[a, d] = (k * dt + c - G) * m_a * work.normal[i, d]
+            P[a, a] += G
+        add_contact(work.A, work.b, dt, work.place[i], P, force)
 
 
 @jit
@@ -306,12 +318,12 @@ def _inertial_part(mass, inertia, gyro, state, dt, A, b):
 
 
 @jit
-def _stretch_bristle(table, contacts, state, work, i, dt, point):
+def _stretch_bristle(table, contacts, state, work, i, dt):
     """Stretch a bristle by the step's slip, and let it slide where traction is used up."""
     if work.load[i] == 0.0 or work.kind[i] == ROLLING:
         return
+    point, m = work.point, work.normal[i]
     point_velocity(state.v, state.w, work.place[i], work.velocity[i], point)
-    m = work.normal[i]
     rise = point[0] * m[0] + point[1] * m[1] + point[2] * m[2]
     stretched = 0.0
     for a in range(3):
@@ -325,7 +337,10 @@ def _stretch_bristle(table, contacts, state, work, i, dt, point):
 
 @jit
 def _contacts_changed(load, loaded):
-    return np.any((load > 0) != (loaded > 0))
+    changed = False
+    for i in range(N_CONTACTS):
+        changed |= (load[i] > 0) != (loaded[i] > 0)
+    return changed
 
 
 @jit
@@ -334,7 +349,8 @@ def _new_work():
     return Work(
         np.empty((n, 3)), np.empty((n, 3)), np.empty((n, 3)), np.empty(n), np.empty(n),
         np.zeros(n, dtype=np.int64), np.zeros(n), np.zeros(n), np.empty((3, 3)),
-        np.empty((6, 6)), np.empty(6),
+        np.empty((6, 6)), np.empty(6), np.empty(3), np.empty(3), np.empty(3), np.empty(3),
+        np.empty((3, 3)), np.empty((3, 3)), np.empty(3),
     )  # fmt: skip
 
 
@@ -345,11 +361,13 @@ def _new_state():
 
 @jit
 def _copy_state(state, to):
-    to.p[:] = state.p
-    to.q[:] = state.q
-    to.v[:] = state.v
-    to.w[:] = state.w
-    to.stretch[:] = state.stretch
+    for i in range(3):
+        to.p[i], to.v[i], to.w[i] = state.p[i], state.v[i], state.w[i]
+    for i in range(4):
+        to.q[i] = state.q[i]
+    for i in range(N_CONTACTS):
+        for a in range(3):
+            to.stretch[i, a] = state.stretch[i, a]
 
 
 @jit

@@ -1,0 +1,56 @@
+# SPDX-License-Identifier: MIT
+"""The drawn robot has the shape of the modelled one."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from scipy.spatial.transform import Rotation
+
+from model.robot import Robot
+from zebro_lab.plots.walk_robot import body_corners, leg_arcs, outline, rotation, to_world
+
+angles = st.floats(-3, 3)
+
+
+@given(angles, angles, angles)
+def test_rotation_is_roll_then_pitch_then_yaw(roll, pitch, yaw):
+    expected = Rotation.from_euler("ZYX", [yaw, pitch, roll]).as_matrix()
+    np.testing.assert_allclose(rotation(np.array([roll, pitch, yaw])), expected, atol=1e-12)
+
+
+@given(st.lists(st.floats(0.0, 2 * np.pi), min_size=6, max_size=6), st.floats(np.pi, 4.0))
+def test_leg_goes_from_hip_to_toe_along_its_arc(theta, arc):
+    robot = Robot(leg_arc=arc)
+    legs = leg_arcs(robot, np.array(theta))
+    np.testing.assert_allclose(legs[:, 0], robot.hips, atol=1e-12)
+    steps = np.linalg.norm(np.diff(legs, axis=1), axis=-1)
+    np.testing.assert_allclose(steps, 2 * robot.leg_radius * np.sin(arc / 48), rtol=1e-9)
+
+
+@pytest.mark.parametrize("theta", np.linspace(0.3, np.pi / 2, 5))
+def test_rolling_leg_reaches_as_low_as_its_hip_is_high(theta):
+    robot = Robot()
+    lowest = leg_arcs(robot, np.full(6, theta))[..., 2].min(axis=1)
+    height = robot.leg_radius * (1 + np.sin(theta))
+    np.testing.assert_allclose(lowest, -height, atol=2e-4)  # drawn with 25 points
+
+
+@pytest.mark.parametrize("theta", np.linspace(np.pi / 2, 2.5, 5))
+def test_leg_on_its_toe_reaches_as_low_as_its_hip_is_high(theta):
+    robot = Robot()
+    lowest = leg_arcs(robot, np.full(6, theta))[..., 2].min(axis=1)
+    np.testing.assert_allclose(lowest, -2 * robot.leg_radius * np.sin(theta), atol=1e-12)
+
+
+def test_leg_with_its_toe_down_bulges_backward():
+    assert leg_arcs(Robot(), np.full(6, np.pi / 2))[0, 12, 0] < Robot().hips[0, 0]
+
+
+def test_body_has_its_size_and_points_where_it_heads():
+    robot = Robot()
+    np.testing.assert_allclose(np.ptp(body_corners(robot), axis=0), robot.body_size)
+    tip = outline(robot)[np.argmax(outline(robot)[:, 0])]
+    ahead = to_world(tip, np.zeros(3), np.array([0.0, 0.0, np.pi / 2]))
+    assert ahead[1] == pytest.approx(tip[0])
+    assert abs(ahead[0]) < 1e-12

@@ -1,0 +1,82 @@
+# SPDX-License-Identifier: MIT
+"""The robot's shape in the world, for those who draw it: body, hips and legs."""
+
+import numpy as np
+
+from model.robot import Robot
+from model.slip.law import Array
+
+_ARC_POINTS = 25
+_CORNERS = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)]) / 2
+FACES = ((0, 1, 3, 2), (4, 5, 7, 6), (0, 1, 5, 4), (2, 3, 7, 6), (0, 2, 6, 4), (1, 3, 7, 5))
+"""Corners of each side of the body, in the order of `body_corners`."""
+
+
+def rotation(orientation: Array) -> Array:
+    """Compute R = Rz(yaw) Ry(pitch) Rx(roll), body to world, shape (3, 3).
+
+    Args:
+        orientation: Roll, pitch and yaw, shape (3,) [rad].
+
+    >>> head = rotation(np.array([0.0, 0.0, np.pi / 2])) @ [1, 0, 0]
+    >>> bool(np.allclose(head, [0, 1, 0]))  # turned left
+    True
+    """
+    (cr, cp, cy), (sr, sp, sy) = np.cos(orientation), np.sin(orientation)
+    return np.array([
+        [cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr],
+        [sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr],
+        [-sp, cp * sr, cp * cr],
+    ])  # fmt: skip
+
+
+def to_world(points: Array, position: Array, orientation: Array) -> Array:
+    """Turn points of the body frame, shape (..., 3), into the inertial frame [m].
+
+    Args:
+        points: Points in the body frame, shape (..., 3) [m].
+        position: The body's centre, shape (3,) [m].
+        orientation: Roll, pitch and yaw, shape (3,) [rad].
+    """
+    return points @ rotation(orientation).T + position
+
+
+def body_corners(robot: Robot) -> Array:
+    """Compute the corners of the body in its own frame, shape (8, 3) [m]."""
+    return _CORNERS * np.asarray(robot.body_size)
+
+
+def leg_arcs(robot: Robot, theta: Array) -> Array:
+    r"""Compute points along each leg from hip to toe in the body frame, shape (6, m, 3) [m].
+
+    The arc's centre lies a radius from the hip in the direction theta; from the hip the arc goes
+    over the rear to the toe.
+
+    .. math::
+        p(s) = h + r \begin{pmatrix} \cos\theta \\ 0 \\ -\sin\theta \end{pmatrix}
+                 + r \begin{pmatrix} \cos\alpha \\ 0 \\ -\sin\alpha \end{pmatrix}, \qquad
+        \alpha = \theta + \pi - s, \quad 0 \le s \le A
+
+    Args:
+        robot: The robot.
+        theta: Leg angles, shape (6,) [rad].
+
+    >>> toes = leg_arcs(Robot(), np.full(6, np.pi / 2))[:, -1]
+    >>> bool(np.allclose(toes - Robot().hips, [0, 0, -0.07]))  # straight down
+    True
+    """
+    r, along = robot.leg_radius, np.linspace(0, robot.leg_arc, _ARC_POINTS)
+    alpha = theta[:, None] + np.pi - along
+    x = np.cos(theta)[:, None] + np.cos(alpha)
+    z = -np.sin(theta)[:, None] - np.sin(alpha)
+    return robot.hips[:, None] + r * np.stack([x, np.zeros_like(x), z], axis=-1)
+
+
+def outline(robot: Robot) -> Array:
+    """Compute the body's outline from above with a tip at its head, closed, shape (m, 3) [m]."""
+    length, width, _ = robot.body_size
+    tip = 0.15 * length
+    x = np.array([-0.5, -0.5, 0.5, 0.5, 0.5, -0.5]) * length
+    y = np.array([0.5, -0.5, -0.5, 0.0, 0.5, 0.5]) * width
+    x[3] += tip
+    return np.column_stack([x, y, np.zeros_like(x)])

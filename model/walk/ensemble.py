@@ -1,0 +1,131 @@
+# SPDX-License-Identifier: MIT
+"""Many walks of one gait or log, each with its own law, robot and start: the spread of a path."""
+
+from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+
+import numpy as np
+
+from model.gait.reference import LegReference
+from model.robot import N_LEGS, Robot
+from model.slip.law import Array
+from model.walk.dynamics import (
+    DEFAULT_OPTIONS,
+    ORIGIN,
+    DynamicsOptions,
+    Start,
+    diverged,
+    roll_pitch_yaw,
+    start_state,
+    step_times,
+)
+from model.walk.ground import FLAT
+from model.walk.step import Contacts, body_arrays, run_steps
+from model.walk.stride import PlanarPath, walk_by_strides
+from model.walk.traction import TractionTable
+
+
+@dataclass(frozen=True)
+class WalkDraw:
+    """One draw of everything a path depends on.
+
+    Attributes:
+        robot: The robot, with its leg offsets.
+        reference: Leg angles over time.
+        table: The slip law.
+        start: Where the walk starts.
+    """
+
+    robot: Robot
+    reference: LegReference
+    table: TractionTable
+    start: Start = ORIGIN
+
+
+@dataclass(frozen=True)
+class PathEnsemble:
+    """Paths over the ground, one a draw.
+
+    Attributes:
+        t: Times, shape (n,) [s].
+        position: Positions, shape (draws, n, 2) [m].
+        yaw: Unwrapped headings, shape (draws, n) [rad].
+    """
+
+    t: Array
+    position: Array
+    yaw: Array
+
+
+def walk_ensemble(
+    draws: Sequence[WalkDraw],
+    t: Array,
+    *,
+    options: DynamicsOptions = DEFAULT_OPTIONS,
+    threads: int = 2,
+    progress: Callable[[float], None] | None = None,
+) -> PathEnsemble:
+    """Walk every draw on flat ground; a gait with a period by its stride map.
+
+    Args:
+        draws: What to walk.
+        t: Times wanted, increasing from zero, shape (n,) [s].
+        options: How the walks are computed.
+        threads: Draws walked at once.
+        progress: Told the fraction done.
+
+    Returns:
+        The paths, interpolated at `t`.
+
+    Raises:
+        WalkError: A walk diverged.
+    """
+    duration = max(float(t[-1]), options.dt)
+
+    def walk(draw: WalkDraw) -> Array:
+        path = planar_walk(draw, duration=duration, options=options)
+        return np.stack([np.interp(t, path.t, a) for a in (path.x, path.y, path.yaw)])
+
+    paths = []
+    with ThreadPoolExecutor(threads) as pool:
+        for path in pool.map(walk, draws):
+            paths.append(path)
+            if progress is not None:
+                progress(len(paths) / len(draws))
+    everything = np.stack(paths)
+    return PathEnsemble(t, np.moveaxis(everything[:, :2], 1, 2), everything[:, 2])
+
+
+def planar_walk(
+    draw: WalkDraw, *, duration: float, options: DynamicsOptions = DEFAULT_OPTIONS
+) -> PlanarPath:
+    """Walk one draw on flat ground and keep where it led over the ground.
+
+    Args:
+        draw: What to walk.
+        duration: Time walked [s].
+        options: How it is computed.
+
+    Raises:
+        WalkError: A step diverged.
+    """
+    if draw.reference.period is not None:
+        return walk_by_strides(
+            draw.robot, draw.reference, draw.table,
+            duration=duration, start=draw.start, options=options,
+        )  # fmt: skip
+    t = step_times(duration, options.dt)
+    theta = draw.reference.angles(t) + draw.robot.leg_offset
+    state = start_state(draw.robot, theta[0], draw.table, FLAT, draw.start, options)
+    pose = np.empty((len(t), 7))
+    pose[0, :3], pose[0, 3:] = state.p, state.q
+    contacts = Contacts(options.stiffness, options.damping)
+    done = run_steps(
+        body_arrays(draw.robot), draw.table, FLAT, contacts, state, theta, options.dt, pose[1:],
+        np.empty((0, N_LEGS, 6)),
+    )  # fmt: skip
+    if done < len(t) - 1:
+        raise diverged(t[done], pose[done])
+    yaw = roll_pitch_yaw(pose[:, 3:])[:, 2]
+    return PlanarPath(t, pose[:, 0], pose[:, 1], yaw)

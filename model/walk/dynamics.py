@@ -14,15 +14,17 @@ from numpy.typing import NDArray
 
 from model.errors import DomainError, WalkError
 from model.gait.reference import LegReference
-from model.robot import GRAVITY, N_LEGS, Robot
+from model.robot import N_LEGS, Robot
 from model.slip.law import Array
 from model.walk.ground import FLAT, Ground
+from model.walk.kernel import ground_at
 from model.walk.path import WalkPath
 from model.walk.step import Contacts, State, body_arrays, run_steps
-from model.walk.traction import TractionTable
+from model.walk.traction import TractionTable, VelocityCoulomb
 
 SETTLE_STEP = 0.005  # s
 SETTLE_TIME = 1.0  # s
+STICKY = VelocityCoulomb(3.0, 1e-4).table(weight=1.0)  # to settle on a slope without sliding down
 N_STRETCH = 14
 
 
@@ -105,7 +107,7 @@ def walk(
     """
     t = step_times(duration, options.dt)
     theta = reference.angles(t) + robot.leg_offset
-    state = start_state(robot, theta[0], table, ground, start, options)
+    state = start_state(robot, theta[0], ground, start, options)
     pose, legs = np.empty((len(t) - 1, 7)), np.empty((len(t) - 1, N_LEGS, 6))
     first = np.concatenate([state.p, state.q])
     contacts = Contacts(options.stiffness, options.damping)
@@ -137,7 +139,6 @@ def diverged(t: float, pose: Array) -> WalkError:
 def start_state(
     robot: Robot,
     theta: Array,
-    table: TractionTable,
     ground: Ground,
     start: Start,
     options: DynamicsOptions,
@@ -147,13 +148,12 @@ def start_state(
     Args:
         robot: The robot.
         theta: Leg angles to stand on, shape (6,) [rad].
-        table: The slip law.
         ground: The ground.
         start: Where to stand.
         options: How the walk is computed.
     """
     half = 0.5 * start.yaw
-    highest = float(ground.height.max())
+    highest = _highest_under(robot, ground, start)
     reach = 2 * robot.leg_radius + 0.5 * robot.body_size[2]
     state = State(
         p=np.array([start.x, start.y, highest + reach if start.height is None else start.height]),
@@ -164,13 +164,23 @@ def start_state(
     )
     if start.height is not None:
         return state
-    return _settled(robot, theta, table, ground, state, options)
+    return _settled(robot, theta, ground, state, options)
+
+
+def _highest_under(robot: Robot, ground: Ground, start: Start) -> float:
+    """Find the highest ground within the robot's reach of the start [m]."""
+    far = float(np.linalg.norm(robot.hips, axis=1).max()) + 2 * robot.leg_radius
+    m, n = ground.height.shape
+    i = (np.array([start.x - far, start.x + far]) - ground.x) / ground.step
+    j = (np.array([start.y - far, start.y + far]) - ground.y) / ground.step
+    i0, i1 = np.clip(i.round().astype(int), 0, m - 1)
+    j0, j1 = np.clip(j.round().astype(int), 0, n - 1)
+    return float(ground.height[i0 : i1 + 1, j0 : j1 + 1].max())
 
 
 def _settled(
     robot: Robot,
     theta: Array,
-    table: TractionTable,
     ground: Ground,
     state: State,
     options: DynamicsOptions,
@@ -185,10 +195,11 @@ def _settled(
     contacts = Contacts(options.stiffness, options.damping)
     still = np.tile(theta, (n + 1, 1))
     run_steps(
-        body_arrays(robot), table, ground, contacts, state, still, SETTLE_STEP, pose,
+        body_arrays(robot), STICKY, ground, contacts, state, still, SETTLE_STEP, pose,
         np.empty((0, N_LEGS, 6)),
     )  # fmt: skip
     turned = yaw - roll_pitch_yaw(state.q[None])[0, 2]
+    state.p[2] += ground_at(ground, x, y)[0] - ground_at(ground, state.p[0], state.p[1])[0]
     state.p[:2] = x, y
     state.q[:] = _turn(state.q, turned)
     state.v[:] = velocity
@@ -244,18 +255,3 @@ def _to_heading(vectors: Array, yaw: Array) -> Array:
     c, s = np.cos(yaw)[:, None], np.sin(yaw)[:, None]
     x, y = vectors[..., 0], vectors[..., 1]
     return np.stack([c * x + s * y, c * y - s * x], axis=-1)
-
-
-def energy(robot: Robot, path: WalkPath, dt: float) -> Array:
-    """Compute the body's kinetic and potential energy between samples, shape (n - 1,) [J].
-
-    Rotation is left out: for a body that slides or falls without turning.
-
-    Args:
-        robot: The robot.
-        path: The path.
-        dt: Its step [s].
-    """
-    velocity = np.diff(path.position, axis=0) / dt
-    kinetic = 0.5 * robot.mass * np.sum(velocity**2, axis=1)
-    return kinetic + robot.mass * GRAVITY * path.position[1:, 2]

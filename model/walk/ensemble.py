@@ -117,7 +117,7 @@ def planar_walk(
         )  # fmt: skip
     t = step_times(duration, options.dt)
     theta = draw.reference.angles(t) + draw.robot.leg_offset
-    state = start_state(draw.robot, theta[0], draw.table, FLAT, draw.start, options)
+    state = start_state(draw.robot, theta[0], FLAT, draw.start, options)
     pose = np.empty((len(t), 7))
     pose[0, :3], pose[0, 3:] = state.p, state.q
     contacts = Contacts(options.stiffness, options.damping)

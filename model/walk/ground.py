@@ -20,15 +20,17 @@ class Ground(NamedTuple):
         y: Position of the grid's first column [m].
         step: Distance between neighbours [m].
         height: Heights, rows along x, columns along y, shape (m, n) [m].
+        highest: The largest of them [m].
     """
 
     x: float
     y: float
     step: float
     height: Array
+    highest: float
 
 
-FLAT = Ground(0.0, 0.0, 1.0, np.zeros((1, 1)))
+FLAT = Ground(0.0, 0.0, 1.0, np.zeros((1, 1)), 0.0)
 
 
 def sample_ground(
@@ -58,4 +60,4 @@ def sample_ground(
             "the height function must give one finite height for each position; "
             f"it gave shape {heights.shape} for {grid[0].shape}"
         )
-    return Ground(float(x[0]), float(y[0]), step, heights)
+    return Ground(float(x[0]), float(y[0]), step, heights, float(heights.max()))

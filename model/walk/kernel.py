@@ -153,8 +153,7 @@ def traction_secant(table, state, load, slip_speed, flow_speed):
     """
     v0 = table.speed_scale
     if table.by_velocity or state != ROLLING:
-        top = table.phi[0, -1] if table.by_velocity else toe_traction(table, load)
-        return load * top / np.sqrt(slip_speed**2 + v0**2)
+        return load * toe_traction(table, load) / np.sqrt(slip_speed**2 + v0**2)
     flow = np.sqrt(flow_speed**2 + v0**2)
     x = max(slip_speed / flow, 1e-9)
     return load * table_value(table, load, x) / (x * flow)
@@ -224,7 +223,7 @@ def find_contacts(body, ground, p, R, theta, speed, place, velocity, normal, gap
         gap[i] = _gap(ground, p, place[i], normal[i])
     half = body.half_size
     reach = abs(R[2, 0]) * half[0] + abs(R[2, 1]) * half[1] + abs(R[2, 2]) * half[2]
-    if p[2] - reach > np.max(ground.height) + 0.01:
+    if p[2] - reach > ground.highest + 0.01:
         return N_LEGS
     for i in range(8):
         k = N_LEGS + i

@@ -26,6 +26,7 @@ from model.walk.kernel import (
 from model.walk.traction import TractionTable
 
 ROUNDS = 2  # solves a step: one to settle which contacts press and how hard, one to go by it
+MOST_ROUNDS = 8  # until the contacts that were taken to press are those that do
 FINE_STEP = 0.0005  # s, where contacts change: two tripods on the ground at once is soon over
 FINE_TIME = 0.005  # s, after a change
 BRISTLE_STIFFNESS = 0.1  # of the normal stiffness
@@ -235,12 +236,14 @@ def one_step(body, table, ground, contacts, state, work, theta, speed, dt):
     v, w, inertia, gyro = work.v, work.w, work.inertia, work.gyro
     _world_inertia(work.R, body.inertia, inertia)
     _gyroscopic(inertia, state.w, gyro)
-    for _ in range(ROUNDS):
+    for turn in range(MOST_ROUNDS):
         for i in range(3):
             v[i], w[i] = work.b[i], work.b[3 + i]
         _inertial_part(body.mass, inertia, gyro, state, dt, work.A, work.b)
         add_contact_forces(table, contacts, state, work, n, speed, dt)
         solve_positive(work.A, work.b, 6)
+        if contacts_agree(contacts, work, n, dt) and turn + 1 >= ROUNDS:
+            break
     for i in range(3):
         state.v[i], state.w[i] = work.b[i], work.b[3 + i]
         state.p[i] += dt * state.v[i]
@@ -295,6 +298,25 @@ def add_contact_forces(table, contacts, state, work, n, speed, dt):
                 P[a, d] = (k * dt + c - G) * m_a * work.normal[i, d]
             P[a, a] += G
         add_contact(work.A, work.b, dt, work.place[i], P, force)
+
+
+@jit
+def contacts_agree(contacts, work, n, dt):
+    """Put the solved velocities' loads into `work`; tell whether the same contacts press."""
+    k, c = contacts.stiffness, contacts.damping
+    v, w, point = work.b[:3], work.b[3:], work.point
+    agree = True
+    for i in range(n):
+        point_velocity(v, w, work.place[i], work.velocity[i], point)
+        rise, u_n = 0.0, 0.0
+        for a in range(3):
+            rise += point[a] * work.normal[i, a]
+            u_n += work.velocity[i, a] * work.normal[i, a]
+        load = -k * (work.gap[i] + dt * (rise - u_n)) - c * rise
+        if (load > 0.0) != (work.load[i] > 0.0):
+            agree = False
+        work.load[i] = max(load, 0.0)
+    return agree
 
 
 @jit

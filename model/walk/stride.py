@@ -125,7 +125,7 @@ def _settled_strides(
     theta = reference.angles(t) + robot.leg_offset
     contacts = Contacts(options.stiffness, options.damping)
     body = body_arrays(robot)
-    state = start_state(robot, theta[0], table, FLAT, start, options)
+    state = start_state(robot, theta[0], FLAT, start, options)
     walked: list[tuple[Array, Array, Array]] = []
     last = np.full(3, np.inf)
     while len(walked) < min(most, MAX_STRIDES):

@@ -14,8 +14,8 @@ from model.slip.law import Array, SlipLaw, Values
 ToeLaw = Literal["saturated", "peak", "bristle"]
 TOE_LAWS: tuple[ToeLaw, ...] = ("saturated", "peak", "bristle")
 
-N_LOADS = 17
-LOAD_RANGE = (0.01, 4.0)  # of the robot's weight; loads outside take the nearest row
+N_LOADS = 41
+LOAD_RANGE = (0.02, 2.0)  # of the robot's weight; loads outside take the nearest row
 N_SLIPS = 257
 LARGEST_SLIP = 1e4  # a leg that hardly turns while it is dragged
 FAR_OUT = 1e9  # slip ratio at which every law is saturated

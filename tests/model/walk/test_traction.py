@@ -1,0 +1,102 @@
+# SPDX-License-Identifier: MIT
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from model.errors import DomainError
+from model.slip import Brush, CoulombStribeck, MagicFormula, SlipDefinition, convert_slip
+from model.walk.kernel import ROLLING, TOE, table_value, traction_secant
+from model.walk.traction import TOE_LAWS, VelocityCoulomb, law_table
+
+WEIGHT = 21.3
+SOURCE = np.array([34.34 * 1.564 * 0.3798, 1.564, 0.3798, 0.0066])
+LAWS = [
+    (MagicFormula("peak"), SOURCE),
+    (MagicFormula("constant"), np.array([20.0, 1.5, 0.4, -0.5])),
+    (MagicFormula("constant", load_sensitivity=True, reference_load=7.0),
+     np.array([20.0, 1.5, 0.4, -0.5, -0.1, 0.2])),
+    (CoulombStribeck(), np.array([30.0, 0.4, 0.7, 0.1])),
+    (Brush(), np.array([15.0, 0.38])),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("law", "values"), LAWS, ids=lambda x: getattr(x, "name", ""))
+def test_a_table_is_the_law_to_a_hundredth_of_its_peak_and_a_thousandth_on_average(law, values):
+    table = law_table(law, values, weight=WEIGHT)
+    for load in (0.5, 1.7, 7.1, 20.0):
+        slip = np.geomspace(1e-5, 50, 300)
+        exact = law.force(slip, load, values) / load
+        found = np.array([table_value(table, load, x) for x in slip])
+        # Linear between rows 12 % apart in load; the peak's place moves with load.
+        error = np.abs(found - exact) / exact.max()
+        assert error.max() < 0.01
+        assert error.mean() < 0.001
+
+
+@given(load=st.floats(1e-6, 200.0), slip=st.floats(0.0, 1e7))
+def test_a_table_is_finite_and_no_larger_than_the_peak_whatever_load_and_slip(load, slip):
+    value = table_value(TABLE, load, slip)
+    assert -1e-9 <= value <= SOURCE[2] * 1.001
+
+
+TABLE = law_table(LAWS[0][0], SOURCE, weight=WEIGHT)
+
+
+def test_a_law_proportional_to_load_has_one_row():
+    assert len(law_table(LAWS[1][0], LAWS[1][1], weight=WEIGHT).log_load) == 1
+    assert len(TABLE.log_load) > 1
+
+
+def test_the_secant_at_small_slip_is_stiffness_over_the_arcs_speed():
+    load, flow = 7.0, 0.05
+    secant = traction_secant(TABLE, ROLLING, load, 1e-9, flow)
+    expected = SOURCE[0] * load / np.hypot(flow, TABLE.speed_scale)
+    assert secant == pytest.approx(expected, rel=2e-3)
+
+
+@pytest.mark.parametrize("toe", TOE_LAWS)
+def test_a_toe_that_slides_fast_has_the_traction_its_law_says(toe):
+    table = law_table(LAWS[0][0], SOURCE, weight=WEIGHT, toe=toe)
+    law = LAWS[0][0]
+    load = float(np.exp(table.log_load[8]))
+    expected = law.force(1e9, load, SOURCE) if toe == "saturated" else SOURCE[2] * load
+    found = traction_secant(table, TOE, load, 10.0, 0.0) * 10.0
+    assert found == pytest.approx(float(expected), rel=1e-3)
+    if toe == "saturated":  # D·sin(C·pi/2), 0.63 D
+        assert found / (SOURCE[2] * load) == pytest.approx(np.sin(1.564 * np.pi / 2), rel=2e-3)
+
+
+def test_velocity_coulomb_is_its_formula_rolling_or_not():
+    law = VelocityCoulomb(0.38, 0.001)
+    table = law.table(weight=WEIGHT)
+    for state in (ROLLING, TOE):
+        for v in (1e-6, 1e-3, 0.02, 1.0):
+            force = traction_secant(table, state, 5.0, v, 0.05) * v
+            assert force == pytest.approx(5 * 0.38 * v / np.hypot(v, 0.001), rel=1e-9)
+
+
+def test_a_law_of_another_definition_is_evaluated_at_the_converted_slip():
+    law, values = LAWS[1]
+    table = law_table(law, values, weight=WEIGHT, definition="travel")
+    for material in (0.001, 0.02, 0.1, 0.5):
+        travel = convert_slip(material, SlipDefinition.MATERIAL, SlipDefinition.TRAVEL)
+        exact = float(law.force(travel, 1.0, values))
+        assert table_value(table, 1.0, material) == pytest.approx(exact, rel=1e-3)
+
+
+def test_parameters_that_lose_the_laws_shape_are_refused_with_the_load():
+    steep = np.array([20.0, 1.8, 0.4, 0.5])
+    with pytest.raises(DomainError, match=r"lose the law's shape at a load of .* N"):
+        law_table(MagicFormula("peak"), steep, weight=WEIGHT)
+
+
+def test_an_unknown_toe_law_is_refused_by_name():
+    with pytest.raises(DomainError, match="'spring' is no toe law; there are saturated, peak"):
+        law_table(*LAWS[0], weight=WEIGHT, toe="spring")
+
+
+@pytest.mark.parametrize(("mu", "v"), [(0.0, 0.001), (-0.3, 0.001), (0.3, 0.0)])
+def test_friction_that_is_none_is_refused(mu, v):
+    with pytest.raises(DomainError, match="expected both above zero"):
+        VelocityCoulomb(mu, v)

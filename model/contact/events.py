@@ -1,0 +1,83 @@
+# SPDX-License-Identifier: MIT
+"""Touchdown and lift-off by trying contact states, section 3-5-2."""
+
+from itertools import combinations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from model.contact.stance import ON_GROUND, TRIPLES, Stance, stand
+from model.errors import DomainError
+from model.robot import N_LEGS, Robot
+from model.slip.law import Array
+
+Contact = tuple[int, ...]
+
+
+def next_stance(
+    robot: Robot, theta: Array, *, contact: Contact, always_balanced: bool = False
+) -> Stance:
+    """Find the stance after the legs have turned, from the contact state before.
+
+    A leg in flight that would be below the ground touches down, Eq. (3-27). The new contact state
+    is the one that includes it, leaves no leg below the ground and holds the centre of mass; the
+    legs it leaves out lift off. A leg that is no longer in one plane with the others lifts off too.
+
+    Args:
+        robot: The robot.
+        theta: Leg angles after the step, shape (6,) [rad].
+        contact: Indices of the legs that touched the ground before, three or more.
+        always_balanced: Let the robot topple, too, when the centre of mass leaves the contact
+            polygon while no leg touches down. The text describes both; its sequence, Eq. (3-33),
+            comes without.
+
+    Returns:
+        The stance; `Stance.standing` is the new contact state.
+
+    Raises:
+        DomainError: No contact state fits.
+    """
+    before = _widest(robot, theta, contact)
+    touched = np.flatnonzero(_touchdowns(before, contact))
+    if len(touched):
+        return _best(robot, theta, [t for t in TRIPLES if np.isin(touched, t).any()])
+    if always_balanced and before.depth < 0:
+        return _best(robot, theta, list(TRIPLES))
+    return before
+
+
+def _widest(robot: Robot, theta: Array, contact: Contact) -> Stance:
+    """Stand on the three legs of a contact state that hold the weight best, and can."""
+    stances = _stances(robot, theta, [np.array(three) for three in combinations(contact, 3)])
+    return max(stances, key=lambda stance: (_above_ground(stance, contact), stance.depth))
+
+
+def _above_ground(stance: Stance, contact: Contact) -> bool:
+    return bool(np.all(stance.clearance[list(contact)] >= -ON_GROUND))
+
+
+def _touchdowns(stance: Stance, contact: Contact) -> NDArray[np.bool_]:
+    flying = np.ones(N_LEGS, dtype=bool)
+    flying[list(contact)] = False
+    return flying & (stance.clearance <= 0)
+
+
+def _best(robot: Robot, theta: Array, triples: list[NDArray[np.intp]]) -> Stance:
+    feasible = [stance for stance in _stances(robot, theta, triples) if stance.feasible]
+    if not feasible:
+        angles = ", ".join(f"{angle:.4g}" for angle in theta)
+        raise DomainError(
+            f"no contact state fits leg angles {angles} rad; start from legs that can hold the "
+            "robot, or take shorter steps"
+        )
+    return max(feasible, key=lambda stance: stance.depth)
+
+
+def _stances(robot: Robot, theta: Array, triples: list[NDArray[np.intp]]) -> list[Stance]:
+    return [stand(robot, theta, legs=three) for three in triples if spans(robot, three)]
+
+
+def spans(robot: Robot, legs: NDArray[np.intp]) -> bool:
+    """Tell whether three legs span a triangle: those of one side lie on a line."""
+    a, b, c = robot.hips[legs, :2]
+    return abs((b - a)[0] * (c - a)[1] - (b - a)[1] * (c - a)[0]) > ON_GROUND

@@ -1,0 +1,76 @@
+# SPDX-License-Identifier: MIT
+"""The contact triangle: whether the robot stands in it, and which leg lifts if it does not."""
+
+import numpy as np
+from numba.extending import register_jitable
+
+from model.slip.law import Array
+
+
+def side_products(point: Array, triangle: Array) -> Array:
+    r"""Compute the left sides of Eq. (3-30) to (3-32), one for each corner [m4].
+
+    .. math::
+        \bigl((B - A) \times (p - A)\bigr) \cdot \bigl((B - A) \times (C - A)\bigr)
+
+    Eq. (3-29): with AB the side across from corner C, positive when p lies on C's side of it.
+
+    Args:
+        point: p, the centre of mass seen from above, shape (2,) [m].
+        triangle: Contact points seen from above, shape (3, 2) [m].
+
+    Returns:
+        The product for the side across from each corner, shape (3,).
+    """
+    products = np.empty(3)
+    for corner in range(3):
+        a, b = triangle[(corner + 1) % 3], triangle[(corner + 2) % 3]
+        side = b - a
+        of_point = side[0] * (point[1] - a[1]) - side[1] * (point[0] - a[0])
+        of_corner = side[0] * (triangle[corner, 1] - a[1]) - side[1] * (triangle[corner, 0] - a[0])
+        products[corner] = of_point * of_corner
+    return products
+
+
+def depth_in_triangle(point: Array, triangle: Array) -> float:
+    """Compute how far a point lies inside a triangle, negative outside [m].
+
+    The distance to the nearest side's line, in metres what `side_products` tells by sign. Minus
+    infinity for three points on a line.
+    """
+    products = side_products(point, triangle)
+    across = triangle[1] - triangle[0]
+    onward = triangle[2] - triangle[0]
+    double_area = abs(across[0] * onward[1] - across[1] * onward[0])
+    if double_area == 0.0:
+        return -np.inf
+    depth = np.inf
+    for corner in range(3):
+        side = triangle[(corner + 2) % 3] - triangle[(corner + 1) % 3]
+        length = np.sqrt(side[0] ** 2 + side[1] ** 2)
+        depth = min(depth, products[corner] / (double_area * length))
+    return depth
+
+
+for _function in (side_products, depth_in_triangle):
+    register_jitable(_function)
+
+
+def contains(point: Array, triangle: Array) -> bool:
+    """Tell whether a point lies in a triangle or on its edge, Eq. (3-30) to (3-32).
+
+    >>> corners = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]])
+    >>> contains(np.array([0.2, 0.2]), corners), contains(np.array([0.8, 0.8]), corners)
+    (True, False)
+    """
+    return bool(np.all(side_products(point, triangle) >= 0))
+
+
+def lifting_corner(point: Array, triangle: Array) -> int | None:
+    """Return the corner whose leg lifts because the point lies beyond the side across from it.
+
+    Beyond two sides it is the one further away; None while the triangle holds the point.
+    """
+    products = side_products(point, triangle)
+    worst = int(np.argmin(products))
+    return worst if products[worst] < 0 else None

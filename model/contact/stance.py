@@ -1,0 +1,197 @@
+# SPDX-License-Identifier: MIT
+"""How the robot stands on three legs, and on which three it comes to rest."""
+
+from dataclasses import dataclass
+from itertools import combinations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from model.compiled import compiled
+from model.contact.polygon import depth_in_triangle
+from model.errors import DomainError
+from model.leg import contact_angle, contact_in_body, lowest_angle
+from model.robot import N_LEGS, Robot
+from model.slip.law import Array
+
+TRIPLES = np.array(list(combinations(range(N_LEGS), 3)))
+ON_GROUND = 1e-9  # clearance within which a leg counts as standing [m]
+
+_TURNS = 60  # rounds of finding contact points and the plane through them
+_SETTLED = 1e-14
+
+
+@dataclass(frozen=True)
+class Stance:
+    """The robot standing on three legs, at rest.
+
+    Attributes:
+        legs: Indices of the three legs, shape (3,).
+        up: Vertical direction in the body frame, shape (3,) [-].
+        height: Height of the body's centre above the ground [m].
+        points: Lowest point of every leg in the body frame, shape (6, 3) [m].
+        clearance: Height of every leg's lowest point; negative below the ground, shape (6,) [m].
+        depth: How far inside the three legs' triangle the centre of mass is; negative outside [m].
+    """
+
+    legs: NDArray[np.intp]
+    up: Array
+    height: float
+    points: Array
+    clearance: Array
+    depth: float
+
+    @property
+    def roll(self) -> float:
+        """Roll, R = Rz(yaw) Ry(pitch) Rx(roll) [rad]."""
+        return float(np.arctan2(self.up[1], self.up[2]))
+
+    @property
+    def pitch(self) -> float:
+        """Pitch [rad]."""
+        return float(-np.arcsin(self.up[0]))
+
+    @property
+    def standing(self) -> NDArray[np.bool_]:
+        """Which legs are on the ground: the three, and any other that just reaches it."""
+        return np.abs(self.clearance) <= ON_GROUND
+
+    @property
+    def feasible(self) -> bool:
+        """Whether no leg would have to be below the ground."""
+        return bool(np.all(self.clearance >= -ON_GROUND))
+
+
+def stand(robot: Robot, theta: Array, *, legs: NDArray[np.intp] | tuple[int, ...]) -> Stance:
+    """Orient the robot such that three given legs touch the ground, step 3 of section 3-5-2.
+
+    Args:
+        robot: The robot.
+        theta: Leg angles, shape (6,) [rad].
+        legs: Indices of three legs that do not lie on one line.
+
+    Returns:
+        The stance; other legs may be below the ground and the centre of mass outside.
+
+    Raises:
+        DomainError: The three legs lie on one line.
+    """
+    three = np.asarray(legs, dtype=np.intp)
+    points, up, seen = np.empty((N_LEGS, 3)), np.empty(3), np.empty((N_LEGS, 2))
+    if not on_three_legs(
+        theta, robot.hips, robot.leg_radius, robot.toe_beyond, three, points, up, seen
+    ):
+        numbers = ", ".join(str(leg + 1) for leg in three)
+        raise DomainError(f"legs {numbers} lie on one line; expected three that span a triangle")
+    levels = points @ up
+    height = -float(levels[three].mean())
+    depth = float(depth_in_triangle(np.zeros(2), seen[three]))
+    return Stance(three, up, height, points, levels + height, depth)
+
+
+def resting_stance(robot: Robot, theta: Array) -> Stance:
+    """Find the three legs on which the robot stands still, its weight inside their triangle.
+
+    No leg is below the ground; of several such stances (four legs in one plane) the one with its
+    weight furthest inside.
+
+    Raises:
+        DomainError: There is none: the legs do not surround the centre of mass.
+    """
+    three = np.empty(3, np.intp)
+    rest(theta, robot.hips, robot.leg_radius, robot.toe_beyond, three)
+    stance = stand(robot, theta, legs=three) if three[0] >= 0 else None
+    if stance is None or stance.depth < 0:
+        angles = ", ".join(f"{angle:.4g}" for angle in theta)
+        raise DomainError(
+            f"at leg angles {angles} rad no three legs hold the robot; look at its hips and arc"
+        )
+    return stance
+
+
+@compiled
+def lowest_points(theta, hips, radius, toe_beyond, up, points):
+    """Fill `points` (6, 3) with every leg's lowest point in the body frame [m]."""
+    roll, pitch = np.arctan2(up[1], up[2]), -np.arcsin(up[0])
+    for leg in range(6):
+        phi = lowest_angle(theta[leg], roll, pitch)
+        x, z = contact_in_body(theta[leg], contact_angle(phi, toe_beyond), radius)
+        points[leg, 0], points[leg, 1] = hips[leg, 0] + x, hips[leg, 1]
+        points[leg, 2] = hips[leg, 2] + z
+
+
+@compiled
+def plane_normal(points, legs, up):
+    """Fill `up` with the normal of the plane through three points; return how far it turned.
+
+    Infinity for three points on a line.
+    """
+    a, b, c = points[legs[0]], points[legs[1]], points[legs[2]]
+    u0, u1, u2 = b[0] - a[0], b[1] - a[1], b[2] - a[2]
+    v0, v1, v2 = c[0] - a[0], c[1] - a[1], c[2] - a[2]
+    n0, n1, n2 = u1 * v2 - u2 * v1, u2 * v0 - u0 * v2, u0 * v1 - u1 * v0
+    size = np.sqrt(n0 * n0 + n1 * n1 + n2 * n2)
+    if abs(n2) < 1e-9:  # seen from above on a line
+        return np.inf
+    size = size if n2 > 0 else -size
+    turned = max(abs(n0 / size - up[0]), abs(n1 / size - up[1]), abs(n2 / size - up[2]))
+    up[0], up[1], up[2] = n0 / size, n1 / size, n2 / size
+    return turned
+
+
+@compiled
+def seen_from_above(points, up, seen):
+    """Fill `seen` (6, 2) with points projected along the vertical, x along the heading [m]."""
+    size = np.sqrt(1 - up[0] ** 2)
+    # Heading: the body's x axis made level. Left: across it, up x heading.
+    h0, h1, h2 = size, -up[0] * up[1] / size, -up[0] * up[2] / size
+    l1, l2 = up[2] / size, -up[1] / size
+    for leg in range(6):
+        x, y, z = points[leg]
+        seen[leg, 0] = h0 * x + h1 * y + h2 * z
+        seen[leg, 1] = l1 * y + l2 * z
+
+
+@compiled
+def on_three_legs(theta, hips, radius, toe_beyond, legs, points, up, seen):
+    """Stand on three legs, filling `points`, `up` and `seen`; False for legs on a line.
+
+    Turning the body moves the lowest points along arcs that are level there, so finding points and
+    the plane through them in turn settles in a few rounds.
+    """
+    up[0], up[1], up[2] = 0.0, 0.0, 1.0
+    for _ in range(_TURNS):
+        lowest_points(theta, hips, radius, toe_beyond, up, points)
+        turned = plane_normal(points, legs, up)
+        if turned == np.inf:
+            return False
+        if turned < _SETTLED:
+            break
+    seen_from_above(points, up, seen)
+    return True
+
+
+@compiled
+def holds(theta, hips, radius, toe_beyond, legs, points, up, seen):
+    """Return how far inside the weight is if three legs can stand, else minus infinity [m]."""
+    if not on_three_legs(theta, hips, radius, toe_beyond, legs, points, up, seen):
+        return -np.inf
+    ground = points[legs[0], 0] * up[0] + points[legs[0], 1] * up[1] + points[legs[0], 2] * up[2]
+    for leg in range(6):
+        level = points[leg, 0] * up[0] + points[leg, 1] * up[1] + points[leg, 2] * up[2]
+        if level < ground - ON_GROUND:
+            return -np.inf
+    return depth_in_triangle(np.zeros(2), seen[legs])
+
+
+@compiled
+def rest(theta, hips, radius, toe_beyond, legs):
+    """Fill `legs` with the three on which the robot rests; -1 where no three can stand."""
+    points, up, seen = np.empty((6, 3)), np.empty(3), np.empty((6, 2))
+    legs[:] = -1
+    deepest = -np.inf
+    for triple in TRIPLES:
+        depth = holds(theta, hips, radius, toe_beyond, triple, points, up, seen)
+        if depth > deepest:
+            deepest = depth
+            legs[:] = triple

@@ -1,0 +1,80 @@
+# SPDX-License-Identifier: MIT
+"""The contact automaton of the tripod gait: which tripod stands, by hip heights."""
+
+from typing import Literal
+
+import numpy as np
+from numba.extending import register_jitable
+from numpy.typing import NDArray
+
+from model.robot import N_LEGS
+from model.slip.law import Array
+
+Automaton = Literal["listing", "table"]
+AUTOMATA: tuple[Automaton, ...] = ("listing", "table")
+
+TIE = 1e-12  # hip heights closer than rounding are equal [m]
+
+
+def switch_by_table(heights: Array, contact: NDArray[np.bool_]) -> bool:
+    r"""Apply Table 3-1: each side changes legs when the other ones' hips are higher on average.
+
+    .. math::
+        \mathcal C^i = \{1, 5\} \to \{3\} \text{ when } z_{h,3} > \tfrac12 (z_{h,1} + z_{h,5}),
+        \text{ and back when it is lower}
+
+    The same holds for {2, 6} and {4}. Table 3-1 prints all four inequalities the other way round;
+    taken so, a side would stand on the legs that do not reach the ground. The listing has them
+    right.
+
+    Args:
+        heights: Hip heights above each leg's lowest point, shape (6,) [m].
+        contact: Legs on the ground; changed in place, shape (6,).
+
+    Returns:
+        Whether any leg changed.
+    """
+    changed = False
+    for side in range(2):
+        front, middle, rear = side, side + 2, side + 4
+        ahead = heights[middle] - 0.5 * (heights[front] + heights[rear])
+        on_middle = contact[middle]
+        if (ahead > TIE and not on_middle) or (ahead < -TIE and on_middle):
+            contact[front] = contact[rear] = on_middle
+            contact[middle] = not on_middle
+            changed = True
+    return changed
+
+
+def switch_by_listing(heights: Array, contact: NDArray[np.bool_], inner: int) -> bool:
+    """Apply Listing A.32: the inner legs alone decide, and one of them is enough.
+
+    The inner legs in flight take over as soon as any of their hips is as high as any of the
+    standing ones'; the outer side follows, so that always one whole tripod stands. In the listing a
+    tie goes to the legs in flight, and at the start of a matched gait, where heights tie but for
+    rounding, it is rounding that decides; here a tie changes nothing.
+
+    Args:
+        heights: Hip heights above each leg's lowest point, shape (6,) [m].
+        contact: Legs on the ground; changed in place, shape (6,).
+        inner: 0 when the left legs are the inner ones, 1 when the right ones are.
+
+    Returns:
+        Whether the tripod changed.
+    """
+    front, middle, rear = inner, inner + 2, inner + 4
+    ahead_of_front = heights[middle] - heights[front]
+    ahead_of_rear = heights[middle] - heights[rear]
+    on_middle = contact[middle]
+    if on_middle:
+        changed = ahead_of_front < -TIE or ahead_of_rear < -TIE
+    else:
+        changed = ahead_of_front > TIE or ahead_of_rear > TIE
+    if changed:
+        for leg in range(N_LEGS):
+            contact[leg] = not contact[leg]
+    return changed
+
+
+for _function in (switch_by_table, switch_by_listing):
+    register_jitable(_function)

@@ -1,0 +1,102 @@
+# SPDX-License-Identifier: MIT
+"""Rotations and homogeneous transforms between the inertial, body, hip and contact frames.
+
+Frames and signs are those of `docs/conventions.md`. Angles may be arrays; matrices then have the
+angles' shape in front.
+"""
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from model.slip.law import Array
+
+
+def rotation_x(angle: ArrayLike) -> Array:
+    """Return the rotation about x, R_r of Eq. (3-7), shape (..., 3, 3)."""
+    c, s, one, zero = _entries(angle)
+    return _matrix([[one, zero, zero], [zero, c, -s], [zero, s, c]])
+
+
+def rotation_y(angle: ArrayLike) -> Array:
+    """Return the rotation about y, R_p of Eq. (3-7) and R_theta of Eq. (3-10)."""
+    c, s, one, zero = _entries(angle)
+    return _matrix([[c, zero, s], [zero, one, zero], [-s, zero, c]])
+
+
+def rotation_z(angle: ArrayLike) -> Array:
+    """Return the rotation about z, R_y of Eq. (3-7)."""
+    c, s, one, zero = _entries(angle)
+    return _matrix([[c, -s, zero], [s, c, zero], [zero, zero, one]])
+
+
+def attitude(roll: ArrayLike, pitch: ArrayLike, yaw: ArrayLike) -> Array:
+    """Return the body's rotation in the inertial frame, Rz(yaw) Ry(pitch) Rx(roll)."""
+    return rotation_z(yaw) @ rotation_y(pitch) @ rotation_x(roll)
+
+
+def source_attitude(roll: ArrayLike, pitch: ArrayLike, yaw: ArrayLike) -> Array:
+    """Return the source's rotation, Rx(roll) Ry(pitch) Rz(yaw), Eq. (3-7).
+
+    Its roll turns the robot about an axis fixed to the ground: of a robot that heads along y it is
+    a pitch. Only a robot that heads along x has the angles of `attitude`, to first order.
+    """
+    return rotation_x(roll) @ rotation_y(pitch) @ rotation_z(yaw)
+
+
+def roll_pitch_yaw(rotation: Array) -> Array:
+    """Compute the angles of `attitude` from a rotation.
+
+    Args:
+        rotation: Rotation matrices, shape (..., 3, 3).
+
+    Returns:
+        Roll in (-pi, pi], pitch in [-pi/2, pi/2] and yaw in (-pi, pi], shape (..., 3) [rad].
+    """
+    R = rotation
+    return np.stack(
+        [
+            np.arctan2(R[..., 2, 1], R[..., 2, 2]),
+            -np.arcsin(np.clip(R[..., 2, 0], -1.0, 1.0)),
+            np.arctan2(R[..., 1, 0], R[..., 0, 0]),
+        ],
+        axis=-1,
+    )
+
+
+def transform(rotation: Array, position: ArrayLike) -> Array:
+    """Return the homogeneous transform of a rotation and a position, Eq. (3-2), shape (4, 4)."""
+    H = np.eye(4)
+    H[:3, :3], H[:3, 3] = rotation, position
+    return H
+
+
+def body_from_hip(theta: float, hip: ArrayLike) -> Array:
+    """Return the transform from the hip frame to the body frame, Eq. (3-11).
+
+    Args:
+        theta: Leg angle [rad].
+        hip: Position of the hip in the body frame, shape (3,) [m].
+    """
+    return transform(rotation_y(theta), hip)
+
+
+def hip_from_contact(phi: float, contact: float, *, roll: float, radius: float) -> Array:
+    """Return the transform from the contact frame to the hip frame, Eq. (3-14) and (3-16).
+
+    Args:
+        phi: Angle of the lowest point of the leg's full circle [rad].
+        contact: Angle of the leg's own lowest point, `model.leg.contact_angle` [rad].
+        roll: Roll, which the contact frame does not share [rad].
+        radius: Radius of the leg's arc [m].
+    """
+    R = rotation_y(phi - np.pi / 2) @ rotation_x(-roll)
+    return transform(R, [radius + radius * np.cos(contact), 0.0, -radius * np.sin(contact)])
+
+
+def _entries(angle: ArrayLike) -> tuple[Array, Array, Array, Array]:
+    a = np.asarray(angle, dtype=float)
+    return np.cos(a), np.sin(a), np.ones_like(a), np.zeros_like(a)
+
+
+def _matrix(rows: list[list[Array]]) -> Array:
+    return np.stack([np.stack(row, axis=-1) for row in rows], axis=-2)

@@ -1,0 +1,243 @@
+# SPDX-License-Identifier: MIT
+r"""A leg: an arc of a circle from its hip to its toe, and the lowest point on it.
+
+Points of the leg's full circle, Eq. (3-17), are named by an angle phi, in the hip frame
+
+.. math::
+    L(\varphi) = (r + r\cos\varphi,\ 0,\ -r\sin\varphi) .
+
+The hip is at phi = pi; the arc ends in its toe at phi = -(arc - pi), which is 0 for the source's
+half circle. The lowest point of the full circle is at `phi`; the lowest point of the leg, its
+potential contact, at `contact_angle(phi)`, which differs where phi lies beyond the toe or the hip.
+
+Every function takes numbers or arrays that broadcast, and works inside compiled loops too: for
+their sake arguments are positional, and cases are sums of terms times truth values.
+"""
+
+import numpy as np
+from numba.extending import register_jitable
+from numpy.typing import NDArray
+
+Numbers = float | NDArray[np.floating]
+
+HIP, ROLLING, TOE = 0, 1, 2  # leg states
+
+
+def wrap_angle(angle: Numbers) -> Numbers:
+    """Bring an angle into (-pi, pi] [rad]."""
+    return np.pi - (np.pi - angle) % (2 * np.pi)
+
+
+def source_tilt(roll: Numbers, pitch: Numbers, yaw: Numbers) -> Numbers:
+    r"""Compute the slope of the legs' planes along the heading, as the source has it [-].
+
+    .. math::
+        X = \tan\theta_r \sin\theta_y - \tan\theta_p \cos\theta_y
+
+    The brackets of Eq. (3-21). The angles are those of Eq. (3-7), R = Rx(roll) Ry(pitch) Rz(yaw).
+    """
+    return np.tan(roll) * np.sin(yaw) - np.tan(pitch) * np.cos(yaw)
+
+
+def source_tilt_rate(
+    roll: Numbers,
+    pitch: Numbers,
+    yaw: Numbers,
+    roll_rate: Numbers,
+    pitch_rate: Numbers,
+    yaw_rate: Numbers,
+) -> Numbers:
+    r"""Compute the rate of `source_tilt`, the numerator of Eq. (3-24) [1/s].
+
+    .. math::
+        \dot X = \dot\theta_r \sin\theta_y (1 + \tan^2\theta_r)
+               - \dot\theta_p \cos\theta_y (1 + \tan^2\theta_p)
+               + \dot\theta_y (\tan\theta_r \cos\theta_y + \tan\theta_p \sin\theta_y)
+    """
+    tan_roll, tan_pitch = np.tan(roll), np.tan(pitch)
+    return (
+        roll_rate * np.sin(yaw) * (1 + tan_roll**2)
+        - pitch_rate * np.cos(yaw) * (1 + tan_pitch**2)
+        + yaw_rate * (tan_roll * np.cos(yaw) + tan_pitch * np.sin(yaw))
+    )
+
+
+def source_lowest_angle(theta: Numbers, tilt: Numbers) -> Numbers:
+    r"""Compute phi_min, Eq. (3-21) with the root that Eq. (3-23) picks [rad].
+
+    .. math::
+        \tan\varphi = \frac{1 + \tan\theta\,X}{\tan\theta - X}, \qquad
+        \frac{d^2 z}{d\varphi^2} > 0
+        \quad\Longleftrightarrow\quad \varphi = \frac{\pi}{2} - \theta + \arctan X
+
+    The tangent is that of a difference, so its arctangent and the choice of the quadrant by the
+    second derivative come to one sum, as long as the body is not upside down.
+
+    Args:
+        theta: Leg angle [rad].
+        tilt: X of `source_tilt` [-].
+
+    Returns:
+        phi_min in (-pi, pi].
+    """
+    return wrap_angle(np.pi / 2 - theta + np.arctan(tilt))
+
+
+def source_lowest_angle_rate(leg_speed: Numbers, tilt: Numbers, tilt_rate: Numbers) -> Numbers:
+    r"""Compute the rate of phi_min, Eq. (3-24) [rad/s].
+
+    .. math::
+        \dot\varphi = \frac{\dot X}{1 + X^2} - \dot\theta
+    """
+    return tilt_rate / (1 + tilt**2) - leg_speed
+
+
+def lowest_angle(theta: Numbers, roll: Numbers, pitch: Numbers) -> Numbers:
+    r"""Compute phi of the lowest point of a leg's full circle, R = Rz(yaw) Ry(pitch) Rx(roll).
+
+    .. math::
+        \varphi = \frac{\pi}{2} - \theta - \arctan\frac{\tan\theta_p}{\cos\theta_r}
+
+    It does not depend on the heading, as the source's does (`source_lowest_angle`): there the roll
+    angle turns about an axis fixed to the ground. Written with the arctangent of two arguments, it
+    holds upside down too; with the leg's plane level no point is lowest.
+
+    Args:
+        theta: Leg angle [rad].
+        roll: Roll [rad].
+        pitch: Pitch [rad].
+
+    Returns:
+        phi in (-pi, pi] [rad].
+    """
+    downhill = np.arctan2(np.sin(pitch), np.cos(pitch) * np.cos(roll))
+    return wrap_angle(np.pi / 2 - theta - downhill)
+
+
+def plane_cosine(roll: Numbers, pitch: Numbers) -> Numbers:
+    r"""Compute the cosine of the angle between the legs' planes and the vertical [-].
+
+    .. math::
+        \sqrt{\sin^2\theta_p + \cos^2\theta_p \cos^2\theta_r}
+
+    Heights measured in a leg's plane are to be multiplied by it. The source takes
+    :math:`\cos\theta_r`, which is the same without pitch.
+    """
+    return np.sqrt(np.sin(pitch) ** 2 + (np.cos(pitch) * np.cos(roll)) ** 2)
+
+
+def leg_state(phi: Numbers, toe_beyond: float = 0.0) -> NDArray[np.int_] | int:
+    """Tell what a leg would touch the ground with, section 3-4-1: HIP, ROLLING or TOE.
+
+    Beyond the arc's ends the nearer one is the lower one; for the source's half circle that is the
+    toe for phi from -pi/2 to 0.
+
+    Args:
+        phi: Angle of the circle's lowest point, in (-pi, pi] [rad].
+        toe_beyond: Angle of the arc beyond a half circle [rad].
+
+    >>> import numpy as np
+    >>> leg_state(np.array([2.0, 0.0, -0.1, -1.6])).tolist()
+    [1, 1, 2, 0]
+    """
+    between = -(np.pi + toe_beyond) / 2
+    toe = (phi < -toe_beyond) & (phi >= between)
+    return ROLLING * (phi >= -toe_beyond) + TOE * toe
+
+
+def contact_angle(phi: Numbers, toe_beyond: float = 0.0) -> Numbers:
+    """Compute phi of the leg's lowest point: on its arc, its toe or its hip [rad].
+
+    Args:
+        phi: Angle of the circle's lowest point, in (-pi, pi] [rad].
+        toe_beyond: Angle of the arc beyond a half circle [rad].
+    """
+    between = -(np.pi + toe_beyond) / 2
+    toe = (phi < -toe_beyond) & (phi >= between)
+    return (phi >= -toe_beyond) * phi - toe * toe_beyond + (phi < between) * np.pi
+
+
+def contact_in_body(theta: Numbers, contact: Numbers, radius: float) -> tuple[Numbers, Numbers]:
+    r"""Compute a leg's point from its hip in the body frame, Eq. (3-12) and (3-15) turned by theta.
+
+    .. math::
+        x = r\,(\cos\theta + \cos(\theta + \varphi_c)), \qquad
+        z = -r\,(\sin\theta + \sin(\theta + \varphi_c))
+
+    Args:
+        theta: Leg angle [rad].
+        contact: phi_c of the point, from `contact_angle` [rad].
+        radius: Radius of the arc [m].
+
+    Returns:
+        x (forward) and z (up); y is zero [m].
+    """
+    x = radius * (np.cos(theta) + np.cos(theta + contact))
+    z = -radius * (np.sin(theta) + np.sin(theta + contact))
+    return x, z
+
+
+def hip_height(phi: Numbers, radius: float, toe_beyond: float = 0.0) -> Numbers:
+    r"""Compute the height of a hip above its leg's lowest point, in the leg's plane [m].
+
+    .. math::
+        z_h = r\,(\cos\varphi + \cos(\varphi - \varphi_c)) =
+        \begin{cases} r + r\cos\varphi & \text{rolling} \\ 2 r \cos\varphi & \text{toe of a half
+        circle} \\ 0 & \text{hip} \end{cases}
+
+    Eq. (3-37) without its factor :math:`\cos\theta_r`, for any arc; see `plane_cosine`.
+
+    Args:
+        phi: Angle of the circle's lowest point, in (-pi, pi] [rad].
+        radius: Radius of the arc [m].
+        toe_beyond: Angle of the arc beyond a half circle [rad].
+
+    >>> import numpy as np
+    >>> hip_height(np.radians([40.0, -28.0]), 0.035).round(5).tolist()
+    [0.06181, 0.06181]
+    """
+    return radius * (np.cos(phi) + np.cos(phi - contact_angle(phi, toe_beyond)))
+
+
+def hip_height_rate(
+    phi: Numbers, phi_rate: Numbers, radius: float, toe_beyond: float = 0.0
+) -> Numbers:
+    r"""Compute the rate of `hip_height`, Eq. (3-38) without its factor cos(roll) [m/s].
+
+    .. math::
+        \dot z_h = -r \dot\varphi\,(\sin\varphi + \sin(\varphi - \varphi_c))
+    """
+    return -radius * phi_rate * (np.sin(phi) + np.sin(phi - contact_angle(phi, toe_beyond)))
+
+
+def hip_height_acceleration(
+    phi: Numbers, phi_rate: Numbers, radius: float, toe_beyond: float = 0.0
+) -> Numbers:
+    r"""Compute the second rate of `hip_height` at constant speed of phi, Eq. (3-39) [m/s2].
+
+    .. math::
+        \ddot z_h = -r \dot\varphi^2\,(\cos\varphi + [\text{not rolling}]\cos(\varphi - \varphi_c))
+
+    While the leg rolls its contact moves along the arc with phi, so the second term stands still.
+    """
+    off_arc = phi < -toe_beyond
+    turning = np.cos(phi) + off_arc * np.cos(phi - contact_angle(phi, toe_beyond))
+    return -radius * phi_rate**2 * turning
+
+
+for _function in (
+    wrap_angle,
+    source_tilt,
+    source_tilt_rate,
+    source_lowest_angle,
+    source_lowest_angle_rate,
+    lowest_angle,
+    plane_cosine,
+    leg_state,
+    contact_angle,
+    contact_in_body,
+    hip_height,
+    hip_height_rate,
+    hip_height_acceleration,
+):
+    register_jitable(_function)  # a plain function here, inlined where a compiled loop calls it

@@ -1,0 +1,132 @@
+# SPDX-License-Identifier: MIT
+"""Leg angles step by step, switching speed by angle as the source's legs do."""
+
+from dataclasses import dataclass, fields
+from typing import NamedTuple, Protocol, runtime_checkable
+
+import numpy as np
+
+from model.compiled import compiled
+from model.errors import DomainError
+from model.gait.reference import LegReference
+from model.robot import N_LEGS
+from model.slip.law import Array
+
+
+class LegMotion(NamedTuple):
+    """Leg angles and speeds at every step.
+
+    Attributes:
+        theta: Angles at the beginning of each step, shape (n, 6) [rad].
+        speed: Speeds during each step, shape (n, 6) [rad/s].
+        stance_speed: Speeds that legs have, or would have, on the ground, shape (n, 6) [rad/s].
+    """
+
+    theta: Array
+    speed: Array
+    stance_speed: Array
+
+
+@runtime_checkable
+class StanceGait(Protocol):
+    """A gait with touchdown and lift-off angles, and speeds between them, each of shape (6,)."""
+
+    @property
+    def touchdown(self) -> Array: ...  # noqa: D102
+    @property
+    def liftoff(self) -> Array: ...  # noqa: D102
+    @property
+    def ground_speed(self) -> Array: ...  # noqa: D102
+    @property
+    def flight_speed(self) -> Array: ...  # noqa: D102
+    def angles(self, t: float) -> Array: ...  # noqa: D102
+
+
+@dataclass(frozen=True)
+class SwitchedLegs:
+    """Legs that turn at one speed between touchdown and lift-off angle, at another elsewhere.
+
+    Listing A.33: the speed is chosen anew at every step by the angle a leg has reached, so that a
+    cycle takes up to a step longer or shorter than planned.
+
+    Attributes:
+        touchdown: Touchdown angles in [0, 2 pi), shape (6,) [rad].
+        liftoff: Lift-off angles, beyond touchdown, shape (6,) [rad].
+        ground_speed: Speeds from touchdown to lift-off, shape (6,) [rad/s].
+        flight_speed: Speeds from lift-off to the next touchdown, shape (6,) [rad/s].
+        start: Angles at the start, shape (6,) [rad].
+
+    Raises:
+        DomainError: A lift-off angle is not beyond touchdown, or a leg does not turn forward.
+    """
+
+    touchdown: Array
+    liftoff: Array
+    ground_speed: Array
+    flight_speed: Array
+    start: Array
+
+    def __post_init__(self) -> None:
+        """Refuse legs that cannot walk."""
+        for item in fields(self):
+            values = np.array(getattr(self, item.name), dtype=float)
+            if values.shape != (N_LEGS,) or not np.isfinite(values).all():
+                raise DomainError(f"{item.name} is {values}; expected six finite numbers")
+            object.__setattr__(self, item.name, values)
+        for leg in range(N_LEGS):
+            down, up = np.degrees(self.touchdown[leg]), np.degrees(self.liftoff[leg])
+            if not 0 <= down < up < 360:
+                raise DomainError(
+                    f"leg {leg + 1} touches down at {down:g} and lifts off at {up:g} degrees; "
+                    "expected 0 <= touchdown < lift-off < 360"
+                )
+            slowest = min(self.ground_speed[leg], self.flight_speed[leg])
+            if not slowest > 0:
+                raise DomainError(
+                    f"leg {leg + 1} turns at {slowest:g} rad/s; expected more than zero"
+                )
+
+    @classmethod
+    def of(cls, gait: StanceGait) -> "SwitchedLegs":
+        """Take angles and speeds from a gait, and its angles at time zero as the start."""
+        return cls(
+            gait.touchdown, gait.liftoff, gait.ground_speed, gait.flight_speed,
+            np.reshape(gait.angles(0.0), N_LEGS),
+        )  # fmt: skip
+
+    def motion(self, dt: float, steps: int) -> LegMotion:
+        """Turn the legs.
+
+        Args:
+            dt: Length of a step [s].
+            steps: Number of steps.
+        """
+        theta, speed = np.empty((steps, N_LEGS)), np.empty((steps, N_LEGS))
+        _switch(
+            self.start, self.touchdown, self.liftoff, self.ground_speed, self.flight_speed,
+            dt, theta, speed,
+        )  # fmt: skip
+        return LegMotion(theta, speed, np.broadcast_to(self.ground_speed, theta.shape))
+
+
+def leg_motion(reference: LegReference | SwitchedLegs, *, dt: float, steps: int) -> LegMotion:
+    """Turn the legs by a reference: by angle where it has stance angles, else by the clock."""
+    if isinstance(reference, SwitchedLegs):
+        return reference.motion(dt, steps)
+    if isinstance(reference, StanceGait):
+        return SwitchedLegs.of(reference).motion(dt, steps)
+    t = dt * np.arange(steps)
+    speed = reference.speeds(t)
+    return LegMotion(reference.angles(t), speed, speed)
+
+
+@compiled
+def _switch(start, touchdown, liftoff, ground_speed, flight_speed, dt, theta, speed):
+    angle = start.copy()
+    for step in range(len(theta)):
+        for leg in range(6):
+            turned = angle[leg] % (2 * np.pi)
+            grounded = touchdown[leg] <= turned < liftoff[leg]
+            theta[step, leg] = angle[leg]
+            speed[step, leg] = ground_speed[leg] if grounded else flight_speed[leg]
+            angle[leg] += dt * speed[step, leg]

@@ -1,0 +1,98 @@
+# SPDX-License-Identifier: MIT
+"""Traction by the walk's slip ratio: the source's Magic Formula, or any other law as a table."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from model.compiled import compiled
+from model.slip.law import SlipLaw, Values
+from model.slip.magic_formula import MagicFormula
+from model.walk.kernel import table_value
+from model.walk.traction import TractionTable, VelocityCoulomb, law_table
+
+
+class Traction(NamedTuple):
+    """A slip law for the compiled loop. A named tuple because numba takes one as it is.
+
+    Attributes:
+        exact: Whether the Magic Formula with these four coefficients is meant, and not the table.
+        B: Stiffness factor [-].
+        C: Shape factor [-].
+        friction: Peak traction over load, D / Fn [-].
+        peak_slip_per_load: Slip of the peak over load, x_m / Fn [1/N].
+        table: Traction over load, for every other law.
+    """
+
+    exact: bool
+    B: float
+    C: float
+    friction: float
+    peak_slip_per_load: float
+    table: TractionTable
+
+
+_NO_TABLE = VelocityCoulomb(1.0).table(weight=1.0)._replace(by_velocity=False)
+
+SOURCE_TRACTION = Traction(True, 34.34, 1.564, 0.3798, 0.0066, _NO_TABLE)  # Listing A.20
+
+
+def law_traction(law: SlipLaw, values: Values, *, weight: float) -> Traction:
+    """Prepare a slip law for the source's model.
+
+    The source hands its walk's slip ratio, Eq. (4-31), to a curve fitted to the rig's, Eq. (4-44),
+    without conversion, and so does this model: see `docs/source-model.md`.
+
+    Args:
+        law: The slip law. A Magic Formula as the source has it is evaluated exactly, others are
+            tabulated.
+        values: Its parameter values, shape (k,).
+        weight: Weight of the robot, which sets the range of tabulated loads [N].
+
+    Raises:
+        DomainError: The law loses its shape at these loads.
+    """
+    if isinstance(law, MagicFormula) and law.curvature == "peak" and not law.load_sensitivity:
+        K, C, friction, peak_slip = (float(np.asarray(value)) for value in values)
+        return Traction(True, K / (C * friction), C, friction, peak_slip, _NO_TABLE)
+    return table_traction(law_table(law, values, weight=weight))
+
+
+def table_traction(table: TractionTable) -> Traction:
+    """Prepare a tabulated law; one by slip velocity takes v_R - v_C of Eq. (4-31) for it."""
+    return Traction(False, 0.0, 2.0, 0.0, 0.0, table)
+
+
+@compiled
+def magic_force(traction, kappa, load):
+    """Compute the Magic Formula's force with its curvature from the peak, Eq. (4-23), (4-27) [N].
+
+    The same as `model.slip.MagicFormula`, whose limit at vanishing load it shares: E tends to minus
+    infinity there, and the force to that of saturation or to none, as slip or load vanish first.
+    """
+    B, C = traction.B, traction.C
+    Bx = B * traction.peak_slip_per_load * load
+    gap = Bx - np.arctan(Bx) if Bx > 0.01 else Bx**3 * (1 / 3 - Bx**2 / 5 + Bx**4 / 7)
+    if gap == 0.0:  # loads below 1e-100 N
+        return 0.0
+    E = (Bx - np.tan(np.pi / (2 * C))) / gap
+    Bk = B * kappa
+    phi = Bk - E * (Bk - np.arctan(Bk))
+    return traction.friction * load * np.sin(C * np.arctan(phi))
+
+
+@compiled
+def traction_force(traction, kappa, load):
+    """Compute the traction force of a leg at a slip ratio and a load [N]; none without load."""
+    if load <= 0.0:
+        return 0.0
+    if traction.exact:
+        return magic_force(traction, kappa, load)
+    return np.sign(kappa) * load * table_value(traction.table, load, abs(kappa))
+
+
+@compiled
+def load_derivative(traction, kappa, load, force):
+    """Compute the derivative of `traction_force` with respect to load, by a difference [-]."""
+    step = 1e-6 * load + 1e-9
+    return (traction_force(traction, kappa, load + step) - force) / step

@@ -1,0 +1,192 @@
+# SPDX-License-Identifier: MIT
+"""Walk by the source's model."""
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from model.contact.tripod import AUTOMATA, Automaton
+from model.errors import DomainError, WalkError
+from model.frames import roll_pitch_yaw, source_attitude
+from model.gait.reference import LegReference
+from model.leg import hip_height, wrap_angle
+from model.robot import N_LEGS, Robot
+from model.slip.law import Array
+from model.walk.dynamics import step_times
+from model.walk.path import WalkPath
+from model.walk.thesis.legs import LegMotion, SwitchedLegs, leg_motion
+from model.walk.thesis.step import Machine, Manner, Record, run
+from model.walk.thesis.traction import SOURCE_TRACTION, Traction
+
+TRIPODS = ((0, 3, 4), (1, 2, 5))
+SAME_SIDE = ((0, 4), (1, 5))  # legs of one tripod on one side, which turn alike
+APART = np.radians(45.0)  # where they are further apart, the gait is no tripod [rad]
+
+
+@dataclass(frozen=True)
+class ThesisOptions:
+    """How the source's model walks.
+
+    Attributes:
+        dt: Length of a step [s].
+        direction: Side to which the gait turns; its legs are the inner ones.
+        automaton: What changes contacts: the listing's rule or Table 3-1.
+        reset_height: Set the body's height at every change of contacts, as the listing does; the
+            text's figures were made without, and sink.
+        mend_roll: Roll to the right side in right turns; the source's height difference is inner
+            less outer for both, which leans a right turn the wrong way.
+        heading: Yaw at the start; this model's walk depends on it [rad].
+        every: Keep every so many steps.
+
+    Raises:
+        DomainError: One of them makes no sense.
+    """
+
+    dt: float = 0.001
+    direction: Literal["left", "right"] = "left"
+    automaton: Automaton = "listing"
+    reset_height: bool = True
+    mend_roll: bool = False
+    heading: float = 0.0
+    every: int = 1
+
+    def __post_init__(self) -> None:
+        """Refuse options that make no sense."""
+        if not (self.dt > 0 and np.isfinite(self.dt)):
+            raise DomainError(f"dt is {self.dt:g} s; expected more than zero")
+        if self.direction not in ("left", "right"):
+            raise DomainError(f"direction is '{self.direction}'; expected left or right")
+        if self.automaton not in AUTOMATA:
+            raise DomainError(f"automaton is '{self.automaton}'; expected {' or '.join(AUTOMATA)}")
+        if self.every < 1:
+            raise DomainError(f"every is {self.every}; expected 1 or more steps")
+
+    @property
+    def manner(self) -> Manner:
+        """The same for the compiled loop."""
+        right = self.direction == "right"
+        sign = -1.0 if right and self.mend_roll else 1.0
+        by_table = self.automaton == "table"
+        return Manner(self.dt, int(right), by_table, self.reset_height, sign, self.every)
+
+
+AS_PRINTED = ThesisOptions()
+
+
+def walk_thesis(
+    robot: Robot,
+    reference: LegReference | SwitchedLegs,
+    *,
+    duration: float,
+    traction: Traction = SOURCE_TRACTION,
+    options: ThesisOptions = AS_PRINTED,
+) -> WalkPath:
+    """Walk by the source's hybrid dynamic model, Listing A.4, for tripod gaits.
+
+    Args:
+        robot: The robot; the source's has half-circle legs.
+        reference: Its legs. Legs with touchdown and lift-off angles switch speed by angle, as the
+            source's do; any other reference, such as a measured log, is followed by the clock.
+        duration: Time walked [s].
+        traction: The slip law; see `model.walk.thesis.traction`.
+        options: How the model walks.
+
+    Returns:
+        The path from t = 0 on; forces of a sample are those of the step that begins there.
+        `slip_ratio` is the source's, Eq. (4-31), or slip velocity over its scale for a law by
+        velocity; the model has no velocity of the material contact point, so that is NaN on
+        the ground.
+
+    Raises:
+        DomainError: The duration is shorter than a step, or the gait is no tripod.
+        WalkError: The walk diverged; says when and in what state.
+    """
+    t = step_times(duration, options.dt)
+    steps = len(t)
+    turned = leg_motion(reference, dt=options.dt, steps=steps)
+    motion = turned._replace(theta=turned.theta + robot.leg_offset)
+    _require_tripod(motion, options.dt)
+    sides, q = _start(robot, motion.theta[0], options)
+    record = _empty_record(1 + (steps - 1) // options.every)
+    state, rates = q.copy(), np.zeros(6)
+    done = run(_machine(robot), options.manner, traction, motion, state, rates, sides, record)
+    if done < steps:
+        raise _diverged(done * options.dt, state, rates)
+    return _path(record, motion, t, options)
+
+
+def _machine(robot: Robot) -> Machine:
+    return Machine(
+        robot.hips, robot.leg_radius, robot.toe_beyond, robot.mass, robot.principal_inertia,
+        robot.track,
+    )  # fmt: skip
+
+
+def _require_tripod(motion: LegMotion, dt: float) -> None:
+    for first, other in SAME_SIDE:
+        apart = np.abs(wrap_angle(motion.theta[:, first] - motion.theta[:, other]))
+        worst = int(np.argmax(apart))
+        if apart[worst] > APART:
+            raise DomainError(
+                f"legs {first + 1} and {other + 1} are {np.degrees(apart[worst]):.3g} degrees "
+                f"apart at t = {worst * dt:.4g} s; the source's model walks tripods only, "
+                "{1,4,5} and {2,3,6}: use the dynamics model for other gaits"
+            )
+
+
+def _start(robot: Robot, theta: Array, options: ThesisOptions) -> tuple[NDArray[np.bool_], Array]:
+    """Stand level on the tripod whose inner hips are higher, rolled by the sides' difference."""
+    inner = int(options.direction == "right")
+    height = np.asarray(
+        hip_height(wrap_angle(np.pi / 2 - theta), robot.leg_radius, robot.toe_beyond)
+    )
+    means = [
+        [float(np.mean([height[i] for i in tripod if i % 2 == side])) for side in range(2)]
+        for tripod in TRIPODS
+    ]
+    first = 0 if means[0][inner] >= means[1][inner] - 1e-9 else 1
+    sides = np.isin(np.arange(N_LEGS), TRIPODS[first])
+    left_right = means[first]
+    difference = left_right[inner] - left_right[1 - inner]
+    roll = options.manner.roll_sign * np.arctan(difference / robot.track)
+    q = np.array([0.0, 0.0, float(np.mean(left_right)), roll, 0.0, options.heading])
+    return sides, q
+
+
+def _empty_record(rows: int) -> Record:
+    shape = (rows, N_LEGS)
+    return Record(
+        np.empty((rows, 6)), np.zeros(shape, dtype=bool), np.full(shape, np.nan),
+        np.zeros(shape), np.zeros(shape), np.zeros(shape),
+    )  # fmt: skip
+
+
+def _path(record: Record, motion: LegMotion, t: Array, options: ThesisOptions) -> WalkPath:
+    angles = record.state[:, 3:]
+    ours = roll_pitch_yaw(source_attitude(*angles.T))
+    ours[:, 2] = angles[:, 2] + wrap_angle(ours[:, 2] - angles[:, 2])  # keeps count of full turns
+    on_ground = np.where(record.contact, np.nan, 0.0)
+    return WalkPath(
+        t=t[:: options.every],
+        position=record.state[:, :3],
+        orientation=ours,
+        theta=motion.theta[:: options.every],
+        contact=record.contact,
+        slip_velocity=np.stack([on_ground, on_ground], axis=-1),
+        slip_ratio=record.kappa,
+        normal_force=record.normal,
+        traction_force=np.stack([record.forward, record.left], axis=-1),
+    )
+
+
+def _diverged(t: float, q: Array, rates: Array) -> WalkError:
+    x, y, z = q[:3]
+    roll, pitch, yaw = np.degrees(q[3:])
+    return WalkError(
+        f"the walk diverged at t = {t:.4g} s, with the body at x {x:.4g}, y {y:.4g}, z {z:.4g} m, "
+        f"roll {roll:.4g}, pitch {pitch:.4g}, yaw {yaw:.4g} degrees and its velocity at "
+        f"{rates[0]:.4g}, {rates[1]:.4g}, {rates[2]:.4g} m/s; look at the leg angles there, or "
+        "take a smaller dt"
+    )

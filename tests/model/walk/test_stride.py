@@ -1,0 +1,115 @@
+# SPDX-License-Identifier: MIT
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from model.errors import WalkError
+from model.gait.reference import SampledReference
+from model.gait.tetrapod import tetrapod_reference
+from model.gait.tripod import tripod_angles, tripod_reference
+from model.robot import Robot
+from model.slip import MagicFormula
+from model.walk.dynamics import DynamicsOptions, Start, walk
+from model.walk.ensemble import WalkDraw, planar_walk, walk_ensemble
+from model.walk.stride import walk_by_strides
+from model.walk.traction import law_table
+
+ROBOT = Robot()
+SOURCE = np.array([34.34 * 1.564 * 0.3798, 1.564, 0.3798, 0.0066])
+SLIP = law_table(MagicFormula("peak"), SOURCE, weight=ROBOT.mass * 9.81)
+OPTIONS = DynamicsOptions(dt=0.005)
+TURN = tripod_reference(tripod_angles(np.radians(50.0), 1.3), 2.0)
+ROCK = tetrapod_reference(np.radians(45.0), np.radians(135.0), cycle_time=3.0)
+
+
+def whole(gait, duration, **options):
+    return walk(ROBOT, gait, SLIP, duration=duration, options=OPTIONS, **options)
+
+
+@pytest.mark.parametrize(("gait", "duration"), [(TURN, 31.0), (ROCK, 40.0)])
+def test_the_stride_map_walks_where_every_step_does(gait, duration):
+    by_steps = whole(gait, duration)
+    by_strides = walk_by_strides(ROBOT, gait, SLIP, duration=duration, options=OPTIONS)
+    np.testing.assert_allclose(by_strides.t, by_steps.t, atol=1e-9)
+    distance = np.hypot(
+        by_strides.x - by_steps.position[:, 0], by_strides.y - by_steps.position[:, 1]
+    )
+    assert distance.max() < 0.002 * by_steps.length
+    assert np.abs(by_strides.yaw - by_steps.yaw).max() < np.radians(0.5)
+
+
+def test_a_start_elsewhere_moves_the_whole_path():
+    start = Start(x=0.4, y=-0.2, yaw=1.0)
+    here = walk_by_strides(ROBOT, TURN, SLIP, duration=20.0, options=OPTIONS)
+    there = walk_by_strides(ROBOT, TURN, SLIP, duration=20.0, start=start, options=OPTIONS)
+    c, s = np.cos(1.0), np.sin(1.0)
+    np.testing.assert_allclose(there.x, 0.4 + c * here.x - s * here.y, atol=1e-7)
+    np.testing.assert_allclose(there.y, -0.2 + s * here.x + c * here.y, atol=1e-7)
+    np.testing.assert_allclose(there.yaw, 1.0 + here.yaw, atol=1e-7)
+
+
+@pytest.mark.parametrize("duration", [0.7, 2.0, 5.0])
+def test_a_walk_shorter_than_its_settling_is_the_walk_itself(duration):
+    by_strides = walk_by_strides(ROBOT, TURN, SLIP, duration=duration, options=OPTIONS)
+    assert by_strides.t[-1] == pytest.approx(duration)
+    path = whole(TURN, duration)
+    np.testing.assert_allclose(by_strides.x, path.position[:, 0], atol=1e-9)
+
+
+def test_steps_are_shortened_to_fit_the_period():
+    odd = tripod_reference(tripod_angles(np.radians(50.0), 1.3), 1.0037)
+    path = walk_by_strides(ROBOT, odd, SLIP, duration=3.0, options=OPTIONS)
+    steps = np.diff(path.t)
+    np.testing.assert_allclose(steps, steps[0], rtol=1e-9)
+    assert steps[0] <= 0.005
+    assert (odd.period / steps[0]) == pytest.approx(round(odd.period / steps[0]), abs=1e-9)
+
+
+def test_a_log_has_no_stride():
+    log = SampledReference(np.array([0.0, 1.0]), np.ones((2, 6)))
+    with pytest.raises(WalkError, match="do not repeat"):
+        walk_by_strides(ROBOT, log, SLIP, duration=1.0)
+
+
+# --- ensembles
+
+
+def draws(n=6, *, gait=TURN):
+    rng = np.random.default_rng(3)
+    return [
+        WalkDraw(replace(ROBOT, leg_offset=np.radians(0.5) * rng.standard_normal(6)), gait, SLIP)
+        for _ in range(n)
+    ]
+
+
+def test_an_ensemble_is_its_draws_whatever_the_threads():
+    t = np.linspace(0, 20.0, 41)
+    one, two = (walk_ensemble(draws(), t, options=OPTIONS, threads=n) for n in (1, 2))
+    np.testing.assert_array_equal(one.position, two.position)
+    np.testing.assert_array_equal(one.yaw, two.yaw)
+    alone = planar_walk(draws()[4], duration=20.0, options=OPTIONS)
+    np.testing.assert_allclose(one.position[4, :, 0], np.interp(t, alone.t, alone.x), atol=1e-12)
+    assert one.position.shape == (6, 41, 2)
+
+
+def test_leg_offsets_spread_the_path():
+    ensemble = walk_ensemble(draws(12), np.array([0.0, 20.0]), options=OPTIONS)
+    assert np.all(ensemble.position[:, 0] == 0)
+    assert ensemble.position[:, -1].std(axis=0).max() > 0.01
+
+
+def test_a_log_is_walked_whole_and_like_its_gait():
+    t = np.arange(0, 12.0, 0.005)
+    log = SampledReference(t, TURN.angles(t))
+    times = np.linspace(0, 11.9, 20)
+    ensemble = walk_ensemble(
+        [WalkDraw(ROBOT, log, SLIP), WalkDraw(ROBOT, TURN, SLIP)], times, options=OPTIONS
+    )
+    np.testing.assert_allclose(ensemble.position[0], ensemble.position[1], atol=0.003)
+
+
+def test_progress_is_told_to_the_end():
+    told = []
+    walk_ensemble(draws(3), np.array([0.0, 1.0]), options=OPTIONS, progress=told.append)
+    assert told == pytest.approx([1 / 3, 2 / 3, 1.0])

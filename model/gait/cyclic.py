@@ -1,0 +1,161 @@
+# SPDX-License-Identifier: MIT
+"""Leg angles that repeat: two speeds, one on the ground and one in flight."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from model.errors import DomainError
+from model.gait.stance import Intervals, event_intervals, require_stance_angles
+from model.slip.law import Array
+
+_KINK = 1e-11  # of a period: how near to a change of speed a time is taken to be at it
+
+
+@dataclass(frozen=True, eq=False)
+class CyclicReference:
+    r"""Legs that turn steadily from touchdown to lift-off, and steadily on to the next touchdown.
+
+    .. math::
+        \theta(t) = 2\pi k + \begin{cases}
+            \theta_{TD} + \dot\theta_g u & u < \tau_g \\
+            \theta_{LO} & \tau_g \le u < \tau_g + \tau_w \\
+            \theta_{LO} + \dot\theta_f (u - \tau_g - \tau_w) & \text{else}
+        \end{cases} \qquad
+        \dot\theta_g = \frac{\theta_{LO} - \theta_{TD}}{\tau_g}, \quad
+        \dot\theta_f = \frac{2\pi - (\theta_{LO} - \theta_{TD})}{\tau_f - \tau_w}
+
+    with u the time since the leg's last touchdown, of which it is the k-th: Eq. (2-20) to (2-22)
+    and the kind of the others, with a pause tau_w. Vary one with `dataclasses.replace`: every
+    gait can be given pauses and offsets.
+
+    Every array has one entry a leg, and numbers stand for all legs. The robot has six; the class
+    takes any number.
+
+    Attributes:
+        touchdown: Touchdown angles, shape (n,) [rad].
+        liftoff: Lift-off angles, beyond touchdown by less than a turn, shape (n,) [rad].
+        ground_time: Times from touchdown to lift-off, shape (n,) [s].
+        flight_time: Times from lift-off to touchdown, the pause included, shape (n,) [s].
+        phase: Share of the period by which each leg is past touchdown at time zero; 1 more puts
+            it a turn ahead, shape (n,) [-].
+        inner: Indices of the legs on the inner side of a turn; empty for a straight walk.
+        pause: How long a leg waits at lift-off before its flight, shape (n,) [s].
+        offset: Angle of each leg beyond the one asked of it, shape (n,) [rad].
+
+    Raises:
+        DomainError: Lift-off does not exceed touchdown, a time is not positive, legs differ in
+            period, or a pause leaves no time to fly.
+    """
+
+    touchdown: Array
+    liftoff: Array
+    ground_time: Array
+    flight_time: Array
+    phase: Array
+    inner: tuple[int, ...] = ()
+    pause: Array | float = 0.0
+    offset: Array | float = 0.0
+
+    def __post_init__(self) -> None:
+        """Give every leg its numbers and refuse legs that cannot walk."""
+        names = (
+            "touchdown", "liftoff", "ground_time", "flight_time", "phase", "pause", "offset",
+        )  # fmt: skip
+        values = [np.atleast_1d(np.asarray(getattr(self, name), dtype=float)) for name in names]
+        try:
+            full = np.broadcast_arrays(*values)
+        except ValueError as fault:
+            shapes = ", ".join(f"{n} {v.shape}" for n, v in zip(names, values, strict=True))
+            raise DomainError(f"shapes do not match: {shapes}; expected one entry a leg") from fault
+        for name, value in zip(names, full, strict=True):
+            if value.ndim != 1 or not np.isfinite(value).all():
+                raise DomainError(f"{name} is {value}; expected one finite number a leg")
+            object.__setattr__(self, name, value.copy())
+        require_stance_angles(self.touchdown, self.liftoff)
+        self._require_times()
+
+    def _require_times(self) -> None:
+        pause = np.asarray(self.pause)
+        for leg in range(self.n_legs):
+            ground, flight, wait = self.ground_time[leg], self.flight_time[leg], pause[leg]
+            if not (ground > 0 and flight > 0):
+                raise DomainError(
+                    f"leg {leg + 1} spends {ground:g} s on the ground and {flight:g} s in flight; "
+                    "expected both more than zero"
+                )
+            if not 0 <= wait < flight:
+                raise DomainError(
+                    f"leg {leg + 1} pauses for {wait:g} s of its {flight:g} s in flight; "
+                    "expected at least zero, and less than the flight"
+                )
+            if not np.isclose(ground + flight, self.period, rtol=1e-9):
+                raise DomainError(
+                    f"leg {leg + 1} has a period of {ground + flight:g} s and leg 1 of "
+                    f"{self.period:g} s; expected the same for all"
+                )
+
+    @property
+    def n_legs(self) -> int:
+        """How many legs walk."""
+        return len(self.phase)
+
+    @property
+    def period(self) -> float:
+        """Time of a whole turn of every leg, tau_c [s]."""
+        return float(self.ground_time[0] + self.flight_time[0])
+
+    @property
+    def stance_angle(self) -> Array:
+        """Angles covered on the ground, shape (n,) [rad]."""
+        return self.liftoff - self.touchdown
+
+    @property
+    def ground_speed(self) -> Array:
+        """Leg speeds on the ground, shape (n,) [rad/s]."""
+        return self.stance_angle / self.ground_time
+
+    @property
+    def flight_speed(self) -> Array:
+        """Leg speeds in flight, shape (n,) [rad/s]."""
+        return (2 * np.pi - self.stance_angle) / (self.flight_time - self.pause)
+
+    def angles(self, t: ArrayLike) -> Array:
+        """Compute the leg angles at times t of shape (m,), shape (m, n) [rad]."""
+        turns, since = self._since_touchdown(t)
+        ground = self.touchdown + self.ground_speed * since
+        flown = np.maximum(since - self.ground_time - self.pause, 0.0)
+        flight = self.liftoff + self.flight_speed * flown
+        within = np.where(since < self.ground_time, ground, flight)
+        return 2 * np.pi * turns + within + self.offset
+
+    def speeds(self, t: ArrayLike) -> Array:
+        """Compute the leg speeds at times t, from the right at a kink, shape (m, n) [rad/s]."""
+        _, since = self._since_touchdown(t)
+        flies = since >= self.ground_time + self.pause
+        stands = since < self.ground_time
+        return np.where(stands, self.ground_speed, np.where(flies, self.flight_speed, 0.0))
+
+    def stance_intervals(self, span: tuple[float, float]) -> Intervals:
+        """Find when each leg is between touchdown and lift-off.
+
+        Args:
+            span: Start and end; intervals are cut there [s].
+
+        Returns:
+            One array of rows (start, end) for each leg [s].
+        """
+        first = np.floor(span[0] / self.period + self.phase.min())
+        last = np.floor(span[1] / self.period + self.phase.max())
+        down = (np.arange(first, last + 1)[:, None] - self.phase) * self.period
+        return event_intervals(down, down + self.ground_time, span)
+
+    def _since_touchdown(self, t: ArrayLike) -> tuple[Array, Array]:
+        # Times on a kink must not fall before it by rounding: the speed there is that after it.
+        cycles = np.atleast_1d(np.asarray(t, dtype=float))[:, None] / self.period + self.phase
+        turns = np.floor(cycles + _KINK)
+        since = np.maximum(cycles - turns, 0.0) * self.period
+        for kink in (self.ground_time, self.ground_time + self.pause):
+            since = np.where(np.abs(since - kink) < _KINK * self.period, kink, since)
+        return turns, since

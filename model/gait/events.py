@@ -1,0 +1,191 @@
+# SPDX-License-Identifier: MIT
+"""Touchdown and lift-off events of a gait, the system that times them, and its leg angles."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from model.errors import DomainError
+from model.gait.cyclic import CyclicReference
+from model.gait.maxplus import eigenvalue, eigenvector, otimes, solve_implicit
+from model.gait.notation import Gait
+from model.gait.reference import SampledReference
+from model.gait.stance import Intervals, event_intervals, require_stance_angles
+from model.slip.law import Array
+
+_SAME_TIME = 1e-9  # s: events nearer than this are one knot of a leg reference
+
+
+@dataclass(frozen=True)
+class EventTimes:
+    """When each leg touches down and lifts off, cycle by cycle.
+
+    Attributes:
+        touchdown: Time of the k-th touchdown of each leg, shape (k, n) [s].
+        liftoff: Time of the lift-off before it, shape (k, n) [s].
+    """
+
+    touchdown: Array
+    liftoff: Array
+
+    def stance_intervals(self, span: tuple[float, float]) -> Intervals:
+        """Find when each leg stands, from its first touchdown to its last lift-off.
+
+        Args:
+            span: Start and end; intervals are cut there [s].
+
+        Returns:
+            One array of rows (start, end) for each leg [s].
+        """
+        return event_intervals(self.touchdown[:-1], self.liftoff[1:], span)
+
+
+@dataclass(frozen=True, eq=False)
+class EventSystem:
+    r"""A gait as a max-plus linear system.
+
+    .. math::
+        x(k) = A_0 \otimes x(k) \oplus A_1 \otimes x(k-1), \qquad
+        x(k) = \begin{bmatrix} t(k) \\ l(k) \end{bmatrix}
+
+    with the touchdown times t and lift-off times l of n legs in cycle k, Eq. (2-13) and (2-14).
+
+    Attributes:
+        A0: What events wait for in their own cycle, shape (2n, 2n) [s].
+        A1: What they wait for in the cycle before, shape (2n, 2n) [s].
+        gait: The groups of legs.
+    """
+
+    A0: Array
+    A1: Array
+    gait: Gait
+
+    @property
+    def n_legs(self) -> int:
+        """How many legs walk."""
+        return self.gait.n_legs
+
+    @cached_property
+    def matrix(self) -> Array:
+        r"""The explicit form, :math:`x(k) = A_0^* \otimes A_1 \otimes x(k-1)`, (2n, 2n) [s]."""
+        return solve_implicit(self.A0, self.A1)
+
+    @cached_property
+    def cycle_time(self) -> float:
+        """Time between cycles that the system settles on: its eigenvalue [s]."""
+        return eigenvalue(self.matrix)
+
+    @cached_property
+    def steady_state(self) -> EventTimes:
+        """Events of one settled cycle, each repeated every `cycle_time`, shape (1, n) [s]."""
+        return _events(eigenvector(self.matrix)[None])
+
+    def events(self, cycles: int, *, start: ArrayLike | None = None) -> EventTimes:
+        """Compute the events of some cycles.
+
+        Args:
+            cycles: How many cycles after the start.
+            start: Touchdown and lift-off times of cycle 0, shape (2n,); all zero when None [s].
+
+        Returns:
+            Events of cycles 0 to `cycles`.
+
+        Raises:
+            DomainError: The start does not have two events a leg.
+        """
+        x = np.zeros(2 * self.n_legs) if start is None else np.asarray(start, dtype=float)
+        if x.shape != (2 * self.n_legs,):
+            raise DomainError(
+                f"start has shape {x.shape}; expected ({2 * self.n_legs},), a touchdown for each "
+                "leg and then a lift-off for each"
+            )
+        found = [x]
+        for _ in range(cycles):
+            found.append(otimes(self.matrix, found[-1]))
+        return _events(np.array(found))
+
+
+def _events(x: Array) -> EventTimes:
+    n = x.shape[1] // 2
+    return EventTimes(x[:, :n], x[:, n:])
+
+
+def scheduled_reference(
+    system: EventSystem, touchdown: ArrayLike, *, liftoff: ArrayLike, inner: tuple[int, ...] = ()
+) -> CyclicReference:
+    """Compute the leg angles of a settled schedule: straight lines between its events.
+
+    At time zero the first group begins to touch down.
+
+    Args:
+        system: The scheduler.
+        touchdown: Touchdown angles, a number or shape (n,) [rad].
+        liftoff: Lift-off angles, a number or shape (n,) [rad].
+        inner: Indices of the inner legs of a turn, for the record.
+
+    Returns:
+        Leg angles; their period is the system's cycle time.
+
+    Raises:
+        DomainError: A lift-off angle does not exceed touchdown.
+    """
+    period = system.cycle_time
+    down, up = system.steady_state.touchdown[0], system.steady_state.liftoff[0]
+    flight = down - up
+    since = down[system.gait.group_of == 0].min() - down
+    phase = since / period
+    phase = phase - np.floor(phase + _SAME_TIME)
+    return CyclicReference(
+        touchdown=np.asarray(touchdown, dtype=float),
+        liftoff=np.asarray(liftoff, dtype=float),
+        ground_time=period - flight,
+        flight_time=flight,
+        phase=np.maximum(phase, 0.0),
+        inner=inner,
+    )
+
+
+def events_reference(
+    events: EventTimes, touchdown: ArrayLike, *, liftoff: ArrayLike
+) -> SampledReference:
+    """Compute the leg angles of given events, settled or not: straight lines between them.
+
+    Legs rest at touchdown until the events begin, and again once they end.
+
+    Args:
+        events: Touchdowns and lift-offs of six legs, in order.
+        touchdown: Touchdown angles, a number or shape (6,) [rad].
+        liftoff: Lift-off angles, a number or shape (6,) [rad].
+
+    Returns:
+        Leg angles from the first touchdown to the last.
+
+    Raises:
+        DomainError: A lift-off angle does not exceed touchdown, a leg's events are out of order,
+            or the legs are not six.
+    """
+    cycles, n_legs = events.touchdown.shape
+    down, up = (np.broadcast_to(np.asarray(a, dtype=float), n_legs) for a in (touchdown, liftoff))
+    require_stance_angles(down, up)
+    times = np.empty((2 * cycles - 1, n_legs))
+    times[::2], times[1::2] = events.touchdown, events.liftoff[1:]
+    turns = 2 * np.pi * np.arange(cycles)[:, None]
+    angles = np.empty_like(times)
+    angles[::2], angles[1::2] = down + turns, up + turns[:-1]
+    _require_order(times)
+    knots = np.unique(times)
+    knots = knots[np.concatenate([[True], np.diff(knots) > _SAME_TIME])]
+    theta = [np.interp(knots, *leg) for leg in zip(times.T, angles.T, strict=True)]
+    return SampledReference(knots, np.column_stack(theta))
+
+
+def _require_order(times: Array) -> None:
+    late = np.argwhere(np.diff(times, axis=0) <= 0)
+    if len(late):
+        event, leg = late[0]
+        raise DomainError(
+            f"leg {leg + 1} has an event at {times[event, leg]:g} s and the next at "
+            f"{times[event + 1, leg]:g} s; expected touchdowns and lift-offs in turn"
+        )

@@ -1,0 +1,187 @@
+# SPDX-License-Identifier: MIT
+r"""Max-plus algebra: numbers with :math:`\oplus` for the maximum and :math:`\otimes` for the sum.
+
+.. math::
+    a \oplus b = \max(a, b), \qquad a \otimes b = a + b, \qquad \varepsilon = -\infty, \quad e = 0
+
+epsilon is the zero (neutral for the maximum, absorbing for the sum), e the one. Matrices are
+arrays of floats, times are in seconds.
+"""
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from model.errors import DomainError
+from model.slip.law import Array
+
+EPSILON = -np.inf
+ONE = 0.0
+_ROUNDING = 1e-9  # s: circuits whose means differ by less weigh the same
+
+
+def oplus(a: ArrayLike, b: ArrayLike) -> Array:
+    r"""Compute a ⊕ b entry by entry, Eq. (2-7).
+
+    .. math::
+        [A \oplus B]_{ij} = \max(a_{ij}, b_{ij})
+
+    The source prints + in place of the comma.
+
+    >>> oplus([1.0, EPSILON], [0.0, 2.0]).tolist()
+    [1.0, 2.0]
+    """
+    return np.maximum(np.asarray(a, dtype=float), np.asarray(b, dtype=float))
+
+
+def otimes(a: ArrayLike, b: ArrayLike) -> Array:
+    r"""Compute a ⊗ b: a sum with a number, the matrix product of arrays, Eq. (2-8).
+
+    .. math::
+        [A \otimes C]_{ij} = \max_k (a_{ik} + c_{kj})
+
+    Args:
+        a: A number, or a matrix of shape (n, m).
+        b: A number, a matrix of shape (m, p) or a vector of shape (m,).
+
+    Raises:
+        DomainError: The shapes do not match.
+
+    >>> otimes([[0.0, 2.0], [EPSILON, 1.0]], [3.0, 0.0]).tolist()
+    [3.0, 1.0]
+    """
+    left, right = np.asarray(a, dtype=float), np.asarray(b, dtype=float)
+    if left.ndim == 0 or right.ndim == 0:
+        return left + right
+    if left.ndim != 2 or left.shape[1] != right.shape[0]:
+        raise DomainError(
+            f"cannot multiply shapes {left.shape} and {right.shape}; expected (n, m) and (m, p)"
+        )
+    if right.ndim == 1:
+        return (left + right).max(axis=1)
+    return (left[:, :, None] + right).max(axis=1)
+
+
+def identity(n: int) -> Array:
+    """Make E_n, Eq. (2-9): e on the diagonal, epsilon elsewhere."""
+    return diagonal(np.full(n, ONE))
+
+
+def diagonal(entries: ArrayLike) -> Array:
+    """Make a matrix with these entries on the diagonal and epsilon elsewhere."""
+    values = np.asarray(entries, dtype=float)
+    return np.where(np.eye(len(values), dtype=bool), values, EPSILON)
+
+
+def zeros(rows: int, columns: int) -> Array:
+    """Make the max-plus zero matrix, Eq. (2-10): epsilon everywhere."""
+    return np.full((rows, columns), EPSILON)
+
+
+def plus(A: Array) -> Array:
+    r"""Compute the heaviest paths of at least one step.
+
+    .. math::
+        A^+ = A \oplus A^{\otimes 2} \oplus A^{\otimes 3} \oplus \ldots
+
+    Entry (i, j) is the greatest sum along any path from j to i. It exists if no circuit has a
+    positive sum; then n powers say all, and Floyd's and Warshall's loop finds them.
+
+    Args:
+        A: Square matrix, shape (n, n).
+
+    Raises:
+        DomainError: A circuit has a positive sum.
+    """
+    paths = np.array(A, dtype=float)
+    for via in range(len(paths)):
+        paths = np.maximum(paths, paths[:, via, None] + paths[None, via, :])
+        heaviest = np.diagonal(paths).max()
+        if heaviest > _ROUNDING:
+            raise DomainError(
+                f"a circuit of the max-plus matrix has the positive sum {heaviest:g}; expected "
+                "none: these events would wait for each other within one cycle"
+            )
+    return paths
+
+
+def star(A: Array) -> Array:
+    r"""Compute :math:`A^* = E \oplus A \oplus A^{\otimes 2} \oplus \ldots`.
+
+    Raises:
+        DomainError: A circuit has a positive sum.
+    """
+    return oplus(identity(len(A)), plus(A))
+
+
+def solve_implicit(A: Array, b: Array) -> Array:
+    r"""Solve :math:`x = A \otimes x \oplus b` for its least solution, :math:`A^* \otimes b`.
+
+    Args:
+        A: Square matrix, shape (n, n).
+        b: A vector of shape (n,) or a matrix of shape (n, p).
+
+    Raises:
+        DomainError: A circuit has a positive sum: no event could ever happen.
+
+    >>> waits = np.array([[EPSILON, EPSILON], [2.0, EPSILON]])
+    >>> solve_implicit(waits, np.array([1.0, 0.0])).tolist()
+    [1.0, 3.0]
+    """
+    return otimes(star(A), b)
+
+
+def eigenvalue(A: Array) -> float:
+    r"""Compute the largest circuit mean, by Karp's formula: the cycle time of A.
+
+    .. math::
+        \lambda = \max_i \min_{k < n} \frac{[A^{\otimes n} \otimes 0]_i - [A^{\otimes k} \otimes
+        0]_i}{n - k}
+
+    Args:
+        A: Square matrix, shape (n, n).
+
+    Returns:
+        The eigenvalue; epsilon for a matrix without circuits.
+
+    >>> eigenvalue(np.array([[EPSILON, 3.0], [1.0, EPSILON]]))
+    2.0
+    """
+    n = len(A)
+    heaviest = [np.zeros(n)]  # walks of k steps that end in i, from anywhere
+    for _ in range(n):
+        heaviest.append(otimes(A, heaviest[-1]))
+    ends = np.isfinite(heaviest[n])
+    if not ends.any():
+        return EPSILON
+    walks = np.array(heaviest)[:, ends]
+    means = (walks[n] - walks[:n]) / (n - np.arange(n))[:, None]
+    return float(means.min(axis=0).max())
+
+
+def eigenvector(A: Array) -> Array:
+    r"""Compute the eigenvector that x(k) = A ⊗ x(k - 1) settles on from x = 0.
+
+    .. math::
+        A \otimes v = \lambda \otimes v, \qquad
+        v = \bigoplus_{c} [A_\lambda^*]_{\cdot c} \otimes \bigoplus_j [A_\lambda^*]_{cj}
+
+    with A_lambda = A - lambda, over its critical nodes c, those on a circuit of mean lambda. Where
+    the critical circuits are not connected the eigenvector is not unique; this one is the earliest
+    behind events that all begin at zero.
+
+    Args:
+        A: Square matrix, shape (n, n).
+
+    Returns:
+        Eigenvector, shape (n,).
+
+    Raises:
+        DomainError: The matrix has no circuits, hence no eigenvalue.
+    """
+    mean = eigenvalue(A)
+    if mean == EPSILON:
+        raise DomainError("the max-plus matrix has no circuit, so events do not repeat")
+    paths = plus(A - mean)
+    critical = np.diagonal(paths) > -_ROUNDING
+    paths = oplus(identity(len(A)), paths)
+    return (paths[:, critical] + paths[critical].max(axis=1)).max(axis=1)

@@ -1,0 +1,134 @@
+# SPDX-License-Identifier: MIT
+"""Group notation of gaits, such as {1,4,5} ≺ {2,3,6}."""
+
+import re
+from collections import Counter
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from model.errors import DomainError
+
+_GROUP = re.compile(r"\{([^{}]*)\}")
+
+
+@dataclass(frozen=True, eq=False)
+class Gait:
+    r"""Groups of legs in the order in which they step, Eq. (2-1).
+
+    .. math::
+        \{L_{1,1}, \ldots, L_{1,j}\} \prec \ldots \prec \{L_{r,1}, \ldots, L_{r,p}\}
+
+    Legs of one group move together; a group lifts off once the group to its left has touched
+    down, and the first once the last has. Section 2-2-1 says it the other way round (once the
+    group to its *right* has touched down), but its matrices P and Q and its tetrapod, Eq. (5-5) to
+    (5-12), mean this one; with two groups they are the same.
+
+    A gait repeats, so groups that are rotated make an equal gait; legs of a group have no order.
+
+    Attributes:
+        groups: Leg numbers, which count from 1, group by group.
+
+    Raises:
+        DomainError: A group is empty, or the legs are not 1 to n, once each.
+
+    >>> Gait(((2, 3, 6), (5, 4, 1))) == TRIPOD
+    True
+    """
+
+    groups: tuple[tuple[int, ...], ...]
+
+    def __post_init__(self) -> None:
+        """Refuse what is no gait, and sort the legs within their groups."""
+        if not self.groups:
+            raise DomainError("a gait without groups; write one such as {1,4,5} < {2,3,6}")
+        for number, group in enumerate(self.groups, start=1):
+            if not group:
+                raise DomainError(f"group {number} of the gait is empty; name its legs or drop it")
+        _require_each_leg_once([leg for group in self.groups for leg in group])
+        object.__setattr__(self, "groups", tuple(tuple(sorted(group)) for group in self.groups))
+
+    @property
+    def n_legs(self) -> int:
+        """How many legs walk."""
+        return sum(len(group) for group in self.groups)
+
+    @property
+    def group_of(self) -> NDArray[np.int_]:
+        """Which group, from 0, each leg belongs to, shape (n,)."""
+        found = np.empty(self.n_legs, dtype=int)
+        for number, group in enumerate(self.groups):
+            found[np.array(group) - 1] = number
+        return found
+
+    @property
+    def _from_leg_1(self) -> tuple[tuple[int, ...], ...]:
+        first = int(self.group_of[0])
+        return self.groups[first:] + self.groups[:first]
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Gait) and self._from_leg_1 == other._from_leg_1
+
+    def __hash__(self) -> int:
+        return hash(self._from_leg_1)
+
+    def __str__(self) -> str:
+        return " ≺ ".join("{" + ",".join(map(str, group)) + "}" for group in self.groups)
+
+
+def _require_each_leg_once(legs: list[int]) -> None:
+    twice = sorted(leg for leg, count in Counter(legs).items() if count > 1)
+    if twice:
+        raise DomainError(f"leg {twice[0]} stands in the gait twice; every leg steps once a cycle")
+    if min(legs) < 1:
+        raise DomainError(f"leg {min(legs)} in the gait; legs are numbered from 1")
+    missing = sorted(set(range(1, max(legs) + 1)) - set(legs))
+    if missing:
+        raise DomainError(
+            f"leg {missing[0]} is missing from the gait, which names {len(legs)} legs up to "
+            f"{max(legs)}; every leg steps once a cycle"
+        )
+
+
+def parse_gait(text: str, n_legs: int | None = None) -> Gait:
+    """Read a gait in group notation.
+
+    Args:
+        text: Groups of leg numbers in braces, with < or ≺ between them.
+        n_legs: How many legs the robot has; taken from the text when None.
+
+    Returns:
+        The gait, its groups in the order of the text.
+
+    Raises:
+        DomainError: The text is no group notation, or its legs are not 1 to n, once each.
+
+    >>> print(parse_gait("{1,4} < {2,5} < {3,6}"))
+    {1,4} ≺ {2,5} ≺ {3,6}
+    """
+    gait = Gait(tuple(_parse_group(part.strip(), text) for part in re.split("[<≺]", text)))
+    if n_legs is not None and gait.n_legs != n_legs:
+        raise DomainError(f"the gait {gait} has {gait.n_legs} legs; the robot has {n_legs}")
+    return gait
+
+
+def _parse_group(part: str, text: str) -> tuple[int, ...]:
+    match = _GROUP.fullmatch(part)
+    if match is None:
+        raise DomainError(
+            f"{part!r} in the gait {text!r} is no group; write leg numbers in braces with < "
+            "between groups, such as {1,4,5} < {2,3,6}"
+        )
+    inside = match[1].strip()
+    legs = [word.strip() for word in inside.split(",")] if inside else []
+    for leg in legs:
+        if not leg.isdecimal():
+            raise DomainError(
+                f"{leg!r} in group {part} of the gait is no leg number; legs are numbered from 1"
+            )
+    return tuple(int(leg) for leg in legs)
+
+
+TRIPOD = Gait(((1, 4, 5), (2, 3, 6)))  # Eq. (2-2)
+TETRAPOD = Gait(((1, 4), (2, 5), (3, 6)))  # Eq. (2-3)

@@ -1,0 +1,65 @@
+# SPDX-License-Identifier: MIT
+"""The source's emulation of turning by stance times, without max-plus algebra."""
+
+import numpy as np
+
+from model.errors import DomainError
+from model.gait.cyclic import CyclicReference
+from model.gait.direction import Direction, inner_legs, is_inner
+from model.gait.notation import TRIPOD
+
+
+def suriana_reference(
+    touchdown: float,
+    liftoff: float,
+    *,
+    ground_time: float,
+    flight_time: float,
+    turn_time: float = 0.0,
+    direction: Direction = "left",
+) -> CyclicReference:
+    r"""Compute the leg angles of a tripod that turns by its stance times, Eq. (5-1) to (5-4).
+
+    .. math::
+        \dot\theta_g^i = \frac{\theta_{LO} - \theta_{TD}}{\tau_g + \tau_p}, \quad
+        \dot\theta_g^o = \frac{\theta_{LO} - \theta_{TD}}{\tau_g}, \quad
+        \dot\theta_f^i = \frac{2\pi - (\theta_{LO} - \theta_{TD})}{\tau_f}, \quad
+        \dot\theta_f^o = \frac{2\pi - (\theta_{LO} - \theta_{TD})}{\tau_f + \tau_p}
+
+    Inner and outer legs share the period tau_g + tau_f + tau_p. At time zero legs 1, 4 and 5 touch
+    down and legs 2, 3 and 6 lift off (Listing A.6).
+
+    The text of 5-2-1 lets speeds switch as contact is detected, its listing (A.33) as the angle
+    passes touchdown and lift-off, and so does this. For tau_g = tau_f the outer legs of one tripod
+    lift off tau_p before those of the other touch down: for that long, once a cycle, every outer
+    leg is in flight. `turning_system` schedules the same turn without it.
+
+    Args:
+        touchdown: Touchdown angle of every leg [rad].
+        liftoff: Lift-off angle of every leg [rad].
+        ground_time: tau_g [s].
+        flight_time: tau_f [s].
+        turn_time: tau_p, how much longer inner legs stand and outer legs fly [s].
+        direction: Where to turn.
+
+    Returns:
+        Leg angles.
+
+    Raises:
+        DomainError: A time is negative, or lift-off does not exceed touchdown.
+    """
+    if not turn_time >= 0:
+        raise DomainError(
+            f"turn time is {turn_time:g} s; expected zero or more: the other way is a direction"
+        )
+    inner = is_inner(direction)
+    ground = np.where(inner, ground_time + turn_time, ground_time)
+    flight = np.where(inner, flight_time, flight_time + turn_time)
+    return CyclicReference(
+        touchdown=np.array(touchdown),
+        liftoff=np.array(liftoff),
+        ground_time=ground,
+        flight_time=flight,
+        phase=TRIPOD.group_of * ground / (ground + flight),
+        inner=inner_legs(direction) if turn_time > 0 else (),
+    )

@@ -1,0 +1,126 @@
+# SPDX-License-Identifier: MIT
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from hypothesis.extra.numpy import arrays
+
+from model.errors import DomainError
+from model.gait.maxplus import (
+    EPSILON,
+    ONE,
+    diagonal,
+    eigenvalue,
+    eigenvector,
+    identity,
+    oplus,
+    otimes,
+    plus,
+    solve_implicit,
+    star,
+    zeros,
+)
+
+N = 4
+WHOLE = st.integers(-50, 50).map(float)  # sums of whole numbers are exact, so that laws are too
+NUMBER = st.one_of(st.just(EPSILON), WHOLE)
+MATRIX = arrays(float, (N, N), elements=NUMBER)
+FULL = arrays(float, (N, N), elements=WHOLE)
+same = np.testing.assert_array_equal
+
+
+@given(NUMBER, NUMBER, NUMBER)
+def test_numbers_form_an_idempotent_semiring(a, b, c):
+    assert oplus(a, a) == a
+    assert oplus(a, b) == oplus(b, a)
+    assert oplus(oplus(a, b), c) == oplus(a, oplus(b, c))
+    assert otimes(a, b) == otimes(b, a)
+    assert otimes(otimes(a, b), c) == otimes(a, otimes(b, c))
+    assert otimes(a, oplus(b, c)) == oplus(otimes(a, b), otimes(a, c))
+
+
+@given(NUMBER)
+def test_epsilon_is_zero_and_e_is_one(a):
+    assert oplus(a, EPSILON) == a
+    assert otimes(a, EPSILON) == EPSILON
+    assert otimes(a, ONE) == a
+
+
+@given(MATRIX, MATRIX, MATRIX)
+def test_matrices_form_an_idempotent_semiring(A, B, C):
+    same(otimes(otimes(A, B), C), otimes(A, otimes(B, C)))
+    same(otimes(A, oplus(B, C)), oplus(otimes(A, B), otimes(A, C)))
+    same(otimes(oplus(A, B), C), oplus(otimes(A, C), otimes(B, C)))
+    same(otimes(A, identity(N)), A)
+    same(otimes(identity(N), A), A)
+    same(otimes(A, zeros(N, N)), zeros(N, N))
+    same(oplus(A, zeros(N, N)), A)
+
+
+@given(MATRIX, arrays(float, N, elements=NUMBER))
+def test_vector_is_a_matrix_of_one_column(A, x):
+    same(otimes(A, x), otimes(A, x[:, None])[:, 0])
+
+
+@given(NUMBER, MATRIX)
+def test_number_multiplies_every_entry(a, A):
+    same(otimes(a, A), otimes(diagonal([a] * N), A))
+
+
+def test_shapes_that_do_not_match_are_refused():
+    with pytest.raises(DomainError, match=r"\(2, 2\) and \(3, 3\)"):
+        otimes(zeros(2, 2), zeros(3, 3))
+
+
+@given(MATRIX)
+def test_star_is_the_sum_of_powers(A):
+    A = A - 51.0  # no circuit of positive sum
+    powers, total = identity(N), identity(N)
+    for _ in range(N):
+        powers = otimes(powers, A)
+        total = oplus(total, powers)
+    same(star(A), total)
+
+
+@given(MATRIX, arrays(float, N, elements=WHOLE), arrays(float, N, elements=WHOLE))
+def test_implicit_solution_solves_and_is_least(A, b, more):
+    A = A - 51.0
+    x = solve_implicit(A, b)
+    same(oplus(otimes(A, x), b), x)
+    above = solve_implicit(A, oplus(b, more))  # any solution of x >= A x + b, as b is exceeded
+    assert np.all(x <= above)
+
+
+def test_circuit_of_positive_sum_has_no_star():
+    with pytest.raises(DomainError, match="positive sum 3"):
+        plus(np.array([[EPSILON, 1.0], [2.0, EPSILON]]))
+
+
+@given(FULL)
+def test_eigenvector_satisfies_its_equation(A):
+    v = eigenvector(A)
+    np.testing.assert_allclose(otimes(A, v), v + eigenvalue(A), atol=1e-9)
+
+
+@given(FULL)
+def test_eigenvalue_is_the_growth_of_long_products(A):
+    steps = 12 * 8  # a multiple of every circuit's length, after the transient
+    x = np.zeros(N)
+    history = [x]
+    for _ in range(40 * steps):
+        x = otimes(A, x)
+        history.append(x)
+    growth = (history[-1] - history[-1 - 12]) / 12
+    np.testing.assert_allclose(growth, eigenvalue(A), atol=1e-9)
+
+
+@given(MATRIX, WHOLE)
+def test_eigenvalue_shifts_with_its_matrix(A, by):
+    assert eigenvalue(A + by) == pytest.approx(eigenvalue(A) + by)
+
+
+def test_matrix_without_circuits_has_no_eigenvalue():
+    falls = np.array([[EPSILON, EPSILON], [1.0, EPSILON]])
+    assert eigenvalue(falls) == EPSILON
+    with pytest.raises(DomainError, match="no circuit"):
+        eigenvector(falls)

@@ -30,6 +30,11 @@ class Table:
         self._path = path
         self._known: list[str] = []
 
+    @property
+    def empty(self) -> bool:
+        """Tell whether nothing is left to take."""
+        return not self._entries
+
     def fault(self, problem: str, key: str | None = None) -> ProfileError:
         """Make an error that names the place."""
         dotted = ".".join(part for part in (self._path, key) if part)

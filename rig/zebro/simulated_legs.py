@@ -44,6 +44,10 @@ class RobotImperfections:
             )
 
 
+EXACT_ROBOT = RobotImperfections()
+"""A robot that follows its gait exactly."""
+
+
 @dataclass(frozen=True)
 class Frame:
     """What the robot reports at one instant.
@@ -76,7 +80,7 @@ class SimulatedLegs:
         reference: LegReference,
         *,
         profile: LegProfile,
-        imperfections: RobotImperfections = RobotImperfections(),
+        imperfections: RobotImperfections = EXACT_ROBOT,
         rng: np.random.Generator,
     ) -> None:
         self.profile = profile

@@ -1,0 +1,95 @@
+# SPDX-License-Identifier: MIT
+"""Datagrams from one device, taken in bulk from a large buffer of the system."""
+
+import contextlib
+import select
+import socket
+from typing import Final
+
+from rig.clock import SYSTEM_CLOCK, Clock
+from rig.errors import LinkError
+
+BUFFER: Final = 4 << 20
+"""Seconds of a fast load cell, should the reader be held up [bytes]."""
+LONGEST: Final = 2048
+MOST_AT_ONCE: Final = 8192
+
+
+class UdpLink:
+    """Datagrams to and from one address; anybody else's are dropped by the system.
+
+    Args:
+        host: Name or address of the device.
+        port: Its port.
+        gather: How long a read lets datagrams pile up before it takes them all: waking up for each
+            of 7,000 a second costs several times the CPU [s].
+        source: `real`, or `sim:WHAT` for a twin's address.
+        clock: Host time.
+    """
+
+    def __init__(
+        self,
+        host: str,
+        port: int,
+        *,
+        gather: float = 0.004,
+        source: str = "real",
+        clock: Clock = SYSTEM_CLOCK,
+    ) -> None:
+        self.source = source
+        self.address = f"{host}:{port}"
+        self._host = host
+        self._port = port
+        self._gather = gather
+        self._clock = clock
+        self._socket: socket.socket | None = None
+
+    def open(self) -> None:
+        """Open the socket; the device need not be there yet.
+
+        Raises:
+            LinkError: The name means nothing, or there is no network.
+        """
+        opened = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+        try:
+            opened.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, BUFFER)
+            opened.connect((self._host, self._port))
+            opened.setblocking(False)
+        except OSError as problem:
+            opened.close()
+            raise LinkError(
+                f"cannot reach {self.address}: {problem}; check the address and the network"
+            ) from problem
+        self._socket = opened
+
+    def close(self) -> None:
+        """Close the socket; closing twice is no fault."""
+        opened, self._socket = self._socket, None
+        if opened is not None:
+            opened.close()
+
+    def read(self, timeout: float) -> list[bytes]:
+        """Hand on the datagrams there are, waiting at most `timeout` for the first [s]."""
+        opened = self._socket
+        if opened is None or not select.select([opened], [], [], timeout)[0]:
+            return []
+        if timeout > 0:
+            self._clock.sleep(min(self._gather, timeout))
+        datagrams: list[bytes] = []
+        with contextlib.suppress(BlockingIOError):
+            while len(datagrams) < MOST_AT_ONCE:
+                try:
+                    datagrams.append(opened.recv(LONGEST))
+                except ConnectionRefusedError:  # nobody listened to what was sent; it may come
+                    continue
+        return datagrams
+
+    def write(self, data: bytes) -> bool:
+        """Send one datagram; tell whether the system took it."""
+        if self._socket is None:
+            return False
+        try:
+            self._socket.send(data)
+        except OSError:
+            return False
+        return True

@@ -1,0 +1,104 @@
+# SPDX-License-Identifier: MIT
+"""Recorded samples through the interface of a live stream."""
+
+import itertools
+from collections.abc import Sequence
+from types import TracebackType
+from typing import Self
+
+from rig.clock import SYSTEM_CLOCK, Clock
+from rig.device import Counters, Sample
+from rig.errors import ProtocolError
+
+
+class ReplayStream:
+    """Hands on recorded samples when they are due; satisfies `rig.device.Stream`.
+
+    Host times are shifted so that the first sample arrives when the stream is opened; device times,
+    numbers and counts are as recorded. What was lost then is counted as lost again.
+
+    Args:
+        samples: The recording, in order.
+        name: Name of the stream.
+        origin: What was recorded, such as a run's folder name.
+        speed: How many times faster than it happened.
+        clock: Host time.
+
+    Raises:
+        ProtocolError: The host times run back, or the speed is not positive.
+    """
+
+    def __init__(
+        self,
+        samples: Sequence[Sample],
+        *,
+        name: str,
+        origin: str,
+        speed: float = 1.0,
+        clock: Clock = SYSTEM_CLOCK,
+    ) -> None:
+        if not speed > 0:
+            raise ProtocolError(f"replay speed is {speed:g}; expected above 0")
+        for before, after in itertools.pairwise(samples):
+            if after.host_time < before.host_time:
+                raise ProtocolError(
+                    f"recorded host time runs back from {before.host_time:g} to "
+                    f"{after.host_time:g} s; sort the samples first"
+                )
+        self.name = name
+        self.source = f"replay:{origin}"
+        self._samples = samples
+        self._speed = speed
+        self._clock = clock
+        self._began: float | None = None
+        self._next = 0
+        self._lost = 0
+
+    @property
+    def finished(self) -> bool:
+        """Tell whether the recording is at its end."""
+        return self._next >= len(self._samples)
+
+    @property
+    def counters(self) -> Counters:
+        """What happened so far."""
+        return Counters(received=self._next, lost=self._lost)
+
+    def read(self, timeout: float) -> list[Sample]:
+        """Hand on the samples that are due, waiting at most `timeout` for the first [s]."""
+        if self._began is None or self.finished:
+            self._clock.sleep(timeout)
+            return []
+        wait = self._due(self._next) - self._clock.now()
+        self._clock.sleep(min(max(wait, 0.0), timeout))
+        now = self._clock.now()
+        first = self._next
+        while not self.finished and self._due(self._next) <= now:
+            self._count_gap(self._next)
+            self._next += 1
+        return [
+            self._samples[index]._replace(host_time=self._due(index))
+            for index in range(first, self._next)
+        ]
+
+    def __enter__(self) -> Self:
+        self._began = self._clock.now()
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self._began = None
+
+    def _due(self, index: int) -> float:
+        after = self._samples[index].host_time - self._samples[0].host_time
+        return (self._began or 0.0) + after / self._speed
+
+    def _count_gap(self, index: int) -> None:
+        last = self._samples[index - 1].sequence if index else None
+        number = self._samples[index].sequence
+        if last is not None and number is not None:
+            self._lost += number - last - 1

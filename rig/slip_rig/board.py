@@ -1,0 +1,131 @@
+# SPDX-License-Identifier: MIT
+"""The rig on one micro-controller: forces and both speeds in packets, speed commands back."""
+
+import contextlib
+import math
+import struct
+from types import TracebackType
+
+from rig.clock import SYSTEM_CLOCK, Clock
+from rig.device import Limits, Sample
+from rig.errors import RigError
+from rig.links.byte_link import ByteLink
+from rig.links.packet import Kind
+from rig.links.packet_stream import PacketStream
+from rig.safety import require_within
+from rig.slip_rig.profile import BoardProfile
+
+
+def board_body(profile: BoardProfile) -> struct.Struct:
+    """Return the layout of a body: normal and traction force, leg and ground speed, as counts."""
+    return struct.Struct(("<" if profile.byte_order == "little" else ">") + "4i")
+
+
+def speed_body(profile: BoardProfile) -> struct.Struct:
+    """Return the layout of a speed command: leg and ground, as counts."""
+    return struct.Struct(("<" if profile.byte_order == "little" else ">") + "2i")
+
+
+class RigBoard(PacketStream):
+    """Stream of the board, and speeds of both discs; its watchdog is fed by reading.
+
+    Args:
+        link: Bytes to and from the board.
+        profile: Its profile.
+        limits: What the discs are allowed.
+        name: Name of the stream.
+        clock: Host time.
+    """
+
+    def __init__(
+        self,
+        link: ByteLink,
+        *,
+        profile: BoardProfile,
+        limits: Limits,
+        name: str = "board",
+        clock: Clock = SYSTEM_CLOCK,
+    ) -> None:
+        super().__init__(
+            link, name=name, kind=Kind.SLIP_RIG, body=board_body(profile), rate=profile.rate,
+            clock=clock,
+        )  # fmt: skip
+        self.profile = profile
+        self.limits = limits
+        self._host_clock = clock
+        self._speeds = {"leg": 0.0, "ground": 0.0}
+        self._armed: set[str] = set()
+        self._feed_at = -math.inf
+
+    @property
+    def leg(self) -> "BoardDrive":
+        """Drive of the leg disc."""
+        return BoardDrive(self, "leg")
+
+    @property
+    def ground(self) -> "BoardDrive":
+        """Drive of the ground disc."""
+        return BoardDrive(self, "ground")
+
+    def read(self, timeout: float) -> list[Sample]:
+        """Hand on all samples, waiting at most `timeout` for the first [s]; feed the watchdog."""
+        end = self._host_clock.now() + timeout
+        while True:
+            if self._armed and self._host_clock.now() >= self._feed_at:
+                self.command_speeds()
+            left = max(end - self._host_clock.now(), 0.0)
+            samples = super().read(min(left, self.profile.feed_interval))
+            if samples or left <= 0:
+                return samples
+
+    def command_speeds(self) -> bool:
+        """Send both speeds; tell whether the link took them."""
+        self._feed_at = self._host_clock.now() + self.profile.feed_interval
+        counts = [
+            round(self._speeds[disc] * self.profile.counts_per_speed) for disc in ("leg", "ground")
+        ]
+        return self.send(Kind.DISC_SPEEDS, speed_body(self.profile).pack(*counts))
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self._armed.clear()
+        with contextlib.suppress(RigError):  # the board's watchdog remains
+            self.send(Kind.STOP)
+        super().__exit__(kind, error, trace)
+
+
+class BoardDrive:
+    """One disc of the board; satisfies `rig.device.Drive`."""
+
+    def __init__(self, board: RigBoard, disc: str) -> None:
+        self._board = board
+        self._disc = disc
+
+    @property
+    def name(self) -> str:
+        """Name of the disc that it turns."""
+        return f"{self._disc} disc"
+
+    def arm(self, timeout: float) -> None:
+        """Energise at standstill; the board does not confirm, so nothing is waited for [s]."""
+        del timeout
+        self._board._armed.add(self._disc)
+        self.set_speed(0.0)
+
+    def set_speed(self, omega: float) -> None:
+        """Command an angular speed of the disc [rad/s]; see `Drive.set_speed`."""
+        limit = self._board.limits.speed
+        require_within(omega, limit, quantity=f"speed of the {self.name}", unit="rad/s")
+        self._board._speeds[self._disc] = omega
+        self._board.command_speeds()
+
+    def disarm(self) -> None:
+        """Command standstill."""
+        self._board._armed.discard(self._disc)
+        self._board._speeds[self._disc] = 0.0
+        with contextlib.suppress(RigError):  # the board's watchdog remains
+            self._board.command_speeds()

@@ -1,0 +1,183 @@
+# SPDX-License-Identifier: MIT
+"""From raw samples of a rig to speeds, forces and instantaneous slip, in SI."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from model.slip.definition import SlipDefinition, slip_ratio
+from model.slip.law import Array
+from rig.device import Sample
+from rig.errors import LimitExceeded, ProtocolError
+from rig.slip_rig.drives import disc_speed
+from rig.slip_rig.profile import BoardProfile, DiscDrive, LoadCellProfile, RigProfile
+
+
+@dataclass(frozen=True)
+class Forces:
+    """Forces at the contact.
+
+    Attributes:
+        time: When each was read, shape (n,) [s].
+        normal: Positive when pressed together, shape (n,) [N].
+        traction: Positive when driving, shape (n,) [N].
+    """
+
+    time: Array
+    normal: Array
+    traction: Array
+
+
+@dataclass(frozen=True)
+class DiscSpeeds:
+    """Angular speeds of both discs at the same instants.
+
+    Attributes:
+        time: Shape (n,) [s].
+        leg: Shape (n,) [rad/s].
+        ground: Shape (n,) [rad/s].
+    """
+
+    time: Array
+    leg: Array
+    ground: Array
+
+    def slip(self, profile: RigProfile) -> Array:
+        """Compute the instantaneous material slip ratio, Eq. (4-44), shape (n,) [-].
+
+        NaN or infinite where the leg disc stands still.
+        """
+        with np.errstate(divide="ignore", invalid="ignore"):
+            return slip_ratio(
+                self.leg * profile.radius_leg,
+                self.ground * profile.radius_ground,
+                SlipDefinition.MATERIAL,
+            )
+
+
+def decode_forces(profile: LoadCellProfile, samples: Sequence[Sample]) -> Forces:
+    """Compute forces from the counts of a load cell.
+
+    Args:
+        profile: Profile of the cell.
+        samples: Its samples.
+
+    Returns:
+        Forces with the zero that the cell had.
+    """
+    counts = np.array([sample.counts for sample in samples], dtype=float).reshape(-1, 6)
+    newtons = counts / profile.counts_per_force
+    return Forces(
+        time=np.array([sample.host_time for sample in samples], dtype=float),
+        normal=profile.normal.sign * newtons[:, profile.normal.index],
+        traction=profile.traction.sign * newtons[:, profile.traction.index],
+    )
+
+
+def decode_speeds(leg: DiscDrive, ground: DiscDrive, samples: Sequence[Sample]) -> DiscSpeeds:
+    """Compute the speeds of both discs at the instants of the leg disc's samples.
+
+    The drives report in turns, so the ground disc's speed is interpolated, and held beyond its
+    first and last sample.
+
+    Args:
+        leg: Drive of the leg disc.
+        ground: Drive of the ground disc.
+        samples: Samples of both, in order.
+
+    Returns:
+        Both speeds.
+
+    Raises:
+        ProtocolError: One of the drives sent nothing.
+    """
+    time, speed = {}, {}
+    for drive in (leg, ground):
+        own = [sample for sample in samples if sample.channel == drive.node]
+        if not own:
+            raise ProtocolError(f"no sample came from the drive with node {drive.node}")
+        time[drive.node] = np.array([sample.host_time for sample in own])
+        speed[drive.node] = np.array([disc_speed(drive, sample.counts[1]) for sample in own])
+    at = time[leg.node]
+    across = np.interp(at, time[ground.node], speed[ground.node])
+    return DiscSpeeds(at, speed[leg.node], across)
+
+
+def decode_board(profile: BoardProfile, samples: Sequence[Sample]) -> tuple[Forces, DiscSpeeds]:
+    """Compute forces and speeds from the counts of a board.
+
+    Args:
+        profile: Profile of the board.
+        samples: Its samples.
+
+    Returns:
+        Forces and speeds at the same instants.
+    """
+    counts = np.array([sample.counts for sample in samples], dtype=float).reshape(-1, 4)
+    time = np.array([sample.host_time for sample in samples], dtype=float)
+    newtons = counts[:, :2] / profile.counts_per_force
+    speeds = counts[:, 2:] / profile.counts_per_speed
+    forces = Forces(
+        time, profile.normal_sign * newtons[:, 0], profile.traction_sign * newtons[:, 1]
+    )
+    return forces, DiscSpeeds(time, speeds[:, 0], speeds[:, 1])
+
+
+@dataclass(frozen=True)
+class Zero:
+    """What an unloaded load cell reads.
+
+    Attributes:
+        normal: Mean normal force [N].
+        traction: Mean traction force [N].
+        standard_error: Of the worse of the two means, from ten batch means [N].
+    """
+
+    normal: float
+    traction: float
+    standard_error: float
+
+
+def tare(forces: Forces) -> Zero:
+    """Compute the zero of an unloaded rig.
+
+    Args:
+        forces: At least ten readings without load.
+
+    Returns:
+        The zero. Its error is taken from batches, because readings next to each other are alike.
+
+    Raises:
+        ProtocolError: There are too few readings.
+    """
+    if len(forces.time) < 10:
+        raise ProtocolError(f"{len(forces.time)} readings; expected at least 10 for a zero")
+    errors = []
+    for channel in (forces.normal, forces.traction):
+        means = [batch.mean() for batch in np.array_split(channel, 10)]
+        errors.append(np.std(means, ddof=1) / np.sqrt(10))
+    return Zero(
+        normal=float(forces.normal.mean()),
+        traction=float(forces.traction.mean()),
+        standard_error=float(max(errors)),
+    )
+
+
+def require_zero(before: Zero, after: Zero, *, limit: float) -> None:
+    """Check that a zero did not move during a run.
+
+    Args:
+        before: Zero before it.
+        after: Zero after it.
+        limit: Largest change allowed, beside twice the zeros' own errors [N].
+
+    Raises:
+        LimitExceeded: A channel moved farther: the run is not to be trusted.
+    """
+    error = float(np.hypot(before.standard_error, after.standard_error))
+    for channel in ("normal", "traction"):
+        moved = getattr(after, channel) - getattr(before, channel)
+        if abs(moved) > limit + 2 * error:
+            raise LimitExceeded(f"drift of the {channel} force's zero", value=moved, limit=limit,
+                                unit="N")  # fmt: skip

@@ -1,0 +1,216 @@
+# SPDX-License-Identifier: MIT
+"""Profile of a slip rig: discs, limits, and the devices that turn and weigh them."""
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Final, Literal
+
+from rig.device import Limits
+from rig.profile import Table, open_profile
+
+AXES: Final = ("x", "y", "z")
+HIGHEST_NODE: Final = 0x3F
+
+
+@dataclass(frozen=True)
+class DiscDrive:
+    """One ODrive axis and the disc it turns.
+
+    Attributes:
+        node: Node on the bus.
+        gear: Turns of the motor in one of the disc [-].
+        sign: 1 where the motor's positive sense drives, else -1.
+    """
+
+    node: int
+    gear: float
+    sign: int
+
+
+@dataclass(frozen=True)
+class DriveProfile:
+    """Both drives of a rig.
+
+    Attributes:
+        bitrate: Of the bus [bit/s].
+        firmware: Decides what the error bits mean.
+        feed_interval: Between two set-points that feed the drives' watchdogs [s].
+        leg: Drive of the leg disc.
+        ground: Drive of the ground disc.
+    """
+
+    bitrate: int
+    firmware: Literal["0.5", "0.6"]
+    feed_interval: float
+    leg: DiscDrive
+    ground: DiscDrive
+
+
+@dataclass(frozen=True)
+class ForceAxis:
+    """Where a force is found among the channels Fx, Fy and Fz.
+
+    Attributes:
+        index: Channel, from 0.
+        sign: What makes the force positive as `docs/conventions.md` has it, 1 or -1.
+    """
+
+    index: int
+    sign: int
+
+
+@dataclass(frozen=True)
+class LoadCellProfile:
+    """A Net F/T load cell.
+
+    Attributes:
+        host: Its address.
+        port: Its UDP port.
+        rate: Records in a second, also of its internal numbering [Hz].
+        counts_per_force: Counts in 1 N.
+        normal: Where the normal force is found.
+        traction: Where the traction force is found.
+    """
+
+    host: str
+    port: int
+    rate: float
+    counts_per_force: float
+    normal: ForceAxis
+    traction: ForceAxis
+
+
+@dataclass(frozen=True)
+class BoardProfile:
+    """One micro-controller in place of drives and load cell.
+
+    Attributes:
+        baudrate: Line rate [baud].
+        rate: Samples in a second [Hz].
+        byte_order: Of values of several bytes.
+        feed_interval: Between two speed commands that feed the board's watchdog [s].
+        counts_per_force: Counts in 1 N.
+        counts_per_speed: Counts in 1 rad/s.
+        normal_sign: What makes pressing positive.
+        traction_sign: What makes driving positive.
+    """
+
+    baudrate: int
+    rate: float
+    byte_order: Literal["little", "big"]
+    feed_interval: float
+    counts_per_force: float
+    counts_per_speed: float
+    normal_sign: int
+    traction_sign: int
+
+
+@dataclass(frozen=True)
+class RigProfile:
+    """A slip rig: either drives and a load cell, or a board.
+
+    Attributes:
+        name: Name of the profile.
+        radius_leg: Radius of the leg disc [m].
+        radius_ground: Radius of the ground disc [m].
+        limits: What the rig is allowed.
+        drives: Both drives; None where there is a board.
+        load_cell: The load cell; None where there is a board.
+        board: The board; None where there are drives.
+    """
+
+    name: str
+    radius_leg: float
+    radius_ground: float
+    limits: Limits
+    drives: DriveProfile | None
+    load_cell: LoadCellProfile | None
+    board: BoardProfile | None
+
+
+def load_rig_profile(name: str) -> RigProfile:
+    """Read the profile of a slip rig.
+
+    Args:
+        name: Name of a shipped profile, or path of a TOML file.
+
+    Returns:
+        The profile.
+
+    Raises:
+        ProfileError: Anything in it is missing, unknown, of the wrong kind or contradictory.
+    """
+    table = open_profile(name, device="slip-rig")
+    discs, limits = table.table("discs"), table.table("limits")
+    drives, load_cell, board = (table.table(key) for key in ("drives", "load_cell", "board"))
+    if board.empty == (drives.empty or load_cell.empty):
+        raise table.fault("expected either [drives] and [load_cell], or [board]")
+    profile = RigProfile(
+        name=Path(name).stem,
+        radius_leg=discs.positive("radius_leg"),
+        radius_ground=discs.positive("radius_ground"),
+        limits=Limits(
+            speed=limits.positive("speed"),
+            normal_force=limits.positive("normal_force"),
+            traction_force=limits.positive("traction_force"),
+        ),
+        drives=None if drives.empty else _drives(drives),
+        load_cell=None if load_cell.empty else _load_cell(load_cell),
+        board=None if board.empty else _board(board),
+    )
+    for part in (discs, limits, drives, load_cell, board, table):
+        part.finish()
+    return profile
+
+
+def _drives(table: Table) -> DriveProfile:
+    leg, ground = (_disc_drive(table.table(key)) for key in ("leg", "ground"))
+    if leg.node == ground.node:
+        raise table.fault(f"both drives have node {leg.node}; expected two different ones")
+    return DriveProfile(
+        bitrate=table.whole("baudrate", least=1, most=8_000_000),
+        firmware=table.choice("firmware", ("0.5", "0.6")),
+        feed_interval=table.positive("feed_interval"),
+        leg=leg,
+        ground=ground,
+    )
+
+
+def _disc_drive(table: Table) -> DiscDrive:
+    drive = DiscDrive(
+        node=table.whole("node", most=HIGHEST_NODE),
+        gear=table.positive("gear"),
+        sign=table.sign("sign"),
+    )
+    table.finish()
+    return drive
+
+
+def _load_cell(table: Table) -> LoadCellProfile:
+    return LoadCellProfile(
+        host=table.text("host"),
+        port=table.whole("port", 49_152, least=1, most=65_535),
+        rate=table.positive("rate"),
+        counts_per_force=table.positive("counts_per_force"),
+        normal=_axis(table.table("normal")),
+        traction=_axis(table.table("traction")),
+    )
+
+
+def _axis(table: Table) -> ForceAxis:
+    axis = ForceAxis(AXES.index(table.choice("axis", AXES)), table.sign("sign"))
+    table.finish()
+    return axis
+
+
+def _board(table: Table) -> BoardProfile:
+    return BoardProfile(
+        baudrate=table.whole("baudrate", least=1, most=20_000_000),
+        rate=table.positive("rate"),
+        byte_order=table.choice("byte_order", ("little", "big")),
+        feed_interval=table.positive("feed_interval"),
+        counts_per_force=table.positive("counts_per_force"),
+        counts_per_speed=table.positive("counts_per_speed"),
+        normal_sign=table.sign("normal_sign"),
+        traction_sign=table.sign("traction_sign"),
+    )

@@ -1,0 +1,125 @@
+# SPDX-License-Identifier: MIT
+"""Raw data transfer of a Net F/T load cell: requests, records, status bits, all big-endian."""
+
+import re
+import struct
+from dataclasses import dataclass
+from enum import IntEnum
+from typing import Final
+
+from rig.errors import ProtocolError
+
+REQUEST: Final = struct.Struct(">HHI")
+RECORD: Final = struct.Struct(">III6i")
+"""Number of the record, number of the reading inside the cell, status, Fx Fy Fz Tx Ty Tz."""
+MAGIC: Final = 0x1234
+WRAP: Final = 1 << 32
+SATURATED: Final = 1 << 17
+
+STATUS_BITS: Final[dict[int, str]] = {
+    1 << 30: "processor or memory error",
+    1 << 29: "digital board error",
+    1 << 28: "analog board error",
+    1 << 27: "serial link error",
+    1 << 26: "program memory error",
+    1 << 25: "halted by configuration errors",
+    1 << 24: "settings invalid",
+    1 << 23: "settings do not fit the transducer",
+    1 << 22: "network error",
+    1 << 21: "CAN error",
+    1 << 20: "RDT error",
+    SATURATED: "transducer saturated",
+    1 << 16: "monitor condition latched",
+    1 << 14: "watchdog timeout",
+}
+"""What the status says beside bit 31, which sums the errors up."""
+
+FORCE_UNITS: Final = {"N": 1.0, "kN": 1e3, "lb": 4.4482216152605, "klb": 4448.2216152605,
+                      "g": 9.80665e-3, "kg": 9.80665}  # fmt: skip
+"""Force units of the cell's configuration in N."""
+
+
+class Request(IntEnum):
+    """What a cell can be asked."""
+
+    STOP = 0x0000
+    START = 0x0002
+    BIAS = 0x0042
+
+
+@dataclass(frozen=True)
+class CellConfiguration:
+    """What a cell says of itself.
+
+    Attributes:
+        counts_per_force: Counts in 1 N.
+        rate: Records in a second; None where it is not told [Hz].
+    """
+
+    counts_per_force: float
+    rate: float | None
+
+
+def encode_request(request: Request, count: int = 0) -> bytes:
+    """Make the bytes of a request.
+
+    Args:
+        request: What is asked.
+        count: Records to send; 0 goes on until `STOP`.
+
+    >>> encode_request(Request.START).hex()
+    '1234000200000000'
+    """
+    return REQUEST.pack(MAGIC, request, count)
+
+
+def describe_status(status: int) -> str:
+    """Spell out a status word; empty where all is well.
+
+    >>> describe_status(0x80020000)
+    'transducer saturated'
+    """
+    names = [name for bit, name in STATUS_BITS.items() if status & bit]
+    known = (1 << 31) | sum(STATUS_BITS)
+    return ", ".join(names + ([f"status {status:#010x}"] if status & ~known else []))
+
+
+def parse_configuration(page: bytes) -> CellConfiguration:
+    """Read a cell's configuration page, `http://CELL/netftapi2.xml`.
+
+    Only four values are wanted, so that they are searched for by name: nothing in a page from the
+    network is expanded or followed, as a parser of XML might.
+
+    Args:
+        page: The page.
+
+    Returns:
+        Counts in SI and the rate.
+
+    Raises:
+        ProtocolError: A value is missing, or its unit unknown.
+    """
+    counts = _number(page, "cfgcpf")
+    unit = _text(page, "scfgfu")
+    if unit not in FORCE_UNITS:
+        raise ProtocolError(
+            f"the load cell's force unit is {unit!r}; expected one of {', '.join(FORCE_UNITS)}"
+        )
+    rate = _number(page, "comrdtrate") if b"<comrdtrate>" in page else None
+    return CellConfiguration(counts / FORCE_UNITS[unit], rate)
+
+
+def _text(page: bytes, tag: str) -> str:
+    found = re.search(rf"<{tag}>\s*([^<]{{1,64}}?)\s*</{tag}>".encode(), page)
+    if found is None:
+        raise ProtocolError(
+            f"the load cell's configuration page has no <{tag}>; is it a Net F/T's netftapi2.xml?"
+        )
+    return found.group(1).decode("ascii", "replace")
+
+
+def _number(page: bytes, tag: str) -> float:
+    text = _text(page, tag)
+    if not re.fullmatch(r"\d+(\.\d+)?", text) or not float(text) > 0:
+        raise ProtocolError(f"the load cell's <{tag}> is {text!r}; expected a number above 0")
+    return float(text)

@@ -1,0 +1,308 @@
+# SPDX-License-Identifier: MIT
+"""The simulated two-disc rig: discs, contact and load cell in continuous operation, no protocol.
+
+Its force comes from any slip law of `model`, so that a calibration can be tried on one that is not
+the fitted one. Not modelled: temperature, wear, play, bending of the frame, side forces.
+"""
+
+import math
+from collections import deque
+from dataclasses import asdict, dataclass
+from typing import Final
+
+import numpy as np
+from scipy.signal import lfilter
+
+from model.slip.brush import Brush
+from model.slip.coulomb import CoulombStribeck
+from model.slip.definition import SlipDefinition, slip_ratio
+from model.slip.law import Array, SlipLaw, Values
+from rig.errors import ProtocolError
+from rig.slip_rig.imperfections import (
+    RigImperfections,
+    bump_rise,
+    lag_one_correlation,
+    measured_load,
+)
+from rig.slip_rig.sweep import SOURCE_LAW, SOURCE_VALUES, SweepPlan
+
+GRID: Final = 1 / 7000
+"""Step of the simulation: a load cell's fastest rate [s]."""
+MEMORY: Final = 2.0
+"""How far back a device may look [s]."""
+SLOWEST: Final = 1e-3
+"""Surface speed below which the leg disc is taken to stand: it carries no force [m/s]."""
+
+TWIN_LAWS: Final[dict[str, tuple[SlipLaw, Values]]] = {
+    "magic-formula": (SOURCE_LAW, SOURCE_VALUES),
+    "coulomb-stribeck": (CoulombStribeck(), (12.0, 0.38, 0.75, 0.15)),
+    "brush": (Brush(kinetic=True), (12.0, 0.38, 0.8)),
+}
+"""Laws that a twin can be run with, and their values, by name."""
+
+
+@dataclass(frozen=True)
+class RigDynamics:
+    """How the rig moves; the defaults are a small rig's.
+
+    Attributes:
+        speed_lag: Time constant with which a disc follows its set-point [s].
+        ripple: Amplitude of the speed's ripple over the speed [-].
+        ripple_order: Ripples in one turn.
+        force_delay: How late the force channels are [s].
+
+    Raises:
+        ProtocolError: A number is negative, or the delay longer than `MEMORY`.
+    """
+
+    speed_lag: float = 0.05
+    ripple: float = 0.0
+    ripple_order: int = 6
+    force_delay: float = 0.0
+
+    def __post_init__(self) -> None:
+        if not (self.speed_lag > 0 and self.ripple >= 0 and 0 <= self.force_delay < MEMORY / 2):
+            raise ProtocolError(
+                f"speed_lag is {self.speed_lag:g} s, ripple {self.ripple:g}, force_delay "
+                f"{self.force_delay:g} s; expected above 0, 0 or more, and 0 to {MEMORY / 2:g} s"
+            )
+
+
+@dataclass(frozen=True)
+class RigTruth:
+    """A stretch of what really happened, one entry a grid step.
+
+    Attributes:
+        time: Since the rig was switched on, shape (n,) [s].
+        omega_leg: Speed of the leg disc, shape (n,) [rad/s].
+        omega_ground: Speed of the ground disc, shape (n,) [rad/s].
+        slip: True slip ratio, shape (n,) [-].
+        load: True normal force, shape (n,) [N].
+        normal: What the normal channel reads, shape (n,) [N].
+        traction: What the traction channel reads, shape (n,) [N].
+    """
+
+    time: Array
+    omega_leg: Array
+    omega_ground: Array
+    slip: Array
+    load: Array
+    normal: Array
+    traction: Array
+
+
+class SimulatedRig:
+    """The rig itself; devices look at it through `advance` and `speeds`.
+
+    Args:
+        law: The true slip law, in the material slip ratio.
+        values: Its values.
+        plan: Radii, and the sweep that the rig drives by itself for as long as no drive commands.
+        imperfections: What its sensors and its bump add.
+        dynamics: How it moves.
+        rng: Source of randomness.
+
+    Attributes:
+        load: Normal force away from the bump [N].
+    """
+
+    def __init__(
+        self,
+        law: SlipLaw = SOURCE_LAW,
+        values: Values = SOURCE_VALUES,
+        *,
+        plan: SweepPlan,
+        imperfections: RigImperfections,
+        dynamics: RigDynamics,
+        rng: np.random.Generator,
+    ) -> None:
+        self.load = plan.loads[0]
+        self._law = law
+        self._values = values
+        self._plan = plan
+        self._imperfections = imperfections
+        self._dynamics = dynamics
+        self._rng = rng
+        self._offset = rng.normal(0.0, imperfections.offset_sd)
+        self._angle = {"leg": 0.0, "ground": float(rng.uniform(0.0, 2 * np.pi))}
+        self._omega = {"leg": 0.0, "ground": 0.0}
+        self._target = {"leg": 0.0, "ground": 0.0}
+        self._noise = 0.0
+        self._wander = 0.0
+        self._sweeping = True
+        self._switched_on: float | None = None
+        self._step = 0
+        self._history: deque[RigTruth] = deque()
+
+    def command(self, disc: str, omega: float) -> None:
+        """Set the speed of a disc; the rig sweeps by itself no more.
+
+        Args:
+            disc: `leg` or `ground`.
+            omega: Set-point [rad/s].
+        """
+        if self._sweeping:
+            self._target = dict.fromkeys(self._target, 0.0)
+        self._sweeping = False
+        self._target[disc] = omega
+
+    def advance(self, now: float) -> None:
+        """Let the rig run up to a time by the clock of whoever serves it [s]."""
+        if self._switched_on is None:
+            self._switched_on = now
+        due = math.floor((now - self._switched_on) / GRID + 1e-6)
+        most = round(0.1 / GRID)  # set-points of a sweep change between stretches
+        while self._step < due:
+            stretch = self._run(min(due - self._step, most))
+            self._history.append(stretch)
+            while stretch.time[-1] - self._history[0].time[-1] > MEMORY:
+                self._history.popleft()
+
+    def elapsed(self, now: float) -> float:
+        """Compute the time since the rig was switched on [s]."""
+        return 0.0 if self._switched_on is None else now - self._switched_on
+
+    def truth(self, since: float = 0.0) -> RigTruth:
+        """Return what really happened, as far back as `MEMORY`.
+
+        Args:
+            since: Earliest time of interest; a little before it is returned too [s].
+
+        Returns:
+            The truth.
+
+        Raises:
+            ProtocolError: The rig has not run yet.
+        """
+        if not self._history:
+            raise ProtocolError("the simulated rig has not run yet; advance it first")
+        chosen: deque[RigTruth] = deque()
+        for stretch in reversed(self._history):
+            chosen.appendleft(stretch)
+            if stretch.time[0] <= since:
+                break
+        rows = [list(vars(stretch).values()) for stretch in chosen]
+        return RigTruth(*(np.concatenate(column) for column in zip(*rows, strict=True)))
+
+    def forces(self, times: Array) -> tuple[Array, Array]:
+        """Read both force channels at times since the start, each of shape (n,) [N]."""
+        late = times - self._dynamics.force_delay
+        truth = self.truth(float(late[0]) - GRID)
+        at = np.searchsorted(truth.time, late + GRID / 2) - 1
+        at = np.clip(at, 0, None)
+        return truth.normal[at], truth.traction[at]
+
+    def speeds(self) -> dict[str, tuple[float, float]]:
+        """Read angle [rad] and speed [rad/s] of each disc as its encoder gives them now."""
+        noise = self._imperfections.speed_noise
+        return {
+            disc: (self._angle[disc], omega + noise * self._rng.standard_normal())
+            for disc, omega in self._omega.items()
+        }
+
+    def description(self) -> dict[str, object]:
+        """Say what is true of this rig, as plain values for a manifest."""
+        return {
+            "law": self._law.name,
+            "values": [float(np.asarray(value)) for value in self._values],
+            "imperfections": asdict(self._imperfections),
+            "dynamics": asdict(self._dynamics),
+            "traction_offset": float(self._offset),
+        }
+
+    def _run(self, n: int) -> RigTruth:
+        time = np.arange(self._step + 1, self._step + n + 1, dtype=np.float64) * GRID
+        self._step += n
+        if self._sweeping:
+            self._follow_plan(float(time[0]))
+        leg = self._turn("leg", n)
+        ground = self._turn("ground", n) * self._wandering(n)
+        slip, load, force = self._contact(leg, ground, n)
+        gained = (1 + self._imperfections.gain_traction) * force
+        traction = gained + self._offset + self._noisy(gained, n)
+        normal = measured_load(load, traction, imperfections=self._imperfections)
+        return RigTruth(time, leg, ground, slip, load, normal, traction)
+
+    def _follow_plan(self, time: float) -> None:
+        loads, slips = self._plan.set_points()
+        at = int(time / self._plan.duration) % len(slips)
+        speed = self._plan.speed_leg
+        self.load = float(loads[at])
+        self._target = {
+            "leg": self._plan.omega_leg,
+            "ground": speed * (1 - float(slips[at])) / self._plan.radius_ground,
+        }
+
+    def _turn(self, disc: str, n: int) -> Array:
+        """Let a disc follow its set-point over n steps; return its speed [rad/s]."""
+        target = self._target[disc]
+        decay = np.exp(-GRID / self._dynamics.speed_lag * np.arange(1, n + 1))
+        smooth = target + (self._omega[disc] - target) * decay
+        angle = self._angle[disc] + np.cumsum(smooth) * GRID
+        self._omega[disc], self._angle[disc] = float(smooth[-1]), float(angle[-1])
+        return smooth * (1 + self._dynamics.ripple * np.sin(self._dynamics.ripple_order * angle))
+
+    def _wandering(self, n: int) -> Array:
+        """Compute a factor of the ground speed that makes the slip ratio wander [-]."""
+        rho = lag_one_correlation(GRID, self._imperfections.slip_wander_time)
+        path, self._wander = _continue_ar1(rho, self._wander, self._rng, n)
+        return 1 - self._imperfections.slip_wander_sd * path
+
+    def _contact(self, leg: Array, ground: Array, n: int) -> tuple[Array, Array, Array]:
+        speed_leg = leg * self._plan.radius_leg
+        speed_ground = ground * self._plan.radius_ground
+        moving = np.abs(speed_leg) > SLOWEST
+        slip = np.zeros(n)
+        slip[moving] = slip_ratio(
+            speed_leg[moving], speed_ground[moving], SlipDefinition.MATERIAL
+        ).clip(-50.0, 50.0)
+        angle = self._angle["ground"] - np.cumsum(ground[::-1])[::-1] * GRID
+        rise = bump_rise(
+            angle, height=self._imperfections.bump_height, width=self._imperfections.bump_width
+        )
+        load = self.load * (1 + rise)
+        return slip, load, np.where(moving, self._law.force(slip, load, self._values), 0.0)
+
+    def _noisy(self, force: Array, n: int) -> Array:
+        size = self._imperfections.noise_sd0 + self._imperfections.noise_sd1 * np.abs(force)
+        rho = lag_one_correlation(GRID, self._imperfections.noise_correlation_time)
+        path, self._noise = _continue_ar1(rho, self._noise, self._rng, n)
+        return size * path
+
+
+def simulated_rig(
+    law: str = "magic-formula",
+    *,
+    plan: SweepPlan,
+    imperfections: RigImperfections,
+    dynamics: RigDynamics,
+    rng: np.random.Generator,
+) -> SimulatedRig:
+    """Make a rig with one of `TWIN_LAWS`.
+
+    Args:
+        law: Name of the law.
+        plan: Radii and the sweep.
+        imperfections: What sensors and bump add.
+        dynamics: How it moves.
+        rng: Source of randomness.
+
+    Returns:
+        The rig.
+
+    Raises:
+        ProtocolError: There is no such law.
+    """
+    if law not in TWIN_LAWS:
+        raise ProtocolError(f"no twin has the slip law '{law}'; known: {', '.join(TWIN_LAWS)}")
+    chosen, values = TWIN_LAWS[law]
+    return SimulatedRig(
+        chosen, values, plan=plan, imperfections=imperfections, dynamics=dynamics, rng=rng
+    )
+
+
+def _continue_ar1(rho: float, last: float, rng: np.random.Generator, n: int) -> tuple[Array, float]:
+    """Continue an AR(1) path of unit marginal variance by n steps; also return its last value."""
+    shock = np.sqrt(1 - rho**2) * rng.standard_normal(n)
+    path, _ = lfilter([1.0], [1.0, -rho], shock, zi=np.array([rho * last]))
+    return np.asarray(path), float(path[-1])

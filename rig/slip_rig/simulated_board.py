@@ -1,0 +1,93 @@
+# SPDX-License-Identifier: MIT
+"""A simulated micro-controller in place of drives and load cell; satisfies `ByteTwin`."""
+
+import math
+
+import numpy as np
+
+from rig.links.faults import PERFECT_LINE, Faults, FaultyWire
+from rig.links.framing import CobsFramer
+from rig.links.packet import TICK, Kind, Packet, decode_packet, encode_packet
+from rig.links.packet_stream import LONGEST
+from rig.slip_rig.board import board_body, speed_body
+from rig.slip_rig.profile import BoardProfile
+from rig.slip_rig.simulated import SimulatedRig
+
+
+class SimulatedBoard:
+    """A board that streams forces and speeds, takes speeds, and has a watchdog.
+
+    Args:
+        rig: The rig it turns and weighs.
+        profile: Counts, signs and rate.
+        watchdog: Silence after which it stops both discs, once it has been commanded [s].
+        faults: What goes wrong on the line.
+        rng: Source of the faults' randomness.
+    """
+
+    def __init__(
+        self,
+        rig: SimulatedRig,
+        *,
+        profile: BoardProfile,
+        watchdog: float = 0.2,
+        faults: Faults = PERFECT_LINE,
+        rng: np.random.Generator,
+    ) -> None:
+        self.source = "sim:rig"
+        self._rig = rig
+        self._profile = profile
+        self._watchdog = watchdog
+        self._wire = FaultyWire(faults, rng=rng)
+        self._framer = CobsFramer(longest=LONGEST)
+        self._body = board_body(profile)
+        self._command = speed_body(profile)
+        self._fed = math.inf
+        self._number = 0
+
+    def poll(self, now: float, received: bytes) -> bytes:
+        """Take speeds and give packets; see `ByteTwin.poll`."""
+        for content in self._framer.feed(received):
+            packet = decode_packet(content)
+            if packet is not None:
+                self._obey(packet, now)
+        if now - self._fed > self._watchdog:
+            self._stop()
+        self._rig.advance(now)
+        due = int(self._rig.elapsed(now) * self._profile.rate + 1e-6)
+        frames = self._frames(due)
+        self._number = max(self._number, due)
+        return self._wire.carry(frames)
+
+    def _frames(self, due: int) -> list[bytes]:
+        numbers = np.arange(self._number + 1, due + 1)
+        if len(numbers) == 0:
+            return []
+        normal, traction = self._rig.forces(numbers / self._profile.rate)
+        speeds = self._rig.speeds()
+        scale = self._profile.counts_per_force
+        turning = [round(speeds[d][1] * self._profile.counts_per_speed) for d in ("leg", "ground")]
+        pressing = np.rint(self._profile.normal_sign * scale * normal).astype(int).tolist()
+        driving = np.rint(self._profile.traction_sign * scale * traction).astype(int).tolist()
+        return [
+            self._encode(number, (pressing[k], driving[k], *turning))
+            for k, number in enumerate(numbers.tolist())
+        ]
+
+    def _encode(self, number: int, counts: tuple[int, ...]) -> bytes:
+        ticks = round(number / self._profile.rate / TICK)
+        return encode_packet(Packet(Kind.SLIP_RIG, number, ticks, self._body.pack(*counts)))
+
+    def _obey(self, packet: Packet, now: float) -> None:
+        if packet.kind == Kind.STOP:
+            self._stop()
+        elif packet.kind == Kind.DISC_SPEEDS and len(packet.body) == self._command.size:
+            self._fed = now
+            leg, ground = self._command.unpack(packet.body)
+            self._rig.command("leg", leg / self._profile.counts_per_speed)
+            self._rig.command("ground", ground / self._profile.counts_per_speed)
+
+    def _stop(self) -> None:
+        self._fed = math.inf
+        self._rig.command("leg", 0.0)
+        self._rig.command("ground", 0.0)

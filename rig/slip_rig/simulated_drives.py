@@ -1,0 +1,141 @@
+# SPDX-License-Identifier: MIT
+"""Simulated ODrive axes on a CAN bus, watchdog included, that turn the discs of a simulated rig.
+
+Not modelled: currents, temperatures, calibration, and every command this project does not send.
+"""
+
+import math
+from dataclasses import dataclass
+from typing import Final
+
+import can
+
+from rig.slip_rig.can_simple import (
+    AXIS_STATE,
+    ESTIMATES,
+    HEARTBEAT,
+    INPUT_VELOCITY,
+    AxisState,
+    Command,
+    can_id,
+    split_id,
+)
+from rig.slip_rig.profile import DiscDrive, DriveProfile
+from rig.slip_rig.simulated import SimulatedRig
+
+HEARTBEAT_INTERVAL: Final = 0.05
+ESTIMATE_INTERVAL: Final = 0.01
+WATCHDOG_EXPIRED: Final = {"0.5": 0x800, "0.6": 0x1000000}
+EMERGENCY_STOP: Final = {"0.5": 0x4000, "0.6": 0x2}
+
+
+@dataclass
+class _Axis:
+    disc: str
+    place: DiscDrive
+    state: int = AxisState.IDLE
+    error: int = 0
+    velocity: float = 0.0
+    fed: float = -math.inf
+
+
+class SimulatedDrives:
+    """Both axes of a rig on one end of a bus.
+
+    Args:
+        rig: The rig they turn.
+        bus: Their own end of the bus; whoever made it closes it.
+        profile: Nodes, gears and signs.
+        watchdog: Silence after which an axis stops by itself [s].
+    """
+
+    def __init__(
+        self, rig: SimulatedRig, bus: can.BusABC, *, profile: DriveProfile, watchdog: float = 0.2
+    ) -> None:
+        self.source = "sim:rig"
+        self._rig = rig
+        self._bus = bus
+        self._firmware = profile.firmware
+        self._watchdog = watchdog
+        self._axes = {
+            profile.leg.node: _Axis("leg", profile.leg),
+            profile.ground.node: _Axis("ground", profile.ground),
+        }
+        self._heartbeat_at = self._estimate_at = -math.inf
+
+    def turning(self) -> bool:
+        """Tell whether any axis is energised and commanded to turn."""
+        return any(a.state == AxisState.CLOSED_LOOP and a.velocity for a in self._axes.values())
+
+    def trip(self, disc: str, error: int) -> None:
+        """Make an axis fail.
+
+        Args:
+            disc: `leg` or `ground`.
+            error: Axis error that it reports.
+        """
+        for axis in self._axes.values():
+            if axis.disc == disc:
+                self._fail(axis, error)
+
+    def poll(self, now: float) -> None:
+        """Obey what is on the bus, watch the dog, and send what is due up to a time [s]."""
+        while (message := self._bus.recv(0.0)) is not None:
+            node, command = split_id(message.arbitration_id)
+            if node in self._axes:
+                self._obey(self._axes[node], command, bytes(message.data), now)
+        for axis in self._axes.values():
+            if axis.state == AxisState.CLOSED_LOOP and now - axis.fed > self._watchdog:
+                self._fail(axis, WATCHDOG_EXPIRED[self._firmware])
+        self._rig.advance(now)
+        self._send_due(now)
+
+    def _send_due(self, now: float) -> None:
+        if now >= self._heartbeat_at:
+            self._heartbeat_at = now + HEARTBEAT_INTERVAL
+            for axis in self._axes.values():
+                data = HEARTBEAT.pack(axis.error, axis.state) + bytes(3)
+                self._send(axis, Command.HEARTBEAT, data)
+        if now >= self._estimate_at:
+            self._estimate_at = now + ESTIMATE_INTERVAL
+            speeds = self._rig.speeds()
+            for axis in self._axes.values():
+                turns = axis.place.sign * axis.place.gear / (2 * math.pi)
+                angle, omega = speeds[axis.disc]
+                data = ESTIMATES.pack(turns * angle, turns * omega)
+                self._send(axis, Command.ENCODER_ESTIMATES, data)
+
+    def _send(self, axis: _Axis, command: Command, data: bytes) -> None:
+        arbitration_id = can_id(axis.place.node, command)
+        self._bus.send(can.Message(arbitration_id=arbitration_id, data=data, is_extended_id=False))
+
+    def _obey(self, axis: _Axis, command: int, data: bytes, now: float) -> None:
+        axis.fed = now  # any message to an axis feeds its watchdog
+        if command == Command.SET_INPUT_VELOCITY and len(data) == INPUT_VELOCITY.size:
+            axis.velocity, _ = INPUT_VELOCITY.unpack(data)
+            if axis.state == AxisState.CLOSED_LOOP:
+                self._turn(axis)
+        elif command == Command.SET_AXIS_STATE and len(data) == AXIS_STATE.size:
+            (wanted,) = AXIS_STATE.unpack(data)
+            if wanted == AxisState.CLOSED_LOOP and not axis.error:
+                axis.state = AxisState.CLOSED_LOOP
+                self._turn(axis)
+            elif wanted == AxisState.IDLE:
+                self._release(axis)
+        elif command == Command.CLEAR_ERRORS:
+            axis.error = 0
+        elif command == Command.EMERGENCY_STOP:
+            self._fail(axis, EMERGENCY_STOP[self._firmware])
+
+    def _turn(self, axis: _Axis) -> None:
+        omega = axis.place.sign * axis.velocity * 2 * math.pi / axis.place.gear
+        self._rig.command(axis.disc, omega)
+
+    def _release(self, axis: _Axis) -> None:
+        if axis.state == AxisState.CLOSED_LOOP:
+            self._rig.command(axis.disc, 0.0)
+        axis.state = AxisState.IDLE
+
+    def _fail(self, axis: _Axis, error: int) -> None:
+        self._release(axis)
+        axis.error |= error

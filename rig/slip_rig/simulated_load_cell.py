@@ -1,0 +1,146 @@
+# SPDX-License-Identifier: MIT
+"""A simulated Net F/T load cell at a loopback UDP port.
+
+Not modelled: its web page, its thresholds, and the low-pass filter inside it.
+"""
+
+import contextlib
+import socket
+from types import TracebackType
+from typing import Self
+
+import numpy as np
+
+from rig.links.faults import PERFECT_LINE, Faults
+from rig.slip_rig.profile import LoadCellProfile
+from rig.slip_rig.rdt import MAGIC, RECORD, REQUEST, WRAP, Request
+from rig.slip_rig.simulated import SimulatedRig
+
+INT32 = (1 << 31) - 1
+
+
+class SimulatedLoadCell:
+    """A cell that answers start, stop and bias: a context manager, because it holds a socket.
+
+    Args:
+        rig: The rig it weighs.
+        profile: Counts, axes and rate; its address is not used.
+        faults: What goes wrong; `drop`, `duplicate`, `delay` and `truncate` mean whole datagrams.
+        rng: Source of the faults' randomness.
+
+    Attributes:
+        host: Loopback address.
+        port: Port that the system gave.
+        sent: Records sent so far, dropped ones counted.
+    """
+
+    def __init__(
+        self,
+        rig: SimulatedRig,
+        *,
+        profile: LoadCellProfile,
+        faults: Faults = PERFECT_LINE,
+        rng: np.random.Generator,
+    ) -> None:
+        self.source = "sim:rig"
+        self.host = "127.0.0.1"
+        self.port = 0
+        self.sent = 0
+        self.status = 0
+        self._rig = rig
+        self._profile = profile
+        self._faults = faults
+        self._rng = rng
+        self._socket: socket.socket | None = None
+        self._client: tuple[str, int] | None = None
+        self._number = 0
+        self._reading = 0
+        self._zero = np.zeros(6)
+        self._held: list[bytes] = []
+
+    def __enter__(self) -> Self:
+        self._socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+        self._socket.bind((self.host, 0))
+        self._socket.setblocking(False)
+        self.port = self._socket.getsockname()[1]
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        if self._socket is not None:
+            self._socket.close()
+        self._socket = None
+
+    def poll(self, now: float) -> None:
+        """Obey requests and send the records that are due up to a time [s]."""
+        self._rig.advance(now)
+        due = int(self._rig.elapsed(now) * self._profile.rate + 1e-6)
+        readings = np.arange(self._reading + 1, due + 1)
+        if len(readings) == 0:
+            return
+        counts = self._counts(readings)
+        self._reading = due
+        self._obey(counts[-1])
+        if self._client is not None:
+            for reading, values in zip(readings.tolist(), counts.tolist(), strict=True):
+                self._send(reading, values)
+
+    def _counts(self, readings: "np.ndarray") -> "np.ndarray":
+        """Read the rig, shape (n, 6) [counts]."""
+        normal, traction = self._rig.forces(readings / self._profile.rate)
+        counts = np.zeros((len(readings), 6))
+        for axis, force in ((self._profile.normal, normal), (self._profile.traction, traction)):
+            counts[:, axis.index] += axis.sign * force * self._profile.counts_per_force
+        return np.clip(np.rint(counts), -INT32, INT32).astype(np.int64)
+
+    def _send(self, reading: int, values: list[int]) -> None:
+        self._number += 1
+        self.sent += 1
+        biased = [int(v - z) for v, z in zip(values, self._zero.tolist(), strict=True)]
+        record = RECORD.pack(self._number % WRAP, reading % WRAP, self.status, *biased)
+        held, self._held = self._held, []
+        if self._happens(self._faults.delay):
+            self._held = [record]
+        elif not self._happens(self._faults.drop):
+            short = self._happens(self._faults.truncate)
+            self._emit(record[:20] if short else record)
+            if self._happens(self._faults.duplicate):
+                self._emit(record)
+        for late in held:
+            self._emit(late)
+
+    def _emit(self, record: bytes) -> None:
+        if self._socket is not None and self._client is not None:
+            with contextlib.suppress(OSError):  # nobody listens any more
+                self._socket.sendto(record, self._client)
+
+    def _happens(self, probability: float) -> bool:
+        return probability > 0 and self._rng.random() < probability
+
+    def _obey(self, counts: "np.ndarray") -> None:
+        if self._socket is None:
+            return
+        with contextlib.suppress(BlockingIOError):
+            while True:
+                try:
+                    data, sender = self._socket.recvfrom(64)
+                except ConnectionError:
+                    continue
+                self._handle(data, sender, counts)
+
+    def _handle(self, data: bytes, sender: tuple[str, int], counts: "np.ndarray") -> None:
+        if len(data) != REQUEST.size:
+            return
+        magic, request, _ = REQUEST.unpack(data)
+        if magic != MAGIC:
+            return
+        if request == Request.START:
+            self._client, self._number = sender, 0
+        elif request == Request.STOP:
+            self._client = None
+        elif request == Request.BIAS:
+            self._zero = counts.astype(float)

@@ -1,0 +1,203 @@
+# SPDX-License-Identifier: MIT
+"""Finds a robot's leg order, signs and zeros by moving one leg at a time; and its lift-off angle.
+
+A person watches the robot, which stands on a block with its legs free: which leg moved, and which
+way, no stream can know.
+"""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Final, Protocol
+
+import numpy as np
+
+from rig.clock import SYSTEM_CLOCK, Clock
+from rig.device import Sample, Stream
+from rig.errors import DeviceFault, RigTimeout
+from rig.zebro.commands import LegCommands
+from rig.zebro.profile import LegProfile
+
+STEP: Final = 0.1
+"""How far a leg is moved to be recognised [turns]."""
+DURATION: Final = 0.5
+SETTLING: Final = 0.5
+ANSWER_LIMIT: Final = 2.0
+
+
+class CheckedLegs(LegCommands, Stream, Protocol):
+    """A robot that can be read and commanded."""
+
+
+@dataclass(frozen=True)
+class Observation:
+    """What a person saw when one channel was moved up by some counts.
+
+    Attributes:
+        leg: Number of the leg that moved.
+        forward: Whether it turned as in walking forward.
+    """
+
+    leg: int
+    forward: bool
+
+
+def check_legs(
+    robot: CheckedLegs,
+    observe: Callable[[int], Observation],
+    *,
+    clock: Clock = SYSTEM_CLOCK,
+) -> LegProfile:
+    """Fix order and signs: move each channel up in turn, and ask what moved.
+
+    Args:
+        robot: The robot, open, its legs free.
+        observe: Asks the person what was seen; gets the channel, from 0.
+        clock: Host time.
+
+    Returns:
+        The profile with `legs` and `sign` as observed; zeros are kept with their channels.
+
+    Raises:
+        RigTimeout: The robot sends nothing.
+        DeviceFault: A channel did not follow its command, or a leg was seen twice.
+    """
+    seen: list[Observation] = []
+    for channel in range(len(robot.profile.legs)):
+        move_channel(robot, channel, clock=clock)
+        observation = observe(channel)
+        if observation.leg in [earlier.leg for earlier in seen]:
+            raise DeviceFault(
+                f"leg {observation.leg} was seen to move for two channels, the second "
+                f"{channel + 1}; begin anew",
+                status=channel,
+            )
+        seen.append(observation)
+    return replace(
+        robot.profile,
+        legs=tuple(observation.leg for observation in seen),
+        sign=tuple(1 if observation.forward else -1 for observation in seen),
+    )
+
+
+def move_channel(robot: CheckedLegs, channel: int, *, clock: Clock = SYSTEM_CLOCK) -> None:
+    """Move one channel up by `STEP` and hold all others; check that it followed.
+
+    Args:
+        robot: The robot, open.
+        channel: Channel, from 0.
+        clock: Host time.
+
+    Raises:
+        RigTimeout: The robot sends nothing.
+        DeviceFault: The channel stayed, or another one moved.
+    """
+    around = robot.profile.counts_per_revolution
+    before = latest_counts(robot, clock=clock)
+    step = max(round(STEP * around), 1)
+    targets = [int(count) % around for count in before]
+    targets[channel] = (targets[channel] + step) % around
+    robot.set_points(tuple(targets), DURATION)
+    end = clock.now() + DURATION + SETTLING
+    while clock.now() < end:
+        robot.read(min(0.05, end - clock.now()))
+    after = latest_counts(robot, clock=clock)
+    for other, (was, now) in enumerate(zip(before, after, strict=True)):
+        moved = (now - was + around / 2) % around - around / 2
+        wanted = step if other == channel else 0
+        if abs(moved - wanted) > max(step / 4, 1):
+            raise DeviceFault(
+                f"channel {channel + 1} was commanded to move by {step} counts; channel "
+                f"{other + 1} moved by {moved:g} where {wanted} was expected",
+                status=other,
+            )
+
+
+def zero_legs(robot: CheckedLegs, *, clock: Clock = SYSTEM_CLOCK) -> LegProfile:
+    """Fix zeros: what the counts are now, while a person holds every toe straight ahead.
+
+    Args:
+        robot: The robot, open.
+        clock: Host time.
+
+    Returns:
+        The profile with `zero_counts` as read.
+
+    Raises:
+        RigTimeout: The robot sends nothing.
+    """
+    around = robot.profile.counts_per_revolution
+    counts = latest_counts(robot, clock=clock)
+    return replace(robot.profile, zero_counts=tuple(count % around for count in counts))
+
+
+def latest_counts(robot: CheckedLegs, *, clock: Clock = SYSTEM_CLOCK) -> tuple[float, ...]:
+    """Read until something comes that was not waiting, and return the last counts.
+
+    Args:
+        robot: The robot, open.
+        clock: Host time.
+
+    Returns:
+        Counts in the order of the wire.
+
+    Raises:
+        RigTimeout: The robot sends nothing.
+    """
+    robot.read(0.0)
+    end = clock.now() + ANSWER_LIMIT
+    while (left := end - clock.now()) > 0:
+        samples: list[Sample] = robot.read(left)
+        if samples:
+            return samples[-1].counts
+    raise RigTimeout(f"stream '{robot.name}' sent nothing", waited=ANSWER_LIMIT)
+
+
+@dataclass(frozen=True)
+class LiftOff:
+    """A lift-off angle found on the robot.
+
+    Attributes:
+        theta: The angle, a whole number of counts [rad].
+        mismatch: Hip height there less that at touchdown [m].
+        measurements: How many heights were measured.
+    """
+
+    theta: float
+    mismatch: float
+    measurements: int
+
+
+def find_lift_off(
+    hip_height: Callable[[float], float], touchdown: float, *, counts_per_revolution: int
+) -> LiftOff:
+    r"""Find the lift-off angle whose hip height is the touchdown's, sections 2-6-1 and 5-2-3.
+
+    Past the vertical a leg's hip only sinks, so that the angle is found by halving, among the
+    angles that the robot can count. A half-circular leg would have it at
+    :math:`2\sin\theta_{LO} = 1 + \sin\theta_{TD}`, Eq. (2-17); real ones are longer than that,
+    and the source measured 130° where that equation gives 118°.
+
+    Args:
+        hip_height: Turns a standing leg to an angle [rad] and measures the height of its hip [m].
+        touchdown: Touchdown angle, below pi/2 [rad].
+        counts_per_revolution: Counts of a whole turn.
+
+    Returns:
+        The count angle with the nearest height.
+    """
+    count = 2 * math.pi / counts_per_revolution
+    heights: dict[int, float] = {}
+
+    def above(index: int) -> float:
+        if index not in heights:
+            heights[index] = hip_height(index * count)
+        return heights[index] - wanted
+
+    wanted = hip_height(touchdown)
+    low, high = math.ceil(np.pi / 2 / count), math.floor(np.pi / count)
+    while high - low > 1:
+        middle = (low + high) // 2
+        low, high = (middle, high) if above(middle) > 0 else (low, middle)
+    best = min((low, high), key=lambda index: abs(above(index)))
+    return LiftOff(best * count, above(best), len(heights) + 1)

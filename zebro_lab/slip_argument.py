@@ -16,10 +16,11 @@ from zebro_lab.errors import NotFound, SettingsError
 
 if TYPE_CHECKING:
     from model.walk.path import WalkPath
+    from model.walk.thesis import Traction
 
 THESIS = "thesis"
 COULOMB = "coulomb"
-_EXPECTED = f"a {SLIP_TOML}, the folder that holds it, coulomb:MU[:V] or thesis"
+EXPECTED_SLIP = f"a {SLIP_TOML}, the folder that holds it, coulomb:MU[:V] or thesis"
 _SOURCE_LOADS = (2.13, 12.75)  # Fig. 4-14 [N]
 
 
@@ -47,39 +48,39 @@ class Slip:
             return self.law.table(weight=weight, toe=toe)
         return curve_table(self.law, weight=weight, toe=toe)
 
-    def material_curve(self, *, used_by: str) -> SlipCurve:
-        """Return the curve for a model that takes slip ratios as the rig has them.
-
-        Args:
-            used_by: The model, for the error.
+    def thesis_traction(self, *, weight: float) -> "Traction":
+        """Prepare the law for the source's model, for a robot of a weight [N].
 
         Raises:
-            SettingsError: The law is no curve of slip ratio, or one of another definition.
+            SettingsError: The curve is one of another definition than the rig's.
         """
+        from model.walk.thesis import law_traction, table_traction
+
         if isinstance(self.law, VelocityCoulomb):
-            raise SettingsError(
-                f"'{self.text}' is friction by slip velocity, but the model '{used_by}' takes slip "
-                f"ratios; name a {SLIP_TOML} or thesis, or use --model dynamics",
-                key="--slip",
-            )
+            return table_traction(self.law.table(weight=weight))
         if self.law.definition is not SlipDefinition.MATERIAL:
             raise SettingsError(
-                f"was fitted to '{self.law.definition}' slip, but the model '{used_by}' takes "
+                f"was fitted to '{self.law.definition}' slip, but the source's model takes "
                 f"'{SlipDefinition.MATERIAL}' slip; calibrate again with --slip-definition "
                 f"{SlipDefinition.MATERIAL}, or use --model dynamics, which converts",
                 file=self.text,
             )
-        return self.law
+        return law_traction(self.law.law, self.law.values, weight=weight)
+
+    @property
+    def tested_loads(self) -> tuple[float, float] | None:
+        """Smallest and largest load tested; None for an assumed law [N]."""
+        return None if isinstance(self.law, VelocityCoulomb) else self.law.load_range
 
     def loads_below_tested(self, path: "WalkPath") -> float | None:
         """Return the share of leg contacts whose load lies below what was tested [-].
 
         None where no load was ever tested: an assumed law has no range.
         """
-        if isinstance(self.law, VelocityCoulomb):
+        if self.tested_loads is None:
             return None
         loads = path.normal_force[path.contact]
-        return float(np.mean(loads < self.law.load_range[0])) if len(loads) else 0.0
+        return float(np.mean(loads < self.tested_loads[0])) if len(loads) else 0.0
 
 
 def parse_slip(text: str) -> Slip:
@@ -104,7 +105,7 @@ def parse_slip(text: str) -> Slip:
         return Slip(text, _coulomb(text, numbers), source="assumed")
     path = Path(text)
     if not path.exists():
-        raise NotFound(f"--slip: '{text}' is no file or folder; expected {_EXPECTED}")
+        raise NotFound(f"--slip: '{text}' is no file or folder; expected {EXPECTED_SLIP}")
     return _calibrated(text, path)
 
 

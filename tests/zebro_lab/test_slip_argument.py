@@ -91,14 +91,15 @@ def test_other_definition_is_converted_or_refused(calibration):
     slip = parse_slip(str(calibration))
     assert slip.law.definition is SlipDefinition.TRAVEL
     assert "converted" in slip.notes[0]
-    assert slip.traction_table(weight=21.0).phi.shape[0] > 1
+    assert np.isfinite(slip.traction_table(weight=21.0).phi).all()
     with pytest.raises(SettingsError, match="--slip-definition material"):
-        slip.material_curve(used_by="thesis")
+        slip.thesis_traction(weight=21.0)
 
 
-def test_friction_by_velocity_is_no_curve_of_slip_ratio():
-    with pytest.raises(SettingsError, match="takes slip ratios"):
-        parse_slip("coulomb:0.4").material_curve(used_by="thesis")
+def test_sources_model_takes_the_sources_curve_exactly_and_any_other_as_a_table(calibration):
+    assert parse_slip("thesis").thesis_traction(weight=21.0).exact
+    for text in ("coulomb:0.4", str(calibration)):
+        assert not parse_slip(text).thesis_traction(weight=21.0).exact
 
 
 def test_loads_below_the_tested_are_counted_in_contact_alone(calibration, walked):

@@ -8,6 +8,10 @@ import typer
 from zebro_lab.cli.calibrate import EPILOG, calibrate
 from zebro_lab.cli.errors import run
 from zebro_lab.cli.init import init
+from zebro_lab.cli.predict import EPILOG as PREDICT_EPILOG
+from zebro_lab.cli.predict import predict
+from zebro_lab.cli.walk import EPILOG as WALK_EPILOG
+from zebro_lab.cli.walk import walk
 
 app = typer.Typer(
     add_completion=False,
@@ -17,6 +21,8 @@ app = typer.Typer(
 )
 app.command(epilog=EPILOG)(calibrate)
 app.command()(init)
+app.command(epilog=WALK_EPILOG)(walk)
+app.command(epilog=PREDICT_EPILOG)(predict)
 
 
 def _print_version(wanted: bool) -> None:

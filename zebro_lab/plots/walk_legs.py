@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from model.robot import LEFT, N_LEGS
 from model.slip.law import Array
 from model.walk.path import WalkPath
+from model.walk.thesis.chatter import paired_sum
 from zebro_lab.plots.sheet import BLUE, RED, legend_below, new_figure, styled
 
 _NAMES = ("left front", "right front", "left middle", "right middle", "left rear", "right rear")
@@ -33,7 +34,7 @@ def slip_ratios(path: WalkPath, *, title: str, simulated: bool) -> Figure:
         that is dragged while it hardly turns has very large ones.
     """
     figure, panels = _leg_panels(title, simulated)
-    limits = _limits(path.slip_ratio[path.contact], least=0.02)
+    limits = _limits(path.slip_ratio[path.contact], least=0.02, cut=0.03)
     for leg, axes in panels:
         _shade(axes, path.t, path.contact[:, leg])
         axes.plot(path.t, path.slip_ratio[:, leg], color=BLUE, lw=0.9)
@@ -82,7 +83,9 @@ def traction_forces(path: WalkPath, *, title: str, simulated: bool) -> Figure:
 
 @styled
 def paired_traction(path: WalkPath, *, title: str, simulated: bool) -> Figure:
-    """Draw the paired net traction of each leg over time (Fig. 5-19): see `paired_sum`.
+    """Draw the sums of consecutive pairs of traction forces of each leg over time (Fig. 5-19).
+
+    The source's traction changes sign from step to step; this is what it calls the net force.
 
     Args:
         path: The stretch of walk to draw.
@@ -93,27 +96,8 @@ def paired_traction(path: WalkPath, *, title: str, simulated: bool) -> Figure:
         The figure, as `traction_forces` draws it.
     """
     net = paired_sum(path.traction_force)
-    return _draw_traction(path.t[1:], net, path.contact[1:], title, simulated)
-
-
-def paired_sum(force: Array) -> Array:
-    r"""Add each sample to the one before it, the source's "net" force of section 5-4-4.
-
-    .. math::
-        \bar F_k = F_{k-1} + F_k
-
-    A force whose sign alternates from step to step leaves what does not alternate, twice.
-
-    Args:
-        force: Samples along the first axis, shape (n, ...) [N].
-
-    Returns:
-        Sums, shape (n - 1, ...) [N].
-
-    >>> paired_sum(np.array([3.0, -2.0, 3.0, -2.0])).tolist()
-    [1.0, 1.0, 1.0]
-    """
-    return force[1:] + force[:-1]
+    first = slice(1, 2 * len(net), 2)
+    return _draw_traction(path.t[first], net, path.contact[first], title, simulated)
 
 
 @styled
@@ -199,10 +183,13 @@ def _shade(axes: Axes, t: Array, contact: NDArray[np.bool_]) -> None:
     axes.set_xlim(t[0], t[-1])
 
 
-def _limits(values: Array, *, least: float) -> tuple[float, float]:
-    """Return limits that hold 94 % of the values, and zero, and are not closer than `least`."""
+def _limits(values: Array, *, least: float, cut: float = 0.01) -> tuple[float, float]:
+    """Return limits that hold zero and all values but a share `cut` at either end.
+
+    Impacts of a few samples would flatten all else. Limits are not closer than `least`.
+    """
     finite = values[np.isfinite(values)]
-    low, high = np.quantile(finite, (0.03, 0.97)) if len(finite) else (0.0, 0.0)
+    low, high = np.quantile(finite, (cut, 1 - cut)) if len(finite) else (0.0, 0.0)
     low, high = min(float(low), 0.0), max(float(high), 0.0)
     margin = 0.1 * max(high - low, least)
     return low - margin, high + margin

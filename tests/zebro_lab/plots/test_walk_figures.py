@@ -16,7 +16,6 @@ from zebro_lab.plots import save
 from zebro_lab.plots.walk_legs import (
     gantt,
     normal_forces,
-    paired_sum,
     paired_traction,
     slip_ratios,
     stances,
@@ -115,10 +114,13 @@ def test_stances_are_where_the_contact_is(contact):
     np.testing.assert_array_equal(found, contact)
 
 
-@given(arrays(float, (8, 6, 2), elements=st.floats(-10, 10)), st.floats(0.1, 10))
-def test_paired_sum_removes_what_alternates(force, amplitude):
-    sign = np.where(np.arange(8) % 2 == 0, 1.0, -1.0)[:, None, None]
-    np.testing.assert_allclose(paired_sum(force + amplitude * sign), paired_sum(force), atol=1e-9)
+def test_paired_traction_leaves_nothing_of_what_alternates(walked):
+    sign = np.where(np.arange(len(walked.t)) % 2 == 0, 5.0, -5.0)[:, None, None]
+    chatter = replace(walked, traction_force=walked.traction_force + sign)
+    for axes, noisy in zip(
+        *(paired_traction(p, title="", simulated=True).axes for p in (walked, chatter)), strict=True
+    ):
+        np.testing.assert_allclose(axes.lines[1].get_ydata(), noisy.lines[1].get_ydata(), atol=1e-9)
 
 
 @given(period=st.none() | st.floats(0.05, 10))

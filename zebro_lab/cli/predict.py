@@ -1,0 +1,80 @@
+# SPDX-License-Identifier: MIT
+"""`zebro-lab predict LEGLOG`: where measured leg angles lead."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from zebro_lab.cli.walk_options import (
+    Animate,
+    ArcDeg,
+    Direction,
+    Figures,
+    Model,
+    ModelName,
+    Out,
+    RobotFile,
+    Slip,
+    StepLength,
+    Toe,
+    ToeName,
+    require_slip,
+)
+
+EPILOG = """
+Examples:
+
+zebro-lab predict legs.csv --slip calibration --out prediction --figures
+
+zebro-lab predict legs.csv --columns legs.toml --slip coulomb:0.38 --arc-deg 200 --out prediction
+
+LEGLOG holds t [s] and theta1 to theta6 [rad], pi/2 with the toe straight down, wrapped or not;
+other names and units through a columns.toml beside it. docs/formats.md says more.
+"""
+
+
+def predict(
+    leglog: Annotated[
+        Path, typer.Argument(help="Leg angles over time: CSV, Parquet, or a walk folder.")
+    ],
+    out: Out = Path("prediction"),
+    slip: Slip = None,
+    model: ModelName = Model.DYNAMICS,
+    toe: ToeName = Toe.SATURATED,
+    robot: RobotFile = None,
+    arc_deg: ArcDeg = None,
+    columns: Annotated[
+        Path | None, typer.Option(help="columns.toml to use in place of that beside LEGLOG.")
+    ] = None,
+    direction: Annotated[
+        Direction, typer.Option(help="Side the gait turns to; only --model thesis asks.")
+    ] = Direction.LEFT,
+    dt: StepLength = None,
+    figures: Figures = False,
+    animate: Animate = False,
+) -> None:
+    """Predict where measured leg angles lead: FOLDER/path.csv, pictures and a film."""
+    from zebro_lab.cli.walk_report import run_and_report
+    from zebro_lab.stages.predict import PredictRequest
+    from zebro_lab.stages.predict import predict as run
+    from zebro_lab.walking import ModelRequest
+
+    require_slip(model, slip)
+    request = PredictRequest(
+        log=leglog,
+        model=ModelRequest(
+            out=out,
+            slip=slip,
+            model=model.value,
+            toe=toe.value,
+            robot=robot,
+            arc_deg=arc_deg,
+            dt=dt,
+            figures=figures,
+            animate=animate,
+        ),
+        columns=columns,
+        direction=direction.value,
+    )
+    run_and_report(lambda watcher: run(request, watcher), request.model)

@@ -1,0 +1,105 @@
+# SPDX-License-Identifier: MIT
+"""A walk in a few numbers."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from model.slip.law import Array
+from model.walk.path import WalkPath
+
+_STRAIGHT = 0.05  # rad/m: beyond a radius of 20 m nobody sees a curve on a lab floor
+
+
+@dataclass(frozen=True)
+class WalkSummary:
+    """What a person asks of a walk first.
+
+    Attributes:
+        duration: Time walked [s].
+        end: x, y and yaw at the end [m, m, rad].
+        length: Length of the line over the ground [m].
+        strides: Whole strides the numbers below are means over; 0 where there is none, and they
+            are of the whole walk.
+        speed: Speed along the curve [m/s].
+        yaw_rate: Mean yaw rate, positive to the left [rad/s].
+        radius: Radius of the curve, positive to the left; infinite for a straight walk [m].
+        largest_roll: Largest roll to either side [rad].
+        largest_pitch: Largest pitch to either side [rad].
+        mean_slip: Mean slip speed of legs in contact; NaN where the model has none [m/s].
+    """
+
+    duration: float
+    end: tuple[float, float, float]
+    length: float
+    strides: int
+    speed: float
+    yaw_rate: float
+    radius: float
+    largest_roll: float
+    largest_pitch: float
+    mean_slip: float
+
+    @property
+    def straight(self) -> bool:
+        """Tell whether the curve is too wide to be seen."""
+        return not abs(self.radius) < 1 / _STRAIGHT
+
+
+def summarise(path: WalkPath) -> WalkSummary:
+    r"""Compute the summary of a walk.
+
+    Speed and radius are those of strides, not of the wiggling line between: a stride's poses lie
+    on a circle when the gait is constant,
+
+    .. math::
+        R = \frac{|\Delta p|}{2 \sin(\Delta\psi / 2)}, \qquad v = R\, \Delta\psi / T .
+
+    Args:
+        path: The walk.
+    """
+    x, y = path.position[-1, :2]
+    poses, strides = stride_poses(path)
+    time, turn = np.diff(poses[:, 0]).mean(), np.diff(poses[:, 3]).mean()
+    chord = np.linalg.norm(np.diff(poses[:, 1:3], axis=0), axis=1).mean()
+    sine = 2 * np.sin(turn / 2)
+    arc = chord if sine == 0 else chord * turn / sine
+    sliding = np.linalg.norm(path.slip_velocity[path.contact], axis=-1)
+    largest = np.abs(path.orientation[:, :2]).max(axis=0)
+    return WalkSummary(
+        duration=float(path.t[-1] - path.t[0]),
+        end=(float(x), float(y), float(path.yaw[-1])),
+        length=path.length,
+        strides=strides,
+        speed=float(arc / time),
+        yaw_rate=float(turn / time),
+        radius=float("inf") if sine == 0 else float(chord / sine),
+        largest_roll=float(largest[0]),
+        largest_pitch=float(largest[1]),
+        mean_slip=float(sliding.mean()) if len(sliding) else float("nan"),
+    )
+
+
+def stride_poses(path: WalkPath) -> tuple[Array, int]:
+    """Find the poses between strides: where the legs have, on average, turned once more.
+
+    The first stride starts the robot and is left out where there are others.
+
+    Args:
+        path: The walk.
+
+    Returns:
+        Times and poses t, x, y, yaw, shape (m, 4), m >= 2, and the number of strides between
+        them; the first and last sample and 0 where the legs do not turn as often.
+    """
+    turned = path.theta.mean(axis=1)
+    turns = (np.maximum.accumulate(turned) - turned[0]) / (2 * np.pi)
+    # A stride may end with the walk, within rounding.
+    whole = int(np.floor(turns[-1] + 1e-6))
+    columns = np.column_stack([path.t, path.position[:, :2], path.yaw])
+    if whole < 1:
+        return columns[[0, -1]], 0
+    wanted = np.arange(1 if whole > 1 else 0, whole + 1)
+    rising = np.concatenate([[True], np.diff(turns) > 0])  # interpolation needs no plateaus
+    poses = [np.interp(wanted, turns[rising], column[rising]) for column in columns.T]
+    return np.column_stack(poses), len(wanted) - 1

@@ -1,16 +1,18 @@
 # SPDX-License-Identifier: MIT
 """Leg angles that repeat: two speeds, one on the ground and one in flight."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from model.errors import DomainError
 from model.gait.stance import Intervals, event_intervals, require_stance_angles
+from model.robot import N_LEGS
 from model.slip.law import Array
 
 _KINK = 1e-11  # of a period: how near to a change of speed a time is taken to be at it
+_BY_LEG = ("touchdown", "liftoff", "ground_time", "flight_time", "phase", "pause", "offset")
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,16 +62,13 @@ class CyclicReference:
 
     def __post_init__(self) -> None:
         """Give every leg its numbers and refuse legs that cannot walk."""
-        names = (
-            "touchdown", "liftoff", "ground_time", "flight_time", "phase", "pause", "offset",
-        )  # fmt: skip
-        values = [np.atleast_1d(np.asarray(getattr(self, name), dtype=float)) for name in names]
+        values = [np.atleast_1d(np.asarray(getattr(self, name), dtype=float)) for name in _BY_LEG]
         try:
             full = np.broadcast_arrays(*values)
         except ValueError as fault:
-            shapes = ", ".join(f"{n} {v.shape}" for n, v in zip(names, values, strict=True))
+            shapes = ", ".join(f"{n} {v.shape}" for n, v in zip(_BY_LEG, values, strict=True))
             raise DomainError(f"shapes do not match: {shapes}; expected one entry a leg") from fault
-        for name, value in zip(names, full, strict=True):
+        for name, value in zip(_BY_LEG, full, strict=True):
             if value.ndim != 1 or not np.isfinite(value).all():
                 raise DomainError(f"{name} is {value}; expected one finite number a leg")
             object.__setattr__(self, name, value.copy())
@@ -120,6 +119,18 @@ class CyclicReference:
     def flight_speed(self) -> Array:
         """Leg speeds in flight, shape (n,) [rad/s]."""
         return (2 * np.pi - self.stance_angle) / (self.flight_time - self.pause)
+
+    def mirrored(self) -> "CyclicReference":
+        """Exchange the left and right legs of a six-legged robot: the mirror image of the walk.
+
+        Raises:
+            DomainError: The legs are not six.
+        """
+        if self.n_legs != N_LEGS:
+            raise DomainError(f"{self.n_legs} legs have no mirror image; expected {N_LEGS}")
+        other = [1, 0, 3, 2, 5, 4]
+        swapped = {name: getattr(self, name)[other] for name in _BY_LEG}
+        return replace(self, **swapped, inner=tuple(sorted(other[leg] for leg in self.inner)))
 
     def angles(self, t: ArrayLike) -> Array:
         """Compute the leg angles at times t of shape (m,), shape (m, n) [rad]."""

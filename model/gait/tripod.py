@@ -152,12 +152,17 @@ def solve_outer_touchdown(
     Raises:
         DomainError: No touchdown angle gives this steering factor.
     """
+    if not steering_factor > 0:
+        raise DomainError(
+            f"steering factor is {steering_factor:g}; expected more than zero: 1 goes straight, "
+            "and the other way is a direction"
+        )
     largest = largest_steering_factor(inner_touchdown, leg_arc)
-    if not 0 < steering_factor < largest:
+    if steering_factor >= largest:
         raise DomainError(
             f"steering factor {steering_factor:g} has no solution with inner touchdown at "
-            f"{np.degrees(inner_touchdown):g} degrees; expected between 0 and {largest:.4g}: "
-            "choose it smaller, or let the inner legs touch down later"
+            f"{np.degrees(inner_touchdown):g} degrees; expected less than {largest:.4g}: choose it "
+            "smaller, or let the inner legs touch down later"
         )
     inner_stance = float(ideal_liftoff(inner_touchdown, leg_arc)) - inner_touchdown
     low, high = -np.pi / 2, _highest_hip(leg_arc)

@@ -1,0 +1,105 @@
+# SPDX-License-Identifier: MIT
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from model.errors import DomainError
+from model.gait.direction import inner_legs
+from model.gait.events import EventTimes, events_reference, scheduled_reference
+from model.gait.notation import TETRAPOD, TRIPOD
+from model.gait.scheduler import straight_system
+from model.gait.stance import stance_intervals
+from model.gait.tripod import TripodAngles, tripod_reference
+from model.gait.turning import turning_system
+
+DOWN, UP = 0.8, 2.2
+TIME = st.integers(1, 40).map(lambda n: n / 8)
+GAITS = st.sampled_from([TRIPOD, TETRAPOD])
+
+
+def turn(gait=TRIPOD, *, flight=0.8, ground=0.8, by=0.1, stance=0.05):
+    return turning_system(
+        gait,
+        inner=inner_legs("left"),
+        ground_time=ground,
+        flight_time=flight,
+        turn_time=by,
+        double_stance=stance,
+    )
+
+
+@given(GAITS, TIME, TIME, TIME)
+def test_settled_reference_has_the_times_of_its_schedule(gait, f, g, p):
+    system = turn(gait, flight=f, ground=g, by=p)
+    legs = scheduled_reference(system, DOWN, liftoff=UP)
+    assert legs.period == pytest.approx(system.cycle_time)
+    outer_by = np.where(np.arange(6) % 2 == 0, 0.0, p)
+    np.testing.assert_allclose(legs.flight_time, f + outer_by)
+    assert np.all((legs.phase >= 0) & (legs.phase < 1))
+
+
+@given(GAITS, TIME, TIME, TIME)
+def test_settled_events_give_the_settled_reference(gait, f, g, p):
+    system = turn(gait, flight=f, ground=g, by=p)
+    n, period = 6, system.cycle_time
+    one = system.steady_state
+    cycles = np.arange(5)[:, None] * period
+    zero = one.touchdown[0, system.gait.group_of == 0].min()
+    events = EventTimes(one.touchdown + cycles - zero, one.liftoff + cycles - zero)
+    sampled = events_reference(events, DOWN, liftoff=UP)
+    legs = scheduled_reference(system, DOWN, liftoff=UP)
+    t = np.linspace(events.touchdown[0].max(), events.touchdown[-1].min(), 200)
+    turns = (sampled.angles(t) - legs.angles(t)) / (2 * np.pi)
+    np.testing.assert_allclose(turns, np.broadcast_to(np.round(turns[0]), (200, n)), atol=1e-7)
+
+
+def test_straight_tripod_schedule_is_the_straight_tripod():
+    system = straight_system(TRIPOD, ground_time=1.0, flight_time=1.0)
+    scheduled = scheduled_reference(system, DOWN, liftoff=UP)
+    tripod = tripod_reference(TripodAngles(DOWN, UP, DOWN, UP), 2.0)
+    t = np.linspace(0.0, 5.0, 300)
+    np.testing.assert_allclose(scheduled.angles(t), tripod.angles(t), atol=1e-9)
+
+
+def test_double_stance_lasts_as_long_as_asked():
+    system = straight_system(TRIPOD, ground_time=0.1, flight_time=1.0, double_stance=0.2)
+    legs = scheduled_reference(system, DOWN, liftoff=UP)
+    stands = legs.stance_intervals((0.0, 12 * legs.period))
+    lift = stands[0][:, 1]
+    lift = lift[(lift > legs.period) & (lift < 11 * legs.period)]
+    gaps = [t - stands[1][stands[1][:, 0] <= t, 0].max() for t in lift]
+    np.testing.assert_allclose(gaps, 0.2)
+
+
+@given(st.integers(0, 2**32 - 1))
+def test_transient_reference_stands_when_its_events_say(seed):
+    system = turn(TETRAPOD)
+    start = np.random.default_rng(seed).uniform(0.0, 2.0, 12)
+    events = system.events(5, start=start)
+    legs = events_reference(events, DOWN, liftoff=UP)
+    sampled = stance_intervals(legs.t, legs.theta, DOWN, UP)
+    span = (float(events.touchdown[0].max()), float(events.touchdown[-1].min()))
+    for found, expected in zip(sampled, events.stance_intervals(span), strict=True):
+        cut = np.clip(found, *span)
+        cut = cut[cut[:, 1] > cut[:, 0] + 1e-7]
+        np.testing.assert_allclose(cut, expected[expected[:, 1] > expected[:, 0] + 1e-7], atol=1e-7)
+
+
+def test_transient_reference_grows_by_a_turn_between_touchdowns():
+    events = turn().events(4)
+    legs = events_reference(events, DOWN, liftoff=UP)
+    for leg in range(6):
+        at = legs.angles(events.touchdown[:, leg])[:, leg]
+        np.testing.assert_allclose(at, DOWN + 2 * np.pi * np.arange(5), atol=1e-7)
+
+
+def test_events_out_of_order_are_refused():
+    times = np.zeros((3, 6)) + np.arange(3)[:, None]
+    with pytest.raises(DomainError, match="leg 1 has an event at 0 s and the next at -1 s"):
+        events_reference(EventTimes(times, times - 2.0), DOWN, liftoff=UP)
+
+
+def test_liftoff_before_touchdown_is_refused():
+    with pytest.raises(DomainError, match="leg 1 touches down"):
+        scheduled_reference(turn(), UP, liftoff=DOWN)

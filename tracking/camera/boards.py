@@ -1,0 +1,119 @@
+# SPDX-License-Identifier: MIT
+"""Calibration boards and how their corners are found in a picture."""
+
+from dataclasses import dataclass
+from typing import TypeAlias
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from tracking.camera.lens import Array
+from tracking.markers.dictionaries import dictionary_named
+
+
+@dataclass(frozen=True)
+class Checkerboard:
+    """A plain checkerboard.
+
+    Attributes:
+        columns: Inner corners along a row.
+        rows: Inner corners along a column.
+        square: Side of a square [m].
+    """
+
+    columns: int
+    rows: int
+    square: float
+
+
+@dataclass(frozen=True)
+class CharucoBoard:
+    """A checkerboard with a marker in every white square; it may be seen in part.
+
+    Attributes:
+        columns: Squares along a row.
+        rows: Squares along a column.
+        square: Side of a square [m].
+        marker: Side of a marker [m].
+        dictionary: Name of the markers' dictionary, such as "4x4_50".
+        legacy: Pattern of OpenCV before 4.6, which starts with a white square where `rows` is even.
+    """
+
+    columns: int
+    rows: int
+    square: float
+    marker: float
+    dictionary: str
+    legacy: bool = False
+
+
+Board: TypeAlias = Checkerboard | CharucoBoard
+
+
+@dataclass(frozen=True)
+class BoardView:
+    """The corners of a board that one picture shows.
+
+    Attributes:
+        name: Name of the picture.
+        points: Corners on the board, shape (n, 3), z = 0 [m].
+        corners_px: The same corners in the picture, shape (n, 2) [px].
+    """
+
+    name: str
+    points: Array
+    corners_px: Array
+
+
+def find_board(pixels: NDArray[np.uint8], board: Board, *, name: str = "") -> BoardView | None:
+    """Find a board's corners to a fraction of a pixel.
+
+    Args:
+        pixels: The picture, grey or BGR, shape (height, width) or (height, width, 3).
+        board: The board.
+        name: Name of the picture, for the report.
+
+    Returns:
+        The corners seen, or None where the board is not found.
+    """
+    grey = cv2.cvtColor(pixels, cv2.COLOR_BGR2GRAY) if pixels.ndim == 3 else pixels
+    if isinstance(board, Checkerboard):
+        return _find_checkerboard(grey, board, name)
+    return _find_charuco(grey, board, name)
+
+
+def _find_checkerboard(grey: NDArray, board: Checkerboard, name: str) -> BoardView | None:
+    shape = (board.columns, board.rows)
+    found, corners = cv2.findChessboardCorners(grey, shape)
+    if not found:
+        # Slower, but it sees boards that are blurred or small.
+        found, corners = cv2.findChessboardCornersSB(grey, shape, flags=cv2.CALIB_CB_EXHAUSTIVE)
+        if not found:
+            return None
+    corners_px = np.asarray(corners, dtype=np.float32).reshape(-1, 1, 2)
+    reach = _refinement_reach(corners_px.reshape(board.rows, board.columns, 2))
+    stop = (cv2.TERM_CRITERIA_EPS + cv2.TERM_CRITERIA_COUNT, 100, 1e-4)
+    corners_px = cv2.cornerSubPix(grey, corners_px, (reach, reach), (-1, -1), stop)
+    row, column = np.divmod(np.arange(board.rows * board.columns), board.columns)
+    points = np.column_stack((column, row, np.zeros(len(row)))) * board.square
+    return BoardView(name, points, np.asarray(corners_px, dtype=float).reshape(-1, 2))
+
+
+def _refinement_reach(grid: NDArray) -> int:
+    # Half the window of sub-pixel refinement: as wide as it goes without a neighbour's edges,
+    # which a diagonal of 0.4 squares leaves out under any perspective a board survives.
+    steps = [np.linalg.norm(np.diff(grid, axis=axis), axis=2).min() for axis in (0, 1)]
+    return int(np.clip(0.4 * min(steps), 2, 11))
+
+
+def _find_charuco(grey: NDArray, board: CharucoBoard, name: str) -> BoardView | None:
+    target = cv2.aruco.CharucoBoard(
+        (board.columns, board.rows), board.square, board.marker, dictionary_named(board.dictionary)
+    )
+    target.setLegacyPattern(board.legacy)
+    corners, ids, _, _ = cv2.aruco.CharucoDetector(target).detectBoard(grey)
+    if ids is None or len(ids) < 6:
+        return None
+    points = np.array(target.getChessboardCorners(), dtype=float)[np.array(ids, dtype=int).ravel()]
+    return BoardView(name, points, np.asarray(corners, dtype=float).reshape(-1, 2))

@@ -1,0 +1,155 @@
+# SPDX-License-Identifier: MIT
+"""Calibrate a lens from pictures of a board, and say how well it is known."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from tracking.camera.boards import BoardView
+from tracking.camera.lens import Array, Camera
+from tracking.errors import CalibrationError
+
+LENS_MODELS = {
+    "none": cv2.CALIB_FIX_K1 | cv2.CALIB_FIX_K2 | cv2.CALIB_FIX_K3 | cv2.CALIB_ZERO_TANGENT_DIST,
+    "k1": cv2.CALIB_FIX_K2 | cv2.CALIB_FIX_K3 | cv2.CALIB_ZERO_TANGENT_DIST,
+    "k1-k2": cv2.CALIB_FIX_K3 | cv2.CALIB_ZERO_TANGENT_DIST,
+    "full": 0,
+}
+"""Lens distortions by name, in order of complexity, as OpenCV's flags."""
+
+_FREE_TERMS = {"none": 0, "k1": 1, "k1-k2": 2, "full": 5}
+_GRID = (8, 6)
+
+
+@dataclass(frozen=True)
+class Calibration:
+    """A calibrated lens and the evidence for it.
+
+    Attributes:
+        camera: The lens.
+        lens_model: Which distortion was fitted, a key of `LENS_MODELS`.
+        sd: Standard deviations of fx, fy, cx, cy [px], k1, k2, p1, p2, k3 [-], shape (9,); zero
+            where a term was not fitted.
+        rms: Root mean square distance between corners seen and predicted [px].
+        view_names: Names of the pictures used.
+        view_rms: The same distance in each picture, shape (views,) [px].
+        coverage: Share of the cells of an 8 x 6 grid over the picture in which a corner was seen.
+        seen: That grid, number of corners in each cell, shape (6, 8), first row on top.
+    """
+
+    camera: Camera
+    lens_model: str
+    sd: Array
+    rms: float
+    view_names: tuple[str, ...]
+    view_rms: Array
+    coverage: float
+    seen: NDArray[np.int64]
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """What a reader of the result should know, one sentence each."""
+        return tuple(_warnings(self))
+
+
+def calibrate(
+    views: Sequence[BoardView], size: tuple[int, int], *, lens_model: str = "auto"
+) -> Calibration:
+    """Calibrate a lens.
+
+    Args:
+        views: Corners of one board in several pictures, tilted differently.
+        size: Width and height of the pictures [px].
+        lens_model: A key of `LENS_MODELS`, or "auto": the one with the least Bayesian information
+            criterion, so that a distortion the pictures do not show is not made up.
+
+    Returns:
+        The lens, its standard deviations, residuals and coverage.
+
+    Raises:
+        CalibrationError: When the views are too few or do not determine the lens.
+    """
+    if len(views) < 3:
+        raise CalibrationError(
+            f"the board was found in {len(views)} pictures; at least 3 are needed and 10 to 15 "
+            f"advised, with the board tilted differently in each"
+        )
+    names = tuple(LENS_MODELS) if lens_model == "auto" else (lens_model,)
+    if not set(names) <= set(LENS_MODELS):
+        raise CalibrationError(
+            f"lens model '{lens_model}' is unknown; choose from auto, {', '.join(LENS_MODELS)}"
+        )
+    fits = [_fit(views, size, name) for name in names]
+    best = min(fits, key=lambda fit: _information(fit, views))
+    _check_determined(best)
+    return best
+
+
+def _fit(views: Sequence[BoardView], size: tuple[int, int], lens_model: str) -> Calibration:
+    points = [view.points.astype(np.float32) for view in views]
+    corners = [view.corners_px.astype(np.float32) for view in views]
+    try:
+        rms, matrix, distortion, _, _, sd, _, per_view = cv2.calibrateCameraExtended(
+            points, corners, size, np.eye(3), np.zeros(5), flags=LENS_MODELS[lens_model]
+        )
+    except cv2.error as error:
+        raise CalibrationError(
+            f"OpenCV could not calibrate from {len(views)} pictures ({error.err}); take pictures "
+            f"in which the board is tilted by 20 to 45 degrees, each time another way"
+        ) from error
+    camera = Camera(size, np.asarray(matrix, dtype=float), np.ravel(distortion)[:5].astype(float))
+    seen = _corners_seen(views, size)
+    return Calibration(
+        camera,
+        lens_model,
+        np.ravel(sd)[:9].astype(float),
+        float(rms),
+        tuple(view.name for view in views),
+        np.ravel(per_view).astype(float),
+        float((seen > 0).mean()),
+        seen,
+    )
+
+
+def _information(fit: Calibration, views: Sequence[BoardView]) -> float:
+    # Bayesian information criterion; the views' own poses are common to all models.
+    numbers = 2 * sum(len(view.points) for view in views)
+    return numbers * math.log(fit.rms**2) + _FREE_TERMS[fit.lens_model] * math.log(numbers)
+
+
+def _corners_seen(views: Sequence[BoardView], size: tuple[int, int]) -> NDArray[np.int64]:
+    corners = np.concatenate([view.corners_px for view in views]) + 0.5
+    edges = [np.linspace(0, length, cells + 1) for length, cells in zip(size, _GRID, strict=True)]
+    counts, _, _ = np.histogram2d(corners[:, 0], corners[:, 1], bins=edges)
+    return counts.T.astype(np.int64)
+
+
+def _check_determined(fit: Calibration) -> None:
+    focal, sd = fit.camera.matrix[0, 0], fit.sd[0]
+    if not np.isfinite(fit.camera.matrix).all() or not 0 < sd < 0.05 * focal:
+        raise CalibrationError(
+            f"the focal length comes out as {focal:.0f} px with a standard deviation of {sd:.0f} "
+            f"px; the board was seen from too few directions: tilt it by 20 to 45 degrees"
+        )
+
+
+def _warnings(fit: Calibration) -> list[str]:
+    messages = []
+    if fit.coverage < 0.6:
+        messages.append(
+            f"corners cover {fit.coverage:.0%} of the picture; the lens is extrapolated elsewhere: "
+            f"hold the board into the corners too"
+        )
+    if len(fit.view_names) < 10:
+        messages.append(f"{len(fit.view_names)} pictures; 10 to 15 are advised")
+    limit = 3 * float(np.median(fit.view_rms))
+    messages += [
+        f"{name}: corners are off by {rms:.2f} px, three times the median; look at the picture"
+        for name, rms in zip(fit.view_names, fit.view_rms, strict=True)
+        if rms > limit
+    ]
+    return messages

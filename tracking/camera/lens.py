@@ -1,0 +1,185 @@
+# SPDX-License-Identifier: MIT
+"""From points in the world to pixels, and back to a plane over the floor.
+
+Pixel coordinates: the *centre* of the first pixel is (0, 0), as in OpenCV, so a picture of width w
+spans [-0.5, w - 0.5]. Programs that put (0, 0) at the first pixel's *corner* give numbers larger by
+half a pixel, which is 2 mm on the floor of a usual set-up; see `tracking.markers`.
+"""
+
+from dataclasses import dataclass
+from typing import TypeAlias
+
+import cv2
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+Array: TypeAlias = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Camera:
+    """A pinhole with OpenCV's lens distortion.
+
+    Attributes:
+        size: Width and height of the picture [px].
+        matrix: Focal lengths and principal point as OpenCV's camera matrix, shape (3, 3) [px].
+        distortion: k1, k2, p1, p2, k3 of OpenCV's lens model, shape (5,) [-].
+    """
+
+    size: tuple[int, int]
+    matrix: Array
+    distortion: Array
+
+    def scaled(self, size: tuple[int, int]) -> "Camera":
+        """Return the same lens for pictures of another size, scaled as a whole.
+
+        Args:
+            size: Width and height of the other pictures [px].
+
+        Raises:
+            ValueError: When the other pictures have another shape, hence were cropped.
+        """
+        ratio = size[0] / self.size[0]
+        if abs(size[1] / self.size[1] - ratio) * self.size[1] > 1.0:
+            raise ValueError(
+                f"pictures of {size[0]}x{size[1]} px are not a scaled {self.size[0]}x"
+                f"{self.size[1]} px, the size the camera was calibrated with; calibrate it with "
+                f"pictures of the same shape"
+            )
+        matrix = self.matrix.copy()
+        matrix[:2, :2] *= ratio
+        matrix[:2, 2] = (self.matrix[:2, 2] + 0.5) * ratio - 0.5
+        return Camera(size, matrix, self.distortion)
+
+
+@dataclass(frozen=True)
+class CameraPose:
+    """Where the camera stands: X_camera = R X_world + t, OpenCV's axes (x right, y down, z ahead).
+
+    Attributes:
+        rotation_vector: R as axis times angle, shape (3,) [rad].
+        translation: t, shape (3,) [m].
+        covariance: Of rotation vector and translation, shape (6, 6) [rad, m]; zeros when known.
+    """
+
+    rotation_vector: Array
+    translation: Array
+    covariance: Array
+
+    @property
+    def rotation(self) -> Array:
+        """R, world to camera, shape (3, 3) [-]."""
+        return np.asarray(cv2.Rodrigues(self.rotation_vector)[0], dtype=float)
+
+    @property
+    def position(self) -> Array:
+        """Position of the camera in the world, shape (3,) [m]."""
+        return -self.rotation.T @ self.translation
+
+    @classmethod
+    def from_matrix(cls, rotation: ArrayLike, translation: ArrayLike) -> "CameraPose":
+        """Make a pose known without error from R, shape (3, 3) [-], and t, shape (3,) [m]."""
+        vector = np.ravel(cv2.Rodrigues(np.asarray(rotation, dtype=float))[0]).astype(float)
+        return cls(vector, np.asarray(translation, dtype=float), np.zeros((6, 6)))
+
+
+def project(camera: Camera, pose: CameraPose, points_world: ArrayLike) -> Array:
+    """Compute where points of the world appear in the picture.
+
+    Args:
+        camera: The lens.
+        pose: Where it stands.
+        points_world: Points, shape (n, 3) [m].
+
+    Returns:
+        Pixels, shape (n, 2) [px]. Points behind the camera give meaningless numbers.
+    """
+    points = np.ascontiguousarray(points_world, dtype=float).reshape(-1, 1, 3)
+    pixels, _ = cv2.projectPoints(
+        points, pose.rotation_vector, pose.translation, camera.matrix, camera.distortion
+    )
+    return np.asarray(pixels, dtype=float).reshape(-1, 2)
+
+
+def project_with_derivatives(
+    camera: Camera, pose: CameraPose, points_world: ArrayLike
+) -> tuple[Array, Array, Array]:
+    """Compute pixels and how they move with the points and with the camera.
+
+    Args:
+        camera: The lens.
+        pose: Where it stands.
+        points_world: Points, shape (n, 3) [m].
+
+    Returns:
+        Pixels, shape (n, 2) [px]; their derivative with respect to the points, shape (n, 2, 3)
+        [px/m]; and with respect to rotation vector and translation, shape (n, 2, 6)
+        [px/rad, px/m].
+    """
+    points = np.ascontiguousarray(points_world, dtype=float).reshape(-1, 1, 3)
+    pixels, derivative = cv2.projectPoints(
+        points, pose.rotation_vector, pose.translation, camera.matrix, camera.distortion
+    )
+    by_pose = np.asarray(derivative, dtype=float)[:, :6].reshape(-1, 2, 6)
+    # A point of the world moves in the camera's frame by R, which is what t does without it.
+    by_point = by_pose[:, :, 3:] @ pose.rotation
+    return np.asarray(pixels, dtype=float).reshape(-1, 2), by_point, by_pose
+
+
+def undistort(camera: Camera, corners_px: ArrayLike) -> Array:
+    """Compute the pixels a lens without distortion would have given, shape (n, 2) [px]."""
+    pixels = np.ascontiguousarray(corners_px, dtype=float).reshape(-1, 1, 2)
+    straight = cv2.undistortPoints(pixels, camera.matrix, camera.distortion, P=camera.matrix)
+    return np.asarray(straight, dtype=float).reshape(-1, 2)
+
+
+def rays(camera: Camera, pose: CameraPose, corners_px: ArrayLike) -> Array:
+    """Compute the directions in the world along which pixels look.
+
+    Args:
+        camera: The lens.
+        pose: Where it stands.
+        corners_px: Pixels, shape (n, 2) [px].
+
+    Returns:
+        Unit vectors in the world, shape (n, 3) [-].
+    """
+    straight = undistort(camera, corners_px)
+    ahead = np.column_stack((straight, np.ones(len(straight)))) @ np.linalg.inv(camera.matrix).T
+    directions = ahead @ pose.rotation
+    return directions / np.linalg.norm(directions, axis=1, keepdims=True)
+
+
+def to_floor(camera: Camera, pose: CameraPose, corners_px: ArrayLike, height: float = 0.0) -> Array:
+    """Compute the points of a horizontal plane that pixels show.
+
+    Args:
+        camera: The lens.
+        pose: Where it stands.
+        corners_px: Pixels, shape (n, 2) [px].
+        height: Height of the plane over the floor [m].
+
+    Returns:
+        x and y in the world, shape (n, 2) [m]; NaN for pixels that look above the horizon.
+    """
+    directions = rays(camera, pose, corners_px)
+    eye = pose.position
+    with np.errstate(divide="ignore", invalid="ignore"):
+        reach = (height - eye[2]) / directions[:, 2]
+    reach[~(reach > 0)] = np.nan
+    return eye[:2] + reach[:, None] * directions[:, :2]
+
+
+def plane_homography(camera: Camera, pose: CameraPose, height: float) -> Array:
+    """Compute the homography from a horizontal plane to *undistorted* pixels.
+
+    Args:
+        camera: The lens; its distortion plays no part.
+        pose: Where it stands.
+        height: Height of the plane over the floor [m].
+
+    Returns:
+        H with (u, v, 1) ~ H (x, y, 1), shape (3, 3).
+    """
+    R, t = pose.rotation, pose.translation
+    return camera.matrix @ np.column_stack((R[:, 0], R[:, 1], R[:, 2] * height + t))

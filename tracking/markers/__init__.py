@@ -1,0 +1,2 @@
+# SPDX-License-Identifier: MIT
+"""Square markers: what they are and where a picture shows them."""

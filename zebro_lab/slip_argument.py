@@ -42,6 +42,13 @@ class Slip:
     files: tuple[Path, ...] = ()
     notes: tuple[str, ...] = ()
 
+    @property
+    def title(self) -> str:
+        """Its name where there is little room: a calibration's folder without those above it."""
+        if not self.files:
+            return self.text
+        return self.files[0].absolute().parent.name or self.text
+
     def traction_table(self, *, weight: float, toe: ToeLaw = "saturated") -> TractionTable:
         """Tabulate the law for a robot of a weight [N]; slip of any definition is converted."""
         if isinstance(self.law, VelocityCoulomb):

@@ -145,7 +145,7 @@ def walk_with(
         )
     run = ModelRun(described.robot, reference, slip, duration, dt, request.toe, direction)
     path = model.run(run)
-    grip = f", slip {slip.text}" if slip is not None else ""
+    grip = f", slip {slip.title}" if slip is not None else ""
     return Walked(
         path=path,
         reference=reference,

@@ -47,6 +47,12 @@ def test_file_and_its_folder_mean_the_same(calibration):
     assert by_folder.notes == ()
 
 
+def test_title_has_no_path(calibration):
+    for path in (calibration, calibration / "slip.toml"):
+        assert parse_slip(str(path)).title == calibration.name
+    assert parse_slip("coulomb:0.4").title == "coulomb:0.4"
+
+
 def test_untrustworthy_calibration_is_said_to_be(calibration):
     text = SLIP_TOML.format(headline="NOT CONVERGED", trustworthy="false")
     (calibration / "slip.toml").write_text(text)

@@ -15,8 +15,9 @@ from zebro_lab.plots.sheet import BLUE, new_figure, styled
 from zebro_lab.plots.walk_robot import outline, to_world
 
 _SNAPSHOTS = 6
-_LONGEST_SIDE, _SHORTEST_SIDE = 8.5, 3.4  # inches
-_LARGEST_MARGIN = 0.25  # of the body's length, around everything
+_LONGEST_SIDE = 8.5  # inches
+_NARROWEST, _LOWEST = 7.0, 3.4  # inches, for the title and for the axis labels
+_MARGIN = 0.25  # of the body's length, around everything
 
 
 @styled
@@ -64,7 +65,7 @@ def path_with_snapshots(
     )  # fmt: skip
     axes.grid(color="0.92", lw=0.6)
     axes.set_axisbelow(True)
-    figure.legend(loc="outside lower center", ncols=len(shots) + 1 if width > 7 else 4)
+    figure.legend(loc="outside lower center", ncols=min(len(shots) + 1, 7))
     return figure
 
 
@@ -152,7 +153,7 @@ def _body(path: WalkPath, robot: Robot, index: int) -> Array:
 
 def _extent(path: WalkPath, bodies: Sequence[Array], robot: Robot) -> tuple[Array, Array]:
     points = np.vstack([path.position[:, :2], *(body[:, :2] for body in bodies)])
-    margin = _LARGEST_MARGIN * robot.body_size[0]
+    margin = _MARGIN * robot.body_size[0]
     return points.min(axis=0) - margin, points.max(axis=0) + margin
 
 
@@ -160,4 +161,4 @@ def _sides(extent: Array) -> tuple[float, float]:
     """Return sides of a figure whose axes have the shape of the path, in inches."""
     scale = (_LONGEST_SIDE - 1.0) / float(max(extent[0], extent[1]))
     width, height = (float(np.clip(scale * side, 2.0, 7.5)) for side in extent)
-    return max(width + 1.0, 5.0), max(height + 1.3, _SHORTEST_SIDE)
+    return max(width + 1.0, _NARROWEST), max(height + 1.3, _LOWEST)

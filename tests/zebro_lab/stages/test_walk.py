@@ -91,12 +91,14 @@ def test_predicting_a_gaits_own_log_walks_the_gait(tmp_path):
     np.testing.assert_allclose(predicted.position, walked.position, atol=1e-3)
 
 
-def test_walked_folder_can_be_predicted_from(tmp_path):
-    walked = walk(request(tmp_path / "walk"), Nobody()).path
-    again = predict(
-        PredictRequest(tmp_path / "walk", ModelRequest(tmp_path / "again", slip="coulomb:0.4")),
-        Nobody(),
-    ).path
+@pytest.mark.parametrize("name", ["walk", "walk/path.csv"])
+def test_walked_path_leads_where_it_led_though_legs_are_offset(name, tmp_path):
+    robot = tmp_path / "robot.toml"
+    robot.write_text("[legs]\noffset_deg = [0, 0, -5, 0, 0, 0]\nsign = [-1, 1, 1, 1, 1, 1]\n")
+    walked = walk(request(tmp_path / "walk", robot=robot), Nobody()).path
+    asked = ModelRequest(tmp_path / "again", slip="coulomb:0.4", robot=robot)
+    again = predict(PredictRequest(tmp_path / name, asked), Nobody()).path
+    np.testing.assert_allclose(again.theta, walked.theta, atol=1e-9)
     np.testing.assert_allclose(again.position, walked.position, atol=1e-6)
 
 

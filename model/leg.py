@@ -32,11 +32,13 @@ def source_tilt(roll: Numbers, pitch: Numbers, yaw: Numbers) -> Numbers:
     r"""Compute the slope of the legs' planes along the heading, as the source has it [-].
 
     .. math::
-        X = \tan\theta_r \sin\theta_y - \tan\theta_p \cos\theta_y
+        X = \frac{\tan\theta_r \sin\theta_y}{\cos\theta_p} - \tan\theta_p \cos\theta_y
 
-    The brackets of Eq. (3-21). The angles are those of Eq. (3-7), R = Rx(roll) Ry(pitch) Rz(yaw).
+    The brackets of Eq. (3-21), with angles of Eq. (3-7), R = Rx(roll) Ry(pitch) Rz(yaw). Listing
+    A.22 computes this; the text lost the division by cos(pitch), without which phi is not at the
+    lowest point while a robot pitches, rolls and does not head along x or y.
     """
-    return np.tan(roll) * np.sin(yaw) - np.tan(pitch) * np.cos(yaw)
+    return np.tan(roll) * np.sin(yaw) / np.cos(pitch) - np.tan(pitch) * np.cos(yaw)
 
 
 def source_tilt_rate(
@@ -50,15 +52,20 @@ def source_tilt_rate(
     r"""Compute the rate of `source_tilt`, the numerator of Eq. (3-24) [1/s].
 
     .. math::
-        \dot X = \dot\theta_r \sin\theta_y (1 + \tan^2\theta_r)
-               - \dot\theta_p \cos\theta_y (1 + \tan^2\theta_p)
-               + \dot\theta_y (\tan\theta_r \cos\theta_y + \tan\theta_p \sin\theta_y)
+        \dot X = \dot\theta_r \frac{\sin\theta_y}{\cos\theta_p} (1 + \tan^2\theta_r)
+               - \dot\theta_p (\cos\theta_y (1 + \tan^2\theta_p)
+                   - \tan\theta_r \sin\theta_y \frac{\tan\theta_p}{\cos\theta_p})
+               + \dot\theta_y (\tan\theta_r \frac{\cos\theta_y}{\cos\theta_p}
+                   + \tan\theta_p \sin\theta_y)
+
+    Eq. (3-24), and Listing A.23 with it, is the special case of no pitch (or no roll).
     """
-    tan_roll, tan_pitch = np.tan(roll), np.tan(pitch)
+    slope, sine, cosine = np.tan(roll) / np.cos(pitch), np.sin(yaw), np.cos(yaw)
+    tan_pitch = np.tan(pitch)
     return (
-        roll_rate * np.sin(yaw) * (1 + tan_roll**2)
-        - pitch_rate * np.cos(yaw) * (1 + tan_pitch**2)
-        + yaw_rate * (tan_roll * np.cos(yaw) + tan_pitch * np.sin(yaw))
+        roll_rate * sine * (1 + np.tan(roll) ** 2) / np.cos(pitch)
+        - pitch_rate * (cosine * (1 + tan_pitch**2) - slope * sine * tan_pitch)
+        + yaw_rate * (slope * cosine + tan_pitch * sine)
     )
 
 

@@ -49,6 +49,11 @@ def next_stance(
 def _widest(robot: Robot, theta: Array, contact: Contact) -> Stance:
     """Stand on the three legs of a contact state that hold the weight best, and can."""
     stances = _stances(robot, theta, [np.array(three) for three in combinations(contact, 3)])
+    if not stances:
+        numbers = ", ".join(str(leg + 1) for leg in contact)
+        raise DomainError(
+            f"contact legs {numbers} lie on one line; expected three or more that span a triangle"
+        )
     return max(stances, key=lambda stance: (_above_ground(stance, contact), stance.depth))
 
 
@@ -70,6 +75,9 @@ def _best(robot: Robot, theta: Array, triples: list[NDArray[np.intp]]) -> Stance
             f"no contact state fits leg angles {angles} rad; start from legs that can hold the "
             "robot, or take shorter steps"
         )
+    holding = [stance for stance in feasible if stance.depth >= -ON_GROUND]
+    if holding:
+        return max(holding, key=lambda stance: stance.up[2])  # not on its nose
     return max(feasible, key=lambda stance: stance.depth)
 
 

@@ -15,7 +15,7 @@ from model.robot import N_LEGS, Robot
 from model.slip.law import Array
 
 TRIPLES = np.array(list(combinations(range(N_LEGS), 3)))
-ON_GROUND = 1e-9  # clearance within which a leg counts as standing [m]
+ON_GROUND = 1e-9  # clearance within which a leg stands, and a weight on an edge is inside [m]
 
 _TURNS = 60  # rounds of finding contact points and the plane through them
 _SETTLED = 1e-14
@@ -92,8 +92,7 @@ def stand(robot: Robot, theta: Array, *, legs: NDArray[np.intp] | tuple[int, ...
 def resting_stance(robot: Robot, theta: Array) -> Stance:
     """Find the three legs on which the robot stands still, its weight inside their triangle.
 
-    No leg is below the ground; of several such stances (four legs in one plane) the one with its
-    weight furthest inside.
+    No leg is below the ground; of several such stances (it could lie on its nose) the most level.
 
     Raises:
         DomainError: There is none: the legs do not surround the centre of mass.
@@ -101,7 +100,7 @@ def resting_stance(robot: Robot, theta: Array) -> Stance:
     three = np.empty(3, np.intp)
     rest(theta, robot.hips, robot.leg_radius, robot.toe_beyond, three)
     stance = stand(robot, theta, legs=three) if three[0] >= 0 else None
-    if stance is None or stance.depth < 0:
+    if stance is None or stance.depth < -ON_GROUND:
         angles = ", ".join(f"{angle:.4g}" for angle in theta)
         raise DomainError(
             f"at leg angles {angles} rad no three legs hold the robot; look at its hips and arc"
@@ -189,9 +188,9 @@ def rest(theta, hips, radius, toe_beyond, legs):
     """Fill `legs` with the three on which the robot rests; -1 where no three can stand."""
     points, up, seen = np.empty((6, 3)), np.empty(3), np.empty((6, 2))
     legs[:] = -1
-    deepest = -np.inf
+    most_level = -np.inf
     for triple in TRIPLES:
         depth = holds(theta, hips, radius, toe_beyond, triple, points, up, seen)
-        if depth > deepest:
-            deepest = depth
+        if depth >= -ON_GROUND and up[2] > most_level:
+            most_level = up[2]
             legs[:] = triple

@@ -147,10 +147,12 @@ def move(skeleton, theta, speed, wheels, motion):
     for k in range(len(theta)):
         # The legs of the instant before, as long as they hold: among four legs in one plane any
         # three would do, and they should not alternate.
-        kept = legs[0] >= 0 and holds(theta[k], hips, r, beyond, legs, points, up, seen) >= 0.0
+        kept = (
+            legs[0] >= 0 and holds(theta[k], hips, r, beyond, legs, points, up, seen) >= -ON_GROUND
+        )
         if not kept:
             rest(theta[k], hips, r, beyond, legs)
-            if legs[0] < 0 or holds(theta[k], hips, r, beyond, legs, points, up, seen) < 0.0:
+            if legs[0] < 0:
                 return k
         on_three_legs(theta[k], hips, r, beyond, legs, points, up, seen)
         for leg in range(6):

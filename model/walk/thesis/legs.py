@@ -2,12 +2,13 @@
 """Leg angles step by step, switching speed by angle as the source's legs do."""
 
 from dataclasses import dataclass, fields
-from typing import NamedTuple, Protocol, runtime_checkable
+from typing import NamedTuple
 
 import numpy as np
 
 from model.compiled import compiled
 from model.errors import DomainError
+from model.gait.cyclic import CyclicReference
 from model.gait.reference import LegReference
 from model.robot import N_LEGS
 from model.slip.law import Array
@@ -25,21 +26,6 @@ class LegMotion(NamedTuple):
     theta: Array
     speed: Array
     stance_speed: Array
-
-
-@runtime_checkable
-class StanceGait(Protocol):
-    """A gait with touchdown and lift-off angles, and speeds between them, each of shape (6,)."""
-
-    @property
-    def touchdown(self) -> Array: ...  # noqa: D102
-    @property
-    def liftoff(self) -> Array: ...  # noqa: D102
-    @property
-    def ground_speed(self) -> Array: ...  # noqa: D102
-    @property
-    def flight_speed(self) -> Array: ...  # noqa: D102
-    def angles(self, t: float) -> Array: ...  # noqa: D102
 
 
 @dataclass(frozen=True)
@@ -87,8 +73,17 @@ class SwitchedLegs:
                 )
 
     @classmethod
-    def of(cls, gait: StanceGait) -> "SwitchedLegs":
-        """Take angles and speeds from a gait, and its angles at time zero as the start."""
+    def of(cls, gait: CyclicReference) -> "SwitchedLegs":
+        """Take angles and speeds from a gait, and its angles at time zero as the start.
+
+        Raises:
+            DomainError: The gait has pauses or offsets, which angles alone do not tell.
+        """
+        if np.any(gait.pause) or np.any(gait.offset):
+            raise DomainError(
+                f"the gait pauses for {gait.pause} s and is off by {gait.offset} rad; legs that "
+                "switch speed by angle take neither: follow the gait by the clock"
+            )
         return cls(
             gait.touchdown, gait.liftoff, gait.ground_speed, gait.flight_speed,
             np.reshape(gait.angles(0.0), N_LEGS),
@@ -110,11 +105,9 @@ class SwitchedLegs:
 
 
 def leg_motion(reference: LegReference | SwitchedLegs, *, dt: float, steps: int) -> LegMotion:
-    """Turn the legs by a reference: by angle where it has stance angles, else by the clock."""
+    """Turn the legs by a reference: by angle if they are such, else by the clock."""
     if isinstance(reference, SwitchedLegs):
         return reference.motion(dt, steps)
-    if isinstance(reference, StanceGait):
-        return SwitchedLegs.of(reference).motion(dt, steps)
     t = dt * np.arange(steps)
     speed = reference.speeds(t)
     return LegMotion(reference.angles(t), speed, speed)

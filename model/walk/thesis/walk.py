@@ -2,7 +2,6 @@
 """Walk by the source's model."""
 
 from dataclasses import dataclass
-from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,6 +9,7 @@ from numpy.typing import NDArray
 from model.contact.tripod import AUTOMATA, Automaton
 from model.errors import DomainError, WalkError
 from model.frames import roll_pitch_yaw, source_attitude
+from model.gait.direction import Direction, inner_legs
 from model.gait.reference import LegReference
 from model.leg import hip_height, wrap_angle
 from model.robot import N_LEGS, Robot
@@ -45,7 +45,7 @@ class ThesisOptions:
     """
 
     dt: float = 0.001
-    direction: Literal["left", "right"] = "left"
+    direction: Direction = "left"
     automaton: Automaton = "listing"
     reset_height: bool = True
     mend_roll: bool = False
@@ -56,8 +56,7 @@ class ThesisOptions:
         """Refuse options that make no sense."""
         if not (self.dt > 0 and np.isfinite(self.dt)):
             raise DomainError(f"dt is {self.dt:g} s; expected more than zero")
-        if self.direction not in ("left", "right"):
-            raise DomainError(f"direction is '{self.direction}'; expected left or right")
+        inner_legs(self.direction)
         if self.automaton not in AUTOMATA:
             raise DomainError(f"automaton is '{self.automaton}'; expected {' or '.join(AUTOMATA)}")
         if self.every < 1:
@@ -87,8 +86,8 @@ def walk_thesis(
 
     Args:
         robot: The robot; the source's has half-circle legs.
-        reference: Its legs. Legs with touchdown and lift-off angles switch speed by angle, as the
-            source's do; any other reference, such as a measured log, is followed by the clock.
+        reference: Its legs. The source's switch speed by angle, `SwitchedLegs`; a gait or a
+            measured log is followed by the clock.
         duration: Time walked [s].
         traction: The slip law; see `model.walk.thesis.traction`.
         options: How the model walks.
@@ -108,7 +107,7 @@ def walk_thesis(
     turned = leg_motion(reference, dt=options.dt, steps=steps)
     motion = turned._replace(theta=turned.theta + robot.leg_offset)
     _require_tripod(motion, options.dt)
-    sides, q = _start(robot, motion.theta[0], options)
+    sides, q = _start(robot, motion.theta, options)
     record = _empty_record(1 + (steps - 1) // options.every)
     state, rates = q.copy(), np.zeros(6)
     done = run(_machine(robot), options.manner, traction, motion, state, rates, sides, record)
@@ -137,22 +136,30 @@ def _require_tripod(motion: LegMotion, dt: float) -> None:
 
 
 def _start(robot: Robot, theta: Array, options: ThesisOptions) -> tuple[NDArray[np.bool_], Array]:
-    """Stand level on the tripod whose inner hips are higher, rolled by the sides' difference."""
-    inner = int(options.direction == "right")
-    height = np.asarray(
-        hip_height(wrap_angle(np.pi / 2 - theta), robot.leg_radius, robot.toe_beyond)
-    )
-    means = [
-        [float(np.mean([height[i] for i in tripod if i % 2 == side])) for side in range(2)]
-        for tripod in TRIPODS
-    ]
-    first = 0 if means[0][inner] >= means[1][inner] - 1e-9 else 1
+    """Stand level on one tripod, rolled by the difference of its sides.
+
+    Which one, the heights after the first step tell: at the start of a matched gait they tie.
+    """
+    inner = options.manner.inner
+    heights = _side_heights(robot, theta[0])
+    first = int(np.argmax(_side_heights(robot, theta[1])[:, inner]))
     sides = np.isin(np.arange(N_LEGS), TRIPODS[first])
-    left_right = means[first]
-    difference = left_right[inner] - left_right[1 - inner]
+    difference = heights[first, inner] - heights[first, 1 - inner]
     roll = options.manner.roll_sign * np.arctan(difference / robot.track)
-    q = np.array([0.0, 0.0, float(np.mean(left_right)), roll, 0.0, options.heading])
+    q = np.array([0.0, 0.0, heights[first].mean(), roll, 0.0, options.heading])
     return sides, q
+
+
+def _side_heights(robot: Robot, theta: Array) -> Array:
+    """Return the mean hip height by tripod and side, left and right, of a level body [m]."""
+    phi = wrap_angle(np.pi / 2 - theta)
+    height = np.asarray(hip_height(phi, robot.leg_radius, robot.toe_beyond))
+    return np.array(
+        [
+            [height[[i for i in three if i % 2 == side]].mean() for side in (0, 1)]
+            for three in TRIPODS
+        ]
+    )
 
 
 def _empty_record(rows: int) -> Record:

@@ -1,0 +1,229 @@
+# SPDX-License-Identifier: MIT
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from model.errors import DomainError, WalkError
+from model.gait.suriana import suriana_reference
+from model.gait.tetrapod import tetrapod_reference
+from model.gait.tripod import tripod_angles, tripod_reference
+from model.robot import GRAVITY, Robot
+from model.slip import CoulombStribeck
+from model.walk.no_slip import walk_no_slip
+from model.walk.path import turning_radius
+from model.walk.thesis import (
+    SOURCE_TRACTION,
+    SwitchedLegs,
+    ThesisOptions,
+    law_traction,
+    table_traction,
+    walk_thesis,
+)
+from model.walk.traction import VelocityCoulomb
+
+ROBOT = Robot()
+WEIGHT = ROBOT.mass * GRAVITY
+
+
+def gait(steering, *, cycle=1.0, inner_deg=45.0, direction="left"):
+    angles = tripod_angles(np.radians(inner_deg), steering)
+    return tripod_reference(angles, cycle, direction=direction)
+
+
+def walk(steering=1.2, *, duration=4.0, traction=SOURCE_TRACTION, cycle=1.0, **options):
+    legs = SwitchedLegs.of(gait(steering, cycle=cycle))
+    settings = ThesisOptions(**options)
+    return walk_thesis(ROBOT, legs, duration=duration, traction=traction, options=settings)
+
+
+def radius(path, cycle=2.0, dt=0.001):
+    strides = slice(round(cycle / dt), None, round(cycle / dt))
+    return turning_radius(path.position[strides, :2], path.yaw[strides])
+
+
+# --- what it computes
+
+
+def test_normal_forces_sum_to_what_kinematics_asks_of_the_weight():
+    path = walk()
+    total = path.normal_force.sum(axis=1)
+    assert np.all(total >= 0.0)
+    # The hips' height over whole cycles returns, so the mean vertical force is near the weight;
+    # falls at contact changes are resets, not forces.
+    assert 0.8 * WEIGHT < total[1000:3000].mean() < WEIGHT
+
+
+def test_three_legs_carry_and_only_they_pull():
+    path = walk()
+    assert np.all(path.contact.sum(axis=1) == 3)
+    assert np.all(path.traction_force[~path.contact] == 0.0)
+    assert np.isnan(path.slip_velocity[path.contact]).all()
+    assert np.all(path.slip_velocity[~path.contact] == 0.0)
+    assert np.isfinite(path.slip_ratio[path.contact]).all()
+
+
+def test_traction_of_one_direction_stays_within_the_peak():
+    path = walk()
+    share = np.abs(path.traction_force) / np.maximum(path.normal_force, 1e-12)[..., None]
+    assert share.max() <= SOURCE_TRACTION.friction + 1e-9
+
+
+def test_walks_are_deterministic():
+    np.testing.assert_array_equal(walk().position, walk().position)
+
+
+def test_keeping_fewer_samples_changes_none():
+    full, thin = walk(duration=1.0), walk(duration=1.0, every=7)
+    np.testing.assert_array_equal(thin.position, full.position[::7])
+    np.testing.assert_array_equal(thin.t, full.t[::7])
+
+
+def test_the_converged_end_is_the_references():
+    """The limit of short steps for Table 5-1, four seconds."""
+    path = walk(dt=0.00005, every=80000)
+    np.testing.assert_allclose(path.position[-1, :2], [0.7322, 0.1957], atol=0.0003)
+    assert np.degrees(path.yaw[-1]) == pytest.approx(30.12, abs=0.02)
+
+
+# --- its faults, shown
+
+
+def test_its_path_is_nearly_no_slip_kinematics():
+    for steering in (1.1, 1.3):
+        legs = gait(steering, cycle=2.0, inner_deg=50.0)
+        slipping = walk_thesis(ROBOT, SwitchedLegs.of(legs), duration=10.0)
+        rolling = walk_no_slip(ROBOT, legs, duration=10.0)
+        assert radius(slipping) == pytest.approx(radius(rolling), rel=0.04)
+
+
+def test_a_fifth_of_the_grip_hardly_changes_its_turn():
+    slippery = SOURCE_TRACTION._replace(friction=SOURCE_TRACTION.friction / 5)
+    grippy, icy = (walk(cycle=2.0, duration=10.0, traction=t) for t in (SOURCE_TRACTION, slippery))
+    assert icy.yaw[-1] == pytest.approx(grippy.yaw[-1], rel=0.01)
+
+
+def test_its_speed_depends_on_the_compass():
+    """Table 5-2's gait, four seconds at headings 0, 90, 180 and 270 degrees."""
+    lengths = [walk(1.25, heading=np.radians(h)).length for h in (0.0, 90.0, 180.0, 270.0)]
+    np.testing.assert_allclose(lengths, [0.783, 0.791, 0.777, 0.769], atol=0.001)
+
+
+def test_a_straight_walk_without_roll_knows_no_compass():
+    lengths = [walk(1.0, heading=np.radians(h)).length for h in (0.0, 90.0)]
+    assert lengths[1] == pytest.approx(lengths[0], rel=1e-4)
+
+
+def test_without_reset_it_sinks_and_shorter_steps_do_not_mend_all_of_it():
+    def sunk(dt):
+        path = walk(1.25, duration=15.0, reset_height=False, dt=dt, every=round(0.001 / dt))
+        return path.position[:1000, 2].mean() - path.position[-1000:, 2].mean()
+
+    coarse, fine = sunk(0.001), sunk(0.0002)
+    assert coarse > 0.02
+    assert 0.5 < fine / coarse < 0.95
+
+
+def test_right_turns_lean_the_wrong_way():
+    def mean_roll(direction, *, mend):
+        legs = SwitchedLegs.of(gait(1.2, direction=direction))
+        options = ThesisOptions(direction=direction, mend_roll=mend)
+        return walk_thesis(ROBOT, legs, duration=2.0, options=options).orientation[500:, 0].mean()
+
+    # The inner side touches down and stands higher, so a right turn has to roll below zero.
+    assert mean_roll("left", mend=False) > 0.002
+    assert mean_roll("right", mend=False) > 0.002
+    assert mean_roll("right", mend=True) < -0.002
+
+
+def mirrored(legs):
+    swap = [1, 0, 3, 2, 5, 4]
+    fields = ("touchdown", "liftoff", "ground_speed", "flight_speed", "start")
+    return SwitchedLegs(*(getattr(legs, name)[swap] for name in fields))
+
+
+def test_mended_right_turns_mirror_left_ones_and_printed_ones_do_not():
+    legs = SwitchedLegs.of(gait(1.2))
+    left = walk_thesis(ROBOT, legs, duration=3.0)
+
+    def off(*, mend):
+        options = ThesisOptions(direction="right", mend_roll=mend)
+        right = walk_thesis(ROBOT, mirrored(legs), duration=3.0, options=options)
+        return np.abs(right.position - left.position * [1, -1, 1]).max()
+
+    assert off(mend=True) < 1e-9
+    assert off(mend=False) > 1e-3
+
+
+def test_the_automata_agree_where_hip_heights_match():
+    listing, table = walk(), walk(automaton="table")
+    np.testing.assert_allclose(table.position[-1, :2], listing.position[-1, :2], atol=0.001)
+
+
+# --- other legs, laws and arcs
+
+
+def test_a_gait_by_the_clock_walks_as_one_by_angle():
+    legs = gait(1.2)
+    by_clock = walk_thesis(ROBOT, legs, duration=4.0)
+    np.testing.assert_allclose(by_clock.position[-1], walk().position[-1], atol=0.01)
+
+
+def test_turning_by_time_walks_too_and_turns_left():
+    legs = SwitchedLegs.of(
+        suriana_reference(
+            np.radians(35.0), np.radians(130.0), ground_time=0.8, flight_time=0.8, turn_time=0.1
+        )
+    )
+    path = walk_thesis(ROBOT, legs, duration=4.8)
+    assert path.yaw[-1] > np.radians(5.0)
+
+
+def test_other_laws_walk_nearly_the_same():
+    coulomb = law_traction(CoulombStribeck(), np.array([20.0, 0.4, 0.7, 0.1]), weight=WEIGHT)
+    by_velocity = table_traction(VelocityCoulomb(0.38).table(weight=WEIGHT))
+    for traction in (coulomb, by_velocity):
+        path = walk(traction=traction, duration=4.0)
+        np.testing.assert_allclose(path.position[-1, :2], [0.733, 0.196], atol=0.02)
+
+
+def test_legs_longer_than_a_half_circle_walk():
+    robot = Robot(leg_arc=np.radians(200.0))
+    angles = tripod_angles(np.radians(50.0), 1.1, leg_arc=robot.leg_arc)
+    path = walk_thesis(robot, tripod_reference(angles, 2.0), duration=6.0)
+    assert radius(path) == pytest.approx(2.68, rel=0.03)
+
+
+def test_leg_offsets_are_added():
+    offset = np.radians([0.0, 0.0, -5.0, 0.0, 0.0, 0.0])
+    path = walk_thesis(Robot(leg_offset=offset), gait(1.0), duration=2.0)
+    assert abs(path.yaw[-1] - walk(1.0, duration=2.0).yaw[-1]) > 1e-3
+
+
+# --- what it refuses
+
+
+def test_a_tetrapod_is_refused_with_the_time_at_which_it_shows():
+    legs = tetrapod_reference(np.radians(45.0), np.radians(135.0), cycle_time=3.0)
+    with pytest.raises(DomainError, match=r"legs \d and \d are .* apart at t = .*tripods only"):
+        walk_thesis(ROBOT, legs, duration=3.0)
+
+
+@pytest.mark.parametrize(
+    "options",
+    [{"dt": 0.0}, {"dt": np.nan}, {"direction": "up"}, {"automaton": "none"}, {"every": 0}],
+)
+def test_options_that_make_no_sense_are_refused(options):
+    with pytest.raises(DomainError, match="expected"):
+        ThesisOptions(**options)
+
+
+def test_no_time_is_refused():
+    with pytest.raises(DomainError, match="duration is -1 s"):
+        walk(duration=-1.0)
+
+
+def test_a_walk_that_diverges_is_an_error_with_time_and_state():
+    featherweight = replace(ROBOT, inertia=(1e-9, 1e-9, 1e-9))
+    with pytest.raises(WalkError, match=r"diverged at t = .* s.*roll.*degrees.*m/s"):
+        walk_thesis(featherweight, gait(1.2), duration=2.0)

@@ -204,10 +204,10 @@ def write_walk(
 
 def _draw(request: ModelRequest, walked: Walked, folder: Path, watcher: Watcher) -> None:
     robot, title = walked.described.robot, walked.title
+    _heed(watcher)
     if request.figures:
         watcher.step("drawing", None)
         draw_walk(folder, walked.path, robot, title=title, period=walked.reference.period)
-    _heed(watcher)
     if request.animate:
 
         def follow(fraction: float) -> None:

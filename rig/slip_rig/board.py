@@ -5,20 +5,24 @@ import contextlib
 import math
 import struct
 from types import TracebackType
+from typing import Final
 
 from rig.clock import SYSTEM_CLOCK, Clock
 from rig.device import Limits, Sample
-from rig.errors import RigError
+from rig.errors import DeviceFault, RigError
 from rig.links.byte_link import ByteLink
 from rig.links.packet import Kind
 from rig.links.packet_stream import PacketStream
 from rig.safety import require_within
 from rig.slip_rig.profile import BoardProfile
 
+WATCHDOG_EXPIRED: Final = 1
+"""Status bit: the board heard nothing and stopped both discs; only a stop command releases it."""
+
 
 def board_body(profile: BoardProfile) -> struct.Struct:
-    """Return the layout of a body: normal and traction force, leg and ground speed, as counts."""
-    return struct.Struct(("<" if profile.byte_order == "little" else ">") + "4i")
+    """Return the layout of a body: normal and traction force, both speeds as counts, a status."""
+    return struct.Struct(("<" if profile.byte_order == "little" else ">") + "4iI")
 
 
 def speed_body(profile: BoardProfile) -> struct.Struct:
@@ -56,6 +60,7 @@ class RigBoard(PacketStream):
         self._speeds = {"leg": 0.0, "ground": 0.0}
         self._armed: set[str] = set()
         self._feed_at = -math.inf
+        self._status = 0
 
     @property
     def leg(self) -> "BoardDrive":
@@ -76,7 +81,20 @@ class RigBoard(PacketStream):
             left = max(end - self._host_clock.now(), 0.0)
             samples = super().read(min(left, self.profile.feed_interval))
             if samples or left <= 0:
-                return samples
+                return [self._with_status(sample) for sample in samples]
+
+    def require_healthy(self) -> None:
+        """Check the board.
+
+        Raises:
+            DeviceFault: It has stopped the discs by itself.
+        """
+        if self._status:
+            raise DeviceFault(
+                f"the board reports status {self._status:#x}: its watchdog stopped the discs, or "
+                "worse; arm again",
+                status=self._status,
+            )
 
     def command_speeds(self) -> bool:
         """Send both speeds; tell whether the link took them."""
@@ -85,6 +103,18 @@ class RigBoard(PacketStream):
             round(self._speeds[disc] * self.profile.counts_per_speed) for disc in ("leg", "ground")
         ]
         return self.send(Kind.DISC_SPEEDS, speed_body(self.profile).pack(*counts))
+
+    def _with_status(self, sample: Sample) -> Sample:
+        *counts, status = sample.counts
+        self._status = int(status)
+        return sample._replace(counts=tuple(counts), status=self._status)
+
+    def _arm(self, disc: str) -> None:
+        if not self._armed:
+            self.send(Kind.STOP)  # releases a board whose watchdog had stopped it
+            self._speeds = dict.fromkeys(self._speeds, 0.0)
+        self._armed.add(disc)
+        self._status = 0
 
     def __exit__(
         self,
@@ -113,7 +143,7 @@ class BoardDrive:
     def arm(self, timeout: float) -> None:
         """Energise at standstill; the board does not confirm, so nothing is waited for [s]."""
         del timeout
-        self._board._armed.add(self._disc)
+        self._board._arm(self._disc)
         self.set_speed(0.0)
 
     def set_speed(self, omega: float) -> None:

@@ -9,7 +9,7 @@ from rig.links.faults import PERFECT_LINE, Faults, FaultyWire
 from rig.links.framing import CobsFramer
 from rig.links.packet import TICK, Kind, Packet, decode_packet, encode_packet
 from rig.links.packet_stream import LONGEST
-from rig.slip_rig.board import board_body, speed_body
+from rig.slip_rig.board import WATCHDOG_EXPIRED, board_body, speed_body
 from rig.slip_rig.profile import BoardProfile
 from rig.slip_rig.simulated import SimulatedRig
 
@@ -44,15 +44,17 @@ class SimulatedBoard:
         self._command = speed_body(profile)
         self._fed = math.inf
         self._number = 0
+        self._status = 0
 
     def poll(self, now: float, received: bytes) -> bytes:
         """Take speeds and give packets; see `ByteTwin.poll`."""
+        if now - self._fed > self._watchdog:
+            self._stop()
+            self._status = WATCHDOG_EXPIRED
         for content in self._framer.feed(received):
             packet = decode_packet(content)
             if packet is not None:
                 self._obey(packet, now)
-        if now - self._fed > self._watchdog:
-            self._stop()
         self._rig.advance(now)
         due = int(self._rig.elapsed(now) * self._profile.rate + 1e-6)
         frames = self._frames(due)
@@ -70,7 +72,7 @@ class SimulatedBoard:
         pressing = np.rint(self._profile.normal_sign * scale * normal).astype(int).tolist()
         driving = np.rint(self._profile.traction_sign * scale * traction).astype(int).tolist()
         return [
-            self._encode(number, (pressing[k], driving[k], *turning))
+            self._encode(number, (pressing[k], driving[k], *turning, self._status))
             for k, number in enumerate(numbers.tolist())
         ]
 
@@ -80,7 +82,10 @@ class SimulatedBoard:
 
     def _obey(self, packet: Packet, now: float) -> None:
         if packet.kind == Kind.STOP:
+            self._status = 0
             self._stop()
+        elif self._status:
+            return  # stopped by the watchdog: a host that comes back must not set it turning
         elif packet.kind == Kind.DISC_SPEEDS and len(packet.body) == self._command.size:
             self._fed = now
             leg, ground = self._command.unpack(packet.body)

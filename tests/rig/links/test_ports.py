@@ -1,0 +1,155 @@
+# SPDX-License-Identifier: MIT
+"""Real ports of this machine with twins behind them: pseudo-terminal, loopback socket, bus."""
+
+import time
+
+import can
+import numpy as np
+import pytest
+
+from model.gait.reference import SampledReference
+from rig.backends import leg_driver, leg_link, open_imu, open_legs, open_rig
+from rig.device import iterate
+from rig.errors import LinkError, RigTimeout
+from rig.links.can import CanLink
+from rig.links.serial import SerialLink
+from rig.links.serve import PortServer, Ticker
+from rig.links.udp import UdpLink
+from rig.twins import robot_twin
+from rig.zebro.profile import load_leg_profile
+
+PROFILE = load_leg_profile("zebro-100-serial")
+TIMES = np.linspace(0, 60, 601)
+GAIT = SampledReference(TIMES, np.outer(TIMES, np.full(6, 4.0)))
+
+
+def server(**options):
+    return PortServer(robot_twin(PROFILE, GAIT, rng=np.random.default_rng(0)), **options)
+
+
+@pytest.mark.parametrize("as_socket", [False, True])
+def test_a_device_unplugged_and_back_is_a_counted_gap_and_the_reading_goes_on(as_socket):
+    with server(as_socket=as_socket) as port:
+        link = leg_link(PROFILE, port.port, source="sim:zebro")
+        with leg_driver(PROFILE, link) as stream:
+            before = list(iterate(stream, duration=0.3))
+            port.unplug()
+            during = list(iterate(stream, duration=0.3))
+            port.plug_in()
+            after = list(iterate(stream, duration=0.8))
+        counters = stream.counters
+    assert port.failure is None
+    assert len(before) > 20
+    assert len(during) < 10
+    assert len(after) > 20
+    assert counters.reconnected == 1
+    assert 15 < counters.lost < 100
+    assert counters.received + counters.lost == after[-1].sequence - before[0].sequence + 1
+    assert counters.restarted == 0
+
+
+def test_a_lost_port_makes_reads_wait_no_longer_than_they_may():
+    with server() as port, leg_driver(PROFILE, leg_link(PROFILE, port.port)) as stream:
+        stream.read(0.1)
+        port.unplug()
+        stream.read(0.1)
+        for wait in (0.0, 0.05, 0.4):
+            began = time.monotonic()
+            assert stream.read(wait) == []
+            assert time.monotonic() - began < wait + 0.1
+        assert stream.stop() is False
+
+
+def test_a_missing_port_is_an_error_that_names_it():
+    with pytest.raises(LinkError, match="/dev/no-such-port"):
+        SerialLink("/dev/no-such-port", baudrate=9600).open()
+
+
+def test_a_port_has_one_reader_only():
+    with server() as port, SerialStream(port.port), pytest.raises(LinkError, match="no other"):
+        SerialLink(port.port, baudrate=9600).open()
+
+
+class SerialStream(SerialLink):
+    def __init__(self, port):
+        super().__init__(port, baudrate=9600)
+
+    def __enter__(self):
+        self.open()
+        return self
+
+    def __exit__(self, *_):
+        self.close()
+
+
+def test_closing_twice_is_no_fault():
+    with server() as port:
+        link = SerialLink(port.port, baudrate=9600)
+        link.open()
+        link.close()
+        link.close()
+
+
+@pytest.mark.parametrize("channel", ["no-such-interface:0", "socketcan:no-such-bus"])
+def test_a_missing_bus_is_an_error_that_names_it(channel):
+    with pytest.raises(LinkError, match=channel):
+        CanLink(channel).open()
+
+
+def test_a_bus_that_fails_comes_back():
+    class Failing(can.BusABC):
+        def __init__(self):
+            self.channel_info = "failing"
+            super().__init__(channel="x")
+
+        def send(self, msg, timeout=None):
+            raise can.CanOperationError("bus off")
+
+        def _recv_internal(self, timeout):
+            raise can.CanOperationError("bus off")
+
+    link = CanLink("virtual:back-again")
+    link.open()
+    link._bus.shutdown()
+    link._bus = Failing()
+    with pytest.raises(RigTimeout, match="bus off"):
+        link.write(1, b"")
+    assert link.read(0.01) == []
+    assert link.read(0.0) == []
+    assert link.read(0.5) == []
+    assert link.reconnected == 1
+    link.close()
+
+
+def test_a_name_without_address_is_an_error_that_names_it():
+    with pytest.raises(LinkError, match="no such host"):
+        UdpLink("no such host", 1).open()
+
+
+def test_nobody_at_a_udp_port_is_silence_within_the_limit():
+    link = UdpLink("127.0.0.1", 9)
+    link.open()
+    link.write(b"hello")
+    began = time.monotonic()
+    assert link.read(0.1) == []
+    assert time.monotonic() - began < 0.3
+    link.close()
+
+
+def test_a_twin_that_raises_is_kept_for_its_owner_to_see():
+    def fail(now):
+        raise RuntimeError("broken")
+
+    with Ticker(fail) as ticker:
+        time.sleep(0.05)
+    assert isinstance(ticker.failure, RuntimeError)
+
+
+def test_addresses_choose_the_driver():
+    with server() as port, open_legs(f"zebro-100-serial@{port.port}") as stream:
+        assert stream.source == "real"  # nobody told it; who serves a twin does
+        assert list(iterate(stream, duration=0.1))
+    assert open_imu("imu-quaternion-serial@/dev/null").name == "imu"
+    devices = open_rig("rig-odrive-netft@virtual:x")
+    assert [stream.name for stream in devices.streams] == ["drives", "load_cell"]
+    assert [s.name for s in open_rig("rig-board-serial@/dev/null").streams] == ["board"]

@@ -1,0 +1,183 @@
+# SPDX-License-Identifier: MIT
+import math
+import time
+from contextlib import contextmanager
+
+import can
+import cantools
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from rig.device import iterate
+from rig.errors import DeviceFault, LimitExceeded, RigTimeout
+from rig.links.can import CanLink
+from rig.links.serve import Ticker
+from rig.profile import shipped_file
+from rig.slip_rig.can_simple import (
+    AXIS_STATE,
+    CONTROLLER_MODE,
+    ESTIMATES,
+    HEARTBEAT,
+    INPUT_VELOCITY,
+    Command,
+    can_id,
+    describe_error,
+    split_id,
+)
+from rig.slip_rig.decode import decode_speeds
+from rig.slip_rig.drives import DriveBus
+from rig.slip_rig.imperfections import RigImperfections
+from rig.slip_rig.profile import load_rig_profile
+from rig.slip_rig.simulated import RigDynamics, simulated_rig
+from rig.slip_rig.simulated_drives import SimulatedDrives
+from rig.slip_rig.sweep import SweepPlan
+
+PROFILE = load_rig_profile("rig-odrive-netft")
+WATCHDOG = 0.12
+
+
+@contextmanager
+def twin(request, **options):
+    """Serve both drives; yield them and the driver, not yet entered."""
+    channel = request.node.nodeid
+    world = simulated_rig(
+        plan=SweepPlan(),
+        imperfections=RigImperfections(),
+        dynamics=RigDynamics(),
+        rng=np.random.default_rng(0),
+    )
+    with can.Bus(interface="virtual", channel=channel) as bus:
+        axes = SimulatedDrives(world, bus, profile=PROFILE.drives, watchdog=WATCHDOG)
+        with Ticker(axes.poll) as ticker:
+            link = CanLink(f"virtual:{channel}", source=axes.source)
+            yield axes, DriveBus(link, profile=PROFILE.drives, limits=PROFILE.limits, **options)
+        assert ticker.failure is None
+
+
+def turn(drives, leg=10.0, ground=2.0):
+    drives.leg.arm(1.0)
+    drives.ground.arm(1.0)
+    drives.leg.set_speed(leg)
+    drives.ground.set_speed(ground)
+
+
+def test_discs_reach_their_speeds_and_slip_is_that_of_the_speeds(request):
+    with twin(request) as (_, drives), drives:
+        turn(drives)
+        samples = list(iterate(drives, duration=0.5))
+        drives.require_healthy()
+    speeds = decode_speeds(PROFILE.drives.leg, PROFILE.drives.ground, samples)
+    assert speeds.leg[-1] == pytest.approx(10.0, rel=0.01)
+    assert speeds.ground[-1] == pytest.approx(2.0, rel=0.01)
+    slip = 1 - 2.0 * PROFILE.radius_ground / (10.0 * PROFILE.radius_leg)
+    assert speeds.slip(PROFILE)[-1] == pytest.approx(slip, abs=0.02)
+
+
+def test_leaving_stops_the_discs(request):
+    with twin(request) as (axes, drives):
+        with drives:
+            turn(drives)
+            list(iterate(drives, duration=0.05))
+            assert axes.turning()
+        time.sleep(0.05)
+        assert not axes.turning()
+
+
+def test_leaving_by_an_error_stops_the_discs(request):
+    with twin(request) as (axes, drives):
+        with pytest.raises(LimitExceeded), drives:
+            turn(drives, leg=1e6)
+        time.sleep(0.05)
+        assert not axes.turning()
+
+
+def test_a_host_that_reads_no_more_is_stopped_by_the_watchdog(request):
+    with twin(request) as (axes, drives), drives:
+        turn(drives)
+        list(iterate(drives, duration=2 * WATCHDOG))
+        assert axes.turning()  # reading feeds
+        time.sleep(2 * WATCHDOG)
+        assert not axes.turning()
+        list(iterate(drives, duration=0.2))
+        with pytest.raises(DeviceFault, match="watchdog timer expired"):
+            drives.require_healthy()
+
+
+def test_a_fault_of_a_drive_is_spelled_out_and_arming_again_clears_it(request):
+    with twin(request) as (axes, drives), drives:
+        turn(drives)
+        axes.trip("ground", 0x40)
+        list(iterate(drives, duration=0.15))
+        with pytest.raises(DeviceFault, match="ground disc reports motor failed") as fault:
+            drives.require_healthy()
+        assert fault.value.status == 0x40
+        drives.ground.arm(1.0)
+        drives.require_healthy()
+
+
+@pytest.mark.parametrize("omega", [40.1, -40.1, math.nan, math.inf])
+def test_a_speed_beyond_the_limit_is_refused_before_motion(request, omega):
+    with twin(request) as (axes, drives), drives:
+        drives.leg.arm(1.0)
+        with pytest.raises(LimitExceeded, match="rad/s; its limit is 40 rad/s"):
+            drives.leg.set_speed(omega)
+        drives.read(0.05)
+        assert not axes.turning()
+
+
+def test_drives_that_are_not_there_are_missed_in_time():
+    drives = DriveBus(CanLink("virtual:nobody"), profile=PROFILE.drives, limits=PROFILE.limits)
+    began = time.monotonic()
+    with pytest.raises(RigTimeout, match="no heartbeat"), drives:
+        pass
+    assert time.monotonic() - began < 1.5
+
+
+def test_an_estimate_that_is_no_number_is_refused(request):
+    other = can.Bus(interface="virtual", channel=request.node.nodeid)
+    with twin(request) as (_, drives), drives, other:
+        for data in (ESTIMATES.pack(math.nan, 1.0), b"\0\0"):
+            arbitration_id = can_id(0, Command.ENCODER_ESTIMATES)
+            other.send(can.Message(arbitration_id=arbitration_id, data=data, is_extended_id=False))
+        samples = list(iterate(drives, duration=0.1))
+    assert drives.counters.refused == 2
+    assert all(math.isfinite(sample.counts[0]) for sample in samples)
+
+
+@given(st.integers(0, 63), st.sampled_from(Command))
+def test_an_id_splits_into_what_made_it(node, command):
+    assert split_id(can_id(node, command)) == (node, command)
+    assert can_id(node, command) <= 0x7FF
+
+
+@given(st.integers(0, 2**32 - 1), st.sampled_from(["0.5", "0.6"]))
+def test_every_error_is_spelled_out(error, firmware):
+    assert bool(describe_error(error, firmware)) == bool(error)
+
+
+def test_the_shipped_dbc_agrees_with_the_layouts():
+    text = shipped_file("odrive-cansimple.dbc").read_text()
+    database = cantools.database.load_string(text, "dbc")
+
+    def decode(command, data):
+        return database.decode_message(int(command), data, decode_choices=False)
+
+    assert decode(Command.HEARTBEAT, HEARTBEAT.pack(0x800, 8) + bytes(3)) == {
+        "AxisError": 0x800,
+        "AxisState": 8,
+    }
+    assert decode(Command.ENCODER_ESTIMATES, ESTIMATES.pack(-1.5, 0.25)) == {
+        "Position": -1.5,
+        "Velocity": 0.25,
+    }
+    assert decode(Command.SET_INPUT_VELOCITY, INPUT_VELOCITY.pack(2.5, 0.0)) == {
+        "InputVelocity": 2.5,
+        "TorqueFeedForward": 0.0,
+    }
+    assert decode(Command.SET_AXIS_STATE, AXIS_STATE.pack(8)) == {"RequestedState": 8}
+    assert decode(Command.SET_CONTROLLER_MODE, CONTROLLER_MODE.pack(2, 1)) == {
+        "ControlMode": 2,
+        "InputMode": 1,
+    }

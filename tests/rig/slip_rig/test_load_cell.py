@@ -1,0 +1,201 @@
+# SPDX-License-Identifier: MIT
+import http.server
+import threading
+import time
+from contextlib import contextmanager
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from rig.device import Sample, iterate
+from rig.errors import LimitExceeded, LinkError, ProtocolError
+from rig.links.faults import PERFECT_LINE, Faults
+from rig.links.serve import Ticker
+from rig.links.udp import UdpLink
+from rig.slip_rig.decode import Forces, Zero, decode_forces, require_zero, tare
+from rig.slip_rig.imperfections import RigImperfections
+from rig.slip_rig.load_cell import NetFtCell, read_configuration
+from rig.slip_rig.profile import load_rig_profile
+from rig.slip_rig.rdt import RECORD, SATURATED, describe_status, parse_configuration
+from rig.slip_rig.simulated import RigDynamics, simulated_rig
+from rig.slip_rig.simulated_load_cell import SimulatedLoadCell
+from rig.slip_rig.sweep import SweepPlan
+
+PROFILE = load_rig_profile("rig-odrive-netft").load_cell
+PAGE = (
+    b"<netft><cfgcpf>1000000</cfgcpf><cfgcpt>1000</cfgcpt><scfgfu>N</scfgfu>"
+    b"<comrdtrate>7000</comrdtrate></netft>"
+)
+
+
+@contextmanager
+def twin(faults=PERFECT_LINE):
+    world = simulated_rig(
+        plan=SweepPlan(loads=(8.0,)),
+        imperfections=RigImperfections(),
+        dynamics=RigDynamics(),
+        rng=np.random.default_rng(0),
+    )
+    rng = np.random.default_rng(0)
+    with SimulatedLoadCell(world, profile=PROFILE, faults=faults, rng=rng) as cell:
+        with Ticker(cell.poll) as ticker:
+            link = UdpLink(cell.host, cell.port, source=cell.source)
+            yield cell, NetFtCell(link, profile=PROFILE)
+        assert ticker.failure is None
+
+
+def test_forces_are_the_rigs():
+    with twin() as (_, stream), stream:
+        samples = list(iterate(stream, duration=0.4))
+    forces = decode_forces(PROFILE, samples)
+    assert forces.normal == pytest.approx(8.0, abs=1e-5)
+    assert np.all(np.abs(forces.traction) < 0.5 * 8.0)
+    assert stream.counters.lost == 0
+    rate = (samples[-1].sequence - samples[0].sequence) / (
+        samples[-1].device_time - samples[0].device_time
+    )
+    assert rate == pytest.approx(PROFILE.rate, rel=1e-6)
+
+
+@pytest.mark.parametrize(
+    "faults",
+    [Faults(drop=0.05), Faults(duplicate=0.05), Faults(delay=0.05), Faults(truncate=0.05)],
+    ids=str,
+)
+def test_losses_are_counted_by_the_gaps_in_the_record_numbers(faults):
+    with twin(faults) as (_, stream), stream:
+        samples = list(iterate(stream, duration=0.4))
+    numbers = [sample.sequence for sample in samples]
+    counters = stream.counters
+    assert np.all(np.diff(numbers) > 0)
+    assert counters.received + counters.lost == numbers[-1] - numbers[0] + 1
+    assert counters.lost + counters.repeated + counters.damaged > 50
+
+
+def test_bias_makes_the_present_reading_zero():
+    with twin() as (_, stream), stream:
+        list(iterate(stream, duration=0.1))
+        stream.bias()
+        list(iterate(stream, duration=0.1))
+        forces = decode_forces(PROFILE, list(iterate(stream, duration=0.1)))
+    assert np.abs(forces.normal).max() < 1e-5
+
+
+def test_a_saturated_cell_says_so_in_every_sample():
+    with twin() as (cell, stream), stream:
+        cell.status = 1 << 31 | SATURATED
+        list(iterate(stream, duration=0.1))
+        status = stream.read(0.1)[-1].status
+    assert describe_status(status) == "transducer saturated"
+
+
+def test_a_cell_that_forgot_its_client_is_asked_again_and_the_gap_is_counted():
+    with twin() as (cell, stream), stream:
+        list(iterate(stream, duration=0.1))
+        cell._client = None  # as after a loss of power
+        list(iterate(stream, duration=0.2))
+        after = list(iterate(stream, duration=0.6))
+        assert after
+    assert stream.counters.reconnected == 1
+    assert stream.counters.restarted == 1
+
+
+def test_leaving_stops_the_cell():
+    with twin() as (cell, stream):
+        with stream:
+            list(iterate(stream, duration=0.1))
+        time.sleep(0.05)
+        sent = cell.sent
+        time.sleep(0.05)
+        assert cell.sent == sent
+
+
+@given(st.binary(max_size=80))
+def test_any_datagram_is_a_record_or_damaged(datagram):
+    stream = NetFtCell(UdpLink("127.0.0.1", 1), profile=PROFILE)
+    sample = stream._sample(datagram, 0.0)
+    assert (sample is None) == (len(datagram) != RECORD.size)
+    assert stream.counters.damaged == (len(datagram) != RECORD.size)
+
+
+@given(st.integers(0, 2**32 - 1))
+def test_every_status_but_zero_is_spelled_out(status):
+    if status & ~(1 << 31):
+        assert describe_status(status)
+
+
+def test_a_configuration_page_gives_counts_in_newtons():
+    assert parse_configuration(PAGE).counts_per_force == 1e6
+    assert parse_configuration(PAGE).rate == 7000
+    kilo = parse_configuration(PAGE.replace(b">N<", b">kN<"))
+    assert kilo.counts_per_force == pytest.approx(1e3)
+
+
+@pytest.mark.parametrize(
+    ("page", "said"),
+    [
+        (b"", "no <cfgcpf>"),
+        (PAGE.replace(b">N<", b">stone<"), "force unit is 'stone'"),
+        (PAGE.replace(b"<cfgcpf>1000000", b"<cfgcpf>0"), "above 0"),
+        (PAGE.replace(b"<cfgcpf>1000000", b"<cfgcpf>many"), "'many'"),
+    ],
+)
+def test_a_page_of_something_else_is_refused(page, said):
+    with pytest.raises(ProtocolError, match=said):
+        parse_configuration(page)
+
+
+@given(st.binary(max_size=300))
+def test_any_page_is_a_configuration_or_a_protocol_error(page):
+    with pytest.raises(ProtocolError):
+        parse_configuration(page)
+
+
+def test_the_configuration_is_fetched_from_the_cell():
+    class Handler(http.server.BaseHTTPRequestHandler):
+        def do_GET(self):
+            self.send_response(200)
+            self.end_headers()
+            self.wfile.write(PAGE)
+
+        def log_message(self, *_):
+            pass
+
+    with http.server.HTTPServer(("127.0.0.1", 0), Handler) as server:
+        thread = threading.Thread(target=server.handle_request)
+        thread.start()
+        found = read_configuration("127.0.0.1", port=server.server_port)
+        thread.join()
+    assert found.counts_per_force == 1e6
+
+
+def test_a_cell_without_a_page_is_an_error_that_names_it():
+    with pytest.raises(LinkError, match=r"127\.0\.0\.1:9"):
+        read_configuration("127.0.0.1", port=9, timeout=0.5)
+
+
+def forces(normal, traction, n=1000, sd=0.01, seed=0):
+    noise = np.random.default_rng(seed).normal(0, sd, (2, n))
+    return Forces(np.arange(n) / 1000.0, normal + noise[0], traction + noise[1])
+
+
+def test_a_tare_finds_the_zero_within_its_own_error():
+    zero = tare(forces(0.3, -0.1))
+    assert abs(zero.normal - 0.3) < 5 * zero.standard_error
+    assert abs(zero.traction + 0.1) < 5 * zero.standard_error
+    assert zero.standard_error == pytest.approx(0.01 / np.sqrt(1000), rel=0.6)
+
+
+def test_a_zero_that_moved_is_refused_and_one_that_stayed_is_not():
+    before, after = tare(forces(0.0, 0.0)), tare(forces(0.0, 0.2, seed=1))
+    require_zero(before, tare(forces(0.0, 0.0, seed=2)), limit=0.05)
+    with pytest.raises(LimitExceeded, match=r"traction force's zero is 0\.\d+ N; its limit"):
+        require_zero(before, after, limit=0.05)
+    require_zero(Zero(0, 0, 0.1), Zero(0.2, 0, 0.1), limit=0.05)
+
+
+def test_too_few_readings_are_no_zero():
+    with pytest.raises(ProtocolError, match="at least 10"):
+        tare(decode_forces(PROFILE, [Sample(0.0, 0.0, 0, (0,) * 6)] * 9))

@@ -1,0 +1,34 @@
+# SPDX-License-Identifier: MIT
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from rig.clock_fit import fit_clock
+from rig.device import Sample
+from rig.errors import ProtocolError
+from rig.replay import ReplayStream
+
+
+@given(st.floats(-1e4, 1e4), st.floats(-2e-4, 2e-4), st.integers(0, 2**32 - 1))
+def test_offset_and_drift_are_found_under_delays_that_are_never_negative(offset, drift, seed):
+    rng = np.random.default_rng(seed)
+    device = np.arange(6000) / 100
+    late = rng.exponential(0.003, len(device)) + 0.05 * (rng.random(len(device)) < 0.02)
+    fit = fit_clock(device, offset + (1 + drift) * device + late)
+    assert abs(fit.drift - drift) < 5e-6
+    np.testing.assert_allclose(fit.to_host(device), offset + (1 + drift) * device, atol=4e-4)
+    assert 0.001 < fit.delay < 0.004
+
+
+def test_samples_of_one_time_compare_no_clocks():
+    with pytest.raises(ProtocolError, match="at least 10"):
+        fit_clock(np.zeros(100), np.zeros(100))
+
+
+def test_a_recording_whose_time_runs_back_is_not_replayed():
+    samples = [Sample(1.0, None, 0, ()), Sample(0.5, None, 1, ())]
+    with pytest.raises(ProtocolError, match=r"runs back from 1 to 0\.5"):
+        ReplayStream(samples, name="legs", origin="RUN")
+    with pytest.raises(ProtocolError, match="replay speed is 0"):
+        ReplayStream(samples[:1], name="legs", origin="RUN", speed=0.0)

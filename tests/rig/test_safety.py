@@ -1,0 +1,43 @@
+# SPDX-License-Identifier: MIT
+import math
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from rig.device import Sample
+from rig.errors import LimitExceeded, RigError, RigTimeout
+from rig.safety import SampleGuard, SilenceGuard, require_within
+
+
+@given(st.floats(allow_nan=True), st.floats(0.1, 100))
+def test_a_set_point_passes_exactly_within_its_limit(value, limit):
+    if not math.isnan(value) and abs(value) <= limit:
+        require_within(value, limit, quantity="speed", unit="rad/s")
+    else:
+        with pytest.raises(LimitExceeded, match="rad/s; its limit is"):
+            require_within(value, limit, quantity="speed", unit="rad/s")
+
+
+@given(st.lists(st.sampled_from([0.0, 50.0, math.nan]), max_size=30), st.integers(1, 4))
+def test_a_guard_trips_at_the_last_of_so_many_in_a_row(values, in_a_row):
+    guard = SampleGuard(30.0, quantity="normal force", unit="N", in_a_row=in_a_row)
+    run = 0
+    for value in values:
+        run = 0 if value == 0 else run + 1
+        if run < in_a_row:
+            guard.check(value)
+        else:
+            with pytest.raises(LimitExceeded, match="normal force is"):
+                guard.check(value)
+            return
+
+
+def test_silence_is_an_event_that_names_the_stream():
+    guard = SilenceGuard("legs", limit=0.5, now=10.0)
+    guard.check([], now=10.4)
+    guard.check([Sample(10.4, None, None, ())], now=10.4)
+    guard.check([], now=10.8)
+    with pytest.raises(RigTimeout, match=r"'legs' sent nothing within 0\.6 s") as silence:
+        guard.check([], now=11.0)
+    assert isinstance(silence.value, RigError | TimeoutError)

@@ -1,0 +1,159 @@
+# SPDX-License-Identifier: MIT
+"""One suite for every stream: the real driver over its twin, and replay of what it gave."""
+
+import time
+from contextlib import contextmanager
+
+import numpy as np
+import pytest
+
+from model.gait.reference import SampledReference
+from rig.backends import leg_driver
+from rig.clock import SYSTEM_CLOCK, ManualClock
+from rig.device import iterate
+from rig.imu.profile import load_imu_profile
+from rig.links.memory import MemoryLink
+from rig.replay import ReplayStream
+from rig.slip_rig.imperfections import TYPICAL_RIG
+from rig.slip_rig.profile import load_rig_profile
+from rig.slip_rig.simulated import RigDynamics, simulated_rig
+from rig.slip_rig.sweep import SweepPlan
+from rig.twins import robot_twin, simulated_imu, simulated_legs, simulated_rig_devices
+from rig.zebro.profile import load_leg_profile
+
+TIMES = np.linspace(0, 60, 601)
+GAIT = SampledReference(TIMES, np.outer(TIMES, np.full(6, 4.0)) + np.arange(6))
+
+
+def rng():
+    return np.random.default_rng(3)
+
+
+def rig():
+    return simulated_rig(
+        plan=SweepPlan(), imperfections=TYPICAL_RIG, dynamics=RigDynamics(), rng=rng()
+    )
+
+
+def legs(name):
+    return lambda: simulated_legs(load_leg_profile(name), GAIT, rng=rng())
+
+
+def imu():
+    return simulated_imu(load_imu_profile("imu-quaternion-serial"), rng=rng())
+
+
+def rig_stream(profile, stream):
+    @contextmanager
+    def serve():
+        with simulated_rig_devices(load_rig_profile(profile), rig(), rng=rng()) as devices:
+            yield getattr(devices, stream)
+
+    return serve
+
+
+LIVE = {
+    "legs on serial packets": legs("zebro-100-serial"),
+    "legs on CAN": legs("zebro-100-can"),
+    "legs from a dump": legs("vregs-dump"),
+    "legs polled": legs("zebrobus-uart"),
+    "imu": imu,
+    "drives": rig_stream("rig-odrive-netft", "drives"),
+    "load cell": rig_stream("rig-odrive-netft", "load_cell"),
+    "board": rig_stream("rig-board-serial", "board"),
+}
+NUMBERED = {"legs on serial packets", "legs on CAN", "imu", "load cell", "board"}
+
+
+@pytest.fixture(scope="module", params=LIVE)
+def recorded(request):
+    """Return a stream's name in the suite, the closed stream, and what it gave in 0.3 s."""
+    with LIVE[request.param]() as stream:
+        with stream:
+            samples = list(iterate(stream, duration=0.3))
+        return request.param, stream, samples
+
+
+def test_a_twin_says_that_it_is_simulated(recorded):
+    _, stream, _ = recorded
+    assert stream.source.startswith("sim:")
+
+
+def test_every_sample_is_counted_and_none_is_rejected(recorded):
+    _, stream, samples = recorded
+    assert len(samples) >= 10
+    assert stream.counters.received == len(samples)
+    assert stream.counters.rejected == 0
+    assert stream.counters.lost == 0
+
+
+def test_host_time_never_runs_back_and_lies_in_the_reading(recorded):
+    _, _, samples = recorded
+    times = np.array([sample.host_time for sample in samples])
+    assert np.all(np.diff(times) >= 0)
+    assert times[-1] <= time.monotonic()
+
+
+def test_numbers_grow_by_one_where_the_protocol_has_them(recorded):
+    name, _, samples = recorded
+    numbers = [sample.sequence for sample in samples]
+    if name in NUMBERED:
+        assert np.all(np.diff(numbers) == 1)
+        device = np.array([sample.device_time for sample in samples])
+        assert np.all(np.diff(device) > 0)
+    else:
+        assert set(numbers) == {None}
+
+
+def test_samples_are_frozen(recorded):
+    _, _, samples = recorded
+    with pytest.raises(AttributeError):
+        samples[0].counts = ()
+
+
+def test_a_replay_gives_what_was_recorded_but_the_host_time(recorded):
+    name, _, samples = recorded
+    clock = ManualClock(1000.0)
+    replay = ReplayStream(samples, name=name, origin="RUN", clock=clock)
+    with replay:
+        again = list(iterate(replay, duration=1.0, clock=clock))
+    assert [s[1:] for s in again] == [s[1:] for s in samples]
+    shift = again[0].host_time - samples[0].host_time
+    np.testing.assert_allclose(
+        [s.host_time for s in again], [s.host_time + shift for s in samples], atol=1e-9
+    )
+    assert replay.source == "replay:RUN"
+    assert (replay.counters.received, replay.finished) == (len(samples), True)
+
+
+@pytest.mark.parametrize("name", LIVE)
+def test_a_read_without_news_ends_in_time(name):
+    with LIVE[name]() as stream, stream:
+        stream.read(0.05)
+        began = SYSTEM_CLOCK.now()
+        for _ in range(10):
+            stream.read(0.0)
+        assert SYSTEM_CLOCK.now() - began < 0.7
+
+
+@pytest.mark.parametrize("name", LIVE)
+def test_a_stream_can_be_closed_and_opened_again(name):
+    with LIVE[name]() as stream:
+        for _ in range(2):
+            with stream:
+                assert list(iterate(stream, duration=0.15))
+
+
+@pytest.mark.parametrize("name", ["zebro-100-serial", "vregs-dump", "zebrobus-uart"])
+def test_a_twin_on_a_clock_turned_by_hand_gives_the_same_every_time(name):
+    def run():
+        clock = ManualClock()
+        profile = load_leg_profile(name)
+        twin = robot_twin(profile, GAIT, rng=rng())
+        stream = leg_driver(profile, MemoryLink(twin, clock=clock), clock=clock)
+        with stream:
+            return list(iterate(stream, duration=5.0, clock=clock)), profile
+
+    (first, profile), (second, _) = run(), run()
+    assert first == second
+    assert len(first) == pytest.approx(5.0 * profile.rate, abs=3)

@@ -1,0 +1,137 @@
+# SPDX-License-Identifier: MIT
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from rig.device import Sample
+from rig.errors import ProfileError, ProtocolError
+from rig.profile import open_profile, shipped_file, shipped_profiles, split_address
+from rig.zebro.profile import (
+    decode_angles,
+    encode_counts,
+    load_leg_profile,
+    save_leg_profile,
+)
+
+LEG_PROFILES = ["vregs-dump", "zebro-100-can", "zebro-100-serial", "zebrobus-uart"]
+
+profiles = st.builds(
+    lambda legs, counts, zeros, sign: replace(
+        load_leg_profile("zebro-100-serial"),
+        legs=tuple(legs),
+        counts_per_revolution=counts,
+        zero_counts=tuple(zeros),
+        sign=tuple(sign),
+    ),
+    st.permutations(range(1, 7)),
+    st.integers(50, 910),
+    st.lists(st.floats(0, 50), min_size=6, max_size=6),
+    st.lists(st.sampled_from([1, -1]), min_size=6, max_size=6),
+)
+
+
+def samples_of(profile, theta):
+    return [Sample(0.01 * k, None, k, encode_counts(profile, row)) for k, row in enumerate(theta)]
+
+
+@given(profiles, st.integers(0, 2**32 - 1))
+def test_angles_come_back_within_half_a_count_and_unwrapped(profile, seed):
+    rng = np.random.default_rng(seed)
+    theta = np.cumsum(rng.uniform(0, 0.8 * np.pi, (40, 6)), axis=0)
+    decoded = decode_angles(profile, samples_of(profile, theta))
+    turns = np.round((theta[0] - decoded.theta[0]) / (2 * np.pi)) * 2 * np.pi
+    error = decoded.theta + turns - theta
+    assert np.max(np.abs(error)) <= profile.quantisation + 1e-9
+    assert decoded.legs == (1, 2, 3, 4, 5, 6)
+
+
+@given(profiles)
+def test_a_full_revolution_reads_as_zero(profile):
+    counts = [(0,) * 6, (profile.counts_per_revolution,) * 6]
+    angles = [decode_angles(profile, [Sample(0, None, 0, c)]).theta for c in counts]
+    np.testing.assert_allclose(angles[0], angles[1], atol=1e-9)
+
+
+def test_a_wrong_zero_is_repaired_by_the_profile_without_a_new_recording():
+    wrong = load_leg_profile("zebro-100-serial")
+    true = replace(wrong, zero_counts=(0, 0, 0, 0, 1.4, 0))
+    theta = np.outer(np.linspace(0, 8, 60), np.ones(6))
+    recording = samples_of(true, theta)
+    repaired = decode_angles(true, recording).theta - theta
+    assert np.max(np.abs(repaired)) <= true.quantisation + 1e-9
+    off = decode_angles(wrong, recording).theta - theta
+    assert np.degrees(off[:, 4].mean()) == pytest.approx(1.4 * 3.6, abs=0.5)
+
+
+def test_no_samples_are_no_angles():
+    assert decode_angles(load_leg_profile("vregs-dump"), []).theta.shape == (0, 1)
+
+
+def test_samples_of_another_device_are_refused():
+    with pytest.raises(ProtocolError, match="1 channels"):
+        decode_angles(load_leg_profile("zebro-100-serial"), [Sample(0, None, 0, (1,))])
+
+
+@pytest.mark.parametrize("name", LEG_PROFILES)
+def test_a_saved_profile_comes_back(name, tmp_path):
+    profile = load_leg_profile(name)
+    profile = replace(profile, legs=profile.legs[::-1], sign=(-1, *profile.sign[1:]))
+    save_leg_profile(profile, tmp_path / f"{name}.toml")
+    assert load_leg_profile(str(tmp_path / f"{name}.toml")) == profile
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "said"),
+    [
+        ("counts_per_revolution", "counts_per_revolutoin", "counts_per_revolution: is missing"),
+        ("rate = 100.0", "rate = 100.0\nrats = 1", "did you mean 'rate'"),
+        ("rate = 100.0", "rate = -1.0", "above 0"),
+        ("rate = 100.0", "rate = nan", "finite"),
+        ("order = [1, 2", "order = [1, 1", "different leg numbers"),
+        ("order = [1, 2, 3, 4, 5, 6]", "order = [1, 2, 3]", "six"),
+        ("sign = [1,", "sign = [2,", "1 or -1"),
+        ('layout = "packet"', 'layout = "can"', "needs 'can'"),
+        ('layout = "packet"', 'layout = "morse"', "expected one of"),
+        ('device = "legs"', 'device = "imu"', "describes 'imu'"),
+        ("schema = 1", "schema = 2", "schema"),
+        ("[link]", "[link", "TOML"),
+        ("baudrate = 3000000", 'baudrate = "fast"', "whole number"),
+        ("[stream]", "[steam]", "rate: is missing"),
+        ("order = [1, 2, 3, 4, 5, 6]", 'order = "all"', "whole numbers"),
+    ],
+)
+def test_a_malformed_profile_is_refused_and_the_place_named(tmp_path, old, new, said):
+    text = shipped_file("zebro-100-serial.toml").read_text()
+    assert old in text
+    path = tmp_path / "mine.toml"
+    path.write_text(text.replace(old, new))
+    with pytest.raises(ProfileError, match=r"mine\.toml") as error:
+        load_leg_profile(str(path))
+    assert said in str(error.value)
+    assert "\n" not in str(error.value)
+
+
+@given(st.text(max_size=200))
+def test_any_text_is_a_profile_or_a_profile_error(tmp_path_factory, text):
+    path = tmp_path_factory.mktemp("profile") / "any.toml"
+    path.write_text(text, encoding="utf-8", errors="replace")
+    with pytest.raises(ProfileError):
+        load_leg_profile(str(path))
+
+
+def test_an_unknown_profile_is_named_with_its_nearest():
+    with pytest.raises(ProfileError, match="did you mean 'zebro-100-serial'"):
+        open_profile("zebro-100-serail", device="legs")
+
+
+def test_every_shipped_profile_has_a_device():
+    assert set(LEG_PROFILES) < set(shipped_profiles())
+
+
+@pytest.mark.parametrize("address", ["zebro-100-serial", "@/dev/ttyUSB0", "profile@"])
+def test_half_an_address_is_refused(address):
+    with pytest.raises(ProfileError, match="PROFILE@PORT"):
+        split_address(address)

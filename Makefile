@@ -41,6 +41,7 @@ floors: $(STAMP)
 bench: $(STAMP) ## speed, side by side with a peer in the same run
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --group bench
 	$(BIN)/python docs/bench.py
+	$(BIN)/python docs/bench_walk.py
 
 clean: ## remove the environment and what the tools cached
 	rm -rf $(VENV) .pytest_cache .ruff_cache .import_linter_cache .hypothesis calibration

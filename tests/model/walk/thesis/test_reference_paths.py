@@ -5,8 +5,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from model.gait.cyclic import CyclicReference
-from model.gait.notation import TRIPOD
+from model.gait.suriana import suriana_reference
 from model.gait.tripod import tripod_angles, tripod_reference
 from model.robot import Robot
 from model.walk.thesis import (
@@ -27,18 +26,18 @@ def turning(steering, inner_deg, cycle):
 
 
 def straight(touchdown_deg, liftoff_deg, ground_time, flight_time):
-    angles = np.radians([touchdown_deg, liftoff_deg])
-    numbers = (np.array(x) for x in (*angles, ground_time, flight_time))
-    legs = CyclicReference(*numbers, 0.5 * TRIPOD.group_of)
-    # Legs 2, 3 and 6 start at lift-off, wherever the clock would have them.
-    return legs, np.where(TRIPOD.group_of == 0, angles[0], angles[1])
+    touchdown, liftoff = np.radians([touchdown_deg, liftoff_deg])
+    return suriana_reference(
+        touchdown, liftoff, ground_time=ground_time, flight_time=flight_time, turn_time=0.0
+    )
+
+
+def gait_of(name):
+    return turning(*TURNS[name]) if name in TURNS else straight(*STRAIGHTS[name])
 
 
 def legs_of(name):
-    if name in TURNS:
-        return SwitchedLegs.of(turning(*TURNS[name]))
-    gait, start = straight(*STRAIGHTS[name])
-    return SwitchedLegs(gait.touchdown, gait.liftoff, gait.ground_speed, gait.flight_speed, start)
+    return SwitchedLegs.of(gait_of(name))
 
 
 TURNS = {"a_left": (1.2, 45.0, 1.0), "b": (1.25, 45.0, 1.0), "c": (1.1, 50.0, 2.0)}
@@ -73,6 +72,17 @@ def test_the_path_is_the_references(shared, name):
     off = np.linalg.norm(states.position[:, :2] - reference[["x", "y"]], axis=1)
     assert off.max() < metres
     assert np.abs(states.position[:, 2] - reference["z"]).max() < 0.0005
+    assert np.degrees(np.abs(states.yaw - reference["yaw"])).max() < degrees
+
+
+@pytest.mark.parametrize("name", TOLERANCES)
+def test_by_the_clock_it_is_the_references_too(shared, name):
+    reference, _, _ = walked(shared, name)
+    duration = float(reference["t"].iloc[-1]) + DT
+    states = walk_thesis(Robot(), gait_of(name), duration=duration).part(slice(1, None, KEPT))
+    metres, degrees = TOLERANCES[name]
+    off = np.linalg.norm(states.position[:, :2] - reference[["x", "y"]], axis=1)
+    assert off.max() < metres
     assert np.degrees(np.abs(states.yaw - reference["yaw"])).max() < degrees
 
 

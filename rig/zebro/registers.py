@@ -21,6 +21,8 @@ SYNC: Final = bytes.fromhex("FF4512EA4B")
 DUMP_LENGTH: Final = DUMP_REGISTERS + len(SYNC)
 ANSWER_LIMIT: Final = 0.05
 """How long an answer to a poll may take [s]."""
+QUIET_AFTER_FAILURE: Final = 0.1
+"""Pause after a poll without a whole answer, so that a late one arrives before the next [s]."""
 
 
 class _RegisterStream:
@@ -172,6 +174,8 @@ class PolledLegs(_RegisterStream):
         if answer is None:
             self._damaged += 1
             self._astray = True
+            # Quiet first: an answer carries nothing that tells which request it is to.
+            self._next_at = self._clock.now() + QUIET_AFTER_FAILURE
             return []
         self._resynchronised += self._astray
         self._astray = False

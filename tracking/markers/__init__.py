@@ -1,2 +1,21 @@
 # SPDX-License-Identifier: MIT
-"""Square markers: what they are and where a picture shows them."""
+"""Square markers: what they are and where a picture shows them, to a few hundredths of a pixel."""
+
+from tracking.markers.dictionaries import DICTIONARIES, dictionary_named, guess_dictionary
+from tracking.markers.find import Region, find_markers, neighbourhood
+from tracking.markers.refine import Sighting, refine_corners
+from tracking.markers.square import marker_corners, marker_picture, square_homography
+
+__all__ = [
+    "DICTIONARIES",
+    "Region",
+    "Sighting",
+    "dictionary_named",
+    "find_markers",
+    "guess_dictionary",
+    "marker_corners",
+    "marker_picture",
+    "neighbourhood",
+    "refine_corners",
+    "square_homography",
+]

@@ -2,8 +2,11 @@
 """Families of markers, by the names people use for them."""
 
 import difflib
+from pathlib import Path
 
 import cv2
+import numpy as np
+from numpy.typing import NDArray
 
 from tracking.errors import MarkerError
 
@@ -14,18 +17,54 @@ DICTIONARIES = {
 }
 """OpenCV's dictionaries: "4x4_50", "apriltag_36h11" and so on, with OpenCV's number."""
 
+_USUAL = ("4x4_50", "5x5_50", "6x6_250", "apriltag_36h11", "aruco_original", "7x7_50")
+
 
 def dictionary_named(name: str) -> cv2.aruco.Dictionary:
     """Return a dictionary of markers by its name.
 
     Args:
-        name: A key of `DICTIONARIES`; case and a leading "DICT_" do not matter.
+        name: A key of `DICTIONARIES`, where case and a leading "DICT_" do not matter, or the path
+            of a file (.yml, .json) with a dictionary of one's own as OpenCV writes it.
 
     Raises:
         MarkerError: When there is no such dictionary.
     """
+    if Path(name).suffix in {".yml", ".yaml", ".json", ".xml"}:
+        return _dictionary_of_file(name)
     key = name.lower().removeprefix("dict_")
     if key not in DICTIONARIES:
         near = difflib.get_close_matches(key, DICTIONARIES, n=1) or ["4x4_50"]
         raise MarkerError(f"dictionary '{name}' is unknown; did you mean '{near[0]}'?")
     return cv2.aruco.getPredefinedDictionary(DICTIONARIES[key])
+
+
+def _dictionary_of_file(path: str) -> cv2.aruco.Dictionary:
+    dictionary = cv2.aruco.Dictionary()
+    storage = cv2.FileStorage(path, cv2.FILE_STORAGE_READ)
+    if not (storage.isOpened() and dictionary.readDictionary(storage.root())):
+        raise MarkerError(
+            f"{path} holds no dictionary of markers; expected nmarkers, markersize and marker_0, "
+            f"marker_1, ... as cv2.aruco.Dictionary.writeDictionary writes them"
+        )
+    return dictionary
+
+
+def guess_dictionary(pixels: NDArray[np.uint8]) -> str | None:
+    """Guess which usual dictionary a picture's markers are from.
+
+    For the message when nothing was found under the name given: a marker of another family is the
+    commonest reason.
+
+    Args:
+        pixels: The picture, grey or BGR.
+
+    Returns:
+        Name of the dictionary with most markers in the picture, at least two of them, or None.
+    """
+    counts = {}
+    for name in _USUAL:
+        _, ids, _ = cv2.aruco.ArucoDetector(dictionary_named(name)).detectMarkers(pixels)
+        counts[name] = 0 if ids is None else len(ids)
+    best = max(counts, key=lambda name: counts[name])
+    return best if counts[best] >= 2 else None

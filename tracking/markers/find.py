@@ -1,0 +1,214 @@
+# SPDX-License-Identifier: MIT
+"""Find markers in a picture: OpenCV's detector first, the marker's own picture where it fails.
+
+OpenCV decides bit by bit and lets go of a marker that is dark or blurred, although its outline is
+among the quadrilaterals it rejected. Those are compared with the marker that is wanted: one known
+picture of 36 cells is recognised long after its bits are not.
+"""
+
+from collections.abc import Iterable, Sequence
+from typing import NamedTuple
+
+import cv2
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from tracking.camera.lens import Array
+from tracking.markers.dictionaries import dictionary_named
+from tracking.markers.refine import Sighting, refine_corners
+from tracking.markers.square import marker_picture
+
+ACCEPTED_SCORE = 0.8
+"""Least correlation with the marker's picture of a quadrilateral that OpenCV rejected [-]."""
+
+LEAST_SCORE = 0.5
+"""Least correlation for a marker that OpenCV decoded bit by bit [-]."""
+
+
+class Region(NamedTuple):
+    """A window of the picture, in whole pixels: left, top, right and bottom (excluded) [px]."""
+
+    left: int
+    top: int
+    right: int
+    bottom: int
+
+
+def neighbourhood(corners_px: ArrayLike, size: tuple[int, int], *, reach: float) -> Region:
+    """Compute the window around a marker or a robot seen before.
+
+    Args:
+        corners_px: Points of it, shape (n, 2) [px].
+        size: Width and height of the picture [px].
+        reach: How far it may have moved [px].
+
+    Returns:
+        The window, cut at the picture's edges.
+    """
+    corners = np.asarray(corners_px, dtype=float)
+    low = np.clip(np.floor(corners.min(axis=0) - reach), 0, size).astype(int)
+    high = np.clip(np.ceil(corners.max(axis=0) + reach) + 1, 0, size).astype(int)
+    return Region(int(low[0]), int(low[1]), int(high[0]), int(high[1]))
+
+
+def find_markers(
+    pixels: NDArray[np.uint8],
+    dictionary: str,
+    *,
+    wanted: Iterable[int],
+    region: Region | None = None,
+    effort: int = 2,
+) -> tuple[Sighting, ...]:
+    """Find the markers that are wanted.
+
+    Args:
+        pixels: The picture, grey or BGR, shape (height, width) or (height, width, 3).
+        dictionary: Name of the markers' dictionary.
+        wanted: Numbers of the markers that may be there; others are ignored.
+        region: Where to look; the whole picture when None.
+        effort: 0 OpenCV's detector alone, corners in whole pixels of the black border; 1 corners
+            fitted, and quadrilaterals that OpenCV rejected compared; 2 also in a picture that is
+            enlarged and levelled, when something wanted is still missing.
+
+    Returns:
+        What was found, ordered by number. A number that occurs twice was seen twice.
+    """
+    area = Region(0, 0, pixels.shape[1], pixels.shape[0]) if region is None else region
+    grey = _grey(pixels[area.top : area.bottom, area.left : area.right])
+    if min(grey.shape) < 16:
+        return ()
+    numbers = sorted(set(wanted))
+    if effort == 0:
+        return tuple(_moved(s, (area.left, area.top)) for s in _plain(grey, dictionary, numbers))
+    found = _with_opencv(grey, dictionary, numbers)
+    missing = [number for number in numbers if number not in {s.marker_id for s in found}]
+    if effort > 1 and missing:
+        found += _enlarged(grey, dictionary, missing)
+    moved = (_moved(sighting, (area.left, area.top)) for sighting in found)
+    return tuple(sorted(moved, key=lambda sighting: sighting.marker_id))
+
+
+def _grey(pixels: NDArray[np.uint8]) -> NDArray[np.uint8]:
+    if pixels.ndim == 3:
+        return np.asarray(cv2.cvtColor(pixels, cv2.COLOR_BGR2GRAY), dtype=np.uint8)
+    return np.ascontiguousarray(pixels)
+
+
+def _detector(dictionary: str, *, patient: bool) -> cv2.aruco.ArucoDetector:
+    parameters = cv2.aruco.DetectorParameters()
+    if patient:
+        parameters.adaptiveThreshConstant = 3.0
+        parameters.adaptiveThreshWinSizeMax = 53
+        parameters.polygonalApproxAccuracyRate = 0.08
+    return cv2.aruco.ArucoDetector(dictionary_named(dictionary), parameters)
+
+
+def _with_opencv(
+    grey: NDArray[np.uint8], dictionary: str, numbers: Sequence[int]
+) -> list[Sighting]:
+    corners, ids, others = _detector(dictionary, patient=False).detectMarkers(grey)
+    found = []
+    for quad, number in _decoded(corners, ids, numbers):
+        sighting = refine_corners(grey, quad, dictionary=dictionary, marker_id=number)
+        if sighting is not None and sighting.score >= LEAST_SCORE:
+            found.append(sighting)
+    missing = [number for number in numbers if number not in {s.marker_id for s in found}]
+    return found + recognise(grey, others, dictionary, missing) if missing else found
+
+
+def _plain(grey: NDArray[np.uint8], dictionary: str, numbers: Sequence[int]) -> list[Sighting]:
+    corners, ids, _ = _detector(dictionary, patient=False).detectMarkers(grey)
+    whole_px = 0.5**2 * np.eye(8)
+    found = [
+        Sighting(number, quad, whole_px, 1.0, 0.0)
+        for quad, number in _decoded(corners, ids, numbers)
+    ]
+    return sorted(found, key=lambda sighting: sighting.marker_id)
+
+
+def _decoded(
+    corners: Iterable[ArrayLike], ids: ArrayLike | None, numbers: Sequence[int]
+) -> list[tuple[Array, int]]:
+    pairs = zip(corners, [] if ids is None else np.ravel(ids), strict=True)
+    quads = [(np.asarray(quad, dtype=float).reshape(4, 2), int(number)) for quad, number in pairs]
+    return [(quad, number) for quad, number in quads if number in numbers]
+
+
+def _enlarged(grey: NDArray[np.uint8], dictionary: str, numbers: Sequence[int]) -> list[Sighting]:
+    large = cv2.resize(grey, None, fx=2.0, fy=2.0, interpolation=cv2.INTER_CUBIC)
+    large = cv2.createCLAHE(clipLimit=3.0, tileGridSize=(8, 8)).apply(large)
+    corners, _, others = _detector(dictionary, patient=True).detectMarkers(large)
+    # Decoded or not, the original pixels decide.
+    # Pixel centres: the middle of large pixels 2u and 2u + 1 is the small pixel u.
+    quads = [(np.asarray(quad, dtype=float) + 0.5) / 2 - 0.5 for quad in (*corners, *others)]
+    return recognise(grey, quads, dictionary, numbers)
+
+
+def recognise(
+    grey: NDArray[np.uint8], quads: Iterable[ArrayLike], dictionary: str, numbers: Sequence[int]
+) -> list[Sighting]:
+    """Tell which quadrilaterals are wanted markers, by comparing pictures.
+
+    Args:
+        grey: The picture, shape (height, width).
+        quads: Corners of quadrilaterals, each of 8 numbers, in any rotation [px].
+        dictionary: Name of the markers' dictionary.
+        numbers: Numbers of the markers wanted.
+
+    Returns:
+        The markers recognised; of several in one place the best.
+    """
+    candidates = []
+    for quad in quads:
+        corners = np.asarray(quad, dtype=float).reshape(4, 2)
+        if not _is_marker_like(corners):
+            continue
+        for number in numbers:
+            turned = _best_turn(grey, corners, dictionary, number)
+            if turned is None:
+                continue
+            sighting = refine_corners(grey, turned, dictionary=dictionary, marker_id=number)
+            if sighting is not None and sighting.score >= ACCEPTED_SCORE:
+                candidates.append(sighting)
+    return _apart(candidates)
+
+
+def _is_marker_like(corners: Array) -> bool:
+    sides = np.linalg.norm(corners - np.roll(corners, -1, axis=0), axis=1)
+    convex = cv2.isContourConvex(corners.astype(np.float32))
+    return bool(convex and sides.min() > 8 and sides.min() > 0.2 * sides.max())
+
+
+def _best_turn(
+    grey: NDArray[np.uint8], corners: Array, dictionary: str, number: int
+) -> Array | None:
+    """Turn a quadrilateral's corners so that it looks like the marker, or return None."""
+    target = marker_picture(dictionary, number, 4)
+    inner = np.ascontiguousarray(target[4:-4, 4:-4])
+    n = inner.shape[0]
+    square = np.array([[0, 0], [n, 0], [n, n], [0, n]], dtype=np.float32) - np.float32(0.5)
+    best, best_score = None, 0.5
+    for turn in range(4):
+        turned = np.roll(corners, turn, axis=0)
+        H = cv2.getPerspectiveTransform(turned.astype(np.float32), square)
+        flat = cv2.warpPerspective(grey, H, (n, n), flags=cv2.INTER_AREA).astype(np.float32)
+        score = float(cv2.matchTemplate(flat, inner, cv2.TM_CCOEFF_NORMED)[0, 0])
+        if score > best_score:
+            best, best_score = turned, score
+    return best
+
+
+def _apart(candidates: list[Sighting]) -> list[Sighting]:
+    """Keep the best of sightings that lie on each other."""
+    kept: list[Sighting] = []
+    for sighting in sorted(candidates, key=lambda candidate: -candidate.score):
+        centre = sighting.corners_px.mean(axis=0)
+        reach = 0.5 * np.ptp(sighting.corners_px, axis=0).max()
+        if all(np.linalg.norm(other.corners_px.mean(axis=0) - centre) > reach for other in kept):
+            kept.append(sighting)
+    return kept
+
+
+def _moved(sighting: Sighting, offset: tuple[int, int]) -> Sighting:
+    corners = sighting.corners_px + np.asarray(offset, dtype=float)
+    return Sighting(sighting.marker_id, corners, sighting.covariance, sighting.score, sighting.blur)

@@ -1,0 +1,82 @@
+# SPDX-License-Identifier: MIT
+"""A marker as a square: its corners, its picture and its perspective.
+
+Corners go as OpenCV's: top left, top right, bottom right, bottom left of the marker as printed.
+"""
+
+from functools import lru_cache
+
+import cv2
+import numpy as np
+from numpy.typing import ArrayLike
+
+from tracking.camera.lens import Array
+from tracking.markers.dictionaries import dictionary_named
+
+UNIT_SQUARE: Array = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
+"""Corners in the marker's own coordinates: across to the right, down, side 1."""
+
+
+def marker_corners(side: float, position: ArrayLike = (0.0, 0.0, 0.0), yaw: float = 0.0) -> Array:
+    """Compute the corners of a marker that lies flat, face up.
+
+    Args:
+        side: Side of its black square [m].
+        position: Its centre, shape (3,) [m].
+        yaw: Direction of its printed *right* edge's outward normal (from its left to its right),
+            counter-clockwise from x [rad]. A marker whose top points along x has yaw = -pi/2.
+
+    Returns:
+        Corners in OpenCV's order, shape (4, 3) [m].
+    """
+    across, up = UNIT_SQUARE[:, 0] - 0.5, 0.5 - UNIT_SQUARE[:, 1]
+    c, s = np.cos(yaw), np.sin(yaw)
+    flat = side * np.column_stack((c * across - s * up, s * across + c * up, np.zeros(4)))
+    return flat + np.asarray(position, dtype=float)
+
+
+@lru_cache(maxsize=64)
+def marker_picture(dictionary: str, marker_id: int, cell_px: int) -> Array:
+    """Draw a marker with a white margin one cell wide.
+
+    Args:
+        dictionary: Name of the dictionary.
+        marker_id: Number of the marker in it.
+        cell_px: Side of a cell [px].
+
+    Returns:
+        Reflectance, 0 black and 1 white, shape (n, n). Cached: do not write into it.
+    """
+    family = dictionary_named(dictionary)
+    cells = family.markerSize + 2
+    inner = cv2.aruco.generateImageMarker(family, marker_id, cells * cell_px)
+    picture = np.pad(inner.astype(np.float32) / 255, cell_px, constant_values=1.0)
+    picture.setflags(write=False)
+    return picture
+
+
+def square_homography(corners: ArrayLike) -> Array:
+    """Compute the perspective that takes the unit square to four corners.
+
+    Written out rather than taken from OpenCV, whose version accepts single precision only.
+
+    Args:
+        corners: Where the corners of `UNIT_SQUARE` go, shape (4, 2).
+
+    Returns:
+        H with (x, y, 1) ~ H (u, v, 1), shape (3, 3), H[2, 2] = 1.
+
+    >>> square_homography([[3, 4], [5, 4], [5, 7], [3, 7]]).round(9).tolist()
+    [[2.0, 0.0, 3.0], [0.0, 3.0, 4.0], [0.0, 0.0, 1.0]]
+    """
+    p0, p1, p2, p3 = np.asarray(corners, dtype=float)
+    # Heckbert 1989, section 2.2.3: the square's own corners make most coefficients 0 or 1.
+    g, h = np.linalg.solve(np.column_stack((p1 - p2, p3 - p2)), p0 - p1 + p2 - p3)
+    across, down = p1 - p0 + g * p1, p3 - p0 + h * p3
+    return np.vstack((np.column_stack((across, down, p0)), [g, h, 1.0]))
+
+
+def apply_homography(H: Array, points: ArrayLike) -> Array:
+    """Apply a perspective to points, shape (n, 2)."""
+    x = np.asarray(points, dtype=float) @ H[:, :2].T + H[:, 2]
+    return x[:, :2] / x[:, 2:]

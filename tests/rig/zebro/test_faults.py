@@ -127,7 +127,7 @@ def test_a_poll_whose_answer_is_cut_is_not_mixed_with_the_next():
 
 def test_an_answer_that_comes_too_late_is_never_taken_for_the_next_one():
     class Late:
-        """Answers the k-th request with k, every fifth 80 ms late."""
+        """Answers the k-th request with k, every fifth too late."""
 
         source = "sim:zebro"
         requests = 0
@@ -136,7 +136,7 @@ def test_an_answer_that_comes_too_late_is_never_taken_for_the_next_one():
         def poll(self, now, received):
             if received:
                 self.requests += 1
-                when = now + (0.08 if self.requests % 5 == 0 else 0.0)
+                when = now + (0.055 if self.requests % 5 == 0 else 0.01)
                 self.due = (*self.due, (when, self.requests))
             ready = [k for when, k in self.due if when <= now]
             self.due = tuple(item for item in self.due if item[0] > now)

@@ -4,7 +4,9 @@
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
-from typing import Literal, TypeAlias
+from typing import TYPE_CHECKING, Literal, TypeAlias
+
+import numpy as np
 
 from model.gait.reference import LegReference
 from model.robot import GRAVITY, Robot
@@ -12,6 +14,9 @@ from model.walk.path import WalkPath
 from model.walk.traction import ToeLaw
 from zebro_lab.errors import SettingsError
 from zebro_lab.slip_argument import EXPECTED_SLIP, Slip
+
+if TYPE_CHECKING:
+    from model.walk.thesis import SwitchedLegs
 
 Direction: TypeAlias = Literal["left", "right"]
 
@@ -69,9 +74,20 @@ def _thesis(run: ModelRun) -> WalkPath:
 
     traction = _slip_of(run).thesis_traction(weight=run.robot.mass * GRAVITY)
     options = ThesisOptions(dt=run.dt, direction=run.direction)
-    return walk_thesis(
-        run.robot, run.reference, duration=run.duration, traction=traction, options=options
-    )
+    legs = _legs_of_the_source(run.reference)
+    return walk_thesis(run.robot, legs, duration=run.duration, traction=traction, options=options)
+
+
+def _legs_of_the_source(reference: LegReference) -> "LegReference | SwitchedLegs":
+    """Let a gait's legs switch speed by angle, as the source's do; follow others by the clock."""
+    from model.gait.cyclic import CyclicReference
+    from model.walk.thesis import SwitchedLegs
+
+    if not isinstance(reference, CyclicReference):
+        return reference
+    waits = np.any(reference.pause) or np.any(reference.offset)
+    in_turn = reference.touchdown.min() >= 0 and reference.liftoff.max() < 2 * np.pi
+    return SwitchedLegs.of(reference) if in_turn and not waits else reference
 
 
 def _no_slip(run: ModelRun) -> WalkPath:
@@ -95,7 +111,7 @@ def _slip_of(run: ModelRun) -> Slip:
 MODELS: Mapping[str, WalkModel] = MappingProxyType({
     model.name: model
     for model in (
-        WalkModel("dynamics", slips=True, dt=0.002, run=_dynamics),
+        WalkModel("dynamics", slips=True, dt=0.001, run=_dynamics),
         WalkModel("thesis", slips=True, dt=0.001, run=_thesis),
         WalkModel("no-slip", slips=False, dt=0.002, run=_no_slip),
         WalkModel("no-slip-simple", slips=False, dt=0.002, run=_wheels),

@@ -1,0 +1,139 @@
+# SPDX-License-Identifier: MIT
+"""Every walking model against walks of an independent rigid-body engine (simulated).
+
+The walks are reference data (`ZEBRO_LAB_SHARED`, or the folder `shared` beside the checkout), each
+driven by its own logged leg angles. Prints the table of `docs/theory.md`, 3.2.
+
+Usage: .venv/bin/python docs/against_engine.py
+"""
+
+import json
+import os
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+
+from model.gait.reference import SampledReference
+from model.robot import GRAVITY, Robot
+from model.walk.dynamics import walk
+from model.walk.no_slip import walk_no_slip, walk_wheels
+from model.walk.path import WalkPath, turning_radius
+from model.walk.thesis import ThesisOptions, table_traction, walk_thesis
+from model.walk.traction import VelocityCoulomb
+
+SHARED = Path(os.environ.get("ZEBRO_LAB_SHARED", Path(__file__).parents[2] / "shared"))
+
+
+@dataclass(frozen=True)
+class EngineWalk:
+    """A walk of the engine: who walked, how, and where it led.
+
+    Attributes:
+        name: Its file's name.
+        robot: The robot.
+        log: Its leg angles.
+        friction: Friction coefficient [-].
+        left: Whether it turns left.
+        period: Cycle time [s].
+        truth: t, x, y and yaw, and what else the engine recorded.
+    """
+
+    name: str
+    robot: Robot
+    log: SampledReference
+    friction: float
+    left: bool
+    period: float
+    truth: pd.DataFrame
+
+    @property
+    def duration(self) -> float:
+        """Time walked [s]."""
+        return float(self.truth["t"].iloc[-1])
+
+
+def read_walk(file: Path) -> EngineWalk:
+    """Read a walk from its JSON file and the table beside it."""
+    about = json.loads(file.read_text())
+    truth = pd.read_csv(file.with_suffix(".csv.gz"))
+    theta = truth[[f"th{i}" for i in range(1, 7)]].to_numpy()
+    return EngineWalk(
+        name=file.stem,
+        robot=Robot(leg_arc=np.radians(about["params"]["arc"])),
+        log=SampledReference(truth["t"].to_numpy(), theta),
+        friction=about["params"]["mu"],
+        left=about["gait"]["turn"] == "left",
+        period=about["gait"]["period_s"],
+        truth=truth,
+    )
+
+
+def by_dynamics(one: EngineWalk) -> WalkPath:
+    """Walk by our model, Coulomb friction over 1 mm/s as in the engine."""
+    table = VelocityCoulomb(one.friction).table(weight=one.robot.mass * GRAVITY)
+    return walk(one.robot, one.log, table, duration=one.duration)
+
+
+def by_thesis(one: EngineWalk) -> WalkPath:
+    """Walk by the source's model with the same friction."""
+    table = VelocityCoulomb(one.friction).table(weight=one.robot.mass * GRAVITY)
+    options = ThesisOptions(direction="left" if one.left else "right")
+    return walk_thesis(
+        one.robot, one.log, duration=one.duration, traction=table_traction(table), options=options
+    )
+
+
+MODELS: dict[str, Callable[[EngineWalk], WalkPath]] = {
+    "dynamics": by_dynamics,
+    "thesis": by_thesis,
+    "no-slip": lambda one: walk_no_slip(one.robot, one.log, duration=one.duration),
+    "no-slip-simple": lambda one: walk_wheels(one.robot, one.log, duration=one.duration),
+}
+
+
+def path_error(path: WalkPath, truth: pd.DataFrame) -> float:
+    """Compute the rms distance from the truth over its length [-]."""
+    x, y = (np.interp(truth["t"], path.t, path.position[:, i]) for i in range(2))
+    length = np.hypot(np.diff(truth["x"]), np.diff(truth["y"])).sum()
+    return float(np.sqrt(np.mean((x - truth["x"]) ** 2 + (y - truth["y"]) ** 2)) / length)
+
+
+def radius(t: np.ndarray, xy: np.ndarray, yaw: np.ndarray, period: float) -> float:
+    """Compute the turning radius over whole strides, the first and last left out [m]."""
+    ends = period * np.array([1, int(t[-1] // period) - 1])
+    at = np.searchsorted(t, ends - 1e-6)
+    return turning_radius(xy[at], yaw[at])
+
+
+def figures(one: EngineWalk, model: Callable[[EngineWalk], WalkPath]) -> str:
+    """Say the path's error and the radius's, or why the model cannot walk this."""
+    try:
+        path = model(one)
+    except (ValueError, RuntimeError) as error:
+        return "not a tripod" if "apart" in str(error) else str(error)
+    error = f"{100 * path_error(path, one.truth):.2f} %"
+    t, yaw, xy = (one.truth[c].to_numpy() for c in ("t", "yaw", ["x", "y"]))
+    theirs = radius(t, xy, yaw, one.period)
+    if not 0 < abs(theirs) < 5:
+        return error
+    ours = radius(path.t, path.position[:, :2], path.yaw, one.period)
+    return f"{error} ({100 * (ours / theirs - 1):+.2f} %)"
+
+
+def main() -> None:
+    """Print the table."""
+    files = sorted((SHARED / "virtual-world" / "walks").glob("*.json"))
+    if not files:
+        raise SystemExit(f"no walks under {SHARED}; set ZEBRO_LAB_SHARED to the reference data")
+    print("Path error, rms over length (radius error), driven by the engine's leg angles:\n")
+    print(f"| walk | {' | '.join(MODELS)} |\n|---|{'---:|' * len(MODELS)}")
+    for file in files:
+        one = read_walk(file)
+        print(f"| {one.name} | {' | '.join(figures(one, m) for m in MODELS.values())} |")
+
+
+if __name__ == "__main__":
+    main()

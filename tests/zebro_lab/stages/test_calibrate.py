@@ -176,6 +176,7 @@ def test_failure_while_drawing_leaves_the_earlier_calibration_untouched(
         raise OSError("disk full")
 
     monkeypatch.setattr(stage, "draw_calibration", fail)
+    monkeypatch.setattr(stage, "CHECKPOINT_SECONDS", 1e9)  # a slow machine would keep the fit
     with pytest.raises(OSError, match="disk full"):
         calibrate(request_for(uninterrupted, seed=2, max_steps=1), Watcher())
     assert {path.name: path.read_bytes() for path in uninterrupted.iterdir()} == before
@@ -187,6 +188,7 @@ def test_failure_while_drawing_leaves_no_folder(request_for, tmp_path, monkeypat
         raise OSError("disk full")
 
     monkeypatch.setattr(stage, "draw_calibration", fail)
+    monkeypatch.setattr(stage, "CHECKPOINT_SECONDS", 1e9)  # a slow machine would keep the fit
     with pytest.raises(OSError, match="disk full"):
         calibrate(request_for(tmp_path / "deep" / "out", max_steps=1), Watcher())
     assert list(tmp_path.iterdir()) == []

@@ -4,7 +4,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 STAMP := $(VENV)/.installed
 
-.PHONY: demo test test-long check lint types floors bench clean help
+.PHONY: demo test test-long check lint types floors bench clean clean-cache help
 
 help: ## list the targets
 	@grep -E '^[a-z-]+:.*##' Makefile | sed -E 's/:.*## /\t/' | expand -t 14
@@ -42,6 +42,9 @@ bench: $(STAMP) ## speed, side by side with a peer in the same run
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --group bench
 	$(BIN)/python docs/bench.py
 	$(BIN)/python docs/bench_walk.py
+
+clean-cache: ## remove compiled loops that numba cached
+	find model rig tracking zebro_lab -name '*.nb[ic]' -delete
 
 clean: ## remove the environment and what the tools cached
 	rm -rf $(VENV) .pytest_cache .ruff_cache .import_linter_cache .hypothesis calibration

@@ -4,11 +4,13 @@
 Detectors find corners by their edges, to 0.1-0.5 px. But the marker is known, so every edge of
 every cell tells where it is. The model of a pixel is
 
-    I(p) = o + o_x x + o_y y + g (T_c * G_s)(p)
+    I(p) = o + o_x x + o_y y + g D + q D (1 - D),    D = (T_c * G_s)(p)
 
-with T_c the marker drawn with its corners at c, G_s a Gaussian blur, g the contrast and o the
-brightness with a slope for shading. These thirteen unknowns are fitted by Gauss-Newton; the
-residual gives the noise, the normal equations the covariance.
+with T_c the marker drawn with its corners at c, G_s a Gaussian blur, g the contrast, o the
+brightness with a slope for shading, and q the bend of the camera's tone curve: pictures are blurred
+in light but stored in tones, which moves every edge towards the black by a part of the blur and,
+unmodelled, makes markers look small and hence far. These fourteen unknowns are fitted by
+Gauss-Newton; the residual gives the noise, the normal equations the covariance.
 """
 
 from dataclasses import dataclass, field
@@ -128,20 +130,22 @@ def _improve(
     values = patch.values[row, column]
     drawn = _draw(dictionary, marker_id, fit.corners, fit.blur, patch.values.shape)
     shade = np.column_stack((np.ones(len(points)), points - points.mean(axis=0)))
-    light_design = np.column_stack((shade, drawn[row, column]))
+    tone = drawn[row, column]
+    light_design = np.column_stack((shade, tone, tone * (1 - tone)))
     light, *_ = np.linalg.lstsq(light_design, values, rcond=None)
     contrast = light[3]
     if contrast <= 1.0:  # less than a grey level: nothing, or a negative
         return None
     residual = values - light_design @ light
-    geometry = contrast * _geometry_design(fit, drawn, points)
+    steepness = contrast + light[4] * (1 - 2 * tone)
+    geometry = steepness[:, None] * _geometry_design(fit, drawn, points)
     inverse = _inverse_normal(np.column_stack((geometry, light_design)))
     if inverse is None:
         return None
     step = inverse[:9] @ (np.column_stack((geometry, light_design)).T @ residual)
     longest = float(np.abs(step[:8]).max())
     step[:8] *= min(1.0, 0.1 * _shortest_side(fit.corners) / max(longest, 1e-12))
-    noise = residual @ residual / max(len(points) - 13, 1)
+    noise = residual @ residual / max(len(points) - 14, 1)
     improved = _Fit(
         fit.corners + step[:8].reshape(4, 2),
         float(np.clip(fit.blur + np.clip(step[8], -0.5, 0.5), 0.3, 8.0)),

@@ -1,0 +1,141 @@
+# SPDX-License-Identifier: MIT
+"""The robot's pose comes back from its marker, with the error it states."""
+
+import csv
+import json
+
+import cv2
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from scipy.spatial.transform import Rotation
+
+from tracking.camera import Camera, CameraPose, project
+from tracking.errors import MarkerError
+from tracking.floor import FloorMap, FloorMarker, FloorView, refine_floor
+from tracking.markers import find_markers
+from tracking.pose import BodyPrior, RobotMarker, fit_pose, rotation_with_derivatives
+
+LENS = Camera((1280, 960), np.array([[1394.0, 0, 640], [0, 1394, 480], [0, 0, 1]]), np.zeros(5))
+MARKER = RobotMarker(0, 0.12, "4x4_50", (0.01, 0.0, 0.04))
+PRIOR = BodyPrior(0.1, height_sd=5e-3, tilt_sd=np.radians(2))
+_VIEW = [[1.0, 0, 0], [0, -0.74, -0.67], [0, 0.67, -0.74]]
+VIEW = CameraPose.from_matrix(np.linalg.svd(_VIEW)[0] @ np.linalg.svd(_VIEW)[2], [-1.0, 0.55, 3.0])
+
+
+def corners_of(state, noise_px=0.0, rng=None):
+    turn = Rotation.from_euler("ZYX", [state[5], state[4], state[3]]).as_matrix()
+    corners = project(LENS, VIEW, MARKER.points_body @ turn.T + state[:3])
+    return corners if rng is None else corners + noise_px * rng.standard_normal(corners.shape)
+
+
+def fitted(corners, sigma=0.05, view=VIEW, prior=PRIOR):
+    return fit_pose(
+        LENS, view, points_body=MARKER.points_body, corners_px=corners,
+        covariance=sigma**2 * np.eye(8), prior=prior,
+    )  # fmt: skip
+
+
+@given(x=st.floats(0, 2), y=st.floats(0, 1.5), yaw=st.floats(-3.1, 3.1))
+def test_a_level_robot_at_its_height_comes_back_exactly(x, y, yaw):
+    pose = fitted(corners_of([x, y, 0.1, 0, 0, yaw]))
+    np.testing.assert_allclose(pose.planar, [x, y, yaw], atol=1e-6)
+    assert pose.misfit_px < 1e-4
+
+
+def test_ninety_percent_intervals_cover_ninety_percent():
+    rng = np.random.default_rng(0)
+    z = []
+    for _ in range(600):
+        state = np.array([
+            rng.uniform(0, 2), rng.uniform(0, 1.5), 0.1 + rng.normal(0, PRIOR.height_sd),
+            *rng.normal(0, PRIOR.tilt_sd, 2), rng.uniform(-3, 3),
+        ])  # fmt: skip
+        pose = fitted(corners_of(state, 0.05, rng))
+        z.append((pose.planar - state[[0, 1, 5]]) / np.sqrt(np.diag(pose.planar_covariance)))
+    assert np.abs(np.mean(np.abs(z) < 1.645, axis=0) - 0.9).max() < 0.04
+
+
+def test_an_error_of_the_camera_shows_in_its_own_covariance():
+    rng = np.random.default_rng(1)
+    spread = np.diag([2e-4, 2e-4, 2e-4, 1e-3, 1e-3, 1e-3]) ** 2
+    view = CameraPose(VIEW.rotation_vector, VIEW.translation, spread)
+    truth, found = np.array([1.0, 0.5, 0.1, 0, 0, 0.3]), []
+    for _ in range(300):
+        shift = rng.multivariate_normal(np.zeros(6), spread)
+        wrong = CameraPose(VIEW.rotation_vector + shift[:3], VIEW.translation + shift[3:], spread)
+        found.append(fitted(corners_of(truth), view=wrong).state)
+    stated = fitted(corners_of(truth), view=view).camera_covariance
+    np.testing.assert_allclose(np.std(found, axis=0), np.sqrt(np.diag(stated)), rtol=0.15)
+
+
+def test_height_ignored_is_an_error_and_modelled_is_not():
+    corners = corners_of([0.3, 1.2, 0.1, 0, 0, 0])
+    flat = fitted(corners, prior=BodyPrior(0.0, height_sd=1e-4, tilt_sd=1e-4))
+    assert np.hypot(*(flat.planar[:2] - [0.3, 1.2])) > 0.05
+    assert np.hypot(*(fitted(corners).planar[:2] - [0.3, 1.2])) < 1e-6
+
+
+def test_a_print_of_uncertain_size_does_not_raise_the_robot():
+    state = np.array([1.0, 0.5, 0.1, 0, 0, 0.3])
+    large = np.concatenate([MARKER.points_body[:, :2] * 1.003, MARKER.points_body[:, 2:]], axis=1)
+    turn = Rotation.from_euler("Z", state[5]).as_matrix()
+    corners = project(LENS, VIEW, large @ turn.T + state[:3])
+    args = {"points_body": MARKER.points_body, "corners_px": corners,
+            "covariance": 0.02**2 * np.eye(8), "prior": PRIOR}  # fmt: skip
+    errors = [
+        np.hypot(*(fit_pose(LENS, VIEW, scale_sd=sd, **args).planar[:2] - state[:2]))
+        for sd in (0.0, 0.003)
+    ]
+    assert errors[1] < 0.7 * errors[0]
+
+
+@given(st.tuples(*[st.floats(-1, 1)] * 3))
+def test_the_rotation_is_the_conventions_and_its_derivative_is_right(angles):
+    R, dR = rotation_with_derivatives(*angles)
+    np.testing.assert_allclose(R, Rotation.from_euler("ZYX", angles[::-1]).as_matrix(), atol=1e-12)
+    for index in range(3):
+        step = 1e-6 * np.eye(3)[index]
+        ends = [rotation_with_derivatives(*(angles + s * step))[0] for s in (1, -1)]
+        np.testing.assert_allclose(dR[index], (ends[0] - ends[1]) / 2e-6, atol=1e-8)
+
+
+def test_a_marker_without_a_side_is_refused():
+    with pytest.raises(MarkerError, match="side 0"):
+        RobotMarker(0, 0, "4x4_50", (0, 0, 0))
+
+
+@pytest.mark.reference
+def test_the_marked_walk_of_the_virtual_world_is_found(shared):
+    folder = shared / "virtual-world/photos"
+    world = json.loads((folder / "camera.json").read_text(encoding="utf-8"))
+    lens = Camera((1280, 960), np.array(world["K"]), np.zeros(5))
+    markers = tuple(
+        FloorMarker(int(key), value["side"], *np.mean(value["corners_world"], axis=0)[:2], z=0.002)
+        for key, value in world["floor_markers"].items()
+    )
+    floor = FloorMap("4x4_50", markers)
+    robot = RobotMarker(0, 0.12, "4x4_50", (0, 0, 0.0385))
+    np.testing.assert_allclose(robot.points_body, world["top_marker"]["corners_body"], atol=1e-9)
+    with (folder / "s1.10_A/truth.csv").open(encoding="utf-8") as file:
+        truth = [[float(row[k]) for k in ("x", "y", "yaw")] for row in csv.DictReader(file)]
+    views, robots = [], []
+    for path in sorted((folder / "s1.10_A").glob("*.jpg")):
+        found = find_markers(cv2.imread(str(path)), "4x4_50", wanted=[0, 10, 11, 12, 13])
+        robots.append([s for s in found if s.marker_id == 0])
+        views.append(FloorView.of(path.name, [s for s in found if s.marker_id]))
+    assert [len(found) for found in robots] == [1] * len(truth)
+    fit = refine_floor(lens, floor, views)
+    assert len(fit.stands) == 1
+    poses = [
+        fit_pose(
+            lens, fit.pose_of(view.photo), points_body=robot.points_body,
+            corners_px=found[0].corners_px, covariance=found[0].covariance,
+            prior=BodyPrior(0.0615), scale_sd=robot.side_sd / robot.side,
+        ).planar
+        for view, found in zip(views, robots, strict=True)
+    ]  # fmt: skip
+    error = np.abs(np.array(poses) - truth)
+    assert error[:, :2].max() < 3e-3
+    assert np.degrees(error[:, 2]).max() < 0.3

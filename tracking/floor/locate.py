@@ -1,0 +1,163 @@
+# SPDX-License-Identifier: MIT
+"""Where the camera stands, from the floor's marks in one photograph."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+from scipy.optimize import least_squares
+
+from tracking.camera.lens import Array, Camera, CameraPose, project, project_with_derivatives
+from tracking.errors import FloorError
+from tracking.floor.marks import FloorMap
+from tracking.markers import Sighting
+
+_MISFIT_PX = 8.0
+
+
+@dataclass(frozen=True)
+class FloorView:
+    """The floor's marks that one photograph shows.
+
+    Attributes:
+        photo: Name of the photograph.
+        pixels: By key of `FloorMap.marks`, where the mark's points are, each of shape (n, 2) [px].
+        covariances: Under the same keys, their covariance, each of shape (2n, 2n) [px²].
+    """
+
+    photo: str
+    pixels: Mapping[int | str, Array]
+    covariances: Mapping[int | str, Array]
+
+    @classmethod
+    def of(
+        cls, photo: str, sightings: Sequence[Sighting] = (), *,
+        clicked: Mapping[str, tuple[float, float]] | None = None, click_sd: float = 0.7,
+    ) -> "FloorView":  # fmt: skip
+        """Collect markers found and points clicked on.
+
+        Args:
+            photo: Name of the photograph.
+            sightings: Markers found in it; those of a number seen twice are left out, since one
+                of them is something else.
+            clicked: Points by name, where they were clicked [px].
+            click_sd: Standard deviation of a click [px].
+        """
+        numbers = [sighting.marker_id for sighting in sightings]
+        single = [s for s in sightings if numbers.count(s.marker_id) == 1]
+        pixels: dict[int | str, Array] = {s.marker_id: s.corners_px for s in single}
+        covariances: dict[int | str, Array] = {s.marker_id: s.covariance for s in single}
+        for name, pixel in (clicked or {}).items():
+            pixels[name] = np.array([pixel], dtype=float)
+            covariances[name] = click_sd**2 * np.eye(2)
+        return cls(photo, pixels, covariances)
+
+
+def locate_camera(camera: Camera, floor: FloorMap, view: FloorView) -> CameraPose:
+    """Find where the camera stands, taking the floor's map as true.
+
+    Args:
+        camera: The lens.
+        floor: The floor's marks.
+        view: Where the photograph shows them.
+
+    Returns:
+        The camera's pose with the covariance that the pixels alone give it.
+
+    Raises:
+        FloorError: When no mark is seen, too few points are, the map is mirrored, or the marks
+            do not fit the picture.
+    """
+    pose, misfit = _best_pose(camera, floor, view)
+    if misfit > _MISFIT_PX or pose.position[2] <= 0:
+        _explain(camera, floor, view, misfit)
+    return pose
+
+
+def seen_keys(floor: FloorMap, view: FloorView) -> list[int | str]:
+    """List the marks of the floor that a photograph shows, in the map's order."""
+    return [key for key in floor.marks if key in view.pixels]
+
+
+def _best_pose(camera: Camera, floor: FloorMap, view: FloorView) -> tuple[CameraPose, float]:
+    keys = seen_keys(floor, view)
+    if not keys:
+        expected = ", ".join(str(key) for key in floor.marks)
+        raise FloorError(
+            f"{view.photo}: none of the floor's marks ({expected}) is seen; check the dictionary "
+            f"('{floor.dictionary}') and that they lie in the picture"
+        )
+    points = np.concatenate([floor.marks[key].points for key in keys])
+    pixels = np.concatenate([view.pixels[key] for key in keys])
+    if len(points) < 4:
+        raise FloorError(
+            f"{view.photo}: {len(points)} points of the floor are seen; at least 4 are needed "
+            f"(a marker has 4)"
+        )
+    starts = _starting_poses(camera, points, pixels)
+    poses = [_polish(camera, pose, points, pixels) for pose in starts]
+    if not poses:
+        raise FloorError(f"{view.photo}: no camera could see the floor's marks where they are seen")
+    return min(poses, key=lambda found: found[1])
+
+
+def _starting_poses(camera: Camera, points: Array, pixels: Array) -> list[CameraPose]:
+    flat = np.ptp(points[:, 2]) < 1e-9
+    method = cv2.SOLVEPNP_IPPE if flat else cv2.SOLVEPNP_SQPNP
+    level = points - [0.0, 0.0, points[0, 2] if flat else 0.0]
+    try:
+        _, rotations, translations, _ = cv2.solvePnPGeneric(
+            level, pixels, camera.matrix, camera.distortion, flags=method
+        )
+    except cv2.error:
+        return []
+    poses = []
+    for rotation, translation in zip(rotations, translations, strict=True):
+        R = np.asarray(cv2.Rodrigues(rotation)[0], dtype=float)
+        shift = R @ (points[0] - level[0])
+        t = np.ravel(translation).astype(float) - shift
+        poses.append(CameraPose.from_matrix(R, t))
+    return poses
+
+
+def _polish(
+    camera: Camera, start: CameraPose, points: Array, pixels: Array
+) -> tuple[CameraPose, float]:
+    """Improve a pose by least squares; return it and its root mean square misfit [px]."""
+
+    def pose_of(x: Array) -> CameraPose:
+        return CameraPose(x[:3], x[3:], start.covariance)
+
+    def residual(x: Array) -> Array:
+        return (project(camera, pose_of(x), points) - pixels).ravel()
+
+    def jacobian(x: Array) -> Array:
+        return project_with_derivatives(camera, pose_of(x), points)[2].reshape(-1, 6)
+
+    x0 = np.concatenate((start.rotation_vector, start.translation))
+    # Robust: a misplaced mark must not bend the pose so that all marks look a little wrong.
+    fit = least_squares(
+        residual, x0, jac=jacobian,  # pyright: ignore[reportArgumentType] # scipy has no types
+        loss="soft_l1", f_scale=2.0, x_scale="jac",
+    )  # fmt: skip
+    J, r = jacobian(fit.x), residual(fit.x)
+    misfit = float(np.sqrt(2 * np.mean(r**2)))
+    noise = max(misfit**2 / 2, 1e-4)
+    covariance = noise * np.linalg.pinv(J.T @ J)
+    return CameraPose(fit.x[:3], fit.x[3:], covariance), misfit
+
+
+def _explain(camera: Camera, floor: FloorMap, view: FloorView, misfit: float) -> None:
+    other, other_misfit = _best_pose(camera, floor.mirrored(), view)
+    if other_misfit < min(0.3 * misfit, _MISFIT_PX) or (
+        other.position[2] > 0 and other_misfit < _MISFIT_PX
+    ):
+        raise FloorError(
+            f"{view.photo}: the map of the floor is mirrored (its marks are off by {misfit:.0f} "
+            f"px, mirrored by {other_misfit:.1f} px); y must grow to the left of x, seen from above"
+        )
+    raise FloorError(
+        f"{view.photo}: the floor's marks are off by {misfit:.0f} px from where the map has them; "
+        f"check positions, yaw and side of each, and that the camera is the calibrated one"
+    )

@@ -1,0 +1,157 @@
+# SPDX-License-Identifier: MIT
+"""What lies on the floor at places measured with a tape: markers, and points to click on."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from tracking.camera.lens import Array
+from tracking.errors import FloorError
+from tracking.markers import marker_corners
+
+
+@dataclass(frozen=True)
+class FloorMarker:
+    """A marker that lies on the floor.
+
+    Attributes:
+        marker_id: Number in the floor's dictionary.
+        side: Side of the black square [m].
+        x: Position of its centre [m].
+        y: Position of its centre, to the left of x [m].
+        yaw: Turn of the print's left-to-right direction from x, counter-clockwise [rad].
+        z: Height of the print over the floor [m].
+        position_sd: Standard deviation of the tape, in x and in y [m].
+        yaw_sd: Standard deviation of `yaw` [rad].
+        side_sd: Standard deviation of `side`: printers scale by a few tenths of a percent [m].
+    """
+
+    marker_id: int
+    side: float
+    x: float
+    y: float
+    yaw: float = 0.0
+    z: float = 0.0
+    position_sd: float = 1e-3
+    yaw_sd: float = 0.01
+    side_sd: float = 2e-4
+
+    @property
+    def points(self) -> Array:
+        """Corners in the world, OpenCV's order, shape (4, 3) [m]."""
+        return marker_corners(self.side, (self.x, self.y, self.z), self.yaw)
+
+    @property
+    def derivative(self) -> Array:
+        """Derivative of `points` with respect to x, y, yaw and side, shape (4, 3, 4)."""
+        arm = self.points - (self.x, self.y, self.z)
+        along = [np.tile(axis, (4, 1)) for axis in np.eye(3)[:2]]
+        turn = np.column_stack((-arm[:, 1], arm[:, 0], np.zeros(4)))
+        return np.stack((*along, turn, arm / self.side), axis=2)
+
+    @property
+    def prior_sd(self) -> Array:
+        """Standard deviations of x, y, yaw and side, shape (4,) [m, m, rad, m]."""
+        return np.array([self.position_sd, self.position_sd, self.yaw_sd, self.side_sd])
+
+    def moved(self, step: Array) -> "FloorMarker":
+        """Return the marker changed by a step in x, y, yaw and side, shape (4,)."""
+        x, y, yaw, side = (float(part) for part in step)
+        return replace(self, x=self.x + x, y=self.y + y, yaw=self.yaw + yaw, side=self.side + side)
+
+    def mirrored(self) -> "FloorMarker":
+        """Return where the marker is when its map was drawn with y to the right."""
+        return replace(self, y=-self.y, yaw=-self.yaw)
+
+
+@dataclass(frozen=True)
+class FloorPoint:
+    """A point of the floor that can be clicked on in a photograph.
+
+    Attributes:
+        name: What it is called.
+        x: Position [m].
+        y: Position, to the left of x [m].
+        z: Height over the floor [m].
+        position_sd: Standard deviation of the tape, in x and in y [m].
+    """
+
+    name: str
+    x: float
+    y: float
+    z: float = 0.0
+    position_sd: float = 1e-3
+
+    @property
+    def points(self) -> Array:
+        """The point in the world, shape (1, 3) [m]."""
+        return np.array([[self.x, self.y, self.z]])
+
+    @property
+    def derivative(self) -> Array:
+        """Derivative of `points` with respect to x and y, shape (1, 3, 2) [-]."""
+        return np.array([[[1.0, 0.0], [0.0, 1.0], [0.0, 0.0]]])
+
+    @property
+    def prior_sd(self) -> Array:
+        """Standard deviations of x and y, shape (2,) [m]."""
+        return np.array([self.position_sd, self.position_sd])
+
+    def moved(self, step: Array) -> "FloorPoint":
+        """Return the point moved by x, y of shape (2,)."""
+        return replace(self, x=self.x + float(step[0]), y=self.y + float(step[1]))
+
+    def mirrored(self) -> "FloorPoint":
+        """Return where the point is when its map was drawn with y to the right."""
+        return replace(self, y=-self.y)
+
+
+Mark = FloorMarker | FloorPoint
+
+
+@dataclass(frozen=True)
+class FloorMap:
+    """The floor's marks.
+
+    Attributes:
+        dictionary: Name of the markers' dictionary.
+        markers: The markers.
+        points: Points to click on.
+    """
+
+    dictionary: str
+    markers: tuple[FloorMarker, ...] = ()
+    points: tuple[FloorPoint, ...] = ()
+
+    def __post_init__(self) -> None:
+        _refuse_doubles([f"marker {marker.marker_id}" for marker in self.markers])
+        _refuse_doubles([f"point '{point.name}'" for point in self.points])
+
+    @property
+    def marks(self) -> dict[int | str, Mark]:
+        """Markers by number and points by name."""
+        by_number: dict[int | str, Mark] = {marker.marker_id: marker for marker in self.markers}
+        return by_number | {point.name: point for point in self.points}
+
+    @property
+    def marker_ids(self) -> tuple[int, ...]:
+        """Numbers of the markers."""
+        return tuple(marker.marker_id for marker in self.markers)
+
+    def mirrored(self) -> "FloorMap":
+        """Return the map as it should be when it was drawn with y to the right."""
+        return self.with_marks({key: mark.mirrored() for key, mark in self.marks.items()})
+
+    def with_marks(self, marks: dict[int | str, Mark]) -> "FloorMap":
+        """Return the map with its marks replaced by those under the same key."""
+        found = [marks.get(key, mark) for key, mark in self.marks.items()]
+        markers = tuple(mark for mark in found if isinstance(mark, FloorMarker))
+        points = tuple(mark for mark in found if isinstance(mark, FloorPoint))
+        return FloorMap(self.dictionary, markers, points)
+
+
+def _refuse_doubles(names: Sequence[str]) -> None:
+    twice = sorted({name for name in names if names.count(name) > 1})
+    if twice:
+        raise FloorError(f"the floor has {twice[0]} twice; each may lie in one place only")

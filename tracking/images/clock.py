@@ -1,0 +1,90 @@
+# SPDX-License-Identifier: MIT
+"""Tie the camera's clock to the computer's by one photograph of a QR code that shows the time."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from tracking.errors import PhotoError
+from tracking.images.read import read_pixels
+from tracking.images.times import exif_time
+
+_PREFIX = "zebro-clock:"
+
+
+@dataclass(frozen=True)
+class ClockOffset:
+    """How far the camera's clock is ahead of the computer's.
+
+    Attributes:
+        seconds: Camera minus computer [s].
+        sd: Standard deviation: the stamp's step and how often the code is renewed [s].
+    """
+
+    seconds: float
+    sd: float
+
+
+def clock_text(t: float) -> str:
+    """Write what the code of a moment says.
+
+    Args:
+        t: Seconds since 1970, UTC [s].
+
+    >>> clock_text(1.5)
+    'zebro-clock:1.500'
+    """
+    return f"{_PREFIX}{t:.3f}"
+
+
+def clock_picture(t: float, *, module_px: int = 12) -> NDArray[np.uint8]:
+    """Draw the code of a moment, white margin included.
+
+    Args:
+        t: Seconds since 1970, UTC [s].
+        module_px: Side of one square of the code [px].
+
+    Returns:
+        Grey, shape (n, n).
+    """
+    code = np.asarray(cv2.QRCodeEncoder.create().encode(clock_text(t)), dtype=np.uint8)
+    n = module_px * code.shape[0]
+    large = np.asarray(cv2.resize(code, (n, n), interpolation=cv2.INTER_NEAREST), dtype=np.uint8)
+    return np.pad(large, 4 * module_px, constant_values=255)
+
+
+def read_clock(pixels: NDArray[np.uint8]) -> float | None:
+    """Read the time that a photographed code shows [s], or None where there is none."""
+    text, _, _ = cv2.QRCodeDetector().detectAndDecode(pixels)
+    if not text.startswith(_PREFIX):
+        return None
+    try:
+        return float(text.removeprefix(_PREFIX))
+    except ValueError:
+        return None
+
+
+def clock_offset(path: Path, *, renewal: float = 0.1) -> ClockOffset:
+    """Compare the code in a photograph with the photograph's EXIF time.
+
+    Args:
+        path: Photograph of the code.
+        renewal: How often the code on the screen is renewed [s].
+
+    Raises:
+        PhotoError: When the photograph has no code or no EXIF time.
+    """
+    shown = read_clock(read_pixels(path))
+    if shown is None:
+        raise PhotoError(
+            path.name, "no QR clock is seen; fill a third of the picture with it, without glare"
+        )
+    stamp = exif_time(path)
+    if stamp is None:
+        raise PhotoError(path.name, "no EXIF time; the photograph must come as the camera wrote it")
+    taken, step = stamp
+    sd = float(np.sqrt((step**2 + renewal**2) / 12))
+    return ClockOffset(taken + step / 2 - (shown + renewal / 2), sd)

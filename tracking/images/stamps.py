@@ -1,0 +1,120 @@
+# SPDX-License-Identifier: MIT
+"""Times of a regular interval timer from stamps in whole seconds.
+
+A stamp says s <= t < s + 1. If the timer is regular, t_k = t_0 + n_k T, and every stamp cuts a
+strip out of the plane of (t_0, T). What all strips share is a small polygon: its centroid and
+spread give every time to a few hundredths of a second, where one stamp leaves 0.29 s, or 29 mm
+for a robot that walks 0.1 m/s.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy.optimize import linprog
+from scipy.spatial import HalfspaceIntersection
+
+from tracking.camera.lens import Array
+
+_JITTERS = (0.0, 0.01, 0.02, 0.05, 0.1, 0.2)
+
+
+@dataclass(frozen=True)
+class IntervalFit:
+    """Times on a regular interval that agree with all stamps.
+
+    Attributes:
+        t: Times, shape (n,) [s].
+        sd: Standard deviation of each, shape (n,) [s].
+        interval: The timer's interval [s].
+        missing: Numbers of the exposures between first and last that have no photograph.
+        jitter: How far the timer had to be allowed to stray from its beat [s].
+    """
+
+    t: Array
+    sd: Array
+    interval: float
+    missing: tuple[int, ...]
+    jitter: float
+
+
+def fit_interval(stamps: ArrayLike, *, resolution: float = 1.0) -> IntervalFit | None:
+    """Fit start and interval of a timer to stamps rounded down.
+
+    Args:
+        stamps: Stamps in order, shape (n,), n at least 3 [s].
+        resolution: What they are rounded down to [s].
+
+    Returns:
+        The fit, or None where no regular interval agrees with the stamps, or several might.
+    """
+    s = np.asarray(stamps, dtype=float)
+    span = s[-1] - s[0]
+    if len(s) < 3 or span <= 0:
+        return None
+    for jitter in _JITTERS:
+        # The longest interval first: shorter ones that explain more skips always exist.
+        for intervals in range(len(s) - 1, 2 * len(s)):
+            # Below two steps of the stamp a skipped exposure looks like a slower timer.
+            if intervals >= len(s) and span / intervals < 2 * resolution:
+                break
+            numbers = np.round((s - s[0]) * intervals / span).astype(int)
+            if (np.diff(numbers) < 1).any():
+                continue
+            polygon = _common_polygon(s - s[0], numbers, resolution, jitter)
+            if polygon is not None:
+                return _times(s[0], numbers, polygon, jitter)
+    return None
+
+
+def _common_polygon(
+    s: Array, numbers: NDArray[np.int64], resolution: float, jitter: float
+) -> Array | None:
+    """Intersect the stamps' strips; return the vertices (t_0, T), shape (m, 2), or None."""
+    ones = np.ones(len(s))
+    # -t_0 - n T + s - jitter <= 0   and   t_0 + n T - s - resolution - jitter <= 0
+    above = np.column_stack((-ones, -numbers, s - jitter))
+    below = np.column_stack((ones, numbers, -s - resolution - jitter))
+    halves = np.concatenate((above, below))
+    length = np.linalg.norm(halves[:, :2], axis=1)
+    inner = linprog(
+        [0, 0, -1],
+        A_ub=np.column_stack((halves[:, :2], length)),
+        b_ub=-halves[:, 2],
+        bounds=[(None, None), (None, None), (0, resolution)],
+    )
+    if not inner.success or inner.x[2] < 1e-9:
+        return None
+    return np.asarray(HalfspaceIntersection(halves, inner.x[:2]).intersections, dtype=float)
+
+
+def _times(start: float, numbers: NDArray[np.int64], polygon: Array, jitter: float) -> IntervalFit:
+    centre, spread = _centroid(polygon)
+    design = np.column_stack((np.ones(len(numbers)), numbers))
+    variance = np.einsum("ni,ij,nj->n", design, spread, design) + jitter**2 / 3
+    missing = sorted(set(range(int(numbers[-1]))) - {int(number) for number in numbers})
+    return IntervalFit(
+        start + design @ centre, np.sqrt(variance), float(centre[1]), tuple(missing), jitter
+    )
+
+
+def _centroid(polygon: Array) -> tuple[Array, Array]:
+    """Compute mean and covariance of the uniform density on a convex polygon."""
+    middle = polygon.mean(axis=0)
+    order = np.argsort(
+        np.arctan2(*(polygon - middle).T[::-1] / np.ptp(polygon, axis=0)[::-1, None])
+    )
+    a = polygon[order] - middle
+    b = np.roll(a, -1, axis=0)
+    area = 0.5 * np.abs(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0])
+    if area.sum() <= 0:
+        return middle, np.cov(polygon.T, bias=True)
+    weight = area / area.sum()
+    mean = weight @ ((a + b) / 3)
+    # Second moments of a triangle with one corner at the origin.
+    second = np.einsum("n,nij->ij", weight / 12, _outer(a, a) + _outer(b, b) + _outer(a + b, a + b))
+    return middle + mean, second - np.outer(mean, mean)
+
+
+def _outer(a: Array, b: Array) -> Array:
+    return np.einsum("ni,nj->nij", a, b)

@@ -1,0 +1,153 @@
+# SPDX-License-Identifier: MIT
+"""When photographs were taken: EXIF, a table, or a regular interval."""
+
+import csv
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from pathlib import Path
+
+import numpy as np
+import PIL.Image
+
+from tracking.camera.lens import Array
+from tracking.errors import TimesError
+from tracking.images.stamps import fit_interval
+
+_EXIF_FOLDER, _TAKEN, _FRACTION, _CHANGED = 0x8769, 0x9003, 0x9291, 0x0132
+
+
+@dataclass(frozen=True)
+class PhotoTimes:
+    """Times of photographs.
+
+    Attributes:
+        t: Times by the camera's clock, shape (n,) [s].
+        sd: Standard deviation of each, shape (n,) [s].
+        source: Where they are from, in words.
+    """
+
+    t: Array
+    sd: Array
+    source: str
+
+
+def exif_time(path: Path) -> tuple[float, float] | None:
+    """Read when a photograph was taken, by the camera's own clock.
+
+    Args:
+        path: The file.
+
+    Returns:
+        Seconds since 1970 as if the clock ran on UTC [s], and the step of the stamp: 1 s, or less
+        where EXIF has fractions of a second. None without EXIF.
+    """
+    try:
+        with PIL.Image.open(path) as picture:
+            exif = picture.getexif()
+            details = exif.get_ifd(_EXIF_FOLDER)
+    except (OSError, SyntaxError, PIL.Image.DecompressionBombError):
+        return None
+    text = details.get(_TAKEN) or exif.get(_CHANGED)
+    if not text:
+        return None
+    try:
+        taken = datetime.strptime(str(text).strip("\0 "), "%Y:%m:%d %H:%M:%S").replace(tzinfo=UTC)
+    except ValueError:
+        return None
+    digits = str(details.get(_FRACTION, "")).strip("\0 ")
+    if not digits.isdigit():
+        return taken.timestamp(), 1.0
+    step = 10.0 ** -len(digits)
+    return taken.timestamp() + int(digits) * step, step
+
+
+def times_from_exif(paths: Sequence[Path]) -> PhotoTimes:
+    """Read the times of photographs, fitting a regular interval to stamps in whole seconds.
+
+    Args:
+        paths: The photographs, in order.
+
+    Raises:
+        TimesError: When one has no EXIF time.
+    """
+    stamps = [exif_time(path) for path in paths]
+    without = [path.name for path, stamp in zip(paths, stamps, strict=True) if stamp is None]
+    if without:
+        raise TimesError(
+            f"{without[0]} and {len(without) - 1} others have no EXIF time; give the interval of "
+            f"the timer (--interval SECONDS) or a table of times (--times FILE)"
+            if len(without) > 1
+            else f"{without[0]} has no EXIF time; leave it out, or give --interval or --times"
+        )
+    t = np.array([stamp[0] for stamp in stamps if stamp is not None])
+    step = np.array([stamp[1] for stamp in stamps if stamp is not None])
+    # A clock that shows no fractions but stores "00" has whole seconds all the same.
+    if step.max() < 1.0 and not np.allclose(t % 1.0, 0.0):
+        return PhotoTimes(t + step / 2, step / math.sqrt(12), "EXIF with fractions of a second")
+    fit = fit_interval(t)
+    if fit is None:
+        return PhotoTimes(
+            t + 0.5, np.full(len(t), 1 / math.sqrt(12)), "EXIF in whole seconds, irregular"
+        )
+    return PhotoTimes(
+        fit.t, fit.sd, f"EXIF in whole seconds with an interval of {fit.interval:.3f} s fitted"
+    )
+
+
+def times_from_interval(count: int, interval: float, *, jitter: float = 0.0) -> PhotoTimes:
+    """Compute times of a regular timer; the first photograph is at 0.
+
+    Args:
+        count: Number of photographs.
+        interval: Interval of the timer [s].
+        jitter: Standard deviation of a time about its beat [s].
+
+    Raises:
+        TimesError: When the interval is not positive.
+    """
+    if not interval > 0:
+        raise TimesError(f"the interval is {interval:g} s; expected more than 0")
+    return PhotoTimes(
+        interval * np.arange(count), np.full(count, float(jitter)), f"interval of {interval:g} s"
+    )
+
+
+def times_from_table(table: Path, paths: Sequence[Path]) -> PhotoTimes:
+    """Read times from a CSV file with columns `photo`, `t_s` and, if known, `t_sigma`.
+
+    Args:
+        table: The file.
+        paths: The photographs whose times are wanted.
+
+    Raises:
+        TimesError: When the file, a column or a photograph is missing, or a number is none.
+    """
+    try:
+        with table.open(newline="", encoding="utf-8-sig") as file:
+            rows = list(csv.DictReader(file))
+    except OSError as error:
+        raise TimesError(f"{table} cannot be read: {error.strerror}") from error
+    if not rows or not {"photo", "t_s"} <= set(rows[0]):
+        found = ", ".join(rows[0]) if rows else "nothing"
+        raise TimesError(f"{table} has {found}; expected columns photo, t_s and maybe t_sigma")
+    times = {row["photo"]: _numbers(table, line, row) for line, row in enumerate(rows, 2)}
+    missing = [path.name for path in paths if path.name not in times]
+    if missing:
+        raise TimesError(f"{table} has no row for {missing[0]} ({len(missing)} missing in all)")
+    pairs = np.array([times[path.name] for path in paths]).reshape(-1, 2)
+    return PhotoTimes(pairs[:, 0], pairs[:, 1], f"table {table.name}")
+
+
+def _numbers(table: Path, line: int, row: dict[str, str]) -> tuple[float, float]:
+    numbers = []
+    for column in ("t_s", "t_sigma"):
+        text = row.get(column) or "0"
+        try:
+            numbers.append(float(text))
+        except ValueError as error:
+            raise TimesError(f"{table}, row {line}, {column}: '{text}' is not a number") from error
+        if not math.isfinite(numbers[-1]):
+            raise TimesError(f"{table}, row {line}, {column}: '{text}' is not a time in seconds")
+    return numbers[0], numbers[1]

@@ -169,7 +169,7 @@ def time_mujoco(our_rates: dict[float, float]) -> None:
     rows = []
     for study in studies:
         one = peer.largest_step(study)
-        name = f"{one.setup.shape}, {one.setup.cone} cone, {one.setup.solver}"
+        name = peer.describe(one.setup)
         rows.append(
             (
                 name, f"{1000 * one.setup.dt:g}", f"{one.radius:.4f}", f"{study[0].radius:.4f}",
@@ -196,8 +196,8 @@ def time_mujoco(our_rates: dict[float, float]) -> None:
     chosen = peer.largest_step(best).setup
     final = peer.run(ROBOT, reference, FRICTION, chosen, duration=DURATION, repeats=REPEATS)
     print(
-        f"At its fastest (MuJoCo {peer.mujoco.__version__}, {chosen.shape}, {chosen.cone} cone, "
-        f"{chosen.solver}, {1000 * chosen.dt:g} ms) the walk of {DURATION:g} s runs at "
+        f"At its fastest (MuJoCo {peer.mujoco.__version__}, {peer.describe(chosen)}, "
+        f"{1000 * chosen.dt:g} ms) the walk of {DURATION:g} s runs at "
         f"{final.wall:,.0f} simulated seconds per wall second, {final.processor:,.0f} per "
         f"processor second; leg angles are kept to {np.degrees(final.angle_error):.3f} degrees. "
         f"Only the rollout is timed. Ours with Coulomb is "

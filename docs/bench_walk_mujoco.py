@@ -6,7 +6,8 @@ inertia that no contact can move, driven by the reference's accelerations, costs
 the angles to 0.01 degrees, where position servos lag and make the contact solver take the legs for
 soft. Contact and friction are the engine's own, steps run in C (`mujoco.rollout`), and what the
 model does not need is switched off. Three shapes of leg, two friction cones and two solvers are
-tried; each takes the largest step whose radius is within a percent of its own converged one.
+tried, and for spheres fewer of them and softer contacts; each takes the largest step whose radius
+is within a percent of its own converged one.
 """
 
 import time
@@ -30,12 +31,23 @@ Shape = Literal["spheres", "capsules", "half disc"]
 
 ROTOR = 1e5  # kg m2; hinges only, so the body does not feel it
 SOLVER_TOLERANCE = 1e-11  # MuJoCo scales it by the mean inertia, here the rotors'
-CONTACT_TIME = 0.01  # s, MuJoCo's solref; legs sink by about a millimetre
+CONTACT_TIMES = (0.01, 0.02)  # s, solref: legs sink a millimetre, and four; MuJoCo's default
 EDGE = 1e-4  # m, radius of spheres and capsules: a sharp toe
 ARC_USED = np.radians(70.0)  # of the arc from the toe: the rest never meets flat ground
-VERTICES = 16  # over it; the lowest point is up to 0.03 mm off the arc's
+VERTICES = (16, 8)  # over it; the lowest point is up to 0.03 and 0.13 mm off the arc's
 DISC_VERTICES = 64  # of a half disc, whose hull is the arc's
-STEPS = (0.0005, 0.001, 0.002, 0.004, 0.005, 0.008, 0.01)  # s; each divides the cycle
+STEPS = (
+    0.0005,
+    0.001,
+    0.002,
+    0.004,
+    0.005,
+    0.008,
+    0.01,
+    0.0125,
+    0.016,
+    0.02,
+)  # s; each divides the cycle
 ALLOWED = 0.01  # of the radius at the smallest step
 STUDY_CYCLES = 7  # the radius is taken from the end of the first one on
 OFF = ("clampctrl", "damper", "equality", "frictionloss", "island", "limit", "sensor", "spring")
@@ -49,12 +61,16 @@ class Setup:
         shape: What a leg is made of.
         cone: Friction cone.
         solver: Constraint solver.
+        vertices: How many points of the arc spheres or capsules stand on.
+        contact_time: Time constant of a contact [s].
         dt: Step [s].
     """
 
     shape: Shape = "spheres"
     cone: str = "elliptic"
     solver: str = "Newton"
+    vertices: int = VERTICES[0]
+    contact_time: float = CONTACT_TIMES[0]
     dt: float = STEPS[0]
 
 
@@ -77,15 +93,15 @@ class Run:
     processor: float
 
 
-def leg_geoms(robot: Robot, shape: Shape) -> str:
+def leg_geoms(robot: Robot, setup: Setup) -> str:
     """Write a leg's geoms in its own frame: x from the hip to the toe, the arc at negative z."""
     r = robot.leg_radius
-    phi = np.linspace(0.0, ARC_USED, VERTICES)
+    phi = np.linspace(0.0, ARC_USED, setup.vertices)
     arc = np.column_stack([np.cos(phi), np.zeros_like(phi), -np.sin(phi)])
     points = [" ".join(f"{x:.9g}" for x in row) for row in np.array([r, 0, 0]) + (r - EDGE) * arc]
-    if shape == "spheres":
+    if setup.shape == "spheres":
         return "".join(f'<geom type="sphere" size="{EDGE}" pos="{point}"/>' for point in points)
-    if shape == "capsules":
+    if setup.shape == "capsules":
         return "".join(
             f'<geom type="capsule" size="{EDGE}" fromto="{a} {b}"/>' for a, b in pairwise(points)
         )
@@ -105,7 +121,7 @@ def half_disc(robot: Robot) -> str:
 
 def mjcf(robot: Robot, friction: float, setup: Setup) -> str:
     """Write the robot on flat ground as MJCF; the legs' own mass is next to nothing."""
-    geoms = leg_geoms(robot, setup.shape)
+    geoms = leg_geoms(robot, setup)
     legs = "".join(
         f'<body pos="{x} {y} {z}"><inertial pos="0 0 0" mass="1e-6" diaginertia="1e-9 1e-9 1e-9"/>'
         f'<joint name="{i}" axis="0 1 0" armature="{ROTOR}"/>{geoms}</body>'
@@ -120,7 +136,7 @@ def mjcf(robot: Robot, friction: float, setup: Setup) -> str:
     <option timestep="{setup.dt}" integrator="Euler" cone="{setup.cone}" solver="{setup.solver}"
       tolerance="{SOLVER_TOLERANCE}" gravity="0 0 -{GRAVITY}"><flag {off}/></option>
     <default><geom contype="1" conaffinity="0" condim="3" friction="{friction} 0 0"
-      solref="{CONTACT_TIME} 1"/></default>{mesh}
+      solref="{setup.contact_time} 1"/></default>{mesh}
     <worldbody><geom type="plane" size="0 0 1" contype="0" conaffinity="1"/>
     <body><freejoint/><inertial pos="0 0 0" mass="{robot.mass}" diaginertia="{inertia}"/>
     {legs}</body></worldbody><actuator>{motors}</actuator></mujoco>"""
@@ -188,6 +204,17 @@ def step_study(
     ]
 
 
+def describe(setup: Setup) -> str:
+    """Name a set-up, without its step."""
+    points = "" if setup.shape == "half disc" else f"{setup.vertices} "
+    if setup.shape == "capsules":
+        points = f"{setup.vertices - 1} "
+    return (
+        f"{points}{setup.shape}, {setup.cone} cone, {setup.solver}, contacts of "
+        f"{1000 * setup.contact_time:g} ms"
+    )
+
+
 def departure(study: Sequence[Run], one: Run) -> float:
     """Compute how far a radius is from that of the smallest step, as a share of it."""
     return one.radius / study[0].radius - 1
@@ -204,13 +231,17 @@ def largest_step(study: Sequence[Run]) -> Run:
 
 
 def all_studies(robot: Robot, reference: LegReference, friction: float) -> list[Sequence[Run]]:
-    """Study every shape of leg with every cone and solver, the fastest choice first."""
+    """Study every set-up worth trying, the fastest first."""
+    solvers = ("Newton", "CG")
     setups = [
-        Setup(shape, cone, solver)
-        for shape, cone, solver in product(
-            ("spheres", "capsules", "half disc"), ("elliptic", "pyramidal"), ("Newton", "CG")
+        Setup(*each)
+        for each in product(
+            ("spheres", "capsules", "half disc"), ("elliptic", "pyramidal"), solvers
         )
     ]
-    studies = [step_study(robot, reference, friction, setup) for setup in setups]
+    setups += [
+        Setup("spheres", "elliptic", *each) for each in product(solvers, VERTICES, CONTACT_TIMES)
+    ]
+    studies = [step_study(robot, reference, friction, setup) for setup in dict.fromkeys(setups)]
     # By processor time, which other programs on the machine disturb least.
     return sorted(studies, key=lambda study: -largest_step(study).processor)

@@ -374,6 +374,19 @@ def test_motion_smears_about_the_middle_of_the_exposure(background):
         assert means[0] == pytest.approx(means[1], abs=0.1)
 
 
+@pytest.mark.parametrize("marker", [RobotMarker(), None])
+def test_a_robot_at_rest_is_drawn_as_if_every_pixel_were_sampled_in_full(background, marker):
+    crawling = replace(STATE, velocity_xy=(1e-9, 0.0))  # sampled in full, since it moves
+    conditions = replace(IDEAL, exposure_time=1e-3)
+    at_rest, moving = (
+        take_photo(SCENE, state, look=RobotLook(marker), conditions=conditions,
+                   rng=np.random.default_rng(0), background=background)
+        for state in (STATE, crawling)
+    )  # fmt: skip
+    assert np.abs(at_rest.pixels.astype(int) - moving.pixels).max() <= 1
+    assert np.abs(at_rest.cover - moving.cover).max() < 1e-6
+
+
 def test_a_robot_outside_the_picture_leaves_it_alone(background):
     away = RobotState(BodyPose(0.3, 5.0, 0.0))
     shot = take_photo(SCENE, away, rng=np.random.default_rng(0), background=background)

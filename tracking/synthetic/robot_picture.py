@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: MIT
 """Draw the robot: a box with a red head, a top plate, six bent legs, and its shadow."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
+import cv2
 import numpy as np
 from numpy.typing import NDArray
 
@@ -10,12 +12,14 @@ from tracking.synthetic.lens import Array, SyntheticCamera
 from tracking.synthetic.patterns import Grid, look_up, marker_cells, plate_cells
 from tracking.synthetic.robot import PLATE_TOP, BodyPose, RobotLook, RobotState
 from tracking.synthetic.sampling import (
+    CORNERS,
     DISC,
     MOMENTS,
     SAMPLES,
     Patch,
+    RayField,
     patch_around,
-    sample_rays,
+    ray_field,
 )
 from tracking.synthetic.scene import Light, Picture
 from tracking.synthetic.surfaces import (
@@ -41,6 +45,8 @@ _BOXES = (
 )
 _PLATE_SIDE = 0.176  # m
 _LEG_BRIGHTNESS = 0.07  # black rubber, from every side [-]
+_PARTS = 5  # of a value: blue, green, red, cover, floor light
+_FLAT = 1e-4  # values closer than this show one surface [-]
 _BELOW = 0.2  # brightness of white paper seen from below, on a mast [-]
 
 
@@ -70,32 +76,62 @@ def paint_robot(
     patch = _robot_patch(state, look, camera=camera, light=light, exposure_time=exposure_time)
     if patch is None:
         return painted, cover
-    colour, hit, lit = _samples(state, look, camera, light, exposure_time, patch)
-    under = picture[patch.area].reshape(-1, 3)
-    shape = (*painted[patch.area].shape[:2], 3)
-    painted[patch.area] = (colour + lit[:, None] * under).reshape(shape)
-    cover[patch.area] = hit.reshape(shape[:2])
+    sampler = _Sampler(state, look, camera.position, light, exposure_time)
+    values = sampler.averages(ray_field(camera, patch), patch.shape)
+    painted[patch.area] = values[..., :3] + values[..., 4:] * picture[patch.area]
+    cover[patch.area] = values[..., 3]
     return painted, cover
 
 
-def _samples(
-    state: RobotState, look: RobotLook, camera: SyntheticCamera, light: Light,
-    exposure_time: float, patch: Patch,
-) -> tuple[Picture, Picture, Picture]:  # fmt: skip
-    """Average over lattice and exposure: robot's colour, its share, what is left of the floor's."""
-    plate = plate_cells(np.random.default_rng(look.plate_seed), parts=look.parts)
-    count = patch.area_px
-    colour, hit, lit = (np.zeros(shape, np.float32) for shape in ((count, 3), count, count))
-    for index, rays in enumerate(sample_rays(camera, patch)):
-        pose = state.pose_at(float(MOMENTS[index]) * exposure_time)
-        seen = _Seen(pose, state.leg_angles, look, light, plate)
-        found, albedo = seen.along(camera.position, rays)
-        shade = seen.floor_light(camera.position, rays, DISC[index])
-        colour += albedo
-        hit += found
-        lit += np.where(found, np.float32(0.0), shade)
-    share = np.float32(1 / SAMPLES)
-    return colour * share, hit * share, lit * share
+@dataclass(frozen=True)
+class _Sampler:
+    """What is to be seen of a robot, ray by ray.
+
+    A value has five parts: the robot's blue, green and red, whether it is there, and what is left
+    of the floor's light; the last is 0 where the robot is, the first four where it is not.
+    """
+
+    state: RobotState
+    look: RobotLook
+    origin: Array
+    light: Light
+    exposure_time: float
+
+    def averages(self, rays: RayField, shape: tuple[int, int]) -> Picture:
+        """Average the values over each pixel, shape (*shape, 5).
+
+        A robot at rest is drawn from a few points of each pixel; all are used only where these, or
+        those of the pixels around, disagree. Every surface is flat in colour, so that no edge is
+        missed.
+        """
+        if self._moves:
+            return self._mean(rays, range(SAMPLES)).reshape(*shape, _PARTS)
+        few = np.stack([self._values(rays, sample) for sample in CORNERS])
+        low, high = (part.reshape(*shape, _PARTS) for part in (few.min(axis=0), few.max(axis=0)))
+        around = np.ones((3, 3), np.uint8)
+        edge = np.any(cv2.dilate(high, around) - cv2.erode(low, around) > _FLAT, axis=-1).ravel()
+        values = few[0]
+        values[edge] = self._mean(rays.only(edge), range(SAMPLES))
+        return values.reshape(*shape, _PARTS)
+
+    @property
+    def _moves(self) -> bool:
+        return self.exposure_time > 0 and any((*self.state.velocity_xy, self.state.yaw_rate))
+
+    def _mean(self, rays: RayField, samples: Sequence[int]) -> Picture:
+        total = np.zeros((rays.middle.shape[1], _PARTS), np.float32)
+        for sample in samples:
+            total += self._values(rays, sample)
+        return total / np.float32(len(samples))
+
+    def _values(self, rays: RayField, sample: int) -> Picture:
+        pose = self.state.pose_at(float(MOMENTS[sample]) * self.exposure_time)
+        plate = plate_cells(np.random.default_rng(self.look.plate_seed), parts=self.look.parts)
+        seen = _Seen(pose, self.state.leg_angles, self.look, self.light, plate)
+        directions = rays.at(sample)
+        found, colour = seen.along(self.origin, directions)
+        lit = np.where(found, 0.0, seen.floor_light(self.origin, directions, DISC[sample]))
+        return np.column_stack([colour, found, lit]).astype(np.float32)
 
 
 @dataclass(frozen=True)

@@ -6,7 +6,6 @@ different x and a different y for each point: an edge, of whatever slope, is the
 a pixel or better where a 6 x 6 grid would place an upright one to 1/12.
 """
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -28,6 +27,10 @@ DISC = _SPIRAL[:, None] * np.column_stack(  # in the lamp's disc, of radius 1 [-
     [np.cos(_INDEX * _GOLDEN_ANGLE), np.sin(_INDEX * _GOLDEN_ANGLE)]
 )
 
+CORNERS = tuple(  # the lattice points nearest to a pixel's middle and corners
+    int(np.argmin(np.hypot(*(OFFSETS_PX - place).T)))
+    for place in ((0.0, 0.0), (-0.45, -0.45), (0.45, -0.45), (-0.45, 0.45), (0.45, 0.45))
+)
 _HALF_U, _HALF_V = np.array([0.5, 0.0]), np.array([0.0, 0.5])  # px
 
 
@@ -49,10 +52,9 @@ class Patch:
         return self.rows, self.columns
 
     @property
-    def area_px(self) -> int:
-        """Number of its pixels."""
-        height, width = (part.stop - part.start for part in self.area)
-        return height * width
+    def shape(self) -> tuple[int, int]:
+        """Its height and width [px]."""
+        return self.rows.stop - self.rows.start, self.columns.stop - self.columns.start
 
 
 def patch_around(camera: SyntheticCamera, points: Array, *, margin: float = 3.0) -> Patch | None:
@@ -82,26 +84,38 @@ def _cut(camera: SyntheticCamera, low: Array, high: Array) -> Patch | None:
     return Patch(slice(top, bottom), slice(left, right))
 
 
-def sample_rays(camera: SyntheticCamera, patch: Patch) -> Iterator[NDArray[np.float32]]:
-    """Yield the rays through one lattice point of each pixel, for all `SAMPLES` points in turn.
+@dataclass(frozen=True)
+class RayField:
+    """The rays of some pixels; linear in the offset within each, to better than 1e-5 px.
 
-    Within a pixel the ray is linear in the offset; the error is below 1e-5 px.
-
-    Args:
-        camera: The camera.
-        patch: Pixels.
-
-    Yields:
-        Directions in the inertial frame, shape (3, rows * columns).
+    Attributes:
+        middle: Direction through each pixel's centre, inertial, shape (3, n).
+        per_u: Its change for a pixel to the right, shape (3, n) [1/px].
+        per_v: Its change for a pixel down, shape (3, n) [1/px].
     """
+
+    middle: NDArray[np.float32]
+    per_u: NDArray[np.float32]
+    per_v: NDArray[np.float32]
+
+    def at(self, sample: int) -> NDArray[np.float32]:
+        """Return directions through one of the `SAMPLES` lattice points, shape (3, n)."""
+        du, dv = OFFSETS_PX[sample].astype(np.float32)
+        return self.middle + du * self.per_u + dv * self.per_v
+
+    def only(self, pixels: NDArray) -> "RayField":
+        """Return the rays of some of these pixels, by index or mask."""
+        return RayField(self.middle[:, pixels], self.per_u[:, pixels], self.per_v[:, pixels])
+
+
+def ray_field(camera: SyntheticCamera, patch: Patch) -> RayField:
+    """Compute the rays of a patch, row by row."""
     v, u = np.mgrid[patch.rows, patch.columns].astype(float)
     centre = np.stack([u, v], axis=-1)
     middle = camera.rays(centre)
     per_u = camera.rays(centre + _HALF_U) - camera.rays(centre - _HALF_U)
     per_v = camera.rays(centre + _HALF_V) - camera.rays(centre - _HALF_V)
-    middle, per_u, per_v = (
+    return RayField(*(
         (camera.rotation.T @ part.reshape(-1, 3).T).astype(np.float32)
         for part in (middle, per_u, per_v)
-    )
-    for du, dv in OFFSETS_PX.astype(np.float32):
-        yield middle + du * per_u + dv * per_v
+    ))  # fmt: skip

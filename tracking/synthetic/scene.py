@@ -16,7 +16,7 @@ from tracking.synthetic.patterns import (
     look_up,
     marker_cells,
 )
-from tracking.synthetic.sampling import SAMPLES, Patch, patch_around, sample_rays
+from tracking.synthetic.sampling import SAMPLES, Patch, patch_around, ray_field
 from tracking.synthetic.surfaces import rectangle_hit
 
 Picture = NDArray[np.float32]
@@ -185,9 +185,11 @@ def _sheet_samples(
     """Average the print's albedo, and how much of each pixel it covers, over the lattice."""
     to_sheet = sheet.rotation.T
     x, y, z = (float(v) for v in to_sheet @ (camera.position - sheet.position))
-    seen, share = np.zeros((patch.area_px, 3), np.float32), np.zeros(patch.area_px, np.float32)
-    for rays in sample_rays(camera, patch):
-        along = to_sheet.astype(np.float32) @ rays
+    count = patch.shape[0] * patch.shape[1]
+    seen, share = np.zeros((count, 3), np.float32), np.zeros(count, np.float32)
+    rays = ray_field(camera, patch)
+    for sample in range(SAMPLES):
+        along = to_sheet.astype(np.float32) @ rays.at(sample)
         far, px, py = rectangle_hit(
             (x, y, z), (along[0], along[1], along[2]), size=sheet.size, z=0.0
         )

@@ -74,7 +74,7 @@ def _slabs(
 ) -> tuple[list[NDArray], NDArray, NDArray]:
     """Find where rays enter the slab of each axis, the last of these, and where they leave one."""
     entries, exits = [], []
-    with np.errstate(divide="ignore", invalid="ignore"):
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         for start, step, near, far in zip(origin, direction, low, high, strict=True):
             first, second = (near - start) / step, (far - start) / step
             entries.append(np.minimum(first, second))
@@ -98,7 +98,7 @@ def rectangle_hit(
         Distance, and x and y of the meeting point [m]. Only those with a finite distance mean
         something.
     """
-    with np.errstate(divide="ignore", invalid="ignore"):
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         distance = (z - origin[2]) / direction[2]
         x, y = origin[0] + distance * direction[0], origin[1] + distance * direction[1]
         inside = (np.abs(x) <= size[0] / 2) & (np.abs(y) <= size[1] / 2) & (distance > 0)
@@ -134,7 +134,7 @@ def half_circle_hit(
     b = from_x * along_x + from_z * along_z
     root = b * b - a * (from_x * from_x + from_z * from_z - radius * radius)
     nearest = np.full(np.shape(root), np.inf)
-    with np.errstate(divide="ignore", invalid="ignore"):
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         for sign in (1.0, -1.0):  # the near crossing last, so that it wins
             distance = (-b + sign * np.sqrt(root)) / a
             x, z = from_x + distance * along_x, from_z + distance * along_z

@@ -39,11 +39,12 @@ def next_stance(
     """
     before = _widest(robot, theta, contact)
     touched = np.flatnonzero(_touchdowns(before, contact))
+    stance = before
     if len(touched):
-        return _best(robot, theta, [t for t in TRIPLES if np.isin(touched, t).any()])
-    if always_balanced and before.depth < 0:
+        stance = _best(robot, theta, [t for t in TRIPLES if np.isin(touched, t).any()])
+    if always_balanced and stance.depth < 0:
         return _best(robot, theta, list(TRIPLES))
-    return before
+    return stance
 
 
 def _widest(robot: Robot, theta: Array, contact: Contact) -> Stance:

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from model.contact.events import next_stance
@@ -32,6 +32,7 @@ def test_no_leg_is_below_the_ground_after_a_step(theta, turn):
 
 
 @given(THETA, TURN)
+@example(np.array([1.0, 1.0, 1.625, 1.4375, 1.375, 1.34375]), np.array([0, 0, 0, 0.0625, 0, 0]))
 def test_always_balanced_the_weight_stays_inside(theta, turn):
     contact = on_ground(resting_stance(ROBOT, theta))
     stance = next_stance(ROBOT, theta + turn, contact=contact, always_balanced=True)

@@ -6,9 +6,14 @@ stop.
 """
 
 import math
+from dataclasses import dataclass
+from enum import IntEnum
+
+import numpy as np
+from numpy.typing import NDArray
 
 from rig.device import Sample
-from rig.errors import LimitExceeded, RigTimeout
+from rig.errors import LimitExceeded, RigError, RigTimeout
 
 
 def require_within(value: float, limit: float, *, quantity: str, unit: str) -> None:
@@ -55,6 +60,54 @@ class SampleGuard:
         if self._beyond >= self._in_a_row:
             raise LimitExceeded(self._quantity, value=value, limit=self._limit, unit=self._unit)
 
+    def check_all(self, values: NDArray[np.float64]) -> None:
+        """Take the next values, shape (n,), in order; at 7 kHz one by one would cost too much.
+
+        Raises:
+            LimitExceeded: So many of them in a row, those before counted, are beyond the limit.
+        """
+        within = np.abs(values) <= self._limit  # NaN is not
+        if self._beyond == 0 and within.all():
+            return
+        for value in values.tolist():
+            self.check(value)
+
+
+class FollowingGuard:
+    """Watches whether a disc follows its set-point; a short departure is acceleration.
+
+    Args:
+        limit: Largest departure allowed [rad/s].
+        name: Name of the disc, for the message.
+        longest: How long a departure may last [s].
+    """
+
+    def __init__(self, limit: float, *, name: str, longest: float) -> None:
+        self._limit = limit
+        self._name = name
+        self._longest = longest
+        self._since: float | None = None
+
+    def check(self, speed: float, wanted: float, *, now: float) -> None:
+        """Take the latest speed and its set-point [rad/s].
+
+        Args:
+            speed: Measured.
+            wanted: Commanded.
+            now: Host time [s].
+
+        Raises:
+            LimitExceeded: The disc has departed too far for too long, or its speed is no number.
+        """
+        departure = speed - wanted
+        if abs(departure) <= self._limit:
+            self._since = None
+            return
+        self._since = now if self._since is None else self._since
+        if now - self._since >= self._longest:
+            quantity = f"departure of the {self._name} from its set-point of {wanted:g} rad/s"
+            raise LimitExceeded(quantity, value=departure, limit=self._limit, unit="rad/s")
+
 
 class SilenceGuard:
     """Makes an event of a stream that has fallen silent.
@@ -84,3 +137,73 @@ class SilenceGuard:
             self._heard = now
         elif now - self._heard > self._limit:
             raise RigTimeout(f"stream '{self._name}' sent nothing", waited=now - self._heard)
+
+
+class StopCategory(IntEnum):
+    """Ways to stop, the mildest first; in brackets the category of IEC 60204-1."""
+
+    SOFT = 1
+    """Ramp to standstill and hold there, energised (2)."""
+    SAFE = 2
+    """Ramp to standstill, then de-energise (1)."""
+    EMERGENCY = 3
+    """De-energise at once; latched until somebody resets it (0)."""
+
+
+@dataclass(frozen=True)
+class Stop:
+    """A wish to stop.
+
+    Attributes:
+        category: How.
+        reason: Why, for the log.
+    """
+
+    category: StopCategory
+    reason: str
+
+
+class StopRequested(RigError):
+    """Somebody asked for a stop; the run is left so that it is obeyed.
+
+    Attributes:
+        stop: How and why.
+    """
+
+    def __init__(self, stop: Stop) -> None:
+        super().__init__(f"{stop.category.name.lower()} stop: {stop.reason}")
+        self.stop = stop
+
+
+class StopSwitch:
+    """Where signals, keys and other threads ask for stops, and the acquiring thread looks.
+
+    A harder stop prevails over a milder one. No lock: a signal's handler would wait for the thread
+    that it interrupted. Appending to and reading a list is whole by itself.
+    """
+
+    def __init__(self) -> None:
+        self._asked: list[Stop] = []
+
+    def request(self, category: StopCategory, reason: str) -> None:
+        """Ask for a stop."""
+        self._asked.append(Stop(category, reason))
+
+    @property
+    def pending(self) -> Stop | None:
+        """The hardest stop that was asked for, the first of its category; None where none was."""
+        return max(self._asked, key=lambda stop: stop.category, default=None)
+
+    @property
+    def latched(self) -> bool:
+        """Tell whether an emergency stop holds until it is reset."""
+        stop = self.pending
+        return stop is not None and stop.category is StopCategory.EMERGENCY
+
+    def release(self) -> None:
+        """Take back soft stops; safe and emergency stops stay."""
+        self._asked[:] = [s for s in self._asked if s.category is not StopCategory.SOFT]
+
+    def reset(self) -> None:
+        """Release everything, an emergency stop too: only ever at a person's explicit wish."""
+        self._asked.clear()

@@ -1,0 +1,248 @@
+# SPDX-License-Identifier: MIT
+"""The acquiring thread: every sample is read, guarded and answered here.
+
+Reading feeds the watchdogs of the drives. After a fault nothing is read any more, so that nothing
+feeds them: should the command to stop be lost, the drives stop by themselves.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Final
+
+from rig.clock import Clock
+from rig.errors import DeviceFault, RigError
+from rig.experiment.bench import Batch, Bench
+from rig.experiment.control import Control
+from rig.experiment.plan import RunLimits, ground_speed, rig_limits
+from rig.experiment.sink import Sink
+from rig.safety import (
+    FollowingGuard,
+    SampleGuard,
+    SilenceGuard,
+    StopCategory,
+    StopRequested,
+    require_within,
+)
+
+PERIOD: Final = 0.004
+"""Between two looks: waking up for each of 7,000 samples a second costs several times more [s]."""
+ROOM_PERIOD: Final = 1.0
+"""Between two looks at the room left for data [s]."""
+
+
+@dataclass(frozen=True)
+class Ramp:
+    """Set-points that change evenly from one pair of speeds to another.
+
+    Attributes:
+        start: When it begins [s].
+        duration: How long it takes [s].
+        before: Speeds of leg and ground disc before [rad/s].
+        after: And after [rad/s].
+    """
+
+    start: float
+    duration: float
+    before: tuple[float, float]
+    after: tuple[float, float]
+
+    def at(self, now: float) -> tuple[float, float]:
+        """Compute the set-points at a time [rad/s]."""
+        done = 1.0 if self.duration <= 0 else min(max((now - self.start) / self.duration, 0.0), 1.0)
+        leg, ground = (b + done * (a - b) for b, a in zip(self.before, self.after, strict=True))
+        return leg, ground
+
+
+class Acquisition:
+    """Reads a bench, guards every sample, and turns the discs.
+
+    Args:
+        bench: The rig, entered.
+        limits: What guards stop it at.
+        control: Where stops are asked for.
+        sink: Asked for room, and told of notes.
+        clock: Host time.
+        period: Between two looks [s].
+
+    Attributes:
+        reaction: Time from the arrival of a sample that tripped a guard to the stop's being sent;
+            None while no guard has tripped [s].
+    """
+
+    def __init__(
+        self,
+        bench: Bench,
+        *,
+        limits: RunLimits,
+        control: Control,
+        sink: Sink,
+        clock: Clock,
+        period: float = PERIOD,
+    ) -> None:
+        self.reaction: float | None = None
+        self._bench = bench
+        self._limits = limits
+        self._control = control
+        self._sink = sink
+        self._clock = clock
+        self._period = period
+        self._heeded: StopCategory | None = None
+        allowed = rig_limits(limits, bench.profile.limits)
+        self._largest_speed = allowed.speed
+        force = {"unit": "N", "in_a_row": limits.in_a_row}
+        self._normal = SampleGuard(allowed.normal_force, quantity="normal force", **force)
+        self._traction = SampleGuard(allowed.traction_force, quantity="traction force", **force)
+        self._following = {
+            disc: FollowingGuard(
+                limits.speed_error, name=f"{disc} disc", longest=limits.speed_error_time
+            )
+            for disc in ("leg", "ground")
+        }
+        self._silence: dict[str, SilenceGuard] = {}
+        self._room_at = -float("inf")
+        now = clock.now()
+        self._ramp = Ramp(now, 0.0, (0.0, 0.0), (0.0, 0.0))
+        self._sent: tuple[float, float] | None = None
+
+    @property
+    def wanted(self) -> tuple[float, float]:
+        """Set-points of leg and ground disc now [rad/s]."""
+        return self._ramp.at(self._clock.now())
+
+    @property
+    def ramping(self) -> bool:
+        """Tell whether set-points still change."""
+        return self._clock.now() < self._ramp.start + self._ramp.duration
+
+    def arm(self) -> None:
+        """Energise at standstill and begin to watch for silence."""
+        self._bench.arm()
+        self._sent = None
+        now = self._clock.now()
+        self._silence = {
+            name: SilenceGuard(name, limit=self._limits.silence, now=now)
+            for name in self._bench.watched
+        }
+
+    def aim(self, leg: float, slip: float | None) -> None:
+        """Begin to change the set-points, no faster than allowed.
+
+        Args:
+            leg: Speed of the leg disc [rad/s].
+            slip: Slip ratio that the ground disc is to make; None for standstill of both.
+
+        Raises:
+            LimitExceeded: A speed is beyond its limit.
+        """
+        profile = self._bench.profile
+        ground = 0.0 if slip is None else ground_speed(
+            slip, leg, radius_leg=profile.radius_leg, radius_ground=profile.radius_ground
+        )  # fmt: skip
+        for name, speed in (("leg", leg), ("ground", ground)):
+            require_within(
+                speed, self._largest_speed, quantity=f"speed of the {name} disc", unit="rad/s"
+            )
+        before = self.wanted
+        change = max(abs(leg - before[0]), abs(ground - before[1]))
+        duration = change / self._limits.acceleration
+        self._ramp = Ramp(self._clock.now(), duration, before, (leg, ground))
+
+    def look(self) -> Batch:
+        """Wait for the next samples, command what is due and guard what has come.
+
+        Returns:
+            What has come.
+
+        Raises:
+            RigError: A guard tripped; the drives are already told to de-energise.
+            StopRequested: Somebody asked for a stop.
+        """
+        self._clock.sleep(self._period)
+        try:
+            batch = self._bench.read()
+            arrived = self._clock.now()
+            try:
+                self._guard(batch, arrived)
+            except RigError:
+                self._bench.disarm()
+                self.reaction = self._clock.now() - arrived
+                raise
+            self._turn()
+        except RigError:
+            self._bench.disarm()
+            raise
+        self._heed()
+        for note in self._control.take_notes():
+            self._sink.event(note.kind, note.text)
+        if arrived >= self._room_at:
+            self._room_at = arrived + ROOM_PERIOD
+            self._sink.require_room(self._limits.free_space)
+        return batch
+
+    def come_to_rest(self, longest: float) -> None:
+        """Ramp to standstill, heeding only stops that are harder than the one being obeyed.
+
+        Args:
+            longest: Time after which the ramp is taken to have failed [s].
+
+        Raises:
+            RigError: A guard tripped meanwhile.
+            StopRequested: A harder stop was asked for.
+        """
+        self.aim(0.0, None)
+        end = self._clock.now() + max(self._ramp.duration, 0.0) + longest
+        still = 0
+        while still < 5 and self._clock.now() < end:
+            batch = self.look()
+            slow = all(abs(speed) < self._limits.speed_error for speed in batch.speeds.values())
+            still = still + 1 if slow and not self.ramping else 0
+
+    def until(self, holds: Callable[[Batch], bool], longest: float) -> bool:
+        """Look until something holds.
+
+        Args:
+            holds: Told every batch.
+            longest: When to give up [s].
+
+        Returns:
+            Whether it came to hold.
+        """
+        end = self._clock.now() + longest
+        while self._clock.now() < end:
+            if holds(self.look()):
+                return True
+        return False
+
+    def ask_no_more_for_room(self) -> None:
+        """Take the sink as lost: the way to standstill needs none."""
+        self._room_at = float("inf")
+
+    def heed_no_more(self, category: StopCategory | None) -> None:
+        """Take stops up to a category as already being obeyed; None heeds all again."""
+        self._heeded = category
+
+    def _heed(self) -> None:
+        stop = self._control.stop.pending
+        if stop is None or (self._heeded is not None and stop.category <= self._heeded):
+            return
+        if stop.category is StopCategory.EMERGENCY:
+            self._bench.disarm()
+        raise StopRequested(stop)
+
+    def _turn(self) -> None:
+        wanted = self.wanted
+        if wanted != self._sent:
+            self._bench.turn(*wanted)
+            self._sent = wanted
+
+    def _guard(self, batch: Batch, now: float) -> None:
+        self._normal.check_all(batch.normal)
+        self._traction.check_all(batch.traction)
+        if batch.fault:
+            raise DeviceFault(batch.fault, status=1)
+        for name, guard in self._silence.items():
+            guard.check(batch.heard.get(name, []), now=now)
+        self._bench.require_healthy()
+        for (disc, guard), wanted in zip(self._following.items(), self.wanted, strict=True):
+            if disc in batch.speeds:
+                guard.check(batch.speeds[disc], wanted, now=now)

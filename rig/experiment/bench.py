@@ -1,0 +1,366 @@
+# SPDX-License-Identifier: MIT
+"""The rig as an experiment sees it: two discs to turn, one table of samples, whatever the wiring.
+
+A bench reads drives and load cell, or a board, in one thread, and lines their samples up in time.
+"""
+
+from collections.abc import Mapping
+from contextlib import ExitStack
+from dataclasses import dataclass, fields
+from types import TracebackType
+from typing import Final, Protocol, Self
+
+import numpy as np
+
+from model.slip.law import Array
+from rig.backends import RigDevices
+from rig.device import Drive, Sample, Stream
+from rig.errors import ProfileError
+from rig.slip_rig.board import RigBoard
+from rig.slip_rig.decode import Zero, decode_board, decode_forces
+from rig.slip_rig.drives import DriveBus, disc_speed
+from rig.slip_rig.load_cell import NetFtCell
+from rig.slip_rig.profile import BoardProfile, DriveProfile, LoadCellProfile, RigProfile
+from rig.slip_rig.rdt import describe_status
+
+ARM_LIMIT: Final = 2.0
+"""How long a drive may take to enter closed loop [s]."""
+
+
+@dataclass(frozen=True)
+class Readings:
+    """Samples of the rig, lined up in time, each shape (n,).
+
+    Attributes:
+        t: Host time at which the device took it [s].
+        omega_leg: Speed of the leg disc [rad/s].
+        omega_ground: Speed of the ground disc [rad/s].
+        normal_force: Positive when pressed together [N].
+        traction_force: Positive when driving [N].
+    """
+
+    t: Array
+    omega_leg: Array
+    omega_ground: Array
+    normal_force: Array
+    traction_force: Array
+
+    def __len__(self) -> int:
+        """Count the samples."""
+        return len(self.t)
+
+    def without(self, zero: Zero) -> "Readings":
+        """Subtract a zero from both forces."""
+        return Readings(
+            self.t, self.omega_leg, self.omega_ground,
+            self.normal_force - zero.normal, self.traction_force - zero.traction,
+        )  # fmt: skip
+
+    def since(self, start: float) -> "Readings":
+        """Keep the samples from a time on [s]."""
+        keep = self.t >= start
+        return Readings(*(getattr(self, field.name)[keep] for field in fields(self)))
+
+
+def join(parts: "list[Readings]") -> Readings:
+    """Put readings one behind the other."""
+    if not parts:
+        return Readings(*(np.empty(0) for _ in fields(Readings)))
+    names = [field.name for field in fields(Readings)]
+    return Readings(*(np.concatenate([getattr(part, name) for part in parts]) for name in names))
+
+
+@dataclass(frozen=True)
+class Batch:
+    """What one look at the rig gave.
+
+    Attributes:
+        readings: Lined-up samples; a force waits here until both speeds around it are known.
+        normal: Every normal force that has just arrived, for guards, shape (m,) [N].
+        traction: Every traction force that has just arrived, shape (m,) [N].
+        speeds: Latest speed of each disc that was heard, by name [rad/s].
+        heard: Samples of each device that is watched for silence, by name.
+        fault: What a device's status says is wrong; empty where nothing is.
+        raw: Samples as they came, by stream, for a log.
+    """
+
+    readings: Readings
+    normal: Array
+    traction: Array
+    speeds: Mapping[str, float]
+    heard: Mapping[str, list[Sample]]
+    fault: str
+    raw: Mapping[str, list[Sample]]
+
+
+class Bench(Protocol):
+    """A rig whose discs can be turned and whose samples can be read; a context manager."""
+
+    @property
+    def profile(self) -> RigProfile:
+        """Profile of the rig."""
+        ...
+
+    @property
+    def source(self) -> str:
+        """Where the samples come from: `real` or `sim:WHAT`."""
+        ...
+
+    @property
+    def watched(self) -> tuple[str, ...]:
+        """Names of what must not fall silent."""
+        ...
+
+    @property
+    def streams(self) -> tuple[Stream, ...]:
+        """The devices, for their counters."""
+        ...
+
+    def arm(self) -> None:
+        """Energise both drives, at standstill."""
+        ...
+
+    def turn(self, leg: float, ground: float) -> None:
+        """Command the speeds of both discs [rad/s]."""
+        ...
+
+    def disarm(self) -> None:
+        """De-energise both drives at once; never fails."""
+        ...
+
+    def read(self) -> Batch:
+        """Hand on what has arrived, without waiting; feeds the watchdogs."""
+        ...
+
+    def require_healthy(self) -> None:
+        """Raise DeviceFault where a drive reports an error."""
+        ...
+
+    def __enter__(self) -> Self: ...
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None: ...
+
+
+class HostTime:
+    """Puts device times on the host's clock: what was underway least tells the offset."""
+
+    def __init__(self) -> None:
+        self._offset = np.inf
+
+    def map(self, samples: list[Sample]) -> Array:
+        """Return when the samples were taken, shape (n,) [s]."""
+        host = np.array([sample.host_time for sample in samples])
+        device = np.array([np.nan if s.device_time is None else s.device_time for s in samples])
+        if len(samples) == 0 or not np.isfinite(device).all():
+            return host
+        least = float((host - device).min())
+        # Jitter only ever delays; what is half a second off is a device that began anew.
+        self._offset = least if abs(least - self._offset) > 0.5 else min(self._offset, least)
+        return device + self._offset
+
+
+class _DiscPair:
+    """Two drives, turned together."""
+
+    def __init__(self, leg: Drive, ground: Drive) -> None:
+        self._leg, self._ground = leg, ground
+
+    def arm(self) -> None:
+        """Energise both at standstill."""
+        self._leg.arm(ARM_LIMIT)
+        self._ground.arm(ARM_LIMIT)
+
+    def turn(self, leg: float, ground: float) -> None:
+        """Command both speeds [rad/s]."""
+        self._leg.set_speed(leg)
+        self._ground.set_speed(ground)
+
+    def disarm(self) -> None:
+        """De-energise both."""
+        self._leg.disarm()
+        self._ground.disarm()
+
+
+class BoardBench(_DiscPair):
+    """A rig on one micro-controller; satisfies `Bench`.
+
+    Args:
+        board: Its driver, not yet entered.
+        profile: Profile of the rig.
+        settings: The board's part of it.
+    """
+
+    watched = ("board",)
+
+    def __init__(self, board: RigBoard, *, profile: RigProfile, settings: BoardProfile) -> None:
+        super().__init__(board.leg, board.ground)
+        self.profile = profile
+        self._settings = settings
+        self._board = board
+        self._time = HostTime()
+
+    @property
+    def source(self) -> str:
+        """Where the samples come from."""
+        return self._board.source
+
+    @property
+    def streams(self) -> tuple[Stream, ...]:
+        """The board."""
+        return (self._board,)
+
+    def read(self) -> Batch:
+        """Hand on what has arrived; see `Bench.read`."""
+        samples = self._board.read(0.0)
+        forces, speeds = decode_board(self._settings, samples)
+        readings = Readings(
+            self._time.map(samples), speeds.leg, speeds.ground, forces.normal, forces.traction
+        )
+        latest = {"leg": speeds.leg[-1], "ground": speeds.ground[-1]} if samples else {}
+        return Batch(
+            readings, forces.normal, forces.traction, latest, {"board": samples}, "",
+            {self._board.name: samples},
+        )  # fmt: skip
+
+    def require_healthy(self) -> None:
+        """Check the board; see `Bench.require_healthy`."""
+        self._board.require_healthy()
+
+    def __enter__(self) -> Self:
+        self._board.__enter__()
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self._board.__exit__(kind, error, trace)
+
+
+class DrivesBench(_DiscPair):
+    """A rig of two drives on a bus and a load cell; satisfies `Bench`.
+
+    Args:
+        drives: Driver of both drives, not yet entered.
+        cell: Driver of the load cell, not yet entered.
+        profile: Profile of the rig.
+        settings: The drives' and the load cell's part of it.
+    """
+
+    watched = ("load cell", "leg drive", "ground drive")
+
+    def __init__(
+        self,
+        drives: DriveBus,
+        cell: NetFtCell,
+        *,
+        profile: RigProfile,
+        settings: tuple[DriveProfile, LoadCellProfile],
+    ) -> None:
+        super().__init__(drives.leg, drives.ground)
+        self.profile = profile
+        self._settings, self._cell_settings = settings
+        self._drives = drives
+        self._cell = cell
+        self._stack = ExitStack()
+        self._time = HostTime()
+        self._waiting = np.empty((0, 3))
+        self._speeds = {"leg": np.empty((0, 2)), "ground": np.empty((0, 2))}
+
+    @property
+    def source(self) -> str:
+        """Where the samples come from."""
+        return self._drives.source
+
+    @property
+    def streams(self) -> tuple[Stream, ...]:
+        """Drives and load cell."""
+        return (self._drives, self._cell)
+
+    def read(self) -> Batch:
+        """Hand on what has arrived; see `Bench.read`."""
+        turned, weighed = self._drives.read(0.0), self._cell.read(0.0)
+        forces = decode_forces(self._cell_settings, weighed)
+        new = np.column_stack([self._time.map(weighed), forces.normal, forces.traction])
+        self._waiting = np.concatenate([self._waiting, new])
+        heard = {"load cell": weighed}
+        for disc, drive in (("leg", self._settings.leg), ("ground", self._settings.ground)):
+            own = [sample for sample in turned if sample.channel == drive.node]
+            heard[f"{disc} drive"] = own
+            rows = [(s.host_time, disc_speed(drive, s.counts[1])) for s in own]
+            self._speeds[disc] = np.concatenate([self._speeds[disc], np.reshape(rows, (-1, 2))])
+        status = 0
+        for sample in weighed:
+            status |= sample.status
+        return Batch(
+            readings=self._line_up(),
+            normal=forces.normal,
+            traction=forces.traction,
+            speeds={d: float(s[-1, 1]) for d, s in self._speeds.items() if len(s)},
+            heard=heard,
+            fault=f"load cell: {describe_status(status)}" if describe_status(status) else "",
+            raw={self._drives.name: turned, self._cell.name: weighed},
+        )
+
+    def require_healthy(self) -> None:
+        """Check both drives; see `Bench.require_healthy`."""
+        self._drives.require_healthy()
+
+    def _line_up(self) -> Readings:
+        """Interpolate speeds at the forces around which both are known; the others wait."""
+        if not all(len(speeds) for speeds in self._speeds.values()):
+            self._waiting = self._waiting[:0]
+            return join([])
+        known = min(speeds[-1, 0] for speeds in self._speeds.values())
+        ready = self._waiting[self._waiting[:, 0] <= known]
+        self._waiting = self._waiting[len(ready) :]
+        across = [np.interp(ready[:, 0], s[:, 0], s[:, 1]) for s in self._speeds.values()]
+        if len(ready):
+            for disc, speeds in self._speeds.items():
+                before = np.searchsorted(speeds[:, 0], ready[-1, 0], side="right") - 1
+                self._speeds[disc] = speeds[max(before, 0) :]
+        return Readings(ready[:, 0], across[0], across[1], ready[:, 1], ready[:, 2])
+
+    def __enter__(self) -> Self:
+        with ExitStack() as stack:
+            stack.enter_context(self._cell)
+            stack.enter_context(self._drives)  # left first: it de-energises
+            self._stack = stack.pop_all()
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self._stack.__exit__(kind, error, trace)
+
+
+def make_bench(devices: RigDevices) -> Bench:
+    """Make the bench of a rig's devices, real or simulated.
+
+    Args:
+        devices: Its drivers, not yet entered.
+
+    Returns:
+        The bench, not yet entered.
+
+    Raises:
+        ProfileError: There is neither a board, nor drives and a Net F/T cell.
+    """
+    profile = devices.profile
+    if devices.board is not None and profile.board is not None:
+        return BoardBench(devices.board, profile=profile, settings=profile.board)
+    cell = devices.load_cell
+    if devices.drives is not None and isinstance(cell, NetFtCell) and profile.drives is not None:
+        settings = (profile.drives, cell.profile)
+        return DrivesBench(devices.drives, cell, profile=profile, settings=settings)
+    raise ProfileError(f"profile '{profile.name}' has neither a board nor drives and load cell")

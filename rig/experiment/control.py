@@ -1,0 +1,99 @@
+# SPDX-License-Identifier: MIT
+"""What people and programs may say to a running experiment, from any thread."""
+
+from collections import deque
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Final
+
+from rig.errors import ProtocolError
+from rig.safety import StopCategory, StopSwitch
+
+STOPS: Final = {category.name.lower(): category for category in StopCategory}
+COMMANDS: Final = ("pause", "resume", "confirm", "note TEXT", *STOPS, "status")
+LONGEST_NOTE: Final = 2000
+
+
+@dataclass(frozen=True)
+class Note:
+    """Something to be kept in the log.
+
+    Attributes:
+        kind: `note`, or the command that was given.
+        text: What was said.
+    """
+
+    kind: str
+    text: str
+
+
+class Control:
+    """Mailbox of a run; the run looks into it at every sample.
+
+    Attributes:
+        stop: Where stops are asked for.
+        status: One line on where the run is, for whoever asks.
+        paused: Whether the run is to hold after the point it is at.
+    """
+
+    def __init__(self) -> None:
+        self.stop = StopSwitch()
+        self.status = "not started"
+        self.paused = False
+        self._confirmed = False
+        self._notes: deque[Note] = deque()
+
+    def obey(self, line: str, *, who: str) -> str:
+        """Do what a line of text says.
+
+        Args:
+            line: One of `COMMANDS`.
+            who: Who said so, for the log.
+
+        Returns:
+            What to answer.
+
+        Raises:
+            ProtocolError: There is no such command.
+        """
+        command, _, text = line.strip().partition(" ")
+        if command == "status":
+            return self.status
+        if command in STOPS:
+            self.stop.request(STOPS[command], text or f"asked for by {who}")
+        elif command == "note" and text:
+            self._notes.append(Note("note", f"{who}: {text[:LONGEST_NOTE]}"))
+        elif command == "pause":
+            self.pause()
+        elif command == "resume":
+            self.resume()
+        elif command == "confirm":
+            self.confirm()
+        else:
+            raise ProtocolError(f"found '{line.strip()[:80]}'; expected {', '.join(COMMANDS)}")
+        return "done"
+
+    def pause(self) -> None:
+        """Hold after the point that is being measured."""
+        self.paused = True
+        self._notes.append(Note("pause", "asked for"))
+
+    def resume(self) -> None:
+        """Go on after a pause or a soft stop; harder stops stay."""
+        self.paused = False
+        self.stop.release()
+        self._notes.append(Note("resume", "asked for"))
+
+    def confirm(self) -> None:
+        """Say that what a prompt asked for is done."""
+        self._confirmed = True
+
+    def take_confirmation(self) -> bool:
+        """Tell whether a prompt was confirmed since it was last asked."""
+        confirmed, self._confirmed = self._confirmed, False
+        return confirmed
+
+    def take_notes(self) -> Iterator[Note]:
+        """Hand on what is to be kept in the log, each once."""
+        while self._notes:
+            yield self._notes.popleft()

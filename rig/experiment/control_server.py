@@ -1,0 +1,117 @@
+# SPDX-License-Identifier: MIT
+"""The local control socket: one command a line, from this machine only, with the run's token.
+
+The token keeps other users of the machine, and web pages that talk to loopback ports, from
+commanding motors: who can read the run's files can command the run.
+"""
+
+import contextlib
+import hmac
+import secrets
+import socket
+import socketserver
+import threading
+from types import TracebackType
+from typing import Final, Self
+
+from rig.errors import LinkError, ProtocolError
+from rig.experiment.control import Control
+
+LONGEST_LINE: Final = 4096
+PATIENCE: Final = 600.0
+"""Silence after which a client is hung up on [s]."""
+JOIN_LIMIT: Final = 2.0
+
+
+class ControlServer:
+    """Serves a run's mailbox at a loopback port: a context manager.
+
+    A line is `TOKEN COMMAND`; the answer is a line that begins with `ok` or `error`.
+
+    Args:
+        control: The mailbox.
+
+    Attributes:
+        port: Port that the system gave.
+        token: What a line must begin with.
+    """
+
+    def __init__(self, control: Control) -> None:
+        self.port = 0
+        self.token = secrets.token_urlsafe(16)
+        self._control = control
+        self._server: socketserver.ThreadingTCPServer | None = None
+        self._thread: threading.Thread | None = None
+
+    def answer(self, line: str) -> str:
+        """Answer one line; what is wrong with it is an answer, too."""
+        token, _, command = line.strip().partition(" ")
+        if not hmac.compare_digest(token.encode(), self.token.encode()):
+            return "error: wrong token; it is in the run's control.json"
+        try:
+            return f"ok {self._control.obey(command, who='socket')}"
+        except ProtocolError as problem:
+            return f"error: {problem}"
+
+    def __enter__(self) -> Self:
+        answer = self.answer
+
+        class Handler(socketserver.StreamRequestHandler):
+            timeout = PATIENCE
+
+            def handle(self) -> None:
+                with contextlib.suppress(OSError):  # hung up, or silent for too long
+                    while line := self.rfile.readline(LONGEST_LINE):
+                        reply = answer(line.decode("utf-8", "replace"))
+                        self.wfile.write(f"{reply}\n".encode())
+
+        class Server(socketserver.ThreadingTCPServer):
+            daemon_threads = True
+            block_on_close = False
+
+        self._server = Server(("127.0.0.1", 0), Handler)
+        self.port = self._server.server_address[1]
+        self._thread = threading.Thread(
+            target=self._server.serve_forever, args=(0.05,), daemon=True, name="control"
+        )
+        self._thread.start()
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        if self._server is not None and self._thread is not None:
+            self._server.shutdown()
+            self._server.server_close()
+            self._thread.join(JOIN_LIMIT)
+
+
+def send_command(port: int, token: str, command: str, *, timeout: float = 2.0) -> str:
+    """Give a running experiment a command.
+
+    Args:
+        port: Port of its control socket.
+        token: Its token.
+        command: What it is to do.
+        timeout: Longest wait [s].
+
+    Returns:
+        Its answer.
+
+    Raises:
+        LinkError: Nobody answers: the run is over.
+        ProtocolError: It refused.
+    """
+    try:
+        with socket.create_connection(("127.0.0.1", port), timeout=timeout) as link:
+            link.sendall(f"{token} {command}\n".encode())
+            with link.makefile("r", encoding="utf-8") as lines:
+                reply = lines.readline().strip()
+    except OSError as problem:
+        raise LinkError(f"no run answers at port {port}: {problem}; is it over?") from problem
+    if not reply.startswith("ok"):
+        raise ProtocolError(reply.removeprefix("error: ") or "the run hung up")
+    return reply.removeprefix("ok").strip()

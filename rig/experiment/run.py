@@ -1,0 +1,399 @@
+# SPDX-License-Identifier: MIT
+"""Runs a plan on a bench: zero, load, settle, record, judge, repeat; and every way to stop."""
+
+from collections.abc import Callable, Collection
+from dataclasses import dataclass
+from typing import Final, Protocol
+
+from rig.clock import SYSTEM_CLOCK, Clock
+from rig.errors import LimitExceeded, ProtocolError, RigError
+from rig.experiment.acquire import PERIOD, Acquisition
+from rig.experiment.bench import Batch, Bench, Readings, join
+from rig.experiment.control import Control
+from rig.experiment.load import LoadSetter
+from rig.experiment.plan import Plan
+from rig.experiment.sink import RunStart, Sink, SinkFailed
+from rig.experiment.steps import Point, Step, Tare, estimate, require_allowed, spell_out
+from rig.experiment.verdict import Verdict, is_steady, judge_point
+from rig.safety import StopCategory, StopRequested
+from rig.slip_rig.decode import Forces, Zero, require_zero, tare
+
+REST_LIMIT: Final = 5.0
+"""How long the discs may take to stand after their set-points do [s]."""
+UNLOADED: Final = Zero(0.0, 0.0, 0.0)
+
+
+class Watcher(Protocol):
+    """Who follows a run: a terminal, or nobody."""
+
+    def doing(self, what: str, *, done: int, of: int, left: float) -> None:
+        """Hear what begins.
+
+        Args:
+            what: Name of the step.
+            done: Points finished.
+            of: Points in all.
+            left: Time that the rest is reckoned to take [s].
+        """
+        ...
+
+    def prompt(self, text: str, *, normal: float) -> None:
+        """Hear, again and again, what a person is asked to do and the normal force now [N]."""
+        ...
+
+    def judged(self, point: Point, verdict: Verdict, *, attempt: int) -> None:
+        """Hear what a point is worth."""
+        ...
+
+
+class NobodyWatches:
+    """A watcher that does nothing."""
+
+    def doing(self, what: str, *, done: int, of: int, left: float) -> None:
+        """Ignore it."""
+
+    def prompt(self, text: str, *, normal: float) -> None:
+        """Ignore it."""
+
+    def judged(self, point: Point, verdict: Verdict, *, attempt: int) -> None:
+        """Ignore it."""
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """How a run ended.
+
+    Attributes:
+        reason: `completed`, or which stop was obeyed and why.
+        finished: Points accepted, those of an earlier run included.
+        refused: Points that no attempt made good, by their number.
+        attempts: Attempts made in this run.
+    """
+
+    reason: str
+    finished: int
+    refused: tuple[int, ...]
+    attempts: int
+
+    @property
+    def completed(self) -> bool:
+        """Tell whether the plan was gone through to its end."""
+        return self.reason == "completed"
+
+
+def run_plan(
+    plan: Plan,
+    *,
+    bench: Bench,
+    load: LoadSetter,
+    sink: Sink,
+    control: Control,
+    watcher: Watcher | None = None,
+    clock: Clock = SYSTEM_CLOCK,
+    period: float = PERIOD,
+    done: Collection[int] = (),
+) -> Outcome:
+    """Run a plan; however it ends, the motors are at rest and the sink knows why.
+
+    Args:
+        plan: The plan.
+        bench: The rig, not yet entered.
+        load: Who sets the normal force.
+        sink: Where samples and events go.
+        control: Mailbox for pauses, notes and stops.
+        watcher: Who follows.
+        clock: Host time.
+        period: Between two looks at the rig [s].
+        done: Numbers of the points that an earlier run finished.
+
+    Returns:
+        How it ended, where it came to its end or was stopped on request.
+
+    Raises:
+        LimitExceeded: The plan would break a limit, before motion; or a guard tripped.
+        SinkFailed: What was measured could not be kept; the rig was ramped to rest first.
+        RigError: A guard tripped or a device failed; the rig was de-energised.
+        ProtocolError: An emergency stop is latched.
+    """
+    require_allowed(plan, bench.profile)
+    if control.stop.latched:
+        raise ProtocolError("an emergency stop is latched; look after the rig, then reset it")
+    run = _Run(plan, bench, load, sink, control, watcher or NobodyWatches(), clock, period, done)
+    return run.go()
+
+
+class _Run:
+    """One run of a plan."""
+
+    def __init__(
+        self,
+        plan: Plan,
+        bench: Bench,
+        load: LoadSetter,
+        sink: Sink,
+        control: Control,
+        watcher: Watcher,
+        clock: Clock,
+        period: float,
+        done: Collection[int],
+    ) -> None:
+        self._plan = plan
+        self._bench = bench
+        self._load = load
+        self._sink = sink
+        self._control = control
+        self._watcher = watcher
+        self._clock = clock
+        self._acquire = Acquisition(
+            bench, limits=plan.limits, control=control, sink=sink, clock=clock, period=period
+        )
+        self._steps = spell_out(plan)
+        numbers = {step.number for step in self._steps if isinstance(step, Point)}
+        self._done = numbers & set(done)
+        self._past = set(self._done)
+        self._points = sum(isinstance(step, Point) for step in self._steps)
+        self._zero: Zero | None = None
+        self._loaded: float | None = None
+        self._recording = False
+        self._attempts = 0
+        self._refused: list[int] = []
+
+    def go(self) -> Outcome:
+        """Run, and whatever happens leave the rig at rest and say why."""
+        reason = "failed"
+        try:
+            with self._bench:
+                reason = self._guarded()
+        except BaseException as error:
+            reason = f"{type(error).__name__}: {error}"
+            raise
+        finally:
+            self._load.halt()
+            self._finish(reason)
+        return Outcome(reason, len(self._done), tuple(self._refused), self._attempts)
+
+    def _guarded(self) -> str:
+        """Go through the steps; obey stops that end the run."""
+        self._sink.event("begin", f"{self._plan.name}, {self._bench.source}")
+        try:
+            self._acquire.arm()
+            for step in self._remaining():
+                self._softly(step)
+            self._acquire.come_to_rest(REST_LIMIT)
+        except StopRequested as asked:
+            self._obey(asked)
+            return str(asked)
+        except SinkFailed:
+            self._acquire.heed_no_more(StopCategory.SAFE)
+            self._rest_without_sink()
+            raise
+        return "completed"
+
+    def _remaining(self) -> list[Step]:
+        """List what is left; a resumed run begins with a zero."""
+        left = [step for step in self._steps if step.number not in self._done]
+        first = next((k for k, step in enumerate(left) if isinstance(step, Point)), None)
+        if first is None:
+            return []
+        return [step for k, step in enumerate(left) if isinstance(step, Point)
+                or k + 1 == first or (k > first and isinstance(left[k - 1], Point))]  # fmt: skip
+
+    def _softly(self, step: Step) -> None:
+        """Do a step; hold on a soft stop and do it anew."""
+        while True:
+            try:
+                self._pause_if_asked()
+                if isinstance(step, Tare) or self._zero is None:
+                    self._tare()
+                if isinstance(step, Point):
+                    self._measure(step)
+            except StopRequested as asked:
+                if asked.stop.category is not StopCategory.SOFT:
+                    raise
+                self._close(str(asked))
+                self._load.halt()
+                self._loaded = None  # who knows where the shaft was left
+                self._hold(str(asked))
+            else:
+                self._past.add(step.number)
+                return
+
+    def _pause_if_asked(self) -> None:
+        if self._control.paused:
+            self._hold("pause")
+
+    def _hold(self, why: str) -> None:
+        """Ramp to standstill and wait, energised, for a word to go on."""
+        self._acquire.heed_no_more(StopCategory.SOFT)
+        self._sink.event("hold", why)
+        self._control.status = f"holding: {why}"
+        self._acquire.come_to_rest(REST_LIMIT)
+
+        def released(_: Batch) -> bool:
+            return self._control.stop.pending is None and not self._control.paused
+
+        if not self._acquire.until(released, self._plan.limits.hold):
+            waited = f"held for {self._plan.limits.hold:g} s without a word: {why}"
+            self._control.stop.request(StopCategory.SAFE, waited)
+        self._acquire.heed_no_more(None)
+        self._acquire.look()  # raises where the wait ended in a harder stop
+        self._sink.event("go on", why)
+
+    def _tare(self) -> None:
+        self._tell("zero of the load cell")
+        self._set_load(0.0)
+        batches = self._collect(self._plan.controls.tare_duration)
+        raw = join([batch.readings for batch in batches])
+        zero = tare(Forces(raw.t, raw.normal_force, raw.traction_force))
+        self._sink.event(
+            "zero", f"normal {zero.normal:.4f} N, traction {zero.traction:.4f} N, "
+            f"error {zero.standard_error:.4f} N"
+        )  # fmt: skip
+        if self._zero is not None:
+            try:
+                require_zero(self._zero, zero, limit=self._plan.controls.zero_drift)
+            except LimitExceeded as drift:
+                self._sink.event("warning", str(drift))
+        self._zero = zero
+
+    def _set_load(self, target: float) -> None:
+        if target == self._loaded:
+            return
+        self._loaded = None
+        self._acquire.come_to_rest(REST_LIMIT)
+        prompt = self._load.request(target, now=self._clock.now())
+        if prompt:
+            self._control.status = prompt
+            self._sink.event("prompt", prompt)
+        zero = self._zero or UNLOADED
+
+        def is_set(batch: Batch) -> bool:
+            if not len(batch.normal):
+                return False
+            normal = float(batch.normal.mean()) - zero.normal
+            if prompt:
+                self._watcher.prompt(prompt, normal=normal)
+            return self._load.follow(normal, now=self._clock.now())
+
+        self._acquire.until(is_set, float("inf"))
+        self._loaded = target
+
+    def _measure(self, point: Point) -> None:
+        """Measure a point until an attempt is good, or there are no more."""
+        self._set_load(point.load)
+        problems: tuple[str, ...] = ()
+        for attempt in range(1, self._plan.accept.attempts + 1):
+            verdict = self._attempt(point, attempt)
+            self._watcher.judged(point, verdict, attempt=attempt)
+            if verdict.accepted:
+                self._done.add(point.number)
+                return
+            problems = verdict.problems
+        self._refused.append(point.number)
+        self._sink.event("refused", f"{point.label}: {'; '.join(problems)}")
+
+    def _attempt(self, point: Point, attempt: int) -> Verdict:
+        self._tell(point.label if attempt == 1 else f"{point.label}, attempt {attempt}")
+        self._attempts += 1
+        settled = self._settle(point)
+        zero = self._zero or UNLOADED
+        self._sink.open_run(RunStart(point, attempt, self._clock.now(), zero))
+        self._recording = True
+        readings = self._record(point, zero)
+        verdict = judge_point(
+            readings, point, self._plan.accept, settled=settled, profile=self._bench.profile
+        )
+        self._close("completed", verdict)
+        return verdict
+
+    def _settle(self, point: Point) -> bool:
+        """Turn the discs as the point wants and wait until the rig is steady."""
+        acquire, criterion = self._acquire, self._plan.settle
+        zero = self._zero or UNLOADED
+        acquire.aim(self._plan.points.omega_leg, point.slips[0])
+        acquire.until(lambda _: not acquire.ramping, float("inf"))
+        wanted = acquire.wanted
+        window: list[Readings] = []
+
+        def steady(batch: Batch) -> bool:
+            if not len(batch.readings):
+                return False
+            window.append(batch.readings.without(zero))
+            start = window[-1].t[-1] - criterion.window
+            while window[0].t[-1] < start:
+                window.pop(0)
+            return is_steady(join(window).since(start), wanted, criterion)
+
+        return acquire.until(steady, criterion.timeout)
+
+    def _record(self, point: Point, zero: Zero) -> Readings:
+        duration = self._plan.points.duration
+        start = self._clock.now()
+        kept: list[Readings] = []
+
+        def keep(batch: Batch) -> None:
+            # Lined-up samples may be older than the recording: they waited for their speeds.
+            readings = batch.readings.without(zero).since(start)
+            if len(readings):
+                kept.append(readings)
+                self._sink.write(readings, batch)
+            if point.kind == "sweep":
+                slip = point.slip_at((self._clock.now() - start) / duration)
+                self._acquire.aim(self._plan.points.omega_leg, slip)
+
+        self._collect(duration, keep)
+        return join(kept)
+
+    def _collect(self, duration: float, keep: Callable[[Batch], None] | None = None) -> list[Batch]:
+        """Look for a while; hand each batch on, or keep them all."""
+        batches: list[Batch] = []
+        take = batches.append if keep is None else keep
+        end = self._clock.now() + duration
+        while self._clock.now() < end:
+            take(self._acquire.look())
+        return batches
+
+    def _tell(self, what: str) -> None:
+        left = [step for step in self._steps if step.number not in self._past]
+        seconds = estimate(self._plan, tuple(left)).seconds
+        done = len(self._done)
+        self._control.status = f"{what} ({done} of {self._points} points, {seconds:.0f} s left)"
+        self._watcher.doing(what, done=done, of=self._points, left=seconds)
+
+    def _obey(self, asked: StopRequested) -> None:
+        """Come to rest as a safe or an emergency stop wants."""
+        if asked.stop.category is StopCategory.EMERGENCY:
+            self._bench.disarm()
+            return
+        self._acquire.heed_no_more(asked.stop.category)
+        try:
+            self._acquire.come_to_rest(REST_LIMIT)
+        except StopRequested:  # harder still
+            pass
+        finally:
+            self._bench.disarm()
+
+    def _rest_without_sink(self) -> None:
+        """Ramp down although nothing can be kept any more."""
+        self._acquire.ask_no_more_for_room()
+        try:
+            self._acquire.come_to_rest(REST_LIMIT)
+        except (RigError, OSError):
+            pass
+        finally:
+            self._bench.disarm()
+
+    def _close(self, reason: str, verdict: Verdict | None = None) -> None:
+        if self._recording:
+            self._recording = False
+            self._sink.close_run(verdict, reason=reason)
+
+    def _finish(self, reason: str) -> None:
+        """Tell the sink how it ended; a sink that fails hides no earlier error."""
+        try:
+            self._close(reason)
+            self._sink.event("end", reason)
+        except SinkFailed:
+            if reason == "completed":
+                raise
+        self._control.status = f"over: {reason}"

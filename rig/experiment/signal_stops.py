@@ -1,0 +1,38 @@
+# SPDX-License-Identifier: MIT
+"""Ctrl-C and SIGTERM as stops: soft, then safe, then emergency."""
+
+import signal
+from collections.abc import Iterator
+from contextlib import contextmanager
+from types import FrameType
+
+from rig.safety import StopCategory, StopSwitch
+
+
+@contextmanager
+def signal_stops(switch: StopSwitch) -> Iterator[None]:
+    """Let SIGINT ask for a soft, a safe, then an emergency stop, and SIGTERM for a safe one.
+
+    Only the main thread may do so. The handlers that were there come back afterwards.
+
+    Args:
+        switch: Where stops are asked for.
+    """
+    categories = iter(StopCategory)
+
+    def interrupt(_number: int, _frame: FrameType | None) -> None:
+        category = next(categories, StopCategory.EMERGENCY)
+        switch.request(category, f"Ctrl-C, time {category.value}")
+
+    def terminate(_number: int, _frame: FrameType | None) -> None:
+        switch.request(StopCategory.SAFE, "SIGTERM")
+
+    earlier = {
+        signal.SIGINT: signal.signal(signal.SIGINT, interrupt),
+        signal.SIGTERM: signal.signal(signal.SIGTERM, terminate),
+    }
+    try:
+        yield
+    finally:
+        for number, handler in earlier.items():
+            signal.signal(number, handler)

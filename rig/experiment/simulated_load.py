@@ -1,0 +1,62 @@
+# SPDX-License-Identifier: MIT
+"""The normal force of a simulated rig: an operator who never errs, and a springy axis.
+
+Not modelled: the operator's time and mistakes; friction, play and inertia of the axis.
+"""
+
+from typing import Final
+
+from rig.clock import Clock
+from rig.slip_rig.simulated import SimulatedRig
+
+LEAST: Final = 1e-3
+"""Load of a twin without load: slip laws are not defined at none [N]."""
+
+
+class SimulatedOperator:
+    """Sets the load exactly and at once; satisfies `LoadSetter`.
+
+    Args:
+        rig: The rig.
+    """
+
+    def __init__(self, rig: SimulatedRig) -> None:
+        self._rig = rig
+
+    def request(self, target: float, *, now: float) -> str:
+        """Set the load; see `LoadSetter.request`."""
+        del now
+        self._rig.load = max(target, LEAST)
+        return ""
+
+    def follow(self, normal: float, *, now: float) -> bool:
+        """Say that it is done."""
+        del normal, now
+        return True
+
+    def halt(self) -> None:
+        """Do nothing."""
+
+
+class SimulatedAxis:
+    """A linear drive behind a spring; satisfies `LoadAxis`.
+
+    Args:
+        rig: The rig that it presses together.
+        stiffness: Force for each metre [N/m].
+        clock: Host time.
+    """
+
+    def __init__(self, rig: SimulatedRig, *, stiffness: float = 5e3, clock: Clock) -> None:
+        self._rig = rig
+        self._stiffness = stiffness
+        self._clock = clock
+        self._velocity = 0.0
+        self._moved = clock.now()
+
+    def move(self, velocity: float) -> None:
+        """Command a velocity, positive pressing [m/s]."""
+        now = self._clock.now()
+        moved = self._velocity * (now - self._moved)
+        self._rig.load = max(self._rig.load + self._stiffness * moved, LEAST)
+        self._velocity, self._moved = velocity, now

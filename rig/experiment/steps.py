@@ -1,0 +1,188 @@
+# SPDX-License-Identifier: MIT
+"""A plan spelled out: steps in order, how long they take, and whether the rig may do them."""
+
+import math
+from dataclasses import dataclass
+from typing import Final, Literal, TypeAlias
+
+import numpy as np
+
+from rig.experiment.plan import Plan, ground_speed, rig_limits
+from rig.safety import require_within
+from rig.slip_rig.profile import RigProfile
+
+RISE: Final = 0.15
+"""Reckoned time for a disc's own lag at a new set-point [s]."""
+
+
+@dataclass(frozen=True)
+class Tare:
+    """Take the zero of the load cell, unloaded and at standstill.
+
+    Attributes:
+        number: Place in the plan, from 1.
+    """
+
+    number: int
+
+
+@dataclass(frozen=True)
+class Point:
+    """Measure at one load.
+
+    Attributes:
+        number: Place in the plan, from 1.
+        load: Normal force [N].
+        slips: Commanded slip ratio; several for a sweep through them [-].
+        kind: A `point` of the grid, a `sweep`, or a `check` point.
+        repeat: Which time the load's slips are gone through, from 1.
+        direction: Whether slip grows, `up`, or falls, `down`, where the order has both; else ``.
+    """
+
+    number: int
+    load: float
+    slips: tuple[float, ...]
+    kind: Literal["point", "sweep", "check"] = "point"
+    repeat: int = 1
+    direction: str = ""
+
+    @property
+    def label(self) -> str:
+        """Name it.
+
+        >>> Point(7, 8.13, (0.25,)).label
+        'point-0007 Fn 8.13 N slip 0.2500'
+        """
+        slip = " to ".join(f"{slip:.4f}" for slip in dict.fromkeys((self.slips[0], self.slips[-1])))
+        end = f" {self.direction}" if self.direction else ""
+        return f"{self.kind}-{self.number:04d} Fn {self.load:g} N slip {slip}{end}"
+
+    def slip_at(self, fraction: float) -> float:
+        """Compute the commanded slip ratio at a fraction of the recorded time [-]."""
+        at = np.linspace(0.0, 1.0, len(self.slips))
+        return float(np.interp(fraction, at, self.slips))
+
+
+Step: TypeAlias = Tare | Point
+
+
+def spell_out(plan: Plan) -> tuple[Step, ...]:
+    """List the steps of a plan in order.
+
+    The same plan gives the same steps, a shuffled one too: that is what a resumed run relies on.
+    """
+    steps: list[Step] = [Tare(1)]
+    since_tare = 0
+    for count, point in enumerate(_points(plan)):
+        if plan.controls.tare_every and since_tare >= plan.controls.tare_every:
+            steps.append(Tare(len(steps) + 1))
+            since_tare = 0
+        if plan.controls.check_every and count % plan.controls.check_every == 0:
+            check = (plan.controls.check_slip,)
+            steps.append(Point(len(steps) + 1, point.load, check, kind="check"))
+        kind = "sweep" if plan.points.sweep else "point"
+        steps.append(
+            Point(len(steps) + 1, point.load, point.slips, kind, point.repeat, point.direction)
+        )
+        since_tare += 1
+    return tuple(steps)
+
+
+def _points(plan: Plan) -> list[Point]:
+    grid = plan.points
+    rng = np.random.default_rng(grid.seed)
+    loads = np.array(grid.loads)
+    if grid.order == "shuffled":
+        loads = rng.permutation(loads)
+    return [
+        Point(0, load, slips, repeat=repeat, direction=direction)
+        for load in loads.tolist()
+        for repeat in range(1, grid.repeats + 1)
+        for slips, direction in _passes(plan, rng)
+    ]
+
+
+def _passes(plan: Plan, rng: np.random.Generator) -> list[tuple[tuple[float, ...], str]]:
+    """List the slips of one pass at one load, each with its direction."""
+    grid = plan.points
+    if grid.order == "up-down":
+        up = tuple(sorted(grid.slips))
+        if grid.sweep:
+            return [(up, "up"), (up[::-1], "down")]
+        return [((s,), "up") for s in up] + [((s,), "down") for s in up[-2::-1]]
+    if grid.sweep:
+        return [(grid.slips, "")]
+    slips = np.array(grid.slips)
+    if grid.order == "shuffled":
+        slips = rng.permutation(slips)
+    return [((s,), "") for s in slips.tolist()]
+
+
+def require_allowed(plan: Plan, profile: RigProfile) -> None:
+    """Check every set-point of a plan before anything moves.
+
+    Args:
+        plan: The plan.
+        profile: The rig; its own limits count beside the plan's.
+
+    Raises:
+        LimitExceeded: A speed or load is beyond a limit; value, limit and unit are named.
+    """
+    allowed = rig_limits(plan.limits, profile.limits)
+    for name in ("speed", "normal_force", "traction_force"):
+        unit = "rad/s" if name == "speed" else "N"
+        require_within(
+            getattr(plan.limits, name), getattr(profile.limits, name),
+            quantity=f"the plan's limits.{name}", unit=unit,
+        )  # fmt: skip
+    omega = plan.points.omega_leg
+    require_within(omega, allowed.speed, quantity="points.omega_leg", unit="rad/s")
+    for step in spell_out(plan):
+        if isinstance(step, Tare):
+            continue
+        require_within(
+            step.load, allowed.normal_force, quantity=f"normal force of {step.label}", unit="N"
+        )
+        for slip in step.slips:
+            ground = ground_speed(
+                slip, omega, radius_leg=profile.radius_leg, radius_ground=profile.radius_ground
+            )
+            quantity = f"ground disc's speed of {step.label}"
+            require_within(ground, allowed.speed, quantity=quantity, unit="rad/s")
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """How long steps take.
+
+    Attributes:
+        seconds: In all, repeated points not counted [s].
+        points: Points among them.
+        loads: Times that the normal force is set, zeros included.
+    """
+
+    seconds: float
+    points: int
+    loads: int
+
+
+def estimate(plan: Plan, steps: tuple[Step, ...]) -> Estimate:
+    """Reckon how long steps take.
+
+    Args:
+        plan: Their plan.
+        steps: What remains, in order.
+    """
+    ramp = plan.points.omega_leg / plan.limits.acceleration
+    seconds, points, loads, load = 0.0, 0, 0, math.nan
+    for step in steps:
+        wanted = 0.0 if isinstance(step, Tare) else step.load
+        if wanted != load:
+            seconds += plan.load.patience + 2 * ramp
+            loads, load = loads + 1, wanted
+        if isinstance(step, Tare):
+            seconds += plan.controls.tare_duration
+        else:
+            seconds += RISE + plan.settle.window + plan.points.duration
+            points += 1
+    return Estimate(seconds, points, loads)

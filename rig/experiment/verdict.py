@@ -1,0 +1,130 @@
+# SPDX-License-Identifier: MIT
+"""Whether the rig is steady, and what a recorded point is worth."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from model.slip.definition import SlipDefinition, slip_ratio
+from model.slip.law import Array
+from rig.experiment.bench import Readings
+from rig.experiment.plan import Acceptance, SettleCriterion
+from rig.experiment.steps import Point
+from rig.slip_rig.profile import RigProfile
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """What a recorded point is worth.
+
+    Attributes:
+        problems: Why it is to be repeated, one phrase each; none where it is good.
+        samples: Number of samples.
+        slip: Mean slip ratio [-].
+        friction: Traction over normal force, both summed up [-].
+        normal_force: Median normal force [N].
+    """
+
+    problems: tuple[str, ...]
+    samples: int
+    slip: float
+    friction: float
+    normal_force: float
+
+    @property
+    def accepted(self) -> bool:
+        """Tell whether it is good."""
+        return not self.problems
+
+
+def halves(readings: Readings) -> tuple[Readings, Readings]:
+    """Split readings in the middle of their time."""
+    middle = (readings.t[0] + readings.t[-1]) / 2
+    late = readings.since(middle)
+    early = len(readings) - len(late)
+    first = Readings(*(column[:early] for column in vars(readings).values()))
+    return first, late
+
+
+def friction(readings: Readings) -> float:
+    """Compute traction over normal force, both summed up; NaN without load [-]."""
+    load = float(readings.normal_force.sum())
+    return float(readings.traction_force.sum()) / load if load > 0 else np.nan
+
+
+def measured_slip(readings: Readings, profile: RigProfile) -> Array:
+    """Compute the instantaneous material slip ratio from both speeds, shape (n,) [-]."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return slip_ratio(
+            readings.omega_leg * profile.radius_leg,
+            readings.omega_ground * profile.radius_ground,
+            SlipDefinition.MATERIAL,
+        )
+
+
+def is_steady(window: Readings, wanted: tuple[float, float], criterion: SettleCriterion) -> bool:
+    """Tell whether speeds are at their set-points, and both halves of a window agree.
+
+    Args:
+        window: The latest readings.
+        wanted: Set-points of leg and ground disc [rad/s].
+        criterion: How near is near enough.
+
+    Returns:
+        False also where the window is not yet full.
+    """
+    if len(window) < 8 or window.t[-1] - window.t[0] < 0.9 * criterion.window:
+        return False
+    first, late = halves(window)
+    if not len(first) or not len(late):
+        return False
+    for name, target in zip(("omega_leg", "omega_ground"), wanted, strict=True):
+        means = [getattr(part, name).mean() for part in (window, first, late)]
+        if abs(means[0] - target) > criterion.speed or abs(means[2] - means[1]) > criterion.speed:
+            return False
+    return abs(friction(late) - friction(first)) <= criterion.friction
+
+
+def judge_point(
+    readings: Readings,
+    point: Point,
+    accept: Acceptance,
+    *,
+    settled: bool,
+    profile: RigProfile,
+) -> Verdict:
+    """Say what a recorded point is worth.
+
+    Args:
+        readings: What was recorded, zero subtracted.
+        point: What was commanded.
+        accept: What it must show.
+        settled: Whether the rig had settled when recording began.
+        profile: Carries the radii.
+
+    Returns:
+        The verdict. The normal force is told and not judged: the disc may stand on its bump.
+    """
+    if len(readings) < 8:
+        return Verdict((f"{len(readings)} samples",), len(readings), np.nan, np.nan, np.nan)
+    slip = measured_slip(readings, profile)
+    first, late = halves(readings)
+    problems = [] if settled else ["not settled in time"]
+    wanted = float(np.mean([point.slip_at(f) for f in np.linspace(0, 1, 101)]))
+    off = float(slip.mean()) - wanted
+    if not abs(off) <= accept.slip:
+        problems.append(f"mean slip is {off:+.4f} off its set-point (limit {accept.slip:g})")
+    if point.kind != "sweep":
+        drift = float(slip[len(first) :].mean() - slip[: len(first)].mean())
+        if not abs(drift) <= accept.slip_drift:
+            problems.append(f"slip drifted by {drift:+.4f} (limit {accept.slip_drift:g})")
+        change = friction(late) - friction(first)
+        if not abs(change) <= accept.friction_drift:
+            problems.append(f"friction drifted by {change:+.3f} (limit {accept.friction_drift:g})")
+    return Verdict(
+        problems=tuple(problems),
+        samples=len(readings),
+        slip=float(slip.mean()),
+        friction=friction(readings),
+        normal_force=float(np.median(readings.normal_force)),
+    )

@@ -1,0 +1,47 @@
+# SPDX-License-Identifier: MIT
+"""The rigid motion of the plane that lays one path best onto another."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from model.metrics.poses import Poses
+from model.slip.law import Array
+
+
+class Motion(NamedTuple):
+    """A rigid motion of the plane: turn about the origin, then shift.
+
+    Attributes:
+        rotation: Angle [rad].
+        translation: Shift, shape (2,) [m].
+    """
+
+    rotation: float
+    translation: Array
+
+
+def align(predicted: Poses, tracked: Poses) -> Motion:
+    r"""Find the motion that brings positions closest to those of the same instants.
+
+    .. math::
+        \min_{R, p} \sum_i |R x_i + p - y_i|^2
+
+    Least squares over SE(2), without scale (Umeyama 1991). Only positions count. It hides a wrong
+    start and a wrong heading, so aligned errors never stand alone.
+
+    Args:
+        predicted: Poses to move.
+        tracked: Poses of the same instants.
+    """
+    x, y = predicted.position, tracked.position
+    a, b = x - x.mean(axis=0), y - y.mean(axis=0)
+    rotation = float(np.arctan2((a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]).sum(), (a * b).sum()))
+    c, s = np.cos(rotation), np.sin(rotation)
+    return Motion(rotation, y.mean(axis=0) - np.array([[c, -s], [s, c]]) @ x.mean(axis=0))
+
+
+def aligned(predicted: Poses, tracked: Poses) -> Poses:
+    """Return the predicted poses laid onto the tracked ones; see `align`."""
+    motion = align(predicted, tracked)
+    return predicted.moved(rotation=motion.rotation, translation=motion.translation)

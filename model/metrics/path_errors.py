@@ -1,0 +1,222 @@
+# SPDX-License-Identifier: MIT
+"""Errors of a predicted path against a tracked one, pose by pose and in summary."""
+
+from dataclasses import dataclass
+from typing import TypeAlias
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from model.metrics.alignment import align
+from model.metrics.poses import Poses, overlap, travel_direction, wrap
+from model.metrics.turning import fitted_radius, mean_yaw_rate
+from model.slip.law import Array
+
+DISTANCES = (0.25, 0.5, 1.0)  # m over which relative errors are taken
+Indices: TypeAlias = NDArray[np.intp]
+CLOSE = 0.1  # of such a distance: pairs of poses further off it are not used
+
+
+@dataclass(frozen=True)
+class PoseErrors:
+    """Errors pose by pose: predicted minus tracked.
+
+    Attributes:
+        t: Times, those of the track, shape (n,) [s].
+        xy: Errors along the floor's axes, shape (n, 2) [m].
+        yaw: Errors of heading in [-pi, pi); NaN where one has none, shape (n,) [rad].
+        along: Errors in the direction the track travels, positive ahead, shape (n,) [m].
+        cross: Errors across it, positive to its left, shape (n,) [m].
+    """
+
+    t: Array
+    xy: Array
+    yaw: Array
+    along: Array
+    cross: Array
+
+    @property
+    def distance(self) -> Array:
+        """Distances between predicted and tracked positions, shape (n,) [m]."""
+        return np.linalg.norm(self.xy, axis=1)
+
+
+@dataclass(frozen=True)
+class RelativeError:
+    """Error of the motion over a distance, whatever was wrong before.
+
+    Attributes:
+        distance: Distance travelled between the two poses of a pair [m].
+        pairs: How many pairs were found.
+        position: Root mean square error of position [m]; NaN without pairs or headings.
+        yaw: Root mean square error of heading [rad].
+    """
+
+    distance: float
+    pairs: int
+    position: float
+    yaw: float
+
+
+@dataclass(frozen=True)
+class PathErrors:
+    """How far a predicted path lies from a tracked one.
+
+    Attributes:
+        poses: Poses compared.
+        length: Length of the track [m].
+        length_ratio: Predicted over tracked length [-].
+        ate: Root mean square distance, unaligned [m].
+        x: Root mean square error of x [m].
+        y: Root mean square error of y [m].
+        along: Root mean square error along the track [m].
+        cross: Root mean square error across the track [m].
+        yaw: Root mean square error of heading [rad].
+        largest: Largest distance [m].
+        final_distance: Distance of the last poses [m].
+        final_yaw: Error of the last heading, signed [rad].
+        ate_aligned: Root mean square distance after alignment over SE(2) [m].
+        alignment_yaw: The turn that alignment took, which the aligned error hides [rad].
+        alignment_shift: The distance by which it moved the first predicted pose [m].
+        relative: Relative errors by distance.
+        radius: Turning radius predicted and tracked [m].
+        yaw_rate: Mean yaw rate predicted and tracked [rad/s].
+    """
+
+    poses: int
+    length: float
+    length_ratio: float
+    ate: float
+    x: float
+    y: float
+    along: float
+    cross: float
+    yaw: float
+    largest: float
+    final_distance: float
+    final_yaw: float
+    ate_aligned: float
+    alignment_yaw: float
+    alignment_shift: float
+    relative: tuple[RelativeError, ...]
+    radius: tuple[float, float]
+    yaw_rate: tuple[float, float]
+
+    @property
+    def ate_of_length(self) -> float:
+        """Unaligned error over the length of the track [-]."""
+        return self.ate / self.length if self.length > 0 else float("nan")
+
+
+def pose_errors(predicted: Poses, tracked: Poses) -> PoseErrors:
+    """Compare poses of the same instants, unaligned.
+
+    Args:
+        predicted: Predicted poses at the track's times.
+        tracked: Tracked poses.
+    """
+    xy = predicted.position - tracked.position
+    direction = travel_direction(tracked)
+    c, s = np.cos(direction), np.sin(direction)
+    return PoseErrors(
+        t=tracked.t,
+        xy=xy,
+        yaw=wrap(predicted.yaw - tracked.yaw),
+        along=c * xy[:, 0] + s * xy[:, 1],
+        cross=c * xy[:, 1] - s * xy[:, 0],
+    )
+
+
+def path_errors(
+    predicted: Poses, tracked: Poses, *, distances: ArrayLike = DISTANCES
+) -> PathErrors:
+    """Summarise how far a predicted path lies from a tracked one.
+
+    The predicted path, sampled densely, is interpolated at the track's times; tracked poses
+    outside its time are left out.
+
+    Args:
+        predicted: Predicted path.
+        tracked: Track, at any times of the same clock.
+        distances: Distances over which relative errors are taken [m].
+
+    Raises:
+        InsufficientData: Fewer than two tracked poses lie within the predicted time.
+    """
+    tracked = tracked.part(overlap(tracked, predicted))
+    predicted = predicted.at(tracked.t)
+    errors = pose_errors(predicted, tracked)
+    motion = align(predicted, tracked)
+    moved = predicted.moved(rotation=motion.rotation, translation=motion.translation)
+    length = tracked.length
+    return PathErrors(
+        poses=len(tracked),
+        length=length,
+        length_ratio=predicted.length / length if length > 0 else float("nan"),
+        ate=_rms(errors.distance),
+        x=_rms(errors.xy[:, 0]),
+        y=_rms(errors.xy[:, 1]),
+        along=_rms(errors.along),
+        cross=_rms(errors.cross),
+        yaw=_rms(errors.yaw),
+        largest=float(errors.distance.max()),
+        final_distance=float(errors.distance[-1]),
+        final_yaw=float(errors.yaw[-1]),
+        ate_aligned=_rms(pose_errors(moved, tracked).distance),
+        alignment_yaw=motion.rotation,
+        alignment_shift=float(np.linalg.norm(moved.position[0] - predicted.position[0])),
+        relative=tuple(
+            relative_error(predicted, tracked, distance=float(d)) for d in np.atleast_1d(distances)
+        ),
+        radius=(fitted_radius(predicted), fitted_radius(tracked)),
+        yaw_rate=(mean_yaw_rate(predicted), mean_yaw_rate(tracked)),
+    )
+
+
+def relative_error(predicted: Poses, tracked: Poses, *, distance: float) -> RelativeError:
+    r"""Compare the motions over a distance, from every pose on.
+
+    For poses i and j of the track about that distance apart along it, the error is that of
+    :math:`(T_i^{-1} T_j)^{-1} \hat T_i^{-1} \hat T_j`, T tracked and :math:`\hat T` predicted.
+
+    Args:
+        predicted: Predicted poses at the track's times.
+        tracked: Tracked poses.
+        distance: Distance [m]; pairs may miss it by a tenth.
+    """
+    start, end = pairs_by_distance(tracked.travelled, distance)
+    if len(start) == 0 or not (predicted.has_yaw and tracked.has_yaw):
+        return RelativeError(distance, len(start), float("nan"), float("nan"))
+    seen, seen_turn = _relative_motion(tracked, start, end)
+    said, said_turn = _relative_motion(predicted, start, end)
+    error = np.linalg.norm(said - seen, axis=1)  # a turn of the frame leaves its size
+    return RelativeError(distance, len(start), _rms(error), _rms(wrap(said_turn - seen_turn)))
+
+
+def pairs_by_distance(travelled: Array, distance: float) -> tuple[Indices, Indices]:
+    """Find for each pose the later one nearest to a distance further on.
+
+    Args:
+        travelled: Distance travelled up to each pose, shape (n,) [m].
+        distance: Distance wanted [m]; pairs that miss it by more than a tenth are left out.
+
+    Returns:
+        Indices of the first and the second pose of each pair.
+    """
+    gap = np.abs(travelled[None, :] - travelled[:, None] - distance)
+    gap[np.tril_indices(len(travelled))] = np.inf
+    end = gap.argmin(axis=1)
+    start = np.flatnonzero(gap[np.arange(len(travelled)), end] <= CLOSE * distance)
+    return start, end[start]
+
+
+def _relative_motion(poses: Poses, start: Indices, end: Indices) -> tuple[Array, Array]:
+    """Return shift and turn from poses to later ones, in the frames of the first."""
+    step = poses.position[end] - poses.position[start]
+    c, s = np.cos(poses.yaw[start]), np.sin(poses.yaw[start])
+    forward, left = c * step[:, 0] + s * step[:, 1], c * step[:, 1] - s * step[:, 0]
+    return np.column_stack([forward, left]), poses.yaw[end] - poses.yaw[start]
+
+
+def _rms(values: Array) -> float:
+    return float(np.sqrt(np.mean(values**2)))

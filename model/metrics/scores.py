@@ -1,0 +1,149 @@
+# SPDX-License-Identifier: MIT
+"""Scores of an ensemble of paths: how near, how sharp, and how often the band holds the track."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.spatial.distance import pdist
+
+from model.errors import DomainError
+from model.metrics.poses import wrap
+from model.slip.law import Array
+
+LEVELS = (0.5, 0.9, 0.95)
+STATES = ("x", "y", "yaw")
+
+
+@dataclass(frozen=True)
+class EnsembleScores:
+    """Scores over all scored poses; lower is better, but for coverage, which should be its level.
+
+    Attributes:
+        energy: Mean energy score of position [m].
+        crps: Mean continuous ranked probability score of x, y [m] and yaw [rad], shape (3,).
+        levels: Levels of the central intervals [-].
+        coverage: Share of tracked values within them, shape (levels, 3) [-].
+        width: Mean width of the intervals, shape (levels, 3) [m, m, rad].
+    """
+
+    energy: float
+    crps: Array
+    levels: tuple[float, ...]
+    coverage: Array
+    width: Array
+
+
+def centred(draws: Array, observed: Array) -> Array:
+    """Unwrap observed headings next to the ensemble's, so that turns do not count as errors.
+
+    Args:
+        draws: x, y, yaw of every draw at every time, shape (m, n, 3) [m, m, rad].
+        observed: Tracked x, y, yaw, shape (n, 3).
+
+    Returns:
+        The observed values, yaw within half a turn of the ensemble's mean, shape (n, 3).
+    """
+    mean = draws[..., 2].mean(axis=0)
+    return np.column_stack([observed[:, :2], mean + wrap(observed[:, 2] - mean)])
+
+
+def with_tracker_noise(draws: Array, covariance: Array, *, rng: np.random.Generator) -> Array:
+    """Add the tracker's noise to predicted poses: what the tracker would say of each draw.
+
+    Args:
+        draws: x, y, yaw of every draw at every time, shape (m, n, 3).
+        covariance: The tracker's covariance at each time, shape (n, 3, 3).
+        rng: Source of randomness.
+    """
+    values, vectors = np.linalg.eigh(covariance)
+    root = vectors * np.sqrt(np.maximum(values, 0.0))[:, None, :]
+    noise = rng.standard_normal(draws.shape)
+    return draws + np.einsum("nij,mnj->mni", root, noise)
+
+
+def ensemble_scores(
+    draws: Array, observed: Array, *, levels: Sequence[float] = LEVELS
+) -> EnsembleScores:
+    """Score an ensemble against a track of the same times.
+
+    Energy score and CRPS are the unbiased ("fair") estimates for a finite ensemble; those of a
+    single draw are its distance and absolute error.
+
+    Args:
+        draws: x, y, yaw of every draw at every time, the tracker's noise included where it is
+            known, shape (m, n, 3) [m, m, rad].
+        observed: Tracked x, y, yaw; yaw NaN where it is not known, shape (n, 3).
+        levels: Levels of the central intervals [-].
+
+    Raises:
+        DomainError: Shapes do not match.
+    """
+    if draws.ndim != 3 or draws.shape[1:] != observed.shape or observed.shape[1] != 3:
+        raise DomainError(
+            f"draws have shape {draws.shape} and tracked poses {observed.shape}; expected "
+            "(m, n, 3) and (n, 3)"
+        )
+    observed = centred(draws, observed)
+    coverage, width = interval_coverage(draws, observed, levels)
+    return EnsembleScores(
+        energy=float(np.mean(energy_score(draws[..., :2], observed[:, :2]))),
+        crps=crps(draws, observed).mean(axis=0),
+        levels=tuple(levels),
+        coverage=coverage,
+        width=width,
+    )
+
+
+def crps(draws: Array, observed: Array) -> Array:
+    r"""Compute the continuous ranked probability score :math:`E|X-y| - E|X-X'|/2`.
+
+    Args:
+        draws: Values of every draw, shape (m, ...).
+        observed: Observed values, shape (...).
+
+    Returns:
+        Scores, shape (...), in the unit of the values.
+    """
+    m = len(draws)
+    error = np.abs(draws - observed).mean(axis=0)
+    if m == 1:
+        return error
+    # Sorted, the mean distance of two draws is a sum over ranks: no m x m table.
+    ranks = (2 * np.arange(1, m + 1) - m - 1).reshape(-1, *[1] * (draws.ndim - 1))
+    return error - (ranks * np.sort(draws, axis=0)).sum(axis=0) / (m * (m - 1))
+
+
+def energy_score(draws: Array, observed: Array) -> Array:
+    r"""Compute the energy score :math:`E|X-y| - E|X-X'|/2` of points, the CRPS of a plane.
+
+    Args:
+        draws: Points of every draw, shape (m, n, d).
+        observed: Observed points, shape (n, d).
+
+    Returns:
+        Scores, shape (n,), in the unit of the points.
+    """
+    error = np.linalg.norm(draws - observed, axis=-1).mean(axis=0)
+    if len(draws) == 1:
+        return error
+    return error - 0.5 * np.array([pdist(each).mean() for each in np.moveaxis(draws, 0, 1)])
+
+
+def interval_coverage(
+    draws: Array, observed: Array, levels: Sequence[float]
+) -> tuple[Array, Array]:
+    """Compute how often central intervals hold what was observed, and their mean width.
+
+    Args:
+        draws: Values of every draw, shape (m, n, k).
+        observed: Observed values; NaN where unknown, shape (n, k).
+        levels: Levels [-].
+
+    Returns:
+        Shares, NaN where nothing was observed, and widths, both of shape (levels, k).
+    """
+    p = np.asarray(levels)
+    low, high = np.quantile(draws, (1 - p) / 2, axis=0), np.quantile(draws, (1 + p) / 2, axis=0)
+    inside = np.where(np.isnan(observed), np.nan, (low <= observed) & (observed <= high))
+    return inside.mean(axis=1), (high - low).mean(axis=1)

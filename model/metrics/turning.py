@@ -1,0 +1,44 @@
+# SPDX-License-Identifier: MIT
+"""The circle a path follows and how fast it turns, from poses at any times."""
+
+import numpy as np
+
+from model.metrics.poses import Poses
+
+STRAIGHT = np.radians(5.0)  # of turn in all; below, a radius is mostly the tracker's noise
+
+
+def mean_yaw_rate(poses: Poses) -> float:
+    """Fit a straight line to heading over time and return its slope; NaN without yaw [rad/s]."""
+    if not poses.has_yaw or len(poses) < 2:
+        return float("nan")
+    t = poses.t - poses.t.mean()
+    return float(t @ (poses.yaw - poses.yaw.mean()) / (t @ t))
+
+
+def fitted_radius(poses: Poses) -> float:
+    r"""Fit the circle of a robot whose heading keeps one angle to its path.
+
+    .. math::
+        p_i = c + a (\sin\psi_i, -\cos\psi_i) + b (\cos\psi_i, \sin\psi_i)
+
+    Linear least squares over centre c, a and b; the radius is :math:`\sqrt{a^2 + b^2}` with the
+    sign of a, and b is how far the robot crabs. Works for any turn, also beyond a full one, where
+    the chord between the first and the last pose says nothing.
+
+    Args:
+        poses: Poses, four or more.
+
+    Returns:
+        Radius, positive for a left turn; infinite for a path that turns less than 5 degrees;
+        NaN without headings or with fewer than four poses [m].
+    """
+    if not poses.has_yaw or len(poses) < 4:
+        return float("nan")
+    if np.ptp(poses.yaw) < STRAIGHT:
+        return float("inf")
+    c, s = np.cos(poses.yaw), np.sin(poses.yaw)
+    one, zero = np.ones_like(c), np.zeros_like(c)
+    design = np.vstack([np.column_stack([one, zero, s, c]), np.column_stack([zero, one, -c, s])])
+    _, _, a, b = np.linalg.lstsq(design, poses.position.T.ravel(), rcond=None)[0]
+    return float(np.copysign(np.hypot(a, b), a))

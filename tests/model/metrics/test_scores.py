@@ -1,0 +1,172 @@
+# SPDX-License-Identifier: MIT
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from model.errors import DomainError, InsufficientData
+from model.metrics.bootstrap import bootstrap_mean
+from model.metrics.consistency import consistency, nees
+from model.metrics.scores import (
+    LEVELS,
+    crps,
+    energy_score,
+    ensemble_scores,
+    interval_coverage,
+    with_tracker_noise,
+)
+
+TIMES = np.arange(2.0, 31.0, 2.0)
+NO_NOISE = np.zeros((len(TIMES), 3, 3))
+TRACKER = np.broadcast_to(np.diag([2e-3, 2e-3, 5e-3]) ** 2, (len(TIMES), 3, 3))
+
+
+def paths(m: int, rng: np.random.Generator, *, speed=1.0, heading=0.0, spread=1.0):
+    """Return m arcs with an uncertain speed, curvature and start, shape (m, times, 3)."""
+    v = 0.085 * speed * (1 + 0.01 * spread * rng.standard_normal((m, 1)))
+    rate = 0.05 + 0.002 * spread * rng.standard_normal((m, 1))
+    start = spread * rng.standard_normal((m, 3)) * [0.002, 0.002, 0.01] + [0, 0, heading]
+    yaw = start[:, 2:] + rate * TIMES
+    x = start[:, :1] + v / rate * (np.sin(yaw) - np.sin(start[:, 2:]))
+    y = start[:, 1:2] - v / rate * (np.cos(yaw) - np.cos(start[:, 2:]))
+    return np.stack([x, y, yaw], axis=-1)
+
+
+def rejected(truths, *, spread=1.0):
+    """Return the names of the statistics that reject each truth."""
+    rng = np.random.default_rng(8)
+    draws = paths(400, rng, spread=spread)
+    seen = with_tracker_noise(truths, TRACKER, rng=rng)
+    return [
+        {each.name for each in consistency(draws, one, TRACKER, rng=rng) if not each.plausible}
+        for one in seen
+    ]
+
+
+def test_a_perfect_ensemble_is_rejected_at_the_stated_rate():
+    caught = rejected(paths(200, np.random.default_rng(5)))
+    for name in ("nees", "along", "cross", "yaw"):
+        false_alarms = sum(name in names for names in caught)
+        assert 1 <= false_alarms <= 20  # 5 % of 200, within four standard deviations
+
+
+def test_a_perfect_ensemble_covers_at_its_levels():
+    rng = np.random.default_rng(6)
+    draws = with_tracker_noise(paths(1000, rng), TRACKER, rng=rng)
+    truths = with_tracker_noise(paths(300, rng), TRACKER, rng=rng)
+    coverage = np.mean([interval_coverage(draws, one, LEVELS)[0] for one in truths], axis=0)
+    np.testing.assert_allclose(coverage, np.array([[0.5], [0.9], [0.95]]) * np.ones(3), atol=0.05)
+
+
+def test_a_wrong_speed_is_caught_along_the_track():
+    caught = rejected(paths(20, np.random.default_rng(7), speed=0.95))
+    assert sum("along" in names for names in caught) >= 18
+
+
+def test_a_wrong_heading_is_caught_by_yaw_and_across_the_track():
+    caught = rejected(paths(20, np.random.default_rng(7), heading=np.radians(11)))
+    assert all({"yaw", "cross"} <= names for names in caught)
+
+
+def test_a_tenfold_overconfident_ensemble_is_caught_by_nees_and_coverage():
+    caught = rejected(paths(20, np.random.default_rng(7)), spread=0.1)
+    assert sum("nees" in names for names in caught) >= 16
+    rng = np.random.default_rng(8)
+    sharp = with_tracker_noise(paths(400, rng, spread=0.1), TRACKER, rng=rng)
+    truths = with_tracker_noise(paths(20, rng), TRACKER, rng=rng)
+    coverage = np.mean([ensemble_scores(sharp, one).coverage[1] for one in truths], axis=0)
+    assert np.all(coverage < 0.75)
+
+
+def test_a_tenfold_timid_ensemble_falls_below_the_band_of_nees():
+    caught = rejected(paths(20, np.random.default_rng(7), spread=0.1), spread=10.0)
+    assert sum("nees" in names for names in caught) >= 18
+
+
+def test_one_walk_of_a_perfect_model_may_have_a_nees_far_from_one():
+    rng = np.random.default_rng(9)
+    draws = paths(500, rng)
+    own = nees(paths(500, rng), draws).mean(axis=1)
+    assert np.quantile(own, 0.025) < 0.5
+    assert np.quantile(own, 0.975) > 1.8
+
+
+def test_nees_is_one_on_average():
+    rng = np.random.default_rng(9)
+    assert nees(paths(3000, rng), paths(3000, rng)).mean() == pytest.approx(1, abs=0.1)
+
+
+@pytest.mark.parametrize(("bias", "scale"), [(0.5, 1.0), (0.0, 0.4), (0.0, 2.5), (-0.3, 1.4)])
+def test_scores_are_proper(bias, scale):
+    rng = np.random.default_rng(4)
+    truth = rng.standard_normal((2000, 2))
+    honest = rng.standard_normal((60, 2000, 2))
+    wrong = bias + scale * honest
+    assert energy_score(honest, truth).mean() < energy_score(wrong, truth).mean()
+    assert crps(honest, truth).mean() < crps(wrong, truth).mean()
+
+
+@given(value=st.floats(-3, 3), seed=st.integers(0, 99))
+def test_crps_is_the_energy_score_of_a_line(value, seed):
+    draws = np.random.default_rng(seed).standard_normal((60, 1, 1))
+    observed = np.array([[value]])
+    np.testing.assert_allclose(
+        energy_score(draws, observed), crps(draws, observed)[:, 0], atol=1e-12
+    )
+
+
+def test_crps_of_a_gaussian_is_its_closed_form():
+    from scipy.stats import norm
+
+    draws = norm.ppf((np.arange(20_000) + 0.5) / 20_000)
+    y = 0.7
+    expected = y * (2 * norm.cdf(y) - 1) + 2 * norm.pdf(y) - 1 / np.sqrt(np.pi)
+    assert crps(draws, np.array(y)) == pytest.approx(expected, abs=1e-4)
+
+
+def test_a_single_draw_scores_its_absolute_error():
+    draws = np.zeros((1, 4, 3))
+    observed = np.full((4, 3), 0.3)
+    scores = ensemble_scores(draws, observed)
+    np.testing.assert_allclose(scores.crps, 0.3)
+    assert scores.energy == pytest.approx(0.3 * np.sqrt(2))
+
+
+def test_a_whole_turn_of_yaw_is_no_error():
+    rng = np.random.default_rng(2)
+    draws = paths(100, rng)
+    observed = draws[0] + [0, 0, 2 * np.pi]
+    assert ensemble_scores(draws, observed).crps[2] < 0.1
+
+
+def test_unknown_headings_leave_scores_of_position():
+    rng = np.random.default_rng(2)
+    draws, observed = paths(100, rng), paths(1, rng)[0]
+    observed[:, 2] = np.nan
+    scores = ensemble_scores(draws, observed)
+    assert np.isfinite(scores.coverage[:, :2]).all()
+    assert np.isnan(scores.coverage[:, 2]).all()
+    names = [each.name for each in consistency(draws, observed, NO_NOISE, rng=rng)]
+    assert names == ["nees", "along", "cross"]
+
+
+def test_shapes_that_do_not_match_are_refused():
+    with pytest.raises(DomainError, match="shape"):
+        ensemble_scores(np.zeros((5, 4, 3)), np.zeros((3, 3)))
+
+
+def test_too_few_draws_have_no_band():
+    with pytest.raises(InsufficientData, match="band"):
+        consistency(
+            np.zeros((5, 4, 3)), np.zeros((4, 3)), NO_NOISE[:4], rng=np.random.default_rng()
+        )
+
+
+def test_bootstrap_over_runs_is_as_wide_as_the_runs_differ():
+    rng = np.random.default_rng(1)
+    runs = rng.normal(1.0, 0.2, size=40)
+    mean, low, high = bootstrap_mean(runs, rng=rng)
+    assert low < mean < high
+    assert high - low == pytest.approx(2 * 1.645 * 0.2 / np.sqrt(40), rel=0.3)
+    with pytest.raises(InsufficientData):
+        bootstrap_mean(runs[:1], rng=rng)

@@ -94,6 +94,10 @@ class AlreadyExists(ZebroLabError, FileExistsError):
     """Writing would destroy what is already there."""
 
 
+class RecordingError(ZebroLabError, OSError):
+    """A run cannot be recorded, or could not be recorded to its end."""
+
+
 def _one_line(place: str, problem: str) -> str:
     # Messages of foreign libraries, quoted in ours, often run over several lines.
     return " ".join(f"{place}: {problem}".split() if place else problem.split())

@@ -15,6 +15,7 @@ from model.slip.law import Array
 from zebro_lab.columns import COLUMNS_FILE, MappedColumn, nearest, require_known
 from zebro_lab.errors import DataError, NotFound, SettingsError, UnitError
 from zebro_lab.raw_table import RawTable
+from zebro_lab.recorded_legs import is_recorded, read_recorded_legs
 from zebro_lab.table_files import read_table_file
 from zebro_lab.units import factor_to_si
 from zebro_lab.walk_folder import PATH_CSV, cell_error, require_increasing
@@ -60,7 +61,8 @@ def read_leg_log(
     be wrapped to one turn or not.
 
     Args:
-        path: The table, or a walk folder, whose path.csv holds the same columns.
+        path: The table; a walk folder, whose path.csv holds the same columns; or a recorded run,
+            whose counts become angles with the profile that it keeps.
         columns: A `columns.toml` in place of the one beside the table.
         leg_sign: 1 or -1 for each leg, which its angles are multiplied with; see robot.toml.
 
@@ -70,9 +72,13 @@ def read_leg_log(
         DataError: A leg is missing, a cell holds no finite number, time does not increase or has
             a gap, or a leg turns too far between samples; names file, row and column.
     """
-    file = _table_of(path)
-    table = read_table_file(file)
-    mapping = _read_columns(_columns_file(file, columns))
+    if is_recorded(path):
+        table, files, mapping = *read_recorded_legs(path), _read_columns(None)
+        file = files[0]
+    else:
+        file = _table_of(path)
+        table, files = read_table_file(file), (file,)
+        mapping = _read_columns(_columns_file(file, columns))
     t, *angles = (_numbers(table, name, mapping) for name in _UNITS)
     time_column = mapping.mapped["t"].name
     if len(t) < 2:
@@ -85,7 +91,7 @@ def read_leg_log(
     return LegLog(
         SampledReference(t, theta),
         source=mapping.source or table.source or "unknown",
-        files=(file, *([mapping.file] if mapping.file else [])),
+        files=(*files, *([mapping.file] if mapping.file else [])),
         notes=(*table.notes, *_notes(t, raw, theta)),
     )
 

@@ -4,65 +4,57 @@
 This file alone knows their form, which docs/formats.md describes.
 """
 
-import hashlib
-import json
 import re
-from collections.abc import Mapping
-from dataclasses import asdict, dataclass, field
+import time
+from dataclasses import dataclass, field, replace
 from datetime import UTC, datetime, timedelta
-from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
-from typing import Any
+from typing import Final
 
 import numpy as np
 
 from zebro_lab.atomic import atomic_folder
-from zebro_lab.columns import nearest
-from zebro_lab.errors import AlreadyExists, DataError, NotFound
+from zebro_lab.errors import AlreadyExists, DataError, NotFound, RecordingError
+from zebro_lab.provenance import file_hash
+from zebro_lab.raw_log import read_raw_log
+from zebro_lab.run_manifest import (
+    KINDS,
+    MANIFEST_FILE,
+    RECORDING,
+    SCHEMA_VERSION,
+    RunManifest,
+    read_manifest,
+    software_version,
+    write_manifest,
+)
 from zebro_lab.slip_rig_log import TOPIC, SlipRigTable, read_log, write_log
 
-MANIFEST_FILE = "run.json"
+__all__ = [
+    "KINDS",
+    "LOG_FILE",
+    "MANIFEST_FILE",
+    "PROFILES",
+    "RECORDING",
+    "SCHEMA_VERSION",
+    "RunManifest",
+    "SlipRigRun",
+    "epoch_ns",
+    "exclude_run",
+    "find_runs",
+    "new_run_folder",
+    "profile_file",
+    "read_manifest",
+    "read_slip_rig_run",
+    "require_recorded",
+    "run_state",
+    "write_manifest",
+    "write_slip_rig_run",
+]
+
 LOG_FILE = "log.mcap"
-SCHEMA_VERSION = 1
-KINDS = ("slip-rig", "walk")
-
-
-@dataclass(frozen=True)
-class RunManifest:
-    """What `run.json` says about a run.
-
-    Attributes:
-        kind: "slip-rig" or "walk".
-        label: Name its operator gave it.
-        material: Leg and ground material.
-        operator: Who ran it.
-        source: "real", "sim:what" or "replay:what".
-        start: Start, UTC, ISO 8601.
-        stop: Stop, UTC, ISO 8601.
-        exit_status: "completed", or why it ended.
-        software: Version and commit of what recorded it.
-        constants: Canonical columns that are one number for the rig, SI: radius_leg,
-            radius_ground.
-        streams: Samples recorded, by topic.
-        log_sha256: SHA-256 of `log.mcap`; None where the recorder could not close it.
-        excluded: {"why": reason} where the run is to be left out of every calibration.
-        schema_version: Version of this form.
-    """
-
-    kind: str
-    label: str
-    material: str
-    operator: str
-    source: str
-    start: str
-    stop: str
-    exit_status: str
-    software: Mapping[str, str]
-    constants: Mapping[str, float]
-    streams: Mapping[str, int]
-    log_sha256: str | None = None
-    excluded: Mapping[str, str] | None = None
-    schema_version: int = SCHEMA_VERSION
+PROFILES = "profiles"
+STILL_GROWING: Final = 3.0
+"""A log touched so recently is being recorded: the recorder writes to it every second [s]."""
 
 
 @dataclass(frozen=True)
@@ -122,49 +114,28 @@ def write_slip_rig_run(
     """
     if len(table) == 0:
         raise DataError(f"run '{label}' has no samples to write")
-    start = start.astimezone(UTC)
-    folder = Path(data_dir) / f"{start:%Y%m%dT%H%M%SZ}_slip-rig_{_slug(label)}"
+    folder = _run_path(data_dir, "slip-rig", label, start)
     if folder.exists():
         raise AlreadyExists(f"{folder} exists already; give the run another label")
     with atomic_folder(folder) as draft:
         with (draft / LOG_FILE).open("wb") as file:
-            write_log(file, table, start_ns=_epoch_ns(start))
+            write_log(file, table, start_ns=epoch_ns(start))
         manifest = RunManifest(
             kind="slip-rig",
             label=label,
             material=material,
             operator=operator,
             source=source,
-            start=start.isoformat(),
-            stop=(start + timedelta(seconds=float(table.t[-1]))).isoformat(),
+            start=start.astimezone(UTC).isoformat(),
+            stop=(start.astimezone(UTC) + timedelta(seconds=float(table.t[-1]))).isoformat(),
             exit_status=exit_status,
-            software={"version": _software_version(), "commit": commit},
+            software=software_version(commit),
             constants={"radius_leg": float(radius_leg), "radius_ground": float(radius_ground)},
             streams={TOPIC: len(table)},
-            log_sha256=_sha256(draft / LOG_FILE),
+            log_sha256=file_hash(draft / LOG_FILE),
         )
-        text = json.dumps(_without_none(asdict(manifest)), indent=2, ensure_ascii=False)
-        (draft / MANIFEST_FILE).write_text(text + "\n", encoding="utf-8")
+        write_manifest(draft, manifest)
     return folder
-
-
-def read_manifest(folder: Path) -> RunManifest:
-    """Read and check a run folder's `run.json`.
-
-    Raises:
-        NotFound: There is none.
-        DataError: It is damaged, incomplete, or of another version.
-    """
-    file = folder / MANIFEST_FILE
-    try:
-        document = json.loads(file.read_text(encoding="utf-8"))
-    except FileNotFoundError as error:
-        raise NotFound(f"{folder} is no run folder: it has no {MANIFEST_FILE}") from error
-    except (OSError, ValueError) as error:
-        raise DataError(f"cannot be read as JSON: {error}", file=file) from error
-    if not isinstance(document, dict):
-        raise DataError("is not a JSON object", file=file)
-    return _checked(document, file)
 
 
 def read_slip_rig_run(folder: Path) -> SlipRigRun:
@@ -186,43 +157,101 @@ def read_slip_rig_run(folder: Path) -> SlipRigRun:
     path = folder / LOG_FILE
     if not path.is_file():
         raise NotFound(f"{path}: missing; restore it from where the run was recorded")
-    log = read_log(path)
+    table, damage, notes = _slip_rig_table(folder, manifest)
     _require_radii(manifest, folder / MANIFEST_FILE)
-    if log.damage is not None:
-        notes = (_salvage_note(folder, manifest, len(log.table), log.damage),)
+    if damage is not None:
+        notes = (_salvage_note(folder, manifest, len(table), damage), *notes)
     else:
-        _require_recorded(path, manifest)
-        notes = ()
-    return SlipRigRun(folder, manifest, log.table, (folder / MANIFEST_FILE, path), notes)
+        require_recorded(path, manifest)
+    return SlipRigRun(folder, manifest, table, (folder / MANIFEST_FILE, path), notes)
 
 
-def _checked(document: Mapping[str, Any], file: Path) -> RunManifest:
-    found = document.get("schema_version")
-    if found != SCHEMA_VERSION:
-        raise DataError(
-            f"schema_version is {found!r}, expected {SCHEMA_VERSION}; "
-            f"read it with the version of zebro-lab that wrote it",
-            file=file,
-        )
-    optional = {"log_sha256", "excluded"}
-    for name, expected in _FIELD_TYPES.items():
-        if name in optional and document.get(name) is None:
-            continue
-        if not isinstance(document.get(name), expected):
-            raise DataError(
-                f"'{name}' is {document.get(name)!r}, expected {expected.__name__}", file=file
-            )
-    if document["kind"] not in KINDS:
-        raise DataError(f"unknown kind '{document['kind']}'; {nearest(document['kind'], KINDS)}",
-                        file=file)  # fmt: skip
-    return RunManifest(**{name: document[name] for name in _FIELD_TYPES if name in document})
+def new_run_folder(data_dir: Path, *, kind: str, label: str, start: datetime) -> Path:
+    """Make the folder of a run that is about to be recorded, empty.
+
+    Args:
+        data_dir: Folder of run folders; made when missing.
+        kind: One of `KINDS`.
+        label: Name of the run.
+        start: When it begins, with its time zone.
+
+    Raises:
+        AlreadyExists: A run of this start and label is there already.
+        RecordingError: Nothing can be written there.
+    """
+    folder = _run_path(data_dir, kind, label, start)
+    try:
+        folder.mkdir(parents=True)
+    except FileExistsError as error:
+        if folder.is_dir():
+            raise AlreadyExists(f"{folder} exists already; give the run another label") from error
+        raise RecordingError(f"{error.filename} is a file; name a folder as --data") from error
+    except OSError as error:
+        raise RecordingError(
+            f"cannot write to {data_dir}: {error.strerror}; name another folder as --data"
+        ) from error
+    return folder
 
 
-_FIELD_TYPES: Mapping[str, type] = {
-    "kind": str, "label": str, "material": str, "operator": str, "source": str, "start": str,
-    "stop": str, "exit_status": str, "software": dict, "constants": dict, "streams": dict,
-    "log_sha256": str, "excluded": dict,
-}  # fmt: skip
+def profile_file(folder: Path, stream: str) -> Path:
+    """Return where a run keeps the profile of a stream; correcting it repairs the run."""
+    return folder / PROFILES / f"{stream}.toml"
+
+
+def find_runs(data_dir: Path) -> list[Path]:
+    """Find all run folders below a folder, or the folder itself, in the order of their names.
+
+    Raises:
+        NotFound: There is no such folder.
+    """
+    if not data_dir.is_dir():
+        raise NotFound(f"{data_dir}: no such folder; name one that holds run folders")
+    return sorted(file.parent for file in data_dir.rglob(MANIFEST_FILE))
+
+
+def run_state(folder: Path, manifest: RunManifest) -> str:
+    """Say how a run ended: its exit status, or `recovered` where nobody could write one.
+
+    A run without an end is still `recording` while its log grows.
+    """
+    if manifest.exit_status != RECORDING:
+        return manifest.exit_status
+    log = folder / LOG_FILE
+    growing = log.is_file() and time.time() - log.stat().st_mtime < STILL_GROWING
+    return RECORDING if growing else "recovered"
+
+
+def exclude_run(folder: Path, *, why: str) -> RunManifest:
+    """Leave a run out of every calibration from now on, and keep it.
+
+    Args:
+        folder: The run folder.
+        why: Reason, for whoever reads it later.
+
+    Raises:
+        NotFound: It is no run folder.
+        DataError: Its manifest is damaged, or no reason is given.
+    """
+    if not why.strip():
+        raise DataError("no reason given; say why the run is left out", file=folder)
+    manifest = replace(read_manifest(folder), excluded={"why": why.strip()})
+    write_manifest(folder, manifest)
+    return manifest
+
+
+def _slip_rig_table(
+    folder: Path, manifest: RunManifest
+) -> tuple[SlipRigTable, str | None, tuple[str, ...]]:
+    """Read or derive the samples; also say what damage ended them, and what was left out."""
+    path = folder / LOG_FILE
+    if not manifest.profiles:
+        log = read_log(path)
+        return log.table, log.damage, ()
+    from zebro_lab.slip_rig_decoding import derive_table  # drivers: not for every table
+
+    raw = read_raw_log(path)
+    table, notes = derive_table(folder, raw.streams, zero=manifest.constants)
+    return table, raw.damage, notes
 
 
 def _require_radii(manifest: RunManifest, file: Path) -> None:
@@ -239,8 +268,13 @@ def _require_radii(manifest: RunManifest, file: Path) -> None:
             )  # fmt: skip
 
 
-def _require_recorded(path: Path, manifest: RunManifest) -> None:
-    if manifest.log_sha256 is not None and _sha256(path) != manifest.log_sha256:
+def require_recorded(path: Path, manifest: RunManifest) -> None:
+    """Refuse a log that is not the one that was recorded.
+
+    Raises:
+        DataError: Its hash differs from the manifest's.
+    """
+    if manifest.log_sha256 is not None and file_hash(path) != manifest.log_sha256:
         raise DataError(
             f"is not the log that was recorded: its SHA-256 differs from {MANIFEST_FILE}; "
             f"restore it, or exclude the run in {MANIFEST_FILE}",
@@ -254,25 +288,14 @@ def _salvage_note(folder: Path, manifest: RunManifest, count: int, damage: str) 
     return f"{folder.name}: {LOG_FILE} is cut short ({damage}); {count}{of_all} samples read"
 
 
+def _run_path(data_dir: Path, kind: str, label: str, start: datetime) -> Path:
+    return Path(data_dir) / f"{start.astimezone(UTC):%Y%m%dT%H%M%SZ}_{kind}_{_slug(label)}"
+
+
 def _slug(label: str) -> str:
     return re.sub(r"[^\w.-]+", "-", label).strip("-.") or "run"
 
 
-def _epoch_ns(moment: datetime) -> int:
+def epoch_ns(moment: datetime) -> int:
+    """Return nanoseconds since the Unix epoch, to a microsecond."""
     return (moment - datetime(1970, 1, 1, tzinfo=UTC)) // timedelta(microseconds=1) * 1000
-
-
-def _sha256(path: Path) -> str:
-    with path.open("rb") as file:
-        return hashlib.file_digest(file, "sha256").hexdigest()
-
-
-def _software_version() -> str:
-    try:
-        return version("zebro-lab")
-    except PackageNotFoundError:
-        return "unknown"
-
-
-def _without_none(document: Mapping[str, Any]) -> dict[str, Any]:
-    return {key: value for key, value in document.items() if value is not None}

@@ -10,8 +10,14 @@ from zebro_lab.cli.errors import run
 from zebro_lab.cli.init import init
 from zebro_lab.cli.predict import EPILOG as PREDICT_EPILOG
 from zebro_lab.cli.predict import predict
+from zebro_lab.cli.record import EPILOG as RECORD_EPILOG
+from zebro_lab.cli.record import record
+from zebro_lab.cli.rig import app as rig
+from zebro_lab.cli.runs import exclude, runs
+from zebro_lab.cli.sim import app as sim
 from zebro_lab.cli.walk import EPILOG as WALK_EPILOG
 from zebro_lab.cli.walk import walk
+from zebro_lab.cli.zebro import app as zebro
 
 app = typer.Typer(
     add_completion=False,
@@ -23,6 +29,12 @@ app.command(epilog=EPILOG)(calibrate)
 app.command()(init)
 app.command(epilog=WALK_EPILOG)(walk)
 app.command(epilog=PREDICT_EPILOG)(predict)
+app.command(epilog=RECORD_EPILOG)(record)
+app.command()(runs)
+app.command()(exclude)
+app.add_typer(rig, name="rig")
+app.add_typer(sim, name="sim")
+app.add_typer(zebro, name="zebro")
 
 
 def _print_version(wanted: bool) -> None:

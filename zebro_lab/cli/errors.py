@@ -29,6 +29,7 @@ def _is_known(error: Exception) -> bool:
         for module, name in (
             ("zebro_lab.errors", "ZebroLabError"),
             ("model.errors", "ModelError"),
+            ("rig.errors", "RigError"),
         )
     ]
     return any(root is not None and isinstance(error, root) for root in roots)

@@ -1,0 +1,180 @@
+# SPDX-License-Identifier: MIT
+"""Reads devices, each from a thread of its own, and hands what they send to the recorder."""
+
+import threading
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import ExitStack, contextmanager
+from dataclasses import dataclass
+from typing import Final, Protocol
+
+from rig.clock import SYSTEM_CLOCK, Clock
+from rig.device import Counters, Sample, Stream
+from rig.errors import RigTimeout
+from rig.safety import SilenceGuard
+from zebro_lab.clock_watch import ClockWatch
+from zebro_lab.ros_messages import WARNING
+from zebro_lab.sample_queue import LossyTap
+from zebro_lab.stream_views import View
+
+READ_WAIT: Final = 0.1
+"""Longest single wait of a read [s]."""
+SILENCE: Final = 1.0
+"""Silence that is worth an event [s]."""
+JOIN_LIMIT: Final = 5.0
+
+
+class Sink(Protocol):
+    """Who takes what devices send; never keeps them waiting."""
+
+    def write(self, stream: str, samples: Sequence[Sample]) -> bool:
+        """Take samples of a stream; tell whether there was room."""
+        ...
+
+    def event(self, text: str, *, level: int = ...) -> None:
+        """Take something that happened now."""
+        ...
+
+
+@dataclass(frozen=True)
+class Device:
+    """A device that is to be recorded.
+
+    Attributes:
+        stream: Its driver, not yet entered.
+        view: How it shows in the log.
+        check: Guards every read, in the thread that reads; raises where a limit is broken.
+        command: Called before every read, in the same thread: set-points of a gait.
+        at_end: Called once before the driver is left: stops what `command` moved.
+    """
+
+    stream: Stream
+    view: View
+    check: Callable[[Sequence[Sample]], None] | None = None
+    command: Callable[[float], None] | None = None
+    at_end: Callable[[], object] | None = None
+
+    @property
+    def name(self) -> str:
+        """Name of the stream."""
+        return self.stream.name
+
+
+class Acquisition:
+    """One device being read, until it is told to stop.
+
+    Args:
+        device: The device; its driver has been entered.
+        sink: Who takes the samples.
+        start: Host time at which the run began [s].
+        clock: Host time.
+
+    Attributes:
+        tap: The newest samples, for viewers.
+        clock_watch: Its clock beside the host's.
+        failure: What ended the reading before it was told to stop.
+    """
+
+    def __init__(
+        self, device: Device, *, sink: Sink, start: float, clock: Clock = SYSTEM_CLOCK
+    ) -> None:
+        self.tap = LossyTap()
+        self.clock_watch = ClockWatch(start=start)
+        self.failure: Exception | None = None
+        self._device = device
+        self._sink = sink
+        self._clock = clock
+        self._counters = Counters()
+        self._silent = False
+        self._done = threading.Event()
+        self._thread = threading.Thread(target=self._run, daemon=True, name=device.name)
+
+    @property
+    def name(self) -> str:
+        """Name of the stream."""
+        return self._device.name
+
+    @property
+    def counters(self) -> Counters:
+        """What happened to the stream, as of its last read."""
+        return self._counters
+
+    def start(self) -> None:
+        """Begin to read."""
+        self._thread.start()
+
+    def stop(self) -> None:
+        """Read no more; waits for the read that is under way, which has a time limit."""
+        self._done.set()
+        if self._thread.is_alive():
+            self._thread.join(JOIN_LIMIT)
+
+    def _run(self) -> None:
+        guard = SilenceGuard(self.name, limit=SILENCE, now=self._clock.now())
+        try:
+            while not self._done.is_set():
+                self._step(guard)
+        except Exception as failure:  # noqa: BLE001, RUF100 - kept for the owner, who ends the run
+            self.failure = failure
+
+    def _step(self, guard: SilenceGuard) -> None:
+        device = self._device
+        if device.command is not None:
+            device.command(self._clock.now())
+        samples = device.stream.read(READ_WAIT)
+        if samples:
+            self._sink.write(self.name, samples)
+            self.tap.put(samples)
+            self.clock_watch.add(samples)
+            if device.check is not None:
+                device.check(samples)
+        self._watch(device.stream.counters)
+        self._listen(guard, samples)
+
+    def _watch(self, counters: Counters) -> None:
+        """Note what happened to the link."""
+        before, self._counters = self._counters, counters
+        for what in ("reconnected", "restarted"):
+            if getattr(counters, what) > getattr(before, what):
+                self._sink.event(f"{self.name}: {what}", level=WARNING)
+        if counters.lost > before.lost:
+            missing = counters.lost - before.lost
+            self._sink.event(f"{self.name}: {missing} samples lost", level=WARNING)
+
+    def _listen(self, guard: SilenceGuard, samples: list[Sample]) -> None:
+        """Make one event of a silence, however long, and one of its end."""
+        try:
+            guard.check(samples, now=self._clock.now())
+        except RigTimeout as silence:
+            if not self._silent:
+                self._sink.event(f"{self.name}: silent ({silence})", level=WARNING)
+            self._silent = True
+        else:
+            if self._silent:
+                self._sink.event(f"{self.name}: sends again", level=WARNING)
+            self._silent = False
+
+
+@contextmanager
+def acquiring(
+    devices: Sequence[Device], *, sink: Sink, start: float, clock: Clock = SYSTEM_CLOCK
+) -> Iterator[Mapping[str, Acquisition]]:
+    """Read devices, already entered, for as long as the body runs.
+
+    Args:
+        devices: The devices.
+        sink: Who takes the samples.
+        start: Host time at which the run began [s].
+        clock: Host time.
+
+    Yields:
+        What reads each, by its name.
+    """
+    readers = {d.name: Acquisition(d, sink=sink, start=start, clock=clock) for d in devices}
+    with ExitStack() as stack:
+        for device in devices:
+            if device.at_end is not None:
+                stack.callback(device.at_end)
+        for reader in readers.values():
+            stack.callback(reader.stop)
+            reader.start()
+        yield readers

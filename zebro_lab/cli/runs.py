@@ -1,0 +1,32 @@
+# SPDX-License-Identifier: MIT
+"""`zebro-lab runs` and `exclude`: what has been recorded, and what of it counts."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+DataDir = Annotated[Path, typer.Argument(metavar="DATA", help="Folder of run folders.")]
+RunFolder = Annotated[Path, typer.Argument(metavar="RUN", help="Run folder.")]
+Why = Annotated[str, typer.Option(help="Reason, kept with the run.")]
+
+
+def runs(data: DataDir) -> None:
+    """List recorded runs: how each ended, what it holds and where it comes from."""
+    from zebro_lab.stages.runs import list_runs
+
+    listed = list_runs(data)
+    for run in listed:
+        typer.echo(
+            f"{run.name}  {run.state}  {run.duration}  {run.samples}  "
+            f"{'SIMULATED ' if run.source.startswith('sim:') else ''}{run.source}"
+        )
+    typer.echo(f"{len(listed)} run{'s' * (len(listed) != 1)} in {data}")
+
+
+def exclude(run: RunFolder, why: Why) -> None:
+    """Leave a run out of every calibration, and keep it."""
+    from zebro_lab.run_folder import exclude_run
+
+    manifest = exclude_run(run, why=why)
+    typer.echo(f"{run.name} is left out from now on: {(manifest.excluded or {})['why']}")

@@ -1,0 +1,76 @@
+# SPDX-License-Identifier: MIT
+"""`zebro-lab zebro check`: which channel is which leg, which way it turns, where its zero is."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+if TYPE_CHECKING:
+    from rig.zebro.check import Observation
+
+app = typer.Typer(no_args_is_help=True, help="Work on the robot itself.")
+
+Address = Annotated[
+    str, typer.Argument(metavar="PROFILE@PORT", help="Robot; PROFILE@sim or sim is a twin.")
+]
+Save = Annotated[Path, typer.Option(metavar="FILE", help="Profile to write.")]
+Touchdown = Annotated[
+    float | None,
+    typer.Option("--lift-off-for", metavar="DEG",
+                 help="Also find the lift-off angle whose hip height is this touchdown's [deg]."),
+]  # fmt: skip
+
+
+@app.callback()
+def zebro() -> None:
+    """Work on the robot itself."""
+
+
+@app.command()
+def check(
+    address: Address, save: Save = Path("zebro.toml"), lift_off_for: Touchdown = None
+) -> None:
+    """Fix leg order, signs and zeros; the robot stands on a block, its legs free to turn."""
+    from zebro_lab.stages.check_zebro import CheckRequest, check_zebro
+
+    request = CheckRequest(address, save, lift_off_for)
+    checked = check_zebro(request, _Terminal())
+    if checked.lift_off is not None:
+        typer.echo(
+            f"lift-off at {checked.lift_off.theta_deg:.1f} degrees, hip "
+            f"{1e3 * checked.lift_off.mismatch:+.1f} mm from its height at touchdown"
+        )
+    typer.echo(f"wrote {checked.file}; name it as --zebro {checked.file}@PORT")
+
+
+class _Terminal:
+    """Asks the person at the terminal; satisfies `Person`."""
+
+    def watch(self, channel: int) -> "Observation":
+        """Ask what moved."""
+        from rig.zebro.check import Observation
+
+        leg = typer.prompt(
+            f"channel {channel + 1} moved; which leg was it (1 to 6)?", type=_leg_number
+        )
+        return Observation(leg, typer.confirm("did it turn as in walking forward?"))
+
+    def hold_toes_ahead(self) -> None:
+        """Wait until every toe points straight ahead."""
+        typer.prompt(
+            "turn every toe straight ahead and hold it; Enter", default="", show_default=False
+        )
+
+    def measure_height(self, theta_deg: float) -> float:
+        """Ask for the height of the hip above the ground."""
+        millimetres = typer.prompt(f"leg 1 stands at {theta_deg:.1f} degrees; hip height in mm?",
+                                   type=float)  # fmt: skip
+        return millimetres / 1000
+
+
+def _leg_number(text: str) -> int:
+    number = int(text)
+    if not 1 <= number <= 6:
+        raise typer.BadParameter("expected 1 to 6")
+    return number

@@ -1,0 +1,196 @@
+# SPDX-License-Identifier: MIT
+"""Raw samples of any device in a log, and back: what it sent, as it sent it.
+
+Counts are kept, not angles or forces: those follow from them with the profile, today's or one that
+was corrected years later.
+"""
+
+import math
+import struct
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import IO, TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rig.device import Sample
+from zebro_lab.cdr import CdrReader, CdrWriter
+from zebro_lab.errors import DataError
+
+if TYPE_CHECKING:
+    from mcap.records import Message
+
+_TEXT = """\
+# Consecutive samples of one device. The metadata of the channel name the counts and their units.
+float64[] host_time    # when each was read, since the start of the run [s]
+float64[] device_time  # when the device took it, by its own clock; NaN where it tells none [s]
+int64[] sequence       # number of each sample, strictly increasing; -1 where it has none
+uint32[] status        # status word of the device; 0 where all is well
+uint32[] channel       # which of several devices on one link
+uint32 width           # counts in each sample
+{counts}[] counts      # raw values, sample after sample
+"""
+COUNTS_NAME = "zebro_lab/msg/RawCounts"
+VALUES_NAME = "zebro_lab/msg/RawValues"
+RAW_SCHEMAS: dict[str, tuple[str, str]] = {
+    COUNTS_NAME: ("<i4", _TEXT.format(counts="int32")),
+    VALUES_NAME: ("<f8", _TEXT.format(counts="float64")),
+}
+"""Type of the counts and text of each schema, by name: whole numbers for almost all devices,
+doubles for those whose counts have a fraction."""
+
+DAMAGES_HINT = "the file ends early"
+
+
+@dataclass(frozen=True)
+class RawStream:
+    """What one device sent during a run.
+
+    Attributes:
+        host_time: When each sample was read, since the start of the run, shape (n,) [s].
+        device_time: By the device's clock, NaN where it tells none, shape (n,) [s].
+        sequence: Number of each sample, -1 where it has none, shape (n,).
+        status: Status words, shape (n,).
+        channel: Which of several devices on the link, shape (n,).
+        counts: Raw values, shape (n, width).
+    """
+
+    host_time: NDArray[np.float64]
+    device_time: NDArray[np.float64]
+    sequence: NDArray[np.int64]
+    status: NDArray[np.uint32]
+    channel: NDArray[np.uint32]
+    counts: NDArray[Any]
+
+    def __len__(self) -> int:
+        """Count the samples."""
+        return len(self.host_time)
+
+    def samples(self) -> list[Sample]:
+        """Return the samples as the driver gave them, host time since the start of the run."""
+        return [
+            Sample(
+                host,
+                None if math.isnan(device) else device,
+                None if number < 0 else number,
+                tuple(counts),
+                status,
+                channel,
+            )
+            for host, device, number, counts, status, channel in zip(
+                self.host_time.tolist(), self.device_time.tolist(), self.sequence.tolist(),
+                self.counts.tolist(), self.status.tolist(), self.channel.tolist(), strict=True,
+            )
+        ]  # fmt: skip
+
+
+@dataclass(frozen=True)
+class SalvagedStreams:
+    """What could be read of a log.
+
+    Attributes:
+        streams: Raw streams by topic.
+        damage: Why reading stopped before the end; None for a whole log.
+    """
+
+    streams: dict[str, RawStream]
+    damage: str | None
+
+
+def raw_topic(stream: str) -> str:
+    """Return the topic of a stream's raw samples."""
+    return f"/{stream}/raw"
+
+
+def encode_raw(samples: Sequence[Sample], *, dtype: str, start: float) -> bytes:
+    """Encode samples, at least one, as one message.
+
+    Args:
+        samples: Of one device, with equally many counts.
+        dtype: Type of the counts, of `RAW_SCHEMAS`.
+        start: Host time at which the run began [s].
+
+    Raises:
+        ValueError: The samples differ in width, or a count does not fit.
+        OverflowError: A count does not fit.
+    """
+    host, device, sequence, counts, status, channel = zip(*samples, strict=True)
+    values = np.array(counts, dtype=dtype)
+    missing = [-1 if number is None else number for number in sequence]
+    message = CdrWriter().array(np.array(host, dtype="<f8") - start)
+    message.array(np.array(device, dtype="<f8"))  # None becomes NaN
+    message.array(np.array(missing, dtype="<i8"))
+    message.array(np.array(status, dtype="<u4")).array(np.array(channel, dtype="<u4"))
+    return message.uint32(values.shape[1]).array(values.reshape(-1)).message()
+
+
+def decode_raw(data: bytes, *, dtype: str) -> RawStream:
+    """Decode a message of `encode_raw`.
+
+    Raises:
+        ValueError: The message is not of that form.
+    """
+    reader = CdrReader(data)
+    host, device = reader.array("<f8"), reader.array("<f8")
+    sequence, status, channel = reader.array("<i8"), reader.array("<u4"), reader.array("<u4")
+    width = reader.uint32()
+    counts = reader.array(dtype)
+    lengths = {len(part) for part in (host, device, sequence, status, channel)}
+    if len(lengths) != 1 or len(counts) != len(host) * width:
+        raise ValueError(f"a message of {len(data)} bytes does not hold {len(host)} whole samples")
+    return RawStream(host, device, sequence, status, channel, counts.reshape(len(host), width))
+
+
+def read_raw_log(path: Path) -> SalvagedStreams:
+    """Read all raw streams of a log, up to the last whole chunk where it is damaged.
+
+    Raises:
+        DataError: The file is no MCAP.
+    """
+    from mcap.exceptions import InvalidMagic
+
+    parts: dict[str, list[RawStream]] = {}
+    damage = None
+    try:
+        with path.open("rb") as file:
+            for topic, dtype, message in _messages(file):
+                parts.setdefault(topic, []).append(decode_raw(message.data, dtype=dtype))
+    except InvalidMagic as error:
+        raise DataError("is no MCAP file", file=path) from error
+    except log_damages() as error:
+        damage = str(error) or DAMAGES_HINT  # the reader's EndOfFile says nothing
+    return SalvagedStreams({topic: _joined(found) for topic, found in parts.items()}, damage)
+
+
+def _joined(parts: Sequence[RawStream]) -> RawStream:
+    columns = zip(*(vars(part).values() for part in parts), strict=True)
+    return RawStream(*(np.concatenate(column) for column in columns))
+
+
+def _messages(file: IO[bytes]) -> "Iterator[tuple[str, str, Message]]":
+    # Streaming: the seeking reader needs the index at the end, which a cut file has lost.
+    from mcap.records import Channel, Message, Schema
+    from mcap.stream_reader import StreamReader
+
+    ours: dict[int, tuple[str, str]] = {}
+    schemas: dict[int, str] = {}
+    for record in StreamReader(file, validate_crcs=True).records:
+        if isinstance(record, Schema):
+            schemas[record.id] = record.name
+        elif isinstance(record, Channel):
+            name = schemas.get(record.schema_id, "")
+            if name in RAW_SCHEMAS:
+                ours[record.id] = (record.topic, RAW_SCHEMAS[name][0])
+        elif isinstance(record, Message) and record.channel_id in ours:
+            yield *ours[record.channel_id], record
+
+
+def log_damages() -> tuple[type[Exception], ...]:
+    """Name what the reader raises where a log is cut short or damaged."""
+    import zstandard
+    from mcap.exceptions import McapError
+
+    # ValueError also covers the reader's CRC errors and text that is no UTF-8.
+    return McapError, struct.error, zstandard.ZstdError, ValueError, MemoryError

@@ -1,0 +1,281 @@
+# SPDX-License-Identifier: MIT
+"""The devices a command line names, real or simulated, ready to be recorded."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import ExitStack, contextmanager
+from dataclasses import asdict, dataclass, field
+from pathlib import Path
+from typing import Any, Final
+
+import numpy as np
+
+from model.gait.reference import LegReference
+from rig.backends import RigDevices, leg_driver, leg_link, open_imu, open_rig
+from rig.device import Sample
+from rig.imu.profile import load_imu_profile
+from rig.profile import shipped_file, split_address
+from rig.safety import SampleGuard
+from rig.slip_rig.imperfections import TYPICAL_RIG
+from rig.slip_rig.profile import RigProfile, load_rig_profile
+from rig.slip_rig.simulated import RigDynamics, SimulatedRig, simulated_rig
+from rig.slip_rig.sweep import SweepPlan
+from rig.twins import simulated_imu, simulated_legs, simulated_rig_devices
+from rig.zebro.commands import LegCommands, follow
+from rig.zebro.profile import LegProfile, load_leg_profile
+from zebro_lab.acquisition import Device
+from zebro_lab.errors import SettingsError
+from zebro_lab.gait_argument import GaitRequest, make_gait
+from zebro_lab.slip_rig_decoding import RIG
+from zebro_lab.stream_views import BoardView, DrivesView, ImuView, LegsView, LoadCellView
+
+SIMULATED: Final = "sim"
+"""In place of a port, or of PROFILE@PORT, this is a simulated twin."""
+LEGS_PROFILE: Final = "zebro-100-serial"
+IMU_PROFILE: Final = "imu-quaternion-serial"
+RIG_PROFILE: Final = "rig-odrive-netft"
+HORIZON: Final = 0.1
+"""How far ahead of a played gait its set-points lie [s]."""
+TWIN_SWEEP: Final = SweepPlan(slips=tuple(np.linspace(0.0, 0.9, 16) ** 1.5), duration=0.25)
+"""What a simulated rig sweeps: all slips in 4 s at each of four loads."""
+
+
+@dataclass(frozen=True)
+class DevicesRequest:
+    """Which devices are asked for; None and nothing where none is.
+
+    Attributes:
+        zebro: `PROFILE@PORT`, `PROFILE@sim` or `sim`.
+        imus: The same, each.
+        rig: The same.
+        play: Gait whose set-points the robot is sent.
+        seed: Of the randomness of simulated devices.
+    """
+
+    zebro: str | None = None
+    imus: Sequence[str] = ()
+    rig: str | None = None
+    play: LegReference | None = None
+    seed: int = 0
+
+
+@dataclass(frozen=True)
+class OpenDevices:
+    """Devices, entered.
+
+    Attributes:
+        devices: The devices.
+        profiles: Name and text of each profile, by the name a run keeps it under.
+        constants: Radii of the rig's discs [m].
+        truth: What simulated devices know to be true.
+    """
+
+    devices: tuple[Device, ...]
+    profiles: Mapping[str, tuple[str, str]]
+    constants: Mapping[str, float] = field(default_factory=dict)
+    truth: Mapping[str, Any] = field(default_factory=dict)
+
+
+@contextmanager
+def open_devices(request: DevicesRequest) -> Iterator[OpenDevices]:
+    """Open every device asked for, and leave each at the end: what it drives is de-energised.
+
+    Args:
+        request: Which devices.
+
+    Yields:
+        The devices, their drivers entered.
+
+    Raises:
+        SettingsError: None is asked for, or a gait is to be played to no robot.
+        RigError: An address, a profile or a port is not right.
+    """
+    _require_any(request)
+    rng = np.random.default_rng(request.seed)
+    opened = _Opened()
+    with ExitStack() as stack:
+        if request.zebro is not None:
+            _add_legs(opened, stack, request.zebro, request.play, rng)
+        names = ["imu"] if len(request.imus) == 1 else [f"imu{i + 1}" for i, _ in
+                                                        enumerate(request.imus)]  # fmt: skip
+        for name, address in zip(names, request.imus, strict=True):
+            _add_imu(opened, stack, name, address, rng)
+        if request.rig is not None:
+            _add_rig(opened, stack, request.rig, rng)
+        for device in opened.devices:
+            stack.enter_context(device.stream)
+        yield OpenDevices(tuple(opened.devices), opened.profiles, opened.constants, opened.truth)
+
+
+def default_gait() -> LegReference:
+    """Return the gait that a simulated robot walks unless it is told otherwise."""
+    return make_gait(GaitRequest(), leg_arc=np.pi).reference
+
+
+def twin_rig(rng: np.random.Generator) -> SimulatedRig:
+    """Make the simulated rig behind `sim`: it sweeps `TWIN_SWEEP` by itself."""
+    return simulated_rig(
+        plan=TWIN_SWEEP, imperfections=TYPICAL_RIG, dynamics=RigDynamics(ripple=0.005), rng=rng
+    )
+
+
+def resolve(address: str, *, default: str) -> tuple[str, str]:
+    """Split an address into profile and port; `sim` alone is the default profile's twin.
+
+    >>> resolve("sim", default="zebro-100-serial")
+    ('zebro-100-serial', 'sim')
+    """
+    return (default, SIMULATED) if address == SIMULATED else split_address(address)
+
+
+def profile_text(name: str) -> str:
+    """Read the TOML of a profile, shipped or a file."""
+    path = Path(name)
+    return (path if path.is_file() else shipped_file(f"{name}.toml")).read_text(encoding="utf-8")
+
+
+@dataclass
+class _Opened:
+    """What has been opened so far."""
+
+    devices: list[Device] = field(default_factory=list)
+    profiles: dict[str, tuple[str, str]] = field(default_factory=dict)
+    constants: dict[str, float] = field(default_factory=dict)
+    truth: dict[str, Any] = field(default_factory=dict)
+
+
+def _require_any(request: DevicesRequest) -> None:
+    if request.zebro is None and request.rig is None and not request.imus:
+        raise SettingsError("no device to record; name one with --zebro, --imu or --rig")
+    if request.play is not None and request.zebro is None:
+        raise SettingsError("there is no robot to play to; name one with --zebro", key="--play")
+
+
+def _add_legs(
+    opened: _Opened,
+    stack: ExitStack,
+    address: str,
+    play: LegReference | None,
+    rng: np.random.Generator,
+) -> None:
+    name, port = resolve(address, default=LEGS_PROFILE)
+    profile = load_leg_profile(name)
+    if port == SIMULATED:
+        gait = play or default_gait()
+        legs = stack.enter_context(simulated_legs(profile, gait, rng=rng))
+    else:
+        legs = leg_driver(profile, leg_link(profile, port))
+    player = None if play is None else GaitPlayer(legs, play, profile)
+    opened.devices.append(
+        Device(
+            legs,
+            LegsView("legs", profile=profile),
+            command=player,
+            at_end=None if player is None else legs.stop,
+        )
+    )
+    opened.profiles["legs"] = (profile.name, profile_text(name))
+
+
+def _add_imu(
+    opened: _Opened, stack: ExitStack, stream: str, address: str, rng: np.random.Generator
+) -> None:
+    name, port = resolve(address, default=IMU_PROFILE)
+    profile = load_imu_profile(name)
+    if port == SIMULATED:
+        unit = stack.enter_context(simulated_imu(profile, rng=rng, name=stream))
+    else:
+        unit = open_imu(address, name=stream)
+    opened.devices.append(Device(unit, ImuView(stream, profile=profile)))
+    opened.profiles[stream] = (profile.name, profile_text(name))
+
+
+def _add_rig(opened: _Opened, stack: ExitStack, address: str, rng: np.random.Generator) -> None:
+    name, port = resolve(address, default=RIG_PROFILE)
+    profile = load_rig_profile(name)
+    if port == SIMULATED:
+        rig = twin_rig(rng)
+        devices = stack.enter_context(simulated_rig_devices(profile, rig, rng=rng))
+        opened.truth["rig"] = rig.description() | {"sweep": asdict(TWIN_SWEEP)}
+    else:
+        devices = open_rig(address)
+    opened.devices += _of_rig(profile, devices)
+    opened.profiles[RIG] = (profile.name, profile_text(name))
+    opened.constants |= {"radius_leg": profile.radius_leg, "radius_ground": profile.radius_ground}
+
+
+def _of_rig(profile: RigProfile, rig: RigDevices) -> Iterator[Device]:
+    check = ForceCheck(profile)
+    if rig.board is not None and profile.board is not None:
+        yield Device(rig.board, BoardView(rig.board.name, profile=profile.board), check)
+    if rig.drives is not None and profile.drives is not None:
+        yield Device(rig.drives, DrivesView(rig.drives.name, profile=profile.drives))
+    if rig.load_cell is not None and profile.load_cell is not None:
+        yield Device(
+            rig.load_cell, LoadCellView(rig.load_cell.name, profile=profile.load_cell), check
+        )
+
+
+class GaitPlayer:
+    """Sends a gait's set-points whenever they are due; to be called with the host time.
+
+    Args:
+        legs: The robot.
+        gait: Leg angles over time; its time 0 is the first call.
+        profile: Profile of the robot.
+    """
+
+    def __init__(self, legs: LegCommands, gait: LegReference, profile: LegProfile) -> None:
+        self._legs = legs
+        self._gait = gait
+        self._start: float | None = None
+        self._due = 0.0
+        # No faster than the robot reports, and twice within the horizon: no set-point runs out.
+        self._interval = max(HORIZON / 2, 1 / profile.rate)
+
+    def __call__(self, now: float) -> None:
+        """Send the next set-point where it is due."""
+        if self._start is None:
+            self._start = self._due = now
+        if now >= self._due:
+            self._due = now + self._interval
+            follow(self._legs, self._gait, start=self._start, now=now, horizon=HORIZON)
+
+
+class ForceCheck:
+    """Watches the forces of a rig in every sample; to be called with what a read gave.
+
+    Args:
+        profile: Profile of the rig: axes, scale and limits.
+    """
+
+    def __init__(self, profile: RigProfile) -> None:
+        limits = (profile.limits.normal_force, profile.limits.traction_force)
+        self._guards = [
+            SampleGuard(limit, quantity=f"{name} force", unit="N")
+            for name, limit in zip(("normal", "traction"), limits, strict=True)
+        ]
+        self._limits = limits
+        self._scale, self._columns = _force_columns(profile)
+
+    def __call__(self, samples: Sequence[Sample]) -> None:
+        """Check samples.
+
+        Raises:
+            LimitExceeded: Several in a row are beyond a limit.
+        """
+        for guard, limit, column in zip(self._guards, self._limits, self._columns, strict=True):
+            values = [sample.counts[column] for sample in samples]
+            if max(values) <= limit * self._scale and -min(values) <= limit * self._scale:
+                guard.check(0.0)  # all is well: one call for hundreds of samples
+                continue
+            for value in values:
+                guard.check(value / self._scale)
+
+
+def _force_columns(profile: RigProfile) -> tuple[float, tuple[int, int]]:
+    if profile.board is not None:
+        return profile.board.counts_per_force, (0, 1)
+    cell = profile.load_cell
+    if cell is None:
+        raise SettingsError(f"profile '{profile.name}' has no load cell", key="--rig")
+    return cell.counts_per_force, (cell.normal.index, cell.traction.index)

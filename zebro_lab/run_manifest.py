@@ -1,0 +1,146 @@
+# SPDX-License-Identifier: MIT
+"""What `run.json` of a run folder says: read, checked and written here alone."""
+
+import json
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, field
+from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
+from typing import Any
+
+from zebro_lab.atomic import atomic_write_text
+from zebro_lab.columns import nearest
+from zebro_lab.errors import DataError, NotFound
+
+MANIFEST_FILE = "run.json"
+SCHEMA_VERSION = 1
+KINDS = ("slip-rig", "walk")
+RECORDING = "recording"
+"""Exit status of a run that has not ended yet, or whose recorder was killed."""
+
+
+@dataclass(frozen=True)
+class RunManifest:
+    """What `run.json` says about a run.
+
+    Attributes:
+        kind: "slip-rig" or "walk".
+        label: Name its operator gave it.
+        material: Leg and ground material.
+        operator: Who ran it.
+        source: "real", "sim:what" or "replay:what".
+        start: Start, UTC, ISO 8601.
+        stop: Stop, UTC, ISO 8601; None while it is recorded, or where nobody could write it.
+        exit_status: "completed", "recording", or why it ended.
+        software: Version and commit of what recorded it.
+        constants: Canonical columns that are one number for the rig, SI: radius_leg,
+            radius_ground; also zero_normal and zero_traction [N], where the unloaded load cell's
+            zero is to be subtracted.
+        streams: Samples recorded, by topic.
+        log_sha256: SHA-256 of `log.mcap`; None where the recorder could not close it.
+        excluded: {"why": reason} where the run is to be left out of every calibration.
+        profiles: Name of each device's profile, by stream; the profile itself lies in the folder.
+        sources: Source of each stream.
+        counters: What happened to each stream: received, lost, damaged and so on, and how many the
+            recorder itself dropped.
+        clocks: Offset [s], drift [-] and delay [s] of each device's clock against the time of the
+            run, where the device tells time.
+        robot: Name of the robot, for a walk.
+        truth: What a simulated device knows to be true.
+        schema_version: Version of this form.
+    """
+
+    kind: str
+    label: str
+    material: str
+    operator: str
+    source: str
+    start: str
+    stop: str | None
+    exit_status: str
+    software: Mapping[str, str]
+    constants: Mapping[str, float]
+    streams: Mapping[str, int]
+    log_sha256: str | None = None
+    excluded: Mapping[str, str] | None = None
+    profiles: Mapping[str, str] = field(default_factory=dict)
+    sources: Mapping[str, str] = field(default_factory=dict)
+    counters: Mapping[str, Mapping[str, int]] = field(default_factory=dict)
+    clocks: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
+    robot: str | None = None
+    truth: Mapping[str, Any] = field(default_factory=dict)
+    schema_version: int = SCHEMA_VERSION
+
+
+def read_manifest(folder: Path) -> RunManifest:
+    """Read and check a run folder's `run.json`.
+
+    Raises:
+        NotFound: There is none.
+        DataError: It is damaged, incomplete, or of another version.
+    """
+    file = folder / MANIFEST_FILE
+    try:
+        document = json.loads(file.read_text(encoding="utf-8"))
+    except FileNotFoundError as error:
+        raise NotFound(f"{folder} is no run folder: it has no {MANIFEST_FILE}") from error
+    except (OSError, ValueError) as error:
+        raise DataError(f"cannot be read as JSON: {error}", file=file) from error
+    if not isinstance(document, dict):
+        raise DataError("is not a JSON object", file=file)
+    return _checked(document, file)
+
+
+def write_manifest(folder: Path, manifest: RunManifest) -> Path:
+    """Write a run folder's `run.json`, whole or not at all; what is None or empty is left out.
+
+    Raises:
+        OSError: The folder cannot be written.
+    """
+    document = {
+        key: value for key, value in asdict(manifest).items()
+        if value is not None and (value or key not in _OPTIONAL)
+    }  # fmt: skip
+    text = json.dumps(document, indent=2, ensure_ascii=False)
+    return atomic_write_text(folder / MANIFEST_FILE, text + "\n")
+
+
+def software_version(commit: str = "unknown") -> dict[str, str]:
+    """Name what records: version of this software, and its commit."""
+    try:
+        return {"version": version("zebro-lab"), "commit": commit}
+    except PackageNotFoundError:
+        return {"version": "unknown", "commit": commit}
+
+
+_FIELD_TYPES: Mapping[str, type] = {
+    "kind": str, "label": str, "material": str, "operator": str, "source": str, "start": str,
+    "stop": str, "exit_status": str, "software": dict, "constants": dict, "streams": dict,
+    "log_sha256": str, "excluded": dict, "profiles": dict, "sources": dict, "counters": dict,
+    "clocks": dict, "robot": str, "truth": dict,
+}  # fmt: skip
+_ADDED = ("profiles", "sources", "counters", "clocks", "robot", "truth")
+_OPTIONAL = {"stop", "log_sha256", "excluded", *_ADDED}
+
+
+def _checked(document: Mapping[str, Any], file: Path) -> RunManifest:
+    found = document.get("schema_version")
+    if found != SCHEMA_VERSION:
+        raise DataError(
+            f"schema_version is {found!r}, expected {SCHEMA_VERSION}; "
+            f"read it with the version of zebro-lab that wrote it",
+            file=file,
+        )
+    for name, expected in _FIELD_TYPES.items():
+        if name in _OPTIONAL and document.get(name) is None:
+            continue
+        if not isinstance(document.get(name), expected):
+            raise DataError(
+                f"'{name}' is {document.get(name)!r}, expected {expected.__name__}", file=file
+            )
+    if document["kind"] not in KINDS:
+        raise DataError(f"unknown kind '{document['kind']}'; {nearest(document['kind'], KINDS)}",
+                        file=file)  # fmt: skip
+    known: dict[str, Any] = {"stop": None}
+    known |= {name: document[name] for name in _FIELD_TYPES if document.get(name) is not None}
+    return RunManifest(**known)

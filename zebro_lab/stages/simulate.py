@@ -1,0 +1,184 @@
+# SPDX-License-Identifier: MIT
+"""Simulated devices at ports that any program can open."""
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+
+import can
+import numpy as np
+
+from model.gait.reference import LegReference
+from rig.clock import SYSTEM_CLOCK, Clock
+from rig.imu.profile import load_imu_profile
+from rig.imu.simulated import SimulatedImu
+from rig.links.byte_link import ByteTwin
+from rig.links.faults import Faults
+from rig.links.serve import PortServer, Ticker
+from rig.slip_rig.profile import load_rig_profile
+from rig.slip_rig.simulated_board import SimulatedBoard
+from rig.slip_rig.simulated_drives import SimulatedDrives
+from rig.slip_rig.simulated_load_cell import SimulatedLoadCell
+from rig.twins import robot_twin
+from rig.zebro.profile import load_leg_profile
+from rig.zebro.simulated import CanRobot
+from rig.zebro.simulated_legs import RobotImperfections, SimulatedLegs
+from zebro_lab.errors import SettingsError
+from zebro_lab.leg_log import read_leg_log
+from zebro_lab.record_devices import default_gait, twin_rig
+
+WATCHDOG = 0.2
+
+
+@dataclass(frozen=True)
+class TwinRequest:
+    """Which device is to be simulated, and what is to go wrong.
+
+    Attributes:
+        profile: Name or path of its profile.
+        play: Leg angles that the robot walks; None for a tripod.
+        can: Bus `INTERFACE:CHANNEL` for devices on CAN; None without.
+        as_socket: Listen on `socket://` in place of a pseudo-terminal.
+        faults: What goes wrong on the line.
+        imperfections: How the robot departs from its gait.
+        seed: Of the randomness.
+    """
+
+    profile: str
+    play: Path | None = None
+    can: str | None = None
+    as_socket: bool = False
+    faults: Faults = Faults()  # noqa: RUF009 (frozen)
+    imperfections: RobotImperfections = RobotImperfections()  # noqa: RUF009 (frozen)
+    seed: int = 0
+
+
+@dataclass(frozen=True)
+class Served:
+    """A twin that is being served.
+
+    Attributes:
+        source: What it is: `sim:WHAT`.
+        places: Where it can be reached, by what speaks there.
+    """
+
+    source: str
+    places: dict[str, str]
+
+
+@contextmanager
+def serve_zebro(request: TwinRequest) -> Iterator[Served]:
+    """Serve a robot for as long as the body runs.
+
+    Raises:
+        SettingsError: The profile's robot is on CAN and no bus is named.
+        RigError: Profile or port is not right.
+    """
+    profile = load_leg_profile(request.profile)
+    rng = np.random.default_rng(request.seed)
+    gait = _gait(request.play)
+    if profile.layout == "can":
+        legs = SimulatedLegs(gait, profile=profile, imperfections=request.imperfections, rng=rng)
+        with _bus(request) as bus:
+            robot = CanRobot(legs, bus, faults=request.faults, rng=rng)
+            with Ticker(robot.poll):
+                yield Served(robot.source, {"robot": str(request.can)})
+        return
+    twin = robot_twin(
+        profile, gait, imperfections=request.imperfections, faults=request.faults, rng=rng
+    )
+    with _port(twin, request) as port:
+        yield Served(twin.source, {"robot": port})
+
+
+@contextmanager
+def serve_imu(request: TwinRequest) -> Iterator[Served]:
+    """Serve an inertial measurement unit for as long as the body runs.
+
+    Raises:
+        RigError: Profile or port is not right.
+    """
+    rng = np.random.default_rng(request.seed)
+    twin = SimulatedImu(profile=load_imu_profile(request.profile), faults=request.faults, rng=rng)
+    with _port(twin, request) as port:
+        yield Served(twin.source, {"imu": port})
+
+
+@contextmanager
+def serve_rig(request: TwinRequest) -> Iterator[Served]:
+    """Serve a slip rig for as long as the body runs.
+
+    Raises:
+        SettingsError: The rig has drives and no bus is named.
+        RigError: Profile or port is not right.
+    """
+    profile = load_rig_profile(request.profile)
+    rng = np.random.default_rng(request.seed)
+    rig = twin_rig(rng)
+    if profile.board is not None:
+        board = SimulatedBoard(
+            rig, profile=profile.board, watchdog=WATCHDOG, faults=request.faults, rng=rng
+        )
+        with _port(board, request) as port:
+            yield Served(board.source, {"board": port})
+        return
+    if profile.drives is None or profile.load_cell is None:
+        raise SettingsError(f"profile '{profile.name}' has neither a board nor drives")
+    with _bus(request) as bus:
+        drives = SimulatedDrives(rig, bus, profile=profile.drives, watchdog=WATCHDOG)
+        with SimulatedLoadCell(
+            rig, profile=profile.load_cell, faults=request.faults, rng=rng
+        ) as cell:
+
+            def tick(now: float) -> None:
+                drives.poll(now)
+                cell.poll(now)
+
+            with Ticker(tick):
+                yield Served(
+                    drives.source,
+                    {"drives": str(request.can), "load cell": f"udp://{cell.host}:{cell.port}"},
+                )
+
+
+@contextmanager
+def _port(twin: ByteTwin, request: TwinRequest) -> Iterator[str]:
+    with PortServer(twin, as_socket=request.as_socket) as server:
+        yield server.port
+
+
+@contextmanager
+def _bus(request: TwinRequest) -> Iterator[can.BusABC]:
+    if request.can is None:
+        raise SettingsError(
+            f"profile '{request.profile}' needs a CAN bus; name one that both programs see, such "
+            "as socketcan:vcan0 or udp_multicast:239.74.163.2",
+            key="--can",
+        )
+    interface, _, channel = request.can.partition(":")
+    try:
+        bus = can.Bus(interface=interface, channel=channel)
+    except (can.CanError, OSError, ValueError, ImportError) as error:
+        raise SettingsError(f"cannot open {request.can}: {error}", key="--can") from error
+    with bus:
+        yield bus
+
+
+def _gait(play: Path | None) -> LegReference:
+    return default_gait() if play is None else read_leg_log(play).reference
+
+
+def wait_until(
+    stop_requested: Callable[[], bool], *, duration: float | None, clock: Clock = SYSTEM_CLOCK
+) -> None:
+    """Let a twin run until somebody asks to stop, or time is up.
+
+    Args:
+        stop_requested: Tells whether somebody asked.
+        duration: How long at most; None for ever [s].
+        clock: Host time.
+    """
+    end = clock.now() + (float("inf") if duration is None else duration)
+    while not stop_requested() and clock.now() < end:
+        clock.sleep(0.05)

@@ -11,7 +11,7 @@ from model.slip.law import Array
 N_LEGS = 6
 LEFT = (0, 2, 4)  # indices of legs 1, 3, 5
 RIGHT = (1, 3, 5)  # indices of legs 2, 4, 6
-GRAVITY = 9.81  # m/s2, the listing's
+GRAVITY = 9.81  # the listing's [m/s2]
 
 HIP_X, HIP_Y = 0.097, 0.1156  # Listing A.1; the text's w/2 puts hip_y at 0.1256 m
 
@@ -38,7 +38,8 @@ class Robot:
         leg_offset: Angle of each leg beyond the one it reports, shape (6,) [rad].
 
     Raises:
-        DomainError: A length, mass or inertia is not positive, or the arc is no arc.
+        DomainError: A length, mass or inertia is not positive, the arc is no arc, or an array has
+            another shape or no finite numbers.
     """
 
     hips: Array = field(default_factory=_source_hips)
@@ -51,21 +52,19 @@ class Robot:
 
     def __post_init__(self) -> None:
         """Refuse a robot that cannot be."""
-        object.__setattr__(self, "hips", np.asarray(self.hips, dtype=float))
-        object.__setattr__(self, "leg_offset", np.asarray(self.leg_offset, dtype=float))
-        if self.hips.shape != (N_LEGS, 3):
-            raise DomainError(f"hips have shape {self.hips.shape}; expected (6, 3)")
-        if self.leg_offset.shape != (N_LEGS,):
-            raise DomainError(f"leg_offset has shape {self.leg_offset.shape}; expected (6,)")
-        positive = {
-            "mass": (self.mass, "kg"),
-            "leg_radius": (self.leg_radius, "m"),
-            **{f"body_size[{i}]": (size, "m") for i, size in enumerate(self.body_size)},
-            **{f"inertia[{i}]": (x, "kg m2") for i, x in enumerate(self.inertia or ())},
-        }
-        for name, (value, unit) in positive.items():
-            if not (value > 0 and np.isfinite(value)):
-                raise DomainError(f"{name} is {value:g} {unit}; expected more than zero")
+        for name, shape in (("hips", (N_LEGS, 3)), ("leg_offset", (N_LEGS,))):
+            values = np.ascontiguousarray(getattr(self, name), dtype=float)
+            _require_shape(name, values, shape)
+            object.__setattr__(self, name, values)
+        _require_positive("mass", self.mass, "kg")
+        _require_positive("leg_radius", self.leg_radius, "m")
+        _require_shape("body_size", np.array(self.body_size), (3,))
+        for axis, size in enumerate(self.body_size):
+            _require_positive(f"body_size[{axis}]", size, "m")
+        if self.inertia is not None:
+            _require_shape("inertia", np.array(self.inertia), (3,))
+            for axis, moment in enumerate(self.inertia):
+                _require_positive(f"inertia[{axis}]", moment, "kg m2")
         if not np.pi / 2 <= self.leg_arc < 2 * np.pi:
             raise DomainError(
                 f"leg_arc is {np.degrees(self.leg_arc):g} degrees; expected 90 to 360 "
@@ -108,3 +107,15 @@ def cuboid_inertia(mass: float, size: tuple[float, float, float]) -> Array:
     """
     l, w, h = size  # noqa: E741 the source's symbol
     return mass / 12 * np.array([w**2 + h**2, l**2 + h**2, w**2 + l**2])
+
+
+def _require_shape(name: str, values: Array, shape: tuple[int, ...]) -> None:
+    if values.shape != shape:
+        raise DomainError(f"{name} has shape {values.shape}; expected {shape}")
+    if not np.isfinite(values).all():
+        raise DomainError(f"{name} is {values.tolist()}; expected finite numbers")
+
+
+def _require_positive(name: str, value: float, unit: str) -> None:
+    if not (value > 0 and np.isfinite(value)):
+        raise DomainError(f"{name} is {value:g} {unit}; expected more than zero")

@@ -17,15 +17,14 @@ from model.gait.reference import LegReference
 from model.robot import N_LEGS, Robot
 from model.slip.law import Array
 from model.walk.ground import FLAT, Ground
-from model.walk.kernel import ground_at
+from model.walk.kernel import N_CONTACTS, ground_at
 from model.walk.path import WalkPath
 from model.walk.step import Contacts, State, body_arrays, run_steps
 from model.walk.traction import TractionTable, VelocityCoulomb
 
 SETTLE_STEP = 0.005  # s
-SETTLE_TIME = 1.0  # s
+SETTLE_TIME = 1.0  # s; ten times the drop from where it is let go
 STICKY = VelocityCoulomb(3.0, 1e-4).table(weight=1.0)  # to settle on a slope without sliding down
-N_STRETCH = 14
 
 
 @dataclass(frozen=True)
@@ -35,8 +34,9 @@ class DynamicsOptions:
     Attributes:
         dt: Length of a step [s].
         stiffness: Normal force for each metre of sinkage; a leg sinks micrometres [N/m].
-        damping: Normal force for each metre a second of sinking; about critical for a third of
-            the body's mass, so that legs do not bounce [N s/m].
+        damping: Normal force for each metre a second of sinking; a quarter of critical for a
+            third of the body's mass, to which the implicit step adds stiffness times its length,
+            so that legs do not bounce [N s/m].
     """
 
     dt: float = 0.001
@@ -64,7 +64,7 @@ class Start:
         yaw: Heading [rad].
         height: Height of the body's centre, with the body level and at rest, to be dropped from;
             None to stand on the legs as they are, settled [m].
-        velocity: Velocity of the body [m/s].
+        velocity: Velocity of the body in the inertial frame [m/s].
     """
 
     x: float = 0.0
@@ -99,7 +99,7 @@ def walk(
         options: How it is computed.
 
     Returns:
-        The path, its first sample the settled start.
+        The path, its first sample the settled start, with the forces of the first step.
 
     Raises:
         DomainError: The duration is shorter than a step.
@@ -154,13 +154,13 @@ def start_state(
     """
     half = 0.5 * start.yaw
     highest = _highest_under(robot, ground, start)
-    reach = 2 * robot.leg_radius + 0.5 * robot.body_size[2]
+    reach = 2 * robot.leg_radius + max(0.5 * robot.body_size[2], -float(robot.hips[:, 2].min()))
     state = State(
         p=np.array([start.x, start.y, highest + reach if start.height is None else start.height]),
         q=np.array([np.cos(half), 0.0, 0.0, np.sin(half)]),
         v=np.array(start.velocity, dtype=float),
         w=np.zeros(3),
-        stretch=np.zeros((N_STRETCH, 3)),
+        stretch=np.zeros((N_CONTACTS, 3)),
     )
     if start.height is not None:
         return state
@@ -173,8 +173,8 @@ def _highest_under(robot: Robot, ground: Ground, start: Start) -> float:
     m, n = ground.height.shape
     i = (np.array([start.x - far, start.x + far]) - ground.x) / ground.step
     j = (np.array([start.y - far, start.y + far]) - ground.y) / ground.step
-    i0, i1 = np.clip(i.round().astype(int), 0, m - 1)
-    j0, j1 = np.clip(j.round().astype(int), 0, n - 1)
+    i0, i1 = np.clip([np.floor(i[0]), np.ceil(i[1])], 0, m - 1).astype(int)
+    j0, j1 = np.clip([np.floor(j[0]), np.ceil(j[1])], 0, n - 1).astype(int)
     return float(ground.height[i0 : i1 + 1, j0 : j1 + 1].max())
 
 
@@ -194,10 +194,15 @@ def _settled(
     pose = np.empty((n, 7))
     contacts = Contacts(options.stiffness, options.damping)
     still = np.tile(theta, (n + 1, 1))
-    run_steps(
+    done = run_steps(
         body_arrays(robot), STICKY, ground, contacts, state, still, SETTLE_STEP, pose,
         np.empty((0, N_LEGS, 6)),
     )  # fmt: skip
+    if done < n:
+        raise WalkError(
+            f"the robot cannot stand at x {x:g}, y {y:g} m on legs at {np.degrees(theta).round(1)} "
+            "degrees; expected finite numbers"
+        )
     turned = yaw - roll_pitch_yaw(state.q[None])[0, 2]
     state.p[2] += ground_at(ground, x, y)[0] - ground_at(ground, state.p[0], state.p[1])[0]
     state.p[:2] = x, y
@@ -233,9 +238,7 @@ def roll_pitch_yaw(q: Array) -> Array:
 
 def _path(t: Array, pose: Array, theta: Array, legs: Array) -> WalkPath:
     orientation = roll_pitch_yaw(pose[:, 3:])
-    standing = np.zeros((1, N_LEGS, 6))
-    standing[..., 5] = np.nan
-    legs = np.concatenate([standing, legs])
+    legs = np.concatenate([legs[:1], legs])
     load: NDArray[np.float64] = legs[..., 0]
     return WalkPath(
         t=t,

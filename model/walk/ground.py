@@ -44,20 +44,31 @@ def sample_ground(
 
     Args:
         height: Height at x and y, arrays of one shape [m].
-        x: First and last x [m].
+        x: First and last x; the last sample lies there, or less than a step beyond [m].
         y: First and last y [m].
-        step: Distance between samples; a leg's radius is 0.035 m [m].
+        step: Distance between samples, well below a leg's radius [m].
 
     Raises:
         DomainError: The area is empty or a height is not finite.
     """
     if not (x[1] - x[0] > step > 0 and y[1] - y[0] > step):
         raise DomainError(f"ground from x {x} to y {y} in steps of {step:g} m has no area")
-    grid = np.meshgrid(np.arange(*x, step), np.arange(*y, step), indexing="ij")
+    grid = np.meshgrid(_samples(x, step), _samples(y, step), indexing="ij")
     heights = np.asarray(height(*grid), dtype=float)
-    if heights.shape != grid[0].shape or not np.isfinite(heights).all():
+    if heights.shape != grid[0].shape:
         raise DomainError(
-            "the height function must give one finite height for each position; "
-            f"it gave shape {heights.shape} for {grid[0].shape}"
+            f"the height function gave shape {heights.shape} for positions of shape "
+            f"{grid[0].shape}; expected one height for each position"
+        )
+    if not np.isfinite(heights).all():
+        i, j = np.argwhere(~np.isfinite(heights))[0]
+        raise DomainError(
+            f"the ground's height is {heights[i, j]:g} m at x {grid[0][i, j]:g}, "
+            f"y {grid[1][i, j]:g} m; expected a finite one"
         )
     return Ground(float(x[0]), float(y[0]), step, heights, float(heights.max()))
+
+
+def _samples(ends: tuple[float, float], step: float) -> Array:
+    first, last = ends
+    return first + step * np.arange(np.ceil((last - first) / step - 1e-9) + 1)

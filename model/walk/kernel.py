@@ -17,11 +17,13 @@ step is stable at any length: what the explicit step of the source is not.
 import numba
 import numpy as np
 
-N_LEGS = 6
-N_CONTACTS = 14  # legs, then the corners of the body
-HIP, ROLLING, TOE = 0, 1, 2
+from model.leg import HIP, ROLLING, TOE
+from model.robot import N_LEGS
 
-jit = numba.njit(cache=True, nogil=True, error_model="numpy", forceinline=True, fastmath=False)
+N_CONTACTS = N_LEGS + 8  # legs, then the corners of the body
+NEAR = 0.01  # height over the ground below which the body's corners are looked at [m]
+
+jit = numba.njit(cache=True, nogil=True, error_model="numpy", forceinline=True)
 
 
 @jit
@@ -56,7 +58,7 @@ def lowest_point(theta, down_x, down_z, r, toe_cos, toe_sin):
 
     Args:
         theta: Leg angle: direction from the hip to the arc's centre [rad].
-        down_x: Component of "down" along the body's x axis [-].
+        down_x: Component of "down", into the ground, along the body's x axis [-].
         down_z: Component of "down" along the body's z axis [-].
         r: Radius of the arc [m].
         toe_cos: Cosine of the arc's angle beyond a half circle [-].
@@ -93,16 +95,36 @@ def ground_at(ground, x, y):
     if height.size == 1:
         return height[0, 0], 0.0, 0.0, 1.0
     m, n = height.shape
-    fx = min(max((x - ground.x) / ground.step, 0.0), m - 1.000001)
-    fy = min(max((y - ground.y) / ground.step, 0.0), n - 1.000001)
+    at_x, at_y = (x - ground.x) / ground.step, (y - ground.y) / ground.step
+    fx = min(max(at_x, 0.0), m - 1.000001)  # within the last cell, for its far neighbours
+    fy = min(max(at_y, 0.0), n - 1.000001)
     i, j = int(fx), int(fy)
     a, b = fx - i, fy - j
     h00, h10, h01, h11 = height[i, j], height[i + 1, j], height[i, j + 1], height[i + 1, j + 1]
     h = (1 - a) * ((1 - b) * h00 + b * h01) + a * ((1 - b) * h10 + b * h11)
     sx = ((1 - b) * (h10 - h00) + b * (h11 - h01)) / ground.step
     sy = ((1 - a) * (h01 - h00) + a * (h11 - h10)) / ground.step
+    if at_x < 0 or at_x > m - 1:  # the edge's height goes on, so its slope must not
+        sx = 0.0
+    if at_y < 0 or at_y > n - 1:
+        sy = 0.0
     size = np.sqrt(1 + sx * sx + sy * sy)
     return h, -sx / size, -sy / size, 1 / size
+
+
+@jit
+def plane_under(ground, x, y, reach):
+    """Return the unit normal of the ground's mean plane within reach of a place.
+
+    A leg stands on what its arc spans: the ground at a point would tilt it at every edge.
+    """
+    if ground.height.size == 1:
+        return 0.0, 0.0, 1.0
+    sx = ground_at(ground, x + reach, y)[0] - ground_at(ground, x - reach, y)[0]
+    sy = ground_at(ground, x, y + reach)[0] - ground_at(ground, x, y - reach)[0]
+    sx, sy = sx / (2 * reach), sy / (2 * reach)
+    size = np.sqrt(1 + sx * sx + sy * sy)
+    return -sx / size, -sy / size, 1 / size
 
 
 @jit
@@ -151,11 +173,11 @@ def traction_secant(table, state, load, slip_speed, flow_speed):
         slip_speed: Speed of the material contact point over the ground [m/s].
         flow_speed: Speed at which the leg's arc passes the contact [m/s].
     """
-    v0 = table.speed_scale
+    v0 = table.speed_scale  # also keeps finite the slip ratio of a leg that does not turn
     if table.by_velocity or state != ROLLING:
         return load * toe_traction(table, load) / np.sqrt(slip_speed**2 + v0**2)
     flow = np.sqrt(flow_speed**2 + v0**2)
-    x = max(slip_speed / flow, 1e-9)
+    x = max(slip_speed / flow, 1e-9)  # the secant's limit at no slip is the law's slope
     return load * table_value(table, load, x) / (x * flow)
 
 
@@ -202,7 +224,8 @@ def find_contacts(body, ground, p, R, theta, speed, place, velocity, normal, gap
         theta: Leg angles at the end of the step, shape (6,) [rad].
         speed: Leg speeds in the step, shape (6,) [rad/s].
         place: Filled: contact from the body's centre, world frame, shape (14, 3) [m].
-        velocity: Filled: velocity of the material point relative to the body [m/s].
+        velocity: Filled: velocity of the material point relative to the body, world frame,
+            shape (14, 3) [m/s].
         normal: Filled: normal of the ground, shape (14, 3) [-].
         gap: Filled: distance over the ground, negative below it, shape (14,) [m].
         state: Filled: HIP, ROLLING or TOE, shape (14,).
@@ -211,19 +234,22 @@ def find_contacts(body, ground, p, R, theta, speed, place, velocity, normal, gap
     Returns:
         How many contacts were looked at: the corners only where the body comes near the ground.
     """
-    down_x, down_z = -R[2, 0], -R[2, 2]
     for i in range(N_LEGS):
+        hip = body.hips[i]
+        _to_world(R, hip[0], hip[1], hip[2], place[i])
+        n_x, n_y, n_z = plane_under(ground, p[0] + place[i, 0], p[1] + place[i, 1], body.leg_radius)
+        down_x = -(R[0, 0] * n_x + R[1, 0] * n_y + R[2, 0] * n_z)
+        down_z = -(R[0, 2] * n_x + R[1, 2] * n_y + R[2, 2] * n_z)
         x, z, state[i] = lowest_point(
             theta[i], down_x, down_z, body.leg_radius, body.toe_cos, body.toe_sin
         )
-        hip = body.hips[i]
         _to_world(R, hip[0] + x, hip[1], hip[2] + z, place[i])
         _to_world(R, speed[i] * z, 0.0, -speed[i] * x, velocity[i])  # speed about y, times (x, z)
         flow[i] = body.leg_radius if state[i] == ROLLING else 0.0
         gap[i] = _gap(ground, p, place[i], normal[i])
     half = body.half_size
     reach = abs(R[2, 0]) * half[0] + abs(R[2, 1]) * half[1] + abs(R[2, 2]) * half[2]
-    if p[2] - reach > ground.highest + 0.01:
+    if p[2] - reach > ground.highest + NEAR:
         return N_LEGS
     for i in range(8):
         k = N_LEGS + i

@@ -16,6 +16,7 @@ from model.walk.kernel import (
     ROLLING,
     add_contact,
     find_contacts,
+    jit,
     point_velocity,
     rotate,
     rotation_matrix,
@@ -29,7 +30,7 @@ ROUNDS = 2  # solves a step: one to settle which contacts press and how hard, on
 MOST_ROUNDS = 8  # until the contacts that were taken to press are those that do
 FINE_STEP = 0.0005  # s, where contacts change: two tripods on the ground at once is soon over
 FINE_TIME = 0.005  # s, after a change
-BRISTLE_STIFFNESS = 0.1  # of the normal stiffness
+BRISTLE_STIFFNESS = 0.1  # of the normal stiffness: a foot gives tenths of a millimetre, then slides
 
 
 class Body(NamedTuple):
@@ -89,13 +90,14 @@ class Work(NamedTuple):
 
     Attributes:
         place: Contact from the body's centre, world frame, shape (14, 3) [m].
-        velocity: Velocity of its material point relative to the body, shape (14, 3) [m/s].
+        velocity: Velocity of its material point relative to the body, world frame,
+            shape (14, 3) [m/s].
         normal: Normal of the ground, shape (14, 3) [-].
         gap: Distance over the ground, negative below it, shape (14,) [m].
         flow: Radius of the arc where a leg rolls, else zero, shape (14,) [m].
         kind: HIP, ROLLING or TOE, shape (14,).
         load: Normal force, zero in the air, shape (14,) [N].
-        secant: Traction over slip velocity, shape (14,) [N s/m].
+        secant: Traction over slip velocity, zero where a bristle holds, shape (14,) [N s/m].
         R: Rotation of the body, body to world, shape (3, 3).
         A: Matrix of the step, lower half, shape (6, 6).
         b: Its right side and solution, shape (6,).
@@ -135,9 +137,6 @@ def body_arrays(robot: Robot) -> Body:
         float(np.sin(robot.toe_beyond)), robot.mass,
         robot.principal_inertia, 0.5 * np.array(robot.body_size),
     )  # fmt: skip
-
-
-jit = numba.njit(cache=True, nogil=True, error_model="numpy", forceinline=True)
 
 
 @numba.njit(cache=True, nogil=True, error_model="numpy")
@@ -202,7 +201,7 @@ def run_steps(
         pose[step, :3] = state.p
         pose[step, 3:] = state.q
         if len(legs):
-            _keep_legs(legs[step], state, work, speed)
+            _keep_legs(legs[step], contacts, state, work, speed)
     return theta.shape[0] - 1
 
 
@@ -236,13 +235,13 @@ def one_step(body, table, ground, contacts, state, work, theta, speed, dt):
     v, w, inertia, gyro = work.v, work.w, work.inertia, work.gyro
     _world_inertia(work.R, body.inertia, inertia)
     _gyroscopic(inertia, state.w, gyro)
-    for turn in range(MOST_ROUNDS):
+    for solved in range(1, MOST_ROUNDS + 1):
         for i in range(3):
             v[i], w[i] = work.b[i], work.b[3 + i]
         _inertial_part(body.mass, inertia, gyro, state, dt, work.A, work.b)
         add_contact_forces(table, contacts, state, work, n, speed, dt)
         solve_positive(work.A, work.b, 6)
-        if contacts_agree(contacts, work, n, dt) and turn + 1 >= ROUNDS:
+        if contacts_agree(contacts, work, n, dt) and solved >= ROUNDS:
             break
     for i in range(3):
         state.v[i], state.w[i] = work.b[i], work.b[3 + i]
@@ -267,7 +266,6 @@ def add_contact_forces(table, contacts, state, work, n, speed, dt):
         dt: Length of the step [s].
     """
     k, c = contacts.stiffness, contacts.damping
-    bristle = BRISTLE_STIFFNESS * k
     v, w, P, force, point = work.v, work.w, work.P, work.force, work.point
     for i in range(n):
         point_velocity(v, w, work.place[i], work.velocity[i], point)
@@ -277,18 +275,18 @@ def add_contact_forces(table, contacts, state, work, n, speed, dt):
         u_n = u0 * m0 + u1 * m1 + u2 * m2
         load = -k * (work.gap[i] + dt * (rise - u_n)) - c * rise
         work.load[i] = max(load, 0.0)
+        work.secant[i] = 0.0
         if load <= 0.0:
             continue
         x, y, z = point[0] - rise * m0, point[1] - rise * m1, point[2] - rise * m2
-        slip = np.sqrt(x * x + y * y + z * z)
-        flow = abs(leg_turn(work.R, speed, w, i)) * work.flow[i] if i < N_LEGS else 0.0
-        G, pull = traction_secant(table, work.kind[i], load, slip, flow), 0.0
         if table.bristle and work.kind[i] != ROLLING:
-            s0, s1, s2 = state.stretch[i, 0], state.stretch[i, 1], state.stretch[i, 2]
-            stretched = np.sqrt((s0 + dt * x) ** 2 + (s1 + dt * y) ** 2 + (s2 + dt * z) ** 2)
-            if bristle * stretched <= load * toe_traction(table, load):
-                pull, G = bristle, bristle * dt
-        work.secant[i] = G
+            pull = bristle_pull(table, contacts, state.stretch[i], load, dt * x, dt * y, dt * z)
+            G = pull * dt
+        else:
+            slip = np.sqrt(x * x + y * y + z * z)
+            flow = abs(leg_turn(work.R, speed, w, i)) * work.flow[i] if i < N_LEGS else 0.0
+            G, pull = traction_secant(table, work.kind[i], load, slip, flow), 0.0
+            work.secant[i] = G
         push = -k * work.gap[i] - c * u_n
         for a in range(3):
             m_a = work.normal[i, a]
@@ -298,6 +296,18 @@ def add_contact_forces(table, contacts, state, work, n, speed, dt):
                 P[a, d] = (k * dt + c - G) * m_a * work.normal[i, d]
             P[a, a] += G
         add_contact(work.A, work.b, dt, work.place[i], P, force)
+
+
+@jit
+def bristle_pull(table, contacts, stretch, load, x, y, z):
+    """Compute a bristle's force over its stretch after a further slip of (x, y, z) [N/m].
+
+    Its stiffness, or what traction allows where that is less: then it slides at the limit.
+    """
+    stiffness = BRISTLE_STIFFNESS * contacts.stiffness
+    size = np.sqrt((stretch[0] + x) ** 2 + (stretch[1] + y) ** 2 + (stretch[2] + z) ** 2)
+    most = load * toe_traction(table, load)
+    return most / size if stiffness * size > most else stiffness
 
 
 @jit
@@ -413,19 +423,26 @@ def _gyroscopic(inertia, w, out):
 
 
 @jit
-def _keep_legs(out, state, work, speed):
-    point = np.empty(3)
-    R = work.R
+def _keep_legs(out, contacts, state, work, speed):
+    """Fill a step's row of `legs`; see `run_steps`."""
+    R, point = work.R, work.point
+    bristle = BRISTLE_STIFFNESS * contacts.stiffness
     for i in range(N_LEGS):
         out[i, :] = 0.0
         out[i, 5] = np.nan
         if work.load[i] == 0.0:
             continue
+        m = work.normal[i]
         point_velocity(state.v, state.w, work.place[i], work.velocity[i], point)
+        rise = point[0] * m[0] + point[1] * m[1] + point[2] * m[2]
         out[i, 0] = work.load[i]
-        out[i, 1], out[i, 2] = -work.secant[i] * point[0], -work.secant[i] * point[1]
-        out[i, 3], out[i, 4] = point[0], point[1]
+        for a in range(3):
+            point[a] -= rise * m[a]
+        for a in range(2):
+            out[i, 1 + a] = -work.secant[i] * point[a] - bristle * state.stretch[i, a]
+            out[i, 3 + a] = point[a]
         if work.kind[i] == ROLLING:
-            forward = np.sqrt(R[0, 0] ** 2 + R[1, 0] ** 2)
-            along = (point[0] * R[0, 0] + point[1] * R[1, 0]) / forward
-            out[i, 5] = -along / (leg_turn(R, speed, state.w, i) * work.flow[i])
+            tilt = R[0, 0] * m[0] + R[1, 0] * m[1] + R[2, 0] * m[2]  # of the body over the ground
+            along = point[0] * R[0, 0] + point[1] * R[1, 0] + point[2] * R[2, 0]
+            forward = along / np.sqrt(1 - tilt**2)
+            out[i, 5] = -forward / (leg_turn(R, speed, state.w, i) * work.flow[i])

@@ -1,0 +1,164 @@
+# SPDX-License-Identifier: MIT
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from model.errors import DomainError
+from model.gait.reference import SampledReference
+from model.robot import GRAVITY, Robot
+from model.walk.dynamics import DynamicsOptions, walk
+from model.walk.ground import FLAT, sample_ground
+from model.walk.kernel import ground_at, plane_under
+from model.walk.traction import VelocityCoulomb
+
+ROBOT = Robot()
+WEIGHT = ROBOT.mass * GRAVITY
+HILLS = sample_ground(
+    lambda x, y: 0.02 * np.sin(5 * x) * np.cos(3 * y), x=(-1, 1), y=(-1, 1), step=0.01
+)
+PLACE = st.floats(-0.99, 0.99)
+
+
+def slope(angle, *, size=2.0):
+    return sample_ground(lambda x, y: np.tan(angle) * x, x=(-size, size), y=(-1.0, 1.0))
+
+
+# --- heights
+
+
+@given(PLACE, PLACE)
+def test_heights_are_the_functions(x, y):
+    height = ground_at(HILLS, x, y)[0]
+    assert height == pytest.approx(0.02 * np.sin(5 * x) * np.cos(3 * y), abs=2e-5)
+
+
+@given(PLACE, PLACE)
+def test_the_normal_is_square_to_the_surface(x, y):
+    h = 1e-7
+    height, *normal = ground_at(HILLS, x, y)
+    assert np.linalg.norm(normal) == pytest.approx(1.0)
+    in_cell = ((np.array([x, y]) + 1) / 0.01) % 1
+    if np.all((in_cell > 1e-4) & (in_cell < 1 - 1e-4)):
+        for dx, dy in ((h, 0), (0, h)):
+            along = np.array([dx, dy, ground_at(HILLS, x + dx, y + dy)[0] - height])
+            assert abs(along @ normal) < 1e-6 * h + 1e-14
+
+
+def test_the_area_reaches_from_first_to_last():
+    ground = sample_ground(lambda x, y: x + 10 * y, x=(-0.5, 2.0), y=(0.0, 0.1), step=0.02)
+    assert ground_at(ground, 2.0, 0.1)[0] == pytest.approx(3.0, abs=1e-5)
+    assert ground.highest == pytest.approx(ground.height[-1, -1])
+
+
+@pytest.mark.parametrize(("x", "y"), [(5.0, 0.0), (-5.0, 0.0)])
+def test_beyond_the_area_the_edge_goes_on_level(x, y):
+    height, *normal = ground_at(slope(0.3), x, y)
+    assert height == pytest.approx(np.sign(x) * 2.0 * np.tan(0.3), abs=1e-5)
+    np.testing.assert_allclose(normal, [0, 0, 1])
+
+
+def test_the_mean_plane_of_a_slope_is_the_slope_and_an_edge_is_no_wall():
+    np.testing.assert_allclose(plane_under(FLAT, 3.0, -2.0, 0.035), [0, 0, 1])
+    angle = 0.3
+    expected = [-np.sin(angle), 0, np.cos(angle)]
+    np.testing.assert_allclose(plane_under(slope(angle), 0.1, 0.2, 0.035), expected, atol=1e-9)
+    step = sample_ground(lambda x, y: 0.01 * (x > 0), x=(-1, 1), y=(-1, 1), step=0.002)
+    steepest = min(plane_under(step, x, 0.0, 0.035)[2] for x in np.linspace(-0.1, 0.1, 400))
+    assert steepest == pytest.approx(np.cos(np.arctan(0.01 / 0.07)), abs=1e-6)
+
+
+# --- walking on it
+
+
+@pytest.mark.parametrize("angle", [-0.3, -0.1, 0.2, 0.3])
+def test_legs_that_roll_up_a_slope_roll_as_far_as_on_the_flat(angle):
+    sticky = VelocityCoulomb(2.0, 1e-4).table(weight=WEIGHT)
+    theta = np.tile(np.radians([[20.0], [20.0], [80.0]]), (1, 6))
+    rolled = SampledReference(np.array([0.0, 0.2, 1.2]), theta)
+
+    def moved(ground):
+        path = walk(ROBOT, rolled, sticky, duration=1.2, ground=ground)
+        along = path.position[-1] - path.position[200]
+        return np.linalg.norm(along), path.orientation[-1, 1]
+
+    flat, _ = moved(FLAT)
+    up, pitch = moved(slope(angle))
+    assert up == pytest.approx(flat, rel=5e-4)
+    assert pitch == pytest.approx(-angle, abs=1e-4)
+
+
+def standing(theta):
+    return SampledReference(np.array([0.0, 1.0]), np.full((2, 6), theta))
+
+
+def test_a_robot_slides_where_a_slope_is_too_steep():
+    table = VelocityCoulomb(0.38).table(weight=WEIGHT)
+    path = walk(ROBOT, standing(0.5 * np.pi), table, duration=1.0, ground=slope(0.5))
+    run = np.linalg.norm(path.position[-1] - path.position[0])
+    free = GRAVITY * (np.sin(0.5) - 0.38 * np.cos(0.5))
+    assert run == pytest.approx(0.5 * free, rel=0.03)
+    # What carries it is square to the slope, and friction is used up.
+    assert path.normal_force[-1].sum() == pytest.approx(WEIGHT * np.cos(0.5), rel=0.01)
+    assert path.traction_force[-1, :, 0].sum() == pytest.approx(
+        0.38 * WEIGHT * np.cos(0.5) ** 2, rel=0.01
+    )
+
+
+@pytest.mark.parametrize("dt", [0.0005, 0.001, 0.005])
+@pytest.mark.parametrize("angle", [0.2, 0.3, 0.35])
+def test_toes_on_bristles_hold_on_a_slope_up_to_friction(angle, dt):
+    table = VelocityCoulomb(0.38).table(weight=WEIGHT, toe="bristle")
+    path = walk(
+        ROBOT, standing(np.radians(130.0)), table, duration=1.0, ground=slope(angle),
+        options=DynamicsOptions(dt=dt),
+    )  # fmt: skip
+    late = path.position[path.t > 0.8]
+    assert np.ptp(late, axis=0).max() < 1e-6
+    # The pull is reported although nothing slips.
+    assert path.traction_force[-1, :, 0].sum() == pytest.approx(
+        WEIGHT * np.sin(angle) * np.cos(angle), rel=1e-3
+    )
+
+
+def test_toes_that_do_not_stick_creep_down_a_slope_by_the_laws_velocity():
+    table = VelocityCoulomb(0.38).table(weight=WEIGHT)
+    path = walk(ROBOT, standing(np.radians(130.0)), table, duration=1.0, ground=slope(0.2))
+    speed = np.linalg.norm(path.position[-1] - path.position[-101]) / 0.1
+    used = np.tan(0.2) / 0.38
+    assert speed == pytest.approx(0.001 * used / np.sqrt(1 - used**2), rel=0.01)
+
+
+def test_toes_on_bristles_slide_at_friction_where_it_is_used_up():
+    table = VelocityCoulomb(0.38).table(weight=WEIGHT, toe="bristle")
+    path = walk(ROBOT, standing(np.radians(130.0)), table, duration=1.0, ground=slope(0.5))
+    late = path.t > 0.5
+    speed = np.linalg.norm(np.diff(path.position[late], axis=0), axis=1) / 0.001
+    gained = np.polyfit(path.t[late][1:], speed, 1)[0]
+    assert gained == pytest.approx(GRAVITY * (np.sin(0.5) - 0.38 * np.cos(0.5)), rel=1e-3)
+    size = np.linalg.norm(path.traction_force[-1], axis=1)
+    allowed = 0.38 * path.normal_force[-1]
+    # Down the slope, of which the path keeps the level part.
+    np.testing.assert_allclose(size, allowed * np.cos(0.5), rtol=1e-3)
+
+
+# --- refused
+
+
+@pytest.mark.parametrize(
+    "area",
+    [{"x": (0, 0), "y": (0, 1)}, {"x": (0, 1), "y": (1, 0)}, {"x": (0, 1), "y": (0, np.nan)}],
+)
+def test_an_area_that_is_none_is_refused(area):
+    with pytest.raises(DomainError, match="has no area"):
+        sample_ground(lambda x, y: 0 * x, **area)
+
+
+def test_a_height_that_is_no_number_is_refused_with_its_place():
+    with pytest.raises(DomainError, match=r"height is nan m at x 0\.5, y 0 m"):
+        sample_ground(lambda x, y: np.where(x < 0.499, 0, np.nan), x=(0, 1), y=(0, 1), step=0.1)
+
+
+def test_a_function_that_gives_one_height_for_all_is_refused():
+    with pytest.raises(DomainError, match=r"gave shape \(\) for positions of shape \(11, 11\)"):
+        sample_ground(lambda x, y: 0.0, x=(0, 1), y=(0, 1), step=0.1)

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from model.errors import DomainError, WalkError
 from model.gait.reference import LegReference
 from model.robot import N_LEGS, Robot
 from model.slip.law import Array
@@ -70,7 +71,7 @@ def walk_ensemble(
 
     Args:
         draws: What to walk.
-        t: Times wanted, increasing from zero, shape (n,) [s].
+        t: Times wanted, increasing, none before zero, shape (n,) [s].
         options: How the walks are computed.
         threads: Draws walked at once.
         progress: Told the fraction done.
@@ -79,22 +80,38 @@ def walk_ensemble(
         The paths, interpolated at `t`.
 
     Raises:
-        WalkError: A walk diverged.
+        DomainError: There is no draw, or the times do not increase from zero.
+        WalkError: A walk diverged; says which.
     """
+    _require_draws(draws, t)
     duration = max(float(t[-1]), options.dt)
 
-    def walk(draw: WalkDraw) -> Array:
-        path = planar_walk(draw, duration=duration, options=options)
+    def walk(numbered: tuple[int, WalkDraw]) -> Array:
+        number, draw = numbered
+        try:
+            path = planar_walk(draw, duration=duration, options=options)
+        except WalkError as error:
+            raise WalkError(f"draw {number} of {len(draws)}: {error}") from error
         return np.stack([np.interp(t, path.t, a) for a in (path.x, path.y, path.yaw)])
 
     paths = []
     with ThreadPoolExecutor(threads) as pool:
-        for path in pool.map(walk, draws):
+        for path in pool.map(walk, enumerate(draws, start=1)):
             paths.append(path)
             if progress is not None:
                 progress(len(paths) / len(draws))
     everything = np.stack(paths)
     return PathEnsemble(t, np.moveaxis(everything[:, :2], 1, 2), everything[:, 2])
+
+
+def _require_draws(draws: Sequence[WalkDraw], t: Array) -> None:
+    if not draws:
+        raise DomainError("an ensemble of no draws has no paths; expected at least one")
+    if t.ndim != 1 or not len(t) or not (t[0] >= 0 and np.all(np.diff(t) > 0)):
+        raise DomainError(
+            f"times wanted of an ensemble are {np.array2string(t, threshold=6)} s; expected them "
+            "to increase, from zero or later"
+        )
 
 
 def planar_walk(
@@ -108,6 +125,7 @@ def planar_walk(
         options: How it is computed.
 
     Raises:
+        DomainError: The duration is shorter than a step.
         WalkError: A step diverged.
     """
     if draw.reference.period is not None:

@@ -59,9 +59,10 @@ def turning_radius(position_xy: Array, yaw: Array) -> float:
     r"""Compute the radius of the circle that leads from the first pose to the last.
 
     .. math::
-        R = \frac{|\Delta p|}{2 \sin(\Delta\psi / 2)}
+        R = \frac{|\Delta p|}{2 |\sin(\Delta\psi / 2)|} \operatorname{sign} \Delta\psi
 
-    Exact for a circular arc, and for whole strides of a constant gait, whose poses lie on one.
+    Exact for a circular arc, and for whole strides of a constant gait, whose poses lie on one; not
+    to be trusted where they come near a whole turn, which brings the last pose back to the first.
 
     Args:
         position_xy: Positions, shape (n, 2) [m].
@@ -71,5 +72,5 @@ def turning_radius(position_xy: Array, yaw: Array) -> float:
         Radius, positive for a left turn, infinite for a straight line [m].
     """
     chord = float(np.linalg.norm(position_xy[-1] - position_xy[0]))
-    half = 0.5 * float(yaw[-1] - yaw[0])
-    return np.inf if np.sin(half) == 0 else chord / (2 * np.sin(half))
+    turn = float(yaw[-1] - yaw[0])
+    return np.inf if turn == 0 else float(np.copysign(chord / (2 * abs(np.sin(0.5 * turn))), turn))

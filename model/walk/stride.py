@@ -22,12 +22,14 @@ from model.walk.dynamics import (
     diverged,
     roll_pitch_yaw,
     start_state,
+    step_times,
 )
 from model.walk.ground import FLAT
 from model.walk.step import Body, Contacts, State, body_arrays, run_steps
 from model.walk.traction import TractionTable
 
-SETTLED = 1e-4  # of a stride's length, and radians: change from one stride to the next
+SETTLED = 1e-4  # of a stride's length: change from one stride to the next
+SETTLED_TURN = 1e-5  # change of its turn [rad]; n strides on, n/2 of it in the path's direction
 MAX_STRIDES = 12  # walked before the last is taken as settled; a tetrapod rocks for a few
 
 
@@ -78,6 +80,8 @@ def walk_by_strides(
 ) -> PlanarPath:
     """Walk a gait that repeats itself: step by step until settled, then stride by stride.
 
+    A gait that is not settled after `MAX_STRIDES` goes on by the last of them.
+
     Args:
         robot: The robot.
         reference: A gait with a period.
@@ -90,13 +94,15 @@ def walk_by_strides(
         The path, sampled at every step.
 
     Raises:
+        DomainError: The duration is shorter than a step.
         WalkError: The gait has no period, or a step diverged.
     """
     period = reference.period
     if period is None:
         raise WalkError("these leg angles do not repeat, so there is no stride; walk them whole")
     n = int(np.ceil(period / options.dt - 1e-9))
-    strides = int(np.ceil(duration / period - 1e-9))
+    t = step_times(duration, period / n)
+    strides = int(np.ceil((len(t) - 1) / n))
     walked = _settled_strides(
         robot, reference, table, start, options, n=n, most=strides, dt=period / n
     )
@@ -104,8 +110,7 @@ def walk_by_strides(
     parts = first + [(x[1:], y[1:], yaw[1:]) for x, y, yaw in walked]
     x, y, yaw = (np.concatenate(column) for column in zip(*parts, strict=True))
     x, y, yaw = _repeat(x, y, yaw, n=n, times=strides - len(walked))
-    keep = round(duration / period * n) + 1
-    t = period / n * np.arange(keep, dtype=float)
+    keep = len(t)
     return PlanarPath(t, x[:keep], y[:keep], yaw[:keep])
 
 
@@ -136,7 +141,9 @@ def _settled_strides(
             yaw += walked[-1][2][-1] - yaw[0]
         walked.append((np.append(first[0], pose[:, 0]), np.append(first[1], pose[:, 1]), yaw))
         step = _displacement(*walked[-1])
-        if np.all(np.abs(step - last) < SETTLED * max(np.hypot(*step[:2]), robot.leg_radius)):
+        changed = np.abs(step - last)
+        length = max(np.hypot(*step[:2]), robot.leg_radius)
+        if changed[:2].max() < SETTLED * length and changed[2] < SETTLED_TURN:
             break
         last = step
     return walked

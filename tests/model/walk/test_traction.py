@@ -76,12 +76,13 @@ def test_velocity_coulomb_is_its_formula_rolling_or_not():
             assert force == pytest.approx(5 * 0.38 * v / np.hypot(v, 0.001), rel=1e-9)
 
 
-def test_a_law_of_another_definition_is_evaluated_at_the_converted_slip():
+@pytest.mark.parametrize("definition", list(SlipDefinition))
+def test_a_law_of_another_definition_is_evaluated_at_the_converted_slip(definition):
     law, values = LAWS[1]
-    table = law_table(law, values, weight=WEIGHT, definition="travel")
-    for material in (0.001, 0.02, 0.1, 0.5):
-        travel = convert_slip(material, SlipDefinition.MATERIAL, SlipDefinition.TRAVEL)
-        exact = float(law.force(travel, 1.0, values))
+    table = law_table(law, values, weight=WEIGHT, definition=definition)
+    for material in (0.001, 0.02, 0.1, 0.5, 0.9):
+        converted = convert_slip(material, SlipDefinition.MATERIAL, definition)
+        exact = float(law.force(converted, 1.0, values))
         assert table_value(table, 1.0, material) == pytest.approx(exact, rel=1e-3)
 
 

@@ -1,0 +1,81 @@
+# SPDX-License-Identifier: MIT
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from model.errors import DomainError, WalkError
+from model.gait.reference import SampledReference
+from model.gait.tripod import tripod_angles, tripod_reference
+from model.robot import GRAVITY, Robot
+from model.slip import MagicFormula
+from model.walk.dynamics import DynamicsOptions
+from model.walk.ensemble import WalkDraw, planar_walk, walk_ensemble
+from model.walk.traction import law_table
+
+ROBOT = Robot()
+SOURCE = np.array([34.34 * 1.564 * 0.3798, 1.564, 0.3798, 0.0066])
+SLIP = law_table(MagicFormula("peak"), SOURCE, weight=ROBOT.mass * GRAVITY)
+OPTIONS = DynamicsOptions(dt=0.005)
+TURN = tripod_reference(tripod_angles(np.radians(50.0), 1.3), 2.0)
+
+
+def draws(n=6, *, gait=TURN):
+    rng = np.random.default_rng(3)
+    return [
+        WalkDraw(replace(ROBOT, leg_offset=np.radians(0.5) * rng.standard_normal(6)), gait, SLIP)
+        for _ in range(n)
+    ]
+
+
+def test_an_ensemble_is_its_draws_whatever_the_threads():
+    t = np.linspace(0, 20.0, 41)
+    one, two = (walk_ensemble(draws(), t, options=OPTIONS, threads=n) for n in (1, 2))
+    np.testing.assert_array_equal(one.position, two.position)
+    np.testing.assert_array_equal(one.yaw, two.yaw)
+    alone = planar_walk(draws()[4], duration=20.0, options=OPTIONS)
+    np.testing.assert_allclose(one.position[4, :, 0], np.interp(t, alone.t, alone.x), atol=1e-12)
+    assert one.position.shape == (6, 41, 2)
+
+
+def test_leg_offsets_spread_the_path():
+    ensemble = walk_ensemble(draws(12), np.array([0.0, 20.0]), options=OPTIONS)
+    assert np.all(ensemble.position[:, 0] == 0)
+    assert ensemble.position[:, -1].std(axis=0).max() > 0.01
+
+
+def test_a_log_is_walked_whole_and_like_its_gait():
+    t = np.arange(0, 12.0, 0.005)
+    log = SampledReference(t, TURN.angles(t))
+    times = np.linspace(0, 11.9, 20)
+    ensemble = walk_ensemble(
+        [WalkDraw(ROBOT, log, SLIP), WalkDraw(ROBOT, TURN, SLIP)], times, options=OPTIONS
+    )
+    np.testing.assert_allclose(ensemble.position[0], ensemble.position[1], atol=0.003)
+
+
+def test_progress_is_told_to_the_end():
+    told = []
+    walk_ensemble(draws(3), np.array([0.0, 1.0]), options=OPTIONS, progress=told.append)
+    assert told == pytest.approx([1 / 3, 2 / 3, 1.0])
+
+
+def test_a_draw_that_diverges_says_which_and_when():
+    t = np.linspace(0, 4.0, 401)
+    theta = TURN.angles(t)
+    theta[200] = np.nan
+    broken = SampledReference(t, theta)
+    three = [*draws(2), WalkDraw(ROBOT, broken, SLIP)]
+    with pytest.raises(WalkError, match=r"draw 3 of 3: the walk diverged at t = 1\.9.* s, with"):
+        walk_ensemble(three, np.array([0.0, 4.0]), options=OPTIONS)
+
+
+def test_an_ensemble_of_nothing_is_refused():
+    with pytest.raises(DomainError, match="expected at least one"):
+        walk_ensemble([], np.array([0.0, 1.0]))
+
+
+@pytest.mark.parametrize("t", [[], [0.0, 0.0], [1.0, 0.5], [-1.0, 1.0], [0.0, np.nan]])
+def test_times_that_do_not_increase_are_refused(t):
+    with pytest.raises(DomainError, match="expected them to increase"):
+        walk_ensemble(draws(1), np.array(t))

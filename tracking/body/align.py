@@ -1,0 +1,251 @@
+# SPDX-License-Identifier: MIT
+"""Align the robot's picture with a photograph, to a fraction of a pixel and with its error.
+
+The template's points are projected for a pose, the photograph is read there, and the pose is
+improved by Gauss-Newton until the colours agree up to a gain and an offset a channel (light and
+exposure). It is what ECC does, in the robot's six degrees of freedom instead of a homography's
+eight, so that what is known of height and tilt enters as it does for a marker (`tracking.pose`).
+A seventh unknown is the picture's scale: blur and the annotation make it uncertain by some tenths
+of a percent, and the height must not take that for its own.
+"""
+
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from tracking.body.template import BodyTemplate, sample
+from tracking.camera.lens import Array, Camera, CameraPose, project_with_derivatives
+from tracking.pose import BodyPose, BodyPrior, rotation_with_derivatives
+
+_ITERATIONS = 25
+_HUBER = 1.5
+
+SCALE_SD = 5e-3
+"""Relative standard deviation of the template's scale [-]."""
+
+MODEL_FACTOR = 4.0
+"""By how much what a flat picture leaves out (shading, rims, legs) exceeds white noise, as a factor
+of variance [-]."""
+
+MODEL_STEPS = 0.05
+"""Error of an alignment that no number of points averages away, in steps of the template [-]."""
+
+
+@dataclass(frozen=True)
+class Alignment:
+    """The robot's picture laid on a photograph.
+
+    Attributes:
+        pose: Pose of the robot; its misfit is 0, there being no corners.
+        score: Correlation of photograph and picture, mean over channels weighed by contrast [-].
+        log_likelihood: Of the colours, up to a constant the same for all poses in a photograph.
+    """
+
+    pose: BodyPose
+    score: float
+    log_likelihood: float
+
+
+def align(
+    pixels: NDArray[np.uint8], camera: Camera, view: CameraPose, *, template: BodyTemplate,
+    prior: BodyPrior, start: Array, blurs_px: tuple[float, ...] = (2.5, 1.0),
+    visible: NDArray[np.bool_] | None = None,
+) -> Alignment | None:  # fmt: skip
+    """Align the robot's picture.
+
+    Args:
+        pixels: The photograph, BGR, shape (height, width, 3).
+        camera: The lens.
+        view: Where the camera stands.
+        template: The robot's picture.
+        prior: Height and tilt.
+        start: x, y [m] and yaw [rad] to start from, shape (3,).
+        blurs_px: Blurs of the photograph, coarse to fine, each aligned in turn [px].
+        visible: Pixels of the photograph that may show the robot, shape (height, width); the
+            others are left out.
+
+    Returns:
+        The alignment, or None where the robot leaves the photograph or little of it is visible.
+    """
+    state = np.array([start[0], start[1], prior.height, 0.0, 0.0, start[2]])
+    solution = None
+    for blur in blurs_px:
+        job = _Job.prepare(pixels, camera, view, template, prior, state, blur, visible)
+        if job is None:
+            return None
+        solution = job.solve(state)
+        if solution is None:
+            return None
+        state = solution.pose.state
+    return solution
+
+
+@dataclass(frozen=True)
+class _Job:
+    """Everything an alignment at one blur needs, cut to the robot's neighbourhood."""
+
+    origin: Array
+    picture: NDArray[np.float32]
+    slopes: NDArray[np.float32]
+    hidden: NDArray[np.float32] | None
+    camera: Camera
+    view: CameraPose
+    points: Array
+    colours: Array
+    prior: BodyPrior
+    correlated: float
+    floor: Array
+
+    @classmethod
+    def prepare(
+        cls, pixels: NDArray[np.uint8], camera: Camera, view: CameraPose, template: BodyTemplate,
+        prior: BodyPrior, state: Array, blur: float, visible: NDArray[np.bool_] | None,
+    ) -> "_Job | None":  # fmt: skip
+        """Cut out, blur and differentiate the photograph around the robot."""
+        points = template.points_body.reshape(-1, 3)
+        seen, _, _ = project_with_derivatives(camera, view, _world(points, state))
+        reach = 6 + 4 * blur
+        low = np.maximum(np.floor(seen.min(axis=0) - reach), 0).astype(int)
+        high = np.minimum(np.ceil(seen.max(axis=0) + reach) + 1, camera.size).astype(int)
+        if (high - low < 16).any():
+            return None
+        window = (slice(low[1], high[1]), slice(low[0], high[0]))
+        picture = cv2.GaussianBlur(pixels[window].astype(np.float32), (0, 0), blur)
+        slopes = np.concatenate(
+            [cv2.Scharr(picture, cv2.CV_32F, *axis, scale=1 / 32) for axis in ((1, 0), (0, 1))],
+            axis=2,
+        )
+        density = float(
+            np.sqrt(cv2.contourArea(cv2.convexHull(seen.astype(np.float32))) / len(points))
+        )
+        colours = cv2.GaussianBlur(template.colours, (0, 0), max(blur / max(density, 1e-3), 0.1))
+        hidden = None if visible is None else (~visible[window]).astype(np.float32)
+        # Blurred pixels repeat each other over the area of the blur, 4 pi s².
+        repeated = MODEL_FACTOR * max(1.0, (4 * np.pi * blur**2 + 1) / density**2)
+        return cls(
+            low.astype(float),
+            np.asarray(picture, dtype=np.float32),
+            np.asarray(slopes, dtype=np.float32),
+            hidden,
+            camera,
+            view,
+            points,
+            np.asarray(colours, dtype=float).reshape(-1, 3),
+            prior,
+            repeated,
+            _least_covariance(template),
+        )
+
+    def solve(self, state: Array) -> Alignment | None:
+        """Iterate Gauss-Newton with Huber's weights."""
+        prior = self.prior
+        sd = [np.inf, np.inf, prior.height_sd, prior.tilt_sd, prior.tilt_sd, np.inf, SCALE_SD]
+        held = np.array(sd) ** -2.0
+        centre = np.array([0, 0, prior.height, 0, 0, 0, 0])
+        state = np.append(state, 0.0)
+        normal = np.eye(7)
+        for _ in range(_ITERATIONS):
+            look = self._look(state)
+            if look is None:
+                return None
+            residual, J, weight, noise, _ = look
+            scale = weight / (noise * self.correlated)
+            normal = np.einsum("nci,nc,ncj->ij", J, scale, J) + np.diag(held)
+            gradient = np.einsum("nci,nc,nc->i", J, scale, residual) + held * (centre - state)
+            step = np.linalg.solve(normal, gradient)
+            limit = np.array([0.02, 0.02, 0.02, 0.1, 0.1, 0.2, 0.01])
+            step *= min(1.0, float(np.min(limit / np.maximum(np.abs(step), 1e-12))))
+            state = state + step
+            if (np.abs(step) < [1e-5, 1e-5, 1e-4, 1e-3, 1e-3, 1e-4, 1e-4]).all():
+                break
+        return self._conclude(state, normal)
+
+    def _conclude(self, state: Array, normal: Array) -> Alignment | None:
+        look = self._look(state)
+        if look is None:
+            return None
+        residual, J, weight, noise, score = look
+        spread = np.linalg.inv(normal)
+        _, _, by_pose = project_with_derivatives(self.camera, self.view, _world(self.points, state))
+        used = self._used(state)
+        slope = self._slopes_at(state)[used]
+        by_camera = np.einsum("nca,nak->nck", slope, by_pose[used])
+        scale = weight / (noise * self.correlated)
+        follow = spread @ np.einsum("nci,nc,nck->ik", J, scale, -by_camera)
+        camera_covariance = follow @ self.view.covariance @ follow.T
+        wrapped = state[:6].copy()
+        wrapped[5] = np.arctan2(np.sin(state[5]), np.cos(state[5]))
+        effective = residual.size / self.correlated
+        return Alignment(
+            BodyPose(
+                wrapped, spread[:6, :6] + self.floor, camera_covariance[:6, :6], 0.0, effective
+            ),
+            score,
+            -0.5 * effective * float(np.log(max(noise.mean(), 1e-6))),
+        )
+
+    def _used(self, state: Array) -> NDArray[np.bool_]:
+        seen, _, _ = project_with_derivatives(self.camera, self.view, _world(self.points, state))
+        seen = seen - self.origin
+        height, width = self.picture.shape[:2]
+        inside = np.all((seen >= 0) & (seen <= [width - 1, height - 1]), axis=1)
+        if self.hidden is not None:
+            inside &= sample(self.hidden, seen) < 0.05
+        return inside
+
+    def _slopes_at(self, state: Array) -> Array:
+        seen, _, _ = project_with_derivatives(self.camera, self.view, _world(self.points, state))
+        along = sample(self.slopes, seen - self.origin)
+        return np.stack((along[:, :3], along[:, 3:]), axis=2).astype(float)
+
+    def _look(self, state: Array) -> tuple[Array, Array, Array, Array, float] | None:
+        """Compute residual (n, 3), its derivative (n, 3, 7), weights, noise (3,) and score."""
+        used = self._used(state)
+        if used.sum() < max(60, 0.35 * len(used)):
+            return None
+        R, dR = rotation_with_derivatives(*state[3:6])
+        seen, by_point, _ = project_with_derivatives(
+            self.camera, self.view, _world(self.points, state)
+        )
+        by_state = np.concatenate(
+            (
+                np.tile(np.eye(3), (len(seen), 1, 1)),
+                np.einsum("kab,nb->nak", dR, self.points),
+                ((self.points - self.points.mean(axis=0)) @ R.T)[:, :, None],
+            ),
+            axis=2,
+        )
+        flow = (by_point @ by_state)[used]
+        slope = self._slopes_at(state)[used]
+        values = sample(self.picture, (seen - self.origin)[used]).astype(float)
+        wanted, score = _relit(self.colours[used], values)
+        residual = wanted - values
+        spread = 1.4826 * np.median(np.abs(residual), axis=0)
+        noise = np.maximum(spread, 1.0) ** 2
+        weight = np.minimum(1.0, _HUBER * np.sqrt(noise) / np.maximum(np.abs(residual), 1e-9))
+        return residual, np.einsum("nca,nai->nci", slope, flow), weight, noise, score
+
+
+def _least_covariance(template: BodyTemplate) -> Array:
+    slip = MODEL_STEPS * template.step
+    turn = slip / (0.25 * template.plate.length)
+    return np.diag([slip, slip, 0, 0, 0, turn]) ** 2
+
+
+def _world(points: Array, state: Array) -> Array:
+    """Place points of the body by a pose, shape (6,), or a pose and a scale, shape (7,)."""
+    R, _ = rotation_with_derivatives(*state[3:6])
+    growth = state[6] if len(state) > 6 else 0.0
+    middle = points.mean(axis=0)
+    return (middle + (1 + growth) * (points - middle)) @ R.T + state[:3]
+
+
+def _relit(colours: Array, values: Array) -> tuple[Array, float]:
+    """Give the template the photograph's light; return it and how well the two correlate."""
+    a, b = colours - colours.mean(axis=0), values - values.mean(axis=0)
+    power, cross = (a * a).sum(axis=0), (a * b).sum(axis=0)
+    gain = np.clip(cross / np.maximum(power, 1e-9), 0.0, 4.0)
+    score = cross.sum() / np.sqrt(max(power.sum() * (b * b).sum(), 1e-9))
+    return gain * a + values.mean(axis=0), float(score)

@@ -1,0 +1,108 @@
+# SPDX-License-Identifier: MIT
+"""Tell head from tail over a whole sequence, or refuse to.
+
+One photograph of a robot that looks alike from both ends says little about which end is ahead, and
+shadows make it say it wrongly in every photograph. But a robot does not turn round between two
+photographs, and where it walks it walks ahead: the likeliest chain of headings decides (Viterbi),
+and must be far likelier than the same chain with head and tail exchanged.
+"""
+
+from collections.abc import Sequence
+from itertools import pairwise
+
+import numpy as np
+
+from tracking.body.align import Alignment
+from tracking.body.search import BodyCandidates
+from tracking.camera.lens import Array
+from tracking.errors import AmbiguousHeading
+
+LEAST_LOG_ODDS = 7.0
+"""Odds of a thousand to one."""
+
+_TURN_SD = 0.5
+_MOST_EVIDENCE = 6.0
+_TRAVEL_EVIDENCE = 6.0
+
+
+def resolve_headings(
+    candidates: Sequence[BodyCandidates], *, length: float, walks_ahead: bool = True
+) -> tuple[Alignment, ...]:
+    """Choose between head and tail in every photograph.
+
+    Args:
+        candidates: The robot in each photograph, in order of time.
+        length: Length of the robot; moves shorter than a quarter of it do not tell a direction [m].
+        walks_ahead: Whether the robot is known to walk head first, on the whole.
+
+    Returns:
+        One alignment a photograph.
+
+    Raises:
+        AmbiguousHeading: When the better reading of the whole sequence is not a thousand times
+            likelier than the same sequence reversed.
+    """
+    options = [candidate.options for candidate in candidates]
+    # Bounded: shadows and glare can make one photograph surer than it should be.
+    scores = [np.maximum(candidate.evidence, -_MOST_EVIDENCE) for candidate in candidates]
+    links = [
+        np.array([[_link(i, j, length, walks_ahead) for j in after] for i in before])
+        for before, after in pairwise(options)
+    ]
+    choice, best = _likeliest(scores, links)
+    odds = best - _score_reversed(options, choice, scores, links)
+    if candidates and odds < LEAST_LOG_ODDS:
+        raise AmbiguousHeading(
+            f"head and tail of the robot cannot be told apart: odds of {np.exp(odds):.1f} to 1 "
+            f"over {len(candidates)} photographs, expected at least 1000 to 1; put a mark on its "
+            f"nose, include the nose in the template (front_margin), or flip by hand",
+            float(np.exp(odds)),
+        )
+    return tuple(ways[k] for ways, k in zip(options, choice, strict=True))
+
+
+def _link(before: Alignment, after: Alignment, length: float, walks_ahead: bool) -> float:
+    """Score one heading after another."""
+    a, b = before.pose.planar, after.pose.planar
+    turn = float(np.angle(np.exp(1j * (b[2] - a[2]))))
+    score = -0.5 * min((turn / _TURN_SD) ** 2, 20.0)
+    move = b[:2] - a[:2]
+    distance = float(np.hypot(*move))
+    if walks_ahead and distance > 0.25 * length:
+        heading = a[2] + turn / 2
+        ahead = (move[0] * np.cos(heading) + move[1] * np.sin(heading)) / distance
+        score += _TRAVEL_EVIDENCE * float(ahead)
+    return score
+
+
+def _likeliest(scores: Sequence[Array], links: Sequence[Array]) -> tuple[list[int], float]:
+    """Find the chain of options with the greatest score (Viterbi)."""
+    if not scores:
+        return [], 0.0
+    total, came = scores[0], []
+    for own, link in zip(scores[1:], links, strict=True):
+        through = total[:, None] + link
+        came.append(through.argmax(axis=0))
+        total = through.max(axis=0) + own
+    choice = [int(total.argmax())]
+    for source in reversed(came):
+        choice.append(int(source[choice[-1]]))
+    return choice[::-1], float(total.max())
+
+
+def _score_reversed(
+    options: Sequence[Sequence[Alignment]], choice: Sequence[int], scores: Sequence[Array],
+    links: Sequence[Array],
+) -> float:  # fmt: skip
+    """Score the likeliest chain that has head and tail exchanged in every photograph."""
+    against = []
+    for ways, k, own in zip(options, choice, scores, strict=True):
+        yaw = ways[k].pose.state[5]
+        opposite = np.array([np.cos(way.pose.state[5] - yaw) < -0.7 for way in ways])
+        # Where no opposite heading holds at all, the chosen one stays, at the price of the worst.
+        against.append(
+            np.where(opposite, own, -np.inf)
+            if opposite.any()
+            else np.where(np.arange(len(ways)) == k, -_MOST_EVIDENCE, -np.inf)
+        )
+    return _likeliest(against, links)[1]

@@ -1,0 +1,220 @@
+# SPDX-License-Identifier: MIT
+"""Find the robot's picture in a photograph: turn, match, align.
+
+The photograph is rectified onto the level plane of the robot's top, where the robot has the same
+size everywhere, coarsely; its picture is turned in steps and matched; the best places are aligned.
+"""
+
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from tracking.body.align import Alignment, align
+from tracking.body.template import BodyTemplate, sample
+from tracking.camera.lens import Array, Camera, CameraPose, project, to_floor
+from tracking.pose import BodyPrior
+
+ACCEPTED_SCORE = 0.7
+"""Least correlation of an alignment that counts as the robot [-]."""
+
+_TURNS = 24
+_CELLS = 14
+
+
+@dataclass(frozen=True)
+class BodyCandidates:
+    """Where a photograph shows the robot, and the same place with its ends exchanged.
+
+    Attributes:
+        options: Alignments in one place that differ in heading, the likeliest first; a robot about
+            as wide as long has up to four.
+    """
+
+    options: tuple[Alignment, ...]
+
+    @property
+    def best(self) -> Alignment:
+        """The likeliest alignment."""
+        return self.options[0]
+
+    @property
+    def evidence(self) -> Array:
+        """By how much less likely than the best each option is, shape (options,), from 0 down."""
+        likelihood = np.array([option.log_likelihood for option in self.options])
+        return likelihood - likelihood[0]
+
+
+def find_body(
+    pixels: NDArray[np.uint8], camera: Camera, view: CameraPose, *, template: BodyTemplate,
+    prior: BodyPrior, near: ArrayLike | None = None, reach: float = 0.5,
+    visible: NDArray[np.bool_] | None = None,
+) -> BodyCandidates | None:  # fmt: skip
+    """Find the robot.
+
+    Args:
+        pixels: The photograph, BGR, shape (height, width, 3).
+        camera: The lens.
+        view: Where the camera stands.
+        template: The robot's picture.
+        prior: Height and tilt.
+        near: x and y near which to look [m]; the whole photograph when None.
+        reach: How far from there [m].
+        visible: Pixels that may show the robot, shape (height, width).
+
+    Returns:
+        The best place in all headings that hold there, or None where nothing looks like the robot.
+    """
+    height = prior.height + template.plate.height
+    area = _area(camera, view, height, near, reach)
+    starts = match_turned(pixels, camera, view, template=template, height=height, area=area)
+    found = []
+    for start in starts:
+        alignment = align(
+            pixels, camera, view, template=template, prior=prior, start=start, visible=visible
+        )
+        if alignment is not None and alignment.score >= ACCEPTED_SCORE:
+            found.append(alignment)
+    if not found:
+        return None
+    best = max(found, key=lambda alignment: alignment.score)
+    return BodyCandidates(_all_headings(best, pixels, camera, view, template, prior, visible))
+
+
+def _all_headings(
+    best: Alignment, pixels: NDArray[np.uint8], camera: Camera, view: CameraPose,
+    template: BodyTemplate, prior: BodyPrior, visible: NDArray[np.bool_] | None,
+) -> tuple[Alignment, ...]:  # fmt: skip
+    plate = template.plate
+    square = abs(plate.length - plate.width) < 0.2 * max(plate.length, plate.width)
+    options = [best]
+    for turn in (0.5 * np.pi, np.pi, 1.5 * np.pi) if square else (np.pi,):
+        start = _turned_about_plate(best.pose.planar, plate.centre_x, turn)
+        other = align(
+            pixels, camera, view, template=template, prior=prior, start=start, visible=visible
+        )
+        if other is not None and all(_differ(other, option) for option in options):
+            options.append(other)
+    return tuple(sorted(options, key=lambda option: -option.log_likelihood))
+
+
+def _differ(a: Alignment, b: Alignment) -> bool:
+    return bool(np.cos(a.pose.state[5] - b.pose.state[5]) < 0.7)
+
+
+def _turned_about_plate(planar: Array, centre_x: float, turn: float) -> Array:
+    x, y, yaw = planar
+    ends = np.array([yaw, yaw + turn])
+    shift = centre_x * (np.column_stack((np.cos(ends), np.sin(ends))))
+    return np.array([*(np.array([x, y]) + shift[0] - shift[1]), yaw + turn])
+
+
+def _area(
+    camera: Camera, view: CameraPose, height: float, near: ArrayLike | None, reach: float
+) -> tuple[Array, Array]:
+    """Compute the rectangle of the plane to rectify: lowest and highest x, y [m]."""
+    width, rows = camera.size
+    edge = np.array(
+        [[u, v] for u in np.linspace(0, width - 1, 9) for v in np.linspace(0, rows - 1, 9)]
+    )
+    seen = to_floor(camera, view, edge, height)
+    # Far floor near the horizon would make the map endless and shows no robot.
+    distance = np.linalg.norm(seen - view.position[:2], axis=1)
+    seen = seen[np.isfinite(distance) & (distance < 3 * view.position[2])]
+    low, high = seen.min(axis=0), seen.max(axis=0)
+    if near is not None:
+        middle = np.asarray(near, dtype=float)[:2]
+        low, high = np.maximum(low, middle - reach), np.minimum(high, middle + reach)
+    return low, high
+
+
+def match_turned(
+    pixels: NDArray[np.uint8], camera: Camera, view: CameraPose, *, template: BodyTemplate,
+    height: float, area: tuple[Array, Array], most: int = 4,
+) -> list[Array]:  # fmt: skip
+    """Match the robot's picture in steps of turn on the rectified photograph.
+
+    Args:
+        pixels: The photograph, BGR.
+        camera: The lens.
+        view: Where the camera stands.
+        template: The robot's picture.
+        height: Height of its top over the floor [m].
+        area: Lowest and highest x, y to look at, each of shape (2,) [m].
+        most: How many places to return.
+
+    Returns:
+        x, y, yaw of the robot at the best places, apart from each other, best first.
+    """
+    cell = template.plate.length / _CELLS
+    rear, front, right, left = template.plate.extent
+    half = 0.5 * np.hypot(front - rear, left - right)
+    low, high = area[0] - half, area[1] + half
+    floor = _rectified(pixels, camera, view, height, low, high, cell)
+    small = _shrunk(template, cell)
+    peaks: list[tuple[float, Array]] = []
+    middle = np.array([(front + rear) / 2, (left + right) / 2])
+    for yaw in np.arange(_TURNS) * 2 * np.pi / _TURNS:
+        turned, mask = _turned(small, yaw)
+        if (np.array(floor.shape[:2]) < turned.shape[:2]).any():
+            continue
+        match = cv2.matchTemplate(floor, turned, cv2.TM_CCOEFF_NORMED, mask=mask)
+        match = np.where(np.isfinite(match) & (match <= 1.0001), match, -1.0)
+        c, s = np.cos(yaw), np.sin(yaw)
+        offset = np.array([c * middle[0] - s * middle[1], s * middle[0] + c * middle[1]])
+        for _ in range(2):
+            row, column = np.unravel_index(np.argmax(match), match.shape)
+            centre = np.array([column, row]) + (np.array(turned.shape[1::-1]) - 1) / 2
+            # Rows of the map go from high y to low y, as seen from above.
+            xy = np.array([low[0] + centre[0] * cell, high[1] - centre[1] * cell]) - offset
+            peaks.append((float(match[row, column]), np.array([*xy, yaw])))
+            match[max(row - 6, 0) : row + 7, max(column - 6, 0) : column + 7] = -1.0
+    return _apart(peaks, most, template.plate.length)
+
+
+def _apart(peaks: list[tuple[float, Array]], most: int, length: float) -> list[Array]:
+    kept: list[Array] = []
+    for _, peak in sorted(peaks, key=lambda pair: -pair[0]):
+        near = [np.hypot(*(peak[:2] - other[:2])) < 0.15 * length for other in kept]
+        turned = [np.cos(peak[2] - other[2]) > 0.8 for other in kept]
+        if not any(a and b for a, b in zip(near, turned, strict=True)):
+            kept.append(peak)
+        if len(kept) == most:
+            break
+    return kept
+
+
+def _rectified(
+    pixels: NDArray[np.uint8], camera: Camera, view: CameraPose, height: float,
+    low: Array, high: Array, cell: float,
+) -> NDArray[np.float32]:  # fmt: skip
+    x = np.arange(low[0], high[0], cell)
+    y = np.arange(high[1], low[1], -cell)
+    xx, yy = np.meshgrid(x, y)
+    world = np.stack((xx, yy, np.full_like(xx, height)), axis=-1)
+    seen = project(camera, view, world.reshape(-1, 3)).reshape(*xx.shape, 2)
+    # Blur to the size of a cell where it is smallest, so that remapping does not alias.
+    spacing = float(np.median(np.linalg.norm(np.diff(seen, axis=1), axis=2)))
+    # Of the far floor nothing is lost by it: there pixels are larger than cells.
+    smooth = cv2.GaussianBlur(pixels, (0, 0), max(0.4 * spacing, 0.3))
+    return sample(np.asarray(smooth), seen)
+
+
+def _shrunk(template: BodyTemplate, cell: float) -> NDArray[np.float32]:
+    ratio = template.step / cell
+    size = [max(4, round(n * ratio)) for n in template.colours.shape[1::-1]]
+    small = cv2.resize(template.colours, size, interpolation=cv2.INTER_AREA)
+    return np.asarray(small, dtype=np.float32)
+
+
+def _turned(small: NDArray[np.float32], yaw: float) -> tuple[NDArray, NDArray]:
+    """Turn a picture whose front is up to heading yaw (0 to the right), with its mask."""
+    rows, columns = small.shape[:2]
+    n = int(np.ceil(np.hypot(rows, columns))) + 1
+    matrix = cv2.getRotationMatrix2D(((columns - 1) / 2, (rows - 1) / 2), np.degrees(yaw) - 90, 1.0)
+    matrix[:, 2] += np.array([(n - columns) / 2, (n - rows) / 2])
+    picture = cv2.warpAffine(small, matrix, (n, n), flags=cv2.INTER_LINEAR)
+    mask = cv2.warpAffine(np.ones((rows, columns), np.float32), matrix, (n, n))
+    mask = np.where(mask > 0.9, 1.0, 0.0).astype(np.float32)
+    return np.asarray(picture), np.repeat(mask[:, :, None], 3, axis=2)

@@ -1,0 +1,156 @@
+# SPDX-License-Identifier: MIT
+"""The robot's own picture: colours of its top, by place in the body frame."""
+
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from tracking.camera.lens import Array, Camera, CameraPose, project
+from tracking.errors import BodyError
+from tracking.pose import BodyPose, rotation_with_derivatives
+
+_MOST_POINTS = 2500
+
+
+@dataclass(frozen=True)
+class TopPlate:
+    """The flat top of the robot, the part of it that a camera above sees undistorted.
+
+    Attributes:
+        length: Extent along the body's x [m].
+        width: Extent along the body's y [m].
+        height: Height over the body's origin [m].
+        centre_x: Place of its middle in the body frame [m].
+        margin: How much around it belongs to the picture, so that its edges do [m].
+        front_margin: The same ahead of it, where a nose may tell head from tail [m].
+    """
+
+    length: float
+    width: float
+    height: float
+    centre_x: float = 0.0
+    margin: float = 0.006
+    front_margin: float = 0.006
+
+    def __post_init__(self) -> None:
+        if not (self.length > 0 and self.width > 0):
+            raise BodyError(
+                f"the top plate is {self.length} m x {self.width} m; expected positive sides"
+            )
+
+    @property
+    def corners_body(self) -> Array:
+        """Front left, front right, rear right, rear left in the body frame, shape (4, 3) [m]."""
+        x, y = self.length / 2, self.width / 2
+        flat = np.add([[x, y], [x, -y], [-x, -y], [-x, y]], [self.centre_x, 0.0])
+        return np.column_stack((flat, np.full(4, self.height)))
+
+    @property
+    def extent(self) -> tuple[float, float, float, float]:
+        """Rear, front, right and left end of the picture in the body frame [m]."""
+        rear = self.centre_x - self.length / 2 - self.margin
+        front = self.centre_x + self.length / 2 + self.front_margin
+        side = self.width / 2 + self.margin
+        return rear, front, -side, side
+
+
+@dataclass(frozen=True)
+class BodyTemplate:
+    """The robot's picture.
+
+    Attributes:
+        plate: Its top plate.
+        step: Distance between neighbouring points [m].
+        points_body: Places in the body frame, rows from the front to the rear and in each from
+            left to right, as a person ahead-up sees it, shape (rows, columns, 3) [m].
+        colours: BGR at these places, shape (rows, columns, 3).
+    """
+
+    plate: TopPlate
+    step: float
+    points_body: Array
+    colours: NDArray[np.float32]
+
+    @property
+    def contrast(self) -> float:
+        """Standard deviation of the colours, mean over channels [grey levels]."""
+        return float(self.colours.std(axis=(0, 1)).mean())
+
+
+def sample(pixels: NDArray, corners_px: Array) -> NDArray[np.float32]:
+    """Read a picture between its pixels, bilinearly.
+
+    Args:
+        pixels: Shape (height, width) or (height, width, channels).
+        corners_px: Places, shape (..., 2) [px].
+
+    Returns:
+        Values, shape (...) or (..., channels); 0 outside.
+    """
+    shape = corners_px.shape[:-1]
+    flat = corners_px.reshape(-1, 1, 2).astype(np.float32)
+    # cv2.remap takes at most 32767 rows.
+    parts = [
+        cv2.remap(pixels, part, None, cv2.INTER_LINEAR)  # pyright: ignore[reportCallIssue, reportArgumentType] # OpenCV's own documentation allows no second map
+        for part in np.array_split(flat, 1 + len(flat) // 30_000)
+    ]
+    values = np.concatenate(parts).astype(np.float32)
+    return values.reshape(*shape, *values.shape[2:])
+
+
+def make_template(
+    pixels: NDArray[np.uint8], camera: Camera, view: CameraPose, *, pose: BodyPose, plate: TopPlate
+) -> BodyTemplate:
+    """Cut the robot's picture out of an annotated photograph.
+
+    Args:
+        pixels: The photograph, BGR, shape (height, width, 3).
+        camera: The lens.
+        view: Where the camera stands.
+        pose: Where the robot is: `tracking.pose.fit_pose` to clicks on `plate.corners_body`.
+        plate: The robot's top.
+
+    Returns:
+        The picture, one point a pixel of the photograph or, of a large robot, some 2500 in all.
+
+    Raises:
+        BodyError: When the robot is cut by the photograph's edge, too small or without contrast.
+    """
+    R, _ = rotation_with_derivatives(*pose.state[3:])
+    corners_px = project(camera, view, plate.corners_body @ R.T + pose.state[:3])
+    _refuse_cut(corners_px, camera.size)
+    metres = np.sqrt(plate.length * plate.width / cv2.contourArea(corners_px.astype(np.float32)))
+    rear, front, right, left = plate.extent
+    step = max(float(metres), np.sqrt((front - rear) * (left - right) / _MOST_POINTS))
+    if plate.length / step < 16:
+        raise BodyError(
+            f"the robot's top is {plate.length / step:.0f} px long in the annotated photograph; "
+            f"at least 16 are needed: go nearer or use photographs of more pixels"
+        )
+    points = _grid(plate, step)
+    seen = project(camera, view, points.reshape(-1, 3) @ R.T + pose.state[:3])
+    template = BodyTemplate(plate, step, points, sample(pixels, seen.reshape(*points.shape[:2], 2)))
+    if template.contrast < 4.0:
+        raise BodyError(
+            f"the robot's top differs from its surroundings by {template.contrast:.1f} grey levels "
+            f"in the annotated photograph; expected at least 4: light the scene or use a marker"
+        )
+    return template
+
+
+def _grid(plate: TopPlate, step: float) -> Array:
+    rear, front, right, left = plate.extent
+    x = np.arange(front, rear, -step)
+    y = np.arange(left, right, -step)
+    xx, yy = np.meshgrid(x, y, indexing="ij")
+    return np.stack((xx, yy, np.full_like(xx, plate.height)), axis=-1)
+
+
+def _refuse_cut(corners_px: Array, size: tuple[int, int]) -> None:
+    if (corners_px < 0).any() or (corners_px > np.subtract(size, 1)).any():
+        raise BodyError(
+            "the robot is cut by the edge of the annotated photograph; annotate one that shows "
+            "its whole top"
+        )

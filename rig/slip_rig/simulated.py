@@ -125,7 +125,8 @@ class SimulatedRig:
         self._rng = rng
         self._offset = rng.normal(0.0, imperfections.offset_sd)
         self._angle = {"leg": 0.0, "ground": float(rng.uniform(0.0, 2 * np.pi))}
-        self._omega = {"leg": 0.0, "ground": 0.0}
+        self._omega = {"leg": 0.0, "ground": 0.0}  # without ripple and wander
+        self._turning = {"leg": 0.0, "ground": 0.0}  # with them, as encoders see it
         self._target = {"leg": 0.0, "ground": 0.0}
         self._noise = 0.0
         self._wander = 0.0
@@ -197,8 +198,15 @@ class SimulatedRig:
         noise = self._imperfections.speed_noise
         return {
             disc: (self._angle[disc], omega + noise * self._rng.standard_normal())
-            for disc, omega in self._omega.items()
+            for disc, omega in self._turning.items()
         }
+
+    def measured_speeds(self, times: Array) -> tuple[Array, Array]:
+        """Read both discs' speeds at times since the start, each of shape (n,) [rad/s]."""
+        truth = self.truth(float(times[0]) - GRID)
+        at = np.clip(np.searchsorted(truth.time, times + GRID / 2) - 1, 0, None)
+        noise = self._imperfections.speed_noise * self._rng.standard_normal((2, len(times)))
+        return truth.omega_leg[at] + noise[0], truth.omega_ground[at] + noise[1]
 
     def description(self) -> dict[str, object]:
         """Say what is true of this rig, as plain values for a manifest."""
@@ -217,6 +225,7 @@ class SimulatedRig:
             self._follow_plan(float(time[0]))
         leg = self._turn("leg", n)
         ground = self._turn("ground", n) * self._wandering(n)
+        self._turning = {"leg": float(leg[-1]), "ground": float(ground[-1])}
         slip, load, force = self._contact(leg, ground, n)
         gained = (1 + self._imperfections.gain_traction) * force
         traction = gained + self._offset + self._noisy(gained, n)

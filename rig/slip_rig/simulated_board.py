@@ -66,13 +66,15 @@ class SimulatedBoard:
         if len(numbers) == 0:
             return []
         normal, traction = self._rig.forces(numbers / self._profile.rate)
-        speeds = self._rig.speeds()
+        speeds = self._rig.measured_speeds(numbers / self._profile.rate)
         scale = self._profile.counts_per_force
-        turning = [round(speeds[d][1] * self._profile.counts_per_speed) for d in ("leg", "ground")]
+        leg, ground = (
+            np.rint(speed * self._profile.counts_per_speed).astype(int).tolist() for speed in speeds
+        )
         pressing = np.rint(self._profile.normal_sign * scale * normal).astype(int).tolist()
         driving = np.rint(self._profile.traction_sign * scale * traction).astype(int).tolist()
         return [
-            self._encode(number, (pressing[k], driving[k], *turning, self._status))
+            self._encode(number, (pressing[k], driving[k], leg[k], ground[k], self._status))
             for k, number in enumerate(numbers.tolist())
         ]
 

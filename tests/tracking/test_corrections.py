@@ -1,0 +1,96 @@
+# SPDX-License-Identifier: MIT
+"""Corrections say what they mean, change nothing else, and come back from plain values."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from tracking.corrections import Delete, Flip, Move, Order, correction_from, plain, replay
+from tracking.errors import CorrectionError
+from tracking.path import Observation
+
+
+def seen(index: int) -> Observation:
+    planar, cov = np.array([0.1 * index, 0.0, 0.2]), 1e-6 * np.eye(3)
+    return Observation(f"p{index}.jpg", 2.0 * index, 0.01, planar, cov, cov, 0.1, 0.9, "marker")
+
+
+WALK = tuple(seen(index) for index in range(4))
+NAMES = st.sampled_from([observation.photo for observation in WALK])
+NUMBER = st.floats(-10, 10)
+CORRECTIONS = st.one_of(
+    st.builds(Move, NAMES, NUMBER, NUMBER, NUMBER),
+    st.builds(Flip, NAMES),
+    st.builds(Order, st.lists(NAMES, unique=True, min_size=2).map(tuple)),
+)
+
+
+@given(st.lists(CORRECTIONS, max_size=6))
+def test_plain_values_bring_corrections_back(corrections):
+    again = [correction_from(plain(correction)) for correction in corrections]
+    assert again == corrections
+
+
+@given(st.lists(CORRECTIONS, max_size=6))
+def test_replaying_leaves_the_observations_as_they_were(corrections):
+    before = [(o.photo, o.t, o.planar.tolist()) for o in WALK]
+    first, second = replay(WALK, corrections), replay(WALK, corrections)
+    assert [(o.photo, o.t, o.planar.tolist()) for o in WALK] == before
+    assert [o.planar.tolist() for o in first] == [o.planar.tolist() for o in second]
+
+
+def test_flipping_twice_is_nothing():
+    (again, *_) = replay(WALK, [Flip("p0.jpg"), Flip("p0.jpg")])
+    np.testing.assert_allclose(again.planar, WALK[0].planar, atol=1e-12)
+    (once, *_) = replay(WALK, [Flip("p0.jpg")])
+    assert np.cos(once.planar[2] - WALK[0].planar[2]) == pytest.approx(-1)
+
+
+def test_deleting_takes_one_away():
+    assert [o.photo for o in replay(WALK, [Delete("p1.jpg")])] == ["p0.jpg", "p2.jpg", "p3.jpg"]
+
+
+def test_moving_is_by_hand_and_as_uncertain_as_said():
+    moved = replay(WALK, [Move("p2.jpg", 1.0, 2.0, 0.5, position_sd=0.01)])[2]
+    assert moved.source == "hand"
+    np.testing.assert_allclose(moved.planar, [1.0, 2.0, 0.5])
+    assert moved.covariance[0, 0] == pytest.approx(1e-4)
+    assert moved.t == WALK[2].t
+
+
+def test_a_robot_is_moved_into_a_photograph_without_one():
+    added = replay(WALK, [Move("p9.jpg", 1.0, 2.0, 0.5)], times={"p9.jpg": (18.0, 0.1)})[-1]
+    assert (added.photo, added.t, added.t_sd) == ("p9.jpg", 18.0, 0.1)
+
+
+def test_an_order_shares_out_the_times():
+    again = {o.photo: o.t for o in replay(WALK, [Order(("p2.jpg", "p1.jpg"))])}
+    assert again == {"p0.jpg": 0.0, "p1.jpg": 4.0, "p2.jpg": 2.0, "p3.jpg": 6.0}
+
+
+@pytest.mark.parametrize(
+    ("correction", "message"),
+    [
+        (Flip("p11.jpg"), "p11.jpg.*did you mean 'p1.jpg'"),
+        (Delete("x"), "'x'"),
+        (Move("q.jpg", 0, 0, 0), r"q\.jpg"),
+        (Order(("p1.jpg", "p1.jpg")), "twice"),
+    ],
+)
+def test_a_correction_of_nothing_is_named(correction, message):
+    with pytest.raises(CorrectionError, match=message):
+        replay(WALK, [correction])
+
+
+@pytest.mark.parametrize(
+    ("entry", "message"),
+    [
+        ({"kind": "turn", "photo": "a"}, "'turn' is unknown"),
+        ({"kind": "flip", "foto": "a"}, "did you mean 'photo'"),
+        ({"kind": "move", "photo": "a"}, "needs photo, x, y, yaw"),
+    ],
+)
+def test_a_faulty_entry_is_named(entry, message):
+    with pytest.raises(CorrectionError, match=message):
+        correction_from(entry)

@@ -1,0 +1,189 @@
+# SPDX-License-Identifier: MIT
+"""What a person corrected, kept as data and replayed on what the tracker found.
+
+Nothing is overwritten: the tracker's observations stay as they are, and the same corrections on the
+same observations give the same result, in the order in which they were made.
+"""
+
+import difflib
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import asdict, dataclass, fields, replace
+from typing import Any, TypeAlias
+
+import numpy as np
+
+from tracking.errors import CorrectionError
+from tracking.path import Observation
+
+
+@dataclass(frozen=True)
+class Move:
+    """The robot is somewhere else, or where the tracker found none.
+
+    Attributes:
+        photo: Name of the photograph.
+        x: Where it is [m].
+        y: Where it is [m].
+        yaw: Its heading [rad].
+        position_sd: Standard deviation of x and of y [m].
+        yaw_sd: Standard deviation of the heading [rad].
+    """
+
+    photo: str
+    x: float
+    y: float
+    yaw: float
+    position_sd: float = 5e-3
+    yaw_sd: float = 0.05
+
+
+@dataclass(frozen=True)
+class Flip:
+    """Head and tail are exchanged in a photograph.
+
+    Attributes:
+        photo: Name of the photograph.
+    """
+
+    photo: str
+
+
+@dataclass(frozen=True)
+class Delete:
+    """What was found in a photograph is not the robot.
+
+    Attributes:
+        photo: Name of the photograph.
+    """
+
+    photo: str
+
+
+@dataclass(frozen=True)
+class Order:
+    """The photographs, or exposures of a composite one, were taken in this order.
+
+    Attributes:
+        photos: Names of photographs; they share out among themselves the times they have.
+    """
+
+    photos: tuple[str, ...]
+
+
+Correction: TypeAlias = Move | Flip | Delete | Order
+_KINDS: dict[str, type[Correction]] = {
+    "move": Move, "flip": Flip, "delete": Delete, "order": Order,
+}  # fmt: skip
+
+
+def replay(
+    observations: Sequence[Observation], corrections: Iterable[Correction], *,
+    times: Mapping[str, tuple[float, float]] | None = None, z: float = 0.0,
+) -> tuple[Observation, ...]:  # fmt: skip
+    """Apply corrections to observations.
+
+    Args:
+        observations: What the tracker found.
+        corrections: What a person said, in the order in which it was said.
+        times: By photograph, time and its standard deviation; needed to `Move` the robot into a
+            photograph in which the tracker found none [s].
+        z: Height given to such a robot [m].
+
+    Returns:
+        Observations as corrected; those left alone are the same objects.
+
+    Raises:
+        CorrectionError: When a correction names a photograph that does not exist.
+    """
+    found = {seen.photo: seen for seen in observations}
+    for correction in corrections:
+        if isinstance(correction, Order):
+            found = _ordered(found, correction)
+        elif isinstance(correction, Move):
+            found[correction.photo] = _moved(found, correction, times or {}, z)
+        elif isinstance(correction, Delete):
+            _known(found, correction.photo)
+            del found[correction.photo]
+        else:
+            found[correction.photo] = _flipped(_known(found, correction.photo))
+    return tuple(found.values())
+
+
+def correction_from(entry: Mapping[str, Any]) -> Correction:
+    """Make a correction of plain values, as a file holds them.
+
+    Args:
+        entry: `kind` ("move", "flip", "delete" or "order") and the attributes of that kind.
+
+    Raises:
+        CorrectionError: When the kind or a key is unknown, or one is missing.
+    """
+    kind = str(entry.get("kind", ""))
+    if kind not in _KINDS:
+        raise CorrectionError(f"correction '{kind}' is unknown; expected {', '.join(_KINDS)}")
+    values = {key: value for key, value in entry.items() if key != "kind"}
+    names = [field.name for field in fields(_KINDS[kind])]
+    for key in values:
+        if key not in names:
+            near = difflib.get_close_matches(key, names, n=1) or names[:1]
+            raise CorrectionError(f"correction '{kind}' has no '{key}'; did you mean '{near[0]}'?")
+    if kind == "order":
+        values["photos"] = tuple(values.get("photos", ()))
+    try:
+        return _KINDS[kind](**values)
+    except TypeError as error:
+        raise CorrectionError(f"correction '{kind}' needs {', '.join(names)}: {error}") from error
+
+
+def plain(correction: Correction) -> dict[str, Any]:
+    """Write a correction as plain values; `correction_from` reads it back.
+
+    >>> plain(Flip("p3.jpg"))
+    {'kind': 'flip', 'photo': 'p3.jpg'}
+    """
+    kind = next(name for name, kind in _KINDS.items() if isinstance(correction, kind))
+    values = asdict(correction)
+    if isinstance(correction, Order):
+        values["photos"] = list(correction.photos)
+    return {"kind": kind, **values}
+
+
+def _known(found: Mapping[str, Observation], photo: str) -> Observation:
+    if photo not in found:
+        near = difflib.get_close_matches(photo, found, n=1)
+        hint = f"; did you mean '{near[0]}'?" if near else ""
+        raise CorrectionError(f"no robot is known in a photograph '{photo}'{hint}")
+    return found[photo]
+
+
+def _flipped(seen: Observation) -> Observation:
+    # The middle of the robot stays; only its ends change places.
+    yaw = np.angle(np.exp(1j * (seen.planar[2] + np.pi)))
+    return replace(seen, planar=np.array([*seen.planar[:2], float(yaw)]))
+
+
+def _moved(
+    found: Mapping[str, Observation], move: Move, times: Mapping[str, tuple[float, float]], z: float
+) -> Observation:
+    planar = np.array([move.x, move.y, move.yaw])
+    covariance = np.diag([move.position_sd, move.position_sd, move.yaw_sd]) ** 2
+    if move.photo in found:
+        seen = found[move.photo]
+        return replace(seen, planar=planar, covariance=covariance, score=1.0, source="hand")
+    if move.photo not in times:
+        _known(found, move.photo)
+    t, t_sd = times[move.photo]
+    none = np.zeros((3, 3))
+    return Observation(move.photo, t, t_sd, planar, covariance, none, z, 1.0, "hand")
+
+
+def _ordered(found: Mapping[str, Observation], order: Order) -> dict[str, Observation]:
+    if len(set(order.photos)) < len(order.photos):
+        raise CorrectionError("an order names a photograph twice; each can be taken only once")
+    named = [_known(found, photo) for photo in order.photos]
+    slots = sorted((seen.t, seen.t_sd) for seen in named)
+    again = {
+        seen.photo: replace(seen, t=t, t_sd=t_sd)
+        for seen, (t, t_sd) in zip(named, slots, strict=True)
+    }
+    return {photo: again.get(photo, seen) for photo, seen in found.items()}

@@ -1,0 +1,168 @@
+# SPDX-License-Identifier: MIT
+"""From poses in single photographs to the path of a walk."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from tracking.camera.lens import Array
+from tracking.errors import PathError
+from tracking.pose import PLANAR, BodyPose
+from tracking.smooth import Process, SmoothPath, smooth
+
+TRACK_COLUMNS = (
+    "t_s", "t_sigma", "x_m", "y_m", "yaw_rad", "cov_xx", "cov_xy", "cov_xyaw", "cov_yy",
+    "cov_yyaw", "cov_yawyaw", "z_m", "source", "score", "photo",
+)  # fmt: skip
+"""Columns of `track.csv`, in order."""
+
+
+@dataclass(frozen=True)
+class Observation:
+    """The robot in one photograph.
+
+    Attributes:
+        photo: Name of the photograph, or of the exposure in a composite one.
+        t: Time [s].
+        t_sd: Its standard deviation [s].
+        planar: x, y [m] and yaw [rad] of the body, shape (3,).
+        covariance: Of `planar`, from errors of this photograph alone, shape (3, 3).
+        camera_covariance: Of `planar`, from the camera's pose, which all photographs share; shape
+            (3, 3).
+        z: Height of the body's origin [m].
+        score: Likeness of what was found to what was sought, 1 at best [-].
+        source: "marker", "body" or "hand".
+    """
+
+    photo: str
+    t: float
+    t_sd: float
+    planar: Array
+    covariance: Array
+    camera_covariance: Array
+    z: float
+    score: float
+    source: str
+
+    @classmethod
+    def of(
+        cls, photo: str, pose: BodyPose, *, t: float, t_sd: float, score: float, source: str
+    ) -> "Observation":
+        """Take what a path needs out of a pose."""
+        block = np.ix_(PLANAR, PLANAR)
+        return cls(
+            photo, t, t_sd, pose.planar, pose.covariance[block], pose.camera_covariance[block],
+            float(pose.state[2]), score, source,
+        )  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Track:
+    """The path of a walk with its uncertainty, one sample a photograph.
+
+    Attributes:
+        observations: What was seen, in order of time.
+        smoothed: The path through it.
+        covariance: Of the smoothed x, y and yaw with the camera's share, shape (n, 3, 3).
+    """
+
+    observations: tuple[Observation, ...]
+    smoothed: SmoothPath
+    covariance: Array
+
+    @property
+    def t(self) -> Array:
+        """Times, shape (n,) [s]."""
+        return np.array([seen.t for seen in self.observations])
+
+    @property
+    def poses(self) -> Array:
+        """Smoothed x, y [m] and yaw [rad], shape (n, 3)."""
+        return self.smoothed.poses
+
+    @property
+    def residuals(self) -> Array:
+        """Observed minus smoothed x, y [m] and yaw [rad], shape (n, 3)."""
+        difference = np.array([seen.planar for seen in self.observations]) - self.poses
+        difference[:, 2] = np.angle(np.exp(1j * difference[:, 2]))
+        return difference
+
+    @property
+    def gap_before(self) -> NDArray[np.bool_]:
+        """Where the path starts anew after a gap, shape (n,)."""
+        return self.smoothed.gap_before
+
+    @property
+    def columns(self) -> dict[str, list[float] | list[str]]:
+        """The table `track.csv`, by `TRACK_COLUMNS`."""
+        x, y, yaw = self.poses.T.tolist()
+        upper = [
+            self.covariance[:, i, j].tolist() for i, j in zip(*np.triu_indices(3), strict=True)
+        ]
+        of = self.observations
+        columns = (
+            [seen.t for seen in of], [seen.t_sd for seen in of], x, y, yaw, *upper,
+            [seen.z for seen in of], [seen.source for seen in of], [seen.score for seen in of],
+            [seen.photo for seen in of],
+        )  # fmt: skip
+        return dict(zip(TRACK_COLUMNS, columns, strict=True))
+
+    @property
+    def tum(self) -> tuple[str, ...]:
+        """Lines of a TUM file: t x y z qx qy qz qw, the body level."""
+        rows = zip(self.observations, self.poses, strict=True)
+        return tuple(
+            f"{seen.t:.6f} {x:.6f} {y:.6f} {seen.z:.6f} 0 0 {np.sin(yaw / 2):.9f} "
+            f"{np.cos(yaw / 2):.9f}"
+            for seen, (x, y, yaw) in rows
+        )
+
+
+def assemble_track(
+    observations: Sequence[Observation], *, gap: float | None = None, process: Process | None = None
+) -> Track:
+    """Order observations by time and smooth them.
+
+    Args:
+        observations: What was seen, one a photograph.
+        gap: See `tracking.smooth.smooth` [s].
+        process: See `tracking.smooth.smooth`.
+
+    Returns:
+        The path; the camera's share of the error is added after smoothing, since more photographs
+        from the same place do not average it away.
+
+    Raises:
+        PathError: When nothing was seen or two photographs have one time.
+    """
+    if not observations:
+        raise PathError("the robot was seen in no photograph; look at the preview of the first one")
+    ordered = tuple(sorted(observations, key=lambda seen: seen.t))
+    path = smooth(
+        [seen.t for seen in ordered],
+        np.array([seen.planar for seen in ordered]),
+        covariance=np.array([seen.covariance for seen in ordered]),
+        time_sd=[seen.t_sd for seen in ordered],
+        gap=gap,
+        process=process,
+    )
+    shared = np.array([seen.camera_covariance for seen in ordered])
+    return Track(ordered, path, path.covariance + shared)
+
+
+def tape_check(track_xy: ArrayLike, measured: float) -> float:
+    """Compare the distance between first and last point with a tape.
+
+    Args:
+        track_xy: Points, shape (n, 2) [m].
+        measured: What the tape says [m].
+
+    Returns:
+        Tracked over measured distance, 1 when both agree [-].
+    """
+    points = np.asarray(track_xy, dtype=float)
+    if not measured > 0:
+        raise PathError(f"the tape says {measured} m; expected more than 0")
+    return float(np.hypot(*(points[-1] - points[0]))) / measured

@@ -111,7 +111,7 @@ def _slip_of(run: ModelRun) -> Slip:
 MODELS: Mapping[str, WalkModel] = MappingProxyType({
     model.name: model
     for model in (
-        WalkModel("dynamics", slips=True, dt=0.001, run=_dynamics),
+        WalkModel("dynamics", slips=True, dt=0.002, run=_dynamics),
         WalkModel("thesis", slips=True, dt=0.001, run=_thesis),
         WalkModel("no-slip", slips=False, dt=0.002, run=_no_slip),
         WalkModel("no-slip-simple", slips=False, dt=0.002, run=_wheels),

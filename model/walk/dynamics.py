@@ -39,7 +39,7 @@ class DynamicsOptions:
             so that legs do not bounce [N s/m].
     """
 
-    dt: float = 0.001
+    dt: float = 0.002
     stiffness: float = 2e5
     damping: float = 200.0
 

@@ -99,7 +99,7 @@ def first_walk() -> float:
     """Time a walk of one step: compiling, or loading what was compiled, and little else [s]."""
     law = VelocityCoulomb(FRICTION).table(weight=WEIGHT)
     began = time.perf_counter()
-    walk(ROBOT, gait(), law, duration=0.001)
+    walk(ROBOT, gait(), law, duration=0.01)
     return time.perf_counter() - began
 
 

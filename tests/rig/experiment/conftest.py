@@ -1,0 +1,136 @@
+# SPDX-License-Identifier: MIT
+"""A board's twin on a clock turned by hand, and a short plan for it."""
+
+import copy
+import tomllib
+from dataclasses import dataclass
+
+import numpy as np
+import pytest
+
+from rig.backends import RigDevices
+from rig.clock import ManualClock
+from rig.experiment.bench import make_bench
+from rig.experiment.control import Control
+from rig.experiment.plan import Plan, parse_plan
+from rig.experiment.plan_table import PlanTable
+from rig.experiment.run import run_plan
+from rig.experiment.simulated_load import SimulatedOperator
+from rig.experiment.sink import MemorySink
+from rig.links.memory import MemoryLink
+from rig.slip_rig.board import RigBoard
+from rig.slip_rig.imperfections import TYPICAL_RIG
+from rig.slip_rig.profile import load_rig_profile
+from rig.slip_rig.simulated import RigDynamics, SimulatedRig, simulated_rig
+from rig.slip_rig.simulated_board import SimulatedBoard
+from rig.slip_rig.sweep import SweepPlan
+
+PROFILE = load_rig_profile("rig-board-serial")
+
+PLAN = """
+schema = 1
+name = "short"
+material = "simulated"
+
+[points]
+loads = [4.0, 8.0]
+slips = [0.02, 0.2, 0.8]
+omega_leg = 12.0
+length = "duration"
+duration = 0.3
+order = "monotone"
+
+[load]
+set_by = "hand"
+tolerance = 0.3
+
+[settle]
+window = 0.2
+speed = 0.3
+friction = 0.3
+timeout = 3.0
+
+[accept]
+slip = 0.02
+slip_drift = 0.03
+friction_drift = 0.3
+
+[controls]
+tare_duration = 0.3
+
+[limits]
+speed = 40.0
+acceleration = 40.0
+normal_force = 25.0
+traction_force = 15.0
+speed_error = 4.0
+hold = 5.0
+"""
+
+
+def plan(*, drop=None, **changes) -> Plan:
+    """Parse the short plan; changes are `table={key: value}`, `drop` a table and a key."""
+    entries = copy.deepcopy(tomllib.loads(PLAN))
+    if drop is not None:
+        del entries[drop[0]][drop[1]]
+    for table, values in changes.items():
+        entries[table] |= values
+    return parse_plan(PlanTable(entries, file="plan.toml"))
+
+
+@dataclass
+class Twin:
+    """A rig, its bench, and what a run on it needs."""
+
+    rig: SimulatedRig
+    board: SimulatedBoard
+    bench: object
+    clock: ManualClock
+    control: Control
+    sink: MemorySink
+
+    def run(self, wanted=None, **options):
+        settings = {
+            "bench": self.bench, "load": SimulatedOperator(self.rig), "sink": self.sink,
+            "control": self.control, "clock": self.clock, "period": 0.01,
+        }  # fmt: skip
+        return run_plan(wanted or plan(), **(settings | options))
+
+    def at_rest(self) -> bool:
+        """Let half a second pass and tell whether both discs stand."""
+        self.rig.advance(self.clock.now() + 0.5)
+        return all(abs(omega) < 0.1 for _, omega in self.rig.speeds().values())
+
+
+class At(MemorySink):
+    """A sink that does something when so many batches were written."""
+
+    def __init__(self, count, action):
+        super().__init__()
+        self.count, self.action, self.written = count, action, 0
+
+    def write(self, readings, batch):
+        super().write(readings, batch)
+        self.written += 1
+        if self.written == self.count:
+            self.action()
+
+
+def twin(seed=0, *, watchdog=0.2) -> Twin:
+    rng = np.random.default_rng(seed)
+    rig = simulated_rig(
+        plan=SweepPlan(), imperfections=TYPICAL_RIG, dynamics=RigDynamics(), rng=rng
+    )
+    clock = ManualClock()
+    board = SimulatedBoard(rig, profile=PROFILE.board, rng=rng, watchdog=watchdog)
+    driver = RigBoard(
+        MemoryLink(board, clock=clock), profile=PROFILE.board, limits=PROFILE.limits, clock=clock
+    )
+    bench = make_bench(RigDevices(PROFILE, board=driver))
+    return Twin(rig, board, bench, clock, Control(), MemorySink())
+
+
+@pytest.fixture(name="lab")
+def _lab():
+    """Return what makes twins and plans."""
+    return {"twin": twin, "plan": plan, "At": At}

@@ -1,0 +1,183 @@
+# SPDX-License-Identifier: MIT
+"""Drives on a bus and a load cell by UDP, in real time: the bench, and faults planted in it."""
+
+import time
+from contextlib import contextmanager
+
+import numpy as np
+import pytest
+
+from rig.clock import SYSTEM_CLOCK
+from rig.device import Sample
+from rig.errors import DeviceFault, LimitExceeded, RigTimeout
+from rig.experiment.acquire import Acquisition
+from rig.experiment.bench import HostTime, make_bench
+from rig.experiment.control import Control
+from rig.experiment.sink import MemorySink
+from rig.experiment.verdict import measured_slip
+from rig.links.can import CanLink
+from rig.slip_rig.can_simple import Command, split_id
+from rig.slip_rig.imperfections import RigImperfections
+from rig.slip_rig.profile import load_rig_profile
+from rig.slip_rig.rdt import SATURATED
+from rig.slip_rig.simulated import RigDynamics, simulated_rig
+from rig.slip_rig.simulated_drives import SimulatedDrives
+from rig.slip_rig.simulated_load_cell import SimulatedLoadCell
+from rig.slip_rig.sweep import SweepPlan
+from rig.twins import simulated_rig_devices
+
+PROFILE = load_rig_profile("rig-odrive-netft")
+
+
+@contextmanager
+def turning(lab, monkeypatch, *, speed=12.0, slip=0.2, **limits):
+    """Yield an acquisition whose discs turn, the rig, the drives' twin and the cell's."""
+    found = {}
+    for kind in (SimulatedDrives, SimulatedLoadCell):
+        start = kind.__init__
+
+        def keep(self, *args, _start=start, _kind=kind, **options):
+            _start(self, *args, **options)
+            found[_kind] = self
+
+        monkeypatch.setattr(kind, "__init__", keep)
+    rig = simulated_rig(
+        plan=SweepPlan(), imperfections=RigImperfections(), dynamics=RigDynamics(),
+        rng=np.random.default_rng(0),
+    )  # fmt: skip
+    rig.load = 5.0
+    rng = np.random.default_rng(1)
+    with simulated_rig_devices(PROFILE, rig, rng=rng) as devices, make_bench(devices) as bench:
+        acquire = Acquisition(
+            bench, limits=lab["plan"](limits=limits).limits, control=Control(),
+            sink=MemorySink(), clock=SYSTEM_CLOCK,
+        )  # fmt: skip
+        acquire.arm()
+        acquire.aim(speed, slip)
+        acquire.until(lambda _: not acquire.ramping, 2.0)
+        acquire.until(lambda _: False, 0.2)
+        yield acquire, rig, found[SimulatedDrives], found[SimulatedLoadCell]
+
+
+def test_forces_and_speeds_are_lined_up(lab, monkeypatch):
+    with turning(lab, monkeypatch) as (acquire, _, drives, _):
+        parts = []
+        acquire.until(lambda batch: parts.append(batch.readings), 0.3)
+        slip = np.concatenate([measured_slip(part, PROFILE) for part in parts])
+        t = np.concatenate([part.t for part in parts])
+        assert slip.mean() == pytest.approx(0.2, abs=0.01)
+        assert len(t) > 1000
+        assert np.all(np.diff(t) > 0)
+        assert drives.turning()
+
+
+def test_a_force_beyond_its_limit_is_answered_in_the_same_look(lab, monkeypatch):
+    reactions = []
+    for _ in range(3):
+        with turning(lab, monkeypatch) as (acquire, rig, drives, _):
+            rig.load = 60.0
+            with pytest.raises(LimitExceeded, match="normal force is"):
+                acquire.until(lambda _: False, 0.5)
+            reactions.append(acquire.reaction)
+            deadline = time.monotonic() + 0.5
+            while drives.turning() and time.monotonic() < deadline:
+                time.sleep(0.001)
+            assert not drives.turning()
+    assert np.median(reactions) < 0.02
+
+
+def test_a_silent_load_cell_stops_the_discs(lab, monkeypatch):
+    with turning(lab, monkeypatch) as (acquire, _, drives, cell):
+        monkeypatch.setattr(cell, "_emit", lambda record: None)
+        with pytest.raises(RigTimeout, match="stream 'load cell' sent nothing within"):
+            acquire.until(lambda _: False, 1.0)
+        time.sleep(0.05)
+        assert not drives.turning()
+
+
+def test_a_saturated_load_cell_stops_the_discs(lab, monkeypatch):
+    with turning(lab, monkeypatch) as (acquire, _, drives, cell):
+        cell.status = SATURATED
+        with pytest.raises(DeviceFault, match="transducer saturated"):
+            acquire.until(lambda _: False, 1.0)
+        time.sleep(0.05)
+        assert not drives.turning()
+
+
+def test_a_dead_bus_stops_the_discs_by_their_watchdog(lab, monkeypatch):
+    with turning(lab, monkeypatch) as (acquire, _, drives, _):
+        monkeypatch.setattr(CanLink, "read", lambda self, timeout: [])
+        monkeypatch.setattr(CanLink, "write", lambda self, can_id, data: False)
+        with pytest.raises(RigTimeout, match="drive' sent nothing within"):
+            acquire.until(lambda _: False, 1.0)
+        time.sleep(0.3)  # beyond the watchdog's 0.2 s: no command can arrive
+        assert not drives.turning()
+
+
+def test_a_drive_that_is_heard_no_more_stops_both(lab, monkeypatch):
+    with turning(lab, monkeypatch) as (acquire, _, drives, _):
+        send = drives._send
+
+        def only_leg(axis, command, data):
+            if axis.disc == "leg":
+                send(axis, command, data)
+
+        monkeypatch.setattr(drives, "_send", only_leg)
+        with pytest.raises(RigTimeout, match="stream 'ground drive' sent nothing"):
+            acquire.until(lambda _: False, 1.0)
+        time.sleep(0.05)
+        assert not drives.turning()
+
+
+def test_an_error_of_a_drive_stops_both(lab, monkeypatch):
+    with turning(lab, monkeypatch) as (acquire, _, drives, _):
+        drives.trip("ground", 0x40)
+        with pytest.raises(DeviceFault, match="ground disc reports motor failed"):
+            acquire.until(lambda _: False, 1.0)
+        time.sleep(0.05)
+        assert not drives.turning()
+
+
+def test_standstill_is_commanded_before_closed_loop(lab, monkeypatch):
+    seen = []
+    write = CanLink.write
+
+    def spy(self, can_id, data):
+        seen.append((*split_id(can_id), data))
+        return write(self, can_id, data)
+
+    monkeypatch.setattr(CanLink, "write", spy)
+    with turning(lab, monkeypatch):
+        pass
+    for node in (0, 1):
+        own = [(command, data) for n, command, data in seen if n == node]
+        loop = next(k for k, (command, _) in enumerate(own) if command == Command.SET_AXIS_STATE)
+        speeds = [data for command, data in own[:loop] if command == Command.SET_INPUT_VELOCITY]
+        assert speeds
+        assert all(data == bytes(8) for data in speeds)
+
+
+def test_watchdogs_are_fed_at_fifty_hertz_while_all_is_well(lab, monkeypatch):
+    seen = []
+    with turning(lab, monkeypatch) as (acquire, *_):
+        write = CanLink.write
+
+        def spy(self, can_id, data):
+            if can_id >> 5 == 0:
+                seen.append(time.monotonic())
+            return write(self, can_id, data)
+
+        monkeypatch.setattr(CanLink, "write", spy)
+        acquire.until(lambda _: False, 1.0)
+        assert len(seen) >= 35  # 50, where the machine is not busy
+        assert max(np.diff(seen)) < 0.2
+
+
+def test_device_time_undoes_batches_and_survives_a_restart():
+    clock = HostTime()
+    first = [Sample(10.02, 1.00 + 0.01 * k, k, ()) for k in range(3)]
+    np.testing.assert_allclose(clock.map(first), [10.0, 10.01, 10.02])
+    late = [Sample(10.09, 1.03, 3, ())]
+    np.testing.assert_allclose(clock.map(late), [10.03])
+    anew = [Sample(20.0, 0.0, 0, ())]
+    np.testing.assert_allclose(clock.map(anew), [20.0])

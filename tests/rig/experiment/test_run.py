@@ -1,0 +1,304 @@
+# SPDX-License-Identifier: MIT
+import numpy as np
+import pytest
+
+from rig.errors import DeviceFault, LimitExceeded, ProtocolError, RigTimeout
+from rig.experiment.load import DrivenShaft, HandShaft
+from rig.experiment.simulated_load import SimulatedAxis
+from rig.experiment.sink import MemorySink, SinkFailed
+from rig.experiment.verdict import measured_slip
+from rig.safety import StopCategory
+from rig.slip_rig.sweep import SOURCE_LAW, SOURCE_VALUES
+
+
+def reasons(sink):
+    return [text for kind, text in sink.events if kind == "end"]
+
+
+def test_a_plan_runs_to_its_end_and_every_point_obeys_the_law(lab):
+    twin = lab["twin"]()
+    outcome = twin.run()
+    assert outcome.completed
+    assert (outcome.finished, outcome.refused) == (6, ())
+    assert twin.at_rest()
+    assert reasons(twin.sink) == ["completed"]
+    for run in twin.sink.accepted:
+        slip = measured_slip(run.readings, twin.bench.profile)
+        expected = SOURCE_LAW.force(slip, run.readings.normal_force, SOURCE_VALUES)
+        assert run.readings.traction_force.mean() == pytest.approx(expected.mean(), abs=0.25)
+        assert np.all(np.diff(run.readings.t) > 0)
+
+
+def test_a_sweep_glides_through_its_slips(lab):
+    twin = lab["twin"]()
+    wanted = lab["plan"](points={"sweep": True, "duration": 4.0}, accept={"slip": 0.05})
+    assert twin.run(wanted).completed
+    run = twin.sink.accepted[0]
+    slip = measured_slip(run.readings, twin.bench.profile)
+    at = (run.readings.t - run.readings.t[0]) / np.ptp(run.readings.t)
+    commanded = np.array([run.start.point.slip_at(f) for f in at])
+    assert np.abs(slip - commanded).mean() < 0.03
+
+
+def test_a_point_that_cannot_be_good_is_tried_again_and_then_refused(lab):
+    twin = lab["twin"]()
+    outcome = twin.run(lab["plan"](accept={"slip": 1e-9, "attempts": 2}))
+    assert outcome.completed
+    assert len(outcome.refused) == 6
+    assert outcome.attempts == 12
+    assert not twin.sink.accepted
+    assert "off its set-point" in twin.sink.runs[0].verdict.problems[0]
+
+
+def test_a_rig_that_never_settles_says_so(lab):
+    twin = lab["twin"]()
+    wanted = lab["plan"](
+        settle={"friction": 1e-12, "timeout": 0.4}, accept={"attempts": 1}, points={"loads": [4.0]}
+    )
+    outcome = twin.run(wanted)
+    assert len(outcome.refused) == 3
+    assert "not settled in time" in twin.sink.runs[0].verdict.problems
+
+
+def test_a_resumed_run_measures_only_what_is_left_after_a_new_zero(lab):
+    twin = lab["twin"]()
+    twin.sink = lab["At"](60, lambda: twin.control.stop.request(StopCategory.SAFE, "planted"))
+    first = twin.run()
+    assert first.reason == "safe stop: planted"
+    done = {run.start.point.number for run in twin.sink.accepted}
+    assert 0 < len(done) < 6
+    again = lab["twin"](seed=1)
+    outcome = again.run(done=done)
+    assert outcome.finished == 6
+    assert {r.start.point.number for r in again.sink.accepted} | done == set(range(2, 8))
+    assert not {r.start.point.number for r in again.sink.accepted} & done
+    assert [kind for kind, _ in again.sink.events if kind == "zero"] == ["zero"]
+
+
+def test_a_force_beyond_its_limit_stops_within_so_many_samples(lab):
+    twin = lab["twin"]()
+
+    def overload():
+        twin.rig.load = 40.0
+
+    twin.sink = lab["At"](10, overload)
+    with pytest.raises(LimitExceeded, match=r"normal force is .* N; its limit is 25 N"):
+        twin.run()
+    assert twin.at_rest()
+    assert reasons(twin.sink)[0].startswith("LimitExceeded: normal force")
+    assert twin.sink.runs[-1].verdict is None
+    again = lab["twin"](seed=1)
+    assert again.run(done={r.start.point.number for r in twin.sink.accepted}).finished == 6
+
+
+def test_a_traction_beyond_its_limit_stops(lab):
+    twin = lab["twin"]()
+    with pytest.raises(LimitExceeded, match=r"traction force is .* N; its limit is 1 N"):
+        twin.run(lab["plan"](limits={"traction_force": 1.0}))
+    assert twin.at_rest()
+
+
+def test_a_silent_device_stops_and_is_named(lab, monkeypatch):
+    twin = lab["twin"]()
+
+    def fall_silent():
+        monkeypatch.setattr(twin.board, "_frames", lambda due: [])
+
+    twin.sink = lab["At"](10, fall_silent)
+    with pytest.raises(RigTimeout, match="stream 'board' sent nothing within"):
+        twin.run()
+    assert twin.at_rest()
+    assert "board" in reasons(twin.sink)[0]
+
+
+def test_a_device_that_stops_by_itself_is_an_error(lab):
+    twin = lab["twin"]()
+    twin.sink = lab["At"](10, lambda: twin.clock.sleep(0.5))  # held up beyond the watchdog
+    with pytest.raises((DeviceFault, RigTimeout)):
+        twin.run()
+    assert twin.at_rest()
+
+
+def test_a_disc_that_does_not_follow_stops(lab, monkeypatch):
+    twin = lab["twin"]()
+    command = twin.rig.command
+    monkeypatch.setattr(
+        twin.rig, "command", lambda disc, omega: command(disc, omega if disc == "leg" else 0.0)
+    )
+    wanted = lab["plan"](limits={"speed_error": 2.0}, points={"slips": [0.0]})
+    with pytest.raises(LimitExceeded, match="departure of the ground disc from its set-point"):
+        twin.run(wanted)
+    assert twin.at_rest()
+
+
+def test_a_full_disk_ramps_down_and_is_named(lab):
+    twin = lab["twin"]()
+
+    def fill():
+        twin.sink.room = 0.0
+
+    twin.sink = lab["At"](10, fill)
+    with pytest.raises(SinkFailed, match="room left is 0 bytes"):
+        twin.run()
+    assert twin.at_rest()
+
+
+def test_an_exception_anywhere_leaves_the_motors_at_rest(lab):
+    twin = lab["twin"]()
+
+    def fail():
+        raise ZeroDivisionError("planted")
+
+    twin.sink = lab["At"](10, fail)
+    with pytest.raises(ZeroDivisionError):
+        twin.run()
+    assert twin.at_rest()
+    assert reasons(twin.sink) == ["ZeroDivisionError: planted"]
+
+
+def test_a_host_that_hangs_is_stopped_by_the_watchdog(lab):
+    twin = lab["twin"]()
+
+    def hang():
+        twin.board.poll(twin.clock.now() + 0.3, b"")
+        twin.rig.advance(twin.clock.now() + 0.9)
+        assert all(abs(omega) < 0.1 for _, omega in twin.rig.speeds().values())
+        raise TimeoutError
+
+    twin.sink = lab["At"](10, hang)
+    with pytest.raises(TimeoutError):
+        twin.run()
+
+
+def test_a_soft_stop_holds_and_the_point_is_done_anew(lab):
+    twin = lab["twin"]()
+    twin.sink = lab["At"](10, lambda: twin.control.stop.request(StopCategory.SOFT, "planted"))
+    speeds = []
+
+    sleep = twin.clock.sleep
+    held = []
+
+    def passing(duration):
+        sleep(duration)
+        if twin.control.status.startswith("hold"):
+            held.append(twin.clock.now())
+            if twin.clock.now() - held[0] > 2.0:
+                speeds.append(twin.rig.speeds()["leg"][1])
+                twin.control.resume()
+
+    twin.clock.sleep = passing
+    outcome = twin.run()
+    assert outcome.completed
+    assert outcome.finished == 6
+    assert abs(speeds[0]) < 0.1
+    assert twin.sink.runs[0].reason == "soft stop: planted"
+    assert [kind for kind, _ in twin.sink.events].count("go on") == 1
+
+
+def test_a_soft_stop_without_a_word_becomes_a_safe_one(lab):
+    twin = lab["twin"]()
+    twin.sink = lab["At"](10, lambda: twin.control.stop.request(StopCategory.SOFT, "planted"))
+    outcome = twin.run()
+    assert outcome.reason.startswith("safe stop: held for 5 s without a word")
+    assert twin.at_rest()
+
+
+def test_a_pause_waits_for_the_end_of_the_point(lab):
+    twin = lab["twin"]()
+    twin.sink = lab["At"](10, twin.control.pause)
+    outcome = twin.run()
+    assert "safe stop" in outcome.reason  # nobody resumed
+    assert [run.reason for run in twin.sink.runs] == ["completed"]
+
+
+def test_an_emergency_stop_is_at_once_and_latched_until_it_is_reset(lab):
+    twin = lab["twin"]()
+    at = []
+
+    def push():
+        twin.control.stop.request(StopCategory.EMERGENCY, "planted")
+        at.append(twin.clock.now())
+
+    twin.sink = lab["At"](10, push)
+    outcome = twin.run()
+    assert outcome.reason == "emergency stop: planted"
+    assert twin.clock.now() - at[0] < 0.05  # no ramp
+    assert twin.at_rest()
+    twin.control.resume()
+    with pytest.raises(ProtocolError, match="latched"):
+        twin.run()
+    twin.control.stop.reset()
+    twin.sink = MemorySink()
+    assert twin.run().completed
+
+
+def test_a_harder_stop_cuts_a_ramp_short(lab):
+    twin = lab["twin"]()
+    twin.sink = lab["At"](10, lambda: twin.control.stop.request(StopCategory.SAFE, "first"))
+    sleep, began = twin.clock.sleep, []
+
+    def passing(duration):
+        sleep(duration)
+        if twin.control.stop.pending and not began:
+            began.append(twin.clock.now())
+        if began and twin.clock.now() - began[0] > 0.05:
+            twin.control.stop.request(StopCategory.EMERGENCY, "second")
+
+    twin.clock.sleep = passing
+    twin.run()
+    assert twin.clock.now() - began[0] < 0.15  # the ramp alone takes 0.3 s
+    assert twin.at_rest()
+
+
+def test_a_driven_axis_finds_the_loads_and_the_zero(lab):
+    twin = lab["twin"]()
+    axis = SimulatedAxis(twin.rig, clock=twin.clock)
+    load = DrivenShaft(axis, tolerance=0.3, patience=30.0)
+    outcome = twin.run(load=load)
+    assert outcome.completed
+    zero = twin.sink.runs[0].start.zero
+    assert abs(zero.normal) < 0.1
+    for run in twin.sink.accepted:
+        assert run.verdict.normal_force == pytest.approx(run.start.point.load, rel=0.7, abs=0.5)
+
+
+def test_an_axis_that_brings_no_force_is_given_up(lab):
+    twin = lab["twin"]()
+
+    class Stuck:
+        def move(self, velocity):
+            pass
+
+    load = DrivenShaft(Stuck(), tolerance=0.1, patience=2.0)
+    twin.rig.load = 2.0
+    with pytest.raises(RigTimeout, match="the load axis did not bring 4 N"):
+        twin.run(load=load)
+    assert twin.at_rest()
+
+
+def test_a_person_is_asked_and_believed_only_within_the_tolerance(lab):
+    twin = lab["twin"]()
+    twin.rig.load = 1e-3
+    asked = []
+
+    class Operator:
+        def doing(self, what, *, done, of, left):
+            pass
+
+        def prompt(self, text, *, normal):
+            asked.append(text)
+            if asked.count(text) == 5:
+                twin.control.confirm()  # too early where a force is wanted
+            if asked.count(text) == 10:
+                twin.rig.load = float(text.split()[5]) if "set" in text else 1e-3
+            if asked.count(text) == 20:
+                twin.control.confirm()
+
+        def judged(self, point, verdict, *, attempt):
+            pass
+
+    load = HandShaft(twin.control, tolerance=3.0)  # the discs may stand on the bump
+    outcome = twin.run(load=load, watcher=Operator())
+    assert outcome.completed
+    assert len([text for kind, text in twin.sink.events if kind == "prompt"]) == 3
+    assert asked.count("set the normal force to 8 N +/- 3 N, then confirm") >= 5

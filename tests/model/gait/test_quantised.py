@@ -1,0 +1,100 @@
+# SPDX-License-Identifier: MIT
+import numpy as np
+import pandas as pd
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from model.errors import DomainError
+from model.gait.quantised import QuantisedLog, find_step
+
+STEP = np.radians(3.6)
+
+
+def tripod(t, *, cycle=2.0, slow=1.2, stood=0.0):
+    """Angles of six legs that sweep slowly for half a cycle and fast for the other half."""
+    phase = (np.maximum(t[:, None] - stood, 0.0) + cycle * np.arange(6) / 6) / cycle
+    turns, inside = np.floor(phase), phase % 1
+    fast = 2 * np.pi - slow
+    sweep = np.where(inside < 0.5, 2 * slow * inside, slow + 2 * fast * (inside - 0.5))
+    return 0.9 + 2 * np.pi * turns + sweep
+
+
+def counted(theta):
+    return STEP * np.round(theta / STEP)
+
+
+@given(cycle=st.floats(1.8, 4.0), slow=st.floats(0.8, 2.5), rate=st.sampled_from([50.0, 100.0]))
+def test_angles_come_back_far_closer_than_a_count(cycle, slow, rate):
+    t = np.arange(0, 10, 1 / rate)
+    theta = tripod(t, cycle=cycle, slow=slow)
+    smooth = QuantisedLog(t, counted(theta), STEP).smooth()
+    error = smooth.theta - theta
+    assert np.sqrt(np.mean(error**2)) < 0.25 * STEP
+    assert np.all(np.abs(error.mean(axis=0)) < 0.12 * STEP)
+
+
+def test_a_robot_that_stands_first_stands_in_the_reconstruction():
+    t = np.arange(0, 8, 0.01)
+    theta = tripod(t, stood=1.5)
+    smooth = QuantisedLog(t, counted(theta), STEP).smooth().theta
+    assert np.abs(smooth - theta).max() < 0.7 * STEP
+    assert np.all(np.ptp(smooth[t < 1.3], axis=0) < 0.3 * STEP)
+
+
+def test_draws_spread_as_far_as_the_middle_errs():
+    t = np.arange(0, 10, 0.01)
+    theta = tripod(t)
+    log = QuantisedLog(t, counted(theta), STEP)
+    rng = np.random.default_rng(2)
+    draws = np.stack([log.smooth(rng).theta for _ in range(30)])
+    spread = draws.std(axis=0).mean()
+    error = np.abs(log.smooth().theta - theta).mean()
+    assert 0.3 * error < spread < 0.3 * STEP
+
+
+def test_a_leg_that_never_moves_stays_in_its_count():
+    t = np.arange(0, 2, 0.01)
+    still = np.zeros((len(t), 6))
+    log = QuantisedLog(t, still, STEP)
+    np.testing.assert_array_equal(log.smooth().theta, 0)
+    drawn = log.smooth(np.random.default_rng(1)).theta
+    assert np.all(np.abs(drawn) <= 0.5 * STEP)
+    assert np.all(np.ptp(drawn, axis=0) == 0)
+
+
+def test_a_pause_in_the_middle_stays_a_pause():
+    t = np.arange(0, 9, 0.01)
+    walked = np.where(t < 4.03, t, np.maximum(4.03, t - 1.5))
+    theta = tripod(walked)
+    smooth = QuantisedLog(t, counted(theta), STEP).smooth().theta
+    assert np.abs(smooth - theta).max() < 1.0 * STEP
+
+
+def test_legs_may_turn_backwards():
+    t = np.arange(0, 6, 0.01)
+    theta = -tripod(t)
+    smooth = QuantisedLog(t, counted(theta), STEP).smooth().theta
+    assert np.sqrt(np.mean((smooth - theta) ** 2)) < 0.12 * STEP
+
+
+def test_counting_is_found_and_its_absence_too():
+    t = np.arange(0, 10, 0.01)
+    assert find_step(counted(tripod(t))) == pytest.approx(STEP, rel=1e-9)
+    assert find_step(np.round(counted(tripod(t)), 4)) == pytest.approx(STEP, rel=1e-2)
+    assert find_step(tripod(t)) is None
+    assert find_step(tripod(t) + np.random.default_rng(1).normal(0, 1e-3, (len(t), 6))) is None
+    assert find_step(np.zeros((100, 6))) is None
+
+
+def test_a_count_of_nothing_is_refused():
+    with pytest.raises(DomainError, match="more than zero"):
+        QuantisedLog(np.arange(3.0), np.zeros((3, 6)), 0.0)
+
+
+@pytest.mark.reference
+def test_counted_angles_of_an_engine_s_servos_come_back(shared):
+    table = pd.read_csv(shared / "virtual-world/walks/tripod_s1.20_left_mu0.38_tc2.csv.gz")
+    theta = table[[f"th{leg}" for leg in range(1, 7)]].to_numpy()
+    smooth = QuantisedLog(table["t"].to_numpy(), counted(theta), STEP).smooth().theta
+    assert np.degrees(np.sqrt(np.mean((smooth - theta) ** 2))) < 0.15

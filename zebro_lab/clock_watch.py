@@ -11,7 +11,7 @@ from rig.clock_fit import FEWEST, fit_clock
 from rig.device import Sample
 from zebro_lab.raw_log import RawStream
 
-BUCKET: Final = 0.1
+BUCKET: Final = 0.05
 """One comparison of clocks is kept in each of these [s]."""
 RESTARTED: Final = 1.0
 """Clocks that come apart by more than this between samples: the device began anew [s]."""

@@ -5,6 +5,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import fields
 from typing import IO, Final
 
+import numpy as np
+
 from rig.device import Counters, Sample
 from zebro_lab.cdr import CdrWriter
 from zebro_lab.raw_log import RAW_SCHEMAS, encode_raw, raw_topic
@@ -62,7 +64,8 @@ class LogWriter:
     def write(self, stream: str, samples: Sequence[Sample]) -> None:
         """Write samples of a stream, at least one: raw, and as its view shows them."""
         view = self._views[stream]
-        stamps = [self.stamp(sample.host_time) for sample in samples]
+        host_time = np.array([sample.host_time for sample in samples]) - self._start
+        stamps = (self._start_ns + np.rint(1e9 * host_time).astype(np.int64)).tolist()
         dtype, _ = RAW_SCHEMAS[view.raw_schema]
         topic = raw_topic(stream)
         self._add(topic, stamps[-1], encode_raw(samples, dtype=dtype, start=self._start))

@@ -5,6 +5,7 @@ Counts are kept, not angles or forces: those follow from them with the profile, 
 was corrected years later.
 """
 
+import itertools
 import math
 import struct
 from collections.abc import Iterator, Sequence
@@ -117,13 +118,17 @@ def encode_raw(samples: Sequence[Sample], *, dtype: str, start: float) -> bytes:
         OverflowError: A count does not fit.
     """
     host, device, sequence, counts, status, channel = zip(*samples, strict=True)
-    values = np.array(counts, dtype=dtype)
+    width = len(counts[0])
+    if any(len(row) != width for row in counts):
+        raise ValueError(f"samples of one stream have {set(map(len, counts))} counts")
+    flat = itertools.chain.from_iterable(counts)  # half the time of an array of tuples
+    values = np.fromiter(flat, dtype=dtype, count=width * len(counts))
     missing = [-1 if number is None else number for number in sequence]
     message = CdrWriter().array(np.array(host, dtype="<f8") - start)
     message.array(np.array(device, dtype="<f8"))  # None becomes NaN
     message.array(np.array(missing, dtype="<i8"))
     message.array(np.array(status, dtype="<u4")).array(np.array(channel, dtype="<u4"))
-    return message.uint32(values.shape[1]).array(values.reshape(-1)).message()
+    return message.uint32(width).array(values).message()
 
 
 def decode_raw(data: bytes, *, dtype: str) -> RawStream:

@@ -255,7 +255,7 @@ class ForceCheck:
             for name, limit in zip(("normal", "traction"), limits, strict=True)
         ]
         self._limits = limits
-        self._scale, self._columns = _force_columns(profile)
+        self._channels = _force_channels(profile)
 
     def __call__(self, samples: Sequence[Sample]) -> None:
         """Check samples.
@@ -263,19 +263,36 @@ class ForceCheck:
         Raises:
             LimitExceeded: Several in a row are beyond a limit.
         """
-        for guard, limit, column in zip(self._guards, self._limits, self._columns, strict=True):
-            values = [sample.counts[column] for sample in samples]
-            if max(values) <= limit * self._scale and -min(values) <= limit * self._scale:
+        for guard, limit, channel in zip(self._guards, self._limits, self._channels, strict=True):
+            values = [sample.counts[channel.index] for sample in samples]
+            if max(map(abs, values)) <= limit * channel.counts_per_newton:
                 guard.check(0.0)  # all is well: one call for hundreds of samples
                 continue
             for value in values:
-                guard.check(value / self._scale)
+                guard.check(channel.sign * value / channel.counts_per_newton)
 
 
-def _force_columns(profile: RigProfile) -> tuple[float, tuple[int, int]]:
-    if profile.board is not None:
-        return profile.board.counts_per_force, (0, 1)
-    cell = profile.load_cell
+@dataclass(frozen=True)
+class _ForceChannel:
+    """Where a force is found among a device's counts."""
+
+    index: int
+    sign: int
+    counts_per_newton: float
+
+
+def _force_channels(profile: RigProfile) -> tuple[_ForceChannel, _ForceChannel]:
+    board, cell = profile.board, profile.load_cell
+    if board is not None:
+        scale = board.counts_per_force
+        return (
+            _ForceChannel(0, board.normal_sign, scale),
+            _ForceChannel(1, board.traction_sign, scale),
+        )
     if cell is None:
         raise SettingsError(f"profile '{profile.name}' has no load cell", key="--rig")
-    return cell.counts_per_force, (cell.normal.index, cell.traction.index)
+    scale = cell.counts_per_force
+    return (
+        _ForceChannel(cell.normal.index, cell.normal.sign, scale),
+        _ForceChannel(cell.traction.index, cell.traction.sign, scale),
+    )

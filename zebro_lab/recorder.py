@@ -29,9 +29,8 @@ from zebro_lab.run_manifest import RECORDING, RunManifest, software_version, wri
 from zebro_lab.sample_queue import SampleQueue
 from zebro_lab.stream_views import View
 
-WAKE: Final = 0.04
-"""Pause between two looks at the queues [s]."""
 FLUSH_EVERY: Final = 0.1
+"""Pause between two looks at the queues, each of which ends on the disk [s]."""
 SYNC_EVERY: Final = 1.0
 LIMIT: Final = 100_000
 """Samples of one stream that may wait for the disk: 14 s of a fast load cell."""
@@ -250,13 +249,10 @@ class RunRecorder:
         write_manifest(self.folder, self._manifest)
 
     def _write_on(self) -> None:
-        flushed = self._clock.now()
         try:
-            while not self._ending.wait(WAKE):
+            while not self._ending.wait(FLUSH_EVERY):
                 self._drain()
-                if self._clock.now() - flushed >= FLUSH_EVERY - WAKE:
-                    self._flush()
-                    flushed = self._clock.now()
+                self._flush()
             self._drain()
         except Exception as error:  # noqa: BLE001, RUF100 - kept for the owner, who ends the run
             self._failure = f"{self.folder / LOG_FILE}: {_one_line(error)}"

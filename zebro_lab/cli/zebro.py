@@ -52,7 +52,7 @@ class _Terminal:
         from rig.zebro.check import Observation
 
         leg = typer.prompt(
-            f"channel {channel + 1} moved; which leg was it (1 to 6)?", type=_leg_number
+            f"channel {channel + 1} moved; which leg was it (1 to 6)?", value_proc=_leg_number
         )
         return Observation(leg, typer.confirm("did it turn as in walking forward?"))
 
@@ -64,13 +64,18 @@ class _Terminal:
 
     def measure_height(self, theta_deg: float) -> float:
         """Ask for the height of the hip above the ground."""
-        millimetres = typer.prompt(f"leg 1 stands at {theta_deg:.1f} degrees; hip height in mm?",
-                                   type=float)  # fmt: skip
-        return millimetres / 1000
+        asked = f"leg 1 stands at {theta_deg:.1f} degrees; hip height in mm?"
+        return typer.prompt(asked, value_proc=_number) / 1000
 
 
 def _leg_number(text: str) -> int:
-    number = int(text)
-    if not 1 <= number <= 6:
-        raise typer.BadParameter("expected 1 to 6")
-    return number
+    if text not in {"1", "2", "3", "4", "5", "6"}:
+        raise typer.BadParameter(f"found '{text}'; expected 1 to 6")
+    return int(text)
+
+
+def _number(text: str) -> float:
+    try:
+        return float(text)
+    except ValueError as error:
+        raise typer.BadParameter(f"found '{text}'; expected a number") from error

@@ -1,0 +1,107 @@
+# SPDX-License-Identifier: MIT
+"""What recording costs, beside a robot, an IMU and a load cell at full rate in another process.
+
+python docs/recording_bench.py [SECONDS]
+"""
+
+import multiprocessing
+import resource
+import socket
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+import numpy as np
+
+from rig.imu.profile import load_imu_profile
+from rig.imu.simulated import SimulatedImu
+from rig.imu.stream import ImuStream
+from rig.links.serial import SerialLink
+from rig.links.serve import PortServer
+from rig.links.udp import UdpLink
+from rig.slip_rig.load_cell import NetFtCell
+from rig.slip_rig.profile import load_rig_profile
+from rig.slip_rig.rdt import RECORD
+from rig.twins import robot_twin
+from rig.zebro.profile import load_leg_profile
+from rig.zebro.serial import PacketLegs
+from zebro_lab.acquisition import Device, acquiring
+from zebro_lab.record_devices import default_gait
+from zebro_lab.recorder import RunDescription, RunRecorder
+from zebro_lab.run_folder import read_manifest
+from zebro_lab.stream_views import ImuView, LegsView, LoadCellView
+
+LEGS = load_leg_profile("zebro-100-serial")
+IMU = load_imu_profile("imu-quaternion-serial")
+CELL = load_rig_profile("rig-odrive-netft").load_cell
+
+
+def serve(connection):
+    """Serve all three until the other side hangs up."""
+    rng = np.random.default_rng(0)
+    cell = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+    cell.bind(("127.0.0.1", 0))
+    with (
+        PortServer(robot_twin(LEGS, default_gait(), rng=rng)) as legs,
+        PortServer(SimulatedImu(profile=IMU, rng=rng)) as imu,
+    ):
+        connection.send((legs.port, imu.port, cell.getsockname()))
+        client = cell.recvfrom(64)[1]
+        began, number = time.monotonic(), 0
+        while not connection.poll():
+            forces = (1_500_000 + number % 997, 0, -6_000_000 - number % 1009, 0, 0, 0)
+            while number < (time.monotonic() - began) * CELL.rate:
+                number += 1
+                cell.sendto(RECORD.pack(number, number, 0, *forces), client)
+            time.sleep(0.001)
+
+
+def cpu():
+    used = resource.getrusage(resource.RUSAGE_SELF)
+    return used.ru_utime + used.ru_stime
+
+
+def measure(seconds, folder):
+    """Record for a while; return the end record and the share of a core."""
+    ours, theirs = multiprocessing.Pipe()
+    server = multiprocessing.get_context("spawn").Process(target=serve, args=(theirs,), daemon=True)
+    server.start()
+    legs_port, imu_port, address = ours.recv()
+    streams = (
+        PacketLegs(SerialLink(legs_port, baudrate=LEGS.baudrate), profile=LEGS),
+        ImuStream(SerialLink(imu_port, baudrate=IMU.baudrate), profile=IMU),
+        NetFtCell(UdpLink(*address), profile=CELL),
+    )
+    views = (LegsView("legs", profile=LEGS), ImuView("imu", profile=IMU),
+             LoadCellView("load_cell", profile=CELL))  # fmt: skip
+    devices = [Device(stream, view) for stream, view in zip(streams, views, strict=True)]
+    description = RunDescription(kind="walk", label="bench", source="sim:bench")
+    recorder = RunRecorder(folder, description=description,
+                           views={d.name: d.view for d in devices})  # fmt: skip
+    with streams[0], streams[1], streams[2], recorder:
+        with acquiring(devices, sink=recorder, start=recorder.start) as readers:
+            time.sleep(0.5)
+            before, began = cpu(), time.monotonic()
+            time.sleep(seconds)
+            share = (cpu() - before) / (time.monotonic() - began)
+        for name, reader in readers.items():
+            recorder.count(name, reader.counters)
+    ours.send("enough")
+    server.join(5)
+    return read_manifest(recorder.folder), share, (recorder.folder / "log.mcap").stat().st_size
+
+
+def report(manifest, share, size):
+    print("| stream | received | lost | rejected | dropped |\n|---|---|---|---|---|")
+    for name, counters in manifest.counters.items():
+        rejected = sum(counters[key] for key in ("damaged", "repeated", "refused"))
+        print(f"| {name} | {counters['received']} | {counters['lost']} | {rejected} | "
+              f"{counters['dropped']} |")  # fmt: skip
+    rows = sum(manifest.streams.values())
+    print(f"\n{100 * share:.1f} % of one core, {size / rows:.0f} bytes a sample")
+
+
+if __name__ == "__main__":
+    with tempfile.TemporaryDirectory() as place:
+        report(*measure(float(sys.argv[1]) if len(sys.argv) > 1 else 10.0, Path(place)))

@@ -1,0 +1,275 @@
+# SPDX-License-Identifier: MIT
+"""Live devices into run folders: real drivers over twins, and what goes wrong with them."""
+
+import time
+
+import numpy as np
+import pytest
+
+from model.gait.reference import SampledReference
+from rig.backends import leg_driver, leg_link
+from rig.device import Sample
+from rig.errors import DeviceMismatch, LimitExceeded, ProfileError
+from rig.links.serve import PortServer
+from rig.replay import ReplayStream
+from rig.slip_rig.profile import load_rig_profile
+from rig.twins import robot_twin
+from rig.zebro.profile import load_leg_profile
+from zebro_lab.acquisition import Acquisition, Device, acquiring
+from zebro_lab.errors import DataError, RecordingError, SettingsError
+from zebro_lab.leg_log import read_leg_log
+from zebro_lab.raw_log import read_raw_log
+from zebro_lab.record_devices import ForceCheck, default_gait
+from zebro_lab.recorder import RunDescription, RunRecorder
+from zebro_lab.run_folder import profile_file, read_slip_rig_run
+from zebro_lab.stages.record import RecordRequest, record
+from zebro_lab.stages.runs import list_runs
+from zebro_lab.stages.simulate import TwinRequest, serve_zebro
+from zebro_lab.stream_views import LegsView
+
+LEGS = load_leg_profile("zebro-100-serial")
+
+
+class Watcher:
+    """Looks on; asks for the end after so many looks, or raises."""
+
+    def __init__(self, *, looks=None, error=None):
+        self.seen = []
+        self._looks, self._error = looks, error
+
+    def show(self, status):
+        self.seen.append(status)
+        if self._error is not None and len(self.seen) > 2:
+            raise self._error
+
+    def stop_reason(self):
+        return "key" if self._looks is not None and len(self.seen) >= self._looks else None
+
+
+def events(folder):
+    from mcap.reader import make_reader
+    from mcap_ros2.decoder import DecoderFactory
+
+    with (folder / "log.mcap").open("rb") as file:
+        reader = make_reader(file, decoder_factories=[DecoderFactory()])
+        return [d.msg for *_, d in reader.iter_decoded_messages(topics=["/events"])]
+
+
+@pytest.fixture(scope="module")
+def everything(tmp_path_factory):
+    """Return a run of all simulated devices together, and who looked on."""
+    watcher = Watcher()
+    request = RecordRequest(
+        tmp_path_factory.mktemp("data"), "all", zebro="sim", imus=("sim", "sim"), rig="sim",
+        duration=1.5, material="POM", operator="a",
+    )  # fmt: skip
+    return record(request, watcher), watcher
+
+
+def test_all_devices_are_recorded_and_nothing_is_lost(everything):
+    recorded, watcher = everything
+    manifest = recorded.manifest
+    assert (manifest.kind, manifest.exit_status) == ("slip-rig", "completed")
+    assert manifest.source == "sim:zebro+imu+rig"
+    assert set(manifest.counters) == {"legs", "imu1", "imu2", "drives", "load_cell"}
+    for name, counters in manifest.counters.items():
+        assert counters["received"] == manifest.streams[f"/{name}/raw"] > 100
+        assert sum(counters.values()) == counters["received"]
+    assert watcher.seen[-1].streams["load_cell"].counters.received > 1.4 * 7000
+
+
+def test_clocks_of_devices_that_tell_time_are_compared(everything):
+    clocks = everything[0].manifest.clocks
+    assert set(clocks) == {"legs", "imu1", "imu2", "load_cell"}
+    assert abs(clocks["legs"]["offset"]) < 0.2
+
+
+def test_the_twins_truth_is_in_the_record(everything):
+    assert everything[0].manifest.truth["rig"]["law"] == "magic-formula"
+
+
+def test_a_recorded_rig_is_data_for_a_calibration(everything):
+    folder = everything[0].folder
+    run = read_slip_rig_run(folder)
+    assert run.notes == ()
+    table = run.table
+    assert len(table) > 1.3 * 7000
+    assert np.all(np.diff(table.t) > 0)
+    assert np.median(table.omega_leg) == pytest.approx(12.0, abs=0.1)
+    assert np.all(table.normal_force > 0)
+
+
+def test_recorded_samples_replay_through_the_drivers_interface(everything):
+    stream = read_raw_log(everything[0].folder / "log.mcap").streams["/load_cell/raw"]
+    samples = stream.samples()
+    replay = ReplayStream(samples, name="load_cell", origin="RUN", speed=1e6)
+    with replay:
+        time.sleep(0.01)
+        again = replay.read(0.1)
+    assert [s[1:] for s in again] == [s[1:] for s in samples]
+
+
+def test_a_board_is_data_for_a_calibration(tmp_path):
+    request = RecordRequest(tmp_path, "board", rig="rig-board-serial@sim", duration=0.8)
+    table = read_slip_rig_run(record(request, Watcher()).folder).table
+    assert len(table) > 600
+    assert np.median(np.diff(table.t)) == pytest.approx(1e-3, rel=0.01)
+
+
+@pytest.fixture(scope="module")
+def walked(tmp_path_factory):
+    """Return a run whose robot was sent the set-points of a gait, and the gait."""
+    t = np.arange(0, 1.2, 0.01)
+    gait = SampledReference(t, default_gait().angles(t))
+    folder = tmp_path_factory.mktemp("walked")
+    rows = [",".join(map(repr, row)) for row in np.column_stack([t, gait.theta]).tolist()]
+    (folder / "legs.csv").write_text(
+        "\n".join([",".join(["t", *(f"theta{leg}" for leg in range(1, 7))]), *rows])
+    )
+    request = RecordRequest(folder, "walk", zebro="sim", play=folder / "legs.csv")
+    return record(request, Watcher()), gait
+
+
+def test_a_played_gait_is_followed_and_ends_the_run(walked):
+    recorded, gait = walked
+    assert recorded.manifest.kind == "walk"
+    log = read_leg_log(recorded.folder)
+    assert log.source == "sim:zebro"
+    assert log.reference.t[-1] == pytest.approx(gait.t[-1], abs=0.2)
+    lags = np.arange(-0.1, 0.3, 0.01)
+    inside = slice(10, 100)
+    away = [
+        np.remainder(log.reference.theta[inside]
+                     - gait.angles(log.reference.t[inside] - lag) + np.pi, 2 * np.pi) - np.pi
+        for lag in lags
+    ]  # fmt: skip
+    assert min(np.abs(a).mean() for a in away) < 2 * LEGS.quantisation
+
+
+def test_a_wrong_zero_found_later_is_repaired_in_the_runs_own_profile(walked):
+    folder = walked[0].folder
+    before = read_leg_log(folder).reference
+    file = profile_file(folder, "legs")
+    text = file.read_text()
+    file.write_text(text.replace("zero_counts = [0,", "zero_counts = [-5,"))
+    after = read_leg_log(folder).reference
+    file.write_text(text)
+    moved = after.theta - before.theta
+    np.testing.assert_allclose(np.remainder(moved[:, 0], 2 * np.pi), np.radians(18), atol=1e-9)
+    np.testing.assert_allclose(moved[:, 1:], 0.0, atol=1e-9)
+
+
+def test_a_run_without_legs_is_no_leg_log(everything, tmp_path):
+    request = RecordRequest(tmp_path, "imu", imus=("sim",), duration=0.2)
+    folder = record(request, Watcher()).folder
+    with pytest.raises((DataError, FileNotFoundError), match="leg"):
+        read_leg_log(folder)
+
+
+def test_a_wish_to_stop_is_the_reason(tmp_path):
+    recorded = record(RecordRequest(tmp_path, "x", imus=("sim",)), Watcher(looks=3))
+    assert recorded.manifest.exit_status == "stopped: key"
+    assert recorded.manifest.log_sha256 is not None
+
+
+def test_a_watcher_that_raises_ends_the_run_with_its_record(tmp_path):
+    with pytest.raises(RuntimeError, match="screen"):
+        record(RecordRequest(tmp_path, "x", imus=("sim",)), Watcher(error=RuntimeError("screen")))
+    (listed,) = list_runs(tmp_path)
+    assert listed.state == "failed: RuntimeError: screen"
+
+
+def test_swapped_devices_end_the_run_with_a_line_that_says_so(tmp_path):
+    with serve_zebro(TwinRequest("zebro-100-serial")) as served:
+        address = f"imu-quaternion-serial@{served.places['robot']}"
+        with pytest.raises(RecordingError, match="are two ports swapped"):
+            record(RecordRequest(tmp_path, "x", imus=(address,), duration=5.0), Watcher())
+    (listed,) = list_runs(tmp_path)
+    assert listed.state.startswith(f"failed: imu: {DeviceMismatch.__name__}")
+
+
+@pytest.mark.parametrize(
+    ("changes", "error", "message"),
+    [
+        ({}, SettingsError, "no device"),
+        ({"rig": "sim", "duration": 0.0}, SettingsError, "expected more than 0"),
+        ({"zebro": "zebro-100-serail@sim"}, ProfileError, "did you mean 'zebro-100-serial'"),
+        ({"zebro": "zebro-100-serial"}, ProfileError, "expected PROFILE@PORT"),
+        ({"zebro": "zebro-100-serial@/dev/nowhere"}, ConnectionError, "cannot open port"),
+    ],
+)
+def test_what_cannot_be_recorded_leaves_nothing(tmp_path, changes, error, message):
+    with pytest.raises(error, match=message):
+        record(RecordRequest(tmp_path, "x", **changes), Watcher())
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_malformed_profile_is_named_and_leaves_nothing(tmp_path):
+    profile = tmp_path / "mine.toml"
+    profile.write_text('schema = 1\ndevice = "legs"\n')
+    with pytest.raises(ProfileError, match=r"mine\.toml"):
+        record(RecordRequest(tmp_path / "data", "x", zebro=f"{profile}@sim"), Watcher())
+    assert not (tmp_path / "data").exists()
+
+
+def test_a_force_beyond_its_limit_ends_the_reading():
+    profile = load_rig_profile("rig-odrive-netft")
+    check, cell = ForceCheck(profile), profile.load_cell
+
+    def weighed(*newtons):
+        counts = [int(-n * cell.counts_per_force) for n in newtons]
+        check([Sample(0.0, 0.0, i, (0, 0, c, 0, 0, 0)) for i, c in enumerate(counts)])
+
+    weighed(6.0, 31.0, 31.0)
+    weighed(6.0, 31.0, 6.0)
+    with pytest.raises(LimitExceeded, match="normal force is 31 N; its limit is 30 N"):
+        weighed(31.0, 31.0, 31.0)
+
+
+def test_an_unplugged_robot_is_a_gap_that_is_counted_and_the_run_goes_on(tmp_path):
+    twin = robot_twin(LEGS, default_gait(), rng=np.random.default_rng(0))
+    description = RunDescription(kind="walk", label="gap", source=twin.source)
+    with PortServer(twin) as server:
+        legs = leg_driver(LEGS, leg_link(LEGS, server.port, source=twin.source))
+        device = Device(legs, LegsView("legs", profile=LEGS))
+        recorder = RunRecorder(tmp_path, description=description, views={"legs": device.view})
+        with legs, recorder, acquiring([device], sink=recorder, start=recorder.start) as readers:
+            time.sleep(0.3)
+            server.unplug()
+            time.sleep(1.3)
+            server.plug_in()
+            time.sleep(0.8)
+    counters = readers["legs"].counters
+    assert counters.reconnected == 1
+    assert counters.lost > 50
+    found = " ".join(events(recorder.folder))
+    for part in ("legs: silent", "legs: sends again", "legs: reconnected", "samples lost"):
+        assert part in found
+    stream = read_raw_log(recorder.folder / "log.mcap").streams["/legs/raw"]
+    assert stream.host_time[-1] > 1.9
+    assert len(stream) == counters.received
+
+
+def test_a_viewer_that_hangs_slows_nobody(tmp_path):
+    twin = robot_twin(LEGS, default_gait(), rng=np.random.default_rng(0))
+    with PortServer(twin) as server:
+        legs = leg_driver(LEGS, leg_link(LEGS, server.port))
+        taken = []
+
+        class Sink:
+            def write(self, stream, samples):
+                taken.extend(samples)
+                return True
+
+            def event(self, text, *, level=20):
+                pass
+
+        reader = Acquisition(Device(legs, LegsView("legs", profile=LEGS)), sink=Sink(), start=0.0)
+        reader.tap._newest = type(reader.tap._newest)(maxlen=10)
+        with legs:
+            reader.start()
+            time.sleep(0.5)  # the viewer sleeps
+            reader.stop()
+    newest = reader.tap.take()
+    assert len(taken) > 30
+    assert newest == taken[-10:]

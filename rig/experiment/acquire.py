@@ -26,6 +26,8 @@ from rig.safety import (
 
 PERIOD: Final = 0.004
 """Between two looks: waking up for each of 7,000 samples a second costs several times more [s]."""
+UNDERWAY: Final = 0.5
+"""How long reports from before arming may still arrive [s]."""
 ROOM_PERIOD: Final = 1.0
 """Between two looks at the room left for data [s]."""
 
@@ -115,8 +117,14 @@ class Acquisition:
         return self._clock.now() < self._ramp.start + self._ramp.duration
 
     def arm(self) -> None:
-        """Energise at standstill and begin to watch for silence."""
+        """Energise at standstill and begin to watch for silence.
+
+        Raises:
+            RigError: A device is not there or stays faulty.
+        """
+        self._bench.read()  # what lay in buffers
         self._bench.arm()
+        self._await_health()
         self._sent = None
         now = self._clock.now()
         self._silence = {
@@ -220,6 +228,21 @@ class Acquisition:
     def heed_no_more(self, category: StopCategory | None) -> None:
         """Take stops up to a category as already being obeyed; None heeds all again."""
         self._heeded = category
+
+    def _await_health(self) -> None:
+        """Let reports of a fault that arming has cleared, and that were underway, pass."""
+        end = self._clock.now() + UNDERWAY
+        while True:
+            self._clock.sleep(self._period)
+            self._bench.read()
+            try:
+                self._bench.require_healthy()
+            except DeviceFault:
+                if self._clock.now() < end:
+                    continue
+                self._bench.disarm()
+                raise
+            return
 
     def _heed(self) -> None:
         stop = self._control.stop.pending

@@ -182,7 +182,8 @@ class _Run:
             self._acquire.come_to_rest(REST_LIMIT)
         except StopRequested as asked:
             self._obey(asked)
-            return str(asked)
+            hardest = self._control.stop.pending  # another may have come on the way to rest
+            return str(asked if hardest is None else StopRequested(hardest))
         except SinkFailed:
             self._acquire.heed_no_more(StopCategory.SAFE)
             self._rest_without_sink()

@@ -1,0 +1,135 @@
+# SPDX-License-Identifier: MIT
+"""A plan in, run folders and a journal out."""
+
+import json
+import os
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Final
+
+from rig.experiment.control import Control
+from rig.experiment.control_server import ControlServer, send_command
+from rig.experiment.run import Outcome, Watcher, run_plan
+from rig.experiment.signal_stops import signal_stops
+from rig.experiment.steps import require_allowed
+from zebro_lab.errors import NotFound
+from zebro_lab.experiment_folder import ExperimentFolder
+from zebro_lab.experiment_journal import begin_or_resume, read_journal
+from zebro_lab.plan_file import read_plan
+from zebro_lab.recorder import RunDescription
+from zebro_lab.rig_at_hand import rig_at_hand
+from zebro_lab.run_folder import exclude_run, find_runs
+from zebro_lab.run_manifest import RECORDING, read_manifest
+
+CONTROL_FILE: Final = "control.json"
+
+
+@dataclass(frozen=True)
+class RigRunRequest:
+    """What is asked of an experiment.
+
+    Attributes:
+        plan: The plan's file.
+        rig: `PROFILE@PORT`, `PROFILE@sim` or `sim`.
+        data: Folder of the experiment.
+        resume: Go on from the last finished point.
+        reset_emergency: Reset an emergency stop that is latched.
+        fast: Let a simulated rig's time pass at once.
+        seed: Of a simulated rig's randomness.
+    """
+
+    plan: Path
+    rig: str
+    data: Path
+    resume: bool = False
+    reset_emergency: bool = False
+    fast: bool = False
+    seed: int = 0
+
+
+def run_experiment(request: RigRunRequest, watcher: Watcher, control: Control) -> Outcome:
+    """Run a plan, each point into a run folder of its own.
+
+    Args:
+        request: What is asked.
+        watcher: Who follows.
+        control: Mailbox for pauses, notes and stops; signals and the control socket feed it.
+
+    Returns:
+        How it ended.
+
+    Raises:
+        ZebroLabError: The plan, the folder or the request is at fault; nothing moved.
+        RigError: A limit, a guard or a device; the motors are at rest and the journal says why.
+    """
+    plan = read_plan(request.plan)
+    with rig_at_hand(request.rig, seed=request.seed, fast=request.fast) as rig:
+        require_allowed(plan, rig.bench.profile)
+        load = rig.load_setter(plan.load, control)
+        done = begin_or_resume(
+            request.data, request.plan.read_text(encoding="utf-8"),
+            resume=request.resume, reset=request.reset_emergency,
+        )  # fmt: skip
+        _leave_out_what_was_cut_short(request.data)
+        description = RunDescription(
+            kind="slip-rig",
+            label=plan.name,
+            source=rig.bench.source,
+            material=plan.material,
+            operator=plan.operator or "unknown",
+            constants=rig.constants,
+            profiles=rig.profiles,
+            sources={stream.name: stream.source for stream in rig.bench.streams},
+            truth=rig.truth,
+        )
+        folder = ExperimentFolder(
+            request.data, description=description, views=rig.views, clock=rig.clock,
+            in_step=rig.fast,
+        )  # fmt: skip
+        with folder, _commandable(request.data, control), signal_stops(control.stop):
+            return run_plan(
+                plan, bench=rig.bench, load=load, sink=folder, control=control, watcher=watcher,
+                clock=rig.clock, period=rig.period, done=done,
+            )  # fmt: skip
+
+
+def command_run(data: Path, command: str) -> str:
+    """Give the experiment that runs into a folder a command; return its answer.
+
+    Raises:
+        NotFound: None runs there.
+        RigError: It does not answer, or refuses.
+    """
+    try:
+        address = json.loads((data / CONTROL_FILE).read_text(encoding="utf-8"))
+    except FileNotFoundError as error:
+        raise NotFound(f"{data}: no experiment runs here") from error
+    return send_command(address["port"], address["token"], command)
+
+
+@contextmanager
+def _commandable(data: Path, control: Control) -> Iterator[None]:
+    """Serve the control socket, and say where in a file that only its owner may read."""
+    file = data / CONTROL_FILE
+    with ControlServer(control) as server:
+        file.unlink(missing_ok=True)
+        handle = os.open(file, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600)
+        with os.fdopen(handle, "w", encoding="utf-8") as out:
+            json.dump({"port": server.port, "token": server.token}, out)
+        try:
+            yield
+        finally:
+            file.unlink(missing_ok=True)
+
+
+def _leave_out_what_was_cut_short(data: Path) -> None:
+    """Exclude runs that a crash left open: their points are measured again."""
+    closed = read_journal(data).folders
+    for run in find_runs(data):
+        if run.name in closed:
+            continue
+        manifest = read_manifest(run)
+        if manifest.exit_status == RECORDING and manifest.excluded is None:
+            exclude_run(run, why="cut short; its point is measured again")

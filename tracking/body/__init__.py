@@ -3,8 +3,8 @@
 
 from tracking.body.align import Alignment, align
 from tracking.body.heading import resolve_headings
-from tracking.body.search import BodyCandidates, find_body
-from tracking.body.template import BodyTemplate, TopPlate, make_template
+from tracking.body.search import BodyCandidates, find_body, floor_in_view, match_turned
+from tracking.body.template import BodyTemplate, TopPlate, make_template, marker_template
 
 __all__ = [
     "Alignment",
@@ -13,6 +13,9 @@ __all__ = [
     "TopPlate",
     "align",
     "find_body",
+    "floor_in_view",
     "make_template",
+    "marker_template",
+    "match_turned",
     "resolve_headings",
 ]

@@ -22,6 +22,11 @@ from tracking.pose import BodyPose, BodyPrior, rotation_with_derivatives
 _ITERATIONS = 25
 _HUBER = 1.5
 
+_FIRST_LOOKS = 5
+
+HOPELESS_SCORE = 0.25
+"""Least correlation after five steps for which an alignment is carried on [-]."""
+
 SCALE_SD = 5e-3
 """Relative standard deviation of the template's scale [-]."""
 
@@ -146,9 +151,9 @@ class _Job:
         centre = np.array([0, 0, prior.height, 0, 0, 0, 0])
         state = np.append(state, 0.0)
         normal = np.eye(7)
-        for _ in range(_ITERATIONS):
+        for turn in range(_ITERATIONS):
             look = self._look(state)
-            if look is None:
+            if look is None or (turn == _FIRST_LOOKS and look[4] < HOPELESS_SCORE):
                 return None
             residual, J, weight, noise, _ = look
             scale = weight / (noise * self.correlated)

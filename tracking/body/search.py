@@ -19,6 +19,9 @@ from tracking.pose import BodyPrior
 ACCEPTED_SCORE = 0.7
 """Least correlation of an alignment that counts as the robot [-]."""
 
+LEAST_MATCH = 0.3
+"""Least correlation of a coarse match that is worth aligning [-]."""
+
 _TURNS = 24
 _CELLS = 14
 
@@ -67,7 +70,7 @@ def find_body(
         The best place in all headings that hold there, or None where nothing looks like the robot.
     """
     height = prior.height + template.plate.height
-    area = _area(camera, view, height, near, reach)
+    area = floor_in_view(camera, view, height, near, reach)
     starts = match_turned(pixels, camera, view, template=template, height=height, area=area)
     found = []
     for start in starts:
@@ -110,10 +113,22 @@ def _turned_about_plate(planar: Array, centre_x: float, turn: float) -> Array:
     return np.array([*(np.array([x, y]) + shift[0] - shift[1]), yaw + turn])
 
 
-def _area(
-    camera: Camera, view: CameraPose, height: float, near: ArrayLike | None, reach: float
-) -> tuple[Array, Array]:
-    """Compute the rectangle of the plane to rectify: lowest and highest x, y [m]."""
+def floor_in_view(
+    camera: Camera, view: CameraPose, height: float,
+    near: ArrayLike | None = None, reach: float = np.inf,
+) -> tuple[Array, Array]:  # fmt: skip
+    """Compute the rectangle of a level plane that the camera sees.
+
+    Args:
+        camera: The lens.
+        view: Where the camera stands.
+        height: Height of the plane over the floor [m].
+        near: x and y near which to stay [m].
+        reach: How far from there [m].
+
+    Returns:
+        Lowest and highest x, y, each of shape (2,) [m].
+    """
     width, rows = camera.size
     edge = np.array(
         [[u, v] for u in np.linspace(0, width - 1, 9) for v in np.linspace(0, rows - 1, 9)]
@@ -154,6 +169,7 @@ def match_turned(
     floor = _rectified(pixels, camera, view, height, low, high, cell)
     small = _shrunk(template, cell)
     peaks: list[tuple[float, Array]] = []
+    per_turn = max(2, most // 2)
     middle = np.array([(front + rear) / 2, (left + right) / 2])
     for yaw in np.arange(_TURNS) * 2 * np.pi / _TURNS:
         turned, mask = _turned(small, yaw)
@@ -163,11 +179,13 @@ def match_turned(
         match = np.where(np.isfinite(match) & (match <= 1.0001), match, -1.0)
         c, s = np.cos(yaw), np.sin(yaw)
         offset = np.array([c * middle[0] - s * middle[1], s * middle[0] + c * middle[1]])
-        for _ in range(2):
+        for _ in range(per_turn):
             row, column = np.unravel_index(np.argmax(match), match.shape)
             centre = np.array([column, row]) + (np.array(turned.shape[1::-1]) - 1) / 2
             # Rows of the map go from high y to low y, as seen from above.
             xy = np.array([low[0] + centre[0] * cell, high[1] - centre[1] * cell]) - offset
+            if match[row, column] < LEAST_MATCH:
+                break
             peaks.append((float(match[row, column]), np.array([*xy, yaw])))
             match[max(row - 6, 0) : row + 7, max(column - 6, 0) : column + 7] = -1.0
     return _apart(peaks, most, template.plate.length)

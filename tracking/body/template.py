@@ -9,7 +9,8 @@ from numpy.typing import NDArray
 
 from tracking.camera.lens import Array, Camera, CameraPose, project
 from tracking.errors import BodyError
-from tracking.pose import BodyPose, rotation_with_derivatives
+from tracking.markers import marker_picture
+from tracking.pose import BodyPose, RobotMarker, rotation_with_derivatives
 
 _MOST_POINTS = 2500
 
@@ -138,6 +139,41 @@ def make_template(
             f"in the annotated photograph; expected at least 4: light the scene or use a marker"
         )
     return template
+
+
+def marker_template(marker: RobotMarker, *, points: int = 36) -> BodyTemplate:
+    """Take the robot's marker for its picture; no photograph is needed for it.
+
+    Args:
+        marker: The marker on the robot's back.
+        points: Points across the marker with its white margin.
+
+    Returns:
+        Its picture, black and white, in the robot's body frame.
+    """
+    picture = marker_picture(marker.dictionary, marker.marker_id, 16)
+    cells = picture.shape[0] // 16 - 2
+    # The outermost half cell is left out: prints are cut there.
+    width = marker.side * (1 + 1 / cells)
+    plate = TopPlate(marker.side, marker.side, marker.position[2], marker.position[0],
+                     (width - marker.side) / 2, (width - marker.side) / 2)  # fmt: skip
+    across = (np.arange(points) + 0.5) / points - 0.5
+    ahead, left = np.meshgrid(-across * width, -across * width, indexing="ij")
+    c, s = np.cos(marker.yaw), np.sin(marker.yaw)
+    # In the marker's own frame: to the right of the print, and up it.
+    right, up = c * ahead + s * left, -s * ahead + c * left
+    n = picture.shape[0]
+    scale = 16 * cells / marker.side
+    place = np.stack((right * scale + (n - 1) / 2, (n - 1) / 2 - up * scale), axis=-1)
+    soft = cv2.GaussianBlur(
+        np.asarray(picture, dtype=np.float32), (0, 0), 0.4 * width * scale / points
+    )
+    grey = 20 + 215 * sample(np.asarray(soft), place)
+    xyz = np.stack(
+        (ahead + marker.position[0], left + marker.position[1], np.full_like(ahead, plate.height)),
+        axis=-1,
+    )
+    return BodyTemplate(plate, width / points, xyz, np.repeat(grey[:, :, None], 3, axis=2))
 
 
 def _grid(plate: TopPlate, step: float) -> Array:

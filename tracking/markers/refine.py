@@ -29,8 +29,8 @@ from tracking.markers.square import (
 CORNER_FLOOR_PX = 0.02
 """What the model of a pixel leaves out (tone curve, JPEG, a print that is not flat) [px]."""
 
-_OVERSAMPLING = 3
-_MOST_PIXELS = 12_000
+_MOST_PIXELS = 4_000
+_LONGEST_SIDE = 60.0
 
 
 @dataclass(frozen=True)
@@ -69,44 +69,61 @@ def refine_corners(
     Returns:
         The marker as fitted, or None where the fit leaves the picture or collapses.
     """
-    patch = _Patch.around(grey, corners_px)
+    shrink = max(1, int(_longest_side(corners_px) / _LONGEST_SIDE))
+    patch = _Patch.around(grey, corners_px, shrink)
     if patch is None:
         return None
-    fit = _Fit(corners_px - patch.origin, blur=_first_blur(corners_px))
+    start = patch.own(corners_px)
+    fit = _Fit(start, blur=_first_blur(start))
     for _ in range(iterations):
         step = _improve(fit, patch, dictionary, marker_id)
         if step is None:
             return None
         fit, moved = step
-        if moved < 2e-3:
+        if moved < 3e-3:
             break
-    if np.abs(fit.corners + patch.origin - corners_px).max() > 0.25 * _shortest_side(corners_px):
+    if np.abs(fit.corners - start).max() > 0.25 * _shortest_side(start):
         return None
-    covariance = fit.covariance + CORNER_FLOOR_PX**2 * np.eye(8)
-    corners = fit.corners + patch.origin
-    return Sighting(marker_id, corners, covariance, fit.score, fit.blur)
+    covariance = shrink**2 * fit.covariance + CORNER_FLOOR_PX**2 * np.eye(8)
+    return Sighting(marker_id, patch.whole(fit.corners), covariance, fit.score, shrink * fit.blur)
 
 
 @dataclass(frozen=True)
 class _Patch:
-    """A window of the picture: its corner there [px], its pixels, and how densely they are used."""
+    """A window of the picture: its corner there [px], its pixels, and how densely they are used.
+
+    A marker of hundreds of pixels is shrunk: corners need no more than some dozens a side, and
+    time goes with their square.
+    """
 
     origin: Array
     values: Array
+    shrink: int
     stride: int
 
     @classmethod
-    def around(cls, grey: NDArray[np.uint8], corners_px: Array) -> "_Patch | None":
+    def around(cls, grey: NDArray[np.uint8], corners_px: Array, shrink: int) -> "_Patch | None":
         """Cut the marker out with its white margin and room for the fit to move."""
         reach = 0.25 * np.ptp(corners_px, axis=0).max() + 3
-        low = np.floor(corners_px.min(axis=0) - reach).astype(int)
-        high = np.ceil(corners_px.max(axis=0) + reach).astype(int) + 1
-        low, high = np.maximum(low, 0), np.minimum(high, grey.shape[::-1])
-        if (high - low < 8).any():
+        low = np.maximum(np.floor(corners_px.min(axis=0) - reach).astype(int), 0)
+        high = np.minimum(np.ceil(corners_px.max(axis=0) + reach).astype(int) + 1, grey.shape[::-1])
+        width, height = (high - low) // shrink
+        if width < 8 or height < 8:
             return None
-        values = grey[low[1] : high[1], low[0] : high[0]].astype(float)
+        window = grey[low[1] : low[1] + height * shrink, low[0] : low[0] + width * shrink]
+        values = cv2.resize(
+            window.astype(np.float32), (width, height), interpolation=cv2.INTER_AREA
+        )
         stride = max(1, round(np.sqrt(values.size / _MOST_PIXELS)))
-        return cls(low.astype(float), values, stride)
+        return cls(low.astype(float), np.asarray(values, dtype=float), shrink, stride)
+
+    def own(self, corners_px: Array) -> Array:
+        """Turn pixels of the picture into pixels of the patch, centres at integers in both."""
+        return (corners_px - self.origin + 0.5) / self.shrink - 0.5
+
+    def whole(self, corners: Array) -> Array:
+        """Turn pixels of the patch into pixels of the picture."""
+        return (corners + 0.5) * self.shrink - 0.5 + self.origin
 
 
 @dataclass(frozen=True)
@@ -222,7 +239,7 @@ def _draw(
     own_from_drawn = np.array(
         [[1, 0, 0.5 - cell_px], [0, 1, 0.5 - cell_px], [0, 0, inner]], dtype=float
     ) / inner  # fmt: skip
-    n = _OVERSAMPLING
+    n = 3 if cells * 6 > _shortest_side(corners) else 2  # finer where cells are small
     fine = np.array([[n, 0, (n - 1) / 2], [0, n, (n - 1) / 2], [0, 0, 1.0]])
     drawn = cv2.warpPerspective(
         picture, fine @ square_homography(corners) @ own_from_drawn,

@@ -1,0 +1,126 @@
+# SPDX-License-Identifier: MIT
+"""A photograph gives the robot and the floor; what is wrong with it is said with its name."""
+
+import json
+import time
+
+import cv2
+import numpy as np
+import pytest
+
+from tracking.camera import Camera
+from tracking.detect import Robot, detect, observe, size_at
+from tracking.errors import PhotoError
+from tracking.floor import FloorMap, FloorMarker, refine_floor
+from tracking.markers import dictionary_named
+from tracking.path import assemble_track
+from tracking.pictures import draw_overlay, draw_path_on_floor, ellipse_90, rectify_floor
+from tracking.pose import BodyPrior, RobotMarker
+
+ROBOT = Robot(RobotMarker(0, 0.12, "4x4_50", (0, 0, 0.0385)), BodyPrior(0.0615))
+FLOOR = FloorMap("4x4_50", (FloorMarker(10, 0.1, 0, 0), FloorMarker(11, 0.1, 1, 0)))
+
+
+def sheet(*markers, dictionary="4x4_50", side=80):
+    picture = np.full((360, 160 * max(len(markers), 1)), 255, np.uint8)
+    for index, number in enumerate(markers):
+        drawn = cv2.aruco.generateImageMarker(dictionary_named(dictionary), number, side)
+        picture[120 : 120 + side, 40 + 160 * index : 40 + 160 * index + side] = drawn
+    return picture
+
+
+def test_two_robots_are_refused_by_name():
+    with pytest.raises(PhotoError, match=r"p4\.jpg: the robot's marker 0 is seen 2 times"):
+        detect("p4.jpg", sheet(10, 0, 0), floor=FLOOR, robot=ROBOT)
+
+
+def test_a_wrong_dictionary_is_told_from_an_empty_floor():
+    other = sheet(10, 11, 0, dictionary="5x5_50")
+    with pytest.raises(PhotoError, match=r"p1\.jpg.*markers of '5x5_50'"):
+        detect("p1.jpg", other, floor=FLOOR, robot=ROBOT)
+    with pytest.raises(PhotoError, match=r"p2\.jpg: none of the floor's markers \(10, 11"):
+        detect("p2.jpg", sheet(), floor=FLOOR, robot=ROBOT)
+
+
+def test_a_photograph_without_the_robot_still_shows_the_floor():
+    found = detect("p.jpg", sheet(10, 11), floor=FLOOR, robot=ROBOT)
+    assert found.robot is None
+    assert set(found.floor.pixels) == {10, 11}
+
+
+def test_a_hint_changes_where_is_looked_and_not_what_is_found():
+    picture = sheet(10, 11, 0)
+    plain = detect("a.jpg", picture, floor=FLOOR, robot=ROBOT)
+    hinted = detect("b.jpg", picture, floor=FLOOR, robot=ROBOT, hint=plain)
+    np.testing.assert_allclose(hinted.robot.corners_px, plain.robot.corners_px, atol=0.02)
+    moved = np.roll(picture, 130, axis=0)
+    far = detect("c.jpg", moved, floor=FLOOR, robot=ROBOT, hint=plain)
+    assert set(far.floor.pixels) == {10, 11}
+
+
+def test_a_known_neighbourhood_costs_no_more_than_plain_detection_of_12_megapixels():
+    rng = np.random.default_rng(0)
+    picture = cv2.resize(rng.integers(120, 180, (300, 400), np.uint8), (4000, 3000))
+    for place, number in (((300, 400), 10), ((300, 3300), 11), ((1500, 1800), 0)):
+        board = np.pad(
+            cv2.aruco.generateImageMarker(dictionary_named("4x4_50"), number, 180), 30,
+            constant_values=255,
+        )  # fmt: skip
+        picture[place[0] : place[0] + 240, place[1] : place[1] + 240] = board
+    picture = cv2.GaussianBlur(picture, (0, 0), 1.0)
+    hint = detect("a.jpg", picture, floor=FLOOR, robot=ROBOT)
+    plain = cv2.aruco.ArucoDetector(dictionary_named("4x4_50"))
+    ours = min(
+        _seconds(lambda: detect("b", picture, floor=FLOOR, robot=ROBOT, hint=hint))
+        for _ in range(3)
+    )
+    bare = min(_seconds(lambda: plain.detectMarkers(picture)) for _ in range(3))
+    assert ours < 1.2 * bare
+
+
+def _seconds(work):
+    # Processor time: OpenCV's detector uses all processors, and other work may run beside the test.
+    start = time.process_time()
+    work()
+    return time.process_time() - start
+
+
+def test_the_region_of_ninety_percent_holds_ninety_percent():
+    covariance = np.array([[2.0, 0.8], [0.8, 1.0]])
+    ring = ellipse_90(covariance)
+    distance = np.einsum("ni,ij,nj->n", ring, np.linalg.inv(covariance), ring)
+    np.testing.assert_allclose(distance, 4.605, atol=1e-3)
+
+
+@pytest.mark.reference
+def test_a_marked_walk_goes_from_photographs_to_pictures(shared):
+    folder = shared / "virtual-world/photos"
+    world = json.loads((folder / "camera.json").read_text(encoding="utf-8"))
+    lens = Camera((1280, 960), np.array(world["K"]), np.zeros(5))
+    floor = FloorMap("4x4_50", tuple(
+        FloorMarker(int(key), value["side"], *np.mean(value["corners_world"], axis=0)[:2], z=0.002)
+        for key, value in world["floor_markers"].items()
+    ))  # fmt: skip
+    paths = sorted((folder / "s1.10_A").glob("*.jpg"))[::3]
+    detections, hint = [], None
+    for path in paths:
+        hint = detect(path.name, cv2.imread(str(path)), floor=floor, robot=ROBOT, hint=hint)
+        detections.append(hint)
+    fit = refine_floor(lens, floor, [detection.floor for detection in detections])
+    times = {path.name: (6.0 * index, 0.0) for index, path in enumerate(paths)}
+    seen = observe(lens, fit, detections, robot=ROBOT, times=times)
+    track = assemble_track(seen)
+    assert len(track.t) == len(paths)
+    assert 150 < size_at(lens, fit, seen[0]).min() < 600
+    view = fit.pose_of(paths[0].name)
+    pixels = cv2.imread(str(paths[0]))
+    overlay = draw_overlay(
+        pixels, lens, view, poses=track.poses, covariance=track.covariance, height=0.06
+    )
+    assert 200 < (overlay != pixels).any(axis=2).sum() < 40_000
+    area = {"low": (-0.5, -0.6), "high": (2.4, 2.0), "pixels_per_metre": 100.0}
+    flat = rectify_floor(pixels, lens, view, **area)
+    assert flat.shape == (260, 290, 3)
+    # Marker 10 lies at (0.3, -0.4): dark there, seen from above.
+    assert flat[240 - 2 : 240 + 3, 80 - 2 : 80 + 3].min() < 100
+    assert (draw_path_on_floor(flat, track.poses, **area) != flat).any()

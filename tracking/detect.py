@@ -1,0 +1,173 @@
+# SPDX-License-Identifier: MIT
+"""What one photograph shows of the floor and of a marked robot, and the observations it gives.
+
+Two steps, since the camera's pose needs all photographs: `detect` works on one photograph at a time
+and in any order, so photographs can be spread over processes; `observe` then places the robot with
+the floor that `tracking.floor.refine_floor` has fitted to all of them.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tracking.camera.lens import Array, Camera, project_with_derivatives
+from tracking.errors import PhotoError
+from tracking.floor import FloorFit, FloorMap, FloorView
+from tracking.markers import Sighting, find_markers, guess_dictionary, neighbourhood
+from tracking.path import Observation
+from tracking.pose import BodyPrior, RobotMarker, fit_pose
+
+
+@dataclass(frozen=True)
+class Robot:
+    """The robot as the tracker knows it.
+
+    Attributes:
+        marker: The marker on its back.
+        prior: Height and tilt of its body.
+    """
+
+    marker: RobotMarker
+    prior: BodyPrior
+
+
+@dataclass(frozen=True)
+class Detection:
+    """What one photograph shows.
+
+    Attributes:
+        photo: Name of the photograph.
+        floor: The floor's marks.
+        robot: The robot's marker, or None where it is not seen.
+    """
+
+    photo: str
+    floor: FloorView
+    robot: Sighting | None
+
+
+def detect(
+    photo: str, pixels: NDArray[np.uint8], *, floor: FloorMap, robot: Robot,
+    hint: Detection | None = None, reach: float = 1.5,
+) -> Detection:  # fmt: skip
+    """Find the floor's markers and the robot's in one photograph.
+
+    Args:
+        photo: Its name.
+        pixels: The photograph, grey or BGR.
+        floor: The floor's marks.
+        robot: The robot.
+        hint: What a photograph taken shortly before or after shows: where its marks are is looked
+            first, and only what is not found there is sought in the whole photograph.
+        reach: How far the robot may have moved since, in sides of its marker [-].
+
+    Returns:
+        What was found.
+
+    Raises:
+        PhotoError: When two robots are seen, or no mark of the floor where there should be some.
+    """
+    found = [] if hint is None else _near(pixels, floor, robot, hint, reach)
+    missing = _missing(floor, robot, found)
+    if missing:
+        for dictionary, numbers in missing.items():
+            found += find_markers(pixels, dictionary, wanted=numbers)
+    on_floor = [s for s in found if s.marker_id in floor.marker_ids]
+    robots = [s for s in found if s.marker_id == robot.marker.marker_id]
+    if len(robots) > 1:
+        raise PhotoError(
+            photo,
+            f"the robot's marker {robot.marker.marker_id} is seen {len(robots)} times; cover the "
+            f"others, or if this is a composite picture, track it as one",
+        )
+    if floor.markers and not on_floor:
+        raise PhotoError(photo, _no_floor(pixels, floor))
+    return Detection(photo, FloorView.of(photo, on_floor), robots[0] if robots else None)
+
+
+def _missing(floor: FloorMap, robot: Robot, found: Sequence[Sighting]) -> dict[str, list[int]]:
+    numbers = {sighting.marker_id for sighting in found}
+    missing: dict[str, list[int]] = {}
+    for number in floor.marker_ids:
+        if number not in numbers:
+            missing.setdefault(floor.dictionary, []).append(number)
+    if robot.marker.marker_id not in numbers:
+        missing.setdefault(robot.marker.dictionary, []).append(robot.marker.marker_id)
+    return missing
+
+
+def _near(
+    pixels: NDArray[np.uint8], floor: FloorMap, robot: Robot, hint: Detection, reach: float
+) -> list[Sighting]:
+    """Look where the marks were in a neighbouring photograph."""
+    size = (pixels.shape[1], pixels.shape[0])
+    places = [(floor.dictionary, key, corners, 0.4) for key, corners in hint.floor.pixels.items()]
+    if hint.robot is not None:
+        marker = robot.marker
+        places.append((marker.dictionary, marker.marker_id, hint.robot.corners_px, reach))
+    found: list[Sighting] = []
+    for dictionary, key, corners, sides in places:
+        if isinstance(key, int):
+            side = float(np.ptp(corners, axis=0).max())
+            region = neighbourhood(corners, size, reach=sides * side + 8)
+            found += find_markers(pixels, dictionary, wanted=[key], region=region)
+    return found
+
+
+def _no_floor(pixels: NDArray[np.uint8], floor: FloorMap) -> str:
+    expected = ", ".join(str(number) for number in floor.marker_ids)
+    message = f"none of the floor's markers ({expected} of '{floor.dictionary}') is seen"
+    other = guess_dictionary(pixels)
+    if other is not None and other != floor.dictionary.lower():
+        return f"{message}; the picture has markers of '{other}': correct the dictionary"
+    return f"{message}; check that they lie flat, unshaded and inside the picture"
+
+
+def observe(
+    camera: Camera, fit: FloorFit, detections: Sequence[Detection], *, robot: Robot,
+    times: Mapping[str, tuple[float, float]],
+) -> tuple[Observation, ...]:  # fmt: skip
+    """Place the robot in every photograph that shows it.
+
+    Args:
+        camera: The lens.
+        fit: The floor and the camera's poses.
+        detections: What the photographs show.
+        robot: The robot.
+        times: By photograph, time and its standard deviation [s].
+
+    Returns:
+        One observation a photograph in which robot and floor were seen.
+    """
+    return tuple(
+        _observation(camera, fit, detection.photo, detection.robot, robot, times)
+        for detection in detections
+        if detection.robot is not None and detection.photo not in fit.unused
+    )
+
+
+def _observation(
+    camera: Camera, fit: FloorFit, photo: str, sighting: Sighting, robot: Robot,
+    times: Mapping[str, tuple[float, float]],
+) -> Observation:  # fmt: skip
+    marker = robot.marker
+    pose = fit_pose(
+        camera,
+        fit.pose_of(photo),
+        points_body=marker.points_body,
+        corners_px=sighting.corners_px,
+        covariance=fit.noise_factor**2 * sighting.covariance,
+        prior=robot.prior,
+        scale_sd=marker.side_sd / marker.side,
+    )
+    t, t_sd = times[photo]
+    return Observation.of(photo, pose, t=t, t_sd=t_sd, score=sighting.score, source="marker")
+
+
+def size_at(camera: Camera, fit: FloorFit, observation: Observation) -> Array:
+    """Compute how many pixels a metre is at an observation, along x and y, shape (2,) [px/m]."""
+    place = [[*observation.planar[:2], observation.z]]
+    _, by_point, _ = project_with_derivatives(camera, fit.pose_of(observation.photo), place)
+    return np.linalg.norm(by_point[0, :, :2], axis=0)

@@ -113,6 +113,7 @@ class RunRecorder:
         self._data_dir = Path(data_dir)
         self._description = description
         self._views = views
+        self._limit = limit
         self._least_free = least_free
         self._clock = clock
         self._queues = {name: SampleQueue(limit=limit) for name in views}
@@ -137,9 +138,7 @@ class RunRecorder:
         if self._queues[stream].put(samples):
             return True
         if self._failure is None:
-            self._failure = (
-                f"the disk is too slow: more than {LIMIT} samples of '{stream}' wait to be written"
-            )
+            self._failure = f"disk too slow: more than {self._limit} samples of '{stream}' wait"
         return False
 
     def event(self, text: str, *, level: int = INFO) -> None:

@@ -25,6 +25,10 @@ SOAK = float(os.environ.get("ZEBRO_LAB_SOAK", "600"))
 pytestmark = pytest.mark.long
 
 
+def tell(line):
+    print(line, flush=True)  # noqa: T201 the table is what `make test-long` is run for
+
+
 def recording(data, *, label):
     return subprocess.Popen(
         [COMMAND, "record", "--zebro", "sim", "--imu", "sim", "--rig", "sim", "--label", label,
@@ -64,8 +68,10 @@ def test_killed_at_any_time_a_run_lacks_at_most_a_fifth_of_a_second(tmp_path):
         assert len(run.table) > 100
         os.utime(log, (0, 0))
     assert {run.state for run in list_runs(tmp_path)} == {"recovered"}
-    print(f"\n{KILLS} kills: missing {1e3 * np.median(missing):.0f} ms in the median, "
-          f"{1e3 * max(missing):.0f} ms at most")  # fmt: skip
+    tell(
+        f"\n{KILLS} kills: missing {1e3 * np.median(missing):.0f} ms in the median, "
+        f"{1e3 * max(missing):.0f} ms at most"
+    )
     assert max(missing) <= 0.2
 
 
@@ -111,7 +117,9 @@ def test_a_driver_that_is_gone_leaves_no_disc_turning(number):
 
 
 DRIVE = """
+import signal
 import sys
+signal.signal(signal.SIGINT, lambda *_: sys.exit())
 from rig.backends import open_rig
 from rig.device import iterate
 board = open_rig(sys.argv[1]).board
@@ -133,7 +141,7 @@ def test_nothing_is_lost_in_the_host_at_full_rate_for_long(tmp_path):
     finally:
         sys.path.pop(0)
     manifest, share, size = measure(SOAK, tmp_path)
-    print(f"\n{SOAK:g} s:")
+    tell(f"\n{SOAK:g} s:")
     report(manifest, share, size)
     for name, counters in manifest.counters.items():
         assert counters["received"] == manifest.streams[f"/{name}/raw"]

@@ -16,6 +16,7 @@ from rig.device import Counters, Sample
 from rig.imu.profile import load_imu_profile
 from rig.slip_rig.profile import load_rig_profile
 from rig.zebro.profile import decode_angles, load_leg_profile
+from zebro_lab.errors import DataError
 from zebro_lab.log_writer import LogWriter
 from zebro_lab.raw_log import RAW_SCHEMAS, decode_raw, encode_raw, read_raw_log
 from zebro_lab.stream_views import BoardView, DrivesView, ImuView, LegsView, LoadCellView
@@ -190,3 +191,21 @@ def test_a_log_is_read_up_to_where_it_is_cut(tmp_path):
         numbers = found.streams["/legs/raw"].sequence
         assert 5 < len(numbers) < 50
         np.testing.assert_array_equal(numbers, np.arange(len(numbers)))
+
+
+def test_a_log_with_flipped_bytes_is_read_in_part_or_refused(tmp_path):
+    file, _ = log_of("legs", rows=40)
+    whole = file.getvalue()
+    rng = np.random.default_rng(0)
+    path = tmp_path / "log.mcap"
+    for _ in range(300):
+        data = bytearray(whole)
+        for at in rng.integers(0, len(data), rng.integers(1, 4)):
+            data[at] ^= 1 << rng.integers(8)
+        path.write_bytes(data)
+        try:
+            found = read_raw_log(path)
+        except DataError:
+            continue
+        for stream in found.streams.values():
+            assert len(stream.samples()) <= 40

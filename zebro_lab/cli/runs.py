@@ -1,14 +1,26 @@
 # SPDX-License-Identifier: MIT
-"""`zebro-lab runs` and `exclude`: what has been recorded, and what of it counts."""
+"""`zebro-lab runs`, `exclude` and `export`: what has been recorded, and what of it counts."""
 
+from enum import StrEnum
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
+
+class TableFormat(StrEnum):
+    """Forms of exported tables."""
+
+    CSV = "csv"
+    PARQUET = "parquet"
+
+
 DataDir = Annotated[Path, typer.Argument(metavar="DATA", help="Folder of run folders.")]
 RunFolder = Annotated[Path, typer.Argument(metavar="RUN", help="Run folder.")]
 Why = Annotated[str, typer.Option(help="Reason, kept with the run.")]
+
+To = Annotated[TableFormat, typer.Option(help="Form of the tables.")]
+Out = Annotated[Path, typer.Option(metavar="FOLDER", help="Folder to make.")]
 
 
 def runs(data: DataDir) -> None:
@@ -30,3 +42,11 @@ def exclude(run: RunFolder, why: Why) -> None:
 
     manifest = exclude_run(run, why=why)
     typer.echo(f"{run.name} is left out from now on: {(manifest.excluded or {})['why']}")
+
+
+def export(run: RunFolder, out: Out, to: To = TableFormat.CSV) -> None:
+    """Write a run as tables: raw samples, leg angles, the columns of a calibration."""
+    from zebro_lab.stages.export import export_run
+
+    for file in export_run(run, to=to.value, out=out):
+        typer.echo(f"wrote {file}")

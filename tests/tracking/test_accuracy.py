@@ -1,0 +1,121 @@
+# SPDX-License-Identifier: MIT
+"""Accuracy, recall and coverage on simulated photographs; the long tests print the table."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import pytest
+
+from tracking.camera import Camera, CameraPose
+from tracking.floor import FloorMap, FloorMarker, FloorView, refine_floor
+from tracking.markers import find_markers
+from tracking.pose import PLANAR, BodyPrior, RobotMarker, fit_pose
+from tracking.synthetic import (
+    HARSH,
+    BodyPose,
+    Conditions,
+    RobotState,
+    Scene,
+    look_at,
+    render_background,
+    take_photo,
+)
+from tracking.synthetic import FloorMarker as SyntheticFloorMarker
+from tracking.synthetic import RobotMarker as SyntheticRobotMarker
+
+PLACES = [(0.1, -0.1), (1.5, -0.1), (1.6, 1.2), (0.0, 1.3)]
+GOOD = Conditions(defocus_sd_px=0.6)
+
+
+@dataclass(frozen=True)
+class Case:
+    """One row of the table: how the robot moves, how it is photographed, and what is promised."""
+
+    name: str
+    conditions: Conditions
+    bounce: float
+    tilt: float
+    xy_mm: float
+    yaw_deg: float
+    recall: float
+    size: tuple[int, int] = (1280, 960)
+
+
+CASES = [
+    Case("steady, 1.3 MP", GOOD, 0.0, 0.0, 0.5, 0.2, 1.0),
+    Case("5 mm bounce, 2 degrees tilt, 1.3 MP", GOOD, 5e-3, np.radians(2), 4.0, 0.3, 0.99),
+    Case("harsh, 1.3 MP", HARSH, 0.0, 0.0, 1.0, 0.3, 0.9),
+]
+
+
+def run(case: Case, count: int, seed: int):
+    """Photograph `count` poses; return errors, standardised errors and recall."""
+    rng = np.random.default_rng(seed)
+    width, height = case.size
+    taken = look_at((0.8, -1.2, 1.8), (0.8, 0.6, 0.0), width=width, height=height)
+    scene = Scene(taken, tuple(
+        SyntheticFloorMarker(10 + k, place, 0.12) for k, place in enumerate(PLACES)
+    ))  # fmt: skip
+    lens = Camera(
+        case.size,
+        np.array([[taken.focal[0], 0, taken.centre[0]], [0, taken.focal[1], taken.centre[1]],
+                  [0, 0, 1.0]]),
+        np.array(taken.distortion, dtype=float),
+    )  # fmt: skip
+    floor = FloorMap("4x4_50", tuple(
+        FloorMarker(10 + k, 0.12, *place, position_sd=1e-4) for k, place in enumerate(PLACES)
+    ))  # fmt: skip
+    mark = SyntheticRobotMarker()
+    robot = RobotMarker(0, mark.side, "4x4_50", (0.0, 0.0, mark.height))
+    prior = BodyPrior(0.0645, max(case.bounce, 5e-4), max(case.tilt, 2e-3))
+    background = render_background(scene)
+    errors, z, view = [], [], CameraPose.from_matrix(taken.rotation, taken.translation)
+    for index in range(count):
+        truth = BodyPose(
+            rng.uniform(0.2, 1.4), rng.uniform(0.1, 1.0), rng.uniform(-np.pi, np.pi),
+            0.0645 + rng.normal(0, case.bounce), *rng.normal(0, case.tilt, 2),
+        )  # fmt: skip
+        photo = take_photo(
+            scene, RobotState(truth), conditions=case.conditions, rng=rng, background=background
+        )
+        if index == 0:
+            marks = find_markers(photo.pixels, "4x4_50", wanted=floor.marker_ids)
+            view = refine_floor(lens, floor, [FloorView.of("p", marks)]).stands[0].pose
+        found = find_markers(photo.pixels, "4x4_50", wanted=[0])
+        if len(found) != 1:
+            continue
+        pose = fit_pose(
+            lens, view, points_body=robot.points_body, corners_px=found[0].corners_px,
+            covariance=found[0].covariance, prior=prior, scale_sd=robot.side_sd / robot.side,
+        )  # fmt: skip
+        error = pose.planar - [truth.x, truth.y, truth.yaw]
+        error[2] = np.angle(np.exp(1j * error[2]))
+        block = np.ix_(PLANAR, PLANAR)
+        total = pose.planar_covariance + pose.camera_covariance[block]
+        errors.append(error)
+        z.append(error / np.sqrt(np.diag(total)))
+    return np.array(errors), np.array(z), len(errors) / count
+
+
+def check(case: Case, count: int, seed: int):
+    errors, z, recall = run(case, count, seed)
+    xy = 1e3 * np.sqrt(np.mean(np.sum(errors[:, :2] ** 2, axis=1)))
+    yaw = np.degrees(np.sqrt(np.mean(errors[:, 2] ** 2)))
+    inside = np.mean(np.abs(z) < 1.645, axis=0)
+    row = (f"{case.name}: xy {xy:.2f} mm, yaw {yaw:.3f} deg, recall {recall:.0%}, "
+           f"90 % intervals hold {inside.round(3)} of x, y, yaw (n = {len(errors)})")  # fmt: skip
+    assert xy < case.xy_mm, row
+    assert yaw < case.yaw_deg, row
+    assert recall >= case.recall, row
+    return row
+
+
+@pytest.mark.parametrize("case", CASES, ids=lambda case: case.name)
+def test_a_few_simulated_photographs_keep_the_promise(case):
+    check(case, 6, seed=0)
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("case", CASES, ids=lambda case: case.name)
+def test_a_hundred_simulated_photographs_keep_the_promise(case, record_property):
+    record_property("row", check(case, 100, seed=1))

@@ -13,7 +13,7 @@ from zebro_lab.cli.predict import predict
 from zebro_lab.cli.record import EPILOG as RECORD_EPILOG
 from zebro_lab.cli.record import record
 from zebro_lab.cli.rig import app as rig
-from zebro_lab.cli.runs import exclude, runs
+from zebro_lab.cli.runs import exclude, export, runs
 from zebro_lab.cli.sim import app as sim
 from zebro_lab.cli.walk import EPILOG as WALK_EPILOG
 from zebro_lab.cli.walk import walk
@@ -32,6 +32,7 @@ app.command(epilog=PREDICT_EPILOG)(predict)
 app.command(epilog=RECORD_EPILOG)(record)
 app.command()(runs)
 app.command()(exclude)
+app.command()(export)
 app.add_typer(rig, name="rig")
 app.add_typer(sim, name="sim")
 app.add_typer(zebro, name="zebro")

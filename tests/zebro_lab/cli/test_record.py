@@ -174,6 +174,14 @@ def test_zebro_check_fixes_order_and_writes_a_profile(tmp_path):
     assert (again.returncode, again.stderr.count("\n")) == (1, 1)
 
 
+def test_a_run_is_exported_as_tables(run, tmp_path):
+    run("record", "--zebro", "sim", "--duration", 0.3, "--label", "x", "--data", tmp_path / "data")
+    (folder,) = (tmp_path / "data").iterdir()
+    code, out, _ = run("export", folder, "--out", tmp_path / "out", "--to", "parquet")
+    assert code == 0
+    assert f"wrote {tmp_path / 'out' / 'legs.parquet'}" in out
+
+
 ERRORS = {
     "no device": (("--label", "x"), "no device to record"),
     "no such port": (("--label", "x", "--zebro", "zebro-100-serial@/dev/no"), "cannot open port"),

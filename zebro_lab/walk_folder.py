@@ -28,7 +28,9 @@ PICTURES = (
     "paired_traction", "gantt",
 )  # fmt: skip
 ANIMATIONS = ("animation.mp4", "animation.gif")
-OWNED = (PATH_CSV, MANIFEST, *(f"{name}.png" for name in PICTURES), *ANIMATIONS)
+DRAWS, BAND_CSV, BAND_PICTURE = "draws.npz", "band.csv", "band.png"
+BAND = (DRAWS, BAND_CSV, BAND_PICTURE)
+OWNED = (PATH_CSV, MANIFEST, *(f"{name}.png" for name in PICTURES), *ANIMATIONS, *BAND)
 """What a walk writes; an earlier walk's files of these names are replaced."""
 
 _DIGITS = "%.10g"  # far below what any model means, far above what a float loses

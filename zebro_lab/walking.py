@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """What `walk` and `predict` have in common: a model walks leg angles, and a folder is written."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Protocol
@@ -166,6 +166,7 @@ def write_walk(
     kind: str,
     settings: Mapping[str, object],
     files: tuple[Path, ...] = (),
+    extra: Callable[[Path], None] | None = None,
 ) -> None:
     """Write the walk folder with the pictures asked for.
 
@@ -176,6 +177,7 @@ def write_walk(
         kind: "walk" or "predict".
         settings: What decided the numbers beyond model, robot and slip, as JSON can hold it.
         files: Files read beyond those of robot and slip.
+        extra: Writes what else belongs into the folder.
 
     Raises:
         AlreadyExists: The folder is a file, or holds the result of another command.
@@ -200,6 +202,8 @@ def write_walk(
         inputs=file_hashes(read),
     ) as folder:
         _draw(request, walked, folder, watcher)
+        if extra is not None:
+            extra(folder)
 
 
 def _draw(request: ModelRequest, walked: Walked, folder: Path, watcher: Watcher) -> None:

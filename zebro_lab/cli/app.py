@@ -15,6 +15,8 @@ from zebro_lab.cli.record import record
 from zebro_lab.cli.rig import app as rig
 from zebro_lab.cli.runs import exclude, export, runs
 from zebro_lab.cli.sim import app as sim
+from zebro_lab.cli.validate import EPILOG as VALIDATE_EPILOG
+from zebro_lab.cli.validate import validate
 from zebro_lab.cli.walk import EPILOG as WALK_EPILOG
 from zebro_lab.cli.walk import walk
 from zebro_lab.cli.zebro import app as zebro
@@ -29,6 +31,7 @@ app.command(epilog=EPILOG)(calibrate)
 app.command()(init)
 app.command(epilog=WALK_EPILOG)(walk)
 app.command(epilog=PREDICT_EPILOG)(predict)
+app.command(epilog=VALIDATE_EPILOG)(validate)
 app.command(epilog=RECORD_EPILOG)(record)
 app.command()(runs)
 app.command()(exclude)

@@ -27,6 +27,8 @@ Examples:
 
 zebro-lab predict legs.csv --slip calibration --out prediction --figures
 
+zebro-lab predict legs.csv --slip calibration --draws 500 --out prediction
+
 zebro-lab predict legs.csv --columns legs.toml --slip coulomb:0.38 --arc-deg 200 --out prediction
 
 LEGLOG holds t [s] and theta1 to theta6 [rad], pi/2 with the toe straight down, wrapped or not;
@@ -51,11 +53,31 @@ def predict(
         Direction, typer.Option(help="Side the gait turns to; only --model thesis asks.")
     ] = Direction.LEFT,
     dt: StepLength = None,
+    draws: Annotated[
+        int,
+        typer.Option(
+            min=0, help="Paths drawn for the band: draws.npz, band.csv, band.png; 0 for none."
+        ),
+    ] = 0,
+    seed: Annotated[int, typer.Option(help="Seed of the band's draws.")] = 1,
+    offset_sd_deg: Annotated[
+        float | None,
+        typer.Option(
+            min=0.0,
+            help="Unknown offset of each leg (sd) [deg]; that of a count, or 0.3, without it.",
+        ),
+    ] = None,
+    start_sd: Annotated[
+        tuple[float, float, float],
+        typer.Option(help="Start pose's sd: x y [m] yaw [deg].", metavar="X Y YAW"),
+    ] = (0.0, 0.0, 0.0),
+    threads: Annotated[int, typer.Option(min=1, help="Draws walked at once.")] = 2,
     figures: Figures = False,
     animate: Animate = False,
 ) -> None:
-    """Predict where measured leg angles lead: FOLDER/path.csv, pictures and a film."""
+    """Predict where measured leg angles lead: FOLDER/path.csv, a band, pictures and a film."""
     from zebro_lab.cli.walk_report import run_and_report
+    from zebro_lab.path_band import BandRequest
     from zebro_lab.stages.predict import PredictRequest
     from zebro_lab.stages.predict import predict as run
     from zebro_lab.walking import ModelRequest
@@ -76,5 +98,6 @@ def predict(
         ),
         columns=columns,
         direction=direction.value,
+        band=BandRequest(draws, seed, offset_sd_deg, start_sd, threads=threads) if draws else None,
     )
     run_and_report(lambda watcher: run(request, watcher), request.model)

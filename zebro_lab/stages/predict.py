@@ -2,13 +2,18 @@
 """Measured leg angles in, walk folder out."""
 
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 
+from model.gait.quantised import QuantisedLog, find_step
 from model.gait.reference import SampledReference
 from model.robot import N_LEGS
+from model.walk.ensemble import PathEnsemble
+from zebro_lab.errors import SettingsError
 from zebro_lab.leg_log import LegLog, read_leg_log
+from zebro_lab.path_band import BandRequest, predict_band, write_band
 from zebro_lab.robot_file import RobotFile
 from zebro_lab.walk_folder import PATH_CSV
 from zebro_lab.walk_models import Direction
@@ -24,12 +29,14 @@ class PredictRequest:
         model: Which model, on what, and what to write.
         columns: A `columns.toml` in place of the one beside the log.
         direction: Side the gait turns to; only the source's model asks.
+        band: What band to predict; None for the path alone.
     """
 
     log: Path
     model: ModelRequest
     columns: Path | None = None
     direction: Direction = "left"
+    band: BandRequest | None = None
 
 
 def predict(request: PredictRequest, watcher: Watcher) -> Walked:
@@ -46,20 +53,66 @@ def predict(request: PredictRequest, watcher: Watcher) -> Walked:
         described = _as_walked(described)
     log = read_leg_log(request.log, columns=request.columns, leg_sign=described.leg_sign)
     start, end = float(log.reference.t[0]), float(log.reference.t[-1])
+    legs, notes = _legs(log, start)
     watcher.step("walking", None)
     walked = walk_with(
         request.model,
         described,
-        SampledReference(log.reference.t - start, log.reference.theta),
+        legs.smooth() if isinstance(legs, QuantisedLog) else legs,
         duration=end - start,
         what=_what(log),
         direction=request.direction,
-        notes=log.notes,
+        notes=(*log.notes, *notes),
     )
     walked = replace(walked, path=replace(walked.path, t=walked.path.t + start))
-    settings = {"leg_angles": log.source, "direction": request.direction}
-    write_walk(request.model, walked, watcher, kind="predict", settings=settings, files=log.files)
+    settings: dict[str, object] = {"leg_angles": log.source, "direction": request.direction}
+    extra = None
+    if request.band is not None:
+        paths = _band(request, walked, legs, end - start, watcher)
+        settings["band"] = request.band.settings()
+        moved = PathEnsemble(paths.t + start, paths.position, paths.yaw)
+        extra = partial(write_band, paths=moved, title=walked.title)
+    write_walk(
+        request.model, walked, watcher,
+        kind="predict", settings=settings, files=log.files, extra=extra,
+    )  # fmt: skip
     return walked
+
+
+def _legs(log: LegLog, start: float) -> tuple[SampledReference | QuantisedLog, tuple[str, ...]]:
+    """Return the angles from time zero on, to be reconstructed where an encoder counted them."""
+    t, theta = log.reference.t - start, log.reference.theta
+    step = find_step(theta)
+    if step is None:
+        return SampledReference(t, theta), ()
+    note = (
+        f"leg log: angles are counted in steps of {np.degrees(step):.3g} deg, reconstructed as "
+        "straight lines through the changes of count"
+    )
+    return QuantisedLog(t, theta, step), (note,)
+
+
+def _band(
+    request: PredictRequest,
+    walked: Walked,
+    legs: SampledReference | QuantisedLog,
+    duration: float,
+    watcher: Watcher,
+) -> PathEnsemble:
+    if request.band is None or walked.model != "dynamics" or walked.slip is None:
+        raise SettingsError(
+            f"a band is predicted by the model 'dynamics' only, not by '{walked.model}'",
+            key="--draws",
+        )
+    return predict_band(
+        request.band,
+        walked.described.robot,
+        legs,
+        walked.slip,
+        duration=duration,
+        toe=request.model.toe,
+        watcher=watcher,
+    )
 
 
 def _as_walked(described: RobotFile) -> RobotFile:

@@ -1,0 +1,142 @@
+# SPDX-License-Identifier: MIT
+"""`zebro-lab validate`: how far predicted paths lie from tracked ones."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+if TYPE_CHECKING:
+    from rich.console import Console
+    from rich.table import Table
+
+    from zebro_lab.stages.validate import Validated
+    from zebro_lab.validation import RunJudged
+
+EPILOG = """
+Examples:
+
+zebro-lab validate data/20260101T120000Z_walk_tiles
+
+zebro-lab validate --predicted prediction --track track/track.csv --out validation
+
+zebro-lab validate --predicted a/prediction --track a/track --predicted b/prediction --track b/track
+
+Unaligned errors come first: alignment hides a wrong start and a wrong heading. Every path starts
+from the first tracked pose, which is not scored.
+"""
+
+
+def validate(
+    runs: Annotated[
+        list[Path] | None, typer.Argument(help="Run folders with prediction/ and track/.")
+    ] = None,
+    predicted: Annotated[
+        list[Path] | None,
+        typer.Option(help="Walk folder of predict, or a table with t, x, y, yaw; repeatable."),
+    ] = None,
+    track: Annotated[
+        list[Path] | None, typer.Option(help="track.csv, or its folder; one a --predicted.")
+    ] = None,
+    out: Annotated[
+        Path | None,
+        typer.Option(help="Validation folder; RUN/validation of one run, else validation."),
+    ] = None,
+    anchor: Annotated[
+        bool,
+        typer.Option(
+            "--anchor/--no-anchor",
+            help="Start from the first tracked pose; or take paths where they are.",
+        ),
+    ] = True,
+    time_offset: Annotated[
+        float, typer.Option(help="Added to the track's times: its clock is so far behind [s].")
+    ] = 0.0,
+    seed: Annotated[int, typer.Option(help="Seed of everything random.")] = 1,
+) -> None:
+    """Judge predicted paths against tracked ones, beside simpler models."""
+    from rich.console import Console
+
+    from zebro_lab.cli.progress import progress_bar
+    from zebro_lab.stages.validate import ValidateRequest, pairs_of_run
+    from zebro_lab.stages.validate import validate as run
+
+    runs, predicted, track = runs or [], predicted or [], track or []
+    if len(predicted) != len(track) or not (runs or predicted):
+        raise typer.BadParameter(
+            f"{len(predicted)} --predicted and {len(track)} --track; name as many of both, or "
+            "run folders"
+        )
+    pairs = [pairs_of_run(each) for each in runs] + list(zip(predicted, track, strict=True))
+    if out is None:
+        out = runs[0] / "validation" if len(runs) == 1 and not predicted else Path("validation")
+    with progress_bar(Console(stderr=True)) as watcher:
+        validated = run(ValidateRequest(tuple(pairs), out, anchor, time_offset, seed), watcher)
+    console = Console(highlight=False)
+    if not console.is_terminal:
+        console = Console(highlight=False, width=120)
+    print_validated(console, validated, out)
+
+
+def print_validated(console: "Console", validated: "Validated", out: Path) -> None:
+    """Print every walk's table, the means over walks, and where all was written."""
+    from rich.text import Text
+
+    if "sim:" in validated.source:
+        console.print(Text(f"SIMULATED: {validated.source}"))
+    for run in validated.runs:
+        console.print(_table(run))
+        for line in (*_verdict(run), *run.notes):
+            console.print(Text(line))
+    for each in validated.summary:
+        mean, low, high = each.interval
+        console.print(Text(f"{each.model}: {each.metric} {mean:.4g} ({low:.4g} to {high:.4g})"))
+    if validated.summary:
+        console.print(Text(f"means over {len(validated.runs)} walks, 90 % intervals over walks"))
+    console.print(Text(f"\nwritten to {out}"))
+
+
+def _table(run: "RunJudged") -> "Table":
+    import numpy as np
+    from rich import box
+    from rich.table import Table
+
+    length = run.rows[0].errors.length
+    title = f"{run.name}: {run.rows[0].errors.poses} poses, {length:.3f} m"
+    table = Table(title=title, box=box.SIMPLE, title_justify="left")
+    table.add_column("model")
+    for name in (
+        "ATE [mm]", "of path", "along [mm]", "across [mm]", "yaw [deg]", "end [mm]",
+        "aligned [mm]", "radius [m]", "CRPS x, y [mm]",
+    ):  # fmt: skip
+        table.add_column(name, justify="right")
+    for row in run.rows:
+        e = row.errors
+        crps = " ".join(f"{1000 * value:.1f}" for value in row.scores.crps[:2])
+        table.add_row(
+            row.name, f"{1000 * e.ate:.1f}", f"{e.ate_of_length:.2%}", f"{1000 * e.along:.1f}",
+            f"{1000 * e.cross:.1f}", f"{np.degrees(e.yaw):.2f}", f"{1000 * e.final_distance:.1f}",
+            f"{1000 * e.ate_aligned:.1f}", f"{e.radius[0]:.3f}", crps,
+        )  # fmt: skip
+    table.add_row("track", *[""] * 7, f"{run.rows[0].errors.radius[1]:.3f}", "")
+    return table
+
+
+def _verdict(run: "RunJudged") -> list[str]:
+    """Say what the band is worth."""
+    row = run.rows[0]
+    if run.band is None:
+        return []
+    states = ("x", "y", "yaw")
+    lines = [
+        f"the {level:.0%} band holds "
+        + ", ".join(f"{c:.0%} of {s}" for s, c in zip(states, cover, strict=True))
+        for level, cover in zip(row.scores.levels, row.scores.coverage, strict=True)
+    ]
+    for each in row.consistency:
+        word = "plausible" if each.plausible else "NOT plausible"
+        lines.append(
+            f"{each.name}: {each.value:.3g}, the ensemble's own draws {each.low:.3g} to "
+            f"{each.high:.3g}: {word} (p {each.p_value:.2g})"
+        )
+    return lines

@@ -1,0 +1,82 @@
+# SPDX-License-Identifier: MIT
+"""Draws of a slip law: of a calibration's posterior, or the one law that was assumed."""
+
+from pathlib import Path
+
+import numpy as np
+
+from model.errors import DomainError
+from model.slip.curve import SlipCurve
+from model.slip.law import Array
+from model.walk.traction import ToeLaw, TractionTable, VelocityCoulomb, law_table
+from zebro_lab.errors import DataError
+from zebro_lab.slip_argument import Slip
+
+POSTERIOR = "posterior.nc"
+MOST_TABLES = 200  # a table costs as much as walking a second, and paths hardly differ between them
+
+
+def slip_tables(
+    slip: Slip, n: int, *, weight: float, toe: ToeLaw = "saturated", rng: np.random.Generator
+) -> list[TractionTable]:
+    """Tabulate draws of the law, up to `MOST_TABLES`.
+
+    Args:
+        slip: What `--slip` named.
+        n: Draws wanted; an assumed law has one.
+        weight: Weight of the robot [N].
+        toe: Traction of a leg on its toe.
+        rng: Source of randomness.
+
+    Raises:
+        DataError: The posterior beside the slip.toml is damaged or of another law.
+    """
+    law = slip.law
+    if isinstance(law, VelocityCoulomb):
+        return [law.table(weight=weight, toe=toe)]
+    tables = []
+    for values in _values(slip, law, min(n, MOST_TABLES), rng):
+        try:
+            tables.append(
+                law_table(law.law, values, weight=weight, definition=law.definition, toe=toe)
+            )
+        except DomainError:  # a draw in the tail that this robot's loads take out of its shape
+            continue
+    return tables or [slip.traction_table(weight=weight, toe=toe)]
+
+
+def _values(slip: Slip, curve: SlipCurve, n: int, rng: np.random.Generator) -> Array:
+    """Draw parameter values, shape (n, k)."""
+    if not np.any(curve.covariance):
+        return curve.values[None]
+    beside = [file.parent / POSTERIOR for file in slip.files]
+    if beside and beside[0].is_file():
+        drawn = _posterior(beside[0], curve)
+        return drawn[rng.choice(len(drawn), size=n, replace=n > len(drawn))]
+    return rng.multivariate_normal(curve.values, curve.covariance, size=n, method="eigh")
+
+
+def _posterior(file: Path, curve: SlipCurve) -> Array:
+    """Read the draws of every parameter, those that were fixed at their value, shape (m, k)."""
+    import xarray as xr
+
+    try:
+        with xr.open_dataset(file, group="posterior", engine="h5netcdf") as data:
+            columns = {str(name): np.ravel(data[name].to_numpy()) for name in data.data_vars}
+    except (OSError, ValueError, KeyError) as error:
+        raise DataError(
+            f"cannot be read as posterior draws ({error}); calibrate again, or name a slip.toml "
+            "that lies alone",
+            file=file,
+        ) from error
+    names = [parameter.name for parameter in curve.law.parameters]
+    drawn = [name for name in names if name in columns]
+    if not drawn:
+        raise DataError(
+            f"holds draws of {', '.join(columns) or 'nothing'}, but the slip.toml beside it is of "
+            f"the law '{curve.law.name}' with {', '.join(names)}; calibrate again",
+            file=file,
+        )
+    m = len(columns[drawn[0]])
+    fixed = dict(zip(names, curve.values, strict=True))
+    return np.column_stack([columns.get(name, np.full(m, fixed[name])) for name in names])

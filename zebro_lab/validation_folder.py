@@ -1,0 +1,209 @@
+# SPDX-License-Identifier: MIT
+"""The sole owner of the format of a validation folder."""
+
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from model.errors import InsufficientData
+from model.metrics.bootstrap import Interval, bootstrap_mean
+from model.metrics.path_errors import pose_errors
+from zebro_lab.atomic import atomic_folder
+from zebro_lab.errors import AlreadyExists
+from zebro_lab.provenance import file_hash, software
+from zebro_lab.track_file import tum_lines
+from zebro_lab.validation import Judged, RunJudged
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+SCHEMA = 1
+KIND = "validation"
+METRICS, ERRORS, MANIFEST = "metrics.csv", "errors.csv", "manifest.json"
+OWNED = (METRICS, ERRORS, MANIFEST, "*.tum", "*.png")
+MEANS = ("ate_m", "ate_of_length", "ate_aligned_m", "yaw_rms_deg", "energy_m", "crps_yaw_deg")
+"""Metrics of which a mean over runs is told."""
+
+
+@dataclass(frozen=True)
+class Summary:
+    """A metric over several runs.
+
+    Attributes:
+        model: The prediction or a baseline.
+        metric: A column of `metrics.csv`.
+        interval: Mean with its 90 % interval over runs.
+    """
+
+    model: str
+    metric: str
+    interval: Interval
+
+
+def metrics(judged: Judged) -> dict[str, float]:
+    """Return the metrics of one path or ensemble, by column; units are in the names."""
+    errors, scores = judged.errors, judged.scores
+    row = {
+        "poses": float(errors.poses),
+        "length_m": errors.length,
+        "length_ratio": errors.length_ratio,
+        "ate_m": errors.ate,
+        "ate_of_length": errors.ate_of_length,
+        "x_rms_m": errors.x,
+        "y_rms_m": errors.y,
+        "along_rms_m": errors.along,
+        "cross_rms_m": errors.cross,
+        "yaw_rms_deg": float(np.degrees(errors.yaw)),
+        "largest_m": errors.largest,
+        "final_m": errors.final_distance,
+        "final_yaw_deg": float(np.degrees(errors.final_yaw)),
+        "ate_aligned_m": errors.ate_aligned,
+        "alignment_yaw_deg": float(np.degrees(errors.alignment_yaw)),
+        "radius_m": errors.radius[0],
+        "radius_tracked_m": errors.radius[1],
+        "yaw_rate_deg_s": float(np.degrees(errors.yaw_rate[0])),
+        "yaw_rate_tracked_deg_s": float(np.degrees(errors.yaw_rate[1])),
+        "energy_m": scores.energy,
+        "crps_x_m": float(scores.crps[0]),
+        "crps_y_m": float(scores.crps[1]),
+        "crps_yaw_deg": float(np.degrees(scores.crps[2])),
+    }
+    for each in errors.relative:
+        row[f"rpe_{each.distance:g}m_m"] = each.position
+        row[f"rpe_{each.distance:g}m_deg"] = float(np.degrees(each.yaw))
+    row.update(_band_metrics(judged))
+    return row
+
+
+def _band_metrics(judged: Judged) -> dict[str, float]:
+    """Return coverage, width and consistency; a single path has none."""
+    scores, row = judged.scores, {}
+    if not np.any(scores.width > 0):
+        return row
+    for i, level in enumerate(scores.levels):
+        for j, (state, unit, scale) in enumerate(
+            (("x", "m", 1.0), ("y", "m", 1.0), ("yaw", "deg", 180 / np.pi))
+        ):
+            row[f"coverage{100 * level:.0f}_{state}"] = float(scores.coverage[i, j])
+            row[f"width{100 * level:.0f}_{state}_{unit}"] = float(scores.width[i, j] * scale)
+    for each in judged.consistency:
+        row[f"{each.name}_p"] = each.p_value
+        if each.name == "nees":
+            row |= {"nees": each.value, "nees_low": each.low, "nees_high": each.high}
+    return row
+
+
+def summarise_runs(runs: Sequence[RunJudged], *, rng: np.random.Generator) -> list[Summary]:
+    """Average metrics over runs, with intervals from drawing whole runs again; none of one run."""
+    summaries = []
+    for name in [row.name for row in runs[0].rows]:
+        rows = [metrics(row) for run in runs for row in run.rows if row.name == name]
+        for metric in MEANS:
+            values = np.array([row[metric] for row in rows])
+            try:
+                interval = bootstrap_mean(values[np.isfinite(values)], rng=rng)
+            except InsufficientData:
+                continue
+            summaries.append(Summary(name, metric, interval))
+    return summaries
+
+
+def write_validation(
+    out: Path,
+    runs: Sequence[RunJudged],
+    *,
+    summary: Sequence[Summary],
+    settings: Mapping[str, object],
+    inputs: Mapping[str, str],
+    source: str,
+) -> None:
+    """Write the folder: metrics, errors pose by pose, TUM files for evo, pictures, manifest.
+
+    Args:
+        out: Folder to make or to renew.
+        runs: What was judged.
+        summary: Means over runs.
+        settings: What was asked, as JSON can hold it.
+        inputs: SHA-256 of each file that was read.
+        source: Where prediction and track come from.
+
+    Raises:
+        AlreadyExists: `out` is a file, or holds the result of another command.
+    """
+    _require_ours(out)
+    with atomic_folder(out, replaces=OWNED, marker=MANIFEST) as draft:
+        _write_tables(draft, runs)
+        _draw(draft, runs, simulated="sim:" in source)
+        content = {
+            "schema": SCHEMA,
+            "kind": KIND,
+            "source": source,
+            "settings": settings,
+            "runs": {run.name: {row.name: metrics(row) for row in run.rows} for run in runs},
+            "over_runs": [
+                {"model": s.model, "metric": s.metric, **s.interval._asdict()} for s in summary
+            ],
+            "inputs": inputs,
+            "outputs": {p.name: file_hash(p) for p in sorted(draft.iterdir()) if p.is_file()},
+            "software": software(),
+        }
+        (draft / MANIFEST).write_text(json.dumps(_plain(content), indent=2) + "\n")
+
+
+def _write_tables(draft: Path, runs: Sequence[RunJudged]) -> None:
+    import pandas as pd
+
+    table = [{"run": run.name, "model": r.name, **metrics(r)} for run in runs for r in run.rows]
+    _to_csv(pd.DataFrame(table), draft / METRICS)
+    parts = []
+    for run in runs:
+        for row in run.rows:
+            errors = pose_errors(row.path.at(run.track.t), run.track)
+            columns = {
+                "t": errors.t, "x_m": errors.xy[:, 0], "y_m": errors.xy[:, 1],
+                "along_m": errors.along, "cross_m": errors.cross, "yaw_rad": errors.yaw,
+            }  # fmt: skip
+            parts.append(pd.DataFrame({"run": run.name, "model": row.name, **columns}))
+        (draft / f"{run.name}.track.tum").write_text(tum_lines(run.track))
+        matched = run.rows[0].path.at(run.track.t)
+        (draft / f"{run.name}.predicted.tum").write_text(tum_lines(matched))
+    _to_csv(pd.concat(parts), draft / ERRORS)
+
+
+def _to_csv(table: "pd.DataFrame", file: Path) -> None:
+    table.to_csv(file, index=False, float_format="%.8g", lineterminator="\n")
+
+
+def _draw(draft: Path, runs: Sequence[RunJudged], *, simulated: bool) -> None:
+    from zebro_lab.plots import save
+    from zebro_lab.plots.path_validation import path_validation
+
+    for run in runs:
+        rows = {row.name: row.path for row in run.rows}
+        figure = path_validation(
+            rows, run.track, band=run.band, title=run.name, simulated=simulated
+        )
+        save(figure, draft / f"{run.name}.png")
+
+
+def _plain(value: object) -> object:
+    """Replace what JSON cannot hold: numbers that are none or infinite."""
+    if isinstance(value, Mapping):
+        return {key: _plain(each) for key, each in value.items()}
+    if isinstance(value, list | tuple):
+        return [_plain(each) for each in value]
+    return None if isinstance(value, float) and not np.isfinite(value) else value
+
+
+def _require_ours(out: Path) -> None:
+    """Refuse to renew what another command wrote."""
+    try:
+        kind = json.loads((out / MANIFEST).read_text()).get("kind")
+    except (OSError, ValueError, AttributeError):
+        return
+    if kind != KIND:
+        raise AlreadyExists(f"{out} holds the result of another command ({kind}); name another")

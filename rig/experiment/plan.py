@@ -301,7 +301,7 @@ def _limits(table: PlanTable) -> RunLimits:
         in_a_row=table.whole("in_a_row", 3, least=1, most=1000),
         speed_error=table.positive("speed_error"),
         speed_error_time=table.positive("speed_error_time", 0.2),
-        silence=table.positive("silence", 0.1),
+        silence=table.positive("silence", 0.25),
         free_space=table.positive("free_space", 100e6),
         hold=table.positive("hold", 600.0),
     )

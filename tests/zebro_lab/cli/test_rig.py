@@ -3,6 +3,7 @@ import io
 import subprocess
 import sys
 import time
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -13,6 +14,7 @@ from typer.testing import CliRunner
 from rig.experiment.control import Control
 from rig.experiment.steps import Point
 from rig.experiment.verdict import Verdict
+from rig.twins import simulated_rig_devices
 from zebro_lab.cli.app import app
 from zebro_lab.cli.rig_screen import ExperimentScreen, experiment_screen, slip_chart
 from zebro_lab.stages.rig_check import check_runs
@@ -33,6 +35,8 @@ def _plan(tmp_path):
         "duration = 1.0": "duration = 0.3",
         "tare_duration = 10.0": "tare_duration = 0.3",
         "check_every = 62": "check_every = 0",
+        "silence = 0.25": "silence = 3.0",  # a busy machine may hold a process up
+        "speed_error_time = 0.2": "speed_error_time = 2.0",
     }.items():
         assert old in text
         text = text.replace(old, new)
@@ -79,7 +83,9 @@ def test_a_weighing_prints_line_and_prior():
     assert zebro_lab("weigh", "--rig", "sim", "--masses", "one").exit_code == 2
 
 
-def test_a_short_run_in_real_time_takes_its_time(plan, tmp_path):
+def test_a_short_run_in_real_time_takes_its_time(plan, tmp_path, monkeypatch):
+    patient = partial(simulated_rig_devices, watchdog=3.0)
+    monkeypatch.setattr("zebro_lab.rig_at_hand.simulated_rig_devices", patient)
     began = time.monotonic()
     result = zebro_lab("run", plan, "--rig", "rig-odrive-netft@sim", "--data", tmp_path / "data")
     assert result.exit_code == 0, result.output

@@ -27,7 +27,7 @@ from rig.twins import robot_twin
 from rig.zebro.profile import load_leg_profile
 from rig.zebro.serial import PacketLegs
 from zebro_lab.acquisition import Device, acquiring
-from zebro_lab.record_devices import default_gait
+from zebro_lab.record_devices import CELL_PAUSE, default_gait
 from zebro_lab.recorder import RunDescription, RunRecorder
 from zebro_lab.run_folder import read_manifest
 from zebro_lab.stream_views import ImuView, LegsView, LoadCellView
@@ -75,7 +75,10 @@ def measure(seconds, folder):
     )
     views = (LegsView("legs", profile=LEGS), ImuView("imu", profile=IMU),
              LoadCellView("load_cell", profile=CELL))  # fmt: skip
-    devices = [Device(stream, view) for stream, view in zip(streams, views, strict=True)]
+    devices = [
+        Device(stream, view, pause=pause)
+        for stream, view, pause in zip(streams, views, (0.0, 0.0, CELL_PAUSE), strict=True)
+    ]
     description = RunDescription(kind="walk", label="bench", source="sim:bench")
     recorder = RunRecorder(folder, description=description,
                            views={d.name: d.view for d in devices})  # fmt: skip

@@ -45,6 +45,8 @@ class Device:
         check: Guards every read, in the thread that reads; raises where a limit is broken.
         command: Called before every read, in the same thread: set-points of a gait.
         at_end: Called once before the driver is left: stops what `command` moved.
+        pause: Before each read, for a device that is fast and tells time: waking up for each few
+            samples costs more than reading them [s].
     """
 
     stream: Stream
@@ -52,6 +54,7 @@ class Device:
     check: Callable[[Sequence[Sample]], None] | None = None
     command: Callable[[float], None] | None = None
     at_end: Callable[[], object] | None = None
+    pause: float = 0.0
 
     @property
     def name(self) -> str:
@@ -120,6 +123,8 @@ class Acquisition:
         device = self._device
         if device.command is not None:
             device.command(self._clock.now())
+        if device.pause > 0:
+            self._clock.sleep(device.pause)
         samples = device.stream.read(READ_WAIT)
         if samples:
             self._sink.write(self.name, samples)

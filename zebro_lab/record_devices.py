@@ -35,6 +35,8 @@ IMU_PROFILE: Final = "imu-quaternion-serial"
 RIG_PROFILE: Final = "rig-odrive-netft"
 HORIZON: Final = 0.1
 """How far ahead of a played gait its set-points lie [s]."""
+CELL_PAUSE: Final = 0.02
+"""Between two reads of a load cell: the system keeps seconds of its datagrams [s]."""
 TWIN_SWEEP: Final = SweepPlan(slips=tuple(np.linspace(0.0, 0.9, 16) ** 1.5), duration=0.25)
 """What a simulated rig sweeps: all slips in 4 s at each of four loads."""
 
@@ -210,9 +212,8 @@ def _of_rig(profile: RigProfile, rig: RigDevices) -> Iterator[Device]:
     if rig.drives is not None and profile.drives is not None:
         yield Device(rig.drives, DrivesView(rig.drives.name, profile=profile.drives))
     if rig.load_cell is not None and profile.load_cell is not None:
-        yield Device(
-            rig.load_cell, LoadCellView(rig.load_cell.name, profile=profile.load_cell), check
-        )
+        view = LoadCellView(rig.load_cell.name, profile=profile.load_cell)
+        yield Device(rig.load_cell, view, check, pause=CELL_PAUSE)
 
 
 class GaitPlayer:

@@ -1,0 +1,96 @@
+# SPDX-License-Identifier: MIT
+"""What walks say of the legs, on walks simulated by the model itself: the truth is known."""
+
+import numpy as np
+import pytest
+
+from model.bayes.walks import NAMES, TrackedWalk, WalkPrior, fit_walks, from_first
+from model.errors import InsufficientData
+from model.gait import tripod_angles, tripod_reference
+from model.gait.reference import SampledReference
+from model.predict import ModelSpread
+from model.robot import Robot
+from model.walk.ensemble import WalkDraw, planar_walk
+from model.walk.traction import VelocityCoulomb
+
+DURATION = 12.0
+NOISE = np.array([0.002, 0.002, 0.005])
+TABLE = VelocityCoulomb(0.38).table(weight=21.3)
+PRIOR = WalkPrior(spread=ModelSpread(0.002, 0.002))
+
+
+def tracked(steering, side, *, offset, seed):
+    """Simulate a tracked walk of a robot with leg offsets [rad]."""
+    gait = tripod_reference(tripod_angles(np.radians(50.0), steering), 2.0, direction=side)
+    t = np.arange(0.0, DURATION + 0.005, 0.01)
+    legs = SampledReference(t, gait.angles(t))
+    true = planar_walk(WalkDraw(Robot(leg_offset=offset), legs, TABLE), duration=DURATION)
+    seen = np.arange(0.0, DURATION, 2.0)
+    states = np.column_stack([np.interp(seen, true.t, a) for a in (true.x, true.y, true.yaw)])
+    states += np.random.default_rng(seed).normal(0, 1, states.shape) * NOISE
+    covariance = np.tile(np.diag(NOISE**2), (len(seen), 1, 1))
+    return TrackedWalk(f"{steering} {side}", legs, seen, states, covariance)
+
+
+THREE = ((1.0, "left"), (1.3, "left"), (1.3, "right"))
+
+
+def fitted(offset, *, turns=THREE):
+    walks = [
+        tracked(steering, side, offset=offset, seed=i) for i, (steering, side) in enumerate(turns)
+    ]
+    return fit_walks(Robot(), TABLE, walks, prior=PRIOR, rng=np.random.default_rng(1))
+
+
+@pytest.fixture(scope="module")
+def straight_legs():
+    return fitted(np.zeros(6), turns=THREE[1:2])
+
+
+@pytest.fixture(scope="module")
+def bent_leg():
+    return fitted(np.radians([0, 0, 0, 5.0, 0, 0]))
+
+
+def test_legs_that_are_right_are_left_alone(straight_legs):
+    assert straight_legs.likeliest.wrong_leg is None
+    for each in straight_legs.contractions():
+        assert abs(each.mean) < 2.5 * each.sd
+
+
+@pytest.mark.long
+def test_a_leg_five_degrees_off_is_found_within_one(bent_leg):
+    mode = bent_leg.likeliest
+    assert mode.wrong_leg == 3
+    assert np.degrees(mode.mean[3] + mode.mean[8]) == pytest.approx(5.0, abs=1.0)
+
+
+def test_walks_say_more_of_offsets_than_of_grip(straight_legs):
+    by_name = {each.name: each for each in straight_legs.contractions()}
+    assert set(by_name) == set(NAMES)
+    assert by_name["leg_offset1"].contraction > by_name["grip"].contraction
+    assert not by_name["grip"].informed or by_name["grip"].contraction < 0.6
+
+
+def test_draws_scatter_as_the_posterior_says(straight_legs):
+    state = straight_legs.draw(4000, rng=np.random.default_rng(3))
+    assert state.offset.shape == (4000, 6)
+    grip = straight_legs.contractions()[6]
+    assert np.log(state.grip).std() == pytest.approx(grip.sd, rel=0.1)
+    assert np.all(state.grip > 0)
+
+
+def test_a_path_moved_to_a_pose_begins_there():
+    states = np.random.default_rng(1).normal(size=(3, 5, 3))
+    moved = from_first(states, np.array([1.0, 2.0, 0.5]))
+    np.testing.assert_allclose(moved[:, 0], np.broadcast_to([1.0, 2.0, 0.5], (3, 3)))
+    steps = [np.linalg.norm(np.diff(a[..., :2], axis=1), axis=2) for a in (moved, states)]
+    np.testing.assert_allclose(*steps)
+
+
+def test_no_walk_and_a_track_of_two_poses_are_refused():
+    with pytest.raises(InsufficientData, match="no walk"):
+        fit_walks(Robot(), TABLE, [], prior=PRIOR, rng=np.random.default_rng(1))
+    walk = tracked(1.0, "left", offset=np.zeros(6), seed=1)
+    with pytest.raises(InsufficientData, match="three or more"):
+        TrackedWalk("short", walk.legs, walk.t[:2], walk.states[:2], walk.covariance[:2])

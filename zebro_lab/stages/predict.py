@@ -14,6 +14,7 @@ from model.walk.ensemble import PathEnsemble
 from zebro_lab.errors import SettingsError
 from zebro_lab.leg_log import LegLog, read_leg_log
 from zebro_lab.path_band import BandRequest, predict_band, write_band
+from zebro_lab.recorded_legs import is_recorded
 from zebro_lab.robot_file import RobotFile
 from zebro_lab.walk_folder import PATH_CSV
 from zebro_lab.walk_models import Direction
@@ -49,7 +50,8 @@ def predict(request: PredictRequest, watcher: Watcher) -> Walked:
         ModelError: The walk cannot be computed.
     """
     described = robot_of(request.model)
-    if request.log.is_dir() or request.log.name == PATH_CSV:
+    walked_before = request.log.is_dir() or request.log.name == PATH_CSV
+    if walked_before and not is_recorded(request.log):
         described = _as_walked(described)
     log = read_leg_log(request.log, columns=request.columns, leg_sign=described.leg_sign)
     start, end = float(log.reference.t[0]), float(log.reference.t[-1])

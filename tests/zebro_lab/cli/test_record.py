@@ -11,12 +11,14 @@ import sys
 import time
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from rig.zebro.profile import load_leg_profile
 from zebro_lab.cli.app import app
 from zebro_lab.cli.errors import run as run_app
 from zebro_lab.raw_log import read_raw_log
+from zebro_lab.walk_folder import read_walk
 
 COMMAND = str(Path(sys.executable).with_name("zebro-lab"))
 HEAVY = {"numpy", "scipy", "pandas", "can", "serial", "mcap", "matplotlib", "numba", "rig.device"}
@@ -201,3 +203,21 @@ def test_an_error_is_one_line_and_nothing_is_written(options, message, run, tmp_
 
 def test_a_run_needs_a_label_and_a_place(run):
     assert run("record", "--zebro", "sim")[0] == 2
+
+
+def test_a_recorded_walk_is_predicted_with_the_robots_leg_offsets(run, tmp_path):
+    data, robot = tmp_path / "data", tmp_path / "robot.toml"
+    run("record", "--zebro", "sim", "--duration", 1.5, "--label", "walk", "--data", data)
+    (folder,) = data.iterdir()
+    run("walk", "--write-robot", robot)
+    plain = robot.read_text()
+    predicted = []
+    for offset in ("0.0", "4.0"):
+        text = plain.replace("offset_deg = [0.0, 0.0,", f"offset_deg = [0.0, {offset},")
+        robot.write_text(text)
+        out = tmp_path / f"predicted-{offset}"
+        asked = ["--slip", "coulomb:0.38", "--robot", robot, "--out", out]
+        assert run("predict", folder, *asked)[0] == 0
+        predicted.append(read_walk(out).theta)
+    apart = np.degrees(predicted[1] - predicted[0])
+    np.testing.assert_allclose(apart, np.tile([0, 4.0, 0, 0, 0, 0], (len(apart), 1)), atol=1e-6)

@@ -6,6 +6,7 @@ from typing import Annotated
 import typer
 
 from zebro_lab.cli.calibrate import EPILOG, calibrate
+from zebro_lab.cli.camera import app as camera
 from zebro_lab.cli.errors import run
 from zebro_lab.cli.init import init
 from zebro_lab.cli.predict import EPILOG as PREDICT_EPILOG
@@ -15,6 +16,8 @@ from zebro_lab.cli.record import record
 from zebro_lab.cli.rig import app as rig
 from zebro_lab.cli.runs import exclude, export, runs
 from zebro_lab.cli.sim import app as sim
+from zebro_lab.cli.track import EPILOG as TRACK_EPILOG
+from zebro_lab.cli.track import track
 from zebro_lab.cli.validate import EPILOG as VALIDATE_EPILOG
 from zebro_lab.cli.validate import validate
 from zebro_lab.cli.walk import EPILOG as WALK_EPILOG
@@ -36,6 +39,8 @@ app.command(epilog=RECORD_EPILOG)(record)
 app.command()(runs)
 app.command()(exclude)
 app.command()(export)
+app.command(epilog=TRACK_EPILOG)(track)
+app.add_typer(camera, name="camera")
 app.add_typer(rig, name="rig")
 app.add_typer(sim, name="sim")
 app.add_typer(zebro, name="zebro")

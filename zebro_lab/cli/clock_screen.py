@@ -1,0 +1,52 @@
+# SPDX-License-Identifier: MIT
+"""The QR clock on a terminal: no window, so it works over a remote shell too."""
+
+import time
+from collections.abc import Callable
+
+import numpy as np
+import typer
+from numpy.typing import NDArray
+
+from tracking.images import clock_picture
+
+RENEWAL = 0.1
+"""How often the code is renewed; `tracking.images.clock_offset` counts on it [s]."""
+
+_HOME = "\x1b[H"
+_CLEAR = "\x1b[2J"
+
+
+def show_clock(stopped: Callable[[], bool], *, duration: float | None) -> None:
+    """Show the code of the moment until somebody stops it.
+
+    Args:
+        stopped: Tells whether somebody asked to stop.
+        duration: How long; None for until then [s].
+    """
+    end = None if duration is None else time.monotonic() + duration
+    typer.echo(_CLEAR, nl=False)
+    while not stopped() and (end is None or time.monotonic() < end):
+        now = time.time()
+        typer.echo(f"{_HOME}{code_lines(now)}\nphotograph this code; Ctrl-C ends", nl=True)
+        # To the beat of the clock itself: the code then never shows a time long past.
+        time.sleep(RENEWAL - time.time() % RENEWAL)
+
+
+def code_lines(t: float) -> str:
+    """Draw the code of a moment in half blocks, two rows of squares a line, black on white.
+
+    Args:
+        t: Seconds since 1970, UTC [s].
+    """
+    code = np.asarray(clock_picture(t, module_px=1)) > 127
+    if len(code) % 2:
+        code = np.vstack((code, np.ones((1, code.shape[1]), dtype=bool)))
+    rows = [_line(upper, lower) for upper, lower in zip(code[::2], code[1::2], strict=True)]
+    # White ground and black ink, whatever the terminal's own colours are.
+    return "\n".join(f"\x1b[30;107m{row}\x1b[0m" for row in rows)
+
+
+def _line(upper: NDArray[np.bool_], lower: NDArray[np.bool_]) -> str:
+    blocks = {(True, True): " ", (False, False): "█", (False, True): "▀", (True, False): "▄"}
+    return "".join(blocks[bool(a), bool(b)] for a, b in zip(upper, lower, strict=True))

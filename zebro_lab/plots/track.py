@@ -1,0 +1,186 @@
+# SPDX-License-Identifier: MIT
+"""A track over a photograph, over the floor from above, and what is left of each observation."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
+from numpy.typing import NDArray
+
+from tracking.camera.lens import Array
+from zebro_lab.plots.sheet import BLUE, CYCLE, RED, new_figure, styled
+
+_WIDTH = 9.0  # inches
+_GREEN = CYCLE[2]
+_MOST_NUMBERS = 40
+
+
+@dataclass(frozen=True)
+class SeenMarks:
+    """Marks to outline in a photograph.
+
+    Attributes:
+        outlines_px: Corners of each, shape (m, 2), closed by the drawing [px].
+        labels: What to write beside each.
+        colour: Their colour.
+    """
+
+    outlines_px: Sequence[Array]
+    labels: Sequence[str]
+    colour: str
+
+
+@styled
+def over_photo(
+    pixels: NDArray[np.uint8], *, title: str, simulated: bool, path_px: Array | None = None,
+    headings_px: Array | None = None, marks: Sequence[SeenMarks] = (),
+) -> Figure:  # fmt: skip
+    """Draw what was found over a photograph.
+
+    Args:
+        pixels: The photograph, BGR, shape (height, width, 3).
+        title: Title of the figure.
+        simulated: Say so in the title.
+        path_px: The body's origin in each photograph, shape (n, 2); NaN interrupts it [px].
+        headings_px: A point ahead of each, shape (n, 2) [px].
+        marks: Markers and outlines.
+
+    Returns:
+        The figure.
+    """
+    rows, columns = pixels.shape[:2]
+    figure = new_figure(title, simulated, width=_WIDTH, height=_WIDTH * rows / columns + 0.5)
+    axes = figure.add_subplot()
+    axes.imshow(pixels[:, :, ::-1], interpolation="antialiased")
+    for group in marks:
+        _outline(axes, group)
+    if path_px is not None and headings_px is not None:
+        _path(axes, path_px, headings_px)
+    axes.set(xlim=(-0.5, columns - 0.5), ylim=(rows - 0.5, -0.5))
+    axes.set_axis_off()
+    return figure
+
+
+def _outline(axes: Axes, group: SeenMarks) -> None:
+    for outline, label in zip(group.outlines_px, group.labels, strict=True):
+        closed = np.vstack((outline, outline[:1]))
+        axes.plot(*closed.T, color=group.colour, lw=1.0)
+        axes.plot(*outline[0], color=group.colour, marker="o", ms=3, ls="none")
+        if label:
+            # Beside the mark, clear of it: a label on a marker hides what is to be checked.
+            axes.annotate(
+                label, (float(outline[:, 0].max()), float(outline[:, 1].mean())), xytext=(5, 0),
+                textcoords="offset points", va="center", color=group.colour, fontsize=8,
+                fontweight="bold", bbox={"facecolor": "white", "alpha": 0.7, "lw": 0, "pad": 1},
+            )  # fmt: skip
+
+
+def _path(axes: Axes, path: Array, ahead: Array) -> None:
+    axes.plot(*path.T, color=RED, lw=1.2, marker="o", ms=2.5)
+    step = ahead - path
+    axes.quiver(
+        *path.T, *step.T, angles="xy", scale_units="xy", scale=1, color=_GREEN, width=0.0022,
+        headwidth=4, headlength=5,
+    )  # fmt: skip
+
+
+@styled
+def over_floor(
+    floor: NDArray[np.uint8], *, extent: tuple[float, float, float, float], poses: Array,
+    ellipses: Sequence[Array], labels: Sequence[str], title: str, simulated: bool,
+) -> Figure:  # fmt: skip
+    """Draw a track over the floor as seen from straight above.
+
+    Args:
+        floor: The rectified floor, BGR, shape (height, width, 3).
+        extent: Lowest x, highest x, lowest y, highest y of it [m].
+        poses: x, y [m] and yaw [rad], shape (n, 3); NaN interrupts the path.
+        ellipses: Outline of a region around each pose in which the robot is, shape (m, 2) [m].
+        labels: What to write beside each pose; empty where nothing.
+        title: Title of the figure.
+        simulated: Say so in the title.
+
+    Returns:
+        The figure, x to the right and y up, both to one scale.
+    """
+    width, height = extent[1] - extent[0], extent[3] - extent[2]
+    scale = min(_WIDTH / width, 8.0 / height)
+    figure = new_figure(
+        title, simulated, width=max(scale * width, 5.0) + 0.8, height=scale * height + 1.1
+    )
+    axes = figure.add_subplot()
+    # Paler than the photograph: the path is the figure, the floor its paper.
+    axes.imshow(floor[:, :, ::-1], extent=extent, interpolation="antialiased", alpha=0.65)
+    axes.plot(*poses[:, :2].T, color=RED, lw=1.3, marker="o", ms=2.5, label="body's origin")
+    for ellipse in ellipses:
+        axes.plot(*ellipse.T, color=BLUE, lw=0.7)
+    arrow = 0.05 * max(width, height)
+    axes.quiver(
+        *poses[:, :2].T, arrow * np.cos(poses[:, 2]), arrow * np.sin(poses[:, 2]), angles="xy",
+        scale_units="xy", scale=1, color=_GREEN, width=0.002, headwidth=4, headlength=5,
+    )  # fmt: skip
+    for (x, y, _), label in zip(poses, labels, strict=True):
+        if label:
+            axes.annotate(label, (x, y), xytext=(0, -9), textcoords="offset points", ha="center",
+                          va="top", fontsize=7)  # fmt: skip
+    axes.set(xlabel="x [m]", ylabel="y [m]", xlim=extent[:2], ylim=extent[2:], aspect="equal")
+    return figure
+
+
+@styled
+def residual_page(
+    t: Array, residuals: Array, *, sd: Array, score: Array, height: Array, source: Sequence[str],
+    title: str, simulated: bool,
+) -> Figure:  # fmt: skip
+    """Draw what is left of each observation beside the smoothed path.
+
+    Args:
+        t: Times, shape (n,) [s].
+        residuals: Observed minus smoothed x, y [m] and yaw [rad], shape (n, 3).
+        sd: Standard deviation of each observation, shape (n, 3).
+        score: Likeness of what was found to what was sought, shape (n,) [-].
+        height: Height of the body's origin, shape (n,) [m].
+        source: How each was found: "marker", "body" or "hand".
+        title: Title of the figure.
+        simulated: Say so in the title.
+
+    Returns:
+        The figure: x, y, yaw with bands that hold 90 % of what errors of observation alone give,
+        then height and score.
+    """
+    figure = new_figure(title, simulated, width=8.5, height=8.5)
+    panels = figure.subplots(5, 1, sharex=True)
+    names = ("x [mm]", "y [mm]", "yaw [deg]")
+    units = (1e3, 1e3, np.degrees(1.0))
+    for axes, name, unit, left, spread in zip(
+        panels, names, units, residuals.T, sd.T, strict=False
+    ):
+        band = 1.645 * unit * spread
+        axes.fill_between(t, -band, band, color="0.88", lw=0, label="90 % of observation errors")
+        axes.axhline(0, color="0.5", lw=0.6)
+        _by_source(axes, t, unit * left, source)
+        axes.set_ylabel(f"observed − path\n{name}")
+    _by_source(panels[3], t, 1e3 * height, source)
+    panels[3].set_ylabel("body height\n[mm]")
+    _by_source(panels[4], t, score, source)
+    panels[4].set(ylabel="score [-]", xlabel="time [s]")
+    for axes in panels:
+        axes.yaxis.set_major_locator(MaxNLocator(5))
+        axes.grid(color="0.93", lw=0.6)
+        axes.set_axisbelow(True)
+    figure.align_ylabels(panels)
+    handles, labels = panels[0].get_legend_handles_labels()
+    figure.legend(handles, labels, loc="outside lower center", ncols=4)
+    return figure
+
+
+def _by_source(axes: Axes, t: Array, values: Array, source: Sequence[str]) -> None:
+    shapes = {"marker": ("o", BLUE), "body": ("s", _GREEN), "hand": ("D", RED)}
+    for name in dict.fromkeys(source):
+        chosen = np.array([each == name for each in source])
+        shape, colour = shapes.get(name, ("x", "black"))
+        axes.plot(t[chosen], values[chosen], ls="none", marker=shape, ms=3.5, color=colour,
+                  label=f"by {name}")  # fmt: skip

@@ -1,0 +1,286 @@
+# SPDX-License-Identifier: MIT
+"""Photographs in, track folder out."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from datetime import datetime
+from pathlib import Path
+
+import numpy as np
+
+from tracking.images import PhotoTimes, read_pixels
+from zebro_lab.annotations import (
+    ANNOTATIONS_FILE,
+    Annotations,
+    read_annotations,
+    render_annotations,
+)
+from zebro_lab.camera_file import read_camera_file
+from zebro_lab.errors import SettingsError
+from zebro_lab.floor_file import FLOOR_FILE, read_floor_file, render_floor_file
+from zebro_lab.photo_search import Photo, Watcher
+from zebro_lab.photo_sequence import (
+    PhotoSequence,
+    TimeRequest,
+    by_name,
+    calibrated_for,
+    exposure_times,
+    open_photos,
+)
+from zebro_lab.provenance import file_hashes
+from zebro_lab.robot_file import RobotFile, read_robot_file
+from zebro_lab.run_manifest import RunManifest, read_manifest
+from zebro_lab.track_folder import KIND, track_folder
+from zebro_lab.track_pictures import draw_track
+from zebro_lab.tracked_robot import KIT_MARKER, WALKING_HEIGHT_SD, body_prior, tracked_robot
+from zebro_lab.tracker import Scene, Tracked, track_marker
+from zebro_lab.tracker_body import track_body, track_composite
+
+_CLOCK = 1e8  # times beyond this are a clock's, counted from 1970 [s]
+
+
+@dataclass(frozen=True)
+class TrackRequest:
+    """What is asked of a track.
+
+    Attributes:
+        photos: Folder of photographs, video, or one composite picture.
+        camera: The `camera.toml`.
+        floor: The `floor.toml`.
+        robot: The `robot.toml`; the source's robot when None.
+        out: Folder to write; None for the run's own `track/`.
+        run: Run folder the photographs belong to.
+        times: How the photographs get their times.
+        start: Moment from which time is counted; None for the run's start or the first photograph.
+        marker: What is printed on the robot: dictionary, number and side.
+        without_marker: Track the robot by its own picture, annotated in one photograph.
+        annotations: What a person said about the photographs.
+        body_height: Height of the body's origin while the robot stands; None to take the marker's
+            [m].
+        height_sd: Standard deviation of that height over a walk [m].
+        gap: Interval longer than which the path is interrupted; None for 3.5 usual ones [s].
+        source: Where the photographs are from; None to take the run's word or the files'.
+        workers: Processes to use.
+    """
+
+    photos: Path
+    camera: Path
+    floor: Path
+    robot: Path | None = None
+    out: Path | None = None
+    run: Path | None = None
+    times: TimeRequest = field(default_factory=TimeRequest)
+    start: datetime | None = None
+    marker: str = KIT_MARKER
+    without_marker: bool = False
+    annotations: Path | None = None
+    body_height: float | None = None
+    height_sd: float = WALKING_HEIGHT_SD
+    gap: float | None = None
+    source: str | None = None
+    workers: int = 1
+
+    @property
+    def folder(self) -> Path:
+        """The track folder to write.
+
+        Raises:
+            SettingsError: Neither a run nor a folder is named.
+        """
+        if self.out is not None:
+            return self.out
+        if self.run is None:
+            raise SettingsError("needed: --run RUN, to write RUN/track, or --out FOLDER")
+        return self.run / KIND
+
+
+@dataclass(frozen=True)
+class TrackResult:
+    """A track that was written.
+
+    Attributes:
+        folder: The track folder.
+        tracked: What was found.
+        photos: How many photographs or exposures there were.
+        source: "real", "sim:what" or "unknown".
+        times: Where times are from, and from when they are counted.
+    """
+
+    folder: Path
+    tracked: Tracked
+    photos: int
+    source: str
+    times: str
+
+
+def track(request: TrackRequest, watcher: Watcher) -> TrackResult:
+    """Track a walk and write the track folder.
+
+    Raises:
+        ZebroLabError: A file or an option says what cannot be followed.
+        TrackingError: The photographs do not give a track.
+        TrackStopped: Somebody asked to stop.
+    """
+    folder = request.folder
+    manifest = None if request.run is None else read_manifest(request.run)
+    described = described_robot(request)
+    with open_photos(request.photos, request.times) as sequence:
+        scene = scene_of(request, described, sequence)
+        source = source_of(request, manifest, sequence)
+        tracked, said = _tracked(request, described, scene, sequence, manifest, watcher)
+        result = TrackResult(folder, tracked, _count(tracked, sequence), source, said)
+        watcher.step("pictures", None)
+        _write(request, result, scene, sequence)
+    return result
+
+
+def described_robot(request: TrackRequest) -> RobotFile:
+    """Read the robot that was named, or take the source's."""
+    return RobotFile() if request.robot is None else read_robot_file(request.robot)
+
+
+def scene_of(request: TrackRequest, described: RobotFile, sequence: PhotoSequence) -> Scene:
+    """Read what is known before looking.
+
+    Raises:
+        ZebroLabError: A file says what cannot be followed.
+    """
+    camera = calibrated_for(read_camera_file(request.camera).camera, sequence)
+    floor = read_floor_file(request.floor)
+    said = Annotations() if request.annotations is None else read_annotations(request.annotations)
+    prior = body_prior(described, height=request.body_height, height_sd=request.height_sd)
+    robot = None
+    if not request.without_marker:
+        robot = tracked_robot(described, request.marker, prior=prior)
+    return Scene(camera, floor, prior, robot, said, request.workers)
+
+
+def source_of(request: TrackRequest, manifest: RunManifest | None, sequence: PhotoSequence) -> str:
+    """Say where the photographs are from: as told, as the run has it, or as the files say."""
+    if request.source is not None:
+        return request.source
+    if manifest is not None:
+        return manifest.source
+    return sequence.source or "unknown"
+
+
+def _tracked(
+    request: TrackRequest, described: RobotFile, scene: Scene, sequence: PhotoSequence,
+    manifest: RunManifest | None, watcher: Watcher,
+) -> tuple[Tracked, str]:  # fmt: skip
+    photos = [Photo(name, path) for name, path in zip(sequence.names, sequence.paths, strict=True)]
+    if sequence.times is None:
+        reach = 0.5 * float(np.hypot(*described.robot.body_size[:2])) + described.robot.leg_radius
+        tracked = track_composite(
+            scene, photos[0], times_of=lambda names: exposure_times(names, request.times),
+            reach=reach, watcher=watcher, gap=request.gap,
+        )  # fmt: skip
+        return tracked, "times of exposures as given"
+    stamps, said = counted_from(sequence.times, request.start, manifest, request.times)
+    pairs = zip(stamps.t.tolist(), stamps.sd.tolist(), strict=True)
+    times = dict(zip(sequence.names, pairs, strict=True))
+    if scene.robot is None:
+        tracked = track_body(scene, photos, times=times, watcher=watcher, gap=request.gap)
+    else:
+        tracked = track_marker(
+            scene, scene.robot, photos, times=times, watcher=watcher, gap=request.gap
+        )
+    return tracked, said
+
+
+def _count(tracked: Tracked, sequence: PhotoSequence) -> int:
+    return len(tracked.track.observations) if sequence.is_composite else len(sequence.names)
+
+
+def counted_from(
+    times: PhotoTimes, start: datetime | None, manifest: RunManifest | None, asked: TimeRequest
+) -> tuple[PhotoTimes, str]:
+    """Count times from a moment: the one given, the run's start, or the first photograph.
+
+    Args:
+        times: Times of the photographs: since 1970 where they are a clock's, else as given.
+        start: The moment given.
+        manifest: The run.
+        asked: How the photographs got their times.
+
+    Returns:
+        Times from zero, and in words where they are from.
+    """
+    if (
+        asked.interval is not None
+        or asked.table is not None
+        or not len(times.t)
+        or times.t[0] < 1e8
+    ):
+        return times, times.source
+    zero, what = float(times.t[0]), "the first photograph, for the camera's clock is not tied"
+    if start is not None:
+        zero, what = start.timestamp(), f"{start.isoformat()} by the camera's clock"
+    elif manifest is not None and asked.clock is not None:
+        begun = datetime.fromisoformat(manifest.start)
+        zero, what = begun.timestamp(), f"the run's start, {manifest.start}"
+    return PhotoTimes(times.t - zero, times.sd, times.source), (
+        f"{times.source}; counted from {what}"
+    )
+
+
+def _write(
+    request: TrackRequest, result: TrackResult, scene: Scene, sequence: PhotoSequence
+) -> None:
+    seen = result.tracked.floor
+    named = [request.camera, request.floor, request.robot, request.annotations,
+             request.times.table, request.times.clock]  # fmt: skip
+    videos = [sequence.origin] if sequence.origin.is_file() else list(sequence.paths)
+    with track_folder(
+        result.folder,
+        result.tracked.track,
+        source=result.source,
+        settings=_settings(request),
+        inputs=file_hashes([*(file for file in named if file is not None), *videos]),
+        report=_report(result),
+    ) as draft:
+        heading = f"The floor of {request.floor.name}, refined with the photographs."
+        (draft / FLOOR_FILE).write_text(render_floor_file(seen.fit.floor, heading=heading))
+        if request.annotations is not None:
+            (draft / ANNOTATIONS_FILE).write_text(render_annotations(scene.said))
+        _draw(draft, result, scene, sequence)
+
+
+def _draw(draft: Path, result: TrackResult, scene: Scene, sequence: PhotoSequence) -> None:
+    track, seen = result.tracked.track, result.tracked.floor
+    # The last photograph shows the floor under the path's beginning, where no robot stands now.
+    last = track.observations[-1].photo.rpartition("#")[0] if sequence.is_composite else None
+    shown = last or track.observations[-1].photo
+    detections = {each.photo: each for each in seen.detections}
+    draw_track(
+        draft, track, read_pixels(by_name(sequence)[shown]), camera=scene.camera,
+        view=seen.fit.pose_of(shown), floor=seen.fit.floor, detection=detections.get(shown),
+        title=sequence.origin.name,
+        simulated=result.source.startswith("sim:"),
+    )  # fmt: skip
+
+
+def _report(result: TrackResult) -> Mapping[str, object]:
+    fit = result.tracked.floor.fit
+    return {
+        "times": result.times,
+        "photos": result.photos,
+        "tracked": len(result.tracked.track.observations),
+        "left_out": dict(result.tracked.lost),
+        "notes": list(result.tracked.notes),
+        "floor_misfit_px": fit.misfit_px,
+        "camera_stands": len(fit.stands),
+    }
+
+
+def _settings(request: TrackRequest) -> Mapping[str, object]:
+    return {
+        "photos": request.photos.name,
+        "marker": None if request.without_marker else request.marker,
+        "interval": request.times.interval,
+        "every": request.times.every,
+        "start": None if request.start is None else request.start.isoformat(),
+        "body_height": request.body_height,
+        "height_sd": request.height_sd,
+        "gap": request.gap,
+    }

@@ -1,0 +1,119 @@
+# SPDX-License-Identifier: MIT
+"""The sole owner of the format of a track folder: `track.csv`, `track.tum` and `manifest.json`."""
+
+import json
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+from tracking.path import Track
+from zebro_lab.annotations import ANNOTATIONS_FILE
+from zebro_lab.atomic import atomic_folder
+from zebro_lab.errors import AlreadyExists, DataError, NotFound
+from zebro_lab.floor_file import FLOOR_FILE
+from zebro_lab.provenance import file_hash, software
+
+SCHEMA = 1
+KIND = "track"
+TRACK_CSV = "track.csv"
+TRACK_TUM = "track.tum"
+MANIFEST = "manifest.json"
+PICTURES = ("overlay.png", "map.png", "residuals.png")
+OWNED = (TRACK_CSV, TRACK_TUM, FLOOR_FILE, ANNOTATIONS_FILE, MANIFEST, *PICTURES)
+"""What `track` writes; an earlier track's files of these names are replaced."""
+
+_DIGITS = "%.10g"
+
+
+@contextmanager
+def track_folder(
+    out: Path,
+    track: Track,
+    *,
+    source: str,
+    settings: Mapping[str, object],
+    inputs: Mapping[str, str],
+    report: Mapping[str, object],
+) -> Iterator[Path]:
+    """Write a track folder so that it appears finished or not at all.
+
+    The body adds pictures and other files to the draft; the manifest, which lists them, comes last.
+
+    Args:
+        out: Folder to make or to renew.
+        track: The track.
+        source: "real", "sim:what" or "unknown".
+        settings: What was asked, as JSON can hold it.
+        inputs: SHA-256 of each file that was read.
+        report: What a reader should know: photographs left out and why, notes, zero of time.
+
+    Yields:
+        The draft.
+
+    Raises:
+        AlreadyExists: `out` is a file, or the result of another command.
+    """
+    _require_ours(out)
+    with atomic_folder(out, replaces=OWNED, marker=MANIFEST) as draft:
+        _write_track(draft, track)
+        yield draft
+        content = {
+            "schema": SCHEMA,
+            "kind": KIND,
+            "source": source,
+            "settings": settings,
+            **report,
+            "inputs": inputs,
+            "outputs": {p.name: file_hash(p) for p in sorted(draft.iterdir()) if p.is_file()},
+            "software": software(),
+        }
+        (draft / MANIFEST).write_text(json.dumps(content, indent=2) + "\n")
+
+
+def _write_track(folder: Path, track: Track) -> None:
+    import pandas as pd
+
+    table = pd.DataFrame(track.columns)
+    table.to_csv(folder / TRACK_CSV, index=False, float_format=_DIGITS, lineterminator="\n")
+    (folder / TRACK_TUM).write_text("\n".join(track.tum) + "\n")
+
+
+def read_track_manifest(folder: Path) -> Mapping[str, Any]:
+    """Read the manifest of a track folder.
+
+    Raises:
+        NotFound: There is none.
+        DataError: It is damaged, of a later schema, or that of another command.
+    """
+    file = folder / MANIFEST
+    try:
+        content = json.loads(file.read_text(encoding="utf-8"))
+    except FileNotFoundError as error:
+        raise NotFound(f"{folder} is no track folder: it has no {MANIFEST}") from error
+    except (OSError, ValueError) as error:
+        raise DataError(f"cannot be read as JSON: {error}", file=file) from error
+    if not isinstance(content, dict) or content.get("kind") != KIND:
+        raise DataError(f"is not of a track; expected kind {KIND}", file=file)
+    if content.get("schema") != SCHEMA:
+        raise DataError(
+            f"has schema {content.get('schema')}, this version reads {SCHEMA}; update zebro-lab",
+            file=file,
+        )
+    return content
+
+
+def written(folder: Path) -> Sequence[Path]:
+    """List what a track folder holds of ours."""
+    return [folder / name for name in OWNED if (folder / name).is_file()]
+
+
+def _require_ours(out: Path) -> None:
+    if not (out / MANIFEST).exists():
+        return
+    try:
+        read_track_manifest(out)
+    except DataError as error:
+        raise AlreadyExists(
+            f"{out} holds the result of another command ({error.problem}); name another --out"
+        ) from error

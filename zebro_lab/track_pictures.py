@@ -1,0 +1,142 @@
+# SPDX-License-Identifier: MIT
+"""The pictures of a track folder and of its preview."""
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tracking.camera import Camera, CameraPose, project
+from tracking.camera.lens import Array
+from tracking.detect import Detection
+from tracking.floor import FloorMap
+from tracking.path import Track
+from tracking.pictures import ellipse_90, rectify_floor
+
+if TYPE_CHECKING:
+    from zebro_lab.plots.track import SeenMarks
+
+_AHEAD = 0.08  # length of a heading's arrow over a photograph [m]
+_MARGIN = 0.3  # around path and floor marks on the map [m]
+_MOST_MAP_PIXELS = 4e6
+_MOST_LABELS = 16
+
+
+def draw_track(
+    folder: Path, track: Track, pixels: NDArray[np.uint8], *, camera: Camera, view: CameraPose,
+    floor: FloorMap, detection: Detection | None, title: str, simulated: bool,
+) -> None:  # fmt: skip
+    """Draw the path over a photograph and over the floor, and the page of residuals.
+
+    Args:
+        folder: Folder to write the PNG files into.
+        track: The track.
+        pixels: A photograph to draw over, BGR.
+        camera: The lens.
+        view: Where the camera stood in that photograph.
+        floor: The floor as fitted.
+        detection: What that photograph shows; None where no marker was looked for.
+        title: What was tracked; every title begins with the picture's own name.
+        simulated: Say so in the titles.
+    """
+    from zebro_lab.plots import save  # matplotlib takes most of a second
+    from zebro_lab.plots import track as draw
+
+    path, ahead = _path_px(track, camera, view)
+    figure = draw.over_photo(
+        pixels,
+        title=f"Path over a photograph: {title}",
+        simulated=simulated,
+        path_px=path,
+        headings_px=ahead,
+        marks=seen_marks(camera, view, floor, detection),
+    )
+    save(figure, folder / "overlay.png")
+    _draw_map(folder / "map.png", track, pixels, camera, view, floor, title, simulated)
+    seen = track.observations
+    figure = draw.residual_page(
+        track.t,
+        track.residuals,
+        sd=np.array([np.sqrt(np.diag(each.covariance)) for each in seen]),
+        score=np.array([each.score for each in seen]),
+        height=np.array([each.z for each in seen]),
+        source=[each.source for each in seen],
+        title=f"Residuals: {title}",
+        simulated=simulated,
+    )
+    save(figure, folder / "residuals.png")
+
+
+def draw_preview(
+    file: Path, pixels: NDArray[np.uint8], *, camera: Camera, view: CameraPose, floor: FloorMap,
+    detection: Detection, title: str, simulated: bool,
+) -> None:  # fmt: skip
+    """Draw what was found in one photograph, with the map's marks where they should appear."""
+    from zebro_lab.plots import save
+    from zebro_lab.plots import track as draw
+
+    marks = seen_marks(camera, view, floor, detection)
+    save(draw.over_photo(pixels, title=title, simulated=simulated, marks=marks), file)
+
+
+def seen_marks(
+    camera: Camera, view: CameraPose, floor: FloorMap, detection: Detection | None
+) -> "list[SeenMarks]":
+    """Outline the floor's marks where the map has them, and the robot's marker where it is seen."""
+    from zebro_lab.plots.sheet import CYCLE, RED
+    from zebro_lab.plots.track import SeenMarks
+
+    outlines = [project(camera, view, mark.points) for mark in floor.marks.values()]
+    marks = [SeenMarks(outlines, [str(key) for key in floor.marks], CYCLE[0])]
+    if detection is not None and detection.robot is not None:
+        label = f"robot {detection.robot.marker_id}"
+        marks.append(SeenMarks([detection.robot.corners_px], [label], RED))
+    return marks
+
+
+def _path_px(track: Track, camera: Camera, view: CameraPose) -> tuple[Array, Array]:
+    height = np.array([seen.z for seen in track.observations])
+    xy, yaw = track.poses[:, :2], track.poses[:, 2]
+    step = _AHEAD * np.column_stack((np.cos(yaw), np.sin(yaw)))
+    path = project(camera, view, np.column_stack((xy, height)))
+    ahead = project(camera, view, np.column_stack((xy + step, height)))
+    return _broken(path, track), _broken(ahead, track)
+
+
+def _broken(rows: Array, track: Track) -> Array:
+    """Put a row of NaN where the path is interrupted, so that no line crosses a gap."""
+    return np.insert(rows, np.flatnonzero(track.gap_before), np.nan, axis=0)
+
+
+def _draw_map(
+    file: Path, track: Track, pixels: NDArray[np.uint8], camera: Camera, view: CameraPose,
+    floor: FloorMap, title: str, simulated: bool,
+) -> None:  # fmt: skip
+    from zebro_lab.plots import save
+    from zebro_lab.plots.track import over_floor
+
+    places = [track.poses[:, :2], *(mark.points[:, :2] for mark in floor.marks.values())]
+    low = np.min([place.min(axis=0) for place in places], axis=0) - _MARGIN
+    high = np.max([place.max(axis=0) for place in places], axis=0) + _MARGIN
+    scale = min(400.0, float(np.sqrt(_MOST_MAP_PIXELS / np.prod(high - low))))
+    picture = rectify_floor(pixels, camera, view, low=low, high=high, pixels_per_metre=scale)
+    ellipses = [
+        ellipse_90(spread[:2, :2]) + pose[:2]
+        for spread, pose in zip(track.covariance, track.poses, strict=True)
+    ]
+    poses = _broken(track.poses, track)
+    extent = (float(low[0]), float(high[0]), float(low[1]), float(high[1]))
+    figure = over_floor(
+        picture, extent=extent, poses=poses, ellipses=ellipses, labels=_time_labels(track, poses),
+        title=f"Path over the floor, 90 % regions; what stands on it leans away: {title}",
+        simulated=simulated,
+    )  # fmt: skip
+    save(figure, file)
+
+
+def _time_labels(track: Track, poses: Array) -> Sequence[str]:
+    every = max(1, round(len(track.t) / _MOST_LABELS))
+    labels = iter(f"{t:.3g} s" if k % every == 0 else "" for k, t in enumerate(track.t))
+    return ["" if np.isnan(pose[0]) else next(labels) for pose in poses]

@@ -4,7 +4,6 @@
 Nothing in it is ever overwritten: new corrections go to its end.
 """
 
-import json
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -14,7 +13,7 @@ from tracking.body import TopPlate
 from tracking.corrections import Correction, correction_from, plain
 from tracking.errors import TrackingError
 from zebro_lab.errors import SettingsError
-from zebro_lab.toml_table import TomlTable, listed, read_toml, spelled
+from zebro_lab.toml_table import TomlTable, listed, quoted, read_toml, spelled
 
 ANNOTATIONS_FILE = "annotations.toml"
 Click = tuple[float, float]
@@ -133,8 +132,8 @@ def render_annotations(said: Annotations) -> str:
     if said.template is not None:
         parts.append(_template_section(said.template))
     for photo, clicks in said.clicks.items():
-        lines = [f"{json.dumps(name)} = {listed(click)}" for name, click in clicks.items()]
-        parts.append("\n".join([f"[clicks.{json.dumps(photo)}]", *lines]))
+        lines = [f"{quoted(name)} = {listed(click)}" for name, click in clicks.items()]
+        parts.append("\n".join([f"[clicks.{quoted(photo)}]", *lines]))
     parts += [_correction_section(plain(correction)) for correction in said.corrections]
     return "\n\n".join(parts) + "\n"
 
@@ -153,7 +152,7 @@ def _template_section(template: TemplateClicks) -> str:
     }  # fmt: skip
     return "\n".join([
         "[template]  # the robot's top in one photograph",
-        f"photo = {json.dumps(template.photo)}",
+        f"photo = {quoted(template.photo)}",
         f"corners_px = [{corners}]  # front left, front right, rear right, rear left",
         *(f"{name} = {spelled(value)}" for name, value in sizes.items()),
     ])  # fmt: skip
@@ -165,4 +164,6 @@ def _correction_section(entry: Mapping[str, Any]) -> str:
 
 
 def _value(value: str | float | list[str]) -> str:
-    return json.dumps(value) if isinstance(value, (str, list)) else spelled(value)
+    if isinstance(value, list):
+        return f"[{', '.join(map(quoted, value))}]"
+    return quoted(value) if isinstance(value, str) else spelled(value)

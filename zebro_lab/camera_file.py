@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: MIT
 """`camera.toml`: the lens, how well it is known, and from which photographs."""
 
-import json
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -9,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from tracking.camera import Calibration, Camera
-from zebro_lab.toml_table import TomlTable, listed, read_toml, spelled
+from zebro_lab.toml_table import TomlTable, listed, quoted, read_toml, spelled
 
 CAMERA_FILE = "camera.toml"
 _TOP = ("size", "focal", "centre", "distortion", "calibration")
@@ -65,7 +64,7 @@ def render_camera_file(fit: Calibration, *, photos: Mapping[str, str]) -> str:
         photos: SHA-256 of the photographs it is from, by name.
     """
     camera, sd = fit.camera, fit.sd
-    used = "".join(f'{json.dumps(name)} = "{digest}"\n' for name, digest in photos.items())
+    used = "".join(f'{quoted(name)} = "{digest}"\n' for name, digest in photos.items())
     return _TEMPLATE.format(
         size=list(camera.size),
         focal=listed([camera.matrix[0, 0], camera.matrix[1, 1]]),

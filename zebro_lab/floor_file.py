@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: MIT
 """`floor.toml`: markers and points on the floor, as measured with a tape."""
 
-import json
 from pathlib import Path
 
 import numpy as np
@@ -10,7 +9,7 @@ from tracking.errors import TrackingError
 from tracking.floor import FloorMap, FloorMarker, FloorPoint
 from tracking.markers import dictionary_named
 from zebro_lab.errors import SettingsError
-from zebro_lab.toml_table import TomlTable, read_toml, spelled
+from zebro_lab.toml_table import TomlTable, quoted, read_toml, spelled
 
 FLOOR_FILE = "floor.toml"
 DICTIONARY = "4x4_50"
@@ -96,7 +95,7 @@ def render_floor_file(floor: FloorMap, *, heading: str) -> str:
     lines += [f"{marker.marker_id} = {{ {_marker_line(marker)} }}" for marker in floor.markers]
     if floor.points:
         lines += ["", "[points]"]
-        lines += [f"{json.dumps(each.name)} = {{ {_point_line(each)} }}" for each in floor.points]
+        lines += [f"{quoted(each.name)} = {{ {_point_line(each)} }}" for each in floor.points]
     return "\n".join(lines) + "\n"
 
 

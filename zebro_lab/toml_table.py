@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """A table of a TOML file that checks what is taken out of it and names the place of each fault."""
 
+import json
 import math
 import tomllib
 from collections.abc import Collection, Mapping
@@ -133,6 +134,16 @@ def read_toml(file: Path, *, advice: str) -> TomlTable:
         raise NotFound(f"{file}: no such file; {advice}") from error
     except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
         raise SettingsError(f"cannot be read as TOML: {error}", file=file) from error
+
+
+def quoted(text: str) -> str:
+    r"""Spell a text as TOML.
+
+    >>> print(quoted('a "b"'))
+    "a \"b\""
+    """
+    # TOML's escapes are JSON's, but for pairs of surrogates and for a bare DEL.
+    return json.dumps(text, ensure_ascii=False).replace("\x7f", "\\u007f")
 
 
 def listed(numbers: Collection[float]) -> str:

@@ -5,6 +5,8 @@ from typing import Annotated
 
 import typer
 
+from zebro_lab.cli.annotate import EPILOG as ANNOTATE_EPILOG
+from zebro_lab.cli.annotate import annotate
 from zebro_lab.cli.calibrate import EPILOG, calibrate
 from zebro_lab.cli.camera import app as camera
 from zebro_lab.cli.errors import run
@@ -40,6 +42,7 @@ app.command()(runs)
 app.command()(exclude)
 app.command()(export)
 app.command(epilog=TRACK_EPILOG)(track)
+app.command(epilog=ANNOTATE_EPILOG)(annotate)
 app.add_typer(camera, name="camera")
 app.add_typer(rig, name="rig")
 app.add_typer(sim, name="sim")

@@ -1,0 +1,275 @@
+# SPDX-License-Identifier: MIT
+"""The bundled simulated photographs become the track they were taken of, whatever goes wrong."""
+
+import csv
+import json
+import shutil
+import tomllib
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from tracking.camera import Camera, CameraPose, project
+from tracking.errors import TrackingError
+from tracking.path import TRACK_COLUMNS
+from tracking.pose import rotation_with_derivatives
+from zebro_lab import photo_search
+from zebro_lab.errors import AlreadyExists, DataError, SettingsError
+from zebro_lab.photo_search import TrackStopped
+from zebro_lab.photo_sequence import TimeRequest
+from zebro_lab.stages.annotate import AnnotateRequest, annotate
+from zebro_lab.stages.track import TrackRequest, track
+from zebro_lab.stages.track_preview import preview
+from zebro_lab.track_folder import OWNED
+
+WALK = Path(__file__).parents[3] / "datasets/walk-sim"
+SOME = ("00", "02", "03", "04", "05", "06")
+PLATE = "150mmx150mm@38.5mm"
+
+
+class Nobody:
+    """Follows without a word, and asks to stop where told to."""
+
+    def __init__(self, stops: bool = False) -> None:
+        self.stops = stops
+
+    def step(self, what: str, fraction: float | None) -> None:
+        """Hear nothing."""
+
+    def stop_requested(self) -> bool:
+        """Ask to stop."""
+        return self.stops
+
+
+@pytest.fixture(scope="module")
+def bench(tmp_path_factory) -> Path:
+    """Return a folder with camera.toml and floor.toml of the true camera, and some photographs."""
+    folder = tmp_path_factory.mktemp("bench")
+    truth = tomllib.loads((WALK / "truth.toml").read_text())
+    camera = truth["camera"]
+    (folder / "camera.toml").write_text(
+        "".join(f"{key} = {camera[key]}\n" for key in ("size", "focal", "centre", "distortion"))
+    )
+    lines = ["side = 0.15", "[markers]"]
+    for marker in truth["floor_markers"]:
+        x, y, _ = np.mean(marker["corners"], axis=0)
+        lines.append(f"{marker['id']} = {{ x = {x}, y = {y} }}")
+    (folder / "floor.toml").write_text("\n".join(lines))
+    (folder / "photos").mkdir()
+    for number in SOME:
+        shutil.copy(WALK / f"photos/simulated_{number}.jpg", folder / "photos")
+    return folder
+
+
+@pytest.fixture
+def request_(bench, tmp_path) -> TrackRequest:
+    """Return what is asked of the bundled photographs, with an empty folder to write."""
+    return TrackRequest(
+        bench / "photos", bench / "camera.toml", bench / "floor.toml",
+        robot=WALK / "robot.toml", out=tmp_path / "track",
+    )  # fmt: skip
+
+
+@pytest.fixture
+def undrawn(monkeypatch):
+    """Leave out the pictures, which take longer than the tracking of so few photographs."""
+    monkeypatch.setattr("zebro_lab.stages.track.draw_track", lambda *_, **__: None)
+
+
+def truth(photos) -> pd.DataFrame:
+    return pd.read_csv(WALK / "photos.csv").set_index("photo").loc[list(photos)]
+
+
+def test_a_track_is_the_walk_within_its_own_error_and_says_it_is_simulated(request_):
+    result = track(request_, Nobody())
+    table = pd.read_csv(result.folder / "track.csv")
+    true = truth(table["photo"])
+    assert tuple(table.columns) == TRACK_COLUMNS
+    error = table[["x_m", "y_m", "yaw_rad"]].to_numpy() - true[["x", "y", "yaw"]]
+    sd = np.sqrt(table[["cov_xx", "cov_yy", "cov_yawyaw"]].to_numpy())
+    assert np.abs(error[["x", "y"]]).max(axis=None) < 8e-3
+    assert np.degrees(np.abs(error["yaw"]).max()) < 0.1
+    assert (np.abs(error) / sd).max(axis=None) < 3
+    np.testing.assert_allclose(np.diff(table["t_s"]), np.diff(true["t"]), atol=2e-3)
+    manifest = json.loads((result.folder / "manifest.json").read_text())
+    assert (manifest["kind"], manifest["source"]) == ("track", "sim:photographs")
+    assert {path.name for path in result.folder.iterdir()} == set(OWNED) - {"annotations.toml"}
+    assert len((result.folder / "track.tum").read_text().splitlines()) == len(SOME)
+
+
+def test_a_second_track_replaces_the_first_and_another_commands_result_is_safe(request_, undrawn):
+    track(request_, Nobody())
+    (request_.folder / "notes.txt").write_text("mine")
+    track(request_, Nobody())
+    assert (request_.folder / "notes.txt").read_text() == "mine"
+    (request_.folder / "manifest.json").write_text('{"kind": "walk", "schema": 1}')
+    with pytest.raises(AlreadyExists, match="another command"):
+        track(request_, Nobody())
+
+
+def test_several_processes_find_what_one_finds(request_, monkeypatch, tmp_path, undrawn):
+    monkeypatch.setattr(photo_search, "WORTH_WORKERS", 0.0)
+    one = track(request_, Nobody())
+    two = track(replace(request_, workers=2, out=tmp_path / "two"), Nobody())
+    # Not to the last digit: a stretch begins by looking at the whole photograph.
+    difference = one.tracked.track.poses - two.tracked.track.poses
+    assert np.abs(difference).max() < 1e-4
+
+
+def test_bad_photographs_are_named_and_lose_no_other(request_, tmp_path, undrawn):
+    photos = tmp_path / "photos"
+    shutil.copytree(request_.photos, photos)
+    whole = (photos / "simulated_03.jpg").read_bytes()
+    (photos / "simulated_03.jpg").write_bytes(whole[: len(whole) // 3])
+    (photos / "simulated_04.jpg").write_bytes(b"")
+    (photos / "simulated_90.heic").write_bytes(b"\0\0\0\x18ftypheic\0\0\0\0")
+    result = track(replace(request_, photos=photos), Nobody())
+    assert set(result.tracked.lost) == {
+        "simulated_03.jpg", "simulated_04.jpg", "simulated_90.heic",
+    }  # fmt: skip
+    assert "0 bytes" in result.tracked.lost["simulated_04.jpg"]
+    assert "HEIC" in result.tracked.lost["simulated_90.heic"]
+    assert len(result.tracked.track.observations) == len(SOME) - 2
+
+
+def test_corrections_are_replayed_and_kept(request_, tmp_path, undrawn):
+    file = tmp_path / "said.toml"
+    said = AnnotateRequest(
+        request_.photos, file, moves=("simulated_03.jpg:1.0,1.0,45",), deletes=("simulated_05.jpg",)
+    )
+    annotate(said)
+    result = track(replace(request_, annotations=file), Nobody())
+    by_photo = {seen.photo: seen for seen in result.tracked.track.observations}
+    moved = by_photo["simulated_03.jpg"]
+    assert moved.source == "hand"
+    np.testing.assert_allclose(moved.planar, [1.0, 1.0, np.pi / 4])
+    assert result.tracked.lost == {"simulated_05.jpg": "deleted by a correction"}
+    assert 'kind = "move"' in (result.folder / "annotations.toml").read_text()
+
+
+def test_exposures_of_a_composite_picture_come_in_order(request_, undrawn):
+    picture = WALK / "composite/simulated_pasted.jpg"
+    asked = replace(request_, photos=picture, times=TimeRequest(interval=4.0), source="sim:walk")
+    result = track(asked, Nobody())
+    true = truth(f"simulated_{number:02d}.jpg" for number in range(1, 14, 2))
+    poses = result.tracked.track.poses
+    assert len(poses) == len(true)
+    assert np.abs(poses[:, :2] - true[["x", "y"]]).max(axis=None) < 0.012
+    assert np.degrees(np.abs(poses[:, 2] - true["yaw"]).max()) < 0.5
+    with pytest.raises(SettingsError, match="--interval"):
+        track(replace(asked, times=TimeRequest()), Nobody())
+
+
+def test_the_preview_compares_tape_and_photograph(request_, tmp_path):
+    file = tmp_path / "preview.png"
+    seen = preview(request_, file)
+    assert file.read_bytes()[:4] == b"\x89PNG"
+    assert seen.marks == ("10", "11", "12", "13")
+    assert len(seen.tape) == 6
+    assert not any(check.is_off for check in seen.tape)
+    assert seen.robot == pytest.approx((0, 0, 0), abs=3e-3)
+    assert 1e-3 < seen.scale < 4e-3
+
+
+def test_a_marker_of_another_side_is_noticed(request_, undrawn):
+    result = track(replace(request_, marker="4x4_50:0:150mm"), Nobody())
+    assert any("--marker" in note for note in result.tracked.notes)
+
+
+def edited(request: TrackRequest, tmp_path: Path, name: str, old: str, new: str) -> TrackRequest:
+    file = tmp_path / name
+    file.write_text(getattr(request, file.stem).read_text().replace(old, new))
+    return replace(request, **{file.stem: file})
+
+
+def test_a_floor_of_another_dictionary_says_which_is_seen(request_, tmp_path):
+    asked = edited(request_, tmp_path, "floor.toml", "side", 'dictionary = "5x5_50"\nside')
+    with pytest.raises(DataError, match="markers of '4x4_50'"):
+        track(asked, Nobody())
+
+
+def test_a_mirrored_floor_is_called_so(request_, tmp_path):
+    asked = edited(request_, tmp_path, "floor.toml", "y = ", "y = 0.0 #")
+    lines = (request_.floor).read_text().splitlines()
+    mirrored = [
+        line if "{" not in line else line.replace("y = ", "y = -").replace("--", "")
+        for line in lines
+    ]
+    asked.floor.write_text("\n".join(mirrored))
+    with pytest.raises(TrackingError, match="mirrored"):
+        track(asked, Nobody())
+
+
+def test_a_stop_leaves_nothing(request_):
+    with pytest.raises(TrackStopped):
+        track(request_, Nobody(stops=True))
+    assert not request_.folder.exists()
+
+
+@pytest.fixture(scope="module")
+def virtual(shared, tmp_path_factory):
+    """Return a maker of requests for the virtual world's photographs."""
+    world = json.loads((shared / "virtual-world/photos/camera.json").read_text())
+    folder = tmp_path_factory.mktemp("virtual")
+    K = world["K"]
+    (folder / "camera.toml").write_text(
+        f"size = {world['image_size']}\nfocal = [{K[0][0]}, {K[1][1]}]\n"
+        f"centre = [{K[0][2]}, {K[1][2]}]\n"
+    )
+    lines = ["[markers]"]
+    for key, marker in world["floor_markers"].items():
+        corners = np.array(marker["corners_world"])
+        (x, y, z), (ax, ay, _) = corners.mean(axis=0), corners[1] - corners[0]
+        yaw = np.degrees(np.arctan2(ay, ax))
+        lines.append(
+            f"{key} = {{ x = {x}, y = {y}, z = {z}, yaw_deg = {yaw}, side = {marker['side']} }}"
+        )
+    (folder / "floor.toml").write_text("\n".join(lines))
+    (folder / "robot.toml").write_text("[marker]\nposition = [0, 0, 0.0385]\nheight = 0.1\n")
+
+    def request(name: str, out: Path) -> TrackRequest:
+        return TrackRequest(
+            shared / "virtual-world/photos" / name, folder / "camera.toml", folder / "floor.toml",
+            robot=folder / "robot.toml", out=out, times=TimeRequest(interval=2.0),
+            source="sim:virtual-world",
+        )  # fmt: skip
+
+    lens = Camera(tuple(world["image_size"]), np.array(K), np.zeros(5))
+    return request, lens, CameraPose.from_matrix(world["R"], world["t"])
+
+
+def read_truth(folder: Path) -> np.ndarray:
+    with (folder / "truth.csv").open(encoding="utf-8") as file:
+        names = ("x", "y", "z", "roll", "pitch", "yaw")
+        return np.array([[float(row[name]) for name in names] for row in csv.DictReader(file)])
+
+
+@pytest.mark.reference
+def test_the_marked_virtual_walk_is_within_three_millimetres(virtual, tmp_path, undrawn):
+    asked = virtual[0]("s1.10_A", tmp_path / "track")
+    poses = track(asked, Nobody()).tracked.track.poses
+    error = np.abs(poses - read_truth(asked.photos)[:, [0, 1, 5]])
+    assert np.hypot(*error[:, :2].T).max() < 3e-3
+    assert np.degrees(error[:, 2].max()) < 0.3
+
+
+@pytest.mark.reference
+def test_the_unmarked_virtual_walk_is_within_five_millimetres(virtual, tmp_path, undrawn):
+    make, lens, view = virtual
+    asked = make("s1.10_B", tmp_path / "track")
+    true = read_truth(asked.photos)
+    photo = sorted(path.name for path in asked.photos.glob("*.jpg"))[7]
+    R, _ = rotation_with_derivatives(*true[7, 3:])
+    top = np.array([[75, 75, 38.5], [75, -75, 38.5], [-75, -75, 38.5], [-75, 75, 38.5]]) / 1e3
+    clicks = project(lens, view, top @ R.T + true[7, :3])
+    clicks += np.random.default_rng(0).normal(0, 0.3, clicks.shape)
+    corners = " ".join(f"{u:.1f},{v:.1f}" for u, v in clicks)
+    file = tmp_path / "annotations.toml"
+    annotate(AnnotateRequest(asked.photos, file, photo=photo, corners=corners, plate=PLATE))
+    asked = replace(asked, annotations=file, without_marker=True)
+    error = np.abs(track(asked, Nobody()).tracked.track.poses - true[:, [0, 1, 5]])
+    assert np.hypot(*error[:, :2].T).max() < 5e-3
+    assert np.degrees(error[:, 2].max()) < 2.0

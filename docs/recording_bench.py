@@ -27,14 +27,15 @@ from rig.twins import robot_twin
 from rig.zebro.profile import load_leg_profile
 from rig.zebro.serial import PacketLegs
 from zebro_lab.acquisition import Device, acquiring
-from zebro_lab.record_devices import CELL_PAUSE, default_gait
+from zebro_lab.record_devices import CELL_PAUSE, ForceCheck, default_gait
 from zebro_lab.recorder import RunDescription, RunRecorder
 from zebro_lab.run_folder import read_manifest
 from zebro_lab.stream_views import ImuView, LegsView, LoadCellView
 
 LEGS = load_leg_profile("zebro-100-serial")
 IMU = load_imu_profile("imu-quaternion-serial")
-CELL = load_rig_profile("rig-odrive-netft").load_cell
+RIG = load_rig_profile("rig-odrive-netft")
+CELL = RIG.load_cell
 
 
 def serve(connection):
@@ -76,8 +77,8 @@ def measure(seconds, folder):
     views = (LegsView("legs", profile=LEGS), ImuView("imu", profile=IMU),
              LoadCellView("load_cell", profile=CELL))  # fmt: skip
     devices = [
-        Device(stream, view, pause=pause)
-        for stream, view, pause in zip(streams, views, (0.0, 0.0, CELL_PAUSE), strict=True)
+        *map(Device, streams[:2], views[:2]),
+        Device(streams[2], views[2], ForceCheck(RIG), pause=CELL_PAUSE),
     ]
     description = RunDescription(kind="walk", label="bench", source="sim:bench")
     recorder = RunRecorder(folder, description=description,

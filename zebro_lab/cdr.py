@@ -7,6 +7,7 @@ The tests hold these bytes against its decoder.
 
 import struct
 from collections.abc import Sequence
+from functools import lru_cache
 from typing import Any, Self
 
 import numpy as np
@@ -46,16 +47,14 @@ class CdrWriter:
 
     def text(self, value: str) -> Self:
         """Add a text."""
-        data = value.encode() + b"\0"
-        self.uint32(len(data))
-        self._parts += data
+        self._align(4)
+        self._parts += _text_block(value)
         return self
 
     def texts(self, values: Sequence[str]) -> Self:
         """Add a sequence of texts."""
-        self.uint32(len(values))
-        for value in values:
-            self.text(value)
+        self._align(4)
+        self._parts += _texts_block(tuple(values))
         return self
 
     def array(self, values: NDArray[Any]) -> Self:
@@ -82,6 +81,19 @@ class CdrWriter:
         self._align(size)
         self._parts += struct.pack(layout, *values)
         return self
+
+
+def _text_block(value: str) -> bytes:
+    data = value.encode() + b"\0"
+    return struct.pack("<I", len(data)) + data
+
+
+@lru_cache(maxsize=256)  # names of joints: the same in every message
+def _texts_block(values: tuple[str, ...]) -> bytes:
+    block = struct.pack("<I", len(values))
+    for value in values:
+        block += bytes(-len(block) % 4) + _text_block(value)
+    return block
 
 
 class CdrReader:

@@ -119,7 +119,7 @@ def encode_raw(samples: Sequence[Sample], *, dtype: str, start: float) -> bytes:
     """
     host, device, sequence, counts, status, channel = zip(*samples, strict=True)
     width = len(counts[0])
-    if any(len(row) != width for row in counts):
+    if set(map(len, counts)) != {width}:
         raise ValueError(f"samples of one stream have {set(map(len, counts))} counts")
     flat = itertools.chain.from_iterable(counts)  # half the time of an array of tuples
     values = np.fromiter(flat, dtype=dtype, count=width * len(counts))

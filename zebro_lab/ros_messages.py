@@ -136,8 +136,7 @@ def imu(
 ) -> bytes:
     """Encode a quaternion x, y, z, w, a rate [rad/s] and a specific force [m/s2] of the body."""
     message = CdrWriter().time(stamp).text("body")
-    for values in (orientation, angular_rate, specific_force):
-        message.float64(*values, *_UNKNOWN)
+    message.float64(*orientation, *_UNKNOWN, *angular_rate, *_UNKNOWN, *specific_force, *_UNKNOWN)
     return message.message()
 
 

@@ -140,9 +140,9 @@ class ImuView:
         # Not by way of roll, pitch and yaw, as decode_orientation: that would cost several times
         # as much, ten times a second.
         measured = Rotation.from_quat(counts[:, :4], scalar_first=True)
-        orientation = (measured * self._unmount).as_quat()
-        rate = self._mount.apply(counts[:, 4:7] / self._profile.rate_scale)
-        force = self._mount.apply(counts[:, 7:] / self._profile.force_scale)
+        orientation = (measured * self._unmount).as_quat().tolist()
+        rate = self._mount.apply(counts[:, 4:7] / self._profile.rate_scale).tolist()
+        force = self._mount.apply(counts[:, 7:] / self._profile.force_scale).tolist()
         for i, row in enumerate(chosen):
             message = imu(
                 stamps[row],

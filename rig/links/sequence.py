@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Numbers and times that wrap: what is lost, doubled or late, and when a device began anew."""
 
+from collections.abc import Sequence
 from typing import Final
 
 LATE_WINDOW: Final = 64
@@ -68,6 +69,25 @@ class SequenceTracker:
         self._last += ahead
         return self._last
 
+    def accept_all(self, numbers: Sequence[int], host_time: float) -> Sequence[int | None]:
+        """Take the numbers of samples that one read gave; see `accept`.
+
+        Numbers without a gap, which are almost all of a fast device's, are taken together.
+
+        >>> tracker = SequenceTracker(modulus=256)
+        >>> [*tracker.accept_all((254, 255, 2), 0.0)], [*tracker.accept_all((3, 4), 0.1)]
+        ([254, 255, 258], [259, 260])
+        """
+        if self._last is not None and numbers:
+            first = (self._last + 1) % self._modulus
+            end = first + len(numbers)
+            if end <= self._modulus and tuple(numbers) == tuple(range(first, end)):
+                self.accept(first, host_time)
+                run = range(self._last, self._last + len(numbers))
+                self._last = run[-1]
+                return run
+        return [self.accept(number, host_time) for number in numbers]
+
     def _plausible(self, ahead: int, elapsed: float) -> bool:
         if self._rate is None:
             return ahead < self._modulus // 2
@@ -98,3 +118,18 @@ class TimeUnwrapper:
             self._last = ticks
         self._last += (ticks - self._last) % self._modulus
         return self._last * self._tick
+
+    def unwrap_all(self, ticks: Sequence[int]) -> list[float]:
+        """Compute the device times of readings in order; see `unwrap`.
+
+        >>> TimeUnwrapper(modulus=1000, tick=0.001).unwrap_all((990, 999, 4))
+        [0.99, 0.999, 1.004]
+        """
+        if self._last is None or not ticks:
+            return [self.unwrap(tick) for tick in ticks]
+        turns, last = divmod(self._last, self._modulus)
+        if ticks[0] < last or list(ticks) != sorted(ticks):  # they wrap
+            return [self.unwrap(tick) for tick in ticks]
+        base, length = turns * self._modulus, self._tick
+        self._last = base + ticks[-1]
+        return [(base + tick) * length for tick in ticks]

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """A serial port: bulk reads with a time limit, and a port that may be unplugged and come back."""
 
+import os
 import select
 import time
 from typing import Final, cast
@@ -65,7 +66,7 @@ class SerialLink:
             return b""
         port = self._serial
         try:
-            return port.read(CHUNK) if port is not None and _readable(port, timeout) else b""
+            return _take(port) if port is not None and _readable(port, timeout) else b""
         except OSError:  # serial.SerialException is one: unplugged
             self._lose()
             return b""
@@ -118,6 +119,20 @@ class SerialLink:
             return False
         self.reconnected += 1
         return True
+
+
+def _take(port: serial.Serial) -> bytes:
+    """Take all bytes of a port that has some.
+
+    Raises:
+        OSError: The port is gone.
+    """
+    if os.name != "posix" or not hasattr(port, "fileno"):
+        return port.read(CHUNK)
+    data = os.read(port.fileno(), CHUNK)  # pyserial would ask once more whether there are any
+    if not data:
+        raise OSError(f"port {port.port} was readable and had no bytes: unplugged")
+    return data
 
 
 def _readable(port: serial.Serial, timeout: float) -> bool:

@@ -2,6 +2,9 @@
 """A Net F/T load cell: records by UDP at up to 7 kHz, zero, and counts to newtons."""
 
 import http.client
+from collections.abc import Sequence
+from functools import partial
+from itertools import repeat
 from types import TracebackType
 from typing import Final, Self
 
@@ -12,6 +15,8 @@ from rig.links.sequence import SequenceTracker, TimeUnwrapper
 from rig.links.udp import UdpLink
 from rig.slip_rig.profile import LoadCellProfile
 from rig.slip_rig.rdt import (
+    COUNTS,
+    HEAD,
     RECORD,
     WRAP,
     CellConfiguration,
@@ -23,6 +28,8 @@ from rig.slip_rig.rdt import (
 START_AGAIN_AFTER: Final = 0.5
 """Silence after which a cell is asked to start once more: requests, too, may be lost [s]."""
 LONGEST_PAGE: Final = 1 << 20
+_SAMPLE: Final = partial(tuple.__new__, Sample)
+"""Makes a sample of its fields' tuple without a call in Python, 7,000 times a second."""
 
 
 class NetFtCell:
@@ -78,11 +85,7 @@ class NetFtCell:
         """Hand on all samples that have arrived, waiting at most `timeout` for the first [s]."""
         datagrams = self._link.read(timeout)
         now = self._clock.now()
-        samples = []
-        for datagram in datagrams:
-            sample = self._sample(datagram, now)
-            if sample is not None:
-                samples.append(sample)
+        samples = self._samples(datagrams, now)
         self._listen(bool(samples), now)
         self._received += len(samples)
         return samples
@@ -106,15 +109,23 @@ class NetFtCell:
         self._link.write(encode_request(Request.STOP))
         self._link.close()
 
-    def _sample(self, datagram: bytes, now: float) -> Sample | None:
-        if len(datagram) != RECORD.size:
-            self._damaged += 1
-            return None
-        number, reading, status, *counts = RECORD.unpack(datagram)
-        sequence = self._tracker.accept(number, now)
-        if sequence is None:
-            return None
-        return Sample(now, self._device_time.unwrap(reading), sequence, tuple(counts), status)
+    def _samples(self, datagrams: Sequence[bytes], now: float) -> list[Sample]:
+        """Make samples of all records of a read together, column by column."""
+        records = [datagram for datagram in datagrams if len(datagram) == RECORD.size]
+        self._damaged += len(datagrams) - len(records)
+        if not records:
+            return []
+        data = b"".join(records)
+        numbers, readings, status = zip(*HEAD.iter_unpack(data), strict=True)
+        counts = list(COUNTS.iter_unpack(data))
+        sequence = self._tracker.accept_all(numbers, now)
+        if isinstance(sequence, list) and None in sequence:
+            kept = [i for i, number in enumerate(sequence) if number is not None]
+            readings, status = [readings[i] for i in kept], [status[i] for i in kept]
+            sequence, counts = [sequence[i] for i in kept], [counts[i] for i in kept]
+        times = self._device_time.unwrap_all(readings)
+        columns = zip(repeat(now), times, sequence, counts, status, repeat(0), strict=False)
+        return list(map(_SAMPLE, columns))
 
     def _listen(self, heard: bool, now: float) -> None:
         """Ask a silent cell to start again, and count when it does."""

@@ -12,6 +12,10 @@ from rig.errors import ProtocolError
 REQUEST: Final = struct.Struct(">HHI")
 RECORD: Final = struct.Struct(">III6i")
 """Number of the record, number of the reading inside the cell, status, Fx Fy Fz Tx Ty Tz."""
+HEAD: Final = struct.Struct(">III24x")
+"""What of a record stands before the counts: both numbers and the status."""
+COUNTS: Final = struct.Struct(">12x6i")
+"""The counts of a record."""
 MAGIC: Final = 0x1234
 WRAP: Final = 1 << 32
 SATURATED: Final = 1 << 17

@@ -60,3 +60,25 @@ def test_device_time_never_runs_back(steps):
     for step in steps:
         total, ticks = total + step, (ticks + step) % 1000
         assert clock.unwrap(ticks) == total * 0.001
+
+
+@given(
+    st.lists(st.lists(st.integers(0, 255), max_size=8), max_size=6),
+    st.integers(0, 255),
+    st.integers(0, 40),
+)
+def test_numbers_taken_together_are_taken_as_one_by_one(reads, start, length):
+    run = [(start + i) % 256 for i in range(length)]
+    together = SequenceTracker(modulus=256, rate=10.0)
+    single = SequenceTracker(modulus=256, rate=10.0)
+    for at, numbers in enumerate([run[: length // 2], run[length // 2 :], *reads, run]):
+        expected = [single.accept(number, float(at)) for number in numbers]
+        assert list(together.accept_all(numbers, float(at))) == expected
+    assert vars(together) == vars(single)
+
+
+@given(st.lists(st.lists(st.integers(0, 999), max_size=8), max_size=6))
+def test_ticks_unwrapped_together_are_those_unwrapped_one_by_one(reads):
+    together, single = (TimeUnwrapper(modulus=1000, tick=0.001) for _ in range(2))
+    for ticks in [*reads, *map(sorted, reads)]:
+        assert together.unwrap_all(ticks) == [single.unwrap(tick) for tick in ticks]

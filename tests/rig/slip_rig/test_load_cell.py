@@ -121,12 +121,41 @@ def test_leaving_stops_the_cell():
         assert cell.sent == sent
 
 
+class _OneRead(UdpLink):
+    """Gives the same datagrams whenever it is read."""
+
+    def __init__(self, *datagrams):
+        super().__init__("127.0.0.1", 1)
+        self._datagrams = list(datagrams)
+
+    def read(self, timeout):
+        return self._datagrams
+
+
 @given(st.binary(max_size=80))
 def test_any_datagram_is_a_record_or_damaged(datagram):
-    stream = NetFtCell(UdpLink("127.0.0.1", 1), profile=PROFILE)
-    sample = stream._sample(datagram, 0.0)
-    assert (sample is None) == (len(datagram) != RECORD.size)
+    stream = NetFtCell(_OneRead(datagram), profile=PROFILE)
+    samples = stream.read(0.0)
+    assert (not samples) == (len(datagram) != RECORD.size)
     assert stream.counters.damaged == (len(datagram) != RECORD.size)
+
+
+@given(st.lists(st.sampled_from([b"short", 1, 2, 3, 4, 5, 200]), max_size=12))
+def test_a_read_keeps_each_record_with_its_own_counts(sent):
+    datagrams = [
+        item
+        if isinstance(item, bytes)
+        else RECORD.pack(item, 10 * item, 7, item, 0, -item, 0, 0, 0)
+        for item in sent
+    ]
+    stream = NetFtCell(_OneRead(*datagrams), profile=PROFILE)
+    samples = stream.read(0.0)
+    numbers = [s.sequence % 2**32 for s in samples]  # a jump back is a restart: they grow on
+    assert [s.counts for s in samples] == [(n, 0, -n, 0, 0, 0) for n in numbers]
+    assert all((s.status, s.channel) == (7, 0) for s in samples)
+    counters = stream.counters
+    assert (counters.received, counters.damaged) == (len(samples), sent.count(b"short"))
+    assert counters.received + counters.repeated + counters.damaged == len(sent)
 
 
 @given(st.integers(0, 2**32 - 1))

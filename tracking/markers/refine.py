@@ -10,10 +10,11 @@ with T_c the marker drawn with its corners at c, G_s a Gaussian blur, g the cont
 brightness with a slope for shading, and q the bend of the camera's tone curve: pictures are blurred
 in light but stored in tones, which moves every edge towards the black by a part of the blur and,
 unmodelled, makes markers look small and hence far. These fourteen unknowns are fitted by
-Gauss-Newton; the residual gives the noise, the normal equations the covariance.
+Gauss-Newton; the residual gives the noise and how far it is correlated, the normal equations the
+covariance.
 """
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import cv2
 import numpy as np
@@ -26,8 +27,17 @@ from tracking.markers.square import (
     square_homography,
 )
 
-CORNER_FLOOR_PX = 0.02
-"""What the model of a pixel leaves out (tone curve, JPEG, a print that is not flat) [px]."""
+CORNER_FLOOR_PX = 0.008
+"""What the model of a sharp picture leaves out, times the step between pixels used [px]."""
+
+ROUNDING_COUNTS = 0.8
+"""By how much compression shifts the tones of an edge as a whole [grey levels].
+
+Its rounding follows the picture: an edge comes out smooth and in the wrong place, and no residual
+tells. It is small where edges are steep and large in dark, blurred pictures."""
+
+_LAGS_PX = 8
+"""How far apart pixels may err alike: a block of JPEG [px]."""
 
 _MOST_PIXELS = 4_000
 _LONGEST_SIDE = 60.0
@@ -74,18 +84,20 @@ def refine_corners(
     if patch is None:
         return None
     start = patch.own(corners_px)
-    fit = _Fit(start, blur=_first_blur(start))
+    fit, look = _Fit(start, blur=_first_blur(start)), None
     for _ in range(iterations):
-        step = _improve(fit, patch, dictionary, marker_id)
-        if step is None:
+        look = _look(fit, patch, dictionary, marker_id)
+        if look is None:
             return None
-        fit, moved = step
+        fit, moved = _improved(fit, look)
         if moved < 3e-3:
             break
-    if np.abs(fit.corners - start).max() > 0.25 * _shortest_side(start):
+    if look is None or np.abs(fit.corners - start).max() > 0.25 * _shortest_side(start):
         return None
-    covariance = shrink**2 * fit.covariance + CORNER_FLOOR_PX**2 * np.eye(8)
-    return Sighting(marker_id, patch.whole(fit.corners), covariance, fit.score, shrink * fit.blur)
+    rounding_px = ROUNDING_COUNTS * np.sqrt(2 * np.pi) * fit.blur / look.contrast
+    floor_px = shrink * np.hypot(CORNER_FLOOR_PX * patch.stride, rounding_px)
+    covariance = shrink**2 * look.covariance(patch) + floor_px**2 * np.eye(8)
+    return Sighting(marker_id, patch.whole(fit.corners), covariance, look.score, shrink * fit.blur)
 
 
 @dataclass(frozen=True)
@@ -128,18 +140,71 @@ class _Patch:
 
 @dataclass(frozen=True)
 class _Fit:
-    """State of Gauss-Newton: corners in the patch [px], blur [px] and what the last step told."""
+    """State of Gauss-Newton: corners in the patch [px] and blur [px]."""
 
     corners: Array
     blur: float
-    covariance: Array = field(default_factory=lambda: np.zeros((8, 8)))
-    score: float = 0.0
 
 
-def _improve(
-    fit: _Fit, patch: _Patch, dictionary: str, marker_id: int
-) -> tuple[_Fit, float] | None:
-    """Take one step of Gauss-Newton; return the fit and how far its corners moved [px]."""
+@dataclass(frozen=True)
+class _Look:
+    """A fit held against the picture.
+
+    Attributes:
+        points: Pixels compared, across and down, shape (n, 2).
+        design: Derivative of their values with respect to the 14 unknowns, shape (n, 14).
+        inverse: Of the normal equations, shape (14, 14).
+        residual: What the fit leaves of their values, shape (n,) [grey levels].
+        contrast: White less black [grey levels].
+        score: Likeness with the marker [-].
+    """
+
+    points: Array
+    design: Array
+    inverse: Array
+    residual: Array
+    contrast: float
+    score: float
+
+    def covariance(self, patch: _Patch) -> Array:
+        """Compute the covariance of the corners in the patch, shape (8, 8) [px²].
+
+        Least squares with a residual of covariance R: (J'J)^-1 J'RJ (J'J)^-1. R is read off the
+        residual itself: compression and what the model misses make neighbouring pixels err alike,
+        which a count of pixels takes for evidence.
+        """
+        grid = (np.round(self.points / patch.stride)).astype(int)
+        column, row = (grid - grid.min(axis=0)).T
+        shape = (int(row.max()) + 1, int(column.max()) + 1)
+        used, left = np.zeros(shape), np.zeros(shape)
+        used[row, column], left[row, column] = 1.0, self.residual
+        kernel = _autocovariance(left, used, lags=max(1, round(_LAGS_PX / patch.stride)))
+        freedom = len(self.points) / max(len(self.points) - 14, 1)
+        smeared = np.empty_like(self.design)
+        for index, slope in enumerate(self.design.T):
+            laid = np.zeros(shape)
+            laid[row, column] = slope
+            smeared[:, index] = cv2.filter2D(
+                laid, cv2.CV_64F, kernel, borderType=cv2.BORDER_CONSTANT
+            )[row, column]
+        whole = freedom * self.inverse @ (self.design.T @ smeared) @ self.inverse
+        return whole[:8, :8]
+
+
+def _autocovariance(left: Array, used: Array, *, lags: int) -> Array:
+    """Compute the residual's covariance by distance, tapered, shape (2 lags + 1, 2 lags + 1)."""
+    pad = ((0, lags), (0, lags))
+    power = [np.abs(np.fft.fft2(np.pad(part, pad))) ** 2 for part in (left, used)]
+    product, pairs = (np.real(np.fft.ifft2(part)) for part in power)
+    mean = product / np.maximum(pairs, 1.0)
+    near = np.roll(mean, (lags, lags), axis=(0, 1))[: 2 * lags + 1, : 2 * lags + 1]
+    # Bartlett's window in both directions keeps the covariance positive.
+    taper = 1 - np.abs(np.arange(-lags, lags + 1)) / (lags + 1)
+    return near * np.outer(taper, taper)
+
+
+def _look(fit: _Fit, patch: _Patch, dictionary: str, marker_id: int) -> _Look | None:
+    """Draw the marker as the fit has it and compare it with the picture."""
     points = _pixels_used(fit.corners, patch)
     if len(points) < 40:
         return None
@@ -153,23 +218,24 @@ def _improve(
     contrast = light[3]
     if contrast <= 1.0:  # less than a grey level: nothing, or a negative
         return None
-    residual = values - light_design @ light
     steepness = contrast + light[4] * (1 - 2 * tone)
     geometry = steepness[:, None] * _geometry_design(fit, drawn, points)
-    inverse = _inverse_normal(np.column_stack((geometry, light_design)))
+    design = np.column_stack((geometry, light_design))
+    inverse = _inverse_normal(design)
     if inverse is None:
         return None
-    step = inverse[:9] @ (np.column_stack((geometry, light_design)).T @ residual)
+    score = _likeness(fit.corners, points, values - shade @ light[:3], tone, dictionary)
+    return _Look(points, design, inverse, values - light_design @ light, contrast, score)
+
+
+def _improved(fit: _Fit, look: _Look) -> tuple[_Fit, float]:
+    """Take one step of Gauss-Newton; return the fit and how far its corners moved [px]."""
+    step = look.inverse[:9] @ (look.design.T @ look.residual)
     longest = float(np.abs(step[:8]).max())
     step[:8] *= min(1.0, 0.1 * _shortest_side(fit.corners) / max(longest, 1e-12))
-    noise = residual @ residual / max(len(points) - 14, 1)
-    improved = _Fit(
-        fit.corners + step[:8].reshape(4, 2),
-        float(np.clip(fit.blur + np.clip(step[8], -0.5, 0.5), 0.3, 8.0)),
-        noise * inverse[:8, :8] * _correlated(fit.blur, patch.stride),
-        _likeness(fit.corners, points, values - shade @ light[:3], drawn[row, column], dictionary),
-    )
-    return improved, float(np.abs(step[:8]).max())
+    corners = fit.corners + step[:8].reshape(4, 2)
+    blur = float(np.clip(fit.blur + np.clip(step[8], -0.5, 0.5), 0.3, 8.0))
+    return _Fit(corners, blur), float(np.abs(step[:8]).max())
 
 
 def _geometry_design(fit: _Fit, drawn: Array, points: Array) -> Array:
@@ -189,12 +255,6 @@ def _inverse_normal(design: Array) -> Array | None:
         return np.linalg.inv(normal + 1e-12 * np.trace(normal) * np.eye(len(normal)))
     except np.linalg.LinAlgError:
         return None
-
-
-def _correlated(blur: float, stride: int) -> float:
-    # What the model misses is smooth over about the blur, so neighbouring pixels repeat each
-    # other: their number is divided by the area of that blur.
-    return max(1.0, 2 * np.pi * min(blur, 2.0) ** 2 / 4 / stride**2)
 
 
 def _likeness(corners: Array, points: Array, values: Array, drawn: Array, dictionary: str) -> float:
@@ -232,14 +292,15 @@ def _draw(
     dictionary: str, marker_id: int, corners: Array, blur: float, shape: tuple[int, ...]
 ) -> Array:
     cells = _cells(dictionary)
-    # At least twice the picture's resolution, so that drawing does not blur by itself.
-    cell_px = int(np.clip(2 ** np.ceil(np.log2(2 * _longest_side(corners) / cells)), 8, 64))
+    n = 3 if cells * 6 > _shortest_side(corners) else 2  # finer where cells are small
+    # No finer than what it is sampled at where the marker is foreshortened most: then reading
+    # between its points places an edge along a row of pixels, and not at the nearest sample.
+    cell_px = int(np.clip(2 ** np.floor(np.log2(n * _shortest_side(corners) / cells)), 4, 64))
     picture = marker_picture(dictionary, marker_id, cell_px)
     inner = cells * cell_px
     own_from_drawn = np.array(
         [[1, 0, 0.5 - cell_px], [0, 1, 0.5 - cell_px], [0, 0, inner]], dtype=float
     ) / inner  # fmt: skip
-    n = 3 if cells * 6 > _shortest_side(corners) else 2  # finer where cells are small
     fine = np.array([[n, 0, (n - 1) / 2], [0, n, (n - 1) / 2], [0, 0, 1.0]])
     drawn = cv2.warpPerspective(
         picture, fine @ square_homography(corners) @ own_from_drawn,

@@ -124,7 +124,8 @@ class DriveBus:
             left = max(end - self._clock.now(), 0.0)
             samples = self._take(min(left, self.profile.feed_interval))
             if samples or left <= 0:
-                return samples
+                # Frames of two drives come in one batch; a log's time never runs back.
+                return sorted(samples, key=lambda sample: sample.host_time)
 
     def require_healthy(self) -> None:
         """Check both drives.

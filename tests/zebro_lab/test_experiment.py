@@ -246,15 +246,16 @@ class Rig:
 
     def serve(self, process, until, *, longest=60.0):
         """Do what the prompts say until something holds."""
-        end = time.monotonic() + longest
+        end, before = time.monotonic() + longest, None
         while time.monotonic() < end and process.poll() is None and not until():
             try:
                 status = command_run(self.data, "status")
+                again, before = status == before, status
                 if status.startswith("take all load"):
                     self.rig.load = 1e-3
                 elif status.startswith("set the normal force"):
                     self.rig.load = float(status.split()[5])
-                if status.endswith("then confirm"):
+                if status.endswith("then confirm") and not again:  # the next prompt would take it
                     command_run(self.data, "confirm")
             except (NotFound, RigError, ValueError):
                 pass

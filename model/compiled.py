@@ -8,3 +8,5 @@ when a file it calls into does: after editing one, remove the `__pycache__` fold
 import numba
 
 compiled = numba.njit(cache=True, nogil=True, error_model="numpy")
+inlined = numba.njit(cache=True, nogil=True, error_model="numpy", forceinline=True)
+"""For the small parts of a hot loop: passing structures of arrays costs more than they do."""

@@ -13,9 +13,9 @@ from model.slip.law import Array
 from zebro_lab.errors import DataError
 from zebro_lab.raw_table import RawTable
 from zebro_lab.table_files import read_table_file
+from zebro_lab.track_folder import TRACK_CSV
 from zebro_lab.walk_folder import cell_error, require_increasing
 
-TRACK_CSV = "track.csv"
 FEWEST = 3  # a start, which is not scored, and two poses to score
 _NAMES = (("t_s", "t"), ("x_m", "x"), ("y_m", "y"))
 _YAW = ("yaw_rad", "yaw")

@@ -16,10 +16,11 @@ from model.errors import DomainError, WalkError
 from model.gait.reference import LegReference
 from model.robot import N_LEGS, Robot
 from model.slip.law import Array
+from model.walk.arrays import Contacts, State, body_arrays
 from model.walk.ground import FLAT, Ground
 from model.walk.kernel import N_CONTACTS, ground_at
 from model.walk.path import WalkPath
-from model.walk.step import Contacts, State, body_arrays, run_steps
+from model.walk.step import run_steps
 from model.walk.traction import TractionTable, VelocityCoulomb
 
 SETTLE_STEP = 0.005  # s

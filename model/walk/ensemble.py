@@ -11,6 +11,7 @@ from model.errors import DomainError, WalkError
 from model.gait.reference import LegReference
 from model.robot import N_LEGS, Robot
 from model.slip.law import Array
+from model.walk.arrays import Contacts, body_arrays
 from model.walk.dynamics import (
     DEFAULT_OPTIONS,
     ORIGIN,
@@ -22,7 +23,7 @@ from model.walk.dynamics import (
     step_times,
 )
 from model.walk.ground import FLAT
-from model.walk.step import Contacts, body_arrays, run_steps
+from model.walk.step import run_steps
 from model.walk.stride import PlanarPath, walk_by_strides
 from model.walk.traction import TractionTable
 

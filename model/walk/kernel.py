@@ -14,19 +14,17 @@ contacts press and what G is. No contact pulls, and traction opposes slip whatev
 step is stable at any length: what the explicit step of the source is not.
 """
 
-import numba
 import numpy as np
 
+from model.compiled import inlined
 from model.leg import HIP, ROLLING, TOE
 from model.robot import N_LEGS
 
 N_CONTACTS = N_LEGS + 8  # legs, then the corners of the body
 NEAR = 0.01  # height over the ground below which the body's corners are looked at [m]
 
-jit = numba.njit(cache=True, nogil=True, error_model="numpy", forceinline=True)
 
-
-@jit
+@inlined
 def rotation_matrix(q, R):
     """Fill R (3, 3) with the rotation of the unit quaternion q = (w, x, y, z), body to world."""
     w, x, y, z = q
@@ -35,7 +33,7 @@ def rotation_matrix(q, R):
     R[2, 0], R[2, 1], R[2, 2] = 2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)
 
 
-@jit
+@inlined
 def rotate(q, w, dt):
     """Turn the quaternion q by the rotation vector w·dt given in the world frame."""
     angle = np.sqrt(w[0] ** 2 + w[1] ** 2 + w[2] ** 2) * dt
@@ -52,7 +50,7 @@ def rotate(q, w, dt):
         q[i] /= size
 
 
-@jit
+@inlined
 def lowest_point(theta, down_x, down_z, r, toe_cos, toe_sin):
     """Find a leg's lowest point in its plane, from the hip, with its state.
 
@@ -88,7 +86,7 @@ def lowest_point(theta, down_x, down_z, r, toe_cos, toe_sin):
     return 0.0, 0.0, HIP
 
 
-@jit
+@inlined
 def ground_at(ground, x, y):
     """Return height and unit normal (nx, ny, nz) of the ground at a place."""
     height = ground.height
@@ -112,7 +110,7 @@ def ground_at(ground, x, y):
     return h, -sx / size, -sy / size, 1 / size
 
 
-@jit
+@inlined
 def plane_under(ground, x, y, reach):
     """Return the unit normal of the ground's mean plane within reach of a place.
 
@@ -127,7 +125,7 @@ def plane_under(ground, x, y, reach):
     return -sx / size, -sy / size, 1 / size
 
 
-@jit
+@inlined
 def table_value(table, load, x):
     """Interpolate traction over load at slip x and a load; see `TractionTable`."""
     w = np.arcsinh(x / table.scale)
@@ -142,7 +140,7 @@ def table_value(table, load, x):
     return value
 
 
-@jit
+@inlined
 def load_row(table, load):
     """Return the row of a table below a load, and how far the load is towards the next."""
     m = len(table.log_load)
@@ -154,7 +152,7 @@ def load_row(table, load):
     return row, min(place - row, 1.0)
 
 
-@jit
+@inlined
 def hermite(phi, slope, j, a, step):
     """Interpolate between columns j and j + 1 by the cubic of their values and slopes."""
     p0, p1, m0, m1 = phi[j], phi[j + 1], slope[j] * step, slope[j + 1] * step
@@ -162,7 +160,7 @@ def hermite(phi, slope, j, a, step):
     return p0 + a * (m0 + a * (3 * d - 2 * m0 - m1 + a * (m0 + m1 - 2 * d)))
 
 
-@jit
+@inlined
 def traction_secant(table, state, load, slip_speed, flow_speed):
     """Compute traction over slip velocity of one contact [N s/m].
 
@@ -181,7 +179,7 @@ def traction_secant(table, state, load, slip_speed, flow_speed):
     return load * table_value(table, load, x) / (x * flow)
 
 
-@jit
+@inlined
 def toe_traction(table, load):
     """Compute the largest traction over load of a leg on its toe [-]."""
     row, b = load_row(table, load)
@@ -191,7 +189,7 @@ def toe_traction(table, load):
     return value
 
 
-@jit
+@inlined
 def solve_positive(A, b, n):
     """Solve the symmetric positive definite A x = b in place by LDL'; x is left in b."""
     for j in range(n):
@@ -212,7 +210,7 @@ def solve_positive(A, b, n):
             b[i] -= A[k, i] * b[k]
 
 
-@jit
+@inlined
 def find_contacts(body, ground, p, R, theta, speed, place, velocity, normal, gap, state, flow):
     """Find where each leg and each corner of the body would touch, and how far off the ground.
 
@@ -261,19 +259,19 @@ def find_contacts(body, ground, p, R, theta, speed, place, velocity, normal, gap
     return N_CONTACTS
 
 
-@jit
+@inlined
 def _to_world(R, x, y, z, out):
     for a in range(3):
         out[a] = R[a, 0] * x + R[a, 1] * y + R[a, 2] * z
 
 
-@jit
+@inlined
 def _gap(ground, p, place, normal):
     h, normal[0], normal[1], normal[2] = ground_at(ground, p[0] + place[0], p[1] + place[1])
     return (p[2] + place[2] - h) * normal[2]
 
 
-@jit
+@inlined
 def point_velocity(v, w, place, velocity, out):
     """Fill `out` with the velocity of a material contact point: body, rotation and leg."""
     out[0] = v[0] + w[1] * place[2] - w[2] * place[1] + velocity[0]
@@ -281,7 +279,7 @@ def point_velocity(v, w, place, velocity, out):
     out[2] = v[2] + w[0] * place[1] - w[1] * place[0] + velocity[2]
 
 
-@jit
+@inlined
 def add_contact(A, b, dt, place, P, force):
     """Add dt·J'PJ to the lower half of A and dt·J'·force to b.
 

@@ -1,14 +1,12 @@
 # SPDX-License-Identifier: MIT
-"""The loop over steps, compiled, and the arrays it works on."""
+"""The loop over steps of the walk, compiled."""
 
-from typing import NamedTuple
-
-import numba
 import numpy as np
-from numpy.typing import NDArray
 
-from model.robot import GRAVITY, Robot
+from model.compiled import compiled, inlined
+from model.robot import GRAVITY
 from model.slip.law import Array
+from model.walk.arrays import Body, Contacts, State, copy_state, new_state, new_work
 from model.walk.ground import Ground
 from model.walk.kernel import (
     N_CONTACTS,
@@ -16,7 +14,6 @@ from model.walk.kernel import (
     ROLLING,
     add_contact,
     find_contacts,
-    jit,
     point_velocity,
     rotate,
     rotation_matrix,
@@ -33,113 +30,7 @@ FINE_TIME = 0.005  # s, after a change
 BRISTLE_STIFFNESS = 0.1  # of the normal stiffness: a foot gives tenths of a millimetre, then slides
 
 
-class Body(NamedTuple):
-    """A robot as numba takes it; see `Robot`.
-
-    Attributes:
-        hips: Hip positions, shape (6, 3) [m].
-        leg_radius: Radius of the legs' arcs [m].
-        toe_cos: Cosine of the arcs' angle beyond a half circle [-].
-        toe_sin: Its sine [-].
-        mass: Mass [kg].
-        inertia: Principal moments of inertia, shape (3,) [kg m2].
-        half_size: Half the body's length, width and height, shape (3,) [m].
-    """
-
-    hips: Array
-    leg_radius: float
-    toe_cos: float
-    toe_sin: float
-    mass: float
-    inertia: Array
-    half_size: Array
-
-
-class Contacts(NamedTuple):
-    """How hard contacts are.
-
-    Attributes:
-        stiffness: Normal force for each metre of sinkage [N/m].
-        damping: Normal force for each metre a second of sinking [N s/m].
-    """
-
-    stiffness: float
-    damping: float
-
-
-class State(NamedTuple):
-    """What a step starts from; every array is overwritten by the next one.
-
-    Attributes:
-        p: Position of the body [m].
-        q: Its orientation as a unit quaternion (w, x, y, z), body to world.
-        v: Velocity [m/s].
-        w: Angular velocity in the world frame [rad/s].
-        stretch: Stretch of each contact's bristle, shape (14, 3) [m].
-    """
-
-    p: Array
-    q: Array
-    v: Array
-    w: Array
-    stretch: Array
-
-
-class Work(NamedTuple):
-    """What a step fills in, one row a contact: six legs, then eight corners of the body.
-
-    Attributes:
-        place: Contact from the body's centre, world frame, shape (14, 3) [m].
-        velocity: Velocity of its material point relative to the body, world frame,
-            shape (14, 3) [m/s].
-        normal: Normal of the ground, shape (14, 3) [-].
-        gap: Distance over the ground, negative below it, shape (14,) [m].
-        flow: Radius of the arc where a leg rolls, else zero, shape (14,) [m].
-        kind: HIP, ROLLING or TOE, shape (14,).
-        load: Normal force, zero in the air, shape (14,) [N].
-        secant: Traction over slip velocity, zero where a bristle holds, shape (14,) [N s/m].
-        R: Rotation of the body, body to world, shape (3, 3).
-        A: Matrix of the step, lower half, shape (6, 6).
-        b: Its right side and solution, shape (6,).
-        v: Guess of the final velocity, shape (3,) [m/s].
-        w: Guess of the final angular velocity, shape (3,) [rad/s].
-        force: Force of a contact, shape (3,) [N].
-        point: Velocity of a material contact point, shape (3,) [m/s].
-        P: What that falls by with velocity, shape (3, 3) [N s/m].
-        inertia: Inertia in the world frame, shape (3, 3) [kg m2].
-        gyro: Gyroscopic moment, shape (3,) [N m].
-    """
-
-    place: Array
-    velocity: Array
-    normal: Array
-    gap: Array
-    flow: Array
-    kind: NDArray[np.int64]
-    load: Array
-    secant: Array
-    R: Array
-    A: Array
-    b: Array
-    v: Array
-    w: Array
-    force: Array
-    point: Array
-    P: Array
-    inertia: Array
-    gyro: Array
-
-
-def body_arrays(robot: Robot) -> Body:
-    """Put a robot into the arrays of the compiled loop."""
-    return Body(
-        robot.hips, robot.leg_radius, float(np.cos(robot.toe_beyond)),
-        float(np.sin(robot.toe_beyond)), robot.mass,
-        robot.principal_inertia, 0.5 * np.array(robot.body_size),
-    )  # fmt: skip
-
-
-@numba.njit(cache=True, nogil=True, error_model="numpy")
+@compiled
 def run_steps(
     body: Body,
     table: TractionTable,
@@ -172,8 +63,8 @@ def run_steps(
     Returns:
         Steps walked: n, or fewer where the state stopped being finite.
     """
-    work = _new_work()
-    before = _new_state()
+    work = new_work()
+    before = new_state()
     speed, angles = np.empty(N_LEGS), np.empty(N_LEGS)
     loaded = np.zeros(N_CONTACTS)
     parts = max(int(np.ceil(dt / FINE_STEP - 1e-9)), 1)
@@ -182,12 +73,12 @@ def run_steps(
     for step in range(theta.shape[0] - 1):
         for i in range(N_LEGS):
             speed[i] = (theta[step + 1, i] - theta[step, i]) / dt
-        _copy_state(state, before)
+        copy_state(state, before)
         loaded[:] = work.load
         if fine_left == 0 or parts == 1:
             one_step(body, table, ground, contacts, state, work, theta[step + 1], speed, dt)
             if parts > 1 and _contacts_changed(work.load, loaded):
-                _copy_state(before, state)
+                copy_state(before, state)
                 work.load[:] = loaded
                 fine_left = fine_steps
         if fine_left > 0 and parts > 1:
@@ -205,7 +96,7 @@ def run_steps(
     return theta.shape[0] - 1
 
 
-@jit
+@inlined
 def one_step(body, table, ground, contacts, state, work, theta, speed, dt):
     """Take one linearly implicit step; see `model.walk.kernel`.
 
@@ -252,7 +143,7 @@ def one_step(body, table, ground, contacts, state, work, theta, speed, dt):
             _stretch_bristle(table, contacts, state, work, i, dt)
 
 
-@jit
+@inlined
 def add_contact_forces(table, contacts, state, work, n, speed, dt):
     """Add the contacts' forces, linear in the final velocities about a guess, to a step's system.
 
@@ -298,7 +189,7 @@ def add_contact_forces(table, contacts, state, work, n, speed, dt):
         add_contact(work.A, work.b, dt, work.place[i], P, force)
 
 
-@jit
+@inlined
 def bristle_pull(table, contacts, stretch, load, x, y, z):
     """Compute a bristle's force over its stretch after a further slip of (x, y, z) [N/m].
 
@@ -310,7 +201,7 @@ def bristle_pull(table, contacts, stretch, load, x, y, z):
     return most / size if stiffness * size > most else stiffness
 
 
-@jit
+@inlined
 def contacts_agree(contacts, work, n, dt):
     """Put the solved velocities' loads into `work`; tell whether the same contacts press."""
     k, c = contacts.stiffness, contacts.damping
@@ -329,13 +220,13 @@ def contacts_agree(contacts, work, n, dt):
     return agree
 
 
-@jit
+@inlined
 def leg_turn(R, speed, w, i):
     """Compute the speed at which leg i turns relative to the ground, about the body's y axis."""
     return speed[i] + R[0, 1] * w[0] + R[1, 1] * w[1] + R[2, 1] * w[2]
 
 
-@jit
+@inlined
 def _inertial_part(mass, inertia, gyro, state, dt, A, b):
     A[:, :] = 0.0
     for i in range(3):
@@ -349,7 +240,7 @@ def _inertial_part(mass, inertia, gyro, state, dt, A, b):
     b[2] -= dt * mass * GRAVITY
 
 
-@jit
+@inlined
 def _stretch_bristle(table, contacts, state, work, i, dt):
     """Stretch a bristle by the step's slip, and let it slide where traction is used up."""
     if work.load[i] == 0.0 or work.kind[i] == ROLLING:
@@ -367,7 +258,7 @@ def _stretch_bristle(table, contacts, state, work, i, dt):
         state.stretch[i, :] *= longest / np.sqrt(stretched)
 
 
-@jit
+@inlined
 def _contacts_changed(load, loaded):
     changed = False
     for i in range(N_CONTACTS):
@@ -375,34 +266,7 @@ def _contacts_changed(load, loaded):
     return changed
 
 
-@jit
-def _new_work():
-    n = N_CONTACTS
-    return Work(
-        np.empty((n, 3)), np.empty((n, 3)), np.empty((n, 3)), np.empty(n), np.empty(n),
-        np.zeros(n, dtype=np.int64), np.zeros(n), np.zeros(n), np.empty((3, 3)),
-        np.empty((6, 6)), np.empty(6), np.empty(3), np.empty(3), np.empty(3), np.empty(3),
-        np.empty((3, 3)), np.empty((3, 3)), np.empty(3),
-    )  # fmt: skip
-
-
-@jit
-def _new_state():
-    return State(np.empty(3), np.empty(4), np.empty(3), np.empty(3), np.empty((N_CONTACTS, 3)))
-
-
-@jit
-def _copy_state(state, to):
-    for i in range(3):
-        to.p[i], to.v[i], to.w[i] = state.p[i], state.v[i], state.w[i]
-    for i in range(4):
-        to.q[i] = state.q[i]
-    for i in range(N_CONTACTS):
-        for a in range(3):
-            to.stretch[i, a] = state.stretch[i, a]
-
-
-@jit
+@inlined
 def _world_inertia(R, principal, out):
     for i in range(3):
         for j in range(3):
@@ -411,7 +275,7 @@ def _world_inertia(R, principal, out):
                 out[i, j] += R[i, a] * principal[a] * R[j, a]
 
 
-@jit
+@inlined
 def _gyroscopic(inertia, w, out):
     """Fill with -w × (I w), the moment that turns the axis of a turning body [N m]."""
     L0 = inertia[0, 0] * w[0] + inertia[0, 1] * w[1] + inertia[0, 2] * w[2]
@@ -422,7 +286,7 @@ def _gyroscopic(inertia, w, out):
     out[2] = -(w[0] * L1 - w[1] * L0)
 
 
-@jit
+@inlined
 def _keep_legs(out, contacts, state, work, speed):
     """Fill a step's row of `legs`; see `run_steps`."""
     R, point = work.R, work.point

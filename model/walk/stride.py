@@ -14,6 +14,7 @@ from model.errors import WalkError
 from model.gait.reference import LegReference
 from model.robot import N_LEGS, Robot
 from model.slip.law import Array
+from model.walk.arrays import Body, Contacts, State, body_arrays
 from model.walk.dynamics import (
     DEFAULT_OPTIONS,
     ORIGIN,
@@ -25,7 +26,7 @@ from model.walk.dynamics import (
     step_times,
 )
 from model.walk.ground import FLAT
-from model.walk.step import Body, Contacts, State, body_arrays, run_steps
+from model.walk.step import run_steps
 from model.walk.traction import TractionTable
 
 SETTLED = 1e-4  # of a stride's length: change from one stride to the next

@@ -100,22 +100,20 @@ def annotate(
             "or --grid",
             param_hint="'annotate'",
         )
-    from zebro_lab.cli.tracking_errors import one_line
     from zebro_lab.stages.annotate import AnnotateRequest, draw_grid
     from zebro_lab.stages.annotate import annotate as run
     from zebro_lab.units import quantity_to_si
 
-    with one_line():
-        if grid is not None and photo is not None:
-            draw_grid(photos, photo, grid, around=around, reach=reach)
-            typer.echo(f"wrote {grid}")
-            return
-        request = AnnotateRequest(
-            photos, out, photo, corners, plate, quantity_to_si(margin, "m"), robot,
-            click or (), move or (), flip or (), delete or (),
-            order.split(",") if order else (), said,
-        )  # fmt: skip
-        written = run(request)
+    if grid is not None and photo is not None:
+        draw_grid(photos, photo, grid, around=around, reach=reach)
+        typer.echo(f"wrote {grid}")
+        return
+    request = AnnotateRequest(
+        photos, out, photo, corners, plate, quantity_to_si(margin, "m"), robot,
+        click or (), move or (), flip or (), delete or (),
+        order.split(",") if order else (), said,
+    )  # fmt: skip
+    written = run(request)
     template = "" if written.template is None else f"robot marked in {written.template.photo}, "
     clicks = sum(len(points) for points in written.clicks.values())
     typer.echo(f"{template}{clicks} points of the floor, {len(written.corrections)} corrections")

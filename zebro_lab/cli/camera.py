@@ -77,11 +77,10 @@ def calibrate(
     from rich.console import Console
 
     from zebro_lab.cli.progress import progress_bar
-    from zebro_lab.cli.tracking_errors import one_line
     from zebro_lab.stages.camera import CameraRequest, calibrate_camera
 
     request = CameraRequest(photos, out, board, lens.value, workers)
-    with one_line(), progress_bar(Console(stderr=True)) as watcher:
+    with progress_bar(Console(stderr=True)) as watcher:
         result = calibrate_camera(request, watcher)
     for line in calibration_lines(result):
         typer.echo(line)

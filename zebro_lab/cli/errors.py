@@ -2,6 +2,7 @@
 """How a command ends: one line for a known error, a traceback for an unknown one."""
 
 import sys
+import warnings
 from collections.abc import Callable
 
 import typer
@@ -9,6 +10,8 @@ import typer
 
 def run(app: typer.Typer) -> None:
     """Run a Typer app; known errors become one line on stderr and exit code 1."""
+    # ArviZ tells developers of its next version once a day; users can do nothing about it.
+    warnings.filterwarnings("ignore", message=r"\s*ArviZ is undergoing", category=FutureWarning)
     _guard(lambda: app())
 
 
@@ -30,6 +33,7 @@ def _is_known(error: Exception) -> bool:
             ("zebro_lab.errors", "ZebroLabError"),
             ("model.errors", "ModelError"),
             ("rig.errors", "RigError"),
+            ("tracking.errors", "TrackingError"),
         )
     ]
     return any(root is not None and isinstance(error, root) for root in roots)

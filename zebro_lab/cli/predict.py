@@ -38,7 +38,8 @@ other names and units through a columns.toml beside it. docs/formats.md says mor
 
 def predict(
     leglog: Annotated[
-        Path, typer.Argument(help="Leg angles over time: CSV, Parquet, or a walk folder.")
+        Path,
+        typer.Argument(help="Leg angles over time: CSV, Parquet, a recorded run or a walk folder."),
     ],
     out: Out = Path("prediction"),
     slip: Slip = None,

@@ -151,12 +151,11 @@ def _track(request: "TrackRequest") -> None:
     from rich.console import Console
 
     from zebro_lab.cli.progress import progress_bar
-    from zebro_lab.cli.tracking_errors import one_line
     from zebro_lab.photo_search import TrackStopped
     from zebro_lab.stages.track import track as run_stage
 
     try:
-        with one_line(), progress_bar(Console(stderr=True)) as watcher:
+        with progress_bar(Console(stderr=True)) as watcher:
             result = run_stage(request, watcher)
     except TrackStopped as stopped:
         typer.echo(str(stopped), err=True)
@@ -195,11 +194,9 @@ def track_lines(result: "TrackResult") -> list[str]:
 
 
 def _preview(request: "TrackRequest", file: Path) -> None:
-    from zebro_lab.cli.tracking_errors import one_line
     from zebro_lab.stages.track_preview import preview
 
-    with one_line():
-        seen = preview(request, file)
+    seen = preview(request, file)
     for line in preview_lines(seen):
         typer.echo(line)
     if any(check.is_off for check in seen.tape):

@@ -9,7 +9,8 @@ import numpy as np
 
 from zebro_lab.errors import NotFound, SettingsError
 from zebro_lab.provenance import file_hashes
-from zebro_lab.track_file import TRACK_CSV, read_track
+from zebro_lab.track_file import read_track
+from zebro_lab.track_folder import TRACK_CSV
 from zebro_lab.validation import PREDICTION, RunJudged, judge_run, read_prediction
 from zebro_lab.validation_folder import Summary, summarise_runs, write_validation
 from zebro_lab.walk_folder import PATH_CSV

@@ -1,0 +1,148 @@
+# SPDX-License-Identifier: MIT
+"""The arrays that the compiled loop of the walk works on."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from model.compiled import inlined
+from model.robot import Robot
+from model.slip.law import Array
+from model.walk.kernel import N_CONTACTS
+
+
+class Body(NamedTuple):
+    """A robot as numba takes it; see `Robot`.
+
+    Attributes:
+        hips: Hip positions, shape (6, 3) [m].
+        leg_radius: Radius of the legs' arcs [m].
+        toe_cos: Cosine of the arcs' angle beyond a half circle [-].
+        toe_sin: Its sine [-].
+        mass: Mass [kg].
+        inertia: Principal moments of inertia, shape (3,) [kg m2].
+        half_size: Half the body's length, width and height, shape (3,) [m].
+    """
+
+    hips: Array
+    leg_radius: float
+    toe_cos: float
+    toe_sin: float
+    mass: float
+    inertia: Array
+    half_size: Array
+
+
+class Contacts(NamedTuple):
+    """How hard contacts are.
+
+    Attributes:
+        stiffness: Normal force for each metre of sinkage [N/m].
+        damping: Normal force for each metre a second of sinking [N s/m].
+    """
+
+    stiffness: float
+    damping: float
+
+
+class State(NamedTuple):
+    """What a step starts from; every array is overwritten by the next one.
+
+    Attributes:
+        p: Position of the body [m].
+        q: Its orientation as a unit quaternion (w, x, y, z), body to world.
+        v: Velocity [m/s].
+        w: Angular velocity in the world frame [rad/s].
+        stretch: Stretch of each contact's bristle, shape (14, 3) [m].
+    """
+
+    p: Array
+    q: Array
+    v: Array
+    w: Array
+    stretch: Array
+
+
+class Work(NamedTuple):
+    """What a step fills in, one row a contact: six legs, then eight corners of the body.
+
+    Attributes:
+        place: Contact from the body's centre, world frame, shape (14, 3) [m].
+        velocity: Velocity of its material point relative to the body, world frame,
+            shape (14, 3) [m/s].
+        normal: Normal of the ground, shape (14, 3) [-].
+        gap: Distance over the ground, negative below it, shape (14,) [m].
+        flow: Radius of the arc where a leg rolls, else zero, shape (14,) [m].
+        kind: HIP, ROLLING or TOE, shape (14,).
+        load: Normal force, zero in the air, shape (14,) [N].
+        secant: Traction over slip velocity, zero where a bristle holds, shape (14,) [N s/m].
+        R: Rotation of the body, body to world, shape (3, 3).
+        A: Matrix of the step, lower half, shape (6, 6).
+        b: Its right side and solution, shape (6,).
+        v: Guess of the final velocity, shape (3,) [m/s].
+        w: Guess of the final angular velocity, shape (3,) [rad/s].
+        force: Force of a contact, shape (3,) [N].
+        point: Velocity of a material contact point, shape (3,) [m/s].
+        P: What a contact's force falls by with velocity, shape (3, 3) [N s/m].
+        inertia: Inertia in the world frame, shape (3, 3) [kg m2].
+        gyro: Gyroscopic moment, shape (3,) [N m].
+    """
+
+    place: Array
+    velocity: Array
+    normal: Array
+    gap: Array
+    flow: Array
+    kind: NDArray[np.int64]
+    load: Array
+    secant: Array
+    R: Array
+    A: Array
+    b: Array
+    v: Array
+    w: Array
+    force: Array
+    point: Array
+    P: Array
+    inertia: Array
+    gyro: Array
+
+
+def body_arrays(robot: Robot) -> Body:
+    """Put a robot into the arrays of the compiled loop."""
+    return Body(
+        robot.hips, robot.leg_radius, float(np.cos(robot.toe_beyond)),
+        float(np.sin(robot.toe_beyond)), robot.mass,
+        robot.principal_inertia, 0.5 * np.array(robot.body_size),
+    )  # fmt: skip
+
+
+@inlined
+def new_work():
+    """Make room for what a step fills in; no contact presses."""
+    n = N_CONTACTS
+    return Work(
+        np.empty((n, 3)), np.empty((n, 3)), np.empty((n, 3)), np.empty(n), np.empty(n),
+        np.zeros(n, dtype=np.int64), np.zeros(n), np.zeros(n), np.empty((3, 3)),
+        np.empty((6, 6)), np.empty(6), np.empty(3), np.empty(3), np.empty(3), np.empty(3),
+        np.empty((3, 3)), np.empty((3, 3)), np.empty(3),
+    )  # fmt: skip
+
+
+@inlined
+def new_state():
+    """Make room for a state."""
+    return State(np.empty(3), np.empty(4), np.empty(3), np.empty(3), np.empty((N_CONTACTS, 3)))
+
+
+@inlined
+def copy_state(state, to):
+    """Copy a state into another."""
+    for i in range(3):
+        to.p[i], to.v[i], to.w[i] = state.p[i], state.v[i], state.w[i]
+    for i in range(4):
+        to.q[i] = state.q[i]
+    for i in range(N_CONTACTS):
+        for a in range(3):
+            to.stretch[i, a] = state.stretch[i, a]

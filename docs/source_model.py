@@ -3,6 +3,7 @@
 
 import numpy as np
 
+from model.gait.reference import SampledReference
 from model.gait.tetrapod import tetrapod_reference
 from model.gait.tripod import tripod_angles, tripod_reference
 from model.robot import Robot
@@ -93,8 +94,18 @@ def mean_roll(direction, *, mend: bool) -> float:
     return float(np.degrees(path.orientation[500:, 0].mean()))
 
 
+def standing() -> None:
+    """Item 7: how far a robot goes that stands on legs turning back by a hair."""
+    t = np.arange(0.0, 1.001, 0.02)
+    legs = SampledReference(t, gait(1.2, 45.0, 1.0).angles(0.5)[0] - 1e-4 * t[:, None])
+    for mend in (False, True):
+        path = walk_thesis(ROBOT, legs, duration=1.0, options=ThesisOptions(mend_slip=mend))
+        print(f"standing for a second, mended {mend}: "
+              f"{np.linalg.norm(path.position[-1, :2]):.4f} m")  # fmt: skip
+
+
 def automata() -> None:
-    """Item 7: the listing's contact rule and Table 3-1's, with leg 5 some degrees behind."""
+    """Item 8: the listing's contact rule and Table 3-1's, with leg 5 some degrees behind."""
     for late_deg in (0.0, 3.0, 5.0):
         offset = np.zeros(6)
         offset[4] = -np.radians(late_deg)
@@ -108,7 +119,7 @@ def automata() -> None:
 
 
 def curvature() -> None:
-    """Item 8: E against load."""
+    """Item 9: E against load."""
     loads = np.array([0.1, 0.5, 2.13, 6.63, 12.75])
     values = curvature_from_peak(34.34, 1.564, 0.0066 * loads)
     print("E at", ", ".join(f"{n:g} N: {e:.3g}" for n, e in zip(loads, values, strict=True)))
@@ -129,5 +140,5 @@ def tetrapod() -> None:
 
 
 if __name__ == "__main__":
-    for show in (chatter, radii, compass, right_turns, automata, curvature, tetrapod):
+    for show in (chatter, radii, compass, right_turns, standing, automata, curvature, tetrapod):
         show()

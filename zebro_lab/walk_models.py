@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Literal, TypeAlias
 
 import numpy as np
 
+from model.gait.cyclic import CyclicReference
 from model.gait.reference import LegReference
 from model.robot import GRAVITY, Robot
 from model.walk.path import WalkPath
@@ -73,14 +74,15 @@ def _thesis(run: ModelRun) -> WalkPath:
     from model.walk.thesis import ThesisOptions, walk_thesis
 
     traction = _slip_of(run).thesis_traction(weight=run.robot.mass * GRAVITY)
-    options = ThesisOptions(dt=run.dt, direction=run.direction)
     legs = _legs_of_the_source(run.reference)
+    # A log's legs stand, and turn back by hairs; the listing's slip would drive them at full grip.
+    logged = not isinstance(run.reference, CyclicReference)
+    options = ThesisOptions(dt=run.dt, direction=run.direction, mend_slip=logged)
     return walk_thesis(run.robot, legs, duration=run.duration, traction=traction, options=options)
 
 
 def _legs_of_the_source(reference: LegReference) -> "LegReference | SwitchedLegs":
     """Let a gait's legs switch speed by angle, as the source's do; follow others by the clock."""
-    from model.gait.cyclic import CyclicReference
     from model.walk.thesis import SwitchedLegs
 
     if not isinstance(reference, CyclicReference):

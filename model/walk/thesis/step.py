@@ -54,6 +54,7 @@ class Manner(NamedTuple):
     by_table: bool
     reset_height: bool
     roll_sign: float
+    mend_slip: bool
     every: int
 
 
@@ -198,34 +199,43 @@ def along(axis, v, arm):
 
 
 @compiled
-def walk_slip(leg_speed, ground_speed, toe):
+def walk_slip(leg_speed, ground_speed, signed):
     r"""Compute the walk's slip ratio, Eq. (4-31) and (4-36), as Listing A.19 has it [-].
 
     .. math::
         \kappa = \frac{v_R - v_C}{v_C} \text{ rolling}, \qquad
         \kappa = \frac{v_T - v_H}{v_H} \text{ on the toe}
 
-    with absolute values in the denominators, cut off at 100.
+    with absolute values in the denominators, cut off at 100. Rolling, the listing takes
+    sign(v_R) (v_R - |v_C|) for the numerator: the same while robot and legs go forward, but a leg
+    that turns back by a hair drives at full grip. `signed` takes the difference as printed above.
     """
     if leg_speed == 0.0 and ground_speed == 0.0:
         return 0.0
     difference = leg_speed - ground_speed
-    if not toe:
+    if not signed:
         difference = np.sign(leg_speed) * (leg_speed - abs(ground_speed))
     kappa = difference / abs(ground_speed)
     return min(max(kappa, -LARGEST_SLIP), LARGEST_SLIP)
 
 
 @compiled
-def lateral_walk_slip(axes, v):
-    """Compute the lateral slip of Eq. (4-41), (4-42) from the body's velocity, Listing A.21 [-]."""
+def lateral_walk_slip(axes, v, signed):
+    """Compute the lateral slip of Eq. (4-41), (4-42) from the body's velocity, Listing A.21 [-].
+
+    Of a body that goes backward the listing's has the wrong sign; `signed` takes the right one.
+    """
     forward = axes[0, 0] * v[0] + axes[0, 1] * v[1] + axes[0, 2] * v[2]
     left = axes[1, 0] * v[0] + axes[1, 1] * v[1] + axes[1, 2] * v[2]
-    return np.arctan(-left / forward) / (np.pi / 2) if left != 0.0 else 0.0
+    if left == 0.0:
+        return 0.0
+    if signed:
+        return np.arctan2(-left, abs(forward)) / (np.pi / 2)
+    return np.arctan(-left / forward) / (np.pi / 2)
 
 
 @compiled
-def find_slip(machine, traction, legs, three, q, v, balance):
+def find_slip(machine, manner, traction, legs, three, q, v, balance):
     """Fill the arms and slips of `balance` for the three legs.
 
     v_R of Eq. (4-32) and v_T of Eq. (4-37) are one, the rate of phi times the hip's height.
@@ -245,8 +255,8 @@ def find_slip(machine, traction, legs, three, q, v, balance):
             body = balance.axes[1]
             balance.slip[k, 1] = -(body[0] * v[0] + body[1] * v[1] + body[2] * v[2]) / scale
         else:
-            balance.slip[k, 0] = walk_slip(leg_speed, ground_speed, toe)
-            balance.slip[k, 1] = lateral_walk_slip(balance.axes, v)
+            balance.slip[k, 0] = walk_slip(leg_speed, ground_speed, toe or manner.mend_slip)
+            balance.slip[k, 1] = lateral_walk_slip(balance.axes, v, manner.mend_slip)
 
 
 @compiled
@@ -323,7 +333,7 @@ def run(machine, manner, traction, motion, q, v, sides, record):
         if changed or step == 0:
             reset(machine, manner, legs, sides, q, v)
         contact_axes(q[5], tilt, balance.axes)
-        find_slip(machine, traction, legs, three, q, v, balance)
+        find_slip(machine, manner, traction, legs, three, q, v, balance)
         gyroscopic(machine.inertia, v, spin)
         total = demands(machine, manner, legs, sides, q, v, spin, balance)
         static_loads(balance.arms, total, loads)

@@ -49,6 +49,7 @@ class ThesisOptions:
     automaton: Automaton = "listing"
     reset_height: bool = True
     mend_roll: bool = False
+    mend_slip: bool = False
     heading: float = 0.0
     every: int = 1
 
@@ -68,7 +69,9 @@ class ThesisOptions:
         right = self.direction == "right"
         sign = -1.0 if right and self.mend_roll else 1.0
         by_table = self.automaton == "table"
-        return Manner(self.dt, int(right), by_table, self.reset_height, sign, self.every)
+        return Manner(
+            self.dt, int(right), by_table, self.reset_height, sign, self.mend_slip, self.every
+        )
 
 
 AS_PRINTED = ThesisOptions()

@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 
 from model.errors import DomainError, WalkError
+from model.gait.reference import SampledReference
 from model.gait.suriana import suriana_reference
 from model.gait.tetrapod import tetrapod_reference
 from model.gait.tripod import tripod_angles, tripod_reference
@@ -153,6 +154,25 @@ def test_mended_right_turns_mirror_left_ones_and_printed_ones_do_not():
 
     assert off(mend=True) < 1e-9
     assert off(mend=False) > 1e-3
+
+
+def test_with_the_slip_as_printed_a_standing_robot_runs_off_and_mended_it_stands():
+    """A leg that turns back by a hair drives at full grip: Listing A.19."""
+    t = np.arange(0.0, 1.001, 0.02)
+    legs = SampledReference(t, gait(1.2).angles(0.5)[0] - 1e-4 * t[:, None])
+
+    def moved(*, mend):
+        options = ThesisOptions(mend_slip=mend)
+        path = walk_thesis(ROBOT, legs, duration=1.0, options=options)
+        return np.linalg.norm(path.position[-1, :2])
+
+    assert moved(mend=False) > 0.1
+    assert moved(mend=True) < 0.001
+
+
+def test_mending_the_slip_hardly_touches_a_walk_that_goes_forward():
+    printed, mended = walk(), walk(mend_slip=True)
+    np.testing.assert_allclose(mended.position[-1, :2], printed.position[-1, :2], atol=0.005)
 
 
 def test_the_automata_agree_where_hip_heights_match():

@@ -7,12 +7,13 @@ import numpy as np
 
 from tracking.errors import TrackingError
 from tracking.floor import FloorMap, FloorMarker, FloorPoint
-from tracking.markers import dictionary_named
 from zebro_lab.errors import SettingsError
+from zebro_lab.marker_numbers import require_in_dictionary
+from zebro_lab.marker_print import KIT_PRINT
 from zebro_lab.toml_table import TomlTable, quoted, read_toml, spelled
 
 FLOOR_FILE = "floor.toml"
-DICTIONARY = "4x4_50"
+DICTIONARY = KIT_PRINT.dictionary
 """Dictionary of the markers that the kit prints."""
 
 _TOP = ("dictionary", "side", "position_sd", "yaw_sd_deg", "side_sd", "markers", "points")
@@ -35,14 +36,15 @@ def read_floor_file(file: Path) -> FloorMap:
         raise table.error("markers", "no marker and no point; the floor needs at least one marker")
     try:
         dictionary = table.text("dictionary", DICTIONARY)
-        dictionary_named(dictionary)
-        return FloorMap(
+        floor = FloorMap(
             dictionary,
             tuple(_marker(table, markers, number) for number in markers.values),
             tuple(_point(table, points, name) for name in points.values),
         )
+        require_in_dictionary(dictionary, floor.marker_ids)
     except TrackingError as error:
         raise SettingsError(str(error), file=file) from error
+    return floor
 
 
 def _marker(top: TomlTable, markers: TomlTable, number: str) -> FloorMarker:

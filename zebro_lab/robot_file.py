@@ -13,12 +13,14 @@ from model.errors import DomainError
 from model.robot import N_LEGS, Robot
 from zebro_lab.columns import require_known
 from zebro_lab.errors import NotFound, SettingsError, UnitError
+from zebro_lab.marker_print import KIT_PRINT, MarkerPrint
+from zebro_lab.toml_table import quoted
 from zebro_lab.units import quantity_to_si
 
 ROBOT_FILE = "robot.toml"
 _TOP = ("mass", "body_size", "inertia", "legs", "hips", "marker")
 _LEGS = ("radius", "arc_deg", "offset_deg", "sign")
-_MARKER = ("position", "roll_pitch_yaw_deg", "height")
+_MARKER = ("dictionary", "id", "side", "position", "roll_pitch_yaw_deg", "height")
 _FORWARD = (1,) * N_LEGS
 
 
@@ -31,11 +33,13 @@ class Marker:
         roll_pitch_yaw: Its orientation in the body frame, R = Rz Ry Rx, shape (3,) [rad].
         height: Height of its centre above the ground while the robot stands; None where nobody
             measured it [m].
+        printed: What is printed on it; the kit's where the file does not say.
     """
 
     position: tuple[float, float, float]
     roll_pitch_yaw: tuple[float, float, float] = (0.0, 0.0, 0.0)
     height: float | None = None
+    printed: MarkerPrint = KIT_PRINT
 
 
 @dataclass(frozen=True)
@@ -128,6 +132,9 @@ def _marker_section(marker: Marker | None) -> str:
     height = "0.1" if shown.height is None else _number(shown.height)
     lines = [
         "[marker]",
+        f"dictionary = {quoted(shown.printed.dictionary)}",
+        f"id = {shown.printed.number}  # its number in the dictionary",
+        f"side = {_number(shown.printed.side)}  # of the black square [m]",
         f"position = {_listed(shown.position)}  # of its centre in the body frame [m]",
         f"roll_pitch_yaw_deg = {angles}",
         f"height = {height}  # of its centre above the ground while the robot stands [m]",
@@ -212,6 +219,7 @@ class _Reader:
                 "marker.position", "missing; give its centre in the body frame as [x, y, z] in m"
             )
         x, y, z = self._row("marker.position", marker["position"], 3, "m")
+        printed = self._printed(marker)
         angles = marker.get("roll_pitch_yaw_deg", (0.0, 0.0, 0.0))
         roll, pitch, yaw = self._degrees("marker.roll_pitch_yaw_deg", angles, 3)
         height = marker.get("height")
@@ -219,7 +227,19 @@ class _Reader:
             raise self._error(
                 "marker.height", f"{height:g} m is not above the ground; expected > 0"
             )
-        return Marker((x, y, z), (roll, pitch, yaw), height)
+        return Marker((x, y, z), (roll, pitch, yaw), height, printed)
+
+    def _printed(self, marker: Mapping[str, Any]) -> MarkerPrint:
+        dictionary = marker.get("dictionary", KIT_PRINT.dictionary)
+        if not isinstance(dictionary, str) or not dictionary:
+            raise self._error("marker.dictionary", f"expected a name, found {dictionary!r}")
+        number = marker.get("id", KIT_PRINT.number)
+        if isinstance(number, bool) or not isinstance(number, int) or number < 0:
+            raise self._error("marker.id", f"expected a whole number from 0 on, found {number!r}")
+        side = self._quantity("marker.side", marker.get("side", KIT_PRINT.side), "m")
+        if side <= 0:
+            raise self._error("marker.side", f"is {side:g} m; expected more than 0")
+        return MarkerPrint(dictionary, number, side)
 
     def _table(self, document: Mapping[str, Any], name: str) -> Mapping[str, Any]:
         table = document.get(name, {})

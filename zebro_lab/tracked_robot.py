@@ -5,14 +5,11 @@ import numpy as np
 
 from tracking.detect import Robot
 from tracking.errors import TrackingError
-from tracking.markers import dictionary_named
 from tracking.pose import BodyPrior, RobotMarker
 from zebro_lab.errors import SettingsError
+from zebro_lab.marker_numbers import require_in_dictionary
+from zebro_lab.marker_print import parse_marker
 from zebro_lab.robot_file import RobotFile
-from zebro_lab.units import quantity_to_si
-
-KIT_MARKER = "4x4_50:0:120mm"
-"""The robot's marker that the kit prints: dictionary, number, side."""
 
 WALKING_HEIGHT_SD = 5e-3
 """How far a walking body is from the height at which it stands: legs lift it as they turn [m]."""
@@ -21,7 +18,7 @@ STEEPEST = 0.05
 """Roll or pitch beyond which a marker on the robot is not level [rad]."""
 
 
-def tracked_robot(described: RobotFile, marker: str, *, prior: BodyPrior) -> Robot:
+def tracked_robot(described: RobotFile, marker: str | None = None, *, prior: BodyPrior) -> Robot:
     """Put together what is known of a robot that carries a marker.
 
     The marker's frame in `robot.toml` has its x along the print's upward direction: a print whose
@@ -29,11 +26,12 @@ def tracked_robot(described: RobotFile, marker: str, *, prior: BodyPrior) -> Rob
 
     Args:
         described: The `robot.toml`.
-        marker: What is printed on the robot, such as "4x4_50:0:120mm".
+        marker: What is printed on the robot, such as "4x4_50:0:120mm"; None for what the file says.
         prior: Height and tilt of the body.
 
     Raises:
         SettingsError: The marker is none.
+        UnitError: Its side is no length.
     """
     place = described.marker
     if place is None:
@@ -49,13 +47,16 @@ def tracked_robot(described: RobotFile, marker: str, *, prior: BodyPrior) -> Rob
             f"the robot must lie within {np.degrees(STEEPEST):.0f} degrees of level",
             file=described.file, key="marker.roll_pitch_yaw_deg",
         )  # fmt: skip
-    dictionary, number, side = parse_marker(marker)
+    printed = place.printed if marker is None else parse_marker(marker)
     try:
-        dictionary_named(dictionary)
-        print_of = RobotMarker(number, side, dictionary, place.position, yaw=yaw - np.pi / 2)
+        require_in_dictionary(printed.dictionary, [printed.number])
+        on_robot = RobotMarker(
+            printed.number, printed.side, printed.dictionary, place.position, yaw=yaw - np.pi / 2
+        )
     except TrackingError as error:
-        raise SettingsError(str(error), key="--marker") from error
-    return Robot(print_of, prior)
+        file, key = (_file(described), "marker") if marker is None else (None, "--marker")
+        raise SettingsError(str(error), file=file, key=key) from error
+    return Robot(on_robot, prior)
 
 
 def body_prior(
@@ -84,25 +85,6 @@ def body_prior(
             file=_file(described), key="marker.height",
         )  # fmt: skip
     return BodyPrior(place.height - place.position[2], height_sd)
-
-
-def parse_marker(text: str) -> tuple[str, int, float]:
-    """Take "DICTIONARY:NUMBER:SIDE" apart.
-
-    Raises:
-        SettingsError: It says something else.
-        UnitError: The side is no length.
-
-    >>> parse_marker("4x4_50:0:120mm")
-    ('4x4_50', 0, 0.12)
-    """
-    parts = text.rsplit(":", 2)
-    if len(parts) != 3 or not parts[1].isdigit():
-        raise SettingsError(
-            f"'{text}' is no marker; expected DICTIONARY:NUMBER:SIDE such as {KIT_MARKER}",
-            key="--marker",
-        )
-    return parts[0], int(parts[1]), quantity_to_si(parts[2], "m")
 
 
 def _file(described: RobotFile) -> str:

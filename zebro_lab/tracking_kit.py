@@ -15,13 +15,10 @@ from tracking.floor import FloorMap, FloorMarker
 from tracking.markers import marker_picture
 from zebro_lab.errors import SettingsError
 from zebro_lab.floor_file import DICTIONARY
+from zebro_lab.marker_print import KIT_PRINT
 
 PAPERS = {"a4": (210.0, 297.0), "letter": (215.9, 279.4)}
 """Width and height of papers by name [mm]."""
-
-ROBOT_MARKER = 0
-ROBOT_SIDE = 120.0
-"""Side of the robot's marker [mm]."""
 
 FLOOR_MARKERS = (10, 11, 12, 13)
 FLOOR_SIDE = 150.0
@@ -101,7 +98,8 @@ def kit_pages(paper: str = "a4") -> tuple[KitPage, ...]:
     size = PAPERS[paper]
     return (
         _instructions(size),
-        _marker_page(size, ROBOT_MARKER, ROBOT_SIDE, f"Robot: {DICTIONARY}, number {ROBOT_MARKER}",
+        _marker_page(size, KIT_PRINT.number, 1e3 * KIT_PRINT.side,
+                     f"Robot: {DICTIONARY}, number {KIT_PRINT.number}",
                      "↑ ahead: this edge towards the robot's head"),
         *(_marker_page(size, number, FLOOR_SIDE, f"Floor: {DICTIONARY}, number {number}",
                        "x →   (yaw_deg = 0 where this arrow points along x)")

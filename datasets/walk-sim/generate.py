@@ -3,7 +3,8 @@
 
 `generate.py` does all of it and needs MuJoCo (`pip install --group bench`); `generate.py photos`
 takes the walk from `truth.csv` and makes the photographs again, without MuJoCo; `generate.py
-validate` prints turning radii of longer, constant walks. Everything follows from `SEED`.
+bench` makes `camera.toml` and `floor.toml` again; `generate.py validate` prints turning radii of
+longer, constant walks. Everything follows from `SEED`.
 """
 
 import csv
@@ -15,6 +16,8 @@ from pathlib import Path
 
 import numpy as np
 
+from tracking.floor import FloorMap
+from tracking.floor import FloorMarker as MeasuredMarker
 from tracking.synthetic import (
     BodyPose,
     Conditions,
@@ -34,6 +37,9 @@ from tracking.synthetic import (
     take_photo,
     with_time_stamp,
 )
+from zebro_lab.camera_file import CAMERA_FILE
+from zebro_lab.cli.camera import calibrate
+from zebro_lab.floor_file import FLOOR_FILE, render_floor_file
 
 SEED = 2023
 SOURCE = "sim:mujoco-walk"
@@ -241,6 +247,22 @@ def write_photos(folder: Path, truth: Truth, rng: np.random.Generator) -> None:
                     kind=CONDITIONS)  # fmt: skip
 
 
+def write_bench(folder: Path) -> None:
+    """Write what a lab has before it tracks: `camera.toml` from the boards, and `floor.toml`."""
+    calibrate(
+        folder / "calibration", out=folder / CAMERA_FILE,
+        board=f"charuco:{BOARD[0]}x{BOARD[1]}:{1e3 * SQUARE:g}mm:{750 * SQUARE:g}mm:4x4_50",
+    )  # fmt: skip
+    (folder / FLOOR_FILE).write_text(floor_toml(), encoding="utf-8")
+
+
+def floor_toml() -> str:
+    """Write the floor's markers as `floor.toml`."""
+    laid = tuple(MeasuredMarker(m.marker_id, m.side, *m.centre) for m in SCENE.markers)
+    heading = "The SIMULATED floor of this folder, as a tape has it; written by generate.py."
+    return render_floor_file(FloorMap("4x4_50", laid), heading=heading)
+
+
 def _write_jpeg(
     path: Path, picture: np.ndarray, rng: np.random.Generator, *, kind: Conditions
 ) -> None:
@@ -299,6 +321,7 @@ def write(folder: Path, *, with_walk: bool) -> None:
     truth, rng = read_truth(folder), np.random.default_rng(SEED)
     write_logs(folder, truth, rng)
     write_photos(folder, truth, rng)
+    write_bench(folder)
     (folder / "truth.toml").write_text(truth_toml(), encoding="utf-8")
     (folder / "manifest.toml").write_text(manifest(folder), encoding="utf-8")
 
@@ -322,10 +345,14 @@ if __name__ == "__main__":
     match sys.argv[1:]:
         case ["validate"]:
             validate()
+        case ["bench"]:
+            here = Path(__file__).parent
+            write_bench(here)
+            (here / "manifest.toml").write_text(manifest(here), encoding="utf-8")
         case [] | ["photos"]:
             here = Path(__file__).parent
             write(here, with_walk=len(sys.argv) == 1)
             total = sum(path.stat().st_size for path in here.rglob("*") if path.is_file())
             print(f"{total / 1e6:.1f} MB in {here.name}")
         case other:
-            sys.exit(f"{' '.join(other)}: expected nothing, photos or validate")
+            sys.exit(f"{' '.join(other)}: expected nothing, photos, bench or validate")

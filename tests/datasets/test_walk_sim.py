@@ -14,6 +14,8 @@ from PIL import Image
 from PIL.ExifTags import IFD, Base
 
 from tracking.synthetic import BodyPose, RobotMarker, RobotState, SyntheticCamera, marker_corners
+from zebro_lab.camera_file import read_camera_file
+from zebro_lab.floor_file import read_floor_file
 from zebro_lab.leg_log import read_leg_log
 from zebro_lab.robot_file import read_robot_file
 
@@ -231,6 +233,24 @@ def test_the_boards_calibrate_to_the_true_camera(truth):
     assert rms < 0.2
     focal = truth["camera"]["focal"]
     np.testing.assert_allclose((matrix[0, 0], matrix[1, 1]), focal, rtol=2e-3)
+
+
+def test_the_lens_on_file_is_the_true_one_within_its_error(truth):
+    told, file = truth["camera"], FOLDER / "camera.toml"
+    camera = read_camera_file(file).camera
+    sd = tomllib.loads(file.read_text(encoding="utf-8"))["calibration"]
+    assert camera.size == tuple(told["size"])
+    focal, centre = np.diag(camera.matrix)[:2], camera.matrix[:2, 2]
+    assert (np.abs(focal - told["focal"]) < 3 * np.array(sd["focal_sd"])).all()
+    assert (np.abs(centre - told["centre"]) < 3 * np.array(sd["centre_sd"])).all()
+
+
+def test_the_floor_on_file_has_every_marker_where_it_lies(generator, truth):
+    text = (FOLDER / "floor.toml").read_text(encoding="utf-8")
+    assert text == generator.floor_toml()
+    marks = read_floor_file(FOLDER / "floor.toml").marks
+    for marker in truth["floor_markers"]:
+        np.testing.assert_allclose(marks[marker["id"]].points, marker["corners"], atol=1e-9)
 
 
 # the folder

@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 
 from model.robot import Robot
 from zebro_lab.errors import NotFound, SettingsError
+from zebro_lab.marker_print import MarkerPrint
 from zebro_lab.robot_file import Marker, RobotFile, read_robot_file, render_robot_file
 
 
@@ -54,7 +55,9 @@ angles = st.floats(-10.0, 10.0)
     sign=st.tuples(*[st.sampled_from((1, -1))] * 6),
     inertia=st.none() | st.tuples(lengths, lengths, lengths),
     marker=st.none() | st.builds(Marker, st.tuples(angles, angles, angles),
-                                 st.tuples(angles, angles, angles), st.none() | lengths),
+                                 st.tuples(angles, angles, angles), st.none() | lengths,
+                                 st.builds(MarkerPrint, st.sampled_from(("4x4_50", "a\"b")),
+                                           st.integers(0, 49), lengths)),
 )  # fmt: skip
 def test_what_is_written_is_read_back(
     mass, radius, arc, offset, sign, inertia, marker, tmp_path_factory
@@ -71,6 +74,9 @@ def test_what_is_written_is_read_back(
         np.testing.assert_allclose(found.marker.position, marker.position, rtol=1e-9)
         np.testing.assert_allclose(found.marker.roll_pitch_yaw, marker.roll_pitch_yaw, atol=1e-9)
         assert found.marker.height == (marker.height and pytest.approx(marker.height))
+        assert found.marker.printed.dictionary == marker.printed.dictionary
+        assert found.marker.printed.number == marker.printed.number
+        assert found.marker.printed.side == pytest.approx(marker.printed.side)
 
 
 def assert_same_robot(found: Robot, expected: Robot) -> None:
@@ -98,6 +104,9 @@ FAULTS = {
     "flat hip": ("[hips]\n1 = [0, 0]", "hips.1: expected a list of 3"),
     "marker nowhere": ("[marker]\nheight = 0.1", "marker.position: missing"),
     "marker below ground": ("[marker]\nposition = [0, 0, 0]\nheight = -1", "is not above the gro"),
+    "half a marker's number": ("[marker]\nposition = [0, 0, 0]\nid = 1.5", "marker.id: expected"),
+    "marker of no size": ("[marker]\nposition = [0, 0, 0]\nside = 0", "marker.side: is 0 m"),
+    "dictionary by number": ("[marker]\nposition = [0, 0, 0]\ndictionary = 4", "marker.dictionary"),
     "legs that are a number": ("legs = 6", "legs: expected a table, found 6"),
 }  # fmt: skip
 

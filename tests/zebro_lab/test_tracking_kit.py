@@ -12,13 +12,13 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from tracking.camera import find_board
 from tracking.markers import find_markers
 from zebro_lab.errors import SettingsError
+from zebro_lab.marker_print import KIT_PRINT
 from zebro_lab.plots.kit import draw_page, save_pages
 from zebro_lab.tracking_kit import (
     BOARD,
     FLOOR_MARKERS,
     FLOOR_SIDE,
     PAPERS,
-    ROBOT_SIDE,
     kit_pages,
     starter_floor,
 )
@@ -65,7 +65,10 @@ def test_markers_and_bars_have_their_size_in_the_file_itself(pdf):
     assert len(bars) >= len(kit_pages())
     np.testing.assert_allclose([bar[2] - bar[0] for bar in bars], 100.0, atol=1e-3)
     widths = np.concatenate([page[:, 2] - page[:, 0] for page in pages])
-    for side in (ROBOT_SIDE, FLOOR_SIDE):  # the uppermost row of a marker is black throughout
+    for side in (
+        1e3 * KIT_PRINT.side,
+        FLOOR_SIDE,
+    ):  # the uppermost row of a marker is black throughout
         assert np.abs(widths - side).min() < 1e-3
 
 
@@ -89,7 +92,7 @@ def picture(page, dpi: int) -> np.ndarray:
 
 def test_printed_markers_are_found_upright_with_their_side():
     pages = kit_pages("a4")[ROBOT_PAGE:BOARD_PAGE]
-    sides = (ROBOT_SIDE, *(FLOOR_SIDE for _ in FLOOR_MARKERS))
+    sides = (1e3 * KIT_PRINT.side, *(FLOOR_SIDE for _ in FLOOR_MARKERS))
     for page, number, side in zip(pages, (0, *FLOOR_MARKERS), sides, strict=True):
         sheet = picture(page, 60)
         (found,) = find_markers(sheet, "4x4_50", wanted=[number], effort=0)

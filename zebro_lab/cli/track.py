@@ -55,7 +55,11 @@ Start = Annotated[
     str | None, typer.Option(metavar="TIME", help="Moment to count time from, ISO 8601.")
 ]
 Marker = Annotated[
-    str, typer.Option(metavar="DICTIONARY:NUMBER:SIDE", help="What is printed on the robot.")
+    str | None,
+    typer.Option(
+        metavar="DICTIONARY:NUMBER:SIDE",
+        help="What is printed on the robot, as in 4x4_50:0:120mm; robot.toml's without it.",
+    ),
 ]
 WithoutMarker = Annotated[
     bool, typer.Option("--without-marker", help="Track the robot by its own annotated picture.")
@@ -93,7 +97,7 @@ def track(
     every: Every = 0.0,
     clock: Clock = None,
     start: Start = None,
-    marker: Marker = "4x4_50:0:120mm",
+    marker: Marker = None,
     without_marker: WithoutMarker = False,
     annotations: AnnotationsToml = None,
     body_height: BodyHeight = None,

@@ -18,6 +18,8 @@ from zebro_lab.annotations import (
 from zebro_lab.camera_file import read_camera_file
 from zebro_lab.errors import SettingsError
 from zebro_lab.floor_file import FLOOR_FILE, read_floor_file, render_floor_file
+from zebro_lab.marker_numbers import require_apart
+from zebro_lab.marker_print import MarkerPrint
 from zebro_lab.photo_search import Photo, Watcher
 from zebro_lab.photo_sequence import (
     PhotoSequence,
@@ -32,7 +34,7 @@ from zebro_lab.robot_file import RobotFile, read_robot_file
 from zebro_lab.run_manifest import RunManifest, read_manifest
 from zebro_lab.track_folder import KIND, track_folder
 from zebro_lab.track_pictures import draw_track
-from zebro_lab.tracked_robot import KIT_MARKER, WALKING_HEIGHT_SD, body_prior, tracked_robot
+from zebro_lab.tracked_robot import WALKING_HEIGHT_SD, body_prior, tracked_robot
 from zebro_lab.tracker import Scene, Tracked, track_marker
 from zebro_lab.tracker_body import track_body, track_composite
 
@@ -52,7 +54,8 @@ class TrackRequest:
         run: Run folder the photographs belong to.
         times: How the photographs get their times.
         start: Moment from which time is counted; None for the run's start or the first photograph.
-        marker: What is printed on the robot: dictionary, number and side.
+        marker: What is printed on the robot: dictionary, number and side; None for what the robot's
+            file says.
         without_marker: Track the robot by its own picture, annotated in one photograph.
         annotations: What a person said about the photographs.
         body_height: Height of the body's origin while the robot stands; None to take the marker's
@@ -71,7 +74,7 @@ class TrackRequest:
     run: Path | None = None
     times: TimeRequest = field(default_factory=TimeRequest)
     start: datetime | None = None
-    marker: str = KIT_MARKER
+    marker: str | None = None
     without_marker: bool = False
     annotations: Path | None = None
     body_height: float | None = None
@@ -152,6 +155,7 @@ def scene_of(request: TrackRequest, described: RobotFile, sequence: PhotoSequenc
     robot = None
     if not request.without_marker:
         robot = tracked_robot(described, request.marker, prior=prior)
+        require_apart(robot, floor)
     return Scene(camera, floor, prior, robot, said, request.workers)
 
 
@@ -235,7 +239,7 @@ def _write(
         result.folder,
         result.tracked.track,
         source=result.source,
-        settings=_settings(request),
+        settings=_settings(request, scene),
         inputs=file_hashes([*(file for file in named if file is not None), *videos]),
         report=_report(result),
     ) as draft:
@@ -273,10 +277,11 @@ def _report(result: TrackResult) -> Mapping[str, object]:
     }
 
 
-def _settings(request: TrackRequest) -> Mapping[str, object]:
+def _settings(request: TrackRequest, scene: Scene) -> Mapping[str, object]:
+    marker = None if scene.robot is None else scene.robot.marker
     return {
         "photos": request.photos.name,
-        "marker": None if request.without_marker else request.marker,
+        "marker": marker and MarkerPrint(marker.dictionary, marker.marker_id, marker.side).text,
         "interval": request.times.interval,
         "every": request.times.every,
         "start": None if request.start is None else request.start.isoformat(),

@@ -2,6 +2,7 @@
 """`zebro-lab camera`, `track` and `annotate` as their user meets them."""
 
 import re
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -40,14 +41,8 @@ def run(monkeypatch, capsys):
 @pytest.fixture
 def bench(tmp_path) -> Path:
     """Return a folder with camera.toml and floor.toml for the bundled photographs."""
-    (tmp_path / "camera.toml").write_text(
-        "size = [1600, 1200]\nfocal = [1504.58, 1504.58]\ncentre = [799.5, 599.5]\n"
-        "distortion = [-0.12, 0.03, 0.0005, -0.0004, 0.0]\n"
-    )
-    (tmp_path / "floor.toml").write_text(
-        "side = 0.15\n[markers]\n10 = { x = 0.1, y = -0.6 }\n11 = { x = 1.8, y = -0.6 }\n"
-        "12 = { x = 2.2, y = 1.6 }\n13 = { x = -0.5, y = 1.5 }\n"
-    )
+    for name in ("camera.toml", "floor.toml"):
+        shutil.copy(WALK / name, tmp_path)
     return tmp_path
 
 

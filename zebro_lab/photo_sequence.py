@@ -146,7 +146,8 @@ def exposure_times(names: tuple[str, ...], request: TimeRequest) -> PhotoTimes:
 
 
 def _of_folder(folder: Path, request: TimeRequest) -> PhotoSequence:
-    paths = tuple(path for path in find_photos(folder) if path != request.clock)
+    clock = None if request.clock is None else request.clock.resolve()
+    paths = tuple(path for path in find_photos(folder) if path.resolve() != clock)
     if request.table is not None:
         times = times_from_table(request.table, paths)
     elif request.interval is not None:

@@ -13,7 +13,7 @@ from model.slip.law import Array
 from zebro_lab.errors import DataError
 from zebro_lab.raw_table import RawTable
 from zebro_lab.table_files import read_table_file
-from zebro_lab.track_folder import TRACK_CSV
+from zebro_lab.track_folder import MANIFEST, TRACK_CSV, read_track_manifest
 from zebro_lab.walk_folder import cell_error, require_increasing
 
 FEWEST = 3  # a start, which is not scored, and two poses to score
@@ -67,8 +67,15 @@ def read_track(path: Path) -> TrackFile:
     if not has_covariance:
         notes.append(f"{file.name}: without covariance; the tracker is taken as exact")
     covariance = _covariance(table) if has_covariance else np.zeros((len(poses), 3, 3))
-    source = table.source or "unknown"
+    source = table.source or _tracked_source(file) or "unknown"
     return TrackFile(poses, covariance, source, file, (*table.notes, *notes))
+
+
+def _tracked_source(file: Path) -> str | None:
+    """Take the source from the manifest of the track folder that holds a file."""
+    if file.name != TRACK_CSV or not (file.parent / MANIFEST).is_file():
+        return None
+    return str(read_track_manifest(file.parent).get("source", "unknown"))
 
 
 def read_poses(file: Path) -> Poses:

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Photographs come in order of time, from wherever their times are; frames of a video too."""
 
+from dataclasses import replace
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
 
@@ -16,7 +17,7 @@ from tracking.synthetic.stamp import with_time_stamp
 from zebro_lab.errors import DataError, NotFound, SettingsError
 from zebro_lab.photo_sequence import TimeRequest, calibrated_for, exposure_times, open_photos
 from zebro_lab.run_manifest import RunManifest
-from zebro_lab.stages.track import counted_from
+from zebro_lab.track_clock import counted_from
 
 START = datetime(2020, 6, 1, 12, 0, 0, tzinfo=UTC)
 STARTED = START.timestamp()
@@ -130,16 +131,24 @@ def run_starting(start: str) -> RunManifest:
 def test_time_is_counted_from_the_run_only_where_the_clocks_are_tied():
     times = PhotoTimes(STARTED + np.array([3.0, 5.0]), np.zeros(2), "EXIF")
     manifest = run_starting(START.isoformat())
-    tied, said = counted_from(times, None, manifest, TimeRequest(clock=Path("clock.jpg")))
-    np.testing.assert_allclose(tied.t, [3, 5])
-    assert "the run's start" in said
-    loose, said = counted_from(times, None, manifest, TimeRequest())
-    np.testing.assert_allclose(loose.t, [0, 2])
-    assert "not tied" in said
-    given, _ = counted_from(times, START - timedelta(seconds=1), None, TimeRequest())
-    np.testing.assert_allclose(given.t, [4, 6])
+
+    def counted(start=None, manifest=None, clock=None):
+        return counted_from(times, start=start, manifest=manifest, asked=TimeRequest(clock=clock))
+
+    tied = counted(manifest=manifest, clock=Path("clock.jpg"))
+    np.testing.assert_allclose(tied.times.t, [3, 5])
+    assert "the run's start" in tied.said
+    assert tied.notes == ()
+    loose = counted(manifest=manifest)
+    np.testing.assert_allclose(loose.times.t, [0, 2])
+    assert "nothing tells when" in loose.notes[0]
+    np.testing.assert_allclose(counted(START - timedelta(seconds=1)).times.t, [4, 6])
+    with pytest.raises(TimesError, match=r"7203\.0 to 7205\.0 s after the run's start"):
+        counted(START - timedelta(hours=2), replace(manifest, stop=START.isoformat()))
 
 
-def test_times_as_given_are_left_as_given():
-    times = PhotoTimes(np.array([3.0, 5.0]), np.zeros(2), "interval")
-    assert counted_from(times, START, None, TimeRequest(interval=2.0))[0] is times
+def test_times_as_given_are_left_as_given_and_have_no_moment():
+    times, asked = PhotoTimes(np.array([3.0, 5.0]), np.zeros(2), "interval"), TimeRequest(2.0)
+    assert counted_from(times, start=None, manifest=None, asked=asked).times is times
+    with pytest.raises(SettingsError, match="--start"):
+        counted_from(times, start=START, manifest=None, asked=asked)

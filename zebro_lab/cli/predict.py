@@ -13,7 +13,6 @@ from zebro_lab.cli.walk_options import (
     Figures,
     Model,
     ModelName,
-    Out,
     RobotFile,
     Slip,
     StepLength,
@@ -41,7 +40,10 @@ def predict(
         Path,
         typer.Argument(help="Leg angles over time: CSV, Parquet, a recorded run or a walk folder."),
     ],
-    out: Out = Path("prediction"),
+    out: Annotated[
+        Path | None,
+        typer.Option(help="Walk folder to write; RUN/prediction of a run, else prediction."),
+    ] = None,
     slip: Slip = None,
     model: ModelName = Model.DYNAMICS,
     toe: ToeName = Toe.SATURATED,
@@ -79,11 +81,15 @@ def predict(
     """Predict where measured leg angles lead: FOLDER/path.csv, a band, pictures and a film."""
     from zebro_lab.cli.walk_report import run_and_report
     from zebro_lab.path_band import BandRequest
+    from zebro_lab.recorded_legs import is_recorded
     from zebro_lab.stages.predict import PredictRequest
     from zebro_lab.stages.predict import predict as run
+    from zebro_lab.validation import PREDICTION
     from zebro_lab.walking import ModelRequest
 
     require_slip(model, slip)
+    if out is None:
+        out = leglog / PREDICTION if is_recorded(leglog) else Path(PREDICTION)
     request = PredictRequest(
         log=leglog,
         model=ModelRequest(

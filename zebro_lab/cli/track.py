@@ -52,7 +52,8 @@ Clock = Annotated[
     Path | None, typer.Option(metavar="PHOTO", help="Photograph of `zebro-lab camera clock`.")
 ]
 Start = Annotated[
-    str | None, typer.Option(metavar="TIME", help="Moment to count time from, ISO 8601.")
+    str | None,
+    typer.Option(metavar="TIME", help="Moment to count time from, as the camera shows it."),
 ]
 Marker = Annotated[
     str | None,
@@ -77,7 +78,9 @@ HeightSd = Annotated[
 Gap = Annotated[
     float | None, typer.Option(help="Pause that interrupts the path; 3.5 usual ones [s].")
 ]
-Source = Annotated[str | None, typer.Option(help="real, or sim:WHAT; the run's without it.")]
+Source = Annotated[
+    str | None, typer.Option(help="real, or sim:WHAT; the files' or the run's without it.")
+]
 Workers = Annotated[int, typer.Option(min=1, help="Processes to use.")]
 PreviewPng = Annotated[
     Path | None,
@@ -145,10 +148,16 @@ def _moment(text: str) -> datetime:
         moment = datetime.fromisoformat(text)
     except ValueError as error:
         raise typer.BadParameter(
-            f"'{text}' is no time; expected one such as 2020-06-01T12:00:00+00:00",
+            f"'{text}' is no time; expected one such as 2020-06-01T12:00:00",
             param_hint="'--start'",
         ) from error
-    return moment if moment.tzinfo is not None else moment.replace(tzinfo=UTC)
+    if moment.utcoffset():
+        raise typer.BadParameter(
+            f"'{text}' has a time zone, which the camera's clock does not tell; give the time as "
+            f"that clock shows it, {moment:%Y-%m-%dT%H:%M:%S} or another, without a zone",
+            param_hint="'--start'",
+        )
+    return moment.replace(tzinfo=UTC)
 
 
 def _track(request: "TrackRequest") -> None:

@@ -2,13 +2,13 @@
 """Photographs in, track folder out."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from datetime import datetime
 from pathlib import Path
 
 import numpy as np
 
-from tracking.images import PhotoTimes, read_pixels
+from tracking.images import read_pixels
 from zebro_lab.annotations import (
     ANNOTATIONS_FILE,
     Annotations,
@@ -32,13 +32,12 @@ from zebro_lab.photo_sequence import (
 from zebro_lab.provenance import file_hashes
 from zebro_lab.robot_file import RobotFile, read_robot_file
 from zebro_lab.run_manifest import RunManifest, read_manifest
+from zebro_lab.track_clock import LATER, counted_from, untied
 from zebro_lab.track_folder import KIND, track_folder
 from zebro_lab.track_pictures import draw_track
 from zebro_lab.tracked_robot import WALKING_HEIGHT_SD, body_prior, tracked_robot
 from zebro_lab.tracker import Scene, Tracked, track_marker
 from zebro_lab.tracker_body import track_body, track_composite
-
-_CLOCK = 1e8  # times beyond this are a clock's, counted from 1970 [s]
 
 
 @dataclass(frozen=True)
@@ -62,7 +61,7 @@ class TrackRequest:
             [m].
         height_sd: Standard deviation of that height over a walk [m].
         gap: Interval longer than which the path is interrupted; None for 3.5 usual ones [s].
-        source: Where the photographs are from; None to take the run's word or the files'.
+        source: Where the photographs are from; None to take the files' word or the run's.
         workers: Processes to use.
     """
 
@@ -160,12 +159,12 @@ def scene_of(request: TrackRequest, described: RobotFile, sequence: PhotoSequenc
 
 
 def source_of(request: TrackRequest, manifest: RunManifest | None, sequence: PhotoSequence) -> str:
-    """Say where the photographs are from: as told, as the run has it, or as the files say."""
+    """Say where the photographs are from: as told, as the files say, or as the run has it."""
     if request.source is not None:
         return request.source
-    if manifest is not None:
-        return manifest.source
-    return sequence.source or "unknown"
+    if sequence.source is not None or manifest is None:
+        return sequence.source or "unknown"
+    return manifest.source
 
 
 def _tracked(
@@ -179,9 +178,14 @@ def _tracked(
             scene, photos[0], times_of=lambda names: exposure_times(names, request.times),
             reach=reach, watcher=watcher, gap=request.gap,
         )  # fmt: skip
-        return tracked, "times of exposures as given"
-    stamps, said = counted_from(sequence.times, request.start, manifest, request.times)
-    pairs = zip(stamps.t.tolist(), stamps.sd.tolist(), strict=True)
+        notes = ()
+        if manifest is not None and request.times.table is None:
+            notes = (untied(f"give seconds since the run's start as --times, {LATER}"),)
+        return _noted(tracked, notes), "times of exposures as given"
+    counted = counted_from(
+        sequence.times, start=request.start, manifest=manifest, asked=request.times
+    )
+    pairs = zip(counted.times.t.tolist(), counted.times.sd.tolist(), strict=True)
     times = dict(zip(sequence.names, pairs, strict=True))
     if scene.robot is None:
         tracked = track_body(scene, photos, times=times, watcher=watcher, gap=request.gap)
@@ -189,43 +193,15 @@ def _tracked(
         tracked = track_marker(
             scene, scene.robot, photos, times=times, watcher=watcher, gap=request.gap
         )
-    return tracked, said
+    return _noted(tracked, counted.notes), counted.said
+
+
+def _noted(tracked: Tracked, notes: tuple[str, ...]) -> Tracked:
+    return replace(tracked, notes=(*notes, *tracked.notes))
 
 
 def _count(tracked: Tracked, sequence: PhotoSequence) -> int:
     return len(tracked.track.observations) if sequence.is_composite else len(sequence.names)
-
-
-def counted_from(
-    times: PhotoTimes, start: datetime | None, manifest: RunManifest | None, asked: TimeRequest
-) -> tuple[PhotoTimes, str]:
-    """Count times from a moment: the one given, the run's start, or the first photograph.
-
-    Args:
-        times: Times of the photographs: since 1970 where they are a clock's, else as given.
-        start: The moment given.
-        manifest: The run.
-        asked: How the photographs got their times.
-
-    Returns:
-        Times from zero, and in words where they are from.
-    """
-    if (
-        asked.interval is not None
-        or asked.table is not None
-        or not len(times.t)
-        or times.t[0] < 1e8
-    ):
-        return times, times.source
-    zero, what = float(times.t[0]), "the first photograph, for the camera's clock is not tied"
-    if start is not None:
-        zero, what = start.timestamp(), f"{start.isoformat()} by the camera's clock"
-    elif manifest is not None and asked.clock is not None:
-        begun = datetime.fromisoformat(manifest.start)
-        zero, what = begun.timestamp(), f"the run's start, {manifest.start}"
-    return PhotoTimes(times.t - zero, times.sd, times.source), (
-        f"{times.source}; counted from {what}"
-    )
 
 
 def _write(

@@ -15,6 +15,8 @@ from zebro_lab.cli.predict import EPILOG as PREDICT_EPILOG
 from zebro_lab.cli.predict import predict
 from zebro_lab.cli.record import EPILOG as RECORD_EPILOG
 from zebro_lab.cli.record import record
+from zebro_lab.cli.report import EPILOG as REPORT_EPILOG
+from zebro_lab.cli.report import report
 from zebro_lab.cli.rig import app as rig
 from zebro_lab.cli.runs import exclude, export, runs
 from zebro_lab.cli.sim import app as sim
@@ -37,6 +39,7 @@ app.command()(init)
 app.command(epilog=WALK_EPILOG)(walk)
 app.command(epilog=PREDICT_EPILOG)(predict)
 app.command(epilog=VALIDATE_EPILOG)(validate)
+app.command(epilog=REPORT_EPILOG)(report)
 app.command(epilog=RECORD_EPILOG)(record)
 app.command()(runs)
 app.command()(exclude)

@@ -1,0 +1,60 @@
+# SPDX-License-Identifier: MIT
+"""Numbers of a report: each says, for programs, which file and key it is from, and its value."""
+
+import math
+from collections.abc import Mapping
+from typing import Any
+
+from markupsafe import Markup
+
+ABSENT = Markup("–")
+
+
+def look_up(document: Mapping[str, Any], keys: tuple[str | int, ...]) -> Any:
+    """Return what lies under keys of a document; None where nothing does.
+
+    >>> look_up({"a": [{"b": 2}]}, ("a", 0, "b"))
+    2
+    """
+    found: Any = document
+    for key in keys:
+        try:
+            found = found[key]
+        except (KeyError, IndexError, TypeError):
+            return None
+    return found
+
+
+def number(
+    document: Mapping[str, Any], *keys: str | int, file: str, scale: float = 1.0, digits: int = 3
+) -> str:
+    """Spell a number with its origin: `<data value="0.0123" data-file=… data-key=…>12.3</data>`.
+
+    Args:
+        document: Content of the file.
+        keys: Where in it the number lies.
+        file: Name of the file, for the reader.
+        scale: Factor from the file's unit to the shown one.
+        digits: Significant digits shown; whole numbers are shown whole.
+
+    Returns:
+        The element; a dash where there is no number.
+    """
+    value = look_up(document, keys)
+    if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
+        return ABSENT
+    path = "/".join(str(key).replace("~", "~0").replace("/", "~1") for key in keys)
+    return Markup('<data value="{}" data-file="{}" data-key="/{}">{}</data>').format(
+        repr(value), file, path, spelled(value * scale, digits)
+    )
+
+
+def spelled(value: float, digits: int = 3) -> str:
+    """Round to significant digits; whole numbers, which count, are spelled whole.
+
+    >>> spelled(0.02084), spelled(1721.4, 4), spelled(62000), spelled(1e-7)
+    ('0.0208', '1721', '62000', '1e-07')
+    """
+    if isinstance(value, int):
+        return str(value)
+    return f"{float(f'{value:.{digits}g}'):.15g}"

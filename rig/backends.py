@@ -61,7 +61,11 @@ def leg_link(
 
     Returns:
         A `SerialLink` or a `CanLink`.
+
+    Raises:
+        ProfileError: The profile is of a table, not of a device.
     """
+    _require_device(profile)
     if profile.layout == "can":
         from rig.links.can import CanLink
 
@@ -84,9 +88,21 @@ def leg_driver(
 
     Returns:
         A `Stream` that also takes `LegCommands`.
+
+    Raises:
+        ProfileError: The profile is of a table, not of a device.
     """
+    _require_device(profile)
     module, _, driver = LEG_DRIVERS[profile.layout].partition(":")
     return getattr(import_module(module), driver)(link, profile=profile, name=name, clock=clock)
+
+
+def _require_device(profile: "LegProfile") -> None:
+    if profile.layout not in LEG_DRIVERS:
+        raise ProfileError(
+            f"has the layout '{profile.layout}', of a file and no device; name a device's profile",
+            file=profile.name,
+        )
 
 
 def open_imu(address: str, *, name: str = "imu", clock: Clock = SYSTEM_CLOCK) -> "ImuStream":
@@ -109,6 +125,8 @@ def open_imu(address: str, *, name: str = "imu", clock: Clock = SYSTEM_CLOCK) ->
 
     profile_name, port = split_address(address)
     profile: ImuProfile = load_imu_profile(profile_name)
+    if profile.link == "table":
+        raise ProfileError("is of a file and no device; name a device's profile", file=profile.name)
     link = SerialLink(port, baudrate=profile.baudrate, clock=clock)
     return ImuStream(link, profile=profile, name=name, clock=clock)
 

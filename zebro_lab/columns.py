@@ -129,7 +129,21 @@ def read_columns(file: Path) -> Columns:
         raise NotFound(f"{file}: no such file; expected a {COLUMNS_FILE}") from error
     except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
         raise SettingsError(f"cannot be read as TOML: {error}", file=file) from error
-    return _Reader(file).columns(document)
+    return parse_columns(document, file=file)
+
+
+def parse_columns(document: Mapping[str, Any], *, file: Path, where: str = "") -> Columns:
+    """Check what a `columns.toml` holds.
+
+    Args:
+        document: Its content, or a section of one.
+        file: File that is named in errors.
+        where: The section, with a final dot; "" for the whole file.
+
+    Raises:
+        SettingsError: It holds an unknown key, unit or value.
+    """
+    return _Reader(file, where).columns(document)
 
 
 def require_known(
@@ -186,14 +200,15 @@ class _Reader:
     """Turns the tables of one document into values, naming the file in every error."""
 
     file: Path
+    where: str = ""
 
     def columns(self, document: Mapping[str, Any]) -> Columns:
         known = ("source", "columns", "constants", "runs", "rows", "load_cell")
-        require_known(document, known, file=self.file, where="")
+        self._require_known(document, known, "")
         tables = {
             name: self._typed(document.get(name, {}), dict, name, "a table") for name in known[1:]
         }
-        require_known(tables["columns"], CANONICAL, file=self.file, where="columns.")
+        self._require_known(tables["columns"], CANONICAL, "columns.")
         return Columns(
             file=self.file,
             source=self._source(document.get("source")),
@@ -220,21 +235,21 @@ class _Reader:
         si_unit = CANONICAL[name].unit
         known = ["name", *(["unit", "sign"] if si_unit else [])]
         known += ["definition"] if name == "slip_ratio" else []
-        require_known(table, known, file=self.file, where=f"{key}.")
+        self._require_known(table, known, f"{key}.")
         unit = self._typed(table.get("unit", si_unit or ""), str, f"{key}.unit", "a text")
         sign = table.get("sign", 1)
         if sign not in (1, -1) or isinstance(sign, bool):
             raise self._error(f"{key}.sign", f"{sign!r} is neither 1 nor -1")
         definition = table.get("definition")
         if definition is not None:
-            key_of_definition = f"{key}.definition"
+            key_of_definition = f"{self.where}{key}.definition"
             definition = parse_definition(definition, file=self.file, key=key_of_definition)
         factor = sign * (self._factor(f"{key}.unit", unit, si_unit) if si_unit else 1.0)
         header = self._typed(table.get("name", name), str, f"{key}.name", "a text")
         return MappedColumn(header, unit, factor, definition)
 
     def _runs(self, table: Mapping[str, Any]) -> RunRule:
-        require_known(table, ("by", "gap", "each_row"), file=self.file, where="runs.")
+        self._require_known(table, ("by", "gap", "each_row"), "runs.")
         if len(table) > 1:
             raise self._error("runs", f"{' and '.join(table)} at once; give one of them")
         by, gap = self._texts("runs.by", table.get("by", [])), table.get("gap")
@@ -244,7 +259,7 @@ class _Reader:
         return RunRule(by, gap, each_row)
 
     def _keep(self, table: Mapping[str, Any]) -> tuple[RowCondition, ...]:
-        require_known(table, ("keep",), file=self.file, where="rows.")
+        self._require_known(table, ("keep",), "rows.")
         try:
             return tuple(map(parse_row_condition, self._texts("rows.keep", table.get("keep", []))))
         except ValueError as error:
@@ -253,7 +268,7 @@ class _Reader:
     def _quantities(
         self, name: str, table: Mapping[str, Any], units: Mapping[str, str]
     ) -> dict[str, float]:
-        require_known(table, units, file=self.file, where=f"{name}.")
+        self._require_known(table, units, f"{name}.")
         values = {
             key: self._quantity(f"{name}.{key}", value, units[key]) for key, value in table.items()
         }
@@ -289,5 +304,8 @@ class _Reader:
             raise self._error(key, f"expected {expected}, found {value!r}")
         return value
 
+    def _require_known(self, found: Collection[str], known: Collection[str], where: str) -> None:
+        require_known(found, known, file=self.file, where=f"{self.where}{where}")
+
     def _error(self, key: str, problem: str) -> SettingsError:
-        return SettingsError(problem, file=self.file, key=key)
+        return SettingsError(problem, file=self.file, key=f"{self.where}{key}")

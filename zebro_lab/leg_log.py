@@ -1,27 +1,30 @@
 # SPDX-License-Identifier: MIT
 """Measured leg angles: a table with a time and six angles, checked and unwrapped."""
 
-import tomllib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
 from model.gait.reference import SampledReference
 from model.robot import N_LEGS
 from model.slip.law import Array
-from zebro_lab.columns import COLUMNS_FILE, MappedColumn, nearest, require_known
-from zebro_lab.errors import DataError, NotFound, SettingsError, UnitError
+from zebro_lab.columns import COLUMNS_FILE
+from zebro_lab.errors import DataError
+from zebro_lab.mapped_columns import (
+    MappedColumns,
+    canonical_columns,
+    parse_mapped_columns,
+)
 from zebro_lab.raw_table import RawTable
 from zebro_lab.recorded_legs import is_recorded, read_recorded_legs
 from zebro_lab.table_files import read_table_file
-from zebro_lab.units import factor_to_si
+from zebro_lab.toml_table import read_toml
 from zebro_lab.walk_folder import PATH_CSV, cell_error, require_increasing
 
 ANGLES = tuple(f"theta{leg}" for leg in range(1, N_LEGS + 1))
-_UNITS: Mapping[str, str] = {"t": "s", **dict.fromkeys(ANGLES, "rad")}
+LEG_UNITS: Mapping[str, str] = {"t": "s", **dict.fromkeys(ANGLES, "rad")}
 _WIDEST_GAP = 5.0  # median steps between samples; beyond, a leg may have done anything
 _LONGEST_TURN = 2.5  # rad between samples; from pi on, which way a leg turned is a guess
 
@@ -41,15 +44,6 @@ class LegLog:
     source: str
     files: tuple[Path, ...]
     notes: tuple[str, ...] = ()
-
-
-@dataclass(frozen=True)
-class _Columns:
-    """Where time and angles come from."""
-
-    mapped: Mapping[str, MappedColumn]
-    source: str | None = None
-    file: Path | None = None
 
 
 def read_leg_log(
@@ -73,16 +67,35 @@ def read_leg_log(
             a gap, or a leg turns too far between samples; names file, row and column.
     """
     if is_recorded(path):
-        table, files, mapping = *read_recorded_legs(path), _read_columns(None)
-        file = files[0]
-    else:
-        file = _table_of(path)
-        table, files = read_table_file(file), (file,)
-        mapping = _read_columns(_columns_file(file, columns))
-    t, *angles = (_numbers(table, name, mapping) for name in _UNITS)
+        table, files = read_recorded_legs(path)
+        return legs_of_table(table, _read_columns(None), files=files, leg_sign=leg_sign)
+    file = _table_of(path)
+    mapping = _read_columns(_columns_file(file, columns))
+    return legs_of_table(read_table_file(file), mapping, files=(file,), leg_sign=leg_sign)
+
+
+def legs_of_table(
+    table: RawTable,
+    mapping: MappedColumns,
+    *,
+    files: Sequence[Path],
+    leg_sign: Sequence[int] = (1,) * N_LEGS,
+) -> LegLog:
+    """Check and unwrap the leg angles of a table.
+
+    Args:
+        table: The table.
+        mapping: Where time and angles come from, over `LEG_UNITS`.
+        files: What the table was read from.
+        leg_sign: See `read_leg_log`.
+
+    Raises:
+        DataError: As in `read_leg_log`.
+    """
+    t, *angles = (_numbers(table, name, mapping) for name in LEG_UNITS)
     time_column = mapping.mapped["t"].name
     if len(t) < 2:
-        raise DataError(f"has {len(t)} row; a leg log needs two or more", file=file)
+        raise DataError(f"has {len(t)} row; a leg log needs two or more", file=files[0])
     require_increasing(table, time_column, t)
     _require_no_gap(table, time_column, t)
     raw = np.column_stack(angles) * np.asarray(leg_sign, dtype=float)
@@ -113,63 +126,20 @@ def _columns_file(table: Path, named: Path | None) -> Path | None:
     return named or (beside if beside.is_file() else None)
 
 
-def _read_columns(file: Path | None) -> _Columns:
-    canonical = {name: MappedColumn(name, unit) for name, unit in _UNITS.items()}
+def _read_columns(file: Path | None) -> MappedColumns:
     if file is None:
-        return _Columns(canonical)
-    try:
-        document = tomllib.loads(file.read_text(encoding="utf-8-sig"))
-    except FileNotFoundError as error:
-        raise NotFound(f"{file}: no such file; expected a {COLUMNS_FILE}") from error
-    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
-        raise SettingsError(f"cannot be read as TOML: {error}", file=file) from error
-    require_known(document, ("source", "columns"), file=file, where="")
-    tables = document.get("columns", {})
-    if not isinstance(tables, dict):
-        raise SettingsError("expected a table", file=file, key="columns")
-    require_known(tables, _UNITS, file=file, where="columns.")
-    mapped = {name: _mapped(name, table, file) for name, table in tables.items()}
-    source = document.get("source")
-    return _Columns({**canonical, **mapped}, None if source is None else str(source), file)
+        return canonical_columns(LEG_UNITS)
+    document = read_toml(file, advice=f"expected a {COLUMNS_FILE}")
+    return parse_mapped_columns(document.values, LEG_UNITS, file=file)
 
 
-def _mapped(name: str, table: Any, file: Path) -> MappedColumn:
-    key = f"columns.{name}"
-    if isinstance(table, str):  # theta1 = "th1": a name alone, in SI
-        table = {"name": table}
-    if not isinstance(table, dict):
-        raise SettingsError("expected a table with name, unit, sign", file=file, key=key)
-    require_known(table, ("name", "unit", "sign"), file=file, where=f"{key}.")
-    sign, unit = table.get("sign", 1), str(table.get("unit", _UNITS[name]))
-    if sign not in (1, -1) or isinstance(sign, bool):
-        raise SettingsError(f"{sign!r} is neither 1 nor -1", file=file, key=f"{key}.sign")
-    try:
-        factor = sign * factor_to_si(unit, _UNITS[name])
-    except UnitError as error:
-        raise SettingsError(str(error), file=file, key=f"{key}.unit") from error
-    return MappedColumn(str(table.get("name", name)), unit, factor)
-
-
-def _numbers(table: RawTable, name: str, columns: _Columns) -> Array:
-    mapped = columns.mapped[name]
-    if mapped.name not in table.columns and mapped.name not in table.repeated:
-        what = "time" if name == "t" else f"angle of leg {name[-1]}"
-        raise DataError(
-            f"missing, the {what}; {nearest(mapped.name, list(table.columns))}; map it in "
-            f"{COLUMNS_FILE} as [columns.{name}]",
-            file=table.path, column=mapped.name,
-        )  # fmt: skip
-    values = table.numbers(mapped.name)
-    good = np.isfinite(values)
-    if not good.all():
-        index = int(np.argmin(good))
-        found = "infinite" if np.isinf(values[index]) else "empty"
-        raise cell_error(
-            table, mapped.name, index,
-            f"is {found}; expected a number in {mapped.unit}: delete the rows before or after it, "
-            "or fill it",
-        )  # fmt: skip
-    return values * mapped.factor
+def _numbers(table: RawTable, name: str, columns: MappedColumns) -> Array:
+    return columns.numbers(
+        table,
+        name,
+        what="time" if name == "t" else f"angle of leg {name[-1]}",
+        advice="delete the rows before or after it, or fill it",
+    )
 
 
 def _require_no_gap(table: RawTable, column: str, t: Array) -> None:
@@ -185,7 +155,7 @@ def _require_no_gap(table: RawTable, column: str, t: Array) -> None:
         )  # fmt: skip
 
 
-def _require_unwrapped(table: RawTable, columns: _Columns, theta: Array) -> None:
+def _require_unwrapped(table: RawTable, columns: MappedColumns, theta: Array) -> None:
     turns = np.abs(np.diff(theta, axis=0))
     if not (turns > _LONGEST_TURN).any():
         return

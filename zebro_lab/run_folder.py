@@ -6,6 +6,8 @@ This file alone knows their form, which docs/formats.md describes.
 
 import re
 import time
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
@@ -18,6 +20,7 @@ from zebro_lab.errors import AlreadyExists, DataError, NotFound, RecordingError
 from zebro_lab.provenance import file_hash
 from zebro_lab.raw_log import read_raw_log
 from zebro_lab.run_manifest import (
+    IMPORTED,
     KINDS,
     MANIFEST_FILE,
     RECORDING,
@@ -30,6 +33,7 @@ from zebro_lab.run_manifest import (
 from zebro_lab.slip_rig_log import TOPIC, SlipRigTable, read_log, write_log
 
 __all__ = [
+    "IMPORTED",
     "KINDS",
     "LOG_FILE",
     "MANIFEST_FILE",
@@ -41,11 +45,13 @@ __all__ = [
     "epoch_ns",
     "exclude_run",
     "find_runs",
+    "finished_run_folder",
     "new_run_folder",
     "profile_file",
     "read_manifest",
     "read_slip_rig_run",
     "require_recorded",
+    "run_path",
     "run_state",
     "write_manifest",
     "write_slip_rig_run",
@@ -89,6 +95,8 @@ def write_slip_rig_run(
     radius_ground: float,
     exit_status: str = "completed",
     commit: str = "unknown",
+    inputs: Mapping[str, str] | None = None,
+    extra: Callable[[Path], object] | None = None,
 ) -> Path:
     """Write a run of the slip rig as a new run folder, atomically.
 
@@ -98,12 +106,14 @@ def write_slip_rig_run(
         label: Name of the run.
         material: Leg and ground material.
         operator: Who ran it.
-        source: "real", "sim:what" or "replay:what".
+        source: "real", "sim:what", "replay:what" or "import:FILE".
         start: When sample time was 0, with its time zone.
         radius_leg: Radius of the leg disc [m].
         radius_ground: Radius of the ground disc [m].
         exit_status: How the run ended.
         commit: Commit of the software that recorded it.
+        inputs: SHA-256 of the files that the samples were imported from.
+        extra: Adds files of its own to the folder before it appears.
 
     Returns:
         The run folder.
@@ -114,10 +124,10 @@ def write_slip_rig_run(
     """
     if len(table) == 0:
         raise DataError(f"run '{label}' has no samples to write")
-    folder = _run_path(data_dir, "slip-rig", label, start)
-    if folder.exists():
-        raise AlreadyExists(f"{folder} exists already; give the run another label")
-    with atomic_folder(folder) as draft:
+    finished = finished_run_folder(data_dir, kind="slip-rig", label=label, start=start)
+    with finished as (folder, draft):
+        if extra is not None:
+            extra(draft)
         with (draft / LOG_FILE).open("wb") as file:
             write_log(file, table, start_ns=epoch_ns(start))
         manifest = RunManifest(
@@ -133,9 +143,35 @@ def write_slip_rig_run(
             constants={"radius_leg": float(radius_leg), "radius_ground": float(radius_ground)},
             streams={TOPIC: len(table)},
             log_sha256=file_hash(draft / LOG_FILE),
+            inputs=inputs or {},
         )
         write_manifest(draft, manifest)
     return folder
+
+
+@contextmanager
+def finished_run_folder(
+    data_dir: Path, *, kind: str, label: str, start: datetime
+) -> Iterator[tuple[Path, Path]]:
+    """Fill the folder of a run that is over, so that it appears finished or not at all.
+
+    Args:
+        data_dir: Folder of run folders; made when missing.
+        kind: One of `KINDS`.
+        label: Name of the run.
+        start: When it began, with its time zone.
+
+    Yields:
+        The run folder that is to be, and the draft to write into.
+
+    Raises:
+        AlreadyExists: A run of this start and label is there already.
+    """
+    folder = run_path(data_dir, kind, label, start)
+    if folder.exists():
+        raise AlreadyExists(f"{folder} exists already; give the run another label")
+    with atomic_folder(folder) as draft:
+        yield folder, draft
 
 
 def read_slip_rig_run(folder: Path) -> SlipRigRun:
@@ -179,7 +215,7 @@ def new_run_folder(data_dir: Path, *, kind: str, label: str, start: datetime) ->
         AlreadyExists: A run of this start and label is there already.
         RecordingError: Nothing can be written there.
     """
-    folder = _run_path(data_dir, kind, label, start)
+    folder = run_path(data_dir, kind, label, start)
     try:
         folder.mkdir(parents=True)
     except FileExistsError as error:
@@ -288,7 +324,8 @@ def _salvage_note(folder: Path, manifest: RunManifest, count: int, damage: str) 
     return f"{folder.name}: {LOG_FILE} is cut short ({damage}); {count}{of_all} samples read"
 
 
-def _run_path(data_dir: Path, kind: str, label: str, start: datetime) -> Path:
+def run_path(data_dir: Path, kind: str, label: str, start: datetime) -> Path:
+    """Name the folder of a run."""
     return Path(data_dir) / f"{start.astimezone(UTC):%Y%m%dT%H%M%SZ}_{kind}_{_slug(label)}"
 
 

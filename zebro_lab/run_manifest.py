@@ -15,6 +15,7 @@ from zebro_lab.errors import DataError, NotFound
 MANIFEST_FILE = "run.json"
 SCHEMA_VERSION = 1
 KINDS = ("slip-rig", "walk")
+IMPORTED = "imported"
 RECORDING = "recording"
 """Exit status of a run that has not ended yet, or whose recorder was killed."""
 
@@ -28,10 +29,11 @@ class RunManifest:
         label: Name its operator gave it.
         material: Leg and ground material.
         operator: Who ran it.
-        source: "real", "sim:what" or "replay:what".
+        source: "real", "sim:what", "replay:what", or "import:FILE" where a file was imported and
+            nobody said more.
         start: Start, UTC, ISO 8601.
         stop: Stop, UTC, ISO 8601; None while it is recorded, or where nobody could write it.
-        exit_status: "completed", "recording", or why it ended.
+        exit_status: "completed", "recording", "imported", or why it ended.
         software: Version and commit of what recorded it.
         constants: Canonical columns that are one number for the rig, SI: radius_leg,
             radius_ground; also zero_normal and zero_traction [N], where the unloaded load cell's
@@ -47,6 +49,7 @@ class RunManifest:
             run, where the device tells time.
         robot: Name of the robot, for a walk.
         truth: What a simulated device knows to be true.
+        inputs: SHA-256 of the files that an imported run was made from, by their names.
         schema_version: Version of this form.
     """
 
@@ -69,6 +72,7 @@ class RunManifest:
     clocks: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
     robot: str | None = None
     truth: Mapping[str, Any] = field(default_factory=dict)
+    inputs: Mapping[str, str] = field(default_factory=dict)
     schema_version: int = SCHEMA_VERSION
 
 
@@ -118,8 +122,9 @@ _FIELD_TYPES: Mapping[str, type] = {
     "stop": str, "exit_status": str, "software": dict, "constants": dict, "streams": dict,
     "log_sha256": str, "excluded": dict, "profiles": dict, "sources": dict, "counters": dict,
     "clocks": dict, "robot": str, "truth": dict,
+    "inputs": dict,
 }  # fmt: skip
-_ADDED = ("profiles", "sources", "counters", "clocks", "robot", "truth")
+_ADDED = ("profiles", "sources", "counters", "clocks", "robot", "truth", "inputs")
 _OPTIONAL = {"stop", "log_sha256", "excluded", *_ADDED}
 
 

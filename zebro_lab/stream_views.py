@@ -72,9 +72,8 @@ class LegsView:
         profile: Profile of the robot.
     """
 
-    raw_schema = COUNTS_NAME
-
     def __init__(self, name: str, *, profile: LegProfile) -> None:
+        self.raw_schema = VALUES_NAME if profile.layout == "table" else COUNTS_NAME
         self._topic = f"/{name}/joint_states"
         self._profile = profile
         self._stride = _stride(profile.rate)
@@ -116,9 +115,8 @@ class ImuView:
         profile: Profile of the unit.
     """
 
-    raw_schema = COUNTS_NAME
-
     def __init__(self, name: str, *, profile: ImuProfile) -> None:
+        self.raw_schema = VALUES_NAME if profile.link == "table" else COUNTS_NAME
         self._topic = f"/{name}/data"
         self._profile = profile
         self._stride = _stride(profile.rate)

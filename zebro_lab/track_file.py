@@ -54,7 +54,16 @@ def read_track(path: Path) -> TrackFile:
             are too few poses; names file, row and column.
     """
     file = path / TRACK_CSV if path.is_dir() else path
-    table = read_table_file(file)
+    return track_of_table(read_table_file(file))
+
+
+def track_of_table(table: RawTable) -> TrackFile:
+    """Check the poses of a table with the columns of `read_track`.
+
+    Raises:
+        DataError: As in `read_track`.
+    """
+    file = table.path
     poses = _poses(table, file)
     if len(poses) < FEWEST:
         raise DataError(

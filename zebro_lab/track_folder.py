@@ -5,9 +5,8 @@ import json
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
+from typing import Any, Protocol
 
-from tracking.path import Track
 from zebro_lab.annotations import ANNOTATIONS_FILE
 from zebro_lab.atomic import atomic_folder
 from zebro_lab.errors import AlreadyExists, DataError, NotFound
@@ -26,10 +25,24 @@ OWNED = (TRACK_CSV, TRACK_TUM, FLOOR_FILE, ANNOTATIONS_FILE, MANIFEST, *PICTURES
 _DIGITS = "%.10g"
 
 
+class WrittenTrack(Protocol):
+    """A path as a folder takes it: one that was tracked, or somebody else's."""
+
+    @property
+    def columns(self) -> Mapping[str, Sequence[float] | Sequence[str]]:
+        """The table `track.csv`, all of `tracking.path.TRACK_COLUMNS` that are known."""
+        ...
+
+    @property
+    def tum(self) -> Sequence[str]:
+        """Lines of a TUM file."""
+        ...
+
+
 @contextmanager
 def track_folder(
     out: Path,
-    track: Track,
+    track: WrittenTrack,
     *,
     source: str,
     settings: Mapping[str, object],
@@ -71,10 +84,10 @@ def track_folder(
         (draft / MANIFEST).write_text(json.dumps(content, indent=2) + "\n")
 
 
-def _write_track(folder: Path, track: Track) -> None:
+def _write_track(folder: Path, track: WrittenTrack) -> None:
     import pandas as pd
 
-    table = pd.DataFrame(track.columns)
+    table = pd.DataFrame(dict(track.columns))
     table.to_csv(folder / TRACK_CSV, index=False, float_format=_DIGITS, lineterminator="\n")
     (folder / TRACK_TUM).write_text("\n".join(track.tum) + "\n")
 

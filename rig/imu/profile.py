@@ -5,17 +5,19 @@ import struct
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Final, Literal
+from typing import Final, Literal, TypeAlias
 
 import numpy as np
+import tomlkit
 from scipy.spatial.transform import Rotation
 
 from rig.device import Sample
-from rig.profile import open_profile
+from rig.profile import SCHEMA, open_profile
 from rig.zebro.profile import Array
 
 NORM_TOLERANCE: Final = 0.05
 FIELDS: Final = 10
+Link: TypeAlias = Literal["serial", "table"]
 
 
 @dataclass(frozen=True)
@@ -24,13 +26,14 @@ class ImuProfile:
 
     Attributes:
         name: Name of the profile.
-        baudrate: Line rate [baud].
+        baudrate: Line rate; 0 for a table [baud].
         byte_order: Of values of two bytes.
         quaternion_scale: Counts of a quaternion component of 1.
         rate_scale: Counts of 1 rad/s.
         force_scale: Counts of 1 m/s².
         mounting: Quaternion w, x, y, z that turns the sensor's axes into the body's.
         rate: Samples in a second [Hz].
+        link: `serial`, or `table` for a file that somebody else wrote.
     """
 
     name: str
@@ -41,6 +44,7 @@ class ImuProfile:
     force_scale: float
     mounting: tuple[float, ...]
     rate: float
+    link: Link = "serial"
 
     @property
     def body(self) -> struct.Struct:
@@ -92,23 +96,41 @@ def load_imu_profile(name: str) -> ImuProfile:
     link, frame, scale, mounting, stream = (
         table.table(key) for key in ("link", "frame", "scale", "mounting", "stream")
     )
-    link.choice("kind", ("serial",))
+    kind: Link = link.choice("kind", ("serial", "table"))
     quaternion = mounting.numbers("quaternion", 4)
     if abs(sum(part * part for part in quaternion) - 1) > NORM_TOLERANCE:
         raise mounting.fault(f"found {list(quaternion)}; expected length 1", "quaternion")
     profile = ImuProfile(
         name=Path(name).stem,
-        baudrate=link.whole("baudrate", least=1, most=20_000_000),
-        byte_order=frame.choice("byte_order", ("little", "big")),
+        baudrate=0 if kind == "table" else link.whole("baudrate", least=1, most=20_000_000),
+        byte_order="little" if kind == "table" else frame.choice("byte_order", ("little", "big")),
         quaternion_scale=scale.positive("quaternion"),
         rate_scale=scale.positive("angular_rate"),
         force_scale=scale.positive("specific_force"),
         mounting=quaternion,
         rate=stream.positive("rate"),
+        link=kind,
     )
     for part in (link, frame, scale, mounting, stream, table):
         part.finish()
     return profile
+
+
+def render_table_profile(rate: float) -> str:
+    """Spell the profile of orientation from a table in SI, in the body's axes, as TOML.
+
+    Args:
+        rate: Samples in a second [Hz].
+    """
+    document = {
+        "schema": SCHEMA,
+        "device": "imu",
+        "link": {"kind": "table"},
+        "scale": {"quaternion": 1.0, "angular_rate": 1.0, "specific_force": 1.0},
+        "mounting": {"quaternion": [1.0, 0.0, 0.0, 0.0]},
+        "stream": {"rate": rate},
+    }
+    return tomlkit.dumps(document)
 
 
 def decode_orientation(profile: ImuProfile, samples: Sequence[Sample]) -> Orientation:

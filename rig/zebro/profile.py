@@ -15,9 +15,12 @@ from rig.errors import ProtocolError
 from rig.profile import SCHEMA, Table, open_profile
 
 Array: TypeAlias = NDArray[np.float64]
-Layout: TypeAlias = Literal["packet", "can", "dump", "poll"]
+Layout: TypeAlias = Literal["packet", "can", "dump", "poll", "table"]
 Order: TypeAlias = Literal["little", "big"]
-LINK_OF: dict[str, str] = {"packet": "serial", "dump": "serial", "poll": "serial", "can": "can"}
+LINK_OF: dict[str, str] = {
+    "packet": "serial", "dump": "serial", "poll": "serial", "can": "can", "table": "table",
+}  # fmt: skip
+"""Link that each layout needs; `table` is no device but a file that somebody else wrote."""
 DUMP_REGISTERS = 256
 
 
@@ -71,7 +74,7 @@ class LegProfile:
     Attributes:
         name: Name of the profile.
         layout: Form of the frames.
-        baudrate: Line rate of the serial port, or bit rate of the bus [1/s].
+        baudrate: Line rate of the serial port, or bit rate of the bus; 0 for a table [1/s].
         byte_order: Of values of several bytes.
         legs: Leg number of each channel, in the order of the wire.
         counts_per_revolution: Counts N of a whole turn; N itself reads as 0.
@@ -96,8 +99,11 @@ class LegProfile:
 
     @property
     def quantisation(self) -> float:
-        """Half a count as an angle: the error is uniform between minus and plus this [rad]."""
-        return float(np.pi / self.counts_per_revolution)
+        """Half a count as an angle: the error is uniform between minus and plus this [rad].
+
+        0 for a table: its numbers have fractions, and nobody said what they were rounded to.
+        """
+        return 0.0 if self.layout == "table" else float(np.pi / self.counts_per_revolution)
 
     def possible(self, counts: tuple[float, ...]) -> bool:
         """Tell whether every count is on the circle."""
@@ -137,8 +143,8 @@ def load_leg_profile(name: str) -> LegProfile:
     """
     table = open_profile(name, device="legs")
     link, frame, legs, stream = (table.table(key) for key in ("link", "frame", "legs", "stream"))
-    layout: Layout = frame.choice("layout", ("packet", "can", "dump", "poll"))
-    kind = link.choice("kind", ("serial", "can"))
+    layout: Layout = frame.choice("layout", ("packet", "can", "dump", "poll", "table"))
+    kind = link.choice("kind", ("serial", "can", "table"))
     if kind != LINK_OF[layout]:
         raise link.fault(f"is '{kind}'; the layout '{layout}' needs '{LINK_OF[layout]}'", "kind")
     order = _order(legs)
@@ -150,8 +156,8 @@ def load_leg_profile(name: str) -> LegProfile:
     profile = LegProfile(
         name=Path(name).stem,
         layout=layout,
-        baudrate=link.whole("baudrate", least=1, most=20_000_000),
-        byte_order="little" if layout == "can" else frame.choice("byte_order", ("little", "big")),
+        baudrate=0 if layout == "table" else link.whole("baudrate", least=1, most=20_000_000),
+        byte_order=_byte_order(frame, layout),
         legs=order,
         counts_per_revolution=legs.whole(
             "counts_per_revolution", least=2, most=100 if layout == "can" else 65_535
@@ -174,7 +180,12 @@ def save_leg_profile(profile: LegProfile, path: Path) -> None:
         profile: The profile; its name becomes the file's.
         path: Where to write; a file that is there is replaced.
     """
-    path.write_text(tomlkit.dumps(_as_document(profile)), encoding="utf-8")
+    path.write_text(render_leg_profile(profile), encoding="utf-8")
+
+
+def render_leg_profile(profile: LegProfile) -> str:
+    """Spell a profile as the TOML that `load_leg_profile` reads."""
+    return tomlkit.dumps(_as_document(profile))
 
 
 def decode_angles(profile: LegProfile, samples: Sequence[Sample]) -> LegAngles:
@@ -233,6 +244,12 @@ def encode_counts(profile: LegProfile, theta: Sequence[float] | Array) -> tuple[
     return tuple(int(c) for c in np.remainder(counts, profile.counts_per_revolution))
 
 
+def _byte_order(frame: Table, layout: Layout) -> Order:
+    if layout in ("can", "table"):
+        return "little"
+    return frame.choice("byte_order", ("little", "big"))
+
+
 def _order(legs: Table) -> tuple[int, ...]:
     found = legs.wholes("order", most=6)
     if not found or sorted(set(found)) != sorted(found) or not set(found) <= set(range(1, 7)):
@@ -287,7 +304,7 @@ def _as_document(profile: LegProfile) -> dict[str, Any]:
     frame: dict[str, Any] = {"layout": profile.layout}
     if profile.layout == "can":
         frame |= {f"{name}_id": value for name, value in asdict(profile.can_ids).items()}
-    else:
+    elif profile.layout != "table":
         frame["byte_order"] = profile.byte_order
     if profile.layout in ("dump", "poll"):
         frame["registers"] = list(profile.registers.positions)
@@ -302,7 +319,7 @@ def _as_document(profile: LegProfile) -> dict[str, Any]:
     return {
         "schema": SCHEMA,
         "device": "legs",
-        "link": {"kind": LINK_OF[profile.layout], "baudrate": profile.baudrate},
+        "link": _link(profile),
         "frame": frame,
         "legs": {
             "order": list(profile.legs),
@@ -312,3 +329,8 @@ def _as_document(profile: LegProfile) -> dict[str, Any]:
         },
         "stream": {"rate": profile.rate},
     }
+
+
+def _link(profile: LegProfile) -> dict[str, Any]:
+    kind = {"kind": LINK_OF[profile.layout]}
+    return kind if profile.layout == "table" else kind | {"baudrate": profile.baudrate}

@@ -10,6 +10,8 @@ from zebro_lab.cli.annotate import annotate
 from zebro_lab.cli.calibrate import EPILOG, calibrate
 from zebro_lab.cli.camera import app as camera
 from zebro_lab.cli.errors import run
+from zebro_lab.cli.import_files import EPILOG as IMPORT_EPILOG
+from zebro_lab.cli.import_files import import_files
 from zebro_lab.cli.init import init
 from zebro_lab.cli.predict import EPILOG as PREDICT_EPILOG
 from zebro_lab.cli.predict import predict
@@ -41,6 +43,7 @@ app.command(epilog=PREDICT_EPILOG)(predict)
 app.command(epilog=VALIDATE_EPILOG)(validate)
 app.command(epilog=REPORT_EPILOG)(report)
 app.command(epilog=RECORD_EPILOG)(record)
+app.command("import", epilog=IMPORT_EPILOG)(import_files)
 app.command()(runs)
 app.command()(exclude)
 app.command()(export)

@@ -7,15 +7,16 @@ from pathlib import Path
 
 import numpy as np
 
-from model.gait.quantised import QuantisedLog, find_step
+from model.gait.quantised import QuantisedLog
 from model.gait.reference import SampledReference
 from model.robot import N_LEGS
 from model.walk.ensemble import PathEnsemble
 from zebro_lab.errors import SettingsError
+from zebro_lab.leg_angles import angles_from
 from zebro_lab.leg_log import LegLog, read_leg_log
 from zebro_lab.path_band import BandRequest, predict_band, write_band
 from zebro_lab.recorded_legs import is_recorded
-from zebro_lab.robot_file import RobotFile
+from zebro_lab.robot_file import ROBOT_FILE, RobotFile
 from zebro_lab.walk_folder import PATH_CSV
 from zebro_lab.walk_models import Direction
 from zebro_lab.walking import ModelRequest, Walked, Watcher, robot_of, walk_with, write_walk
@@ -43,19 +44,21 @@ class PredictRequest:
 def predict(request: PredictRequest, watcher: Watcher) -> Walked:
     """Predict where measured leg angles lead and write the walk folder.
 
-    The path keeps the log's own time.
+    The path keeps the log's own time. A run that keeps a robot.toml is walked by that robot, unless
+    another is asked for.
 
     Raises:
         ZebroLabError: A file is missing or holds what cannot be followed.
         ModelError: The walk cannot be computed.
     """
+    request = _with_own_robot(request)
     described = robot_of(request.model)
     walked_before = request.log.is_dir() or request.log.name == PATH_CSV
     if walked_before and not is_recorded(request.log):
         described = _as_walked(described)
     log = read_leg_log(request.log, columns=request.columns, leg_sign=described.leg_sign)
     start, end = float(log.reference.t[0]), float(log.reference.t[-1])
-    legs, notes = _legs(log, start)
+    legs, notes = angles_from(log, start)
     watcher.step("walking", None)
     walked = walk_with(
         request.model,
@@ -81,19 +84,6 @@ def predict(request: PredictRequest, watcher: Watcher) -> Walked:
     return walked
 
 
-def _legs(log: LegLog, start: float) -> tuple[SampledReference | QuantisedLog, tuple[str, ...]]:
-    """Return the angles from time zero on, to be reconstructed where an encoder counted them."""
-    t, theta = log.reference.t - start, log.reference.theta
-    step = find_step(theta)
-    if step is None:
-        return SampledReference(t, theta), ()
-    note = (
-        f"leg log: angles are counted in steps of {np.degrees(step):.3g} deg, reconstructed as "
-        "straight lines through the changes of count"
-    )
-    return QuantisedLog(t, theta, step), (note,)
-
-
 def _band(
     request: PredictRequest,
     walked: Walked,
@@ -115,6 +105,13 @@ def _band(
         toe=request.model.toe,
         watcher=watcher,
     )
+
+
+def _with_own_robot(request: PredictRequest) -> PredictRequest:
+    own = request.log / ROBOT_FILE
+    if request.model.robot is not None or not is_recorded(request.log) or not own.is_file():
+        return request
+    return replace(request, model=replace(request.model, robot=own))
 
 
 def _as_walked(described: RobotFile) -> RobotFile:

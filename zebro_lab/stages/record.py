@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Devices in, run folder out."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Final, Protocol
@@ -15,6 +15,7 @@ from zebro_lab.leg_log import read_leg_log
 from zebro_lab.record_devices import DevicesRequest, OpenDevices, open_devices
 from zebro_lab.recorder import RunDescription, RunRecorder
 from zebro_lab.run_manifest import RunManifest, read_manifest
+from zebro_lab.source_names import joined_source
 
 LOOK_EVERY: Final = 0.05
 COUNT_EVERY: Final = 1.0
@@ -248,16 +249,3 @@ def _description(request: RecordRequest, opened: OpenDevices) -> RunDescription:
         robot=request.robot,
         truth=opened.truth,
     )
-
-
-def joined_source(sources: Sequence[str]) -> str:
-    """Join the sources of a run's streams; what is simulated throughout still begins with `sim:`.
-
-    >>> joined_source(["sim:zebro", "sim:imu"]), joined_source(["real", "sim:imu"])
-    ('sim:zebro+imu', 'mixed:real,sim:imu')
-    """
-    different = list(dict.fromkeys(sources))
-    kinds = {source.partition(":")[0] for source in different}
-    if len(kinds) == 1 and len(different) > 1:
-        return f"{kinds.pop()}:{'+'.join(source.partition(':')[2] for source in different)}"
-    return different[0] if len(different) == 1 else f"mixed:{','.join(different)}"

@@ -66,7 +66,7 @@ def growing(data: Path) -> Path:
     raise AssertionError("nothing was recorded")
 
 
-@pytest.mark.parametrize("command", ["record", "runs", "exclude", "sim zebro", "zebro check"])
+@pytest.mark.parametrize("command", ["record", "import", "runs", "exclude", "sim zebro", "zebro check"])
 def test_help_loads_nothing_heavy(command):
     process = subprocess.run(
         [sys.executable, "-X", "importtime", COMMAND, *command.split(), "--help"],
@@ -221,3 +221,15 @@ def test_a_recorded_walk_is_predicted_with_the_robots_leg_offsets(run, tmp_path)
         predicted.append(read_walk(out).theta)
     apart = np.degrees(predicted[1] - predicted[0])
     np.testing.assert_allclose(apart, np.tile([0, 4.0, 0, 0, 0, 0], (len(apart), 1)), atol=1e-6)
+
+
+def test_others_files_are_imported_and_say_that_they_are_simulated(run, tmp_path):
+    walk = Path(__file__).parents[3] / "datasets" / "walk-sim"
+    start = ("--start", "2026-03-04T05:06:07Z", "--data", tmp_path)
+    code, out, err = run("import", "--legs", walk / "legs.csv", "--label", "bought", *start)
+    assert (code, err) == (0, "")
+    assert re.search(r"SIMULATED sim:mujoco-walk: 1500 /legs/raw: .*_walk_bought", out)
+    for options in (("--legs", walk / "legs.csv", "--start", "tomorrow"), ()):
+        code, _, err = run("import", "--data", tmp_path, *options)
+        assert code in (1, 2)
+        assert "--start" in err or "nothing to import" in err

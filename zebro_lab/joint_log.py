@@ -1,0 +1,111 @@
+# SPDX-License-Identifier: MIT
+"""Joint angles of a ROS 2 log in MCAP, as a table like any other."""
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import IO, Any, Final
+
+import numpy as np
+
+from zebro_lab.columns import nearest
+from zebro_lab.errors import DataError, NotFound
+from zebro_lab.raw_log import DAMAGES_HINT, log_damages
+from zebro_lab.raw_table import RawTable
+from zebro_lab.ros_messages import JOINT_STATE
+
+NANOSECOND: Final = 1e-9
+
+
+def read_joint_log(path: Path, *, topic: str | None = None) -> RawTable:
+    """Read the joint states of an MCAP log, up to where it is damaged.
+
+    Args:
+        path: The log.
+        topic: Topic to read; None where the log has joint states on one topic alone.
+
+    Returns:
+        A table with `t`, the stamps (of the log, where the messages have none) [s], and a column
+        of positions for each joint [rad]. A joint `leg_N` is called `thetaN`.
+
+    Raises:
+        NotFound: There is no such file.
+        DataError: It is no MCAP, or holds no joint states on one topic.
+    """
+    from mcap.exceptions import InvalidMagic
+
+    rows: dict[str, list[tuple[float, dict[str, float]]]] = {}
+    damage = None
+    try:
+        with path.open("rb") as file:
+            for found, stamp, joints in _joint_states(file):
+                rows.setdefault(found, []).append((stamp, joints))
+    except FileNotFoundError as error:
+        raise NotFound(f"{path}: no such file") from error
+    except InvalidMagic as error:
+        raise DataError("is no MCAP file", file=path) from error
+    except log_damages() as error:
+        damage = str(error) or DAMAGES_HINT
+    chosen = _chosen(rows, topic, path)
+    notes = () if damage is None else (f"{path.name}: is cut short ({damage})",)
+    return _table(path, rows[chosen], notes)
+
+
+def _joint_states(file: IO[bytes]) -> Iterator[tuple[str, float, dict[str, float]]]:
+    from mcap.records import Channel, Message, Schema
+    from mcap.stream_reader import StreamReader
+    from mcap_ros2.decoder import DecoderFactory
+
+    factory, schemas = DecoderFactory(), {}
+    decoders: dict[int, tuple[str, Any]] = {}
+    for record in StreamReader(file, validate_crcs=True).records:
+        if isinstance(record, Schema):
+            schemas[record.id] = record
+        elif isinstance(record, Channel) and record.id not in decoders:
+            schema = schemas.get(record.schema_id)
+            if schema is not None and schema.name == JOINT_STATE.name:
+                decode = factory.decoder_for(record.message_encoding, schema)
+                if decode is not None:
+                    decoders[record.id] = (record.topic, decode)
+        elif isinstance(record, Message) and record.channel_id in decoders:
+            topic, decode = decoders[record.channel_id]
+            state = decode(record.data)
+            stamp = state.header.stamp.sec + NANOSECOND * state.header.stamp.nanosec
+            joints = dict(zip(state.name, state.position, strict=False))  # it may tell speeds only
+            if joints:
+                yield topic, stamp or NANOSECOND * record.log_time, joints
+
+
+def _chosen(rows: dict[str, Any], topic: str | None, path: Path) -> str:
+    if topic is not None and topic not in rows:
+        raise DataError(f"has no joint states on {topic}; {nearest(topic, rows)}", file=path)
+    if not rows:
+        raise DataError(
+            f"holds no positions in messages of type {JOINT_STATE.name}; expected leg angles in "
+            "such, as ROS 2 logs them",
+            file=path,
+        )
+    if topic is None and len(rows) > 1:
+        raise DataError(
+            f'has joint states on {", ".join(sorted(rows))}; name one as topic = "..." in [legs] '
+            "of a columns.toml",
+            file=path,
+        )
+    return topic or next(iter(rows))
+
+
+def _table(
+    path: Path, rows: list[tuple[float, dict[str, float]]], notes: tuple[str, ...]
+) -> RawTable:
+    import pandas as pd
+
+    names = dict.fromkeys(name for _, joints in rows for name in joints)
+    columns = {"t": pd.Series([stamp for stamp, _ in rows], dtype=float)}
+    for name in names:
+        positions = [joints.get(name, np.nan) for _, joints in rows]
+        columns[_called(name)] = pd.Series(positions, dtype=float)
+    return RawTable(path, columns, notes=notes)
+
+
+def _called(joint: str) -> str:
+    leg = joint.removeprefix("leg_")
+    return f"theta{leg}" if joint.startswith("leg_") and leg.isdigit() else joint

@@ -1,0 +1,27 @@
+# SPDX-License-Identifier: MIT
+"""Where data come from, as texts: `real`, `sim:WHAT`, `replay:WHAT`, `import:FILE`, `mixed:A,B`."""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+
+def joined_source(sources: Sequence[str]) -> str:
+    """Join the sources of a run's streams; what is simulated throughout still begins with `sim:`.
+
+    >>> joined_source(["sim:zebro", "sim:imu"]), joined_source(["real", "sim:imu"])
+    ('sim:zebro+imu', 'mixed:real,sim:imu')
+    """
+    different = list(dict.fromkeys(sources))
+    kinds = {source.partition(":")[0] for source in different}
+    if len(kinds) == 1 and len(different) > 1:
+        return f"{kinds.pop()}:{'+'.join(source.partition(':')[2] for source in different)}"
+    return different[0] if len(different) == 1 else f"mixed:{','.join(different)}"
+
+
+def stated_source(stated: str | None, file: Path) -> str:
+    """Return the source that somebody stated, else the file.
+
+    >>> stated_source("unknown", Path("x/legs.csv"))
+    'import:legs.csv'
+    """
+    return f"import:{file.name}" if stated in (None, "unknown") else str(stated)

@@ -18,7 +18,7 @@ from rig.experiment.plan import LoadSetting
 from rig.experiment.simulated_load import SimulatedAxis, SimulatedOperator
 from rig.links.memory import MemoryLink
 from rig.slip_rig.board import RigBoard
-from rig.slip_rig.imperfections import TYPICAL_RIG, RigImperfections
+from rig.slip_rig.imperfections import RigImperfections, draw_imperfections
 from rig.slip_rig.profile import RigProfile, load_rig_profile
 from rig.slip_rig.simulated import RigDynamics, SimulatedRig, simulated_rig
 from rig.slip_rig.simulated_board import SimulatedBoard
@@ -98,7 +98,7 @@ def rig_at_hand(
     *,
     seed: int = 0,
     fast: bool = False,
-    imperfections: RigImperfections = TYPICAL_RIG,
+    imperfections: RigImperfections | None = None,
 ) -> Iterator[RigAtHand]:
     """Make the rig that an address names; a twin is served for as long as the context lasts.
 
@@ -106,7 +106,8 @@ def rig_at_hand(
         address: `PROFILE@PORT`, `PROFILE@sim` or `sim`.
         seed: Of a twin's randomness.
         fast: Let a twin's time pass at once; only for a board's.
-        imperfections: What a twin's sensors and bump add.
+        imperfections: What a twin's sensors and bump add; a load cell's errors are drawn by
+            default, so that each seed is a rig of its own and one seed the same rig again.
 
     Yields:
         The rig.
@@ -126,7 +127,8 @@ def rig_at_hand(
     rng = np.random.default_rng(seed)
     rig = simulated_rig(
         plan=SweepPlan(radius_leg=profile.radius_leg, radius_ground=profile.radius_ground),
-        imperfections=imperfections, dynamics=RigDynamics(ripple=0.005), rng=rng,
+        imperfections=imperfections or draw_imperfections(np.random.default_rng([seed, 1])),
+        dynamics=RigDynamics(ripple=0.005), rng=rng,
     )  # fmt: skip
     rig.command("leg", 0.0)  # it is commanded from the first: it sweeps nothing by itself
     truth = {"rig": rig.description()}

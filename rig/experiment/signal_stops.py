@@ -18,10 +18,12 @@ def signal_stops(switch: StopSwitch) -> Iterator[None]:
     Args:
         switch: Where stops are asked for.
     """
-    categories = iter(StopCategory)
+    pressed: list[int] = []
 
-    def interrupt(_number: int, _frame: FrameType | None) -> None:
-        category = next(categories, StopCategory.EMERGENCY)
+    def interrupt(number: int, _frame: FrameType | None) -> None:
+        # One Ctrl-C may come while the last is being answered: a generator could not be re-entered.
+        pressed.append(number)
+        category = StopCategory(min(len(pressed), StopCategory.EMERGENCY))
         switch.request(category, f"Ctrl-C, time {category.value}")
 
     def terminate(_number: int, _frame: FrameType | None) -> None:

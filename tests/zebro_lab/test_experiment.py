@@ -27,6 +27,7 @@ from zebro_lab.errors import AlreadyExists, NotFound, SettingsError
 from zebro_lab.experiment_folder import ExperimentFolder
 from zebro_lab.experiment_journal import JOURNAL_FILE, JournalWriter, read_journal
 from zebro_lab.plan_file import read_plan
+from zebro_lab.rig_at_hand import rig_at_hand
 from zebro_lab.run_folder import find_runs, read_manifest, read_slip_rig_run
 from zebro_lab.stages.rig_run import RigRunRequest, command_run, run_experiment
 from zebro_lab.stages.rig_weigh import WeighRequest, render_load_cell, weigh_masses
@@ -213,7 +214,9 @@ def test_a_journal_survives_a_line_cut_short(tmp_path):
 def test_a_weighing_gives_the_gain_its_prior(tmp_path):
     request = WeighRequest((0.2, 0.5, 1.0), "sim", tmp_path, fast=True)
     weighing, check, written = weigh_masses(request, lambda text, normal: None, Control())
-    assert check.slope == pytest.approx(1.0, abs=1e-4)
+    with rig_at_hand("sim", seed=request.seed, fast=True) as rig:
+        gain = rig.truth["rig"]["imperfections"]["gain_normal"]
+    assert check.slope == pytest.approx(1 / (1 + gain), abs=1e-4)
     assert len(weighing.forces) == 4
     assert written.read_text() == render_load_cell(check)
     with pytest.raises(AlreadyExists):

@@ -23,7 +23,7 @@ PlanFile = Annotated[Path, typer.Argument(metavar="PLAN", help="A plan.toml.")]
 Rig = Annotated[str, typer.Option(help="PROFILE@PORT, PROFILE@sim, or sim.")]
 Data = Annotated[Path, typer.Option(metavar="DIR", help="Folder of the experiment.")]
 Fast = Annotated[bool, typer.Option("--fast", help="Let a simulated rig's time pass at once.")]
-Seed = Annotated[int, typer.Option(help="Of a simulated rig's randomness.")]
+Seed = Annotated[int, typer.Option(help="Of a simulated rig: its load cell, noise and wander.")]
 
 EPILOG = """
 Ctrl-C: once a soft stop (holds, energised; resume goes on), twice a safe stop (ends at rest),

@@ -160,11 +160,17 @@ class Limits:
         speed: Angular speed of a disc [rad/s].
         normal_force: Normal force [N].
         traction_force: Traction force [N].
+        lateral_force: Force on the load cell's third axis; None where nothing is said [N].
+        torque: Torque on any axis of the load cell; None where nothing is said [N m].
+        temperature_celsius: Of a drive or its motor; None where nothing is said [degC].
     """
 
     speed: float
     normal_force: float
     traction_force: float
+    lateral_force: float | None = None
+    torque: float | None = None
+    temperature_celsius: float | None = None
 
 
 def iterate(

@@ -80,6 +80,13 @@ class Table:
             raise self.fault(f"found {value:g}; expected a number above 0", key)
         return value
 
+    def positive_or_none(self, key: str) -> float | None:
+        """Take a number above 0; None where it is absent."""
+        if key in self._entries:
+            return self.positive(key)
+        self._known.append(key)
+        return None
+
     def numbers(self, key: str, count: int) -> tuple[float, ...]:
         """Take so many finite numbers."""
         value = self._take(key, None)

@@ -6,13 +6,13 @@ stop.
 """
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import IntEnum
 
 import numpy as np
 from numpy.typing import NDArray
 
-from rig.device import Sample
 from rig.errors import LimitExceeded, RigError, RigTimeout
 
 
@@ -123,11 +123,11 @@ class SilenceGuard:
         self._limit = limit
         self._heard = now
 
-    def check(self, samples: list[Sample], *, now: float) -> None:
+    def check(self, samples: Sequence[object], *, now: float) -> None:
         """Take what a read gave.
 
         Args:
-            samples: The samples, none or more.
+            samples: What came, nothing or more.
             now: Host time [s].
 
         Raises:

@@ -23,11 +23,17 @@ from rig.safety import (
     StopRequested,
     require_within,
 )
+from rig.slip_rig.profile import FURTHER_LIMITS
 
 PERIOD: Final = 0.004
 """Between two looks: waking up for each of 7,000 samples a second costs several times more [s]."""
 UNDERWAY: Final = 0.5
 """How long reports from before arming may still arrive [s]."""
+FURTHER_NAMES: Final = {
+    "lateral_force": "force on the load cell's third axis",
+    "torque": "torque on the load cell",
+    "temperature_celsius": "temperature of a drive or its motor",
+}
 ROOM_PERIOD: Final = 1.0
 """Between two looks at the room left for data [s]."""
 
@@ -94,6 +100,15 @@ class Acquisition:
         force = {"unit": "N", "in_a_row": limits.in_a_row}
         self._normal = SampleGuard(allowed.normal_force, quantity="normal force", **force)
         self._traction = SampleGuard(allowed.traction_force, quantity="traction force", **force)
+        wanted = {key: getattr(allowed, key) for key in FURTHER_LIMITS}
+        self._further = {
+            key: SampleGuard(
+                limit, quantity=FURTHER_NAMES[key], unit=FURTHER_LIMITS[key],
+                in_a_row=limits.in_a_row,
+            )
+            for key, limit in wanted.items() if limit is not None
+        }  # fmt: skip
+        bench.watch(self._further)
         self._following = {
             disc: FollowingGuard(
                 limits.speed_error, name=f"{disc} disc", longest=limits.speed_error_time
@@ -261,6 +276,8 @@ class Acquisition:
     def _guard(self, batch: Batch, now: float) -> None:
         self._normal.check_all(batch.normal)
         self._traction.check_all(batch.traction)
+        for key, values in batch.further.items():
+            self._further[key].check_all(values)
         if batch.fault:
             raise DeviceFault(batch.fault, status=1)
         for name, guard in self._silence.items():

@@ -4,7 +4,7 @@
 A bench reads drives and load cell, or a board, in one thread, and lines their samples up in time.
 """
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass, fields
 from types import TracebackType
@@ -17,7 +17,7 @@ from rig.backends import RigDevices
 from rig.device import Drive, Sample, Stream
 from rig.errors import ProfileError
 from rig.slip_rig.board import RigBoard
-from rig.slip_rig.decode import Zero, decode_board, decode_forces
+from rig.slip_rig.decode import Zero, decode_board, decode_forces, decode_further_loads
 from rig.slip_rig.drives import DriveBus, disc_speed
 from rig.slip_rig.load_cell import NetFtCell
 from rig.slip_rig.profile import BoardProfile, DriveProfile, LoadCellProfile, RigProfile
@@ -79,7 +79,8 @@ class Batch:
         normal: Every normal force that has just arrived, for guards, shape (m,) [N].
         traction: Every traction force that has just arrived, shape (m,) [N].
         speeds: Latest speed of each disc that was heard, by name [rad/s].
-        heard: Samples of each device that is watched for silence, by name.
+        heard: What came of each device and answer that is watched for silence, by name.
+        further: What has just arrived of other guarded quantities, by the name of their limit.
         fault: What a device's status says is wrong; empty where nothing is.
         raw: Samples as they came, by stream, for a log.
     """
@@ -88,7 +89,8 @@ class Batch:
     normal: Array
     traction: Array
     speeds: Mapping[str, float]
-    heard: Mapping[str, list[Sample]]
+    heard: Mapping[str, Sequence[object]]
+    further: Mapping[str, Array]
     fault: str
     raw: Mapping[str, list[Sample]]
 
@@ -114,6 +116,14 @@ class Bench(Protocol):
     @property
     def streams(self) -> tuple[Stream, ...]:
         """The devices, for their counters."""
+        ...
+
+    def watch(self, limits: Collection[str]) -> None:
+        """Measure from now on, for these of `FURTHER_LIMITS`, what is to be guarded.
+
+        Args:
+            limits: Their names, all among those that the profile says are measured.
+        """
         ...
 
     def arm(self) -> None:
@@ -147,21 +157,28 @@ class Bench(Protocol):
 
 
 class HostTime:
-    """Puts device times on the host's clock: what was underway least tells the offset."""
+    """Puts device times on the host's clock: what was underway least tells the offset.
+
+    Times never run back: where a quicker sample shows that the others were late, they stand until
+    the better ones have caught up.
+    """
 
     def __init__(self) -> None:
         self._offset = np.inf
+        self._latest = -np.inf
 
     def map(self, samples: list[Sample]) -> Array:
         """Return when the samples were taken, shape (n,) [s]."""
         host = np.array([sample.host_time for sample in samples])
         device = np.array([np.nan if s.device_time is None else s.device_time for s in samples])
         if len(samples) == 0 or not np.isfinite(device).all():
-            return host
+            return host  # none came, or the device tells no time
         least = float((host - device).min())
         # Jitter only ever delays; what is half a second off is a device that began anew.
         self._offset = least if abs(least - self._offset) > 0.5 else min(self._offset, least)
-        return device + self._offset
+        times = np.maximum.accumulate(np.maximum(device + self._offset, self._latest))
+        self._latest = float(times[-1])
+        return times
 
 
 class _DiscPair:
@@ -214,6 +231,9 @@ class BoardBench(_DiscPair):
         """The board."""
         return (self._board,)
 
+    def watch(self, limits: Collection[str]) -> None:
+        """A board measures nothing more; see `Bench.watch`."""
+
     def read(self) -> Batch:
         """Hand on what has arrived; see `Bench.read`."""
         samples = self._board.read(0.0)
@@ -223,7 +243,7 @@ class BoardBench(_DiscPair):
         )
         latest = {"leg": speeds.leg[-1], "ground": speeds.ground[-1]} if samples else {}
         return Batch(
-            readings, forces.normal, forces.traction, latest, {"board": samples}, "",
+            readings, forces.normal, forces.traction, latest, {"board": samples}, {}, "",
             {self._board.name: samples},
         )  # fmt: skip
 
@@ -254,8 +274,6 @@ class DrivesBench(_DiscPair):
         settings: The drives' and the load cell's part of it.
     """
 
-    watched = ("load cell", "leg drive", "ground drive")
-
     def __init__(
         self,
         drives: DriveBus,
@@ -271,6 +289,8 @@ class DrivesBench(_DiscPair):
         self._cell = cell
         self._stack = ExitStack()
         self._time = HostTime()
+        self._further: frozenset[str] = frozenset()
+        self._hot: dict[int, float] = {}
         self._waiting = np.empty((0, 3))
         self._speeds = {"leg": np.empty((0, 2)), "ground": np.empty((0, 2))}
 
@@ -284,18 +304,34 @@ class DrivesBench(_DiscPair):
         """Drives and load cell."""
         return (self._drives, self._cell)
 
+    @property
+    def watched(self) -> tuple[str, ...]:
+        """Load cell, both drives, and their temperatures where they are guarded."""
+        devices = ("load cell", "leg drive", "ground drive")
+        hot = ("temperature of the leg drive", "temperature of the ground drive")
+        return devices + (hot if "temperature_celsius" in self._further else ())
+
+    def watch(self, limits: Collection[str]) -> None:
+        """Look at what is to be guarded beside the two forces; see `Bench.watch`."""
+        self._further = frozenset(limits)
+        if "temperature_celsius" in self._further:
+            self._drives.ask_for_temperatures()
+
     def read(self) -> Batch:
         """Hand on what has arrived; see `Bench.read`."""
         turned, weighed = self._drives.read(0.0), self._cell.read(0.0)
         forces = decode_forces(self._cell_settings, weighed)
         new = np.column_stack([self._time.map(weighed), forces.normal, forces.traction])
         self._waiting = np.concatenate([self._waiting, new])
-        heard = {"load cell": weighed}
+        heard: dict[str, Sequence[object]] = {"load cell": weighed}
         for disc, drive in (("leg", self._settings.leg), ("ground", self._settings.ground)):
             own = [sample for sample in turned if sample.channel == drive.node]
             heard[f"{disc} drive"] = own
             rows = [(s.host_time, disc_speed(drive, s.counts[1])) for s in own]
             self._speeds[disc] = np.concatenate([self._speeds[disc], np.reshape(rows, (-1, 2))])
+        hot = self._drives.take_temperatures()
+        for disc, drive in (("leg", self._settings.leg), ("ground", self._settings.ground)):
+            heard[f"temperature of the {disc} drive"] = hot[drive.node]
         status = 0
         for sample in weighed:
             status |= sample.status
@@ -305,6 +341,7 @@ class DrivesBench(_DiscPair):
             traction=forces.traction,
             speeds={d: float(s[-1, 1]) for d, s in self._speeds.items() if len(s)},
             heard=heard,
+            further=self._further_loads(weighed, hot),
             fault=f"load cell: {describe_status(status)}" if describe_status(status) else "",
             raw={self._drives.name: turned, self._cell.name: weighed},
         )
@@ -312,6 +349,24 @@ class DrivesBench(_DiscPair):
     def require_healthy(self) -> None:
         """Check both drives; see `Bench.require_healthy`."""
         self._drives.require_healthy()
+
+    def _further_loads(
+        self, weighed: list[Sample], hot: Mapping[int, list[float]]
+    ) -> dict[str, Array]:
+        """Pick what is guarded of the load cell's other channels and of the temperatures."""
+        if not self._further:
+            return {}
+        lateral, torque = decode_further_loads(self._cell_settings, weighed)
+        hottest = []
+        for node, answers in hot.items():
+            for self._hot[node] in answers:  # one series: a cool drive excuses no hot one
+                hottest.append(max(self._hot.values()))
+        found = {
+            "lateral_force": lateral,
+            "torque": torque,
+            "temperature_celsius": np.array(hottest),
+        }
+        return {k: v for k, v in found.items() if k in self._further and v is not None}
 
     def _line_up(self) -> Readings:
         """Interpolate speeds at the forces around which both are known; the others wait."""

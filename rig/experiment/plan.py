@@ -7,6 +7,7 @@ from typing import Final, Literal, TypeAlias
 
 from rig.device import Limits
 from rig.experiment.plan_table import PlanTable
+from rig.slip_rig.profile import FURTHER_LIMITS
 
 SCHEMA: Final = 1
 MOST_POINTS: Final = 100_000
@@ -126,6 +127,9 @@ class RunLimits:
         silence: How long a stream may be silent [s].
         free_space: What must be left where data is written [bytes].
         hold: How long a soft stop holds before it becomes a safe one [s].
+        lateral_force: Force on the load cell's third axis; None where it is not guarded [N].
+        torque: Torque on any of its axes; None where it is not guarded [N m].
+        temperature_celsius: Of a drive or its motor; None where it is not guarded [degC].
     """
 
     speed: float
@@ -138,6 +142,9 @@ class RunLimits:
     silence: float
     free_space: float
     hold: float
+    lateral_force: float | None
+    torque: float | None
+    temperature_celsius: float | None
 
 
 @dataclass(frozen=True)
@@ -217,10 +224,16 @@ def ground_speed(
 
 def rig_limits(limits: RunLimits, allowed: Limits) -> Limits:
     """Combine a plan's limits with a rig's: the smaller of each counts."""
+    further = {
+        key: min((own for own in (getattr(limits, key), getattr(allowed, key)) if own is not None),
+                 default=None)
+        for key in FURTHER_LIMITS
+    }  # fmt: skip
     return Limits(
         speed=min(limits.speed, allowed.speed),
         normal_force=min(limits.normal_force, allowed.normal_force),
         traction_force=min(limits.traction_force, allowed.traction_force),
+        **further,
     )
 
 
@@ -304,4 +317,5 @@ def _limits(table: PlanTable) -> RunLimits:
         silence=table.positive("silence", 0.25),
         free_space=table.positive("free_space", 100e6),
         hold=table.positive("hold", 600.0),
+        **{key: table.positive_or_none(key) for key in FURTHER_LIMITS},
     )

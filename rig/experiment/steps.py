@@ -7,9 +7,10 @@ from typing import Final, Literal, TypeAlias
 
 import numpy as np
 
+from rig.errors import ProfileError
 from rig.experiment.plan import Plan, ground_speed, rig_limits
 from rig.safety import require_within
-from rig.slip_rig.profile import RigProfile
+from rig.slip_rig.profile import FURTHER_LIMITS, RigProfile
 
 RISE: Final = 0.15
 """Reckoned time for a disc's own lag at a new set-point [s]."""
@@ -127,6 +128,7 @@ def require_allowed(plan: Plan, profile: RigProfile) -> None:
 
     Raises:
         LimitExceeded: A speed or load is beyond a limit; value, limit and unit are named.
+        ProfileError: The plan limits what the rig does not measure.
     """
     allowed = rig_limits(plan.limits, profile.limits)
     for name in ("speed", "normal_force", "traction_force"):
@@ -135,6 +137,15 @@ def require_allowed(plan: Plan, profile: RigProfile) -> None:
             getattr(plan.limits, name), getattr(profile.limits, name),
             quantity=f"the plan's limits.{name}", unit=unit,
         )  # fmt: skip
+    for key, unit in FURTHER_LIMITS.items():
+        own, rigs = getattr(plan.limits, key), getattr(profile.limits, key)
+        if own is not None and key not in profile.measured:
+            raise ProfileError(
+                f"the plan's limits.{key} is {own:g} {unit}, but no device of the rig "
+                f"'{profile.name}' measures that; take the limit out, or name another rig"
+            )
+        if own is not None and rigs is not None:
+            require_within(own, rigs, quantity=f"the plan's limits.{key}", unit=unit)
     omega = plan.points.omega_leg
     require_within(omega, allowed.speed, quantity="points.omega_leg", unit="rad/s")
     for step in spell_out(plan):

@@ -91,9 +91,19 @@ class CanLink:
         Raises:
             RigTimeout: The bus is there but takes no frame: nobody acknowledges, or it is off.
         """
+        return self._send(can.Message(arbitration_id=can_id, data=data, is_extended_id=False))
+
+    def request(self, can_id: int, length: int) -> bool:
+        """Ask, by a remote frame, for a frame of so many bytes; returns and raises as `write`."""
+        return self._send(
+            can.Message(
+                arbitration_id=can_id, dlc=length, is_remote_frame=True, is_extended_id=False
+            )
+        )
+
+    def _send(self, message: can.Message) -> bool:
         if self._bus is None:
             return False
-        message = can.Message(arbitration_id=can_id, data=data, is_extended_id=False)
         try:
             self._bus.send(message, timeout=WRITE_LIMIT)
         except can.CanError as problem:

@@ -16,6 +16,8 @@ INPUT_VELOCITY: Final = struct.Struct("<ff")
 """Velocity [rev/s] and torque feed-forward [Nm]."""
 AXIS_STATE: Final = struct.Struct("<I")
 CONTROLLER_MODE: Final = struct.Struct("<II")
+TEMPERATURES: Final = struct.Struct("<ff")
+"""Temperature of the drive's transistors and of the motor [degC]; NaN or 0 without a sensor."""
 VELOCITY_CONTROL: Final = 2
 PASS_THROUGH: Final = 1
 
@@ -29,6 +31,7 @@ class Command(IntEnum):
     ENCODER_ESTIMATES = 0x09
     SET_CONTROLLER_MODE = 0x0B
     SET_INPUT_VELOCITY = 0x0D
+    TEMPERATURE = 0x15
     CLEAR_ERRORS = 0x18
 
 

@@ -75,6 +75,26 @@ def decode_forces(profile: LoadCellProfile, samples: Sequence[Sample]) -> Forces
     )
 
 
+def decode_further_loads(
+    profile: LoadCellProfile, samples: Sequence[Sample]
+) -> tuple[Array, Array | None]:
+    """Compute what a load cell feels beside the two forces of the contact.
+
+    Args:
+        profile: Profile of the cell.
+        samples: Its samples.
+
+    Returns:
+        Force on the third axis, shape (n,) [N], and the largest magnitude of the three torques,
+        shape (n,) [N m]; None for the torques where the profile has no scale for them.
+    """
+    counts = np.array([sample.counts for sample in samples], dtype=float).reshape(-1, 6)
+    lateral = counts[:, 3 - profile.normal.index - profile.traction.index]
+    scale = profile.counts_per_torque
+    torque = None if scale is None else np.abs(counts[:, 3:]).max(axis=1) / scale
+    return lateral / profile.counts_per_force, torque
+
+
 def decode_speeds(leg: DiscDrive, ground: DiscDrive, samples: Sequence[Sample]) -> DiscSpeeds:
     """Compute the speeds of both discs at the instants of the leg disc's samples.
 

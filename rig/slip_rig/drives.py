@@ -26,6 +26,7 @@ from rig.slip_rig.can_simple import (
     HEARTBEAT,
     INPUT_VELOCITY,
     PASS_THROUGH,
+    TEMPERATURES,
     VELOCITY_CONTROL,
     AxisState,
     Command,
@@ -35,6 +36,8 @@ from rig.slip_rig.can_simple import (
 )
 from rig.slip_rig.profile import DiscDrive, DriveProfile
 
+TEMPERATURE_INTERVAL: Final = 0.1
+"""Between two questions for the drives' temperatures [s]."""
 HELLO_LIMIT: Final = 1.0
 """How long the heartbeats of both drives may take when the bus is opened [s]."""
 
@@ -50,6 +53,7 @@ class _Axis:
     state: int = 0
     error: int = 0
     pending: list[Sample] = field(default_factory=list)
+    temperatures: list[float] = field(default_factory=list)
 
 
 class DriveBus:
@@ -85,6 +89,7 @@ class DriveBus:
             profile.ground.node: _Axis("ground disc", profile.ground),
         }
         self._feed_at = -math.inf
+        self._ask_at = math.inf
         self._received = 0
         self._refused = 0
 
@@ -121,11 +126,23 @@ class DriveBus:
         end = self._clock.now() + timeout
         while True:
             self._feed()
+            self._ask()
             left = max(end - self._clock.now(), 0.0)
             samples = self._take(min(left, self.profile.feed_interval))
             if samples or left <= 0:
                 # Frames of two drives come in one batch; a log's time never runs back.
                 return sorted(samples, key=lambda sample: sample.host_time)
+
+    def ask_for_temperatures(self) -> None:
+        """Ask both drives for their temperatures from now on, whenever the stream is read."""
+        self._ask_at = -math.inf
+
+    def take_temperatures(self) -> dict[int, list[float]]:
+        """Hand on what the drives answered since the last time, by node [degC]."""
+        taken = {node: axis.temperatures for node, axis in self._axes.items()}
+        for axis in self._axes.values():
+            axis.temperatures = []
+        return taken
 
     def require_healthy(self) -> None:
         """Check both drives.
@@ -211,6 +228,13 @@ class DriveBus:
                 data = INPUT_VELOCITY.pack(axis.velocity, 0.0)
                 self._send(axis, Command.SET_INPUT_VELOCITY, data)
 
+    def _ask(self) -> None:
+        now = self._clock.now()
+        if now >= self._ask_at:
+            self._ask_at = now + TEMPERATURE_INTERVAL
+            for node in self._axes:
+                self._link.request(can_id(node, Command.TEMPERATURE), TEMPERATURES.size)
+
     def _wait(self, holds: Callable[[], bool], timeout: float, problem: str) -> None:
         """Read, keeping the samples for later, until something holds."""
         end = self._clock.now() + timeout
@@ -243,6 +267,10 @@ class DriveBus:
                 axis.error, axis.state = HEARTBEAT.unpack_from(message.data)
             elif command == Command.ENCODER_ESTIMATES:
                 samples += self._estimate(axis, message, now)
+            elif command == Command.TEMPERATURE and message.dlc == TEMPERATURES.size:
+                # A motor without a sensor answers NaN or 0, which the transistors' exceed.
+                known = [t for t in TEMPERATURES.unpack(message.data) if math.isfinite(t)]
+                axis.temperatures += [max(known)] if known else []
         return samples
 
     def _estimate(self, axis: _Axis, message: can.Message, now: float) -> list[Sample]:

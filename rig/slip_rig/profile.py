@@ -10,6 +10,8 @@ from rig.profile import Table, open_profile
 
 AXES: Final = ("x", "y", "z")
 HIGHEST_NODE: Final = 0x3F
+FURTHER_LIMITS: Final = {"lateral_force": "N", "torque": "N m", "temperature_celsius": "degC"}
+"""Limits that a rig need not have, and their units."""
 
 
 @dataclass(frozen=True)
@@ -68,6 +70,7 @@ class LoadCellProfile:
         port: Its UDP port.
         rate: Records in a second, also of its internal numbering [Hz].
         counts_per_force: Counts in 1 N.
+        counts_per_torque: Counts in 1 N m; None where torques are not looked at.
         normal: Where the normal force is found.
         traction: Where the traction force is found.
     """
@@ -76,6 +79,7 @@ class LoadCellProfile:
     port: int
     rate: float
     counts_per_force: float
+    counts_per_torque: float | None
     normal: ForceAxis
     traction: ForceAxis
 
@@ -127,6 +131,16 @@ class RigProfile:
     load_cell: LoadCellProfile | None
     board: BoardProfile | None
 
+    @property
+    def measured(self) -> frozenset[str]:
+        """Name those of `FURTHER_LIMITS` that its devices can tell."""
+        told = {
+            "lateral_force": self.load_cell is not None,
+            "torque": self.load_cell is not None and self.load_cell.counts_per_torque is not None,
+            "temperature_celsius": self.drives is not None,
+        }
+        return frozenset(key for key, known in told.items() if known)
+
 
 def load_rig_profile(name: str) -> RigProfile:
     """Read the profile of a slip rig.
@@ -153,6 +167,7 @@ def load_rig_profile(name: str) -> RigProfile:
             speed=limits.positive("speed"),
             normal_force=limits.positive("normal_force"),
             traction_force=limits.positive("traction_force"),
+            **{key: limits.positive_or_none(key) for key in FURTHER_LIMITS},
         ),
         drives=None if drives.empty else _drives(drives),
         load_cell=None if load_cell.empty else _load_cell(load_cell),
@@ -160,6 +175,9 @@ def load_rig_profile(name: str) -> RigProfile:
     )
     for part in (discs, limits, drives, load_cell, board, table):
         part.finish()
+    for key in FURTHER_LIMITS:
+        if getattr(profile.limits, key) is not None and key not in profile.measured:
+            raise limits.fault("is a limit of something that no device of this rig measures", key)
     return profile
 
 
@@ -192,6 +210,7 @@ def _load_cell(table: Table) -> LoadCellProfile:
         port=table.whole("port", 49_152, least=1, most=65_535),
         rate=table.positive("rate"),
         counts_per_force=table.positive("counts_per_force"),
+        counts_per_torque=table.positive_or_none("counts_per_torque"),
         normal=_axis(table.table("normal")),
         traction=_axis(table.table("traction")),
     )

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Simulated ODrive axes on a CAN bus, watchdog included, that turn the discs of a simulated rig.
 
-Not modelled: currents, temperatures, calibration, and every command this project does not send.
+Not modelled: currents, warming up, calibration, and every command this project does not send.
 """
 
 import math
@@ -15,6 +15,7 @@ from rig.slip_rig.can_simple import (
     ESTIMATES,
     HEARTBEAT,
     INPUT_VELOCITY,
+    TEMPERATURES,
     AxisState,
     Command,
     can_id,
@@ -47,12 +48,16 @@ class SimulatedDrives:
         bus: Their own end of the bus; whoever made it closes it.
         profile: Nodes, gears and signs.
         watchdog: Silence after which an axis stops by itself [s].
+
+    Attributes:
+        temperature: That both transistors have; the motors have no sensor [degC].
     """
 
     def __init__(
         self, rig: SimulatedRig, bus: can.BusABC, *, profile: DriveProfile, watchdog: float = 0.2
     ) -> None:
         self.source = "sim:rig"
+        self.temperature = 30.0
         self._rig = rig
         self._bus = bus
         self._firmware = profile.firmware
@@ -82,7 +87,9 @@ class SimulatedDrives:
         """Obey what is on the bus, watch the dog, and send what is due up to a time [s]."""
         while (message := self._bus.recv(0.0)) is not None:
             node, command = split_id(message.arbitration_id)
-            if node in self._axes:
+            if node in self._axes and message.is_remote_frame:
+                self._answer(self._axes[node], command, now)
+            elif node in self._axes:
                 self._obey(self._axes[node], command, bytes(message.data), now)
         for axis in self._axes.values():
             if axis.state == AxisState.CLOSED_LOOP and now - axis.fed > self._watchdog:
@@ -108,6 +115,11 @@ class SimulatedDrives:
     def _send(self, axis: _Axis, command: Command, data: bytes) -> None:
         arbitration_id = can_id(axis.place.node, command)
         self._bus.send(can.Message(arbitration_id=arbitration_id, data=data, is_extended_id=False))
+
+    def _answer(self, axis: _Axis, command: int, now: float) -> None:
+        axis.fed = now
+        if command == Command.TEMPERATURE:
+            self._send(axis, Command.TEMPERATURE, TEMPERATURES.pack(self.temperature, math.nan))
 
     def _obey(self, axis: _Axis, command: int, data: bytes, now: float) -> None:
         axis.fed = now  # any message to an axis feeds its watchdog

@@ -32,6 +32,9 @@ class SimulatedLoadCell:
         host: Loopback address.
         port: Port that the system gave.
         sent: Records sent so far, dropped ones counted.
+        status: Status word of its records.
+        lateral_force: On the third axis, which the rig does not load [N].
+        torque: About each axis [N m].
     """
 
     def __init__(
@@ -47,6 +50,8 @@ class SimulatedLoadCell:
         self.port = 0
         self.sent = 0
         self.status = 0
+        self.lateral_force = 0.0
+        self.torque = 0.0
         self._rig = rig
         self._profile = profile
         self._faults = faults
@@ -93,6 +98,10 @@ class SimulatedLoadCell:
         """Read the rig, shape (n, 6) [counts]."""
         normal, traction = self._rig.forces(readings / self._profile.rate)
         counts = np.zeros((len(readings), 6))
+        counts[:, 3 - self._profile.normal.index - self._profile.traction.index] = (
+            self.lateral_force * self._profile.counts_per_force
+        )
+        counts[:, 3:] = self.torque * (self._profile.counts_per_torque or 0.0)
         for axis, force in ((self._profile.normal, normal), (self._profile.traction, traction)):
             counts[:, axis.index] += axis.sign * force * self._profile.counts_per_force
         return np.clip(np.rint(counts), -INT32, INT32).astype(np.int64)

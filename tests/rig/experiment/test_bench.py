@@ -81,7 +81,7 @@ def test_forces_and_speeds_are_lined_up(lab, monkeypatch):
         t = np.concatenate([part.t for part in parts])
         assert slip.mean() == pytest.approx(0.2, abs=0.01)
         assert len(t) > 100
-        assert np.all(np.diff(t) > 0)
+        assert np.all(np.diff(t) >= 0)
         assert drives.turning()
 
 
@@ -109,6 +109,38 @@ def test_a_saturated_load_cell_stops_the_discs(lab, monkeypatch):
     with turning(lab, monkeypatch) as (acquire, _, drives, cell):
         cell.status = SATURATED
         with pytest.raises(DeviceFault, match="transducer saturated"):
+            acquire.until(lambda _: False, 3.0)
+        assert stands(drives)
+
+
+@pytest.mark.parametrize(
+    ("limits", "name", "said"),
+    [
+        ({"lateral_force": 2.0}, "lateral_force", "third axis is 3 N; its limit is 2 N"),
+        ({"torque": 2.0}, "torque", "torque on the load cell is 3 N m; its limit is 2 N m"),
+    ],
+)
+def test_what_the_cell_feels_beside_the_contact_is_guarded(lab, monkeypatch, limits, name, said):
+    with turning(lab, monkeypatch, **limits) as (acquire, _, drives, cell):
+        setattr(cell, name, 3.0)
+        with pytest.raises(LimitExceeded, match=said):
+            acquire.until(lambda _: False, 3.0)
+        assert stands(drives)
+
+
+def test_a_hot_drive_stops_the_discs(lab, monkeypatch):
+    with turning(lab, monkeypatch, temperature_celsius=80.0) as (acquire, _, drives, _):
+        assert not acquire.until(lambda _: False, 0.3)
+        drives.temperature = 81.5
+        with pytest.raises(LimitExceeded, match=r"a drive or its motor is 81.5 degC; .* 80 degC"):
+            acquire.until(lambda _: False, 3.0)
+        assert stands(drives)
+
+
+def test_a_temperature_that_is_limited_must_be_told(lab, monkeypatch):
+    with turning(lab, monkeypatch, temperature_celsius=80.0) as (acquire, _, drives, _):
+        drives.temperature = float("nan")
+        with pytest.raises(RigTimeout, match="temperature of the leg drive' sent nothing within"):
             acquire.until(lambda _: False, 3.0)
         assert stands(drives)
 
@@ -188,3 +220,10 @@ def test_device_time_undoes_batches_and_survives_a_restart():
     np.testing.assert_allclose(clock.map(late), [10.03])
     anew = [Sample(20.0, 0.0, 0, ())]
     np.testing.assert_allclose(clock.map(anew), [20.0])
+
+
+def test_time_never_runs_back_where_a_quicker_sample_corrects_it():
+    clock = HostTime()
+    clock.map([Sample(10.05, 1.0, 0, ()), Sample(10.06, 1.01, 1, ())])  # 50 ms underway
+    quick = clock.map([Sample(10.02, 1.02, 2, ()), Sample(10.10, 1.10, 3, ())])
+    np.testing.assert_allclose(quick, [10.06, 10.10])

@@ -94,6 +94,13 @@ def test_a_plan_beyond_a_limit_is_refused_before_motion(lab, changes, said):
     assert twin.sink.events == []
 
 
+def test_a_limit_on_what_the_rig_cannot_measure_is_refused_before_motion(lab):
+    twin = lab["twin"]()  # a board's, which tells no temperature
+    with pytest.raises(ProfileError, match=r"temperature_celsius is 80 degC, but no device"):
+        twin.run(lab["plan"](limits={"temperature_celsius": 80.0}))
+    assert twin.sink.events == []
+
+
 @pytest.mark.parametrize(
     ("changes", "said"),
     [

@@ -21,6 +21,7 @@ from rig.slip_rig.can_simple import (
     ESTIMATES,
     HEARTBEAT,
     INPUT_VELOCITY,
+    TEMPERATURES,
     Command,
     can_id,
     describe_error,
@@ -180,4 +181,8 @@ def test_the_shipped_dbc_agrees_with_the_layouts():
     assert decode(Command.SET_CONTROLLER_MODE, CONTROLLER_MODE.pack(2, 1)) == {
         "ControlMode": 2,
         "InputMode": 1,
+    }
+    assert decode(Command.TEMPERATURE, TEMPERATURES.pack(41.5, 30.25)) == {
+        "TransistorTemperature": 41.5,
+        "MotorTemperature": 30.25,
     }

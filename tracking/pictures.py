@@ -50,7 +50,7 @@ def draw_overlay(
 
 def rectify_floor(
     pixels: NDArray[np.uint8], camera: Camera, view: CameraPose, *, low: ArrayLike,
-    high: ArrayLike, pixels_per_metre: float,
+    high: ArrayLike, pixels_per_metre: float, height: float = 0.0,
 ) -> NDArray[np.uint8]:  # fmt: skip
     """Draw the floor as seen from straight above, x to the right and y up.
 
@@ -61,6 +61,7 @@ def rectify_floor(
         low: Lowest x and y shown, shape (2,) [m].
         high: Highest x and y shown, shape (2,) [m].
         pixels_per_metre: Scale [px/m].
+        height: Height of the plane that is drawn where it is; what is above or below leans [m].
 
     Returns:
         BGR picture; black where the photograph shows nothing.
@@ -68,7 +69,7 @@ def rectify_floor(
     (x0, y0), (x1, y1) = np.asarray(low, dtype=float), np.asarray(high, dtype=float)
     step = 1.0 / pixels_per_metre
     xx, yy = np.meshgrid(np.arange(x0, x1, step), np.arange(y1, y0, -step))
-    world = np.stack((xx, yy, np.zeros_like(xx)), axis=-1).reshape(-1, 3)
+    world = np.stack((xx, yy, np.full_like(xx, height)), axis=-1).reshape(-1, 3)
     seen = project(camera, view, world).reshape(*xx.shape, 2)
     return np.clip(np.round(sample(pixels, seen)), 0, 255).astype(np.uint8)
 

@@ -14,20 +14,31 @@ from model.metrics.consistency import FEWEST_DRAWS, Consistency, consistency
 from model.metrics.path_errors import PathErrors, path_errors
 from model.metrics.poses import Poses, overlap
 from model.metrics.scores import EnsembleScores, ensemble_scores, with_tracker_noise
+from model.metrics.tilt import TiltErrors, tilt_errors
 from model.predict import anchored, states_at
 from model.robot import Robot
 from model.slip.law import Array
 from model.walk.ensemble import PathEnsemble
+from model.walk.path import WalkPath
 from zebro_lab.errors import DataError, SettingsError
 from zebro_lab.path_band import read_draws
+from zebro_lab.recorded_tilt import Tilt
 from zebro_lab.slip_argument import parse_slip
 from zebro_lab.track_file import TrackFile, read_poses
 from zebro_lab.walk_folder import DRAWS, MANIFEST, PATH_CSV, read_walk, read_walk_manifest
-from zebro_lab.walk_models import MODELS, ModelRun
+from zebro_lab.walk_models import MODELS, Direction, ModelRun
 
 PREDICTION = "prediction"
 STAND_STILL = "stand still"
 BASELINES = ("no-slip-simple", "no-slip", "thesis")
+
+
+@dataclass(frozen=True)
+class WalkedPath:
+    """The single path of a walk folder with all that the model says of it, and its robot."""
+
+    path: WalkPath
+    robot: Robot
 
 
 @dataclass(frozen=True)
@@ -42,6 +53,7 @@ class Prediction:
         source: Where it comes from.
         files: Files that were read.
         notes: For a person, one line each.
+        walk: The single path with roll, pitch, legs and robot; None where it is a bare table.
     """
 
     path: Poses
@@ -50,6 +62,7 @@ class Prediction:
     source: str
     files: tuple[Path, ...]
     notes: tuple[str, ...] = ()
+    walk: WalkedPath | None = None
 
 
 @dataclass(frozen=True)
@@ -72,6 +85,23 @@ class Judged:
 
 
 @dataclass(frozen=True)
+class TiltJudged:
+    """Roll and pitch against an IMU's.
+
+    Attributes:
+        errors: How far they are apart.
+        t: Times compared, shape (n,) [s].
+        predicted: Roll and pitch of the prediction, shape (n, 2) [rad].
+        measured: The IMU's, shape (n, 2) [rad].
+    """
+
+    errors: TiltErrors
+    t: Array
+    predicted: Array
+    measured: Array
+
+
+@dataclass(frozen=True)
 class RunJudged:
     """A walk's prediction and baselines, judged.
 
@@ -81,6 +111,7 @@ class RunJudged:
         rows: The prediction first, then the baselines.
         band: The ensemble as it was judged; None for a path alone.
         notes: For a person, one line each.
+        tilt: Roll and pitch against the IMU's; None where the run has none.
     """
 
     name: str
@@ -88,6 +119,7 @@ class RunJudged:
     rows: tuple[Judged, ...]
     band: PathEnsemble | None
     notes: tuple[str, ...]
+    tilt: TiltJudged | None = None
 
 
 def read_prediction(path: Path) -> Prediction:
@@ -105,7 +137,8 @@ def read_prediction(path: Path) -> Prediction:
     manifest = read_walk_manifest(folder)
     has_draws = (folder / DRAWS).is_file()
     draws = read_draws(folder) if has_draws else None
-    baselines, notes = _baselines(folder, manifest)
+    walk = WalkedPath(read_walk(folder), _robot(manifest))
+    baselines, notes = _baselines(walk, manifest)
     return Prediction(
         poses,
         draws,
@@ -113,6 +146,7 @@ def read_prediction(path: Path) -> Prediction:
         str(manifest.get("source", "unknown")),
         (file, *([folder / DRAWS] if has_draws else [])),
         (*notes, *(() if has_draws else ("no draws: predict with --draws 500 for a band",))),
+        walk,
     )
 
 
@@ -207,13 +241,23 @@ def _still(seen: Poses) -> PathEnsemble:
     return PathEnsemble(seen.t, position, np.full((1, n), seen.yaw[0]))
 
 
-def _baselines(
-    folder: Path, manifest: Mapping[str, Any]
-) -> tuple[dict[str, Poses], tuple[str, ...]]:
-    """Walk the leg angles of a walk folder by every simpler model."""
-    walk = read_walk(folder)
+def judge_tilt(walk: WalkedPath, measured: Tilt) -> TiltJudged:
+    """Compare roll and pitch of a walk with an IMU's; both keep the run's clock.
+
+    Raises:
+        InsufficientData: They share too little time.
+    """
+    path = walk.path
+    errors, inside = tilt_errors(path.t, path.orientation[:, :2], measured.t, measured.angles)
+    t = measured.t[inside]
+    predicted = np.column_stack([np.interp(t, path.t, a) for a in path.orientation[:, :2].T])
+    return TiltJudged(errors, t, predicted, measured.angles[inside])
+
+
+def _robot(manifest: Mapping[str, Any]) -> Robot:
+    """Read the robot without leg offsets: the angles of a walked path are true ones already."""
     described = manifest["settings"]["robot"]
-    robot = Robot(
+    return Robot(
         hips=np.array(described["hips"]),
         leg_radius=described["leg_radius"],
         leg_arc=described["leg_arc"],
@@ -221,9 +265,33 @@ def _baselines(
         body_size=tuple(described["body_size"]),
         inertia=tuple(described["inertia"]),
     )
+
+
+def _baselines(
+    walked: WalkedPath, manifest: Mapping[str, Any]
+) -> tuple[dict[str, Poses], tuple[str, ...]]:
+    """Walk the leg angles of a walk folder by every simpler model."""
+    walk, robot = walked.path, walked.robot
     reference = SampledReference(walk.t - walk.t[0], walk.theta)
-    duration = float(walk.t[-1] - walk.t[0])
     direction = manifest["settings"].get("direction", "left")
+    return walk_baselines(robot, reference, direction=direction, start=float(walk.t[0]))
+
+
+def walk_baselines(
+    robot: Robot, reference: SampledReference, *, direction: Direction = "left", start: float = 0.0
+) -> tuple[dict[str, Poses], tuple[str, ...]]:
+    """Walk leg angles by every simpler model.
+
+    Args:
+        robot: The robot.
+        reference: True leg angles from time zero on; all of them are walked.
+        direction: Side the gait turns to; only the source's model asks.
+        start: Added to the paths' times [s].
+
+    Returns:
+        Paths by the models' names, and what to tell a person of those that cannot walk.
+    """
+    duration = float(reference.t[-1])
     paths, notes = {}, []
     for name in BASELINES:
         model = MODELS[name]
@@ -234,5 +302,5 @@ def _baselines(
         except WalkError as error:
             notes.append(f"baseline '{name}' cannot walk these leg angles: {error}")
             continue
-        paths[name] = Poses(path.t + walk.t[0], path.position[:, :2], path.yaw)
+        paths[name] = Poses(path.t + start, path.position[:, :2], path.yaw)
     return paths, tuple(notes)

@@ -16,7 +16,8 @@ from zebro_lab.atomic import atomic_folder
 from zebro_lab.errors import AlreadyExists
 from zebro_lab.provenance import file_hash, software
 from zebro_lab.track_file import tum_lines
-from zebro_lab.validation import Judged, RunJudged
+from zebro_lab.validation import Judged, RunJudged, TiltJudged
+from zebro_lab.validation_pictures import Judgement, draw_validation
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -97,6 +98,15 @@ def _band_metrics(judged: Judged) -> dict[str, float]:
     return row
 
 
+def tilt_metrics(tilt: TiltJudged) -> dict[str, float]:
+    """Return errors of roll and pitch by name, in degrees."""
+    errors, row = tilt.errors, {"samples": float(tilt.errors.samples)}
+    for i, angle in enumerate(("roll", "pitch")):
+        for name in ("bias", "rms", "rms_unbiased", "swing"):
+            row[f"{angle}_{name}_deg"] = float(np.degrees(getattr(errors, name)[i]))
+    return row
+
+
 def summarise_runs(runs: Sequence[RunJudged], *, rng: np.random.Generator) -> list[Summary]:
     """Average metrics over runs, with intervals from drawing whole runs again; none of one run."""
     summaries = []
@@ -114,7 +124,7 @@ def summarise_runs(runs: Sequence[RunJudged], *, rng: np.random.Generator) -> li
 
 def write_validation(
     out: Path,
-    runs: Sequence[RunJudged],
+    judgements: Sequence[Judgement],
     *,
     summary: Sequence[Summary],
     settings: Mapping[str, object],
@@ -125,7 +135,7 @@ def write_validation(
 
     Args:
         out: Folder to make or to renew.
-        runs: What was judged.
+        judgements: What was judged.
         summary: Means over runs.
         settings: What was asked, as JSON can hold it.
         inputs: SHA-256 of each file that was read.
@@ -135,15 +145,21 @@ def write_validation(
         AlreadyExists: `out` is a file, or holds the result of another command.
     """
     _require_ours(out)
+    runs = [each.run for each in judgements]
     with atomic_folder(out, replaces=OWNED, marker=MANIFEST) as draft:
         _write_tables(draft, runs)
-        _draw(draft, runs, simulated="sim:" in source)
+        notes = [f"{run.name}: {note}" for run in runs for note in run.notes]
+        for each in judgements:
+            undrawn = draw_validation(draft, each, simulated="sim:" in source)
+            notes += [f"{each.run.name}: {why}" for why in undrawn]
         content = {
             "schema": SCHEMA,
             "kind": KIND,
             "source": source,
             "settings": settings,
             "runs": {run.name: {row.name: metrics(row) for row in run.rows} for run in runs},
+            "imu": {run.name: tilt_metrics(run.tilt) for run in runs if run.tilt is not None},
+            "notes": notes,
             "over_runs": [
                 {"model": s.model, "metric": s.metric, **s.interval._asdict()} for s in summary
             ],
@@ -176,18 +192,6 @@ def _write_tables(draft: Path, runs: Sequence[RunJudged]) -> None:
 
 def _to_csv(table: "pd.DataFrame", file: Path) -> None:
     table.to_csv(file, index=False, float_format="%.8g", lineterminator="\n")
-
-
-def _draw(draft: Path, runs: Sequence[RunJudged], *, simulated: bool) -> None:
-    from zebro_lab.plots import save
-    from zebro_lab.plots.path_validation import path_validation
-
-    for run in runs:
-        rows = {row.name: row.path for row in run.rows}
-        figure = path_validation(
-            rows, run.track, band=run.band, title=run.name, simulated=simulated
-        )
-        save(figure, draft / f"{run.name}.png")
 
 
 def _plain(value: object) -> object:

@@ -13,6 +13,8 @@ from zebro_lab.cli.errors import run
 from zebro_lab.cli.import_files import EPILOG as IMPORT_EPILOG
 from zebro_lab.cli.import_files import import_files
 from zebro_lab.cli.init import init
+from zebro_lab.cli.plot import EPILOG as PLOT_EPILOG
+from zebro_lab.cli.plot import plot
 from zebro_lab.cli.predict import EPILOG as PREDICT_EPILOG
 from zebro_lab.cli.predict import predict
 from zebro_lab.cli.record import EPILOG as RECORD_EPILOG
@@ -45,6 +47,7 @@ app.command(epilog=REPORT_EPILOG)(report)
 app.command(epilog=RECORD_EPILOG)(record)
 app.command("import", epilog=IMPORT_EPILOG)(import_files)
 app.command()(runs)
+app.command(epilog=PLOT_EPILOG)(plot)
 app.command()(exclude)
 app.command()(export)
 app.command(epilog=TRACK_EPILOG)(track)

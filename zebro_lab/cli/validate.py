@@ -86,7 +86,7 @@ def print_validated(console: "Console", validated: "Validated", out: Path) -> No
         console.print(Text(f"SIMULATED: {validated.source}"))
     for run in validated.runs:
         console.print(_table(run))
-        for line in (*_verdict(run), *run.notes):
+        for line in (*_verdict(run), *_tilt(run), *run.notes):
             console.print(Text(line))
     for each in validated.summary:
         mean, low, high = each.interval
@@ -120,6 +120,22 @@ def _table(run: "RunJudged") -> "Table":
         )  # fmt: skip
     table.add_row("track", *[""] * 7, f"{run.rows[0].errors.radius[1]:.3f}", "")
     return table
+
+
+def _tilt(run: "RunJudged") -> list[str]:
+    """Say how roll and pitch compare with the IMU's."""
+    import numpy as np
+
+    if run.tilt is None:
+        return []
+    errors = run.tilt.errors
+    return [
+        f"{name}: {rms:.2f} deg rms off the IMU's, of a swing of {swing:.2f}; bias {bias:+.2f} deg"
+        for name, rms, swing, bias in zip(
+            ("roll", "pitch"), np.degrees(errors.rms_unbiased), np.degrees(errors.swing),
+            np.degrees(errors.bias), strict=True,
+        )
+    ]  # fmt: skip
 
 
 def _verdict(run: "RunJudged") -> list[str]:

@@ -2,17 +2,29 @@
 """Predictions and tracks in, validation folder out."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 
-from zebro_lab.errors import NotFound, SettingsError
+from model.errors import InsufficientData
+from zebro_lab.errors import DataError, NotFound, SettingsError
 from zebro_lab.provenance import file_hashes
+from zebro_lab.recorded_legs import is_recorded
+from zebro_lab.recorded_tilt import read_recorded_tilt
 from zebro_lab.track_file import read_track
 from zebro_lab.track_folder import TRACK_CSV
-from zebro_lab.validation import PREDICTION, RunJudged, judge_run, read_prediction
+from zebro_lab.tracked_photos import photos_of_track
+from zebro_lab.validation import (
+    PREDICTION,
+    Prediction,
+    RunJudged,
+    judge_run,
+    judge_tilt,
+    read_prediction,
+)
 from zebro_lab.validation_folder import Summary, summarise_runs, write_validation
+from zebro_lab.validation_pictures import Judgement
 from zebro_lab.walk_folder import PATH_CSV
 from zebro_lab.walking import Watcher
 
@@ -77,7 +89,7 @@ def validate(request: ValidateRequest, watcher: Watcher) -> Validated:
     if not request.pairs:
         raise SettingsError("missing: nothing to validate", key="--predicted, --track")
     rng = np.random.default_rng(request.seed)
-    runs, files, sources = [], [], []
+    judgements, files, sources = [], [], []
     names = _names([predicted for predicted, _ in request.pairs])
     for i, (name, (predicted, tracked)) in enumerate(zip(names, request.pairs, strict=True)):
         watcher.step("judging", i / len(names))
@@ -86,14 +98,16 @@ def validate(request: ValidateRequest, watcher: Watcher) -> Validated:
             name, prediction, track,
             anchor=request.anchor, time_offset=request.time_offset, rng=rng,
         )  # fmt: skip
-        runs.append(judged)
-        files += [*prediction.files, track.file]
+        judgement, read = _with_surroundings(judged, prediction, tracked, request)
+        judgements.append(judgement)
+        files += [*prediction.files, track.file, *read]
         sources += [prediction.source, track.source]
+    runs = [each.run for each in judgements]
     summary = tuple(summarise_runs(runs, rng=rng)) if len(runs) > 1 else ()
     source = ", ".join(sorted(set(sources)))
     write_validation(
         request.out,
-        runs,
+        judgements,
         summary=summary,
         settings={
             "anchor": request.anchor, "time_offset": request.time_offset, "seed": request.seed,
@@ -102,6 +116,27 @@ def validate(request: ValidateRequest, watcher: Watcher) -> Validated:
         source=source,
     )  # fmt: skip
     return Validated(tuple(runs), summary, source)
+
+
+def _with_surroundings(
+    judged: RunJudged, prediction: Prediction, tracked: Path, request: ValidateRequest
+) -> tuple[Judgement, tuple[Path, ...]]:
+    """Add what else a run knows: its IMU, and the photographs of its track; return files read."""
+    notes, files, photos = list(judged.notes), (), None
+    run = tracked.parent if tracked.name == TRACK else None
+    measured = read_recorded_tilt(run) if run is not None and is_recorded(run) else None
+    if measured is not None and prediction.walk is not None:
+        try:
+            judged = replace(judged, tilt=judge_tilt(prediction.walk, measured))
+            files = measured.files
+        except InsufficientData as error:
+            notes.append(f"roll and pitch are not compared: {error}")
+    try:
+        photos = photos_of_track(tracked)
+    except (NotFound, DataError) as error:
+        notes.append(f"photographs are not shown: {error}")
+    judged = replace(judged, notes=tuple(notes))
+    return Judgement(judged, prediction, photos, request.time_offset), files
 
 
 def _names(paths: Sequence[Path]) -> list[str]:

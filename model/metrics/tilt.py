@@ -1,0 +1,67 @@
+# SPDX-License-Identifier: MIT
+"""Roll and pitch of a walk against an IMU's."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from model.errors import InsufficientData
+from model.slip.law import Array
+
+FEWEST = 10  # samples both must have
+
+
+@dataclass(frozen=True)
+class TiltErrors:
+    """Predicted minus measured roll and pitch; each array is of shape (2,), roll first [rad].
+
+    Attributes:
+        samples: Samples compared.
+        bias: Mean difference: how the unit is mounted, as much as what the model gets wrong.
+        rms: Root mean square difference, bias included.
+        rms_unbiased: The same about the mean difference.
+        swing: Root mean square of what was measured, about its mean: what there is to predict.
+    """
+
+    samples: int
+    bias: Array
+    rms: Array
+    rms_unbiased: Array
+    swing: Array
+
+
+def tilt_errors(
+    t: Array, predicted: Array, measured_t: Array, measured: Array
+) -> tuple[TiltErrors, NDArray[np.bool_]]:
+    """Compare roll and pitch at the times of measurements that lie within the walk.
+
+    Args:
+        t: Times of the walk, increasing, shape (n,) [s].
+        predicted: Its roll and pitch, shape (n, 2) [rad].
+        measured_t: Times of the measurements, shape (m,) [s].
+        measured: Roll and pitch measured, shape (m, 2) [rad].
+
+    Returns:
+        The errors, and which measurements were compared, shape (m,).
+
+    Raises:
+        InsufficientData: Walk and measurements share too little time.
+    """
+    inside = (measured_t >= t[0]) & (measured_t <= t[-1])
+    if inside.sum() < FEWEST:
+        raise InsufficientData(
+            f"{inside.sum()} of {len(measured_t)} measurements lie within the walk's {t[0]:g} to "
+            f"{t[-1]:g} s; {FEWEST} are needed: do both keep the same clock?"
+        )
+    at = measured_t[inside]
+    said = np.column_stack([np.interp(at, t, column) for column in predicted.T])
+    difference = said - measured[inside]
+    bias = difference.mean(axis=0)
+    return TiltErrors(
+        samples=int(inside.sum()),
+        bias=bias,
+        rms=np.sqrt(np.mean(difference**2, axis=0)),
+        rms_unbiased=difference.std(axis=0),
+        swing=measured[inside].std(axis=0),
+    ), inside

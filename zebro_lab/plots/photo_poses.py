@@ -1,0 +1,143 @@
+# SPDX-License-Identifier: MIT
+"""Photographs from above beside the robot drawn where it was predicted (Fig. 5-3, 5-24, 5-25)."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+from model.metrics.poses import Poses
+from model.robot import Robot
+from model.slip.law import Array
+from model.walk.ensemble import PathEnsemble
+from zebro_lab.plots.sheet import BLUE, RED, legend_below, new_figure, styled
+from zebro_lab.plots.walk_robot import leg_arcs, outline, to_world
+
+_COLUMN = 2.6  # inches
+_IN_AIR = "0.55"
+_SHOWN_DRAWS = 60
+
+
+@dataclass(frozen=True)
+class Shot:
+    """A photograph and the predicted robot at one instant.
+
+    Attributes:
+        t: The instant [s].
+        picture: The photograph from above, BGR.
+        extent: Lowest x, highest x, lowest y, highest y of it [m].
+        tracked: Tracked x, y [m] and yaw [rad], shape (3,).
+        position: Predicted position of the body's centre, shape (3,) [m].
+        orientation: Predicted roll, pitch and yaw, shape (3,) [rad].
+        theta: Leg angles, shape (6,) [rad].
+        contact: Legs on the ground, shape (6,).
+    """
+
+    t: float
+    picture: NDArray[np.uint8]
+    extent: tuple[float, float, float, float]
+    tracked: Array
+    position: Array
+    orientation: Array
+    theta: Array
+    contact: NDArray[np.bool_]
+
+
+@styled
+def photos_beside_poses(
+    shots: Sequence[Shot], robot: Robot, *, title: str, simulated_photos: bool
+) -> Figure:
+    """Draw each photograph over the robot as predicted at the same instant, same place and scale.
+
+    Args:
+        shots: Photographs and predicted poses.
+        robot: The robot.
+        title: Name of the walk.
+        simulated_photos: Say that the photographs are simulated too; predictions always are.
+
+    Returns:
+        The figure: photographs above, predicted robots below, with the tracked outline.
+    """
+    figure = new_figure(
+        f"Photographs and predicted poses: {title}", False,
+        width=_COLUMN * len(shots) + 0.6, height=2 * _COLUMN + 1.2,
+    )  # fmt: skip
+    panels = figure.subplots(2, len(shots), squeeze=False)
+    taken = "simulated photograph" if simulated_photos else "photograph"
+    for (above, below), shot in zip(panels.T, shots, strict=True):
+        above.imshow(shot.picture[:, :, ::-1], extent=shot.extent, interpolation="antialiased")
+        above.set_title(f"t = {shot.t:.2f} s", loc="left")
+        _draw_robot(below, shot, robot)
+        off = 1e3 * np.linalg.norm(shot.position[:2] - shot.tracked[:2])
+        turned = np.degrees(np.angle(np.exp(1j * (shot.orientation[2] - shot.tracked[2]))))
+        below.set_title(f"{off:.0f} mm, {turned:+.1f} deg off", loc="left")
+        for axes in (above, below):
+            axes.set(xlim=shot.extent[:2], ylim=shot.extent[2:], aspect="equal")
+            axes.tick_params(labelsize=7)
+        below.set_xlabel("x [m]")
+    panels[0, 0].set_ylabel(f"{taken}\ny [m]")
+    panels[1, 0].set_ylabel("predicted (simulated)\ny [m]")
+    legend_below(figure, columns=4)
+    return figure
+
+
+def _draw_robot(axes: Axes, shot: Shot, robot: Robot) -> None:
+    body = to_world(outline(robot), shot.position, shot.orientation)
+    legs = to_world(leg_arcs(robot, shot.theta), shot.position, shot.orientation)
+    for leg, stands in zip(legs, shot.contact, strict=True):
+        colour, label = (RED, "leg on the ground") if stands else (_IN_AIR, "leg in the air")
+        axes.plot(*leg[:, :2].T, color=colour, lw=3.0, solid_capstyle="butt", label=label)
+    axes.fill(*body[:, :2].T, facecolor=BLUE, alpha=0.3, lw=0)
+    axes.plot(*body[:, :2].T, color=BLUE, lw=1.2, label="predicted body")
+    x, y, yaw = shot.tracked
+    seen = to_world(outline(robot), np.array([x, y, 0.0]), np.array([0.0, 0.0, yaw]))
+    axes.plot(*seen[:, :2].T, color="black", ls="--", lw=1.0, label="tracked body")
+    axes.grid(color="0.9", lw=0.6)
+    axes.set_axisbelow(True)
+
+
+@styled
+def band_over_floor(
+    floor: NDArray[np.uint8],
+    *,
+    extent: tuple[float, float, float, float],
+    path: Poses,
+    band: PathEnsemble | None,
+    track: Poses,
+    title: str,
+    simulated_photos: bool,
+) -> Figure:
+    """Draw the predicted path with its draws, and the track, over a photograph from above.
+
+    Args:
+        floor: The floor from straight above, BGR.
+        extent: Lowest x, highest x, lowest y, highest y of it [m].
+        path: The predicted path, in the floor's frame.
+        band: Its draws; None where there are none.
+        track: The tracked poses.
+        title: Name of the walk.
+        simulated_photos: Say that the photograph is simulated too; predictions always are.
+
+    Returns:
+        The figure, x to the right and y up, both to one scale.
+    """
+    width, height = extent[1] - extent[0], extent[3] - extent[2]
+    scale = min(8.5 / width, 7.5 / height)
+    kind = "simulated prediction and photograph" if simulated_photos else "simulated prediction"
+    figure = new_figure(
+        f"Predicted and tracked path: {title} ({kind})", False,
+        width=max(scale * width, 5.0) + 0.8, height=scale * height + 1.3,
+    )  # fmt: skip
+    axes = figure.add_subplot()
+    # Paler than the photograph: the paths are the figure, the floor its paper.
+    axes.imshow(floor[:, :, ::-1], extent=extent, interpolation="antialiased", alpha=0.55)
+    for i, position in enumerate(band.position[:_SHOWN_DRAWS] if band is not None else ()):
+        axes.plot(*position.T, color=BLUE, lw=0.5, alpha=0.25, label="draws" if i == 0 else None)
+    axes.plot(*path.position.T, color="black", lw=1.4, label="predicted path")
+    axes.plot(*track.position.T, ls="none", marker="o", ms=4, color=RED, label="track")
+    axes.set(xlabel="x [m]", ylabel="y [m]", xlim=extent[:2], ylim=extent[2:], aspect="equal")
+    legend_below(figure, columns=3)
+    return figure

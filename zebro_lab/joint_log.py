@@ -1,16 +1,15 @@
 # SPDX-License-Identifier: MIT
 """Joint angles of a ROS 2 log in MCAP, as a table like any other."""
 
-from collections.abc import Iterator
 from pathlib import Path
-from typing import IO, Any, Final
+from typing import Any, Final
 
 import numpy as np
 
 from zebro_lab.columns import nearest
-from zebro_lab.errors import DataError, NotFound
-from zebro_lab.raw_log import DAMAGES_HINT, log_damages
+from zebro_lab.errors import DataError
 from zebro_lab.raw_table import RawTable
+from zebro_lab.ros_log import read_messages
 from zebro_lab.ros_messages import JOINT_STATE
 
 NANOSECOND: Final = 1e-9
@@ -31,48 +30,16 @@ def read_joint_log(path: Path, *, topic: str | None = None) -> RawTable:
         NotFound: There is no such file.
         DataError: It is no MCAP, or holds no joint states on one topic.
     """
-    from mcap.exceptions import InvalidMagic
-
+    messages, damage = read_messages(path, schema=JOINT_STATE.name)
     rows: dict[str, list[tuple[float, dict[str, float]]]] = {}
-    damage = None
-    try:
-        with path.open("rb") as file:
-            for found, stamp, joints in _joint_states(file):
-                rows.setdefault(found, []).append((stamp, joints))
-    except FileNotFoundError as error:
-        raise NotFound(f"{path}: no such file") from error
-    except InvalidMagic as error:
-        raise DataError("is no MCAP file", file=path) from error
-    except log_damages() as error:
-        damage = str(error) or DAMAGES_HINT
+    for topic_found, log_time, state in messages:
+        stamp = state.header.stamp.sec + NANOSECOND * state.header.stamp.nanosec
+        joints = dict(zip(state.name, state.position, strict=False))  # it may tell speeds only
+        if joints:
+            rows.setdefault(topic_found, []).append((stamp or NANOSECOND * log_time, joints))
     chosen = _chosen(rows, topic, path)
     notes = () if damage is None else (f"{path.name}: is cut short ({damage})",)
     return _table(path, rows[chosen], notes)
-
-
-def _joint_states(file: IO[bytes]) -> Iterator[tuple[str, float, dict[str, float]]]:
-    from mcap.records import Channel, Message, Schema
-    from mcap.stream_reader import StreamReader
-    from mcap_ros2.decoder import DecoderFactory
-
-    factory, schemas = DecoderFactory(), {}
-    decoders: dict[int, tuple[str, Any]] = {}
-    for record in StreamReader(file, validate_crcs=True).records:
-        if isinstance(record, Schema):
-            schemas[record.id] = record
-        elif isinstance(record, Channel) and record.id not in decoders:
-            schema = schemas.get(record.schema_id)
-            if schema is not None and schema.name == JOINT_STATE.name:
-                decode = factory.decoder_for(record.message_encoding, schema)
-                if decode is not None:
-                    decoders[record.id] = (record.topic, decode)
-        elif isinstance(record, Message) and record.channel_id in decoders:
-            topic, decode = decoders[record.channel_id]
-            state = decode(record.data)
-            stamp = state.header.stamp.sec + NANOSECOND * state.header.stamp.nanosec
-            joints = dict(zip(state.name, state.position, strict=False))  # it may tell speeds only
-            if joints:
-                yield topic, stamp or NANOSECOND * record.log_time, joints
 
 
 def _chosen(rows: dict[str, Any], topic: str | None, path: Path) -> str:

@@ -60,7 +60,7 @@ def derive_table(
 
 def _of_board(profile: BoardProfile, board: RawStream) -> Array:
     columns = []
-    for piece in _pieces(board):
+    for piece in pieces(board):
         forces, speeds = decode_board(profile, piece.samples())
         columns.append((speeds.leg, speeds.ground, forces.normal, forces.traction))
     return np.vstack([sample_times(board), np.hstack(columns)])
@@ -70,7 +70,7 @@ def _of_two(
     drives: DriveProfile, cell: LoadCellProfile, speeds: RawStream, forces: RawStream
 ) -> Array:
     t = sample_times(forces)
-    decoded = [decode_forces(cell, piece.samples()) for piece in _pieces(forces)]
+    decoded = [decode_forces(cell, piece.samples()) for piece in pieces(forces)]
     disc = decode_speeds(drives.leg, drives.ground, speeds.samples())
     inside = (t >= disc.time[0]) & (t <= disc.time[-1])
     return np.vstack([
@@ -88,7 +88,8 @@ def _require(streams: Mapping[str, RawStream], name: str, folder: Path) -> RawSt
     return streams[raw_topic(name)]
 
 
-def _pieces(stream: RawStream) -> list[RawStream]:
+def pieces(stream: RawStream) -> list[RawStream]:
+    """Cut a stream so that a few of its samples at a time need be made into objects."""
     return [
         RawStream(*(column[first : first + _PIECE] for column in vars(stream).values()))
         for first in range(0, len(stream), _PIECE)

@@ -8,7 +8,7 @@ import math
 import re
 from collections.abc import Sequence
 from os import PathLike
-from typing import Protocol
+from typing import IO, Protocol
 
 import numpy as np
 from matplotlib import style
@@ -84,14 +84,14 @@ def new_figure(title: str, simulated: bool, *, width: float, height: float) -> F
 
 
 @styled
-def save(figure: Figure, path: str | PathLike[str]) -> None:
+def save(figure: Figure, path: str | PathLike[str] | IO[bytes]) -> None:
     """Write a figure as PNG at its own resolution, whatever the path's suffix.
 
     The bytes depend on the figure alone: no time stamp and no library version goes in.
 
     Args:
         figure: What to write.
-        path: Where to; its folder exists.
+        path: Where to; its folder exists. Or a file that is open.
     """
     figure.savefig(path, format="png", dpi="figure", metadata={"Software": "zebro-lab"})
 

@@ -66,7 +66,9 @@ def growing(data: Path) -> Path:
     raise AssertionError("nothing was recorded")
 
 
-@pytest.mark.parametrize("command", ["record", "import", "runs", "exclude", "sim zebro", "zebro check"])
+@pytest.mark.parametrize(
+    "command", ["record", "import", "runs", "plot", "exclude", "sim zebro", "zebro check"]
+)
 def test_help_loads_nothing_heavy(command):
     process = subprocess.run(
         [sys.executable, "-X", "importtime", COMMAND, *command.split(), "--help"],

@@ -1,0 +1,75 @@
+# SPDX-License-Identifier: MIT
+"""Messages of one type in a ROS 2 log, up to where it is damaged."""
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import IO, Any, NamedTuple
+
+from zebro_lab.errors import DataError, NotFound
+from zebro_lab.raw_log import DAMAGES_HINT, log_damages
+
+
+class LoggedMessage(NamedTuple):
+    """A message as it was logged.
+
+    Attributes:
+        topic: Its topic.
+        log_time: Since the Unix epoch [ns].
+        content: Its fields as attributes.
+    """
+
+    topic: str
+    log_time: int
+    content: Any
+
+
+def read_messages(path: Path, *, schema: str) -> tuple[list[LoggedMessage], str | None]:
+    """Read all messages of one type.
+
+    Args:
+        path: The log, in MCAP.
+        schema: Name of the type, such as `sensor_msgs/msg/JointState`.
+
+    Returns:
+        The messages in the order of the log, and why reading stopped before its end; None for a
+        whole log.
+
+    Raises:
+        NotFound: There is no such file.
+        DataError: It is no MCAP.
+    """
+    from mcap.exceptions import InvalidMagic
+
+    messages: list[LoggedMessage] = []
+    try:
+        with path.open("rb") as file:
+            messages.extend(_messages(file, schema))
+    except FileNotFoundError as error:
+        raise NotFound(f"{path}: no such file") from error
+    except InvalidMagic as error:
+        raise DataError("is no MCAP file", file=path) from error
+    except log_damages() as error:
+        return messages, str(error) or DAMAGES_HINT  # the reader's EndOfFile says nothing
+    return messages, None
+
+
+def _messages(file: IO[bytes], name: str) -> Iterator[LoggedMessage]:
+    from mcap.records import Channel, Message, Schema
+    from mcap.stream_reader import StreamReader
+    from mcap_ros2.decoder import DecoderFactory
+
+    factory = DecoderFactory()
+    schemas: dict[int, Schema] = {}
+    decoders: dict[int, tuple[str, Any]] = {}
+    for record in StreamReader(file, validate_crcs=True).records:
+        if isinstance(record, Schema):
+            schemas[record.id] = record
+        elif isinstance(record, Channel):
+            schema = schemas.get(record.schema_id)
+            if schema is not None and schema.name == name:
+                decode = factory.decoder_for(record.message_encoding, schema)
+                if decode is not None:
+                    decoders[record.id] = (record.topic, decode)
+        elif isinstance(record, Message) and record.channel_id in decoders:
+            topic, decode = decoders[record.channel_id]
+            yield LoggedMessage(topic, record.log_time, decode(record.data))

@@ -17,8 +17,30 @@ $(STAMP): pyproject.toml
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable . --group dev
 	touch $(STAMP)
 
-demo: $(STAMP) ## calibrate a bundled, simulated rig sweep and draw its pictures
-	$(BIN)/calibrate-slip datasets/rig-sim --out calibration
+DEMO := demo
+WALK := datasets/walk-sim
+DEMO_START := 2020-06-01T12:00:00+00:00
+DEMO_RUN := $(DEMO)/data/20200601T120000Z_walk_left-turn
+
+demo: $(STAMP) ## the whole loop on bundled, simulated data: rig and photographs in, report out
+	@echo "=== 1 of 6: calibrate the slip of legs from a simulated rig sweep"
+	$(BIN)/calibrate-slip datasets/rig-sim --out $(DEMO)/calibration
+	@echo "=== 2 of 6: make a run of a simulated walk's leg log and IMU"
+	rm -rf $(DEMO)/data
+	$(BIN)/zebro-lab import --legs $(WALK)/legs.csv --imu $(WALK)/imu.csv \
+	  --robot $(WALK)/robot.toml --label left-turn --start $(DEMO_START) --data $(DEMO)/data
+	@echo "=== 3 of 6: track the robot in the walk's simulated photographs"
+	$(BIN)/zebro-lab track $(WALK)/photos --camera $(WALK)/camera.toml --floor $(WALK)/floor.toml \
+	  --robot $(WALK)/robot.toml --start $(DEMO_START) --run $(DEMO_RUN)
+	@echo "=== 4 of 6: predict the walk from its leg angles and the calibrated slip"
+	$(BIN)/zebro-lab predict $(DEMO_RUN) --slip $(DEMO)/calibration --robot $(WALK)/robot.toml \
+	  --draws 500 --figures --out $(DEMO_RUN)/prediction
+	@echo "=== 5 of 6: judge the prediction against the track"
+	$(BIN)/zebro-lab validate $(DEMO_RUN)
+	@echo "=== 6 of 6: put everything on one page"
+	$(BIN)/zebro-lab report $(DEMO_RUN) --calibration $(DEMO)/calibration --out $(DEMO)/report.html \
+	  --title "Demonstration: a left turn"
+	@echo "open $(DEMO)/report.html in a browser"
 
 test: $(STAMP) ## the tests, under ten minutes on two cores
 	$(BIN)/python -m pytest -n 2 --dist worksteal -m "not long"
@@ -47,4 +69,4 @@ clean-cache: ## remove compiled loops that numba cached
 	find model rig tracking zebro_lab -name '*.nb[ic]' -delete
 
 clean: ## remove the environment and what the tools cached
-	rm -rf $(VENV) .pytest_cache .ruff_cache .import_linter_cache .hypothesis calibration
+	rm -rf $(VENV) .pytest_cache .ruff_cache .import_linter_cache .hypothesis $(DEMO)

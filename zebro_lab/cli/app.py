@@ -9,6 +9,8 @@ from zebro_lab.cli.annotate import EPILOG as ANNOTATE_EPILOG
 from zebro_lab.cli.annotate import annotate
 from zebro_lab.cli.calibrate import EPILOG, calibrate
 from zebro_lab.cli.camera import app as camera
+from zebro_lab.cli.doctor import EPILOG as DOCTOR_EPILOG
+from zebro_lab.cli.doctor import doctor
 from zebro_lab.cli.errors import run
 from zebro_lab.cli.import_files import EPILOG as IMPORT_EPILOG
 from zebro_lab.cli.import_files import import_files
@@ -52,6 +54,7 @@ app.command()(exclude)
 app.command()(export)
 app.command(epilog=TRACK_EPILOG)(track)
 app.command(epilog=ANNOTATE_EPILOG)(annotate)
+app.command(epilog=DOCTOR_EPILOG)(doctor)
 app.add_typer(camera, name="camera")
 app.add_typer(rig, name="rig")
 app.add_typer(sim, name="sim")

@@ -67,7 +67,7 @@ def growing(data: Path) -> Path:
 
 
 @pytest.mark.parametrize(
-    "command", ["record", "import", "runs", "plot", "exclude", "sim zebro", "zebro check"]
+    "command", ["record", "import", "runs", "plot", "exclude", "doctor", "sim zebro", "zebro check"]
 )
 def test_help_loads_nothing_heavy(command):
     process = subprocess.run(

@@ -4,19 +4,20 @@
 from collections import Counter
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
 import cv2
 import numpy as np
-import PIL.Image
 
 from tracking.camera.lens import Array, Camera
 from tracking.images import (
     PhotoTimes,
     clock_offset,
+    exif_time,
     find_photos,
+    open_picture,
     times_from_exif,
     times_from_interval,
     times_from_table,
@@ -25,6 +26,9 @@ from tracking.images import (
 from zebro_lab.errors import DataError, NotFound, SettingsError
 
 VIDEOS = (".mp4", ".mov", ".m4v", ".avi", ".mkv", ".webm")
+FRAME_STEP = 0.5
+"""Time between two frames of a video that are taken, unless told otherwise [s]."""
+
 _ORIENTATION = 0x0112
 _LYING = {5, 6, 7, 8}
 
@@ -37,13 +41,13 @@ class TimeRequest:
         interval: Interval of the timer; None to take another source [s].
         table: CSV with columns `photo`, `t_s` and maybe `t_sigma`; None for another source.
         clock: Photograph of the QR clock, which ties the camera's clock to the computer's.
-        every: Least time between two frames of a video [s].
+        every: Least time between two frames of a video; 0 takes all [s].
     """
 
     interval: float | None = None
     table: Path | None = None
     clock: Path | None = None
-    every: float = 0.0
+    every: float = FRAME_STEP
 
     def __post_init__(self) -> None:
         if self.interval is not None and self.table is not None:
@@ -60,6 +64,7 @@ class PhotoSequence:
         times: When they were taken; of a composite picture None until its exposures are counted.
         source: "sim:…" where the files say that they are simulated, else None.
         origin: What the user named: the folder, the video or the picture.
+        left_out: Photographs of the folder that are not among them, with the reason.
     """
 
     names: tuple[str, ...]
@@ -67,6 +72,7 @@ class PhotoSequence:
     times: PhotoTimes | None
     source: str | None
     origin: Path
+    left_out: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def is_composite(self) -> bool:
@@ -120,10 +126,10 @@ def calibrated_for(camera: Camera, sequence: PhotoSequence) -> Camera:
 def upright_size(path: Path) -> tuple[int, int] | None:
     """Read width and height of a picture as it is seen, or None of what is no picture [px]."""
     try:
-        with PIL.Image.open(path) as picture:
+        with open_picture(path) as picture:
             width, height = picture.size
             lying = picture.getexif().get(_ORIENTATION) in _LYING
-    except (OSError, SyntaxError, ValueError, PIL.Image.DecompressionBombError):
+    except (OSError, SyntaxError, ValueError):
         return None
     return (height, width) if lying else (width, height)
 
@@ -148,14 +154,17 @@ def exposure_times(names: tuple[str, ...], request: TimeRequest) -> PhotoTimes:
 def _of_folder(folder: Path, request: TimeRequest) -> PhotoSequence:
     clock = None if request.clock is None else request.clock.resolve()
     paths = tuple(path for path in find_photos(folder) if path.resolve() != clock)
+    left_out: Mapping[str, str] = {}
     if request.table is not None:
         times = times_from_table(request.table, paths)
     elif request.interval is not None:
         times = times_from_interval(len(paths), request.interval)
     else:
+        left_out = _without_time(paths)
+        paths = tuple(path for path in paths if path.name not in left_out)
         # A file that is no picture has no EXIF either; it is named later, with what is wrong.
         readable = [path for path in paths if upright_size(path) is not None]
-        times = _spread(times_from_exif(readable), readable, paths)
+        times = _spread(readable, paths)
     if request.clock is not None:
         times = _by_computer(times, request.clock)
     order = np.argsort(times.t, kind="stable")
@@ -167,17 +176,32 @@ def _of_folder(folder: Path, request: TimeRequest) -> PhotoSequence:
         PhotoTimes(times.t[order], times.sd[order], times.source),
         source,
         folder,
+        left_out,
     )
 
 
-def _spread(times: PhotoTimes, readable: list[Path], paths: tuple[Path, ...]) -> PhotoTimes:
+def _without_time(paths: tuple[Path, ...]) -> Mapping[str, str]:
+    """Find the few pictures that have no EXIF time where most have one."""
+    readable = [path for path in paths if upright_size(path) is not None]
+    without = [path for path in readable if exif_time(path) is None]
+    if 2 * len(without) >= len(readable):
+        return {}
+    return {
+        path.name: "no EXIF time; give all times with --interval or --times" for path in without
+    }
+
+
+def _spread(readable: list[Path], paths: tuple[Path, ...]) -> PhotoTimes:
     """Give files without a time that of the file before them; they are reported, not tracked."""
+    if not readable:
+        return PhotoTimes(np.zeros(len(paths)), np.zeros(len(paths)), "none: nothing can be read")
+    times = times_from_exif(readable)
     place = {path: k for k, path in enumerate(readable)}
     last, index = 0, []
     for path in paths:
         last = place.get(path, last)
         index.append(last)
-    return PhotoTimes(times.t[index], times.sd[index], times.source) if readable else times
+    return PhotoTimes(times.t[index], times.sd[index], times.source)
 
 
 def _by_computer(times: PhotoTimes, clock: Path) -> PhotoTimes:
@@ -191,12 +215,18 @@ def _of_video(video: Path, folder: Path, every: float) -> PhotoSequence:
     names, paths, t, sd = [], [], [], []
     for frame in video_frames(video, every=every):
         path = folder / f"{len(paths):06d}.png"
-        cv2.imwrite(str(path), frame.pixels, [cv2.IMWRITE_PNG_COMPRESSION, 1])
+        if not cv2.imwrite(str(path), frame.pixels, [cv2.IMWRITE_PNG_COMPRESSION, 1]):
+            raise DataError(
+                f"its frame {frame.name} cannot be kept in {folder.parent}; is the disk full? "
+                "--every SECONDS takes fewer frames",
+                file=video,
+            )
         names.append(frame.name)
         paths.append(path)
         t.append(frame.t)
         sd.append(frame.t_sd)
-    times = PhotoTimes(_floats(t), _floats(sd), "time stamps of the video's frames")
+    step = f", one every {every:g} s" if every > 0 else ""
+    times = PhotoTimes(_floats(t), _floats(sd), f"time stamps of the video's frames{step}")
     return PhotoSequence(tuple(names), tuple(paths), times, None, video)
 
 
@@ -207,9 +237,9 @@ def _floats(numbers: list[float]) -> Array:
 def _simulated(path: Path) -> str | None:
     # What draws photographs for tests and demonstrations says so in the camera's make.
     try:
-        with PIL.Image.open(path) as picture:
+        with open_picture(path) as picture:
             make = str(picture.getexif().get(0x010F, "")).strip("\0 ")
-    except (OSError, SyntaxError, ValueError, PIL.Image.DecompressionBombError):
+    except (OSError, SyntaxError, ValueError):
         return None
     return "sim:photographs" if make.lower() == "simulated" else None
 

@@ -11,10 +11,12 @@ from tracking.camera import Camera
 from tracking.corrections import Correction, Move, replay
 from tracking.detect import Detection, Robot, observe
 from tracking.floor import FloorFit, FloorMap, FloorView, refine_floor
+from tracking.images import read_pixels
 from tracking.path import Observation, Track, assemble_track
 from tracking.pose import BodyPrior
 from zebro_lab.annotations import Annotations, Click
 from zebro_lab.errors import DataError
+from zebro_lab.marker_numbers import strangers
 from zebro_lab.photo_search import Look, Photo, Wanted, Watcher, search_photos
 
 _HIGH = 3.0  # standard deviations by which the body may seem higher than robot.toml has it
@@ -125,6 +127,8 @@ def track_marker(
     """
     seen = see_floor(scene, photos, watcher)
     observations = observe(scene.camera, seen.fit, seen.detections, robot=robot, times=times)
+    if not observations and not scene.said.corrections:
+        raise DataError(_robot_unseen(scene, robot, photos, seen))
     number = robot.marker.marker_id
     unseen = {
         detection.photo: f"the robot's marker {number} is not seen"
@@ -194,6 +198,19 @@ def _why_none(looks: Sequence[Look]) -> str:
     return (
         f"none of {len(looks)} photographs can be used; {looks[0].photo}: {looks[0].problem}"
         f"{f' ({count} of them so)' if common == looks[0].problem and count > 1 else ''}"
+    )
+
+
+def _robot_unseen(scene: Scene, robot: Robot, photos: Sequence[Photo], seen: FloorSeen) -> str:
+    first = next(photo for photo in photos if photo.name == seen.detections[0].photo)
+    other = strangers(read_pixels(first.path), robot, scene.floor)
+    advice = f"look at {first.name} with --preview"
+    if other is not None:
+        advice = f"{first.name} shows {other}: correct [marker] of robot.toml, or --marker"
+    marker = robot.marker
+    return (
+        f"the robot's marker {marker.marker_id} of '{marker.dictionary}' is seen in none of "
+        f"{len(seen.detections)} photographs; {advice}"
     )
 
 

@@ -87,12 +87,12 @@ def test_a_bad_file_is_named_with_its_fault(tmp_path, kind, message):
 @pytest.mark.parametrize("side", [11_000, 14_200])
 def test_a_picture_of_hundreds_of_megapixels_is_refused_unread(tmp_path, side):
     PIL.Image.new("1", (side, side)).save(tmp_path / "huge.png")
-    with pytest.raises(PhotoError, match=r"huge\.png.*(large|megapixels)"):
+    with pytest.raises(PhotoError, match=r"^huge\.png: [^(]*megapixels; at most 120 are read"):
         read_pixels(tmp_path / "huge.png")
 
 
 def test_a_photograph_of_another_size_is_named(tmp_path):
-    with pytest.raises(PhotoError, match="64x48 px, but the camera was calibrated with 1280x960"):
+    with pytest.raises(PhotoError, match="64x48 px; expected 1280x960"):
         read_pixels(write_photo(tmp_path / "a.jpg"), size=(1280, 960))
 
 

@@ -2,7 +2,7 @@
 """Photographs and video frames, and when they were taken."""
 
 from tracking.images.clock import ClockOffset, clock_offset, clock_picture, clock_text, read_clock
-from tracking.images.read import Image, find_photos, read_pixels
+from tracking.images.read import Image, find_photos, open_picture, read_pixels
 from tracking.images.stamps import IntervalFit, fit_interval
 from tracking.images.times import (
     PhotoTimes,
@@ -24,6 +24,7 @@ __all__ = [
     "exif_time",
     "find_photos",
     "fit_interval",
+    "open_picture",
     "read_clock",
     "read_pixels",
     "times_from_exif",

@@ -3,6 +3,8 @@
 
 import re
 import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -67,6 +69,32 @@ def _counting(name: str) -> list[tuple[int, int, str]]:
     return [(1, int(part), "") if part.isdigit() else (0, 0, part) for part in parts]
 
 
+@contextmanager
+def open_picture(path: Path) -> Iterator[PIL.Image.Image]:
+    """Open a picture; its size and EXIF data are known, its pixels not yet decoded.
+
+    Args:
+        path: The file.
+
+    Yields:
+        Pillow's picture.
+
+    Raises:
+        PhotoError: When it has more pixels than Pillow opens at all.
+        OSError: When it cannot be read; of what is no picture, Pillow's UnidentifiedImageError.
+    """
+    with warnings.catch_warnings():
+        # Pillow warns of large pictures; `read_pixels` measures them.
+        warnings.simplefilter("ignore", PIL.Image.DecompressionBombWarning)
+        try:
+            picture = PIL.Image.open(path)
+        except PIL.Image.DecompressionBombError as error:
+            most = 2 * (PIL.Image.MAX_IMAGE_PIXELS or MOST_PIXELS)
+            raise PhotoError(path.name, _too_large(f"more than {most / 1e6:.0f}")) from error
+    with picture:
+        yield picture
+
+
 def read_pixels(path: Path, *, size: tuple[int, int] | None = None) -> NDArray[np.uint8]:
     """Read a photograph, turned as its EXIF orientation says.
 
@@ -83,14 +111,11 @@ def read_pixels(path: Path, *, size: tuple[int, int] | None = None) -> NDArray[n
     """
     _refuse_unreadable(path)
     try:
-        with warnings.catch_warnings():
-            # Pillow warns of large pictures; they are measured below.
-            warnings.simplefilter("ignore", PIL.Image.DecompressionBombWarning)
-            with PIL.Image.open(path) as picture:
-                _refuse_large(path, picture.size)
-                upright = PIL.ImageOps.exif_transpose(picture).convert("RGB")
-    except PIL.Image.DecompressionBombError as error:
-        raise PhotoError(path.name, f"too large to read ({error})") from error
+        with open_picture(path) as picture:
+            _refuse_large(path, picture.size)
+            upright = PIL.ImageOps.exif_transpose(picture).convert("RGB")
+    except PhotoError:
+        raise
     except PIL.UnidentifiedImageError as error:
         raise PhotoError(path.name, "not a picture; expected JPEG, PNG or TIFF") from error
     except (OSError, SyntaxError, ValueError) as error:
@@ -101,8 +126,8 @@ def read_pixels(path: Path, *, size: tuple[int, int] | None = None) -> NDArray[n
     if size is not None and upright.size != size:
         raise PhotoError(
             path.name,
-            f"{upright.size[0]}x{upright.size[1]} px, but the camera was calibrated with "
-            f"{size[0]}x{size[1]} px; use photographs of one size, not turned or cropped",
+            f"{upright.size[0]}x{upright.size[1]} px; expected {size[0]}x{size[1]} px, as of the "
+            "camera and the other photographs: use photographs of one size, not turned or cropped",
         )
     return np.ascontiguousarray(np.asarray(upright)[:, :, ::-1])
 
@@ -118,14 +143,19 @@ def _refuse_unreadable(path: Path) -> None:
         raise PhotoError(
             path.name,
             "HEIC is not read; set the phone's camera to 'most compatible' (JPEG), or convert the "
-            "photographs keeping their EXIF data",
+            f"photographs with their EXIF data: heif-convert -q 95 {path.name} {path.stem}.jpeg "
+            "(Linux), sips -s format jpeg (macOS)",
         )
 
 
 def _refuse_large(path: Path, size: tuple[int, int]) -> None:
     if size[0] * size[1] > MOST_PIXELS:
-        raise PhotoError(
-            path.name,
-            f"{size[0]}x{size[1]} px are {size[0] * size[1] / 1e6:.0f} megapixels; at most "
-            f"{MOST_PIXELS / 1e6:.0f} are read: 12 are plenty, scale the photographs down",
-        )
+        found = f"{size[0]}x{size[1]} px are {size[0] * size[1] / 1e6:.0f}"
+        raise PhotoError(path.name, _too_large(found))
+
+
+def _too_large(found: str) -> str:
+    return (
+        f"{found} megapixels; at most {MOST_PIXELS / 1e6:.0f} are read: 12 are plenty, scale the "
+        "photographs down"
+    )

@@ -9,10 +9,10 @@ from datetime import UTC, datetime
 from pathlib import Path
 
 import numpy as np
-import PIL.Image
 
 from tracking.camera.lens import Array
 from tracking.errors import TimesError
+from tracking.images.read import open_picture
 from tracking.images.stamps import fit_interval
 
 _EXIF_FOLDER, _TAKEN, _FRACTION, _CHANGED = 0x8769, 0x9003, 0x9291, 0x0132
@@ -44,10 +44,10 @@ def exif_time(path: Path) -> tuple[float, float] | None:
         where EXIF has fractions of a second. None without EXIF.
     """
     try:
-        with PIL.Image.open(path) as picture:
+        with open_picture(path) as picture:
             exif = picture.getexif()
             details = exif.get_ifd(_EXIF_FOLDER)
-    except (OSError, SyntaxError, PIL.Image.DecompressionBombError):
+    except (OSError, SyntaxError, ValueError):
         return None
     text = details.get(_TAKEN) or exif.get(_CHANGED)
     if not text:

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Frames of a video at their own times."""
 
+import os
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -31,10 +32,14 @@ def video_frames(path: Path, *, every: float = 0.0) -> Iterator[Image]:
     """
     if not path.is_file() or path.stat().st_size == 0:
         raise PhotoError(path.name, "no such file, or an empty one; expected a video")
+    # What is wrong is said below; FFmpeg would write to the terminal by itself.
+    os.environ.setdefault("OPENCV_FFMPEG_LOGLEVEL", "-8")
     capture = cv2.VideoCapture(str(path))
     try:
         if not capture.isOpened():
-            raise PhotoError(path.name, "not a video that FFmpeg reads; expected MP4, MOV or AVI")
+            raise PhotoError(
+                path.name, "not a video that can be read; expected a whole MP4, MOV or AVI"
+            )
         capture.set(cv2.CAP_PROP_ORIENTATION_AUTO, 1)
         yield from _frames(capture, path.name, every)
     finally:

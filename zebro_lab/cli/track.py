@@ -47,7 +47,9 @@ Interval = Annotated[
 Times = Annotated[
     Path | None, typer.Option(metavar="CSV", help="Times: columns photo, t_s, maybe t_sigma.")
 ]
-Every = Annotated[float, typer.Option(min=0.0, help="Least time between video frames [s].")]
+Every = Annotated[
+    float | None, typer.Option(min=0.0, help="Time between a video's frames; 0.5, 0 takes all [s].")
+]
 Clock = Annotated[
     Path | None, typer.Option(metavar="PHOTO", help="Photograph of `zebro-lab camera clock`.")
 ]
@@ -97,7 +99,7 @@ def track(
     run: Run = None,
     interval: Interval = None,
     times: Times = None,
-    every: Every = 0.0,
+    every: Every = None,
     clock: Clock = None,
     start: Start = None,
     marker: Marker = None,
@@ -111,7 +113,7 @@ def track(
     preview: PreviewPng = None,
 ) -> None:
     """Track the robot in photographs: track.csv with covariance, TUM, pictures."""
-    from zebro_lab.photo_sequence import TimeRequest
+    from zebro_lab.photo_sequence import FRAME_STEP, TimeRequest
     from zebro_lab.stages.track import TrackRequest
     from zebro_lab.units import quantity_to_si
 
@@ -122,7 +124,7 @@ def track(
         robot=robot,
         out=out,
         run=run,
-        times=TimeRequest(interval, times, clock, every),
+        times=TimeRequest(interval, times, clock, FRAME_STEP if every is None else every),
         start=None if start is None else _moment(start),
         marker=marker,
         without_marker=without_marker,

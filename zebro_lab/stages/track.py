@@ -130,6 +130,7 @@ def track(request: TrackRequest, watcher: Watcher) -> TrackResult:
         scene = scene_of(request, described, sequence)
         source = source_of(request, manifest, sequence)
         tracked, said = _tracked(request, described, scene, sequence, manifest, watcher)
+        tracked = replace(tracked, lost={**sequence.left_out, **tracked.lost})
         result = TrackResult(folder, tracked, _count(tracked, sequence), source, said)
         watcher.step("pictures", None)
         _write(request, result, scene, sequence)
@@ -201,7 +202,9 @@ def _noted(tracked: Tracked, notes: tuple[str, ...]) -> Tracked:
 
 
 def _count(tracked: Tracked, sequence: PhotoSequence) -> int:
-    return len(tracked.track.observations) if sequence.is_composite else len(sequence.names)
+    if sequence.is_composite:
+        return len(tracked.track.observations)
+    return len(sequence.names) + len(sequence.left_out)
 
 
 def _write(

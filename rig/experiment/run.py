@@ -3,7 +3,7 @@
 
 from collections.abc import Callable, Collection
 from dataclasses import dataclass
-from typing import Final, Protocol
+from typing import Final
 
 from rig.clock import SYSTEM_CLOCK, Clock
 from rig.errors import LimitExceeded, ProtocolError, RigError
@@ -15,48 +15,13 @@ from rig.experiment.plan import Plan
 from rig.experiment.sink import RunStart, Sink, SinkFailed
 from rig.experiment.steps import Point, Step, Tare, estimate, require_allowed, spell_out
 from rig.experiment.verdict import Verdict, is_steady, judge_point
+from rig.experiment.watcher import NobodyWatches, Watcher
 from rig.safety import StopCategory, StopRequested
 from rig.slip_rig.decode import Forces, Zero, require_zero, tare
 
 REST_LIMIT: Final = 5.0
 """How long the discs may take to stand after their set-points do [s]."""
 UNLOADED: Final = Zero(0.0, 0.0, 0.0)
-
-
-class Watcher(Protocol):
-    """Who follows a run: a terminal, or nobody."""
-
-    def doing(self, what: str, *, done: int, of: int, left: float) -> None:
-        """Hear what begins.
-
-        Args:
-            what: Name of the step.
-            done: Points finished.
-            of: Points in all.
-            left: Time that the rest is reckoned to take [s].
-        """
-        ...
-
-    def prompt(self, text: str, *, normal: float) -> None:
-        """Hear, again and again, what a person is asked to do and the normal force now [N]."""
-        ...
-
-    def judged(self, point: Point, verdict: Verdict, *, attempt: int) -> None:
-        """Hear what a point is worth."""
-        ...
-
-
-class NobodyWatches:
-    """A watcher that does nothing."""
-
-    def doing(self, what: str, *, done: int, of: int, left: float) -> None:
-        """Ignore it."""
-
-    def prompt(self, text: str, *, normal: float) -> None:
-        """Ignore it."""
-
-    def judged(self, point: Point, verdict: Verdict, *, attempt: int) -> None:
-        """Ignore it."""
 
 
 @dataclass(frozen=True)

@@ -14,8 +14,8 @@ import pytest
 
 from rig.errors import LimitExceeded, RigError
 from rig.experiment.control import Control
-from rig.experiment.run import NobodyWatches
 from rig.experiment.sink import SinkFailed
+from rig.experiment.watcher import NobodyWatches
 from rig.links.serve import PortServer
 from rig.safety import StopCategory
 from rig.slip_rig.imperfections import RigImperfections

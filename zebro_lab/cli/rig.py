@@ -192,7 +192,8 @@ def _print_plan(foreseen: "Foreseen", *, steps: bool) -> None:
     typer.echo(f"takes about {minutes} min {seconds} s where no point is repeated")
     typer.echo("every set-point lies within the limits:")
     for name, value in vars(plan.limits).items():
-        typer.echo(f"  {name:<17}{value:>12g} {_UNITS[name]}")
+        said = "not limited" if value is None else f"{value:g}"
+        typer.echo(f"  {name:<20}{said:>12} {_UNITS[name]}")
     if steps:
         for step in foreseen.steps:
             typer.echo(step.label if isinstance(step, Point) else f"zero-{step.number:04d}")
@@ -201,5 +202,6 @@ def _print_plan(foreseen: "Foreseen", *, steps: bool) -> None:
 _UNITS = {
     "speed": "rad/s", "acceleration": "rad/s2", "normal_force": "N", "traction_force": "N",
     "in_a_row": "samples", "speed_error": "rad/s", "speed_error_time": "s", "silence": "s",
-    "free_space": "bytes", "hold": "s",
+    "free_space": "bytes", "hold": "s", "lateral_force": "N", "torque": "N m",
+    "temperature_celsius": "degC",
 }  # fmt: skip

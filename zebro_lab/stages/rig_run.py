@@ -11,9 +11,10 @@ from typing import Final
 
 from rig.experiment.control import Control
 from rig.experiment.control_server import ControlServer, send_command
-from rig.experiment.run import Outcome, Watcher, run_plan
+from rig.experiment.run import Outcome, run_plan
 from rig.experiment.signal_stops import signal_stops
 from rig.experiment.steps import require_allowed
+from rig.experiment.watcher import Watcher
 from zebro_lab.errors import NotFound
 from zebro_lab.experiment_folder import ExperimentFolder
 from zebro_lab.experiment_journal import begin_or_resume, read_journal

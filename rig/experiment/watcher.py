@@ -1,0 +1,43 @@
+# SPDX-License-Identifier: MIT
+"""Who follows a run of a plan: a terminal, or nobody."""
+
+from typing import Protocol
+
+from rig.experiment.steps import Point
+from rig.experiment.verdict import Verdict
+
+
+class Watcher(Protocol):
+    """Who follows a run: a terminal, or nobody."""
+
+    def doing(self, what: str, *, done: int, of: int, left: float) -> None:
+        """Hear what begins.
+
+        Args:
+            what: Name of the step.
+            done: Points finished.
+            of: Points in all.
+            left: Time that the rest is reckoned to take [s].
+        """
+        ...
+
+    def prompt(self, text: str, *, normal: float) -> None:
+        """Hear, again and again, what a person is asked to do and the normal force now [N]."""
+        ...
+
+    def judged(self, point: Point, verdict: Verdict, *, attempt: int) -> None:
+        """Hear what a point is worth."""
+        ...
+
+
+class NobodyWatches:
+    """A watcher that does nothing."""
+
+    def doing(self, what: str, *, done: int, of: int, left: float) -> None:
+        """Ignore it."""
+
+    def prompt(self, text: str, *, normal: float) -> None:
+        """Ignore it."""
+
+    def judged(self, point: Point, verdict: Verdict, *, attempt: int) -> None:
+        """Ignore it."""

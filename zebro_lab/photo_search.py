@@ -145,7 +145,7 @@ def run_batches(
         results = []
         for number, job in enumerate(jobs, 1):
             results.append(work(job))
-            _follow(watcher, what, number / len(jobs))
+            follow(watcher, what, number / len(jobs))
         return results
     # Not forked: OpenCV's threads do not survive it.
     context = multiprocessing.get_context("spawn")
@@ -153,7 +153,7 @@ def run_batches(
     try:
         futures = [pool.submit(work, job) for job in jobs]
         for number, _ in enumerate(as_completed(futures), 1):
-            _follow(watcher, what, number / len(jobs))
+            follow(watcher, what, number / len(jobs))
         return [future.result() for future in futures]
     finally:
         pool.shutdown(cancel_futures=True)
@@ -163,7 +163,12 @@ def _one_thread() -> None:
     cv2.setNumThreads(1)
 
 
-def _follow(watcher: Watcher, what: str, fraction: float) -> None:
+def follow(watcher: Watcher, what: str, fraction: float | None) -> None:
+    """Tell a watcher how far it is, and stop where it asks to.
+
+    Raises:
+        TrackStopped: Somebody asked to stop.
+    """
     watcher.step(what, fraction)
     if watcher.stop_requested():
         raise TrackStopped("stopped; nothing was written")

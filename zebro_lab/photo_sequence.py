@@ -5,6 +5,7 @@ from collections import Counter
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field
+from itertools import islice
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -24,6 +25,7 @@ from tracking.images import (
     video_frames,
 )
 from zebro_lab.errors import DataError, NotFound, SettingsError
+from zebro_lab.photo_search import Watcher, follow
 
 VIDEOS = (".mp4", ".mov", ".m4v", ".avi", ".mkv", ".webm")
 FRAME_STEP = 0.5
@@ -81,7 +83,9 @@ class PhotoSequence:
 
 
 @contextmanager
-def open_photos(origin: Path, request: TimeRequest) -> Iterator[PhotoSequence]:
+def open_photos(
+    origin: Path, request: TimeRequest, *, watcher: Watcher | None = None, frames: int | None = None
+) -> Iterator[PhotoSequence]:
     """Find the photographs and their times.
 
     Frames of a video are kept in a temporary folder while the body runs.
@@ -89,21 +93,26 @@ def open_photos(origin: Path, request: TimeRequest) -> Iterator[PhotoSequence]:
     Args:
         origin: Folder of photographs, video, or one composite picture.
         request: How they get their times.
+        watcher: Who follows while a video is read; None for nobody.
+        frames: Most frames of a video that are wanted; None for all.
 
     Yields:
         The photographs.
 
     Raises:
         NotFound: There is nothing of this name.
+        DataError: Frames of a video cannot be kept.
         TrackingError: There is no photograph, or times are missing.
+        TrackStopped: Somebody asked to stop.
     """
     if origin.is_dir():
         yield _of_folder(origin, request)
     elif not origin.is_file():
         raise NotFound(f"{origin}: no such folder, video or picture; working in {Path.cwd()}")
     elif origin.suffix.lower() in VIDEOS:
+        _require_no_times(request)
         with TemporaryDirectory(prefix="zebro-lab-") as folder:
-            yield _of_video(origin, Path(folder), request.every)
+            yield _of_video(origin, Path(folder), request.every, frames, watcher)
     else:
         yield PhotoSequence((origin.name,), (origin,), None, _simulated(origin), origin)
 
@@ -211,9 +220,13 @@ def _by_computer(times: PhotoTimes, clock: Path) -> PhotoTimes:
     return PhotoTimes(times.t - offset.seconds, times.sd, said)
 
 
-def _of_video(video: Path, folder: Path, every: float) -> PhotoSequence:
+def _of_video(
+    video: Path, folder: Path, every: float, most: int | None, watcher: Watcher | None
+) -> PhotoSequence:
     names, paths, t, sd = [], [], [], []
-    for frame in video_frames(video, every=every):
+    for frame in islice(video_frames(video, every=every), most):
+        if watcher is not None:
+            follow(watcher, "frames", None)
         path = folder / f"{len(paths):06d}.png"
         if not cv2.imwrite(str(path), frame.pixels, [cv2.IMWRITE_PNG_COMPRESSION, 1]):
             raise DataError(
@@ -228,6 +241,15 @@ def _of_video(video: Path, folder: Path, every: float) -> PhotoSequence:
     step = f", one every {every:g} s" if every > 0 else ""
     times = PhotoTimes(_floats(t), _floats(sd), f"time stamps of the video's frames{step}")
     return PhotoSequence(tuple(names), tuple(paths), times, None, video)
+
+
+def _require_no_times(request: TimeRequest) -> None:
+    given = {
+        "--interval": request.interval, "--times": request.table, "--clock": request.clock
+    }  # fmt: skip
+    for key, value in given.items():
+        if value is not None:
+            raise SettingsError("not with a video, whose frames tell their own times", key=key)
 
 
 def _floats(numbers: list[float]) -> Array:

@@ -53,14 +53,14 @@ def counted_from(
         zero = datetime.fromisoformat(manifest.start).timestamp()
         what = f"the run's start, {manifest.start}"
     elif manifest is not None:
-        notes = (untied(f"give --clock (docs/tracking-howto.md) or --start; {LATER}"),)
+        notes = (untied(f"give --clock (docs/tracking-howto.md) or --start, or {LATER}"),)
     counted = PhotoTimes(times.t - zero, times.sd, times.source)
     if manifest is not None and not notes:
         notes = _beside(counted, manifest)
     return CountedTimes(counted, f"{times.source}; counted from {what}", notes)
 
 
-LATER = "or find how far they are apart with `validate --time-offset`"
+LATER = "bring it to the run's clock with `validate --time-offset`"
 
 
 def untied(advice: str) -> str:
@@ -80,14 +80,14 @@ def _as_given(
 ) -> CountedTimes:
     if start is not None:
         raise SettingsError(
-            f"these photographs have no clock (times: {times.source}); give seconds since the "
-            "moment you mean as --times, or leave it out",
+            f"these photographs have no clock ({times.source}), so that no moment can be found on "
+            "it; leave it out",
             key="--start",
         )
     if manifest is None or asked.table is not None:
         return CountedTimes(times, times.source)
-    notes = (untied(f"give seconds since the run's start as --times, {LATER}"),)
-    return CountedTimes(times, times.source, notes)
+    advice = LATER if asked.interval is None else f"give --times, or {LATER}"
+    return CountedTimes(times, times.source, (untied(advice),))
 
 
 def _beside(counted: PhotoTimes, manifest: RunManifest) -> tuple[str, ...]:

@@ -95,6 +95,15 @@ def test_frames_of_a_video_keep_their_own_times_and_leave_no_files(tmp_path):
     assert not any(path.exists() for path in kept)
 
 
+def test_a_video_takes_no_times_of_others(tmp_path):
+    (tmp_path / "walk.mp4").touch()
+    with (
+        pytest.raises(SettingsError, match="--interval: not with a video"),
+        open_photos(tmp_path / "walk.mp4", TimeRequest(interval=2.0)),
+    ):
+        pass
+
+
 def test_exposures_need_an_interval():
     np.testing.assert_allclose(exposure_times(("a#1", "a#2"), TimeRequest(interval=3.0)).t, [0, 3])
     with pytest.raises(SettingsError, match="2 exposures"):

@@ -126,7 +126,7 @@ def track(request: TrackRequest, watcher: Watcher) -> TrackResult:
     folder = request.folder
     manifest = None if request.run is None else read_manifest(request.run)
     described = described_robot(request)
-    with open_photos(request.photos, request.times) as sequence:
+    with open_photos(request.photos, request.times, watcher=watcher) as sequence:
         scene = scene_of(request, described, sequence)
         source = source_of(request, manifest, sequence)
         tracked, said = _tracked(request, described, scene, sequence, manifest, watcher)
@@ -181,7 +181,7 @@ def _tracked(
         )  # fmt: skip
         notes = ()
         if manifest is not None and request.times.table is None:
-            notes = (untied(f"give seconds since the run's start as --times, {LATER}"),)
+            notes = (untied(f"give seconds since the run's start as --times, or {LATER}"),)
         return _noted(tracked, notes), "times of exposures as given"
     counted = counted_from(
         sequence.times, start=request.start, manifest=manifest, asked=request.times

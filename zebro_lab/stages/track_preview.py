@@ -84,7 +84,7 @@ def preview(request: TrackRequest, file: Path) -> Preview:
         TrackingError: The floor's map does not fit.
     """
     manifest = None if request.run is None else read_manifest(request.run)
-    with open_photos(request.photos, request.times) as sequence:
+    with open_photos(request.photos, request.times, frames=1) as sequence:
         scene = scene_of(request, described_robot(request), sequence)
         photo = Photo(sequence.names[0], sequence.paths[0])
         robot = None if sequence.is_composite else scene.robot

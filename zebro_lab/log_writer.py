@@ -9,6 +9,7 @@ import numpy as np
 
 from rig.device import Counters, Sample
 from zebro_lab.cdr import CdrWriter
+from zebro_lab.message_log import MessageLog
 from zebro_lab.raw_log import RAW_SCHEMAS, encode_raw, raw_topic
 from zebro_lab.ros_messages import INFO, LOG, Schema, log_entry
 from zebro_lab.stream_views import View
@@ -46,20 +47,15 @@ class LogWriter:
         start: float,
         start_ns: int,
     ) -> None:
-        from mcap.writer import CompressionType, Writer
-
         self.written = {raw_topic(name): 0 for name in views}
         self._views = views
         self._start, self._start_ns = start, start_ns
-        self._sequence: dict[int, int] = {}
-        self._writer = Writer(file, chunk_size=_CHUNK_BYTES, compression=CompressionType.ZSTD)
-        self._writer.start(profile="ros2", library="zebro-lab")
-        self._schemas: dict[str, int] = {}
-        self._channels: dict[str, int] = {EVENTS: self._channel(EVENTS, LOG)}
+        self._log = MessageLog(file, chunk_size=_CHUNK_BYTES)
+        self._log.register(EVENTS, LOG)
         for name, view in views.items():
             self._register(name, view)
         for name, text in attachments.items():
-            self._writer.add_attachment(start_ns, start_ns, name, "application/toml", text.encode())
+            self._log.attach(start_ns, name, "application/toml", text)
 
     def write(self, stream: str, samples: Sequence[Sample]) -> None:
         """Write samples of a stream, at least one: raw, and as its view shows them."""
@@ -68,15 +64,15 @@ class LogWriter:
         stamps = (self._start_ns + np.rint(1e9 * host_time).astype(np.int64)).tolist()
         dtype, _ = RAW_SCHEMAS[view.raw_schema]
         topic = raw_topic(stream)
-        self._add(topic, stamps[-1], encode_raw(samples, dtype=dtype, start=self._start))
+        self._log.add(topic, stamps[-1], encode_raw(samples, dtype=dtype, start=self._start))
         self.written[topic] += len(samples)
         for shown, stamp, message in view.messages(samples, stamps):
-            self._add(shown, stamp, message)
+            self._log.add(shown, stamp, message)
 
     def event(self, host_time: float, text: str, *, level: int = INFO) -> None:
         """Write down something that happened."""
         stamp = self.stamp(host_time)
-        self._add(EVENTS, stamp, log_entry(stamp, text, level=level))
+        self._log.add(EVENTS, stamp, log_entry(stamp, text, level=level))
 
     def count(self, host_time: float, stream: str, counters: Counters, *, dropped: int) -> None:
         """Write down what happened to a stream so far."""
@@ -84,15 +80,15 @@ class LogWriter:
         for field in fields(Counters):
             message.uint64(getattr(counters, field.name))
         stamp = self.stamp(host_time)
-        self._add(f"/{stream}/counters", stamp, message.uint64(dropped).message())
+        self._log.add(f"/{stream}/counters", stamp, message.uint64(dropped).message())
 
     def flush(self) -> None:
         """Hand everything to the system, so that it outlives this process."""
-        self._writer.flush()
+        self._log.flush()
 
     def finish(self) -> None:
         """Write the end of the log with its index."""
-        self._writer.finish()
+        self._log.finish()
 
     def stamp(self, host_time: float) -> int:
         """Compute nanoseconds since the Unix epoch; no step of the wall clock shows in them."""
@@ -101,25 +97,6 @@ class LogWriter:
     def _register(self, name: str, view: View) -> None:
         _, text = RAW_SCHEMAS[view.raw_schema]
         raw = Schema(view.raw_schema, text)
-        self._channels[raw_topic(name)] = self._channel(raw_topic(name), raw, view.metadata)
+        self._log.register(raw_topic(name), raw, metadata=view.metadata)
         for topic, schema in (*view.topics.items(), (f"/{name}/counters", COUNTERS)):
-            self._channels[topic] = self._channel(topic, schema)
-
-    def _channel(
-        self, topic: str, schema: Schema, metadata: Mapping[str, str] | None = None
-    ) -> int:
-        from mcap.well_known import MessageEncoding, SchemaEncoding
-
-        if schema.name not in self._schemas:
-            self._schemas[schema.name] = self._writer.register_schema(
-                schema.name, SchemaEncoding.ROS2, schema.text.encode()
-            )
-        return self._writer.register_channel(
-            topic, MessageEncoding.CDR, self._schemas[schema.name], dict(metadata or {})
-        )
-
-    def _add(self, topic: str, stamp: int, message: bytes) -> None:
-        channel = self._channels[topic]
-        number = self._sequence.get(channel, 0)
-        self._sequence[channel] = number + 1
-        self._writer.add_message(channel, stamp, message, stamp, number)
+            self._log.register(topic, schema)

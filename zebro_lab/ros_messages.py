@@ -13,23 +13,32 @@ import numpy as np
 
 from zebro_lab.cdr import CdrWriter
 
-_RULE = "=" * 80
-_HEADER = f"""\
-{_RULE}
+RULE = "=" * 80
+"""What stands between the definitions of a message's parts."""
+HEADER = f"""\
+{RULE}
 MSG: std_msgs/Header
 builtin_interfaces/Time stamp
 string frame_id
-{_RULE}
+{RULE}
 MSG: builtin_interfaces/Time
 int32 sec
 uint32 nanosec
 """
-_VECTOR = f"""\
-{_RULE}
+VECTOR = f"""\
+{RULE}
 MSG: geometry_msgs/Vector3
 float64 x
 float64 y
 float64 z
+"""
+QUATERNION = f"""\
+{RULE}
+MSG: geometry_msgs/Quaternion
+float64 x
+float64 y
+float64 z
+float64 w
 """
 
 
@@ -50,24 +59,24 @@ float64[] position  # [rad]
 float64[] velocity  # [rad/s]
 float64[] effort    # [N m]
 """
-    + _HEADER,
+    + HEADER,
 )
 WRENCH = Schema(
     "geometry_msgs/msg/WrenchStamped",
     f"""\
 std_msgs/Header header
 geometry_msgs/Wrench wrench
-{_RULE}
+{RULE}
 MSG: geometry_msgs/Wrench
 geometry_msgs/Vector3 force   # [N]
 geometry_msgs/Vector3 torque  # [N m]
 """
-    + _VECTOR
-    + _HEADER,
+    + VECTOR
+    + HEADER,
 )
 IMU = Schema(
     "sensor_msgs/msg/Imu",
-    f"""\
+    """\
 std_msgs/Header header
 geometry_msgs/Quaternion orientation
 float64[9] orientation_covariance
@@ -75,15 +84,10 @@ geometry_msgs/Vector3 angular_velocity  # [rad/s]
 float64[9] angular_velocity_covariance
 geometry_msgs/Vector3 linear_acceleration  # with gravity, as the unit measures it [m/s2]
 float64[9] linear_acceleration_covariance
-{_RULE}
-MSG: geometry_msgs/Quaternion
-float64 x
-float64 y
-float64 z
-float64 w
 """
-    + _VECTOR
-    + _HEADER,
+    + QUATERNION
+    + VECTOR
+    + HEADER,
 )
 LOG = Schema(
     "rcl_interfaces/msg/Log",
@@ -95,7 +99,7 @@ string msg
 string file
 string function
 uint32 line
-{_RULE}
+{RULE}
 MSG: builtin_interfaces/Time
 int32 sec
 uint32 nanosec

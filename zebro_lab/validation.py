@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from model.errors import InsufficientData, WalkError
 from model.gait.reference import SampledReference
@@ -137,7 +138,7 @@ def read_prediction(path: Path) -> Prediction:
     manifest = read_walk_manifest(folder)
     has_draws = (folder / DRAWS).is_file()
     draws = read_draws(folder) if has_draws else None
-    walk = WalkedPath(read_walk(folder), _robot(manifest))
+    walk = WalkedPath(read_walk(folder), robot_of_walk(manifest))
     baselines, notes = _baselines(walk, manifest)
     return Prediction(
         poses,
@@ -173,13 +174,7 @@ def judge_run(
         DataError: Track and prediction share too little time.
     """
     moved = replace(track.poses, t=track.poses.t + time_offset)
-    try:
-        inside = overlap(moved, prediction.path)
-    except InsufficientData as error:
-        raise DataError(
-            f"{error}. Give --time-offset SECONDS, which is added to the track's times",
-            file=track.file,
-        ) from error
+    inside = shared_time(moved, prediction.path, file=track.file)
     seen, covariance = moved.part(inside), track.covariance[inside]
     scored = slice(1, None) if anchor else slice(None)
     if len(seen.part(scored)) < 2:
@@ -241,6 +236,25 @@ def _still(seen: Poses) -> PathEnsemble:
     return PathEnsemble(seen.t, position, np.full((1, n), seen.yaw[0]))
 
 
+def shared_time(track: Poses, path: Poses, *, file: Path) -> NDArray[np.bool_]:
+    """Tell which tracked poses lie within the time of a path, shape (len(track),).
+
+    Args:
+        track: The track.
+        path: The path.
+        file: The track's file, for the message.
+
+    Raises:
+        DataError: Fewer than two do.
+    """
+    try:
+        return overlap(track, path)
+    except InsufficientData as error:
+        raise DataError(
+            f"{error}. Give --time-offset SECONDS, which is added to the track's times", file=file
+        ) from error
+
+
 def judge_tilt(walk: WalkedPath, measured: Tilt) -> TiltJudged:
     """Compare roll and pitch of a walk with an IMU's; both keep the run's clock.
 
@@ -254,7 +268,7 @@ def judge_tilt(walk: WalkedPath, measured: Tilt) -> TiltJudged:
     return TiltJudged(errors, t, predicted, measured.angles[inside])
 
 
-def _robot(manifest: Mapping[str, Any]) -> Robot:
+def robot_of_walk(manifest: Mapping[str, Any]) -> Robot:
     """Read the robot without leg offsets: the angles of a walked path are true ones already."""
     described = manifest["settings"]["robot"]
     return Robot(

@@ -8,19 +8,25 @@ from typing import Annotated
 import typer
 
 
-class TableFormat(StrEnum):
-    """Forms of exported tables."""
+class ExportFormat(StrEnum):
+    """Forms of exported runs."""
 
     CSV = "csv"
     PARQUET = "parquet"
+    MCAP = "mcap"
 
 
 DataDir = Annotated[Path, typer.Argument(metavar="DATA", help="Folder of run folders.")]
 RunFolder = Annotated[Path, typer.Argument(metavar="RUN", help="Run folder.")]
 Why = Annotated[str, typer.Option(help="Reason, kept with the run.")]
 
-To = Annotated[TableFormat, typer.Option(help="Form of the tables.")]
-Out = Annotated[Path, typer.Option(metavar="FOLDER", help="Folder to make.")]
+To = Annotated[
+    ExportFormat,
+    typer.Option(help="Tables, or one MCAP file of legs, frames, track and band for Foxglove."),
+]
+Out = Annotated[
+    Path, typer.Option(metavar="PATH", help="Folder of tables to make; of mcap, the file.")
+]
 
 
 def runs(data: DataDir) -> None:
@@ -44,8 +50,17 @@ def exclude(run: RunFolder, why: Why) -> None:
     typer.echo(f"{run.name} is left out from now on: {(manifest.excluded or {})['why']}")
 
 
-def export(run: RunFolder, out: Out, to: To = TableFormat.CSV) -> None:
-    """Write a run as tables: raw samples, leg angles, the columns of a calibration."""
+def export(run: RunFolder, out: Out, to: To = ExportFormat.CSV) -> None:
+    """Write a run as tables: raw samples, leg angles, the columns of a calibration; or as MCAP."""
+    if to is ExportFormat.MCAP:
+        from zebro_lab.stages.export_mcap import export_mcap
+
+        exported = export_mcap(run, out=out)
+        for topic, count in exported.topics.items():
+            typer.echo(f"{topic}: {count}")
+        for line in (*exported.notes, f"wrote {exported.file}"):
+            typer.echo(line)
+        return
     from zebro_lab.stages.export import export_run
 
     for file in export_run(run, to=to.value, out=out):

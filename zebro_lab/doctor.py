@@ -177,7 +177,7 @@ def check_can(net: Path) -> Iterator[Finding]:
     if not found:
         yield Finding(
             State.NOTE, "CAN", "no interface found; an adapter on a serial line needs none "
-            "(PROFILE@slcan:/dev/ttyACM0), nor does a twin (`zebro-lab sim rig --slcan`)",
+            "(PROFILE@slcan:/dev/ttyACM0), nor does a twin (`zebro-lab sim rig rig-odrive-netft`)",
         )  # fmt: skip
     for place in found:
         up = int(_read(place / "flags") or "0", 16) & 1

@@ -4,6 +4,7 @@
 No `can.Notifier`: its thread ends without a word when a listener raises.
 """
 
+import contextlib
 from typing import Final
 
 import can
@@ -28,7 +29,7 @@ class CanLink:
 
     Attributes:
         reconnected: Times that the bus came back after it failed.
-        damaged: Error frames that the bus reported.
+        damaged: Error frames that the bus reported, and lines of an adapter that were no frame.
     """
 
     def __init__(
@@ -66,7 +67,10 @@ class CanLink:
         """Close the bus; closing twice is no fault."""
         bus, self._bus = self._bus, None
         if bus is not None:
-            bus.shutdown()
+            with contextlib.suppress(
+                can.CanError, OSError
+            ):  # an adapter that is gone says so again
+                bus.shutdown()
 
     def read(self, timeout: float) -> list[can.Message]:
         """Hand on all data frames there are, waiting at most `timeout` for the first [s]."""
@@ -75,11 +79,9 @@ class CanLink:
         messages: list[can.Message] = []
         bus, wait = self._bus, timeout
         try:
-            while bus is not None and len(messages) < MOST_AT_ONCE:
-                message = bus.recv(wait)
-                if message is None:
+            for _ in range(MOST_AT_ONCE):
+                if bus is None or not self._receive(bus, wait, messages):
                     break
-                self._keep(message, messages)
                 wait = 0.0
         except (can.CanError, OSError):
             self._lose()
@@ -116,8 +118,21 @@ class CanLink:
             return False
         return True
 
+    def _receive(self, bus: can.BusABC, wait: float, messages: list[can.Message]) -> bool:
+        """Take one frame; tell whether there was any."""
+        try:
+            message = bus.recv(wait)
+        except (ValueError, LookupError):  # python-can's slcan, of a line that was damaged
+            self.damaged += 1
+            return True
+        if message is not None:
+            self._keep(message, messages)
+        return message is not None
+
     def _keep(self, message: can.Message, messages: list[can.Message]) -> None:
-        if message.is_error_frame:
+        # python-can's slcan hands on lines that were cut short, with fewer data than they tell.
+        cut = not message.is_remote_frame and len(message.data) != message.dlc
+        if message.is_error_frame or cut:
             self.damaged += 1
         elif not message.is_remote_frame and not message.is_extended_id:
             messages.append(message)

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """What recording promises, held for long and killed often; the tables are printed."""
 
+import contextlib
 import json
 import os
 import signal
@@ -13,7 +14,8 @@ import numpy as np
 import pytest
 
 from rig.backends import open_rig
-from rig.slip_rig.decode import decode_board
+from rig.slip_rig.can_simple import describe_error
+from rig.slip_rig.decode import decode_board, decode_speeds
 from zebro_lab.raw_log import read_raw_log
 from zebro_lab.run_folder import read_slip_rig_run
 from zebro_lab.stages.runs import list_runs
@@ -91,29 +93,55 @@ def test_a_calibration_takes_runs_that_were_killed(tmp_path):
     assert (tmp_path / "calibration" / "slip.toml").is_file()
 
 
-@pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGTERM, signal.SIGINT])
-def test_a_driver_that_is_gone_leaves_no_disc_turning(number):
-    twin = subprocess.Popen([COMMAND, "sim", "rig", "--socket"], stdout=subprocess.PIPE, text=True)
+SIGNALS = [signal.SIGKILL, signal.SIGTERM, signal.SIGINT]
+
+
+@contextlib.contextmanager
+def driver_ended_by(number, *, device, profile):
+    """Let another process turn a simulated disc, end it by a signal; yield the twin's address."""
+    twin = subprocess.Popen([COMMAND, "sim", "rig", profile], stdout=subprocess.PIPE, text=True)
     try:
-        address = f"rig-board-serial@{twin.stdout.readline().split()[-1]}"
+        lines = iter(twin.stdout.readline, "")
+        address = next(line.split()[-1] for line in lines if line.startswith("record it as"))
         driver = subprocess.Popen(
-            [sys.executable, "-c", DRIVE, address], stdout=subprocess.PIPE, text=True
+            [sys.executable, "-c", DRIVE, address, device], stdout=subprocess.PIPE, text=True
         )
         assert driver.stdout.readline() == "turning\n"
         time.sleep(0.3)
         driver.send_signal(number)
         driver.communicate()
         time.sleep(0.8)
+        yield address
+    finally:
+        twin.kill()
+        twin.communicate()
+
+
+@pytest.mark.parametrize("number", SIGNALS)
+def test_a_board_whose_driver_is_gone_leaves_no_disc_turning(number):
+    with driver_ended_by(number, device="board", profile="rig-board-serial") as address:
         board = open_rig(address).board
         with board:
             samples = []
             while len(samples) < 50:
                 samples += board.read(0.5)
-        _, speeds = decode_board(board.profile, samples)
-        assert abs(speeds.leg[-1]) < 0.1
-    finally:
-        twin.kill()
-        twin.communicate()
+    _, speeds = decode_board(board.profile, samples)
+    assert abs(speeds.leg[-1]) < 0.1
+
+
+@pytest.mark.parametrize("number", SIGNALS)
+def test_drives_on_can_whose_driver_is_gone_stop_by_their_own_watchdog(number):
+    with driver_ended_by(number, device="drives", profile="rig-odrive-netft") as address:
+        drives = open_rig(address).drives
+        with drives:
+            samples = []
+            while len(samples) < 50:
+                samples += drives.read(0.5)
+    speeds = decode_speeds(drives.profile.leg, drives.profile.ground, samples)
+    assert abs(speeds.leg[-1]) < 0.1
+    expected = "" if number == signal.SIGINT else "watchdog timer expired"  # Ctrl-C disarms first
+    of_leg = [s.status for s in samples if s.channel == drives.profile.leg.node]
+    assert describe_error(of_leg[-1], drives.profile.firmware) == expected
 
 
 DRIVE = """
@@ -122,14 +150,14 @@ import sys
 signal.signal(signal.SIGINT, lambda *_: sys.exit())
 from rig.backends import open_rig
 from rig.device import iterate
-board = open_rig(sys.argv[1]).board
-with board:
-    board.leg.arm(1.0)
-    board.leg.set_speed(12.0)
-    for _ in iterate(board, duration=0.5):
+device = getattr(open_rig(sys.argv[1]), sys.argv[2])
+with device:
+    device.leg.arm(1.0)
+    device.leg.set_speed(12.0)
+    for _ in iterate(device, duration=0.5):
         pass
     print("turning", flush=True)
-    for _ in iterate(board, duration=60.0):
+    for _ in iterate(device, duration=60.0):
         pass
 """
 

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from tracking.camera.lens import Array
+from tracking.markers.apriltags import apriltag_quads
 from tracking.markers.dictionaries import dictionary_named
 from tracking.markers.refine import Sighting, refine_corners
 from tracking.markers.square import marker_picture
@@ -81,7 +82,7 @@ def find_markers(
     if effort == 0:
         return tuple(_moved(s, (area.left, area.top)) for s in _plain(grey, dictionary, numbers))
     found = _with_opencv(grey, dictionary, numbers)
-    missing = [number for number in numbers if number not in {s.marker_id for s in found}]
+    missing = _missing(numbers, found)
     if effort > 1 and missing:
         found += _enlarged(grey, dictionary, missing)
     moved = (_moved(sighting, (area.left, area.top)) for sighting in found)
@@ -107,13 +108,28 @@ def _with_opencv(
     grey: NDArray[np.uint8], dictionary: str, numbers: Sequence[int]
 ) -> list[Sighting]:
     corners, ids, others = _detector(dictionary, patient=False).detectMarkers(grey)
-    found = []
-    for quad, number in _decoded(corners, ids, numbers):
-        sighting = refine_corners(grey, quad, dictionary=dictionary, marker_id=number)
-        if sighting is not None and sighting.score >= LEAST_SCORE:
-            found.append(sighting)
-    missing = [number for number in numbers if number not in {s.marker_id for s in found}]
+    found = _fitted(grey, _decoded(corners, ids, numbers), dictionary, LEAST_SCORE)
+    missing = _missing(numbers, found)
+    if missing:
+        quads = apriltag_quads(grey, dictionary, missing)
+        found += _fitted(grey, quads, dictionary, ACCEPTED_SCORE)
+        missing = _missing(numbers, found)
     return found + recognise(grey, others, dictionary, missing) if missing else found
+
+
+def _fitted(
+    grey: NDArray[np.uint8], quads: Iterable[tuple[Array, int]], dictionary: str, least: float
+) -> list[Sighting]:
+    sightings = (
+        refine_corners(grey, quad, dictionary=dictionary, marker_id=number)
+        for quad, number in quads
+    )
+    return [each for each in sightings if each is not None and each.score >= least]
+
+
+def _missing(numbers: Iterable[int], found: Iterable[Sighting]) -> list[int]:
+    seen = {sighting.marker_id for sighting in found}
+    return [number for number in numbers if number not in seen]
 
 
 def _plain(grey: NDArray[np.uint8], dictionary: str, numbers: Sequence[int]) -> list[Sighting]:

@@ -17,7 +17,11 @@ app = typer.Typer(
 Play = Annotated[Path | None, typer.Option(metavar="FILE", help="Leg angles to walk: path.csv.")]
 Can = Annotated[
     str | None,
-    typer.Option("--can", metavar="INTERFACE:CHANNEL", help="Bus, for devices on CAN."),
+    typer.Option(
+        "--can",
+        metavar="INTERFACE:CHANNEL",
+        help="Bus for devices on CAN; without it an adapter at a port that speaks SLCAN.",
+    ),
 ]
 AsSocket = Annotated[
     bool, typer.Option("--socket", help="Listen on socket:// in place of a pseudo-terminal.")
@@ -116,4 +120,5 @@ def _serve(
     with progress_bar(Console(stderr=True)) as watcher, serving as served:
         for what, place in served.places.items():
             typer.echo(f"SIMULATED {what} ({served.source}), profile {request.profile}: {place}")
+        typer.echo(f"record it as {served.address}")
         wait_until(watcher.stop_requested, duration=duration)

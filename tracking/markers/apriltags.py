@@ -1,0 +1,60 @@
+# SPDX-License-Identifier: MIT
+"""AprilTags as their makers' own detector sees them, where pupil-apriltags is installed.
+
+It finds tags that OpenCV's detector for ArUco markers lets go of. Its pixels have their corners at
+whole numbers, OpenCV's their centres: half a pixel, or 2 mm on the floor, lies between the two. Its
+corners begin at the upper right one and run counter-clockwise, for a tag as OpenCV prints it.
+"""
+
+from collections.abc import Sequence
+from functools import cache
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tracking.camera.lens import Array
+
+FAMILIES = {"apriltag_16h5": "tag16h5", "apriltag_25h9": "tag25h9", "apriltag_36h11": "tag36h11"}
+"""OpenCV's names of the families that the detector knows, with its own."""
+
+MOST_WRONG_BITS = 1
+
+_ORDER = [1, 0, 3, 2]
+
+
+def apriltag_quads(
+    grey: NDArray[np.uint8], dictionary: str, numbers: Sequence[int]
+) -> list[tuple[Array, int]]:
+    """Find tags with pupil-apriltags.
+
+    Args:
+        grey: The picture, shape (height, width).
+        dictionary: Name of the dictionary, as `dictionary_named` takes it.
+        numbers: Numbers of the tags that are wanted.
+
+    Returns:
+        Corners in OpenCV's order and pixels, shape (4, 2) [px], and number of each tag; none where
+        the package is not installed or does not know the family.
+    """
+    family = FAMILIES.get(dictionary.lower().removeprefix("dict_"))
+    detector = None if family is None else _detector(family)
+    if detector is None:
+        return []
+    return [
+        (np.asarray(tag.corners, dtype=float)[_ORDER] - 0.5, int(tag.tag_id))
+        for tag in detector.detect(np.ascontiguousarray(grey))
+        if tag.tag_id in numbers and tag.hamming <= MOST_WRONG_BITS
+    ]
+
+
+@cache
+def _detector(family: str) -> Any:
+    try:
+        from pupil_apriltags import Detector
+    except ImportError:
+        return None  # an extra: OpenCV's own detector does without it
+    detector = Detector(families=family, nthreads=1, quad_decimate=1.0)
+    # Its destructor frees families that the library still holds, which ends the process.
+    detector.tag_families = {}
+    return detector

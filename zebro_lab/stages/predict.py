@@ -11,13 +11,13 @@ from model.gait.quantised import QuantisedLog, find_step
 from model.gait.reference import SampledReference
 from model.robot import N_LEGS
 from model.walk.ensemble import PathEnsemble
-from zebro_lab.errors import SettingsError
 from zebro_lab.leg_log import LegLog, read_leg_log
-from zebro_lab.path_band import BandRequest, predict_band, write_band
+from zebro_lab.path_band import BandRequest, write_band
 from zebro_lab.recorded_legs import is_recorded
 from zebro_lab.robot_file import ROBOT_FILE, RobotFile
 from zebro_lab.walk_folder import PATH_CSV
 from zebro_lab.walk_models import Direction
+from zebro_lab.walked_band import band_of
 from zebro_lab.walking import ModelRequest, Walked, Watcher, robot_of, walk_with, write_walk
 
 
@@ -72,7 +72,10 @@ def predict(request: PredictRequest, watcher: Watcher) -> Walked:
     settings: dict[str, object] = {"leg_angles": log.source, "direction": request.direction}
     extra = None
     if request.band is not None:
-        paths = _band(request, walked, legs, end - start, watcher)
+        paths = band_of(
+            request.band, walked, legs,
+            duration=end - start, toe=request.model.toe, watcher=watcher,
+        )  # fmt: skip
         settings["band"] = request.band.settings()
         moved = PathEnsemble(paths.t + start, paths.position, paths.yaw)
         extra = partial(write_band, paths=moved, title=walked.title)
@@ -94,29 +97,6 @@ def _legs(log: LegLog, start: float) -> tuple[SampledReference | QuantisedLog, t
         "straight lines through the changes of count"
     )
     return QuantisedLog(t, theta, step), (note,)
-
-
-def _band(
-    request: PredictRequest,
-    walked: Walked,
-    legs: SampledReference | QuantisedLog,
-    duration: float,
-    watcher: Watcher,
-) -> PathEnsemble:
-    if request.band is None or walked.model != "dynamics" or walked.slip is None:
-        raise SettingsError(
-            f"a band is predicted by the model 'dynamics' only, not by '{walked.model}'",
-            key="--draws",
-        )
-    return predict_band(
-        request.band,
-        walked.described.robot,
-        legs,
-        walked.slip,
-        duration=duration,
-        toe=request.model.toe,
-        watcher=watcher,
-    )
 
 
 def _with_own_robot(request: PredictRequest) -> PredictRequest:

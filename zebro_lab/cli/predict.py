@@ -10,12 +10,17 @@ from zebro_lab.cli.walk_options import (
     Animate,
     ArcDeg,
     Direction,
+    Draws,
     Figures,
     Model,
     ModelName,
+    OffsetSdDeg,
     RobotFile,
+    Seed,
     Slip,
+    StartSd,
     StepLength,
+    Threads,
     Toe,
     ToeName,
     require_slip,
@@ -56,25 +61,11 @@ def predict(
         Direction, typer.Option(help="Side the gait turns to; only --model thesis asks.")
     ] = Direction.LEFT,
     dt: StepLength = None,
-    draws: Annotated[
-        int,
-        typer.Option(
-            min=0, help="Paths drawn for the band: draws.npz, band.csv, band.png; 0 for none."
-        ),
-    ] = 0,
-    seed: Annotated[int, typer.Option(help="Seed of the band's draws.")] = 1,
-    offset_sd_deg: Annotated[
-        float | None,
-        typer.Option(
-            min=0.0,
-            help="Unknown offset of each leg (sd) [deg]; that of a count, or 0.3, without it.",
-        ),
-    ] = None,
-    start_sd: Annotated[
-        tuple[float, float, float],
-        typer.Option(help="Start pose's sd: x y [m] yaw [deg].", metavar="X Y YAW"),
-    ] = (0.0, 0.0, 0.0),
-    threads: Annotated[int, typer.Option(min=1, help="Draws walked at once.")] = 2,
+    draws: Draws = 0,
+    seed: Seed = 1,
+    offset_sd_deg: OffsetSdDeg = None,
+    start_sd: StartSd = (0.0, 0.0, 0.0),
+    threads: Threads = 2,
     figures: Figures = False,
     animate: Animate = False,
 ) -> None:

@@ -11,13 +11,18 @@ from zebro_lab.cli.walk_options import (
     Animate,
     ArcDeg,
     Direction,
+    Draws,
     Figures,
     Model,
     ModelName,
+    OffsetSdDeg,
     Out,
     RobotFile,
+    Seed,
     Slip,
+    StartSd,
     StepLength,
+    Threads,
     Toe,
     ToeName,
     require_slip,
@@ -35,6 +40,8 @@ zebro-lab walk --touchdown-deg 50,37.8 --liftoff-deg 130,138 --arc-deg 200 --sli
 --duration 30 --out measured-angles
 
 zebro-lab walk --gait suriana --tau-turn 0.1 --model thesis --slip thesis --duration 4.8 --animate
+
+zebro-lab walk --gait tripod --steering 1.3 --slip calibration --duration 25 --draws 300
 
 zebro-lab walk --write-robot robot.toml
 """
@@ -97,13 +104,19 @@ def walk(
     robot: RobotFile = None,
     arc_deg: ArcDeg = None,
     dt: StepLength = None,
+    draws: Draws = 0,
+    seed: Seed = 1,
+    offset_sd_deg: OffsetSdDeg = None,
+    start_sd: StartSd = (0.0, 0.0, 0.0),
+    threads: Threads = 2,
     figures: Figures = False,
     animate: Animate = False,
     write_robot: WriteRobot = None,
 ) -> None:
-    """Walk a gait: FOLDER/path.csv, pictures and a film."""
+    """Walk a gait: FOLDER/path.csv, a band, pictures and a film."""
     from zebro_lab.cli.walk_report import run_and_report
     from zebro_lab.gait_argument import GaitRequest
+    from zebro_lab.path_band import BandRequest
     from zebro_lab.stages.walk import WalkRequest
     from zebro_lab.stages.walk import walk as run
     from zebro_lab.walking import ModelRequest
@@ -136,7 +149,8 @@ def walk(
         tau_flight=tau_flight,
         tau_turn=tau_turn,
     )
-    request = WalkRequest(wanted, asked, duration)
+    band = BandRequest(draws, seed, offset_sd_deg, start_sd, threads=threads) if draws else None
+    request = WalkRequest(wanted, asked, duration, band)
     run_and_report(lambda watcher: run(request, watcher), asked)
 
 

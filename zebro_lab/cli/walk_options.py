@@ -61,6 +61,24 @@ StepLength = Annotated[
     float | None, typer.Option("--dt", min=0.0, help="Length of a step; the model's own [s].")
 ]
 Figures = Annotated[bool, typer.Option("--figures", help="Draw path, motion, forces, contacts.")]
+Draws = Annotated[
+    int,
+    typer.Option(
+        min=0, help="Paths drawn for the band: draws.npz, band.csv, band.png; 0 for none."
+    ),
+]
+Seed = Annotated[int, typer.Option(help="Seed of the band's draws.")]
+OffsetSdDeg = Annotated[
+    float | None,
+    typer.Option(
+        min=0.0, help="Unknown offset of each leg (sd) [deg]; that of a count, or 0.3, without it."
+    ),
+]
+StartSd = Annotated[
+    tuple[float, float, float],
+    typer.Option(help="Start pose's sd: x y [m] yaw [deg].", metavar="X Y YAW"),
+]
+Threads = Annotated[int, typer.Option(min=1, help="Draws walked at once.")]
 Animate = Annotated[bool, typer.Option("--animate", help="Film the robot: mp4, or gif.")]
 
 

@@ -2,12 +2,15 @@
 """A gait in, walk folder out."""
 
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 from zebro_lab.atomic import atomic_write_text
 from zebro_lab.errors import AlreadyExists
 from zebro_lab.gait_argument import GaitRequest, make_gait
+from zebro_lab.path_band import BandRequest, write_band
 from zebro_lab.robot_file import render_robot_file
+from zebro_lab.walked_band import band_of
 from zebro_lab.walking import ModelRequest, Walked, Watcher, robot_of, walk_with, write_walk
 
 
@@ -19,11 +22,13 @@ class WalkRequest:
         gait: The gait.
         model: Which model, on what, and what to write.
         duration: Time to walk [s].
+        band: What band to predict; None for the path alone.
     """
 
     gait: GaitRequest
     model: ModelRequest
     duration: float
+    band: BandRequest | None = None
 
 
 def walk(request: WalkRequest, watcher: Watcher) -> Walked:
@@ -44,11 +49,20 @@ def walk(request: WalkRequest, watcher: Watcher) -> Walked:
         what=gait.what,
         direction=gait.direction,
     )
-    settings = {
+    settings: dict[str, object] = {
         "gait": {"name": request.gait.name, **request.gait.given()},
         "duration": request.duration,
+        "direction": gait.direction,
     }
-    write_walk(request.model, walked, watcher, kind="walk", settings=settings)
+    extra = None
+    if request.band is not None:
+        paths = band_of(
+            request.band, walked, gait.reference,
+            duration=request.duration, toe=request.model.toe, watcher=watcher,
+        )  # fmt: skip
+        settings["band"] = request.band.settings()
+        extra = partial(write_band, paths=paths, title=walked.title)
+    write_walk(request.model, walked, watcher, kind="walk", settings=settings, extra=extra)
     return walked
 
 

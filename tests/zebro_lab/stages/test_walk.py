@@ -12,6 +12,7 @@ from model.gait import tripod_angles, tripod_reference
 from zebro_lab.errors import AlreadyExists, SettingsError
 from zebro_lab.gait_argument import GaitRequest
 from zebro_lab.leg_log import ANGLES
+from zebro_lab.path_band import BandRequest, read_draws
 from zebro_lab.robot_file import read_robot_file
 from zebro_lab.stages.predict import PredictRequest, predict
 from zebro_lab.stages.walk import WalkRequest, walk, write_robot
@@ -53,6 +54,24 @@ def write_log(folder, *, start=0.0, sign=1, **gait):
     table.insert(0, "t", t + start)
     table.to_csv(folder / "legs.csv", index=False)
     return folder / "legs.csv"
+
+
+def test_a_gait_has_a_band_around_its_path(tmp_path):
+    asked = replace(request(tmp_path / "out", dt=0.005), band=BandRequest(12, offset_sd_deg=1.0))
+    walked = walk(asked, Nobody())
+    draws = read_draws(tmp_path / "out")
+    assert draws.position.shape[0] == 12
+    end, spread = draws.position[:, -1], draws.position[:, -1].std(axis=0)
+    assert np.all(np.abs(end.mean(axis=0) - walked.path.position[-1, :2]) < 3 * spread)
+    assert np.all(spread > 1e-4)
+    assert read_walk_manifest(tmp_path / "out")["settings"]["band"]["draws"] == 12
+
+
+def test_a_gait_walked_by_a_model_without_a_band_is_refused_and_leaves_nothing(tmp_path):
+    asked = replace(request(tmp_path / "out", model="no-slip"), band=BandRequest(12))
+    with pytest.raises(SettingsError, match="dynamics"):
+        walk(asked, Nobody())
+    assert not (tmp_path / "out").exists()
 
 
 @pytest.mark.parametrize("model", MODELS)

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: MIT
 """The camera is found over the floor; bumps, mirrored maps and a slipped tape are told."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -207,3 +209,26 @@ def test_a_mark_far_from_its_tape_is_reported():
     markers = (FLOOR.markers[0].moved([0.02, 0, 0, 0]), *FLOOR.markers[1:])
     fit = refine_floor(LENS, FloorMap("4x4_50", markers), [see(FLOOR, camera_pose(), rng)])
     assert any(message.startswith("mark 1") for message in fit.warnings)
+
+
+def test_a_picture_worse_than_it_seems_leaves_the_tape_its_own_error():
+    rng = np.random.default_rng(7)
+    view = see(FLOOR, camera_pose(), rng, "p.jpg")
+    surer = {key: part / 3**2 for key, part in view.covariances.items()}
+    told = FloorView(view.photo, view.pixels, surer)
+    honest, misled = (refine_floor(LENS, FLOOR, [each]) for each in (view, told))
+    assert (honest.noise_factor, honest.tape_factor, misled.tape_factor) == (1.0, 1.0, 1.0)
+    assert 2.2 < misled.noise_factor < 3.8
+    spread, same = (np.diag(fit.stands[0].pose.covariance) for fit in (honest, misled))
+    np.testing.assert_allclose(np.sqrt(same / spread), 1.0, atol=0.25)
+
+
+def test_a_tape_worse_than_it_is_said_to_be_widens_the_camera_and_not_the_pixels():
+    rng = np.random.default_rng(8)
+    slack = [
+        replace(mark, x=mark.x + rng.normal(0, 6e-3), y=mark.y + rng.normal(0, 6e-3))
+        for mark in FLOOR.markers
+    ]
+    fit = refine_floor(LENS, FloorMap("4x4_50", tuple(slack)), [see(FLOOR, camera_pose(), rng)])
+    assert fit.noise_factor == 1.0
+    assert 2.0 < fit.tape_factor < 9.0

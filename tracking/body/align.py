@@ -34,7 +34,7 @@ MODEL_FACTOR = 4.0
 """By how much what a flat picture leaves out (shading, rims, legs) exceeds white noise, as a factor
 of variance [-]."""
 
-MODEL_STEPS = 0.05
+MODEL_STEPS = 0.02
 """Error of an alignment that no number of points averages away, in steps of the template [-]."""
 
 

@@ -14,12 +14,18 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.stats import chi2
 
-from tracking.camera.lens import Array, Camera, CameraPose, project_with_derivatives
+from tracking.camera.lens import Array, Camera, CameraPose, project, project_with_derivatives
 from tracking.errors import FloorError
 from tracking.floor.locate import FloorView, locate_camera, seen_keys
 from tracking.floor.marks import FloorMap
 from tracking.floor.stands import split_stands
+
+_CHANCE = 0.95
+"""Residuals no larger than in this share of sound fits are put down to chance."""
+
+_REWEIGHINGS = 5
 
 
 @dataclass(frozen=True)
@@ -44,8 +50,10 @@ class FloorFit:
         stands: One entry a stretch of photographs with the camera at rest.
         shifts: By mark, how far it is from where the tape had it, shape (2,) [m].
         misfit_px: Root mean square distance of marks from their projection [px].
-        noise_factor: By how much residuals exceed what the marks' covariances promise, at least 1;
-            squared, it has been multiplied into the poses' covariances [-].
+        noise_factor: By how much residuals in pixels exceed what the marks' covariances promise, 1
+            where chance explains it; it is part of the poses' covariances [-].
+        tape_factor: By how much marks are farther from where the tape has them than it promises;
+            likewise [-].
         unused: Photographs that show no mark of the floor, with the reason.
     """
 
@@ -54,6 +62,7 @@ class FloorFit:
     shifts: Mapping[int | str, Array]
     misfit_px: float
     noise_factor: float
+    tape_factor: float
     unused: Mapping[str, str]
 
     @property
@@ -114,7 +123,7 @@ def refine_floor(camera: Camera, floor: FloorMap, views: Sequence[FloorView]) ->
     means = [_mean_view(group) for group in groups]
     starts = [locate_camera(camera, floor, view) for view in means]
     problem = _Problem(camera, floor, means)
-    fitted, poses, covariance, misfit, factor = problem.solve(starts)
+    fitted, poses, covariance, misfit, factors = problem.solve(starts)
     stands = tuple(
         Stand(
             CameraPose(pose.rotation_vector, pose.translation, covariance[index]),
@@ -126,7 +135,7 @@ def refine_floor(camera: Camera, floor: FloorMap, views: Sequence[FloorView]) ->
         key: np.subtract(fitted.marks[key].points[:, :2].mean(0), mark.points[:, :2].mean(0))
         for key, mark in floor.marks.items()
     }
-    return FloorFit(fitted, stands, shifts, misfit, factor, unused)
+    return FloorFit(fitted, stands, shifts, misfit, *factors, unused)
 
 
 def _mean_view(views: Sequence[FloorView]) -> FloorView:
@@ -143,6 +152,21 @@ def _mean_view(views: Sequence[FloorView]) -> FloorView:
 
 
 @dataclass(frozen=True)
+class _Part:
+    """Normal equations of one group of observations, its weighed squares and its size."""
+
+    normal: Array
+    gradient: Array
+    cost: float
+    count: int
+
+
+def _weighed(parts: Sequence[Array], factors: Sequence[float]) -> Array:
+    """Sum what groups of observations give, each with its variance multiplied by factor²."""
+    return np.sum([part / factor**2 for part, factor in zip(parts, factors, strict=True)], axis=0)
+
+
+@dataclass(frozen=True)
 class _Problem:
     camera: Camera
     floor: FloorMap
@@ -150,24 +174,56 @@ class _Problem:
 
     def solve(
         self, starts: Sequence[CameraPose]
-    ) -> tuple[FloorMap, list[CameraPose], list[Array], float, float]:
-        """Iterate Gauss-Newton; return map, poses, their covariances, misfit [px] and factor."""
-        floor, poses = self.floor, list(starts)
-        for _ in range(20):
-            normal, gradient, cost, squares = self._system(floor, poses)
-            step = np.linalg.solve(normal, gradient)
-            floor, poses = self._moved(floor, poses, step)
-            if step @ gradient < 1e-10 * max(cost, 1.0):
+    ) -> tuple[FloorMap, list[CameraPose], list[Array], float, tuple[float, float]]:
+        """Fit, and fit again with pixels and tape weighed as their residuals ask.
+
+        Returns:
+            Map, poses, their covariances, misfit [px], and by how much pixels and tape exceed
+            their standard deviations.
+        """
+        factors = (1.0, 1.0)
+        floor, poses = self._least_squares(self.floor, list(starts), factors)
+        parts = self._system(floor, poses)
+        for _ in range(_REWEIGHINGS):
+            before, factors = factors, self._factors(parts, factors)
+            if np.allclose(factors, before, rtol=1e-2):
                 break
-        normal, _, cost, squares = self._system(floor, poses)
-        pixels = sum(2 * len(view.pixels[key]) for view in self.views for key in view.pixels)
-        freedom = max(pixels - 6 * len(poses), 1)
-        factor = float(np.sqrt(max(1.0, cost / freedom)))
-        covariance = np.linalg.inv(normal)
-        blocks = [
-            factor**2 * covariance[6 * i : 6 * i + 6, 6 * i : 6 * i + 6] for i in range(len(poses))
-        ]
-        return floor, poses, blocks, float(np.sqrt(2 * squares / pixels)), factor
+            floor, poses = self._least_squares(floor, poses, factors)
+            parts = self._system(floor, poses)
+        covariance = np.linalg.inv(_weighed([part.normal for part in parts], factors))
+        blocks = [covariance[6 * i : 6 * i + 6, 6 * i : 6 * i + 6] for i in range(len(poses))]
+        return floor, poses, blocks, float(np.sqrt(2 * self._squares(floor, poses))), factors
+
+    def _least_squares(
+        self, floor: FloorMap, poses: list[CameraPose], factors: tuple[float, float]
+    ) -> tuple[FloorMap, list[CameraPose]]:
+        """Iterate Gauss-Newton."""
+        for _ in range(20):
+            parts = self._system(floor, poses)
+            gradient = _weighed([part.gradient for part in parts], factors)
+            step = np.linalg.solve(_weighed([part.normal for part in parts], factors), gradient)
+            floor, poses = self._moved(floor, poses, step)
+            if step @ gradient < 1e-10 * max(sum(part.cost for part in parts), 1.0):
+                break
+        return floor, poses
+
+    def _factors(
+        self, parts: Sequence["_Part"], factors: tuple[float, float]
+    ) -> tuple[float, float]:
+        """Estimate by how much the residuals of pixels and of the tape exceed their promise.
+
+        Variance components (Helmert 1907; Koch 1999, section 3.6): with N the normal equations of
+        all and N_g those of one group, its n_g residuals have r_g = n_g - tr(N^-1 N_g) degrees of
+        freedom and should square to as much. One factor for both would blame the tape for a
+        picture worse than it seems, and widen every camera's pose by it.
+        """
+        inverse = np.linalg.inv(_weighed([part.normal for part in parts], factors))
+        found = []
+        for part, factor in zip(parts, factors, strict=True):
+            freedom = part.count - float(np.sum(inverse * part.normal)) / factor**2
+            chance = chi2.ppf(_CHANCE, freedom) if freedom > 0.5 else np.inf
+            found.append(float(np.sqrt(part.cost / freedom)) if part.cost > chance else 1.0)
+        return found[0], found[1]
 
     def _slots(self) -> dict[int | str, slice]:
         start, slots = 6 * len(self.views), {}
@@ -176,13 +232,13 @@ class _Problem:
             start += len(mark.prior_sd)
         return slots
 
-    def _system(
-        self, floor: FloorMap, poses: Sequence[CameraPose]
-    ) -> tuple[Array, Array, float, float]:
-        slots = self._slots()
-        size = max(slot.stop for slot in slots.values())
-        normal, gradient = np.zeros((size, size)), np.zeros(size)
-        cost = squares = 0.0
+    def _system(self, floor: FloorMap, poses: Sequence[CameraPose]) -> tuple["_Part", "_Part"]:
+        """Compute the normal equations of the pixels and those of the tape."""
+        return self._by_pixels(floor, poses), self._by_tape(floor)
+
+    def _by_pixels(self, floor: FloorMap, poses: Sequence[CameraPose]) -> "_Part":
+        slots, size = self._slots(), self._size
+        normal, gradient, cost, count = np.zeros((size, size)), np.zeros(size), 0.0, 0
         for index, (pose, view) in enumerate(zip(poses, self.views, strict=True)):
             for key in seen_keys(floor, view):
                 mark = floor.marks[key]
@@ -195,14 +251,33 @@ class _Problem:
                 normal += J.T @ weight @ J
                 gradient += J.T @ weight @ r
                 cost += float(r @ weight @ r)
-                squares += float(r @ r)
-        for key, slot in slots.items():
+                count += len(r)
+        return _Part(normal, gradient, cost, count)
+
+    def _by_tape(self, floor: FloorMap) -> "_Part":
+        size = self._size
+        normal, gradient, cost, count = np.zeros((size, size)), np.zeros(size), 0.0, 0
+        for key, slot in self._slots().items():
             weight = self.floor.marks[key].prior_sd ** -2
             pull = self._from_tape(floor, key)
             normal[slot, slot] += np.diag(weight)
             gradient[slot] -= weight * pull
             cost += float(weight @ pull**2)
-        return normal, gradient, cost, squares
+            count += len(pull)
+        return _Part(normal, gradient, cost, count)
+
+    def _squares(self, floor: FloorMap, poses: Sequence[CameraPose]) -> float:
+        """Compute the mean squared residual of one coordinate [px²]."""
+        residuals = [
+            view.pixels[key] - project(self.camera, pose, floor.marks[key].points)
+            for pose, view in zip(poses, self.views, strict=True)
+            for key in seen_keys(floor, view)
+        ]
+        return float(np.mean(np.concatenate(residuals) ** 2))
+
+    @property
+    def _size(self) -> int:
+        return max(slot.stop for slot in self._slots().values())
 
     def _from_tape(self, floor: FloorMap, key: int | str) -> Array:
         found, tape = floor.marks[key], self.floor.marks[key]

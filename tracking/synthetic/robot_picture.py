@@ -3,6 +3,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 
 import cv2
 import numpy as np
@@ -126,12 +127,19 @@ class _Sampler:
 
     def _values(self, rays: RayField, sample: int) -> Picture:
         pose = self.state.pose_at(float(MOMENTS[sample]) * self.exposure_time)
-        plate = plate_cells(np.random.default_rng(self.look.plate_seed), parts=self.look.parts)
+        plate = _plate(self.look.plate_seed, self.look.parts)
         seen = _Seen(pose, self.state.leg_angles, self.look, self.light, plate)
         directions = rays.at(sample)
         found, colour = seen.along(self.origin, directions)
         lit = np.where(found, 0.0, seen.floor_light(self.origin, directions, DISC[sample]))
         return np.column_stack([colour, found, lit]).astype(np.float32)
+
+
+@lru_cache(maxsize=16)
+def _plate(seed: int, parts: int) -> Grid:
+    grid = plate_cells(np.random.default_rng(seed), parts=parts)
+    grid.setflags(write=False)
+    return grid
 
 
 @dataclass(frozen=True)

@@ -39,7 +39,8 @@ def derive_table(
         The samples, and notes on what was left out.
 
     Raises:
-        DataError: A stream is missing, or the profile cannot be followed.
+        DataError: A stream is missing or without a complete sample, or the profile cannot be
+            followed.
     """
     file = profile_file(folder, RIG)
     try:
@@ -53,6 +54,8 @@ def derive_table(
             raise DataError("has neither a board nor drives and load cell", file=file)
     except RigError as error:
         raise DataError(str(error), file=folder) from error
+    if table.shape[1] == 0:
+        raise DataError("its log holds no force between two speeds of each disc", file=folder)
     table[3] -= zero.get("zero_normal", 0.0)
     table[4] -= zero.get("zero_traction", 0.0)
     return _increasing(table)

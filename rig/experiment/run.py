@@ -267,8 +267,9 @@ class _Run:
         self._recording = True
         readings = self._record(point, zero)
         verdict = judge_point(
-            readings, point, self._plan.accept, settled=settled, profile=self._bench.profile
-        )
+            readings, point, self._plan.accept, settled=settled,
+            duration=self._plan.points.duration, profile=self._bench.profile,
+        )  # fmt: skip
         self._close("completed", verdict)
         return verdict
 
@@ -300,9 +301,8 @@ class _Run:
         def keep(batch: Batch) -> None:
             # Lined-up samples may be older than the recording: they waited for their speeds.
             readings = batch.readings.without(zero).since(start)
-            if len(readings):
-                kept.append(readings)
-                self._sink.write(readings, batch)
+            kept.append(readings)
+            self._sink.write(readings, batch)
             if point.kind == "sweep":
                 slip = point.slip_at((self._clock.now() - start) / duration)
                 self._acquire.aim(self._plan.points.omega_leg, slip)

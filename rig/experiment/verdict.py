@@ -2,6 +2,7 @@
 """Whether the rig is steady, and what a recorded point is worth."""
 
 from dataclasses import dataclass
+from typing import Final
 
 import numpy as np
 
@@ -11,6 +12,9 @@ from rig.experiment.bench import Readings
 from rig.experiment.plan import Acceptance, SettleCriterion
 from rig.experiment.steps import Point
 from rig.slip_rig.profile import RigProfile
+
+LEAST_COVERED: Final = 0.8
+"""Part of a point's time that its samples must span [-]."""
 
 
 @dataclass(frozen=True)
@@ -91,6 +95,7 @@ def judge_point(
     accept: Acceptance,
     *,
     settled: bool,
+    duration: float,
     profile: RigProfile,
 ) -> Verdict:
     """Say what a recorded point is worth.
@@ -100,6 +105,7 @@ def judge_point(
         point: What was commanded.
         accept: What it must show.
         settled: Whether the rig had settled when recording began.
+        duration: How long it was recorded [s].
         profile: Carries the radii.
 
     Returns:
@@ -110,6 +116,9 @@ def judge_point(
     slip = measured_slip(readings, profile)
     first, late = halves(readings)
     problems = [] if settled else ["not settled in time"]
+    covered = float(readings.t[-1] - readings.t[0])
+    if covered < LEAST_COVERED * duration:
+        problems.append(f"samples cover {covered:.2f} s of {duration:g} s")
     wanted = float(np.mean([point.slip_at(f) for f in np.linspace(0, 1, 101)]))
     off = float(slip.mean()) - wanted
     if not abs(off) <= accept.slip:

@@ -20,7 +20,9 @@ def readings(*, slip=0.2, friction=0.3, load=5.0, n=200, duration=0.5):
 
 
 def judge(found, plan, *, settled=True, slip=0.2):
-    return judge_point(found, Point(1, 5.0, (slip,)), plan.accept, settled=settled, profile=PROFILE)
+    return judge_point(
+        found, Point(1, 5.0, (slip,)), plan.accept, settled=settled, duration=0.5, profile=PROFILE
+    )
 
 
 def test_a_steady_point_is_good(lab):
@@ -36,6 +38,7 @@ def test_a_steady_point_is_good(lab):
         (readings(slip=np.linspace(0.16, 0.24, 200)), "slip drifted by +0.04"),
         (readings(friction=np.linspace(0.0, 0.8, 200)), "friction drifted by +0.4"),
         (readings(n=5), "5 samples"),
+        (readings(duration=0.2), "samples cover 0.20 s of 0.5 s"),
     ],
 )
 def test_what_is_wrong_with_a_point_is_said(lab, found, said):

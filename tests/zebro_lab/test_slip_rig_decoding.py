@@ -1,0 +1,41 @@
+# SPDX-License-Identifier: MIT
+import numpy as np
+import pytest
+
+from rig.profile import shipped_file
+from zebro_lab.errors import DataError
+from zebro_lab.raw_log import RawStream
+from zebro_lab.run_folder import profile_file
+from zebro_lab.slip_rig_decoding import RIG, derive_table
+
+PROFILE = shipped_file("rig-odrive-netft.toml").read_text()
+
+
+def stream(times, counts, channels=None):
+    n = len(times)
+    channel = np.zeros(n, dtype=np.uint32) if channels is None else np.array(channels, np.uint32)
+    return RawStream(
+        np.array(times), np.full(n, np.nan), np.full(n, -1), np.zeros(n, np.uint32), channel,
+        np.array(counts, dtype=float),
+    )  # fmt: skip
+
+
+def derive(folder, force_times):
+    file = profile_file(folder, RIG)
+    file.parent.mkdir(parents=True, exist_ok=True)
+    file.write_text(PROFILE)
+    streams = {
+        "/drives/raw": stream([0.1, 0.1, 0.3, 0.3], [[0, 2.0], [0, 0.5]] * 2, [0, 1, 0, 1]),
+        "/load_cell/raw": stream(force_times, [[1e6, 0, -5e6, 0, 0, 0]] * len(force_times)),
+    }
+    return derive_table(folder, streams, zero={})
+
+
+def test_forces_outside_the_speeds_are_left_out(tmp_path):
+    table, _ = derive(tmp_path, [0.05, 0.2, 0.35])
+    np.testing.assert_allclose(table.rows(), [[0.2, 4 * np.pi, np.pi, 5.0, 1.0]], rtol=1e-12)
+
+
+def test_a_run_whose_forces_and_speeds_never_meet_is_one_line(tmp_path):
+    with pytest.raises(DataError, match="its log holds no force between two speeds"):
+        derive(tmp_path, [0.05, 0.35])

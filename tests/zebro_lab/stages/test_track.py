@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: MIT
 """The bundled simulated photographs become the track they were taken of, whatever goes wrong."""
 
-import csv
 import json
 import shutil
 import tomllib
@@ -12,10 +11,8 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from tracking.camera import Camera, CameraPose, project
 from tracking.errors import TrackingError
 from tracking.path import TRACK_COLUMNS
-from tracking.pose import rotation_with_derivatives
 from zebro_lab import photo_search
 from zebro_lab.errors import AlreadyExists, DataError, SettingsError
 from zebro_lab.photo_search import TrackStopped
@@ -27,7 +24,6 @@ from zebro_lab.track_folder import OWNED
 
 WALK = Path(__file__).parents[3] / "datasets/walk-sim"
 SOME = ("00", "02", "03", "04", "05", "06")
-PLATE = "150mmx150mm@38.5mm"
 
 
 class Nobody:
@@ -207,69 +203,3 @@ def test_a_stop_leaves_nothing(request_):
     with pytest.raises(TrackStopped):
         track(request_, Nobody(stops=True))
     assert not request_.folder.exists()
-
-
-@pytest.fixture(scope="module")
-def virtual(shared, tmp_path_factory):
-    """Return a maker of requests for the virtual world's photographs."""
-    world = json.loads((shared / "virtual-world/photos/camera.json").read_text())
-    folder = tmp_path_factory.mktemp("virtual")
-    K = world["K"]
-    (folder / "camera.toml").write_text(
-        f"size = {world['image_size']}\nfocal = [{K[0][0]}, {K[1][1]}]\n"
-        f"centre = [{K[0][2]}, {K[1][2]}]\n"
-    )
-    lines = ["[markers]"]
-    for key, marker in world["floor_markers"].items():
-        corners = np.array(marker["corners_world"])
-        (x, y, z), (ax, ay, _) = corners.mean(axis=0), corners[1] - corners[0]
-        yaw = np.degrees(np.arctan2(ay, ax))
-        lines.append(
-            f"{key} = {{ x = {x}, y = {y}, z = {z}, yaw_deg = {yaw}, side = {marker['side']} }}"
-        )
-    (folder / "floor.toml").write_text("\n".join(lines))
-    (folder / "robot.toml").write_text("[marker]\nposition = [0, 0, 0.0385]\nheight = 0.1\n")
-
-    def request(name: str, out: Path) -> TrackRequest:
-        return TrackRequest(
-            shared / "virtual-world/photos" / name, folder / "camera.toml", folder / "floor.toml",
-            robot=folder / "robot.toml", out=out, times=TimeRequest(interval=2.0),
-            source="sim:virtual-world",
-        )  # fmt: skip
-
-    lens = Camera(tuple(world["image_size"]), np.array(K), np.zeros(5))
-    return request, lens, CameraPose.from_matrix(world["R"], world["t"])
-
-
-def read_truth(folder: Path) -> np.ndarray:
-    with (folder / "truth.csv").open(encoding="utf-8") as file:
-        names = ("x", "y", "z", "roll", "pitch", "yaw")
-        return np.array([[float(row[name]) for name in names] for row in csv.DictReader(file)])
-
-
-@pytest.mark.reference
-def test_the_marked_virtual_walk_is_within_three_millimetres(virtual, tmp_path, undrawn):
-    asked = virtual[0]("s1.10_A", tmp_path / "track")
-    poses = track(asked, Nobody()).tracked.track.poses
-    error = np.abs(poses - read_truth(asked.photos)[:, [0, 1, 5]])
-    assert np.hypot(*error[:, :2].T).max() < 3e-3
-    assert np.degrees(error[:, 2].max()) < 0.3
-
-
-@pytest.mark.reference
-def test_the_unmarked_virtual_walk_is_within_five_millimetres(virtual, tmp_path, undrawn):
-    make, lens, view = virtual
-    asked = make("s1.10_B", tmp_path / "track")
-    true = read_truth(asked.photos)
-    photo = sorted(path.name for path in asked.photos.glob("*.jpg"))[7]
-    R, _ = rotation_with_derivatives(*true[7, 3:])
-    top = np.array([[75, 75, 38.5], [75, -75, 38.5], [-75, -75, 38.5], [-75, 75, 38.5]]) / 1e3
-    clicks = project(lens, view, top @ R.T + true[7, :3])
-    clicks += np.random.default_rng(0).normal(0, 0.3, clicks.shape)
-    corners = " ".join(f"{u:.1f},{v:.1f}" for u, v in clicks)
-    file = tmp_path / "annotations.toml"
-    annotate(AnnotateRequest(asked.photos, file, photo=photo, corners=corners, plate=PLATE))
-    asked = replace(asked, annotations=file, without_marker=True)
-    error = np.abs(track(asked, Nobody()).tracked.track.poses - true[:, [0, 1, 5]])
-    assert np.hypot(*error[:, :2].T).max() < 5e-3
-    assert np.degrees(error[:, 2].max()) < 2.0

@@ -7,6 +7,9 @@ from pathlib import Path
 import pytest
 from hypothesis import settings
 
+# FFmpeg takes its log level from the first video that any test reads or writes; see tracking's.
+os.environ.setdefault("OPENCV_FFMPEG_LOGLEVEL", "-8")
+
 REFERENCE = Path(os.environ.get("ZEBRO_LAB_SHARED", Path(__file__).parents[2] / "shared"))
 
 settings.register_profile("lab", deadline=None, derandomize=True)

@@ -14,13 +14,14 @@ from rig.experiment.load import LoadSetter
 from rig.experiment.plan import Plan
 from rig.experiment.sink import RunStart, Sink, SinkFailed
 from rig.experiment.steps import Point, Step, Tare, estimate, require_allowed, spell_out
-from rig.experiment.verdict import Verdict, is_steady, judge_point
+from rig.experiment.verdict import LEAST_COVERED, Verdict, is_steady, judge_point, span
 from rig.experiment.watcher import NobodyWatches, Watcher
 from rig.safety import StopCategory, StopRequested
 from rig.slip_rig.decode import Forces, Zero, require_zero, tare
 
 REST_LIMIT: Final = 5.0
 """How long the discs may take to stand after their set-points do [s]."""
+ZERO_ATTEMPTS: Final = 3
 UNLOADED: Final = Zero(0.0, 0.0, 0.0)
 
 
@@ -208,8 +209,11 @@ class _Run:
     def _tare(self) -> None:
         self._tell("zero of the load cell")
         self._set_load(0.0)
-        batches = self._collect(self._plan.controls.tare_duration)
-        raw = join([batch.readings for batch in batches])
+        duration, raw = self._plan.controls.tare_duration, join([])
+        for _ in range(ZERO_ATTEMPTS):
+            raw = join([batch.readings for batch in self._collect(duration)])
+            if span(raw) >= LEAST_COVERED * duration:
+                break  # else the host was held up
         zero = tare(Forces(raw.t, raw.normal_force, raw.traction_force))
         self._sink.event(
             "zero", f"normal {zero.normal:.4f} N, traction {zero.traction:.4f} N, "

@@ -41,6 +41,11 @@ class Verdict:
         return not self.problems
 
 
+def span(readings: Readings) -> float:
+    """Compute the time from the first sample to the last one; 0 where there is none [s]."""
+    return float(readings.t[-1] - readings.t[0]) if len(readings) else 0.0
+
+
 def halves(readings: Readings) -> tuple[Readings, Readings]:
     """Split readings in the middle of their time."""
     middle = (readings.t[0] + readings.t[-1]) / 2
@@ -116,7 +121,7 @@ def judge_point(
     slip = measured_slip(readings, profile)
     first, late = halves(readings)
     problems = [] if settled else ["not settled in time"]
-    covered = float(readings.t[-1] - readings.t[0])
+    covered = span(readings)
     if covered < LEAST_COVERED * duration:
         problems.append(f"samples cover {covered:.2f} s of {duration:g} s")
     wanted = float(np.mean([point.slip_at(f) for f in np.linspace(0, 1, 101)]))

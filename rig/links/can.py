@@ -5,12 +5,15 @@ No `can.Notifier`: its thread ends without a word when a listener raises.
 """
 
 import contextlib
-from typing import Final
+from typing import TYPE_CHECKING, Final, cast
 
 import can
 
 from rig.clock import SYSTEM_CLOCK, Clock
 from rig.errors import LinkError, RigTimeout
+
+if TYPE_CHECKING:
+    from can.interfaces.slcan import slcanBus
 
 WRITE_LIMIT: Final = 0.5
 RETRY_AFTER: Final = 0.25
@@ -123,6 +126,13 @@ class CanLink:
         try:
             message = bus.recv(wait)
         except (ValueError, LookupError):  # python-can's slcan, of a line that was damaged
+            self.damaged += 1
+            return True
+        except can.CanOperationError as problem:
+            if not isinstance(problem.__cause__, UnicodeDecodeError):
+                raise
+            # A byte of noise, which python-can's slcan would keep and stumble over for ever.
+            cast("slcanBus", bus).flush()
             self.damaged += 1
             return True
         if message is not None:

@@ -111,6 +111,18 @@ def test_damaged_lines_of_an_adapter_are_counted_and_the_bus_is_read_on():
     assert (link.damaged, link.reconnected) == (4, 0)
 
 
+def test_a_byte_of_noise_costs_its_line_alone():
+    with can.Bus(interface="slcan", channel="loop://", sleep_after_open=0.0) as bus:
+        link = CanLink(bus)
+        link.open()
+        bus.flush()  # what opening wrote comes back
+        bus.serialPortOrig.write(b"t1211\xb7\r")
+        assert link.read(0.0) == []
+        bus.serialPortOrig.write(b"t121101\r")
+        assert [message.data for message in link.read(0.0)] == [b"\x01"]
+        assert (link.damaged, link.reconnected) == (1, 0)
+
+
 def test_a_robot_behind_an_adapter_is_read_and_commanded_by_python_cans_own_slcan(monkeypatch):
     at_once = SimpleNamespace(sleep=lambda _: None, time=time.time)  # it waits 2 s for a real one
     monkeypatch.setattr("can.interfaces.slcan.time", at_once)

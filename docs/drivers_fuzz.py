@@ -1,0 +1,532 @@
+# SPDX-License-Identifier: MIT
+"""Generated inputs for every parser of drivers and recorded runs; prints the table of drivers.md.
+
+python docs/drivers_fuzz.py [INPUTS]
+
+Of every five inputs one is random, one valid, and the others are valid ones with bytes changed, cut
+short, or spliced from two. Parsers that cost milliseconds get a tenth, a hundredth or a thousandth.
+"""
+
+import io
+import json
+import logging
+import struct
+import sys
+import tempfile
+from collections import Counter
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import can
+import numpy as np
+from cobs import cobs
+
+from model.gait.reference import SampledReference
+from rig.clock import ManualClock
+from rig.device import Limits, Sample
+from rig.errors import RigError
+from rig.imu.profile import load_imu_profile
+from rig.imu.stream import ImuStream
+from rig.links.can import CanLink
+from rig.links.packet import Kind, Packet, encode_packet
+from rig.links.slcan import SlcanAdapter, decode_frame, encode_frame
+from rig.profile import shipped_file
+from rig.slip_rig.board import RigBoard, board_body, speed_body
+from rig.slip_rig.can_simple import ESTIMATES, HEARTBEAT, Command, can_id
+from rig.slip_rig.drives import DriveBus
+from rig.slip_rig.load_cell import NetFtCell
+from rig.slip_rig.profile import load_rig_profile
+from rig.slip_rig.rdt import RECORD, Request, encode_request, parse_configuration
+from rig.zebro.can import CLOCK, POSITIONS, SET_POINTS, CanLegs
+from rig.zebro.profile import load_leg_profile
+from rig.zebro.registers import SYNC, DumpLegs, PolledLegs
+from rig.zebro.serial import PacketLegs, leg_body
+from rig.zebro.simulated import CanRobot, PacketRobot, PolledRobot
+from rig.zebro.simulated_legs import SimulatedLegs
+from zebro_lab.errors import ZebroLabError
+from zebro_lab.log_writer import LogWriter
+from zebro_lab.raw_log import decode_raw, encode_raw, read_raw_log
+from zebro_lab.ros_log import read_messages
+from zebro_lab.run_folder import read_manifest
+from zebro_lab.slip_rig_log import SlipRigTable, decode_block, encode_block, read_log, write_log
+from zebro_lab.stream_views import LegsView
+
+LEGS = load_leg_profile("zebro-100-serial")
+CAN_LEGS = load_leg_profile("zebro-100-can")
+DUMP = load_leg_profile("vregs-dump")
+POLL = load_leg_profile("zebrobus-uart")
+IMU = load_imu_profile("imu-quaternion-serial")
+RIG = load_rig_profile("rig-odrive-netft")
+BOARD = load_rig_profile("rig-board-serial").board
+LIMITS = Limits(speed=40.0, normal_force=30.0, traction_force=20.0)
+GAIT = SampledReference(np.array([0.0, 1e6]), np.array([np.zeros(6), np.full(6, 1e6)]))
+BATCH = 1000
+
+
+@dataclass
+class Parser:
+    """One parser.
+
+    Attributes:
+        make: Makes what takes one input and tells whether anything was accepted; made anew after
+            a documented refusal by exception, as its owner would.
+        valid: Valid inputs.
+        refusals: What it may raise.
+        share: Inputs in one of the others'.
+        has_memory: Whether it refuses what it took before; it is made anew for every 20 inputs.
+    """
+
+    make: object
+    valid: list
+    refusals: tuple = ()
+    share: float = 1.0
+    has_memory: bool = False
+
+
+@dataclass
+class Result:
+    inputs: int = 0
+    accepted: int = 0
+    refused: int = 0
+    others: Counter = field(default_factory=Counter)
+
+
+class Feed:
+    """A byte link whose next read is what was put into it; satisfies `ByteLink`."""
+
+    source = "sim:fuzz"
+    reconnected = 0
+
+    def __init__(self):
+        self.clock = ManualClock()
+        self.data = b""
+
+    def open(self):
+        pass
+
+    def close(self):
+        pass
+
+    def read(self, timeout):
+        self.clock.sleep(max(timeout, 0.01))
+        data, self.data = self.data, b""
+        return data
+
+    def write(self, data):
+        return True
+
+
+class Answers(Feed):
+    """A link whose device answers a request with what was put into it."""
+
+    waiting = b""
+
+    def write(self, data):
+        self.data, self.waiting = self.waiting, b""
+        return True
+
+
+class Datagrams(Feed):
+    """Like `Feed`, of datagrams."""
+
+    def read(self, timeout):
+        self.clock.sleep(max(timeout, 0.001))
+        data, self.data = self.data, []
+        return data or []
+
+
+class Frames(Datagrams):
+    """Like `Feed`, of CAN frames."""
+
+    damaged = 0
+
+    def write(self, can_id, data):
+        return True
+
+    def request(self, can_id, length):
+        return True
+
+
+class NoBus:
+    """A bus whose next frame is what was put into it."""
+
+    def __init__(self):
+        self.waiting = []
+
+    def recv(self, timeout):
+        return self.waiting.pop() if self.waiting else None
+
+    def send(self, message):
+        pass
+
+
+def stream(driver, profile, link=Feed, **more):
+    """Make what feeds a byte stream's driver."""
+
+    def make():
+        feed = link()
+        device = driver(feed, profile=profile, clock=feed.clock, **more)
+
+        def take(data):
+            feed.data = data
+            return bool(device.read(0.02))
+
+        return take
+
+    return make
+
+
+def polled():
+    feed = Answers()
+    device = PolledLegs(feed, profile=POLL, clock=feed.clock)
+
+    def take(data):
+        feed.clock.sleep(0.2)
+        feed.waiting = data
+        return bool(device.read(0.1))
+
+    return take
+
+
+def load_cell():
+    feed = Datagrams()
+    cell = NetFtCell(feed, profile=RIG.load_cell, clock=feed.clock)
+
+    def take(data):
+        feed.data = [data]
+        return bool(cell.read(0.0))
+
+    return take
+
+
+def frames(driver, profile, **more):
+    """Make what feeds a driver on CAN; an input is an id and up to eight bytes."""
+
+    def make():
+        feed = Frames()
+        device = driver(feed, profile=profile, clock=feed.clock, **more)
+
+        def take(data):
+            feed.data = [frame_of(data)]
+            return bool(device.read(0.0))
+
+        return take
+
+    return make
+
+
+def frame_of(data):
+    number = int.from_bytes(data[:2], "big") & 0x7FF
+    return can.Message(arbitration_id=number, data=data[2:10], is_extended_id=False)
+
+
+def frame_bytes(number, data):
+    return number.to_bytes(2, "big") + data
+
+
+def twin(robot, profile):
+    """Make what feeds a robot's twin with what a host may send; any answer is an acceptance."""
+
+    def make():
+        rng = np.random.default_rng(0)
+        device = robot(SimulatedLegs(GAIT, profile=profile, rng=rng), rng=rng)
+        return lambda data: bool(device.poll(0.0, data))
+
+    return make
+
+
+def can_twin():
+    rng, bus = np.random.default_rng(0), NoBus()
+    robot = CanRobot(SimulatedLegs(GAIT, profile=CAN_LEGS, rng=rng), bus, rng=rng)
+
+    def take(data):
+        message = frame_of(data)
+        bus.waiting = [message]
+        robot.poll(0.0)
+        ids = CAN_LEGS.can_ids
+        return message.arbitration_id in (ids.stop, ids.set_points)
+
+    return take
+
+
+def adapter():
+    device = SlcanAdapter(NoBus(), source="sim:fuzz")
+    device.poll(0.0, b"O\r")
+
+    def take(data):
+        before = device.refused
+        device.poll(0.0, data)
+        return device.refused == before
+
+    return take
+
+
+def slcan_host():
+    """Make what feeds python-can's own slcan interface, under the link that guards it."""
+    from can.interfaces.slcan import slcanBus
+
+    bus = slcanBus("loop://", sleep_after_open=0.0, timeout=0)
+    link = CanLink(bus)
+    link.open()
+
+    def take(data):
+        bus.serialPortOrig.write(data[:60])
+        return bool(link.read(0.0))
+
+    return take
+
+
+def text_file(load, suffix):
+    """Make what loads a file."""
+    folder = Path(tempfile.mkdtemp())
+    file = folder / f"input{suffix}"
+
+    def take(data):
+        file.write_bytes(data)
+        load(file)
+        return True
+
+    return lambda: take
+
+
+def manifest_file():
+    folder = Path(tempfile.mkdtemp())
+
+    def take(data):
+        (folder / "run.json").write_bytes(data)
+        read_manifest(folder)
+        return True
+
+    return take
+
+
+def whole(function):
+    """Make what calls a function that returns or raises."""
+
+    def take(data):
+        function(data)
+        return True
+
+    return lambda: take
+
+
+def packets(kind, body, values):
+    return [encode_packet(Packet(kind, n, 10_000 * n, body.pack(*v))) for n, v in enumerate(values)]
+
+
+def samples(count, width):
+    return [Sample(0.01 * n, 0.01 * n, n, tuple(range(n, n + width))) for n in range(count)]
+
+
+def recorded_log():
+    """Write a small log as a recorder does."""
+    out = io.BytesIO()
+    log = LogWriter(
+        out,
+        views={"legs": LegsView("legs", profile=LEGS)},
+        attachments={"profiles/legs.toml": "x = 1"},
+        start=0.0,
+        start_ns=10**18,
+    )
+    log.event(0.0, "began")
+    for first in range(0, 60, 20):
+        log.write("legs", samples(60, 6)[first : first + 20])
+        log.flush()
+    log.finish()
+    return out.getvalue()
+
+
+def rig_log():
+    t = np.arange(200) / 100
+    out = io.BytesIO()
+    write_log(out, SlipRigTable(t, t, t, t, t), start_ns=10**18)
+    return out.getvalue()
+
+
+def manifest_text():
+    keys = {
+        "schema_version": 1, "kind": "walk", "label": "x", "material": "x", "operator": "x",
+        "source": "real", "start": "2026-01-01T00:00:00+00:00", "exit_status": "completed",
+        "software": {"version": "1"}, "constants": {"radius_leg": 0.035}, "streams": {"/a/raw": 3},
+        "stop": "2026-01-01T00:00:01+00:00", "log_sha256": "0" * 64, "robot": "x", "profiles": {},
+        "sources": {}, "counters": {}, "clocks": {}, "truth": {}, "inputs": {},
+    }  # fmt: skip
+    return json.dumps(keys).encode()
+
+
+def parsers():
+    """Return every parser by name."""
+    rng = np.random.default_rng(1)
+    legs = rng.integers(0, 100, (40, 6)).tolist()
+    quaternions = [(16384, 0, 0, 0, *row) for row in rng.integers(-999, 999, (40, 6)).tolist()]
+    forces = [(*row, 0) for row in rng.integers(-999_999, 999_999, (40, 4)).tolist()]
+    dumps = []
+    for count in rng.integers(0, 910, 40).tolist():
+        registers = bytearray(256)
+        registers[110:112] = count.to_bytes(2, "big")
+        dumps.append(bytes(registers) + SYNC)
+    answers = [struct.pack(">6H", *row) for row in rng.integers(0, 910, (40, 6)).tolist()]
+    requests = [b"\xf0\x20\x0c", b"\x0f\x3e\x01\x01",
+                b"\x0f\x30\x0e" + struct.pack(">7H", *range(6), 100)]  # fmt: skip
+    records = [RECORD.pack(n, n, 0, *range(n, n + 6)) for n in range(40)]
+    commands = [
+        encode_packet(Packet(Kind.LEG_SET_POINTS, 0, 0, struct.pack("<7H", *range(6), 100))),
+        encode_packet(Packet(Kind.STOP, 1, 0, b"")),
+        encode_packet(Packet(Kind.DISC_SPEEDS, 2, 0, speed_body(BOARD).pack(1, 2))),
+    ]
+    ids = CAN_LEGS.can_ids
+    leg_frames = [frame_bytes(ids.clock, CLOCK.pack(n, n)) for n in range(20)]
+    leg_frames += [frame_bytes(ids.positions, POSITIONS.pack(*legs[n], n)) for n in range(20)]
+    leg_frames += [frame_bytes(ids.set_points, SET_POINTS.pack(*legs[0], 100)),
+                   frame_bytes(ids.stop, b"")]  # fmt: skip
+    drive_frames = []
+    for node in (RIG.drives.leg.node, RIG.drives.ground.node):
+        heartbeat = HEARTBEAT.pack(0, 8) + bytes(3)
+        drive_frames += [
+            frame_bytes(can_id(node, Command.HEARTBEAT), heartbeat),
+            frame_bytes(can_id(node, Command.ENCODER_ESTIMATES), ESTIMATES.pack(1.5, 2.5)),
+        ]
+    lines = [encode_frame(frame_of(frame)) for frame in leg_frames + drive_frames]
+    page = (b"<netft><scfgfu>N</scfgfu><cfgcpf>1000000</cfgcpf><comrdtrate>7000</comrdtrate>"
+            b"</netft>")  # fmt: skip
+    toml = {
+        kind: [shipped_file(f"{name}.toml").read_bytes() for name in names]
+        for kind, names in {
+            "legs": ("zebro-100-serial", "zebro-100-can", "vregs-dump", "zebrobus-uart"),
+            "imu": ("imu-quaternion-serial",),
+            "rig": ("rig-odrive-netft", "rig-board-serial"),
+        }.items()
+    }
+    raw = [encode_raw(samples(n + 1, 6), dtype="<i4", start=0.0) for n in range(20)]
+    blocks = [encode_block(np.ones((n + 1, 5))) for n in range(20)]
+    rig = {"limits": LIMITS}
+    return {
+        "leg packets": Parser(
+            stream(PacketLegs, LEGS),
+            packets(Kind.LEGS, leg_body(LEGS), legs),
+            (RigError,),
+            has_memory=True,
+        ),
+        "IMU packets": Parser(
+            stream(ImuStream, IMU),
+            packets(Kind.ORIENTATION, IMU.body, quaternions),
+            (RigError,),
+            has_memory=True,
+        ),
+        "rig board packets": Parser(
+            stream(RigBoard, BOARD, **rig),
+            packets(Kind.SLIP_RIG, board_body(BOARD), forces),
+            (RigError,),
+            has_memory=True,
+        ),
+        "COBS alone": Parser(
+            whole(cobs.decode), [cobs.encode(each) for each in raw], (cobs.DecodeError,)
+        ),
+        "register dumps": Parser(stream(DumpLegs, DUMP), dumps),
+        "ZebroBus answers": Parser(polled, answers),
+        "RDT records": Parser(load_cell, records, has_memory=True),
+        "RDT requests, at the twin": Parser(
+            whole(lambda data: struct.unpack(">HHI", data[:8].ljust(8, b"\0"))),
+            [encode_request(request) for request in Request],
+        ),
+        "Net F/T configuration": Parser(whole(parse_configuration), [page], (RigError,)),
+        "CANSimple frames": Parser(frames(DriveBus, RIG.drives, **rig), drive_frames),
+        "leg frames on CAN": Parser(frames(CanLegs, CAN_LEGS), leg_frames, has_memory=True),
+        "SLCAN lines": Parser(
+            whole(lambda data: decode_frame(data.rstrip(b"\r"))), lines, (RigError,)
+        ),
+        "SLCAN lines, at the adapter": Parser(adapter, lines),
+        "SLCAN lines, python-can's host": Parser(slcan_host, lines, share=0.1),
+        "commands to the twin, packets": Parser(twin(PacketRobot, LEGS), commands, has_memory=True),
+        "commands to the twin, registers": Parser(twin(PolledRobot, POLL), requests),
+        "commands to the twin, CAN": Parser(can_twin, leg_frames),
+        "profile of legs": Parser(
+            text_file(lambda f: load_leg_profile(str(f)), ".toml"), toml["legs"], (RigError,), 0.1
+        ),
+        "profile of an IMU": Parser(
+            text_file(lambda f: load_imu_profile(str(f)), ".toml"), toml["imu"], (RigError,), 0.1
+        ),
+        "profile of a rig": Parser(
+            text_file(lambda f: load_rig_profile(str(f)), ".toml"), toml["rig"], (RigError,), 0.1
+        ),
+        "run.json": Parser(manifest_file, [manifest_text()], (ZebroLabError,), 0.1),
+        "raw messages": Parser(
+            whole(lambda data: decode_raw(data, dtype="<i4")), raw, (ValueError,)
+        ),
+        "rig messages": Parser(whole(decode_block), blocks, (ValueError,)),
+        "log.mcap, recorded": Parser(
+            text_file(read_raw_log, ".mcap"), [recorded_log()], (ZebroLabError,), 0.01
+        ),
+        "log.mcap, at once": Parser(
+            text_file(read_log, ".mcap"), [rig_log()], (ZebroLabError,), 0.01
+        ),
+        "log.mcap, events": Parser(
+            text_file(lambda f: read_messages(f, schema="rcl_interfaces/msg/Log"), ".mcap"),
+            [recorded_log()],
+            (ZebroLabError,),
+            0.01,
+        ),
+    }
+
+
+def generate(valid, count, rng):
+    """Yield inputs: random, valid, with bytes changed, cut short, spliced."""
+    longest = max(map(len, valid))
+    for kind in (np.arange(count) % 5).tolist():
+        data = valid[rng.integers(len(valid))]
+        if kind == 0:
+            yield rng.bytes(int(rng.integers(0, min(longest, 400) + 8)))
+        elif kind == 1:
+            yield data
+        elif kind == 2:
+            changed = bytearray(data)
+            for at in rng.integers(0, max(len(data), 1), rng.integers(1, 4)).tolist():
+                if changed:
+                    changed[at] = int(rng.integers(256))
+            yield bytes(changed)
+        elif kind == 3:
+            yield data[: int(rng.integers(0, len(data) + 1))]
+        else:
+            other = valid[rng.integers(len(valid))]
+            cut, on = rng.integers(0, len(data) + 1), rng.integers(0, len(other) + 1)
+            yield data[: int(cut)] + other[int(on) :]
+
+
+def fuzz(parser, count, rng):
+    """Feed generated inputs to one parser."""
+    result, take = Result(), parser.make()
+    for number, data in enumerate(generate(parser.valid, count, rng)):
+        if parser.has_memory and number % 20 == 0:
+            take = parser.make()
+        result.inputs += 1
+        try:
+            accepted = take(data)
+        except parser.refusals:
+            result.refused += 1
+            take = parser.make()
+        except Exception as error:  # counted: that is what this is for
+            result.others[f"{type(error).__name__}: {error}"[:100]] += 1
+            take = parser.make()
+        else:
+            result.accepted += accepted
+            result.refused += not accepted
+    return result
+
+
+def main(count):
+    logging.disable(logging.CRITICAL)
+    print("| parser | inputs | accepted | refused | other exceptions |\n|---|---|---|---|---|")
+    wrong = Counter()
+    for name, parser in parsers().items():
+        result = fuzz(parser, max(int(count * parser.share), 1), np.random.default_rng(7))
+        others = sum(result.others.values())
+        print(f"| {name} | {result.inputs} | {result.accepted} | {result.refused} | {others} |",
+              flush=True)  # fmt: skip
+        wrong += result.others
+    for what, times in wrong.most_common():
+        print(f"{times} x {what}")
+    return bool(wrong)
+
+
+if __name__ == "__main__":
+    raise SystemExit(main(int(sys.argv[1]) if len(sys.argv) > 1 else 1_000_000))

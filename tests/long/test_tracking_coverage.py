@@ -43,13 +43,14 @@ from tracking.synthetic import RobotMarker as DrawnMarker
 
 pytestmark = pytest.mark.long
 
-PLACES = ((0.1, -0.1), (1.5, -0.1), (1.6, 1.2), (0.0, 1.3))
+# Turned, since drawn edges along pixel rows are but good to 1/68 px, all of an edge alike.
+PLACES = ((0.1, -0.1, 0.3), (1.5, -0.1, -0.4), (1.6, 1.2, 0.5), (0.0, 1.3, -0.2))
 SIDE = 0.12
 TAPE_SD, TURN_SD, SIDE_SD = 2e-4, 2e-3, 1e-4  # m, rad, m
 HEIGHT, HEIGHT_SD, TILT_SD = 0.0645, 3e-4, 2e-3  # m, m, rad
 GOOD = Conditions(defocus_sd_px=0.6)
 PLATE = TopPlate(0.176, 0.176, 0.0385, margin=0.006, front_margin=0.006)
-REACH_PX = 130
+MARKER_REACH_PX, BODY_REACH_PX = 96, 112
 
 
 @dataclass(frozen=True)
@@ -106,7 +107,9 @@ def _cropped(camera: SyntheticCamera, window: tuple[slice, slice]) -> SyntheticC
 @cache
 def stage() -> Stage:
     camera = look_at((0.8, -1.2, 1.8), (0.8, 0.6, 0.0))
-    markers = tuple(DrawnFloorMarker(10 + k, xy, SIDE) for k, xy in enumerate(PLACES))
+    markers = tuple(
+        DrawnFloorMarker(10 + k, (x, y), SIDE, yaw) for k, (x, y, yaw) in enumerate(PLACES)
+    )
     scene = Scene(camera, markers)
     lens = Camera((camera.width, camera.height), camera.matrix, np.array(camera.distortion))
     return Stage(scene, render_background(scene), lens)
@@ -116,10 +119,11 @@ def floor_as_told(rng: np.random.Generator) -> FloorMap:
     """Draw what a person with a tape writes down of the floor."""
     return FloorMap("4x4_50", tuple(
         FloorMarker(
-            10 + k, SIDE + rng.normal(0, SIDE_SD), *(xy + rng.normal(0, TAPE_SD, 2)),
-            yaw=rng.normal(0, TURN_SD), position_sd=TAPE_SD, yaw_sd=TURN_SD, side_sd=SIDE_SD,
+            10 + k, SIDE + rng.normal(0, SIDE_SD), *(place[:2] + rng.normal(0, TAPE_SD, 2)),
+            yaw=place[2] + rng.normal(0, TURN_SD), position_sd=TAPE_SD, yaw_sd=TURN_SD,
+            side_sd=SIDE_SD,
         )
-        for k, xy in enumerate(PLACES)
+        for k, place in enumerate(PLACES)
     ))  # fmt: skip
 
 
@@ -151,7 +155,8 @@ def photograph(
 ) -> tuple[np.ndarray, tuple[slice, slice]]:
     """Photograph the robot; return the pixels around it and where they are."""
     place = stage()
-    window = place.window(place.scene.camera.project(truth.position[None]), REACH_PX)
+    reach = MARKER_REACH_PX if kind.marked else BODY_REACH_PX
+    window = place.window(place.scene.camera.project(truth.position[None]), reach)
     photo = take_photo(
         place.part(window), RobotState(truth), conditions=kind.conditions, rng=rng,
         look=RobotLook(DrawnMarker(side=SIDE) if kind.marked else None),
@@ -194,8 +199,8 @@ def template(seed: int) -> BodyTemplate:
 
 def true_floor() -> FloorMap:
     return FloorMap("4x4_50", tuple(
-        FloorMarker(10 + k, SIDE, *xy, position_sd=1e-5, yaw_sd=1e-5, side_sd=1e-6)
-        for k, xy in enumerate(PLACES)
+        FloorMarker(10 + k, SIDE, x, y, yaw=yaw, position_sd=1e-5, yaw_sd=1e-5, side_sd=1e-6)
+        for k, (x, y, yaw) in enumerate(PLACES)
     ))  # fmt: skip
 
 
@@ -289,9 +294,10 @@ def rows() -> dict[str, Row]:
 
 
 @pytest.mark.parametrize("kind", KINDS, ids=lambda kind: kind.name)
-def test_nominal_90_percent_intervals_hold_the_truth_at_least_at_their_rate(rows, kind):
-    # From above nothing is asserted: yaw's intervals are known to be too wide (docs/tracking.md).
-    assert (rows[kind.name].inside >= 0.87).all()
+def test_nominal_90_percent_intervals_hold_the_truth_at_their_rate(rows, kind):
+    inside = rows[kind.name].inside
+    assert (inside >= 0.87).all()
+    assert (inside <= 0.93).all()
 
 
 @pytest.mark.parametrize("kind", KINDS, ids=lambda kind: kind.name)

@@ -156,9 +156,9 @@ class _Job:
             if look is None or (turn == _FIRST_LOOKS and look[4] < HOPELESS_SCORE):
                 return None
             residual, J, weight, noise, _ = look
-            scale = weight / (noise * self.correlated)
-            normal = np.einsum("nci,nc,ncj->ij", J, scale, J) + np.diag(held)
-            gradient = np.einsum("nci,nc,nc->i", J, scale, residual) + held * (centre - state)
+            weighed = (weight / (noise * self.correlated)).reshape(-1, 1) * J.reshape(-1, 7)
+            normal = weighed.T @ J.reshape(-1, 7) + np.diag(held)
+            gradient = weighed.T @ residual.ravel() + held * (centre - state)
             step = np.linalg.solve(normal, gradient)
             limit = np.array([0.02, 0.02, 0.02, 0.1, 0.1, 0.2, 0.01])
             step *= min(1.0, float(np.min(limit / np.maximum(np.abs(step), 1e-12))))
@@ -173,12 +173,13 @@ class _Job:
             return None
         residual, J, weight, noise, score = look
         spread = np.linalg.inv(normal)
-        _, _, by_pose = project_with_derivatives(self.camera, self.view, _world(self.points, state))
-        used = self._used(state)
-        slope = self._slopes_at(state)[used]
-        by_camera = np.einsum("nca,nak->nck", slope, by_pose[used])
-        scale = weight / (noise * self.correlated)
-        follow = spread @ np.einsum("nci,nc,nck->ik", J, scale, -by_camera)
+        seen, _, by_pose = project_with_derivatives(
+            self.camera, self.view, _world(self.points, state)
+        )
+        used = self._used(seen)
+        by_camera = (self._slopes_at(seen[used]) @ by_pose[used]).reshape(-1, 6)
+        weighed = (weight / (noise * self.correlated)).reshape(-1, 1) * J.reshape(-1, 7)
+        follow = -spread @ weighed.T @ by_camera
         camera_covariance = follow @ self.view.covariance @ follow.T
         wrapped = state[:6].copy()
         wrapped[5] = np.arctan2(np.sin(state[5]), np.cos(state[5]))
@@ -191,46 +192,46 @@ class _Job:
             -0.5 * effective * float(np.log(max(noise.mean(), 1e-6))),
         )
 
-    def _used(self, state: Array) -> NDArray[np.bool_]:
-        seen, _, _ = project_with_derivatives(self.camera, self.view, _world(self.points, state))
-        seen = seen - self.origin
+    def _used(self, seen: Array) -> NDArray[np.bool_]:
+        """Tell which points are in the window and not hidden, by their pixels, shape (n, 2)."""
+        inside = seen - self.origin
         height, width = self.picture.shape[:2]
-        inside = np.all((seen >= 0) & (seen <= [width - 1, height - 1]), axis=1)
+        used = np.all((inside >= 0) & (inside <= [width - 1, height - 1]), axis=1)
         if self.hidden is not None:
-            inside &= sample(self.hidden, seen) < 0.05
-        return inside
+            used &= sample(self.hidden, inside) < 0.05
+        return used
 
-    def _slopes_at(self, state: Array) -> Array:
-        seen, _, _ = project_with_derivatives(self.camera, self.view, _world(self.points, state))
+    def _slopes_at(self, seen: Array) -> Array:
+        """Read the slopes of the colours at pixels, shape (n, 3, 2)."""
         along = sample(self.slopes, seen - self.origin)
         return np.stack((along[:, :3], along[:, 3:]), axis=2).astype(float)
 
     def _look(self, state: Array) -> tuple[Array, Array, Array, Array, float] | None:
         """Compute residual (n, 3), its derivative (n, 3, 7), weights, noise (3,) and score."""
-        used = self._used(state)
-        if used.sum() < max(60, 0.35 * len(used)):
-            return None
-        R, dR = rotation_with_derivatives(*state[3:6])
         seen, by_point, _ = project_with_derivatives(
             self.camera, self.view, _world(self.points, state)
         )
+        used = self._used(seen)
+        if used.sum() < max(60, 0.35 * len(used)):
+            return None
+        R, dR = rotation_with_derivatives(*state[3:6])
+        body = self.points[used]
         by_state = np.concatenate(
             (
-                np.tile(np.eye(3), (len(seen), 1, 1)),
-                np.einsum("kab,nb->nak", dR, self.points),
-                ((self.points - self.points.mean(axis=0)) @ R.T)[:, :, None],
+                np.tile(np.eye(3), (len(body), 1, 1)),
+                (body @ dR.transpose(0, 2, 1)).transpose(1, 2, 0),
+                ((body - self.points.mean(axis=0)) @ R.T)[:, :, None],
             ),
             axis=2,
         )
-        flow = (by_point @ by_state)[used]
-        slope = self._slopes_at(state)[used]
+        slope = self._slopes_at(seen[used])
         values = sample(self.picture, (seen - self.origin)[used]).astype(float)
         wanted, score = _relit(self.colours[used], values)
         residual = wanted - values
         spread = 1.4826 * np.median(np.abs(residual), axis=0)
         noise = np.maximum(spread, 1.0) ** 2
         weight = np.minimum(1.0, _HUBER * np.sqrt(noise) / np.maximum(np.abs(residual), 1e-9))
-        return residual, np.einsum("nca,nai->nci", slope, flow), weight, noise, score
+        return residual, slope @ (by_point[used] @ by_state), weight, noise, score
 
 
 def _least_covariance(template: BodyTemplate) -> Array:

@@ -24,6 +24,7 @@ from model.walk.traction import TractionTable
 ENSEMBLE_STEP = DynamicsOptions(dt=0.005)  # paths at 5 ms and 1 ms differ by 0.1 % of a tripod's
 LEVELS = (0.025, 0.05, 0.25, 0.5, 0.75, 0.95, 0.975)
 STATES = ("x", "y", "yaw")
+ARCS = (np.pi / 2, np.radians(359.0))  # a robot's legs are arcs of these angles
 
 
 @dataclass(frozen=True)
@@ -50,26 +51,37 @@ class ModelSpread:
 
 @dataclass(frozen=True)
 class LegState:
-    """What is believed of the legs beyond the robot's description: draws of it, or a prior's.
+    """What is believed beyond the robot's and the law's description: draws of it, or a prior's.
 
     Attributes:
         offset: Further offset of each leg, shape (m, 6) [rad].
         grip: Factor on traction, shape (m,) [-].
         stiffness: Factor on slip stiffness, shape (m,) [-].
+        arc: Further angle of the legs' arc, shape (m,) [rad].
+        steering: Turn that the robot takes whatever its legs do, shape (m,) [rad/m].
+        stride: Relative error of distance: legs that are longer or shorter, shape (m,) [-].
     """
 
     offset: Array
     grip: Array
     stiffness: Array
+    arc: Array
+    steering: Array
+    stride: Array
+
+    def __len__(self) -> int:
+        """Count the draws."""
+        return len(self.grip)
 
     @staticmethod
     def of_prior(n: int, *, offset_sd: float, rng: np.random.Generator) -> "LegState":
-        """Draw uniform offsets of a standard deviation [rad], the law taken as it is.
+        """Draw uniform offsets of a standard deviation [rad], all else taken as described.
 
         An encoder's zero known to one count is uniform over it: standard deviation count/sqrt(12).
         """
         reach = np.sqrt(3.0) * offset_sd
-        return LegState(rng.uniform(-reach, reach, (n, N_LEGS)), np.ones(n), np.ones(n))
+        offset = rng.uniform(-reach, reach, (n, N_LEGS))
+        return LegState(offset, np.ones(n), np.ones(n), np.zeros(n), np.zeros(n), np.zeros(n))
 
 
 def scaled_table(table: TractionTable, *, grip: float, stiffness: float) -> TractionTable:
@@ -109,30 +121,44 @@ def walk_draws(
     """
     return [
         WalkDraw(
-            replace(robot, leg_offset=robot.leg_offset + offset),
+            robot_in(robot, state, i),
             legs.smooth(rng) if isinstance(legs, QuantisedLog) else legs,
-            scaled_table(tables[i % len(tables)], grip=float(grip), stiffness=float(stiffness)),
+            law_in(tables[i % len(tables)], state, i),
         )
-        for i, (offset, grip, stiffness) in enumerate(
-            zip(state.offset, state.grip, state.stiffness, strict=True)
-        )
+        for i in range(len(state))
     ]
+
+
+def robot_in(robot: Robot, state: LegState, i: int) -> Robot:
+    """Return the robot as a draw of the legs' state has it."""
+    return replace(
+        robot,
+        leg_offset=robot.leg_offset + state.offset[i],
+        leg_arc=float(np.clip(robot.leg_arc + state.arc[i], *ARCS)),
+    )
+
+
+def law_in(table: TractionTable, state: LegState, i: int) -> TractionTable:
+    """Return the slip law as a draw of the legs' state has it."""
+    return scaled_table(table, grip=float(state.grip[i]), stiffness=float(state.stiffness[i]))
 
 
 def predict_paths(
     draws: Sequence[WalkDraw],
     t: Array,
     *,
+    state: LegState,
     error: ModelSpread,
     rng: np.random.Generator,
     threads: int = 2,
     progress: Callable[[float], None] | None = None,
 ) -> PathEnsemble:
-    """Walk every draw and add what the model gets wrong.
+    """Walk every draw and add its steering and stride, and what the model gets wrong.
 
     Args:
         draws: What to walk.
         t: Times wanted, increasing from zero, shape (n,) [s].
+        state: The legs' state of each draw.
         error: The model's own error.
         rng: Source of randomness.
         threads: Draws walked at once.
@@ -143,8 +169,11 @@ def predict_paths(
     """
     walked = walk_ensemble(draws, t, options=ENSEMBLE_STEP, threads=threads, progress=progress)
     n = len(draws)
-    distance = error.distance * rng.standard_normal(n)
-    return bent(walked, distance=distance, curvature=error.curvature * rng.standard_normal(n))
+    return bent(
+        walked,
+        distance=state.stride + error.distance * rng.standard_normal(n),
+        curvature=state.steering + error.curvature * rng.standard_normal(n),
+    )
 
 
 def bent(paths: PathEnsemble, *, distance: Array, curvature: Array) -> PathEnsemble:

@@ -102,7 +102,7 @@ def predict_band(
             watcher.step("predicting the band", fraction)
 
     paths = predict_paths(
-        draws, t, error=request.spread, rng=rng, threads=request.threads, progress=tell
+        draws, t, state=state, error=request.spread, rng=rng, threads=request.threads, progress=tell
     )
     x, y, yaw_deg = request.start_sd
     covariance = np.diag([x, y, np.radians(yaw_deg)]) ** 2

@@ -8,6 +8,7 @@ boundary when the log says so. A line through twenty boundaries is known far bet
 to about a tenth of a degree where the count is 3.6 degrees and the log 100 Hz.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
@@ -210,13 +211,16 @@ def _along_lines(
     """Fit each line to its changes and let each pass into the next where they meet."""
     if len(changes.early) == 0:
         return theta + (0.0 if rng is None else rng.uniform(-0.5 * step, 0.5 * step))
-    at = changes.early + _when(changes, step, rng) * (changes.late - changes.early)
-    lines = [_line(at, changes.angle, int(a), int(b)) for a, b in pairwise(first)]
+    at = changes.early + 0.5 * (changes.late - changes.early)
+    middle = [_line(at, changes.angle, int(a), int(b)) for a, b in pairwise(first)]
+    lines = middle if rng is None else _drawn(middle, changes, first, step, rng)
     rest = 0.0 if rng is None else float(rng.uniform(-0.4 * step, 0.4 * step))
     knots = _start(float(t[0]), float(theta[0]), lines[0], step, rest)
-    for begin, (one, other) in zip(first[1:-1], pairwise(lines), strict=True):
-        stay = Stay(float(at[begin - 1]), float(at[begin]), float(changes.after[begin - 1]) + rest)
-        knots += _junction(one, other, stay)
+    for i, begin in enumerate(first[1:-1]):
+        stay = Stay(float(at[begin - 1]), float(at[begin]), float(changes.after[begin - 1]))
+        rested = _rested(middle[i], middle[i + 1], stay)  # the same in every draw
+        stay = stay._replace(angle=stay.angle + rest)
+        knots += _junction(lines[i], lines[i + 1], stay, rested=rested)
     # The end is the start of time run backwards.
     x, y, m = lines[-1]
     ending = _start(-float(t[-1]), float(theta[-1]), Line(-x, y, -m), step, rest)
@@ -225,23 +229,59 @@ def _along_lines(
     return np.interp(t, np.maximum.accumulate(times), angles)
 
 
-def _when(changes: Changes, step: float, rng: np.random.Generator | None) -> Array:
-    """Place each change between its samples, 0 to 1.
+def _drawn(
+    middle: Sequence[Line],
+    changes: Changes,
+    first: NDArray[np.intp],
+    step: float,
+    rng: np.random.Generator,
+) -> list[Line]:
+    """Draw lines that still pass every change, from the middle ones outwards.
+
+    Twenty changes confine a line to a small polygon of offset and speed, far smaller than what
+    independent errors of as many would leave. So a direction is taken from changes that fall
+    anywhere between their samples, and along it a point that makes a polygon evenly filled.
 
     A gait whose cycle is a whole number of samples meets every count at the same phase again and
-    again: its errors repeat and do not average out. So a draw takes one place for each count.
+    again: its errors repeat and do not average out. So a draw takes one place for each count, and
+    one distance for the leg.
     """
-    if rng is None:
-        return np.full(len(changes.early), 0.5)
     turn = max(round(2 * np.pi / step), 1)
     places = rng.uniform(0.0, 1.0, 2 * turn)
-    return places[np.round(2 * changes.angle / step).astype(int) % (2 * turn)]
+    place = places[np.round(2 * changes.angle / step).astype(int) % (2 * turn)]
+    at, outwards = changes.early + place * (changes.late - changes.early), np.sqrt(rng.uniform())
+    lines = []
+    for line, (a, b) in zip(middle, pairwise(first.tolist()), strict=True):
+        other = _line(at, changes.angle, a, b)
+        passed = Changes(*(each[a : _last(a, b)] for each in changes))
+        share = outwards * _room(line, other, passed, step)
+        angle = line.angle + share * (other.at(line.x) - line.angle)
+        lines.append(Line(line.x, angle, line.speed + share * (other.speed - line.speed)))
+    return lines
+
+
+def _room(line: Line, other: Line, changes: Changes, step: float) -> float:
+    """Return how far towards another line one may go and still pass all changes, at most 1.
+
+    All the way, where not even the line itself passes them: then the leg went no straight line, and
+    nothing is known but each change on its own.
+    """
+    half, room = (0.5 + SLACK) * step, 1.0
+    for t, middle in ((changes.early, changes.before), (changes.late, changes.after)):
+        here = line.angle + line.speed * (t - line.x) - middle
+        there = other.angle + other.speed * (t - other.x) - middle
+        if np.any(np.abs(here) > half):
+            return 1.0
+        away = there - here
+        left = np.where(away > 0, half - here, half + here)
+        moving = np.abs(away) > 0
+        room = min(room, float(np.min(left[moving] / np.abs(away[moving]), initial=1.0)))
+    return room
 
 
 def _line(at: Array, angle: Array, begin: int, end: int) -> Line:
     """Fit a line to changes; the last ones may belong to the next line and are left out."""
-    if end - begin >= 6:
-        end -= max(1, (end - begin) // 12)
+    end = _last(begin, end)
     x, y = at[begin:end], angle[begin:end]
     middle, height = float(x.mean()), float(y.mean())
     d = x - middle
@@ -249,20 +289,25 @@ def _line(at: Array, angle: Array, begin: int, end: int) -> Line:
     return Line(middle, height, float(d @ (y - height) / spread) if spread > 0 else 0.0)
 
 
-def _junction(one: Line, other: Line, stay: Stay) -> list[tuple[float, float]]:
+def _last(begin: int, end: int) -> int:
+    """Return where a line's own changes end."""
+    return end - max(1, (end - begin) // 12) if end - begin >= 6 else end
+
+
+def _junction(one: Line, other: Line, stay: Stay, *, rested: bool) -> list[tuple[float, float]]:
     """Return the knots at which one line passes into the next.
 
-    Where they meet, if that is about where the count stayed the same; a plateau, if the leg rested
-    between them; else the ends of both.
+    A plateau, if the leg rested between them; where they meet, if that is about where the count
+    stayed the same; else the ends of both.
     """
     early, late, angle = stay
     near = 1.5 * (late - early)
+    if rested:
+        return [(one.when(angle), angle), (other.when(angle), angle)]
     if one.speed != other.speed:
         x = one.x + (other.at(one.x) - one.angle) / (one.speed - other.speed)
-        if early - near < x < late + near and not _rested(one, other, stay):
+        if early - near < x < late + near:
             return [(x, one.at(x))]
-    if _rested(one, other, stay):
-        return [(one.when(angle), angle), (other.when(angle), angle)]
     return [(early, one.at(early)), (late, other.at(late))]
 
 

@@ -47,7 +47,7 @@ def predicted(n=12, *, seed=1, offset_sd=0.0175, error=EXACT, legs=None):
     rng = np.random.default_rng(seed)
     state = LegState.of_prior(n, offset_sd=offset_sd, rng=rng)
     draws = walk_draws(Robot(), legs or counted_log(), [TABLE], state, rng=rng)
-    return predict_paths(draws, T, error=error, rng=rng)
+    return predict_paths(draws, T, state=state, error=error, rng=rng)
 
 
 def test_a_bent_straight_line_is_a_circle():

@@ -7,10 +7,10 @@ from pathlib import Path
 
 import numpy as np
 
-from model.gait.quantised import QuantisedLog, find_step
-from model.gait.reference import SampledReference
+from model.gait.quantised import QuantisedLog
 from model.robot import N_LEGS
 from model.walk.ensemble import PathEnsemble
+from zebro_lab.leg_angles import angles_from
 from zebro_lab.leg_log import LegLog, read_leg_log
 from zebro_lab.path_band import BandRequest, write_band
 from zebro_lab.recorded_legs import is_recorded
@@ -57,7 +57,7 @@ def predict(request: PredictRequest, watcher: Watcher) -> Walked:
         described = _as_walked(described)
     log = read_leg_log(request.log, columns=request.columns, leg_sign=described.leg_sign)
     start, end = float(log.reference.t[0]), float(log.reference.t[-1])
-    legs, notes = _legs(log, start)
+    legs, notes = angles_from(log, start)
     watcher.step("walking", None)
     walked = walk_with(
         request.model,
@@ -84,19 +84,6 @@ def predict(request: PredictRequest, watcher: Watcher) -> Walked:
         kind="predict", settings=settings, files=log.files, extra=extra,
     )  # fmt: skip
     return walked
-
-
-def _legs(log: LegLog, start: float) -> tuple[SampledReference | QuantisedLog, tuple[str, ...]]:
-    """Return the angles from time zero on, to be reconstructed where an encoder counted them."""
-    t, theta = log.reference.t - start, log.reference.theta
-    step = find_step(theta)
-    if step is None:
-        return SampledReference(t, theta), ()
-    note = (
-        f"leg log: angles are counted in steps of {np.degrees(step):.3g} deg, reconstructed as "
-        "straight lines through the changes of count"
-    )
-    return QuantisedLog(t, theta, step), (note,)
 
 
 def _with_own_robot(request: PredictRequest) -> PredictRequest:

@@ -4,7 +4,9 @@
 import numpy as np
 import pytest
 
-from model.bayes.walks import NAMES, TrackedWalk, WalkPrior, fit_walks, from_first
+from model.bayes.walk_misfit import TrackedWalk, from_first
+from model.bayes.walk_prior import FLOOR, NAMES, WalkPrior, WrongLeg, all_cases, legs_of
+from model.bayes.walks import fit_walks
 from model.errors import InsufficientData
 from model.gait import tripod_angles, tripod_reference
 from model.gait.reference import SampledReference
@@ -39,7 +41,8 @@ def fitted(offset, *, turns=THREE):
     walks = [
         tracked(steering, side, offset=offset, seed=i) for i, (steering, side) in enumerate(turns)
     ]
-    return fit_walks(Robot(), TABLE, walks, prior=PRIOR, rng=np.random.default_rng(1))
+    fit = fit_walks(Robot(), TABLE, walks, prior=PRIOR, rng=np.random.default_rng(1))
+    return fit.posterior
 
 
 @pytest.fixture(scope="module")
@@ -53,16 +56,16 @@ def bent_leg():
 
 
 def test_legs_that_are_right_are_left_alone(straight_legs):
-    assert straight_legs.likeliest.wrong_leg is None
+    assert straight_legs.found()[0].case is None
     for each in straight_legs.contractions():
         assert abs(each.mean) < 2.5 * each.sd
 
 
 @pytest.mark.long
 def test_a_leg_five_degrees_off_is_found_within_one(bent_leg):
-    mode = bent_leg.likeliest
-    assert mode.wrong_leg == 3
-    assert np.degrees(mode.mean[3] + mode.mean[8]) == pytest.approx(5.0, abs=1.0)
+    likeliest = bent_leg.found()[0]
+    assert likeliest.case == WrongLeg(3)
+    assert np.degrees(likeliest.offset) == pytest.approx(5.0, abs=1.0)
 
 
 def test_walks_say_more_of_offsets_than_of_grip(straight_legs):
@@ -80,6 +83,40 @@ def test_draws_scatter_as_the_posterior_says(straight_legs):
     assert np.all(state.grip > 0)
 
 
+def test_enough_draws_carry_the_answer(straight_legs):
+    assert straight_legs.reliable
+    assert straight_legs.weight.sum() == pytest.approx(1.0)
+    assert sum(each.probability for each in straight_legs.found()) == pytest.approx(1.0)
+
+
+def test_another_robot_on_the_floor_shares_what_belongs_to_the_floor(straight_legs):
+    rng = np.random.default_rng(4)
+    other = straight_legs.of_floor_alone(rng=rng)
+    before, after = straight_legs.contractions(), other.contractions()
+    for name, one, two in zip(NAMES, before, after, strict=True):
+        if name in FLOOR:
+            assert (two.mean, two.sd) == (one.mean, one.sd)
+        else:
+            assert abs(two.contraction) < 0.6 or name.startswith("leg_offset")
+    assert np.all(other.most_likely().offset == 0)
+
+
+def test_a_leg_knocked_off_in_one_walk_is_off_in_that_walk_alone():
+    values = np.zeros((1, 13))
+    values[0, -1] = 0.1
+    case = WrongLeg(2, walk=1)
+    assert legs_of(values, case, walk=1).offset[0, 2] == 0.1
+    assert not legs_of(values, case, walk=0).offset.any()
+    assert not legs_of(values, case).offset.any()
+    assert legs_of(values, WrongLeg(2)).offset[0, 2] == 0.1
+
+
+def test_probabilities_of_cases_are_one_in_all():
+    for walks in (1, 2, 4):
+        logs = [PRIOR.log_probability(case, walks=walks) for case in all_cases(walks)]
+        assert np.exp(logs).sum() == pytest.approx(1.0)
+
+
 def test_a_path_moved_to_a_pose_begins_there():
     states = np.random.default_rng(1).normal(size=(3, 5, 3))
     moved = from_first(states, np.array([1.0, 2.0, 0.5]))
@@ -92,5 +129,5 @@ def test_no_walk_and_a_track_of_two_poses_are_refused():
     with pytest.raises(InsufficientData, match="no walk"):
         fit_walks(Robot(), TABLE, [], prior=PRIOR, rng=np.random.default_rng(1))
     walk = tracked(1.0, "left", offset=np.zeros(6), seed=1)
-    with pytest.raises(InsufficientData, match="three or more"):
+    with pytest.raises(InsufficientData, match="expected 3 or more"):
         TrackedWalk("short", walk.legs, walk.t[:2], walk.states[:2], walk.covariance[:2])

@@ -1,0 +1,222 @@
+# SPDX-License-Identifier: MIT
+r"""How far a tracked walk lies from what parameters predict, in units of what is expected.
+
+Each walk is predicted from its leg angles and its first tracked pose. Differences from the other
+poses have the tracker's noise, that of the first pose, what counted angles leave open and what the
+walking model itself gets wrong; the last three are the same all along a walk, so its poses are
+strongly correlated,
+
+.. math::
+    r \sim N(0,\; V + J_0 V_0 J_0^T + \sigma_d^2\, d d^T + \sigma_c^2\, c c^T + Q) .
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from model.bayes.walk_terms import Terms
+from model.errors import InsufficientData
+from model.gait.quantised import QuantisedLog
+from model.gait.reference import LegReference
+from model.metrics.poses import wrap
+from model.predict import ENSEMBLE_STEP, LegState, ModelSpread, bent, law_in, robot_in, states_at
+from model.robot import Robot
+from model.slip.law import Array
+from model.walk.ensemble import PathEnsemble, WalkDraw, walk_ensemble
+from model.walk.traction import TractionTable
+
+RECONSTRUCTIONS = 16  # of counted angles, for the spread they leave
+FEWEST_POSES = 3  # a start and two to compare
+SAMPLING = 0.05  # s between the poses kept of a path
+_BEND = 1e-3  # of distance and of curvature, to differentiate by
+
+
+@dataclass(frozen=True)
+class TrackedWalk:
+    """A walk that was tracked.
+
+    Attributes:
+        name: Its name.
+        legs: Its leg angles from time zero on.
+        t: Times of the tracked poses in the same clock, the first of which starts the prediction,
+            shape (n,) [s].
+        states: Tracked x, y [m] and yaw [rad], shape (n, 3).
+        covariance: The tracker's covariance of each, shape (n, 3, 3).
+
+    Raises:
+        InsufficientData: There are fewer than three poses.
+    """
+
+    name: str
+    legs: LegReference | QuantisedLog
+    t: Array
+    states: Array
+    covariance: Array
+
+    def __post_init__(self) -> None:
+        """Refuse a track that says nothing."""
+        if len(self.t) < FEWEST_POSES:
+            raise InsufficientData(
+                f"walk '{self.name}' has {len(self.t)} tracked poses; expected {FEWEST_POSES} or "
+                "more"
+            )
+
+
+@dataclass(frozen=True)
+class WalkMisfit:
+    """One walk, ready to be compared.
+
+    Attributes:
+        robot: The robot as described.
+        table: The slip law as the rig has it.
+        walk: The walk.
+        root: Turns differences into residuals of unit covariance, shape (k, k).
+    """
+
+    robot: Robot
+    table: TractionTable
+    walk: TrackedWalk
+    root: Array
+
+    @classmethod
+    def of(
+        cls,
+        robot: Robot,
+        table: TractionTable,
+        walk: TrackedWalk,
+        *,
+        spread: ModelSpread,
+        rng: np.random.Generator,
+        threads: int,
+    ) -> "WalkMisfit":
+        """Compute what differences are expected.
+
+        Args:
+            robot: The robot as described.
+            table: The slip law at the rig's posterior mean.
+            walk: The walk.
+            spread: What the walking model gets wrong in one walk.
+            rng: Source of randomness, for what counted angles leave open.
+            threads: Walks computed at once.
+
+        Raises:
+            WalkError: A walk diverged.
+        """
+        misfit = cls(robot, table, walk, np.eye(3 * (len(walk.t) - 1)))
+        covariance = misfit._covariance(spread, rng, threads)
+        # With L L^T the covariance, L^-1 makes the residuals' covariance the identity.
+        return replace(misfit, root=np.linalg.inv(np.linalg.cholesky(covariance)))
+
+    def residuals(self, state: LegState, *, threads: int) -> Array:
+        """Compute residuals of unit covariance for m states of the legs, shape (m, 3 (n - 1)).
+
+        Raises:
+            WalkError: A walk diverged.
+        """
+        walked = self._walked_with(state, threads)
+        paths = bent(walked, distance=state.stride, curvature=state.steering)
+        return self._difference(paths) @ self.root.T
+
+    def terms(self, state: LegState, *, steering: float, stride: float, threads: int) -> Terms:
+        """Compute residuals for m states of the legs, and how they depend on steering and stride.
+
+        Args:
+            state: The legs; its own steering and stride do not count.
+            steering: The unit of steering [rad/m].
+            stride: The unit of stride [-].
+            threads: Walks computed at once.
+
+        Raises:
+            WalkError: A walk diverged.
+        """
+        walked = self._walked_with(state, threads)
+        no = np.zeros(len(state))
+        here = self._difference(walked)
+        bends = [
+            self._difference(bent(walked, distance=no, curvature=no + steering)) - here,
+            self._difference(bent(walked, distance=no + stride, curvature=no)) - here,
+        ]
+        return Terms.of(
+            here @ self.root.T, np.stack([each @ self.root.T for each in bends], axis=2)
+        )
+
+    def _walked_with(self, state: LegState, threads: int) -> PathEnsemble:
+        legs = middle(self.walk.legs)
+        draws = [
+            WalkDraw(robot_in(self.robot, state, i), legs, law_in(self.table, state, i))
+            for i in range(len(state))
+        ]
+        return self._walked(draws, threads)
+
+    def _walked(self, draws: Sequence[WalkDraw], threads: int) -> PathEnsemble:
+        end = float(self.walk.t[-1])
+        t = np.linspace(0.0, end, max(round(end / SAMPLING), 2) + 1)
+        return walk_ensemble(draws, t, options=ENSEMBLE_STEP, threads=threads)
+
+    def _difference(self, paths: PathEnsemble) -> Array:
+        """Predict from the first pose, subtract what was tracked; shape (m, 3 (n - 1))."""
+        states = from_first(states_at(paths, self.walk.t), self.walk.states[0])
+        difference = states[:, 1:] - self.walk.states[1:]
+        difference[..., 2] = wrap(difference[..., 2])
+        return difference.reshape(len(states), -1)
+
+    def _covariance(self, spread: ModelSpread, rng: np.random.Generator, threads: int) -> Array:
+        legs = self.walk.legs
+        several = (
+            [legs.smooth(rng) for _ in range(RECONSTRUCTIONS)]
+            if isinstance(legs, QuantisedLog)
+            else [legs]
+        )
+        paths = self._walked([WalkDraw(self.robot, each, self.table) for each in several], threads)
+        one = PathEnsemble(paths.t, paths.position[:1], paths.yaw[:1])
+        total = self._of_tracker(self._difference(one)[0])
+        total += self._of_model(one, spread) + 1e-12 * np.eye(len(total))
+        if len(several) > 1:
+            total += np.cov(self._difference(paths).T)
+        return total
+
+    def _of_tracker(self, difference: Array) -> Array:
+        """Return the covariance that the tracker's noise gives, of the first pose and the others.
+
+        Args:
+            difference: Predicted minus tracked, shape (3 n,).
+        """
+        walk, n = self.walk, len(self.walk.t) - 1
+        predicted = difference.reshape(n, 3) + walk.states[1:]
+        away = predicted[:, :2] - walk.states[0, :2]
+        J0 = np.tile(np.eye(3), (n, 1, 1))
+        J0[:, 0, 2], J0[:, 1, 2] = -away[:, 1], away[:, 0]
+        J0 = J0.reshape(3 * n, 3)
+        total = J0 @ walk.covariance[0] @ J0.T
+        for i in range(n):
+            total[3 * i : 3 * i + 3, 3 * i : 3 * i + 3] += walk.covariance[i + 1]
+        return total
+
+    def _of_model(self, path: PathEnsemble, spread: ModelSpread) -> Array:
+        """Return the covariance that the model's errors of distance and curvature give."""
+        no, small = np.zeros(1), np.full(1, _BEND)
+        here = self._difference(path)[0]
+        d = (self._difference(bent(path, distance=small, curvature=no))[0] - here) / _BEND
+        c = (self._difference(bent(path, distance=no, curvature=small))[0] - here) / _BEND
+        return spread.distance**2 * np.outer(d, d) + spread.curvature**2 * np.outer(c, c)
+
+
+def from_first(states: Array, first: Array) -> Array:
+    """Move paths so that they begin at a pose.
+
+    Args:
+        states: x, y, yaw of m paths at n times, shape (m, n, 3) [m, m, rad].
+        first: The pose, shape (3,).
+    """
+    turn = first[2] - states[:, :1, 2]
+    away = states[..., :2] - states[:, :1, :2]
+    c, s = np.cos(turn), np.sin(turn)
+    x = first[0] + c * away[..., 0] - s * away[..., 1]
+    y = first[1] + s * away[..., 0] + c * away[..., 1]
+    return np.stack([x, y, states[..., 2] + turn], axis=-1)
+
+
+def middle(legs: LegReference | QuantisedLog) -> LegReference:
+    """Return leg angles as they are, or the middle of those that counts allow."""
+    return legs.smooth() if isinstance(legs, QuantisedLog) else legs

@@ -1,0 +1,163 @@
+# SPDX-License-Identifier: MIT
+r"""Where the posterior of legs and floor lies, case by case: climbs and scans to Gaussians.
+
+All but a wrong leg's offset act nearly in proportion. So the case without a wrong leg is climbed
+first; there, a scan moves one leg at a time through all it may be off by, with all else free to
+follow linearly,
+
+.. math::
+    -2 \log p(\delta) = r'^T (I + J J^T)^{-1} r' + (\delta / \sigma)^2, \quad
+    r' = r(\delta) - J \hat z ,
+
+which finds the cases that matter wherever they are; the likeliest are then climbed themselves.
+"""
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from model.bayes.walk_importance import Mode
+from model.bayes.walk_misfit import WalkMisfit
+from model.bayes.walk_prior import WRONG, Case, WalkPrior, WrongLeg, legs_of, wrong_legs
+from model.robot import N_LEGS
+from model.slip.law import Array
+
+# Offsets by a tenth of a degree, factors by 5 %: contacts are not smooth below.
+DIFFERENCE = np.array([
+    *[np.radians(0.1)] * N_LEGS, 0.05, 0.05, np.radians(0.1), np.radians(1.0), 1e-3, 1e-3,
+    np.radians(0.2),
+])  # fmt: skip
+MOST_MOVES = 8
+SETTLED = 0.05  # of a prior's standard deviation
+SCANNED = np.radians(np.linspace(-12.0, 12.0, 17))  # offsets that are walked
+FINE = np.radians(np.linspace(-12.0, 12.0, 241))  # offsets between them
+CLIMBED = 3  # cases, at most, that are climbed after the scan
+UNLIKELY = 4.0  # below the best log evidence: such a case is not climbed
+
+
+class ModeSearch:
+    """Residuals of all walks in standard normal coordinates, and the searches over them."""
+
+    def __init__(self, misfits: Sequence[WalkMisfit], prior: WalkPrior, threads: int) -> None:
+        self.misfits, self.prior, self.threads = misfits, prior, threads
+        self.ends = np.cumsum([len(misfit.root) for misfit in misfits])
+
+    def modes(self, *, tell: Callable[[float], None]) -> list[Mode]:
+        """Find the mode of every case, in the order of `all_cases`.
+
+        Args:
+            tell: Told the fraction done.
+
+        Raises:
+            WalkError: A walk diverged.
+        """
+        plain, J = self.climb(None, np.zeros(WRONG + 1))
+        tell(0.3)
+        modes = self.scan(plain, J)
+        tell(0.6)
+        order = sorted(range(1, len(modes)), key=lambda i: -modes[i].log_evidence)[:CLIMBED]
+        best = max(mode.log_evidence for mode in modes)
+        for k, i in enumerate(order):
+            tell(0.6 + 0.4 * k / len(order))
+            if modes[i].log_evidence > best - UNLIKELY:
+                modes[i], _ = self.climb(modes[i].case, modes[i].z)
+        return modes
+
+    def residuals(self, z: Array, case: Case) -> Array:
+        """Compute residuals of all walks at m points, shape (m, n)."""
+        values = z * self.prior.scale
+        return np.concatenate(
+            [
+                misfit.residuals(legs_of(values, case, walk=w), threads=self.threads)
+                for w, misfit in enumerate(self.misfits)
+            ],
+            axis=1,
+        )
+
+    def climb(self, case: Case, z: Array) -> tuple[Mode, Array]:
+        """Climb to the mode of a case by Gauss-Newton, with steps shortened while they overshoot.
+
+        Returns:
+            The mode, and the Jacobian of the residuals there, shape (n, 13).
+        """
+        r, J = self._linearised(z, case)
+        for _ in range(MOST_MOVES):
+            move = -np.linalg.solve(J.T @ J + np.eye(len(z)), J.T @ r + z)
+            if np.abs(move).max() < SETTLED:
+                break
+            trials = z + move * np.array([1.0, 0.5, 0.25, 0.1])[:, None]
+            cost = (self.residuals(trials, case) ** 2).sum(axis=1) + (trials**2).sum(axis=1)
+            best = int(np.argmin(cost))
+            if cost[best] >= r @ r + z @ z:
+                break
+            z = trials[best]
+            r, J = self._linearised(z, case)
+        covariance = np.linalg.inv(J.T @ J + np.eye(len(z)))
+        evidence = -0.5 * (r @ r + z @ z) + 0.5 * np.linalg.slogdet(covariance)[1]
+        return self._mode(case, z, covariance, float(evidence)), J
+
+    def scan(self, plain: Mode, J: Array) -> list[Mode]:
+        """Return the mode of every case by moving one leg at a time; the first is `plain`."""
+        z = plain.z
+        follow = np.linalg.inv(np.eye(len(J)) + J @ J.T)
+        at_rest = self.residuals(z[None], None)[0]
+        moved = [self._moved(leg, z) for leg in range(N_LEGS)]
+        bounds = np.concatenate([[0], self.ends])
+        modes = [plain]
+        for case in wrong_legs(len(self.misfits)):
+            r = moved[case.leg].copy()
+            if case.walk is not None:
+                other = np.ones(r.shape[1], dtype=bool)
+                other[bounds[case.walk] : bounds[case.walk + 1]] = False
+                r[:, other] = at_rest[other]
+            modes.append(self._scanned(case, r - J @ z, J, follow))
+        return modes
+
+    def _moved(self, leg: int, z: Array) -> Array:
+        """Return residuals with a leg moved to each of the fine offsets, shape (241, n)."""
+        points = np.tile(z, (len(SCANNED), 1))
+        points[:, WRONG] = SCANNED / self.prior.wrong_sd
+        walked = self.residuals(points, WrongLeg(leg))
+        return np.stack([np.interp(FINE, SCANNED, column) for column in walked.T], axis=1)
+
+    def _scanned(self, case: WrongLeg, r: Array, J: Array, follow: NDArray[np.floating]) -> Mode:
+        """Sum up one leg's scan as a Gaussian.
+
+        Args:
+            case: Which leg.
+            r: Residuals at each of the fine offsets, all else at zero by `J`, shape (241, n).
+            J: Jacobian of the residuals, shape (n, 13).
+            follow: Inverse of I + J J^T, shape (n, n).
+        """
+        wrong = FINE / self.prior.wrong_sd
+        log = -0.5 * np.einsum("gi,ij,gj->g", r, follow, r) - 0.5 * wrong**2
+        weight = np.exp(log - log.max())
+        area = weight.sum() * (wrong[1] - wrong[0]) / np.sqrt(2 * np.pi)
+        weight /= weight.sum()
+        inner = np.linalg.inv(J.T @ J + np.eye(J.shape[1]))
+        evidence = log.max() + np.log(area) + 0.5 * np.linalg.slogdet(inner)[1]
+        z = -r @ J @ inner
+        z[:, WRONG] = wrong
+        inner[WRONG, WRONG] = 0.0
+        mean = weight @ z
+        covariance = inner + (z - mean).T @ ((z - mean) * weight[:, None])
+        return self._mode(case, mean, covariance, float(evidence))
+
+    def _mode(
+        self, case: Case, z: Array, covariance: NDArray[np.floating], evidence: float
+    ) -> Mode:
+        log_probability = self.prior.log_probability(case, walks=len(self.misfits))
+        return Mode(case, z, np.asarray(covariance, dtype=float), evidence + log_probability)
+
+    def _linearised(self, z: Array, case: Case) -> tuple[Array, Array]:
+        """Return residuals and their Jacobian by central differences, in one batch."""
+        step = DIFFERENCE / self.prior.scale
+        if case is None:  # without a wrong leg its offset moves nothing
+            step = step[:WRONG]
+        steps = np.eye(len(step), len(z)) * step[:, None]
+        rows = self.residuals(np.concatenate([z[None], z + steps, z - steps]), case)
+        k = len(step)
+        J = np.zeros((rows.shape[1], len(z)))
+        J[:, :k] = ((rows[1 : k + 1] - rows[k + 1 :]) / (2 * step[:, None])).T
+        return rows[0], J

@@ -1,0 +1,161 @@
+# SPDX-License-Identifier: MIT
+"""What is believed of legs and floor before any walk, and which legs may be mounted wrong."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import TypeAlias
+
+import numpy as np
+
+from model.errors import DomainError
+from model.predict import LegState, ModelSpread
+from model.robot import N_LEGS
+from model.slip.law import Array
+
+OFFSETS = tuple(f"leg_offset{leg}" for leg in range(1, N_LEGS + 1))
+FLOOR = ("grip", "slip_stiffness")
+NAMES = (*OFFSETS, *FLOOR, "common_offset", "leg_arc", "steering", "stride")
+UNITS = (*["rad"] * N_LEGS, "log", "log", "rad", "rad", "rad/m", "-")
+WRONG = len(NAMES)  # index of the wrong leg's further offset, behind the others
+LINEAR = [NAMES.index("steering"), NAMES.index("stride")]  # of which residuals are linear
+WALKED = [i for i in range(WRONG + 1) if i not in LINEAR]  # what a walk must be walked for
+
+
+@dataclass(frozen=True)
+class WrongLeg:
+    """A leg that is off by a lot.
+
+    Attributes:
+        leg: Its index.
+        walk: Index of the one walk in which it is, as after a knock; None for all of them, as
+            after an assembly.
+    """
+
+    leg: int
+    walk: int | None = None
+
+    def concerns(self, walk: int | None) -> bool:
+        """Tell whether it is off in a walk; None asks for a walk to come."""
+        return self.walk is None or self.walk == walk
+
+
+Case: TypeAlias = WrongLeg | None
+"""A leg that is mounted wrong, or none."""
+
+
+def wrong_legs(walks: int) -> tuple[WrongLeg, ...]:
+    """List what may be wrong in a number of walks: a leg, or a leg in one of them."""
+    legs = range(N_LEGS)
+    everywhere = tuple(WrongLeg(leg) for leg in legs)
+    if walks < 2:  # one walk does not tell its own from all
+        return everywhere
+    return (*everywhere, *(WrongLeg(leg, walk) for walk in range(walks) for leg in legs))
+
+
+@dataclass(frozen=True)
+class WalkPrior:
+    """What is believed before any walk.
+
+    Attributes:
+        offset_sd: Standard deviation of each leg's own offset [rad].
+        common_sd: That of the offset all share: whether counts are rounded or cut is half a count
+            [rad].
+        arc_sd: That of the legs' arc beyond the described one [rad].
+        wrong_sd: That of the further offset of a leg that is mounted wrong [rad].
+        wrong: Probability that one leg is [-].
+        grip_sd: Standard deviation of the logarithm of the factor on traction: floor and rig differ
+            [-].
+        stiffness_sd: That of the factor on slip stiffness [-].
+        steering_sd: Standard deviation of the turn that is not the legs' [rad/m].
+        stride_sd: That of the relative error of distance [-].
+        spread: What the walking model gets wrong anew in each walk.
+
+    Raises:
+        DomainError: A standard deviation is not positive or `wrong` no probability.
+    """
+
+    offset_sd: float = float(np.radians(0.2))
+    common_sd: float = float(np.radians(1.0))
+    arc_sd: float = float(np.radians(3.0))
+    wrong_sd: float = float(np.radians(5.0))
+    wrong: float = 0.2
+    grip_sd: float = 0.3
+    stiffness_sd: float = 0.5
+    steering_sd: float = 0.01
+    stride_sd: float = 0.005
+    spread: ModelSpread = field(default_factory=ModelSpread)
+
+    def __post_init__(self) -> None:
+        """Refuse a prior that is none."""
+        if not np.all(self.scale > 0):
+            raise DomainError("a standard deviation of the prior is not above zero")
+        if not 0 < self.wrong < 1:
+            raise DomainError(f"a leg is wrong with probability {self.wrong:g}; expected 0 to 1")
+
+    @property
+    def scale(self) -> Array:
+        """Standard deviations in the order of `NAMES`, and that of a wrong leg, shape (13,)."""
+        return np.array([
+            *[self.offset_sd] * N_LEGS, self.grip_sd, self.stiffness_sd, self.common_sd,
+            self.arc_sd, self.steering_sd, self.stride_sd, self.wrong_sd,
+        ])  # fmt: skip
+
+    def log_probability(self, case: Case, *, walks: int) -> float:
+        """Return the log of a case's probability among those of a number of walks."""
+        if case is None:
+            return float(np.log(1 - self.wrong))
+        if walks < 2:
+            return float(np.log(self.wrong / N_LEGS))
+        among = 1 if case.walk is None else walks
+        return float(np.log(self.wrong / 2 / N_LEGS / among))
+
+    def sd(self, walks: int) -> Array:
+        """Standard deviations in the order of `NAMES` over all cases, shape (12,)."""
+        variance = self.scale[:WRONG] ** 2
+        variance[:N_LEGS] += (
+            np.exp(self.log_probability(WrongLeg(0), walks=walks)) * self.wrong_sd**2
+        )
+        return np.sqrt(variance)
+
+
+def all_cases(walks: int) -> tuple[Case, ...]:
+    """List every case of a number of walks; no leg wrong comes first."""
+    return (None, *wrong_legs(walks))
+
+
+def legs_of(values: Array, case: Case, *, walk: int | None = None) -> LegState:
+    """Turn parameters into the state of the legs in a walk.
+
+    Args:
+        values: Parameters in the order of `NAMES` and that of a wrong leg, shape (m, 13).
+        case: What is wrong.
+        walk: The walk's index; None for a walk to come.
+    """
+    offset = leg_offsets(values, case, walk=walk)
+    grip, stiffness, common, arc, steering, stride = values[:, N_LEGS:WRONG].T
+    return LegState(
+        offset + common[:, None], np.exp(grip), np.exp(stiffness), arc, steering, stride
+    )
+
+
+def leg_offsets(values: Array, case: Case, *, walk: int | None = None) -> Array:
+    """Return each leg's own offset, without the common one, shape (m, 6) [rad]."""
+    offset = values[:, :N_LEGS].copy()
+    if case is not None and case.concerns(walk):
+        offset[:, case.leg] += values[:, WRONG]
+    return offset
+
+
+def describe(case: Case, walks: Sequence[str]) -> str:
+    """Say what a case means.
+
+    Args:
+        case: The case.
+        walks: Names of the walks.
+
+    >>> describe(WrongLeg(2), ["a"])
+    'leg 3'
+    """
+    if case is None:
+        return "no leg"
+    return f"leg {case.leg + 1}" + ("" if case.walk is None else f" in {walks[case.walk]}")

@@ -1,0 +1,90 @@
+# SPDX-License-Identifier: MIT
+r"""What tracked walks say of steering and stride, integrated out exactly.
+
+Steering bends a walked path and stride stretches it, so residuals are linear in the two, as in
+standard normal coordinates y, and a draw of all else need not guess them:
+
+.. math::
+    r = r_0 + D y, \quad y \sim N(0, I): \qquad
+    \log p(r_0) = -\tfrac12 (r_0^T r_0 - b^T A^{-1} b) - \tfrac12 \log |A| ,
+
+with :math:`A = I + D^T D` and :math:`b = D^T r_0`. Each walk adds its part, so that any of them can
+be left out afterwards.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from model.slip.law import Array
+
+
+@dataclass(frozen=True)
+class Terms:
+    """Residuals of walks as they depend on steering and stride, for m draws of all else.
+
+    Attributes:
+        square: :math:`r_0^T r_0` of each walk, shape (m, walks).
+        slope: :math:`D^T r_0`, shape (m, walks, 2).
+        curvature: :math:`D^T D`, shape (m, walks, 2, 2).
+    """
+
+    square: Array
+    slope: Array
+    curvature: Array
+
+    @classmethod
+    def of(cls, residuals: Array, bends: Array) -> "Terms":
+        """Sum up one walk.
+
+        Args:
+            residuals: Whitened residuals without steering and stride, shape (m, k).
+            bends: Their derivatives by the two, shape (m, k, 2).
+        """
+        transposed = np.swapaxes(bends, 1, 2)
+        return cls(
+            (residuals**2).sum(axis=1)[:, None],
+            (transposed @ residuals[..., None])[:, None, :, 0],
+            (transposed @ bends)[:, None],
+        )
+
+    @classmethod
+    def beside(cls, walks: Sequence["Terms"]) -> "Terms":
+        """Join walks at the same draws."""
+        return cls(*(np.concatenate(part, axis=1) for part in _parts(walks)))
+
+    @classmethod
+    def below(cls, rounds: Sequence["Terms"]) -> "Terms":
+        """Join draws of the same walks."""
+        return cls(*(np.concatenate(part, axis=0) for part in _parts(rounds)))
+
+    def only(self, walks: Sequence[int]) -> "Terms":
+        """Return the terms of some of the walks."""
+        keep = list(walks)
+        return Terms(self.square[:, keep], self.slope[:, keep], self.curvature[:, keep])
+
+    def log_likelihood(self) -> Array:
+        """Compute the log likelihood of each draw, but for a constant, shape (m,)."""
+        A = np.eye(2) + self.curvature.sum(axis=1)
+        b = self.slope.sum(axis=1)
+        explained = (b * np.linalg.solve(A, b[..., None])[..., 0]).sum(axis=1)
+        return -0.5 * (self.square.sum(axis=1) - explained) - 0.5 * np.linalg.slogdet(A)[1]
+
+    def conditional(self) -> tuple[Array, Array]:
+        """Return mean (m, 2) and covariance (m, 2, 2) of steering and stride given all else."""
+        covariance = np.linalg.inv(np.eye(2) + self.curvature.sum(axis=1))
+        return -(covariance @ self.slope.sum(axis=1)[..., None])[..., 0], covariance
+
+    def squares_at(self, y: Array) -> Array:
+        """Compute squared residuals of each walk at steering and stride y (m, 2): (m, walks)."""
+        linear = (self.slope * y[:, None]).sum(axis=2)
+        return self.square + 2 * linear + np.einsum("mi,mwij,mj->mw", y, self.curvature, y)
+
+
+def _parts(terms: Sequence[Terms]) -> tuple[list[Array], list[Array], list[Array]]:
+    return (
+        [each.square for each in terms],
+        [each.slope for each in terms],
+        [each.curvature for each in terms],
+    )

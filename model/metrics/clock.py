@@ -1,0 +1,129 @@
+# SPDX-License-Identifier: MIT
+"""How far apart the clocks of a track and of a path are, from the motion alone.
+
+Starts, stops and turns tell; a robot that goes evenly tells nothing, because a later clock then
+looks like a start further back, which nobody knows either.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from model.errors import InsufficientData
+from model.metrics.poses import Poses
+from model.slip.law import Array
+
+STEP = 0.05  # s between offsets that are tried; refined by a parabola
+FEWEST = 6  # poses of a track
+BLOCKS = 5  # stretches of the track that are left out in turn
+SHARE = 0.5  # of the track's poses and of its length that must lie within the path
+LARGEST_SD = 0.25  # s beyond which an estimate helps nobody
+
+
+@dataclass(frozen=True)
+class ClockOffset:
+    """What has to be added to a track's times to bring them to a path's clock.
+
+    Attributes:
+        value: The offset [s].
+        sd: Its standard deviation [s].
+    """
+
+    value: float
+    sd: float
+
+
+def estimate_offset(track: Poses, path: Poses) -> ClockOffset:
+    r"""Find the offset at which the track, moved, turned and scaled, lies closest to the path.
+
+    .. math::
+        \hat\tau = \arg\min_\tau \min_{s, R, p}
+            \frac{1}{2 n_\tau - 4} \sum_i |s R\,x(t_i + \tau) + p - y_i|^2
+
+    over the tracked poses :math:`y_i` (the scale s takes a wrong speed, which would else pass for a
+    wrong clock) whose shifted times lie within the path. The standard
+    deviation is the larger of two: that of least squares with as many independent errors as there
+    are blocks, since errors of a predicted path last, and that of leaving out each block.
+
+    Args:
+        track: The track.
+        path: The path, sampled densely.
+
+    Raises:
+        InsufficientData: There are too few poses, or the motion does not tell the offset.
+    """
+    if len(track) < FEWEST:
+        raise InsufficientData(
+            f"{len(track)} tracked poses do not tell the clocks' offset; {FEWEST} are needed"
+        )
+    offsets = _possible(track, path)
+    misfit = np.array([_misfit(track, path, each) for each in offsets])
+    best = int(np.argmin(misfit))
+    if not np.isfinite(misfit[best]) or best in (0, len(offsets) - 1):
+        raise InsufficientData("track and path fit nowhere within each other; give the offset")
+    value, curvature = _parabola(offsets, misfit, best)
+    near = value + np.arange(-1.0, 1.0 + STEP, STEP)
+    at = track.t + value
+    inside = track.part((at >= path.t[0]) & (at <= path.t[-1]))
+    sd = max(_sd_of_fit(misfit[best], curvature), _sd_of_blocks(inside, path, near))
+    if not sd < LARGEST_SD:
+        raise InsufficientData(
+            f"the motion tells the clocks' offset only to {sd:.2g} s; let the robot start and "
+            "stop in view, or give the offset"
+        )
+    return ClockOffset(value, sd)
+
+
+def _possible(track: Poses, path: Poses) -> Array:
+    """Return offsets at which the middle of the track lies within the path."""
+    middle = 0.5 * (track.t[0] + track.t[-1])
+    reach = 0.5 * (path.t[-1] - path.t[0])
+    return 0.5 * (path.t[0] + path.t[-1]) - middle + np.arange(-reach, reach + STEP, STEP)
+
+
+def _misfit(track: Poses, path: Poses, offset: float, *, share: float = SHARE) -> float:
+    """Return the mean square distance for each degree of freedom; infinite without overlap [m2]."""
+    at = track.t + offset
+    inside = (at >= path.t[0]) & (at <= path.t[-1])
+    seen = track.part(inside)
+    if inside.mean() < share or len(seen) < 4 or seen.length < share * track.length:
+        return np.inf
+    x, y = _centred(path.at(at[inside])), _centred(seen)
+    moving = float(np.abs(x * x.conj()).sum())
+    shared = np.abs((y * x.conj()).sum()) ** 2 / moving if moving > 0 else 0.0
+    return float((np.abs(y) ** 2).sum() - shared) / (2 * len(seen) - 4)
+
+
+def _centred(poses: Poses) -> NDArray[np.complex128]:
+    place = poses.position[:, 0] + 1j * poses.position[:, 1]
+    return place - place.mean()
+
+
+def _parabola(offsets: Array, misfit: Array, best: int) -> tuple[float, float]:
+    """Return the minimum, refined between the steps, and the second derivative [m2/s2]."""
+    before, here, after = misfit[best - 1 : best + 2]
+    second = (before - 2 * here + after) / STEP**2
+    if not (np.isfinite(second) and second > 0):
+        return float(offsets[best]), 0.0
+    return float(offsets[best] - 0.5 * (after - before) / STEP / second), float(second)
+
+
+def _sd_of_fit(misfit: float, curvature: float) -> float:
+    """Return the standard deviation of least squares with two errors a block."""
+    return float(np.sqrt(2 * misfit / (2 * BLOCKS * curvature))) if curvature > 0 else np.inf
+
+
+def _sd_of_blocks(track: Poses, path: Poses, offsets: Array) -> float:
+    """Return the jackknife's standard deviation over stretches of the track."""
+    found = []
+    for block in np.array_split(np.arange(len(track)), BLOCKS):
+        rest = track.part(np.delete(np.arange(len(track)), block))
+        # Of all its poses: one that leaves the path's time would take its misfit along.
+        misfit = np.array([_misfit(rest, path, each, share=1.0) for each in offsets])
+        best = int(np.argmin(misfit))
+        if best in (0, len(offsets) - 1):
+            return np.inf
+        found.append(_parabola(offsets, misfit, best)[0])
+    spread = np.array(found) - np.mean(found)
+    return float(np.sqrt((BLOCKS - 1) / BLOCKS * (spread**2).sum()))

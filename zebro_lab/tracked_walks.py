@@ -1,0 +1,179 @@
+# SPDX-License-Identifier: MIT
+"""Walks that were logged and tracked: run folders, or folders with a leg log and a track."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+
+from model.bayes.walk_misfit import FEWEST_POSES, TrackedWalk
+from model.gait.quantised import QuantisedLog
+from model.gait.reference import SampledReference
+from zebro_lab.errors import DataError, NotFound, SettingsError
+from zebro_lab.leg_angles import angles_from
+from zebro_lab.leg_log import LegLog, read_leg_log
+from zebro_lab.recorded_legs import is_recorded
+from zebro_lab.robot_file import ROBOT_FILE, RobotFile, read_robot_file
+from zebro_lab.track_file import TrackFile, read_track
+from zebro_lab.track_folder import TRACK_CSV
+
+TRACK = "track"
+LEGS = ("legs.csv", "legs.csv.gz", "legs.parquet")
+
+
+@dataclass(frozen=True)
+class WalkOnFile:
+    """A tracked walk as it was read.
+
+    Attributes:
+        name: Name of its folder.
+        robot: The robot that walked.
+        legs: Its leg angles from time zero on.
+        track: The track, in the same time; poses outside the log's left out.
+        source: "real", "sim:what", "unknown"; both where log and track differ.
+        files: Every file read, the leg log's first.
+        notes: For a person, one line each.
+    """
+
+    name: str
+    robot: RobotFile
+    legs: SampledReference | QuantisedLog
+    track: TrackFile
+    source: str
+    files: tuple[Path, ...]
+    notes: tuple[str, ...]
+
+    @property
+    def tracked(self) -> TrackedWalk:
+        """The walk as `model.bayes.walks` takes it."""
+        poses = self.track.poses
+        states = np.column_stack([poses.position, poses.yaw])
+        return TrackedWalk(self.name, self.legs, poses.t, states, self.track.covariance)
+
+    @property
+    def duration(self) -> float:
+        """Time of its leg log [s]."""
+        return float(self.legs.t[-1])
+
+
+def read_walks(folders: Sequence[Path], *, robot: Path | None = None) -> list[WalkOnFile]:
+    """Read tracked walks of one robot; folders of one name are told apart by numbers.
+
+    Args:
+        folders: A folder each, as for `read_walk_on_file`.
+        robot: A `robot.toml` in place of those in the folders.
+
+    Raises:
+        ZebroLabError: As in `read_walk_on_file`; or the walks are of two robots.
+    """
+    walks = [read_walk_on_file(folder, robot=robot) for folder in folders]
+    for walk in walks[1:]:
+        if not same_robot(walk.robot, walks[0].robot):
+            raise SettingsError(
+                f"{walk.name} was walked by another robot than {walks[0].name}; calibrate with the "
+                "walks of one robot at a time, or name a --robot for all",
+                file=walk.robot.file,
+            )
+    names = [walk.name for walk in walks]
+    return [
+        walk
+        if names.count(walk.name) == 1
+        else replace(walk, name=f"{walk.name}-{names[: i + 1].count(walk.name)}")
+        for i, walk in enumerate(walks)
+    ]
+
+
+def same_robot(one: RobotFile, other: RobotFile) -> bool:
+    """Tell whether two descriptions are of one robot, whatever marker it carries."""
+    a, b = one.robot, other.robot
+    return (
+        one.leg_sign == other.leg_sign
+        and np.array_equal(a.hips, b.hips)
+        and np.array_equal(a.leg_offset, b.leg_offset)
+        and np.array_equal(a.principal_inertia, b.principal_inertia)
+        and (a.leg_radius, a.leg_arc, a.mass) == (b.leg_radius, b.leg_arc, b.mass)
+    )
+
+
+def read_walk_on_file(folder: Path, *, robot: Path | None = None) -> WalkOnFile:
+    """Read a tracked walk.
+
+    Args:
+        folder: A run folder, or one with a leg log `legs.csv`; `track/track.csv` below it, and
+            perhaps its `robot.toml`.
+        robot: A `robot.toml` in place of the folder's.
+
+    Raises:
+        NotFound: There is no leg log or no track.
+        DataError: One of them cannot be read, the track has no headings or covariance, or too
+            little of it lies within the log's time.
+    """
+    log_file = _legs_of(folder)
+    track_file = folder / TRACK / TRACK_CSV
+    if not track_file.is_file():
+        raise NotFound(
+            f"{folder}: a walk without a track; zebro-lab track --out {folder / TRACK} makes one"
+        )
+    own = folder / ROBOT_FILE
+    described = read_robot_file(robot or own) if robot is not None or own.is_file() else RobotFile()
+    log = read_leg_log(log_file, leg_sign=described.leg_sign)
+    track = read_track(track_file)
+    start = float(log.reference.t[0])
+    inside, notes = _inside(log, track)
+    _require_states(inside)
+    legs, counted = angles_from(log, start)
+    moved = replace(inside.poses, t=inside.poses.t - start)
+    sources = sorted({log.source, track.source})
+    return WalkOnFile(
+        name=folder.absolute().name,
+        robot=described,
+        legs=legs,
+        track=replace(inside, poses=moved),
+        source=", ".join(sources),
+        files=(*log.files, track.file, *([described.file] if described.file else [])),
+        notes=(*log.notes, *counted, *track.notes, *notes),
+    )
+
+
+def _legs_of(folder: Path) -> Path:
+    if not folder.is_dir():
+        raise NotFound(f"{folder}: no such folder; expected a run with leg angles and a track")
+    if is_recorded(folder):
+        return folder
+    for name in LEGS:
+        if (folder / name).is_file():
+            return folder / name
+    raise NotFound(
+        f"{folder}: no leg angles; expected a recorded run, or a folder with {LEGS[0]} and "
+        f"{TRACK}/{TRACK_CSV}"
+    )
+
+
+def _inside(log: LegLog, track: TrackFile) -> tuple[TrackFile, tuple[str, ...]]:
+    """Leave out the poses that lie outside the leg log's time."""
+    t, begin, end = track.poses.t, float(log.reference.t[0]), float(log.reference.t[-1])
+    keep = (t >= begin) & (t <= end)
+    if keep.sum() < FEWEST_POSES:
+        raise DataError(
+            f"{keep.sum()} of {len(t)} poses, from {t[0]:g} to {t[-1]:g} s, lie within the leg "
+            f"log's {begin:g} to {end:g} s; expected {FEWEST_POSES} or more: do both keep the same "
+            "clock?",
+            file=track.file,
+        )
+    left_out = int((~keep).sum())
+    notes = (f"{left_out} tracked poses lie outside the leg log's time",) if left_out else ()
+    part = replace(track, poses=track.poses.part(keep), covariance=track.covariance[keep])
+    return part, notes
+
+
+def _require_states(track: TrackFile) -> None:
+    """Refuse a track that cannot weigh its own errors."""
+    if not track.poses.has_yaw:
+        raise DataError("has no headings; a walk can inform a fit only with them", file=track.file)
+    if not np.all(np.linalg.eigvalsh(track.covariance) > 0):
+        raise DataError(
+            "has no covariance; a walk can inform a fit only when its track says how far it may be "
+            "off: add cov_xx to cov_yawyaw",
+            file=track.file,
+        )

@@ -19,6 +19,7 @@ from model.robot import N_LEGS, Robot
 from model.slip.law import Array
 from model.walk.dynamics import DynamicsOptions
 from model.walk.ensemble import PathEnsemble, WalkDraw, walk_ensemble
+from model.walk.path import WalkPath
 from model.walk.traction import TractionTable
 
 ENSEMBLE_STEP = DynamicsOptions(dt=0.005)  # paths at 5 ms and 1 ms differ by 0.1 % of a tripod's
@@ -193,6 +194,23 @@ def bent(paths: PathEnsemble, *, distance: Array, curvature: Array) -> PathEnsem
     moved = np.stack([_from_zero(np.real(steps)), _from_zero(np.imag(steps))], axis=-1)
     position = paths.position[:, :1] + moved
     return PathEnsemble(paths.t, position, paths.yaw + turned)
+
+
+def bent_walk(path: WalkPath, *, distance: float, curvature: float) -> WalkPath:
+    """Stretch and bend one walked path as `bent` does; slip and forces keep to the heading.
+
+    Args:
+        path: The path.
+        distance: Relative error of distance [-].
+        curvature: Curvature added [rad/m].
+    """
+    one = PathEnsemble(path.t, path.position[None, :, :2], path.yaw[None])
+    moved = bent(one, distance=np.array([distance]), curvature=np.array([curvature]))
+    return replace(
+        path,
+        position=np.column_stack([moved.position[0], path.position[:, 2]]),
+        orientation=np.column_stack([path.orientation[:, :2], moved.yaw[0]]),
+    )
 
 
 def anchored(

@@ -31,9 +31,13 @@ SCHEMA = 1
 SLIP_TOML = "slip.toml"
 PICTURES = ("curves", "surface", "corner", "traces", "residuals")
 OWNED = (
-    "slip.toml", "summary.csv", "posterior.nc", "manifest.json", *(f"{n}.png" for n in PICTURES)
+    "slip.toml", "summary.csv", "posterior.nc", "manifest.json", *(f"{n}.png" for n in PICTURES),
+    "walks/*",
 )  # fmt: skip
-"""What a calibration writes; an earlier run's files of these names are replaced."""
+"""What a calibration writes; an earlier run's files of these names are replaced.
+
+What walks said was fitted with the earlier run's law, and goes.
+"""
 
 
 SUMMARY_COLUMNS = (

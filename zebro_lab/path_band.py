@@ -22,6 +22,7 @@ from model.robot import GRAVITY, Robot
 from model.walk.ensemble import PathEnsemble
 from model.walk.traction import ToeLaw
 from zebro_lab.errors import DataError, NotFound, SettingsError
+from zebro_lab.informed_legs import InformedLegs
 from zebro_lab.slip_argument import Slip
 from zebro_lab.slip_draws import slip_tables
 from zebro_lab.walk_folder import BAND_CSV, BAND_PICTURE, DRAWS
@@ -73,6 +74,7 @@ def predict_band(
     *,
     duration: float,
     toe: ToeLaw,
+    informed: InformedLegs | None = None,
     watcher: Watcher,
 ) -> PathEnsemble:
     """Walk an ensemble from time zero on, started at the origin.
@@ -84,11 +86,14 @@ def predict_band(
         slip: How its legs slip.
         duration: Time walked [s].
         toe: Traction of a leg on its toe.
+        informed: What walks said of legs and floor.
         watcher: Who follows.
+
+    Raises:
+        SettingsError: Offsets are asked for that walks have told.
     """
     rng = np.random.default_rng(request.seed)
-    offset_sd = np.radians(offset_sd_deg(request, legs))
-    state = LegState.of_prior(request.draws, offset_sd=offset_sd, rng=rng)
+    state = _leg_state(request, legs, informed, rng)
     tables = slip_tables(slip, request.draws, weight=robot.mass * GRAVITY, toe=toe, rng=rng)
     watcher.step("predicting the band", 0.0)
     draws = walk_draws(robot, legs, tables, state, rng=rng)
@@ -107,6 +112,24 @@ def predict_band(
     x, y, yaw_deg = request.start_sd
     covariance = np.diag([x, y, np.radians(yaw_deg)]) ** 2
     return anchored(paths, np.zeros(3), at=0.0, covariance=covariance, rng=rng)
+
+
+def _leg_state(
+    request: BandRequest,
+    legs: LegReference | QuantisedLog,
+    informed: InformedLegs | None,
+    rng: np.random.Generator,
+) -> LegState:
+    if informed is None:
+        offset_sd = np.radians(offset_sd_deg(request, legs))
+        return LegState.of_prior(request.draws, offset_sd=offset_sd, rng=rng)
+    if request.offset_sd_deg is not None:
+        raise SettingsError(
+            f"the walks of {informed.folder} say what the legs' offsets are; leave it out, or name "
+            "a slip.toml that lies alone",
+            key="--offset-sd-deg",
+        )
+    return informed.draw(request.draws, rng=rng)
 
 
 def offset_sd_deg(request: BandRequest, legs: LegReference | QuantisedLog) -> float:

@@ -13,6 +13,7 @@ from model.slip.definition import SlipDefinition
 from model.walk.traction import ToeLaw, TractionTable, VelocityCoulomb, curve_table
 from zebro_lab.calibration_folder import SLIP_TOML, read_slip
 from zebro_lab.errors import NotFound, SettingsError
+from zebro_lab.walks_folder import StoredWalks, read_walks_beside
 
 if TYPE_CHECKING:
     from model.walk.path import WalkPath
@@ -34,6 +35,7 @@ class Slip:
         source: Where the law comes from: "real", "sim:...", "assumed", "thesis", "unknown".
         files: Files that were read.
         notes: For a person, one line each.
+        walks: What tracked walks said of legs and floor; None where none informed it.
     """
 
     text: str
@@ -41,6 +43,7 @@ class Slip:
     source: str
     files: tuple[Path, ...] = ()
     notes: tuple[str, ...] = ()
+    walks: StoredWalks | None = None
 
     @property
     def title(self) -> str:
@@ -90,12 +93,13 @@ class Slip:
         return float(np.mean(loads < self.tested_loads[0])) if len(loads) else 0.0
 
 
-def parse_slip(text: str) -> Slip:
+def parse_slip(text: str, *, with_walks: bool = True) -> Slip:
     """Read the value of `--slip`.
 
     Args:
         text: A `slip.toml`, its folder, `coulomb:MU[:V]` with the velocity V [m/s] over which
             friction sets in, or `thesis`.
+        with_walks: Read what walks said beside it, too.
 
     Raises:
         NotFound: It names no file, folder or law.
@@ -113,7 +117,7 @@ def parse_slip(text: str) -> Slip:
     path = Path(text)
     if not path.exists():
         raise NotFound(f"--slip: '{text}' is no file or folder; expected {EXPECTED_SLIP}")
-    return _calibrated(text, path)
+    return _calibrated(text, path, with_walks=with_walks)
 
 
 def source_curve() -> SlipCurve:
@@ -146,7 +150,7 @@ def _coulomb(text: str, numbers: list[str]) -> VelocityCoulomb:
     return VelocityCoulomb(*values)
 
 
-def _calibrated(text: str, path: Path) -> Slip:
+def _calibrated(text: str, path: Path, *, with_walks: bool) -> Slip:
     curve = read_slip(path)
     file = path / SLIP_TOML if path.is_dir() else path
     content = tomllib.loads(file.read_text())
@@ -157,4 +161,6 @@ def _calibrated(text: str, path: Path) -> Slip:
         notes.append(f"slip: the calibration is not trustworthy: {headline}")
     if curve.definition is not SlipDefinition.MATERIAL:
         notes.append(f"slip: fitted to '{curve.definition}' slip, converted where it is evaluated")
-    return Slip(text, curve, str(content.get("source", "unknown")), (file,), tuple(notes))
+    walks = read_walks_beside(file) if with_walks else None
+    files = (file, *(walks.files if walks is not None else ()))
+    return Slip(text, curve, str(content.get("source", "unknown")), files, tuple(notes), walks)

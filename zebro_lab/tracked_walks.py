@@ -17,6 +17,7 @@ from zebro_lab.recorded_legs import is_recorded
 from zebro_lab.robot_file import ROBOT_FILE, RobotFile, read_robot_file
 from zebro_lab.track_file import TrackFile, read_track
 from zebro_lab.track_folder import TRACK_CSV
+from zebro_lab.walks_folder import describe_legs
 
 TRACK = "track"
 LEGS = ("legs.csv", "legs.csv.gz", "legs.parquet")
@@ -69,7 +70,7 @@ def read_walks(folders: Sequence[Path], *, robot: Path | None = None) -> list[Wa
     """
     walks = [read_walk_on_file(folder, robot=robot) for folder in folders]
     for walk in walks[1:]:
-        if not same_robot(walk.robot, walks[0].robot):
+        if describe_legs(walk.robot) != describe_legs(walks[0].robot):
             raise SettingsError(
                 f"{walk.name} was walked by another robot than {walks[0].name}; calibrate with the "
                 "walks of one robot at a time, or name a --robot for all",
@@ -82,18 +83,6 @@ def read_walks(folders: Sequence[Path], *, robot: Path | None = None) -> list[Wa
         else replace(walk, name=f"{walk.name}-{names[: i + 1].count(walk.name)}")
         for i, walk in enumerate(walks)
     ]
-
-
-def same_robot(one: RobotFile, other: RobotFile) -> bool:
-    """Tell whether two descriptions are of one robot, whatever marker it carries."""
-    a, b = one.robot, other.robot
-    return (
-        one.leg_sign == other.leg_sign
-        and np.array_equal(a.hips, b.hips)
-        and np.array_equal(a.leg_offset, b.leg_offset)
-        and np.array_equal(a.principal_inertia, b.principal_inertia)
-        and (a.leg_radius, a.leg_arc, a.mass) == (b.leg_radius, b.leg_arc, b.mass)
-    )
 
 
 def read_walk_on_file(folder: Path, *, robot: Path | None = None) -> WalkOnFile:

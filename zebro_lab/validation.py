@@ -284,9 +284,10 @@ def robot_of_walk(manifest: Mapping[str, Any]) -> Robot:
 def _baselines(
     walked: WalkedPath, manifest: Mapping[str, Any]
 ) -> tuple[dict[str, Poses], tuple[str, ...]]:
-    """Walk the leg angles of a walk folder by every simpler model."""
+    """Walk the leg angles of a walk folder by every simpler model: as described, not as fitted."""
     walk, robot = walked.path, walked.robot
-    reference = SampledReference(walk.t - walk.t[0], walk.theta)
+    found = (manifest["settings"].get("walks") or {}).get("leg_offset", 0.0)
+    reference = SampledReference(walk.t - walk.t[0], walk.theta - np.asarray(found))
     direction = manifest["settings"].get("direction", "left")
     return walk_baselines(robot, reference, direction=direction, start=float(walk.t[0]))
 

@@ -167,7 +167,7 @@ def write_validation(
             "outputs": {p.name: file_hash(p) for p in sorted(draft.iterdir()) if p.is_file()},
             "software": software(),
         }
-        (draft / MANIFEST).write_text(json.dumps(_plain(content), indent=2) + "\n")
+        (draft / MANIFEST).write_text(json.dumps(plain_json(content), indent=2) + "\n")
 
 
 def _write_tables(draft: Path, runs: Sequence[RunJudged]) -> None:
@@ -194,12 +194,12 @@ def _to_csv(table: "pd.DataFrame", file: Path) -> None:
     table.to_csv(file, index=False, float_format="%.8g", lineterminator="\n")
 
 
-def _plain(value: object) -> object:
+def plain_json(value: object) -> object:
     """Replace what JSON cannot hold: numbers that are none or infinite."""
     if isinstance(value, Mapping):
-        return {key: _plain(each) for key, each in value.items()}
+        return {key: plain_json(each) for key, each in value.items()}
     if isinstance(value, list | tuple):
-        return [_plain(each) for each in value]
+        return [plain_json(each) for each in value]
     return None if isinstance(value, float) and not np.isfinite(value) else value
 
 

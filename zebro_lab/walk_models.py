@@ -10,6 +10,7 @@ import numpy as np
 
 from model.gait.cyclic import CyclicReference
 from model.gait.reference import LegReference
+from model.predict import LegState, bent_walk, law_in, robot_in
 from model.robot import GRAVITY, Robot
 from model.walk.path import WalkPath
 from model.walk.traction import ToeLaw
@@ -34,6 +35,8 @@ class ModelRun:
         dt: Length of a step [s].
         toe: Traction of a leg on its toe.
         direction: Side to which the gait turns, "left" or "right"; only the source's model asks.
+        legs: One draw of what is believed of legs and floor beyond the description; only our own
+            model asks.
     """
 
     robot: Robot
@@ -43,6 +46,7 @@ class ModelRun:
     dt: float
     toe: ToeLaw = "saturated"
     direction: Direction = "left"
+    legs: LegState | None = None
 
 
 @dataclass(frozen=True)
@@ -67,7 +71,12 @@ def _dynamics(run: ModelRun) -> WalkPath:
 
     table = _slip_of(run).traction_table(weight=run.robot.mass * GRAVITY, toe=run.toe)
     options = DynamicsOptions(dt=run.dt)
-    return walk(run.robot, run.reference, table, duration=run.duration, options=options)
+    if run.legs is None:
+        return walk(run.robot, run.reference, table, duration=run.duration, options=options)
+    robot, law = robot_in(run.robot, run.legs, 0), law_in(table, run.legs, 0)
+    path = walk(robot, run.reference, law, duration=run.duration, options=options)
+    steering, stride = float(run.legs.steering[0]), float(run.legs.stride[0])
+    return bent_walk(path, distance=stride, curvature=steering)
 
 
 def _thesis(run: ModelRun) -> WalkPath:

@@ -39,5 +39,5 @@ def band_of(
         )
     return predict_band(
         request, walked.described.robot, legs, walked.slip,
-        duration=duration, toe=toe, watcher=watcher,
+        duration=duration, toe=toe, informed=walked.informed, watcher=watcher,
     )  # fmt: skip

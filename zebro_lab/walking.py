@@ -14,12 +14,15 @@ from model.robot import Robot
 from model.walk.path import WalkPath
 from model.walk.traction import ToeLaw
 from zebro_lab.errors import SettingsError, ZebroLabError
+from zebro_lab.informed_legs import InformedLegs, informed_legs
 from zebro_lab.provenance import file_hashes
 from zebro_lab.robot_file import RobotFile, read_robot_file
 from zebro_lab.slip_argument import Slip, parse_slip
 from zebro_lab.walk_folder import walk_folder
 from zebro_lab.walk_models import MODELS, Direction, ModelRun
 from zebro_lab.walk_pictures import animate_walk, draw_walk
+
+INFORMED_MODEL = "dynamics"  # the one whose legs and floor walks were fitted with
 
 
 class Watcher(Protocol):
@@ -78,6 +81,7 @@ class Walked:
         dt: Length of its step [s].
         title: What walked by which model.
         notes: For a person, one line each.
+        informed: What walks said of its legs and floor; None without walks.
     """
 
     path: WalkPath
@@ -88,6 +92,7 @@ class Walked:
     dt: float
     title: str
     notes: tuple[str, ...]
+    informed: InformedLegs | None = None
 
 
 def robot_of(request: ModelRequest) -> RobotFile:
@@ -115,6 +120,8 @@ def walk_with(
     duration: float,
     what: str,
     direction: Direction = "left",
+    logs: tuple[Path, ...] = (),
+    angles_are_true: bool = False,
     notes: tuple[str, ...] = (),
 ) -> Walked:
     """Let the model asked for walk leg angles from time zero on.
@@ -126,6 +133,8 @@ def walk_with(
         duration: Time to walk [s].
         what: What walks, for titles.
         direction: Side the gait turns to.
+        logs: Files of the leg log; a walk that informed the calibration is known by them.
+        angles_are_true: The angles are those of a walked path: no offset is left to be found.
         notes: What is known already, for a person.
 
     Raises:
@@ -143,7 +152,16 @@ def walk_with(
             f"{duration:g} s in steps of {dt:g} s is no walk; expected more than a step",
             key="--duration, --dt",
         )
-    run = ModelRun(described.robot, reference, slip, duration, dt, request.toe, direction)
+    informed = None
+    if slip is not None and slip.walks is not None and model.name == INFORMED_MODEL:
+        informed = informed_legs(
+            slip.walks, described, logs=logs, same_legs=False if angles_are_true else None
+        )
+        notes = (*notes, *informed.notes)
+    run = ModelRun(
+        described.robot, reference, slip, duration, dt, request.toe, direction,
+        None if informed is None else informed.middle,
+    )  # fmt: skip
     path = model.run(run)
     grip = f", slip {slip.title}" if slip is not None else ""
     return Walked(
@@ -155,6 +173,7 @@ def walk_with(
         dt=dt,
         title=f"{what}, model '{model.name}'{grip}",
         notes=(*notes, *(slip.notes if slip is not None else ())),
+        informed=informed,
     )
 
 
@@ -191,6 +210,7 @@ def write_walk(
         "toe": request.toe,
         "slip": None if slip is None else {"named": slip.text, "source": slip.source},
         "robot": _robot_settings(described.robot),
+        "walks": None if walked.informed is None else walked.informed.settings(),
         **settings,
     }
     with walk_folder(

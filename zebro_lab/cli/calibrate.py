@@ -9,6 +9,8 @@ import typer
 from zebro_lab.cli.errors import run
 
 if TYPE_CHECKING:
+    from rich.console import Console
+
     from zebro_lab.stages.calibrate import CalibrationRequest
 
 NOT_CONVERGED = 3
@@ -23,6 +25,13 @@ calibrate-slip data/ --out calibration --resume
 
 calibrate-slip bench.csv --columns bench-columns.toml --load-sensitivity
 
+calibrate-slip data/ --walks data/RUN1 --walks data/RUN2
+
+calibrate-slip --walks data/RUN1 --walks data/RUN2 --out calibration
+
+Tracked walks inform legs and floor: leg offsets, leg arc, steering, grip and slip stiffness.
+Without DATA they are added to the finished calibration in --out.
+
 Exit codes: 0 converged (read the verdict), 1 error, 2 usage, 3 not converged (results are written
 and marked), 130 stopped (a checkpoint is kept for --resume).
 """
@@ -31,7 +40,14 @@ app = typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions
 
 
 Data = Annotated[
-    list[Path], typer.Argument(help="Run folders, or files or folders of CSV or Parquet.")
+    list[Path] | None, typer.Argument(help="Run folders, or files or folders of CSV or Parquet.")
+]
+Walks = Annotated[
+    list[Path] | None,
+    typer.Option(help="Run folder of a tracked walk that informs the fit; repeatable."),
+]
+Robot = Annotated[
+    Path | None, typer.Option(help="robot.toml of the walks, in place of those in their folders.")
 ]
 Out = Annotated[Path, typer.Option(help="Calibration folder to write.")]
 Columns = Annotated[
@@ -71,7 +87,7 @@ Resume = Annotated[bool, typer.Option("--resume", help="Go on with the stopped f
 
 @app.command(epilog=EPILOG)
 def calibrate(
-    data: Data,
+    data: Data = None,
     out: Out = Path("calibration"),
     columns: Columns = None,
     slip_definition: Definition = None,
@@ -86,10 +102,17 @@ def calibrate(
     seed: Seed = 1,
     threads: Threads = 2,
     resume: Resume = False,
+    walks: Walks = None,
+    robot: Robot = None,
 ) -> None:
     """Fit a slip curve to rig logs by Bayesian inference and say how far to trust it."""
     from zebro_lab.stages.calibrate import CalibrationRequest
 
+    if not data:
+        if not walks:
+            raise typer.BadParameter("needed: rig data, or --walks and the --out of a calibration")
+        _fit_walks(walks, out, robot, seed=seed, threads=threads)
+        return
     cell = {"zero_stability": zero_stability, "gain_sd": gain_sd}
     request = CalibrationRequest(
         data=tuple(data),
@@ -107,10 +130,15 @@ def calibrate(
         threads=threads,
         resume=resume,
     )
-    _fit_and_report(request)
+    converged = _fit_and_report(request)
+    if walks:
+        _fit_walks(walks, out, robot, seed=seed, threads=threads)
+    if not converged:
+        raise typer.Exit(NOT_CONVERGED)
 
 
-def _fit_and_report(request: "CalibrationRequest") -> None:
+def _fit_and_report(request: "CalibrationRequest") -> bool:
+    """Fit, print, and tell whether the fit has converged."""
     from rich.console import Console
 
     from zebro_lab.cli.calibration_report import print_calibration
@@ -124,12 +152,31 @@ def _fit_and_report(request: "CalibrationRequest") -> None:
     except Stopped as stopped:
         typer.echo(str(stopped), err=True)
         raise typer.Exit(INTERRUPTED) from None
+    print_calibration(_console(), calibration, read, request.out)
+    return calibration.verdict.converged
+
+
+def _fit_walks(
+    walks: list[Path], out: Path, robot: Path | None, *, seed: int, threads: int
+) -> None:
+    """Fit walks beside a finished calibration and print what they said."""
+    from rich.console import Console
+
+    from zebro_lab.cli.progress import progress_bar
+    from zebro_lab.cli.walks_report import print_walks
+    from zebro_lab.stages.calibrate_walks import WalksRequest, calibrate_walks
+
+    request = WalksRequest(tuple(walks), out, robot, seed=seed, threads=threads)
+    with progress_bar(Console(stderr=True)) as watcher:
+        done = calibrate_walks(request, watcher)
+    print_walks(_console(), done)
+
+
+def _console() -> "Console":
+    from rich.console import Console
+
     console = Console(highlight=False)
-    if not console.is_terminal:
-        console = Console(highlight=False, width=120)
-    print_calibration(console, calibration, read, request.out)
-    if not calibration.verdict.converged:
-        raise typer.Exit(NOT_CONVERGED)
+    return console if console.is_terminal else Console(highlight=False, width=120)
 
 
 def main() -> None:

@@ -53,7 +53,8 @@ def predict(request: PredictRequest, watcher: Watcher) -> Walked:
     request = _with_own_robot(request)
     described = robot_of(request.model)
     walked_before = request.log.is_dir() or request.log.name == PATH_CSV
-    if walked_before and not is_recorded(request.log):
+    walked_before = walked_before and not is_recorded(request.log)
+    if walked_before:
         described = _as_walked(described)
     log = read_leg_log(request.log, columns=request.columns, leg_sign=described.leg_sign)
     start, end = float(log.reference.t[0]), float(log.reference.t[-1])
@@ -66,6 +67,8 @@ def predict(request: PredictRequest, watcher: Watcher) -> Walked:
         duration=end - start,
         what=_what(log),
         direction=request.direction,
+        logs=log.files,
+        angles_are_true=walked_before,
         notes=(*log.notes, *notes),
     )
     walked = replace(walked, path=replace(walked.path, t=walked.path.t + start))

@@ -15,7 +15,7 @@ from model.robot import Robot
 from model.walk.ensemble import WalkDraw, planar_walk
 from model.walk.traction import VelocityCoulomb
 
-DURATION = 12.0
+DURATION = 8.0
 NOISE = np.array([0.002, 0.002, 0.005])
 TABLE = VelocityCoulomb(0.38).table(weight=21.3)
 PRIOR = WalkPrior(spread=ModelSpread(0.002, 0.002))
@@ -27,7 +27,7 @@ def tracked(steering, side, *, offset, seed):
     t = np.arange(0.0, DURATION + 0.005, 0.01)
     legs = SampledReference(t, gait.angles(t))
     true = planar_walk(WalkDraw(Robot(leg_offset=offset), legs, TABLE), duration=DURATION)
-    seen = np.arange(0.0, DURATION, 2.0)
+    seen = np.arange(0.0, DURATION, 1.0)
     states = np.column_stack([np.interp(seen, true.t, a) for a in (true.x, true.y, true.yaw)])
     states += np.random.default_rng(seed).normal(0, 1, states.shape) * NOISE
     covariance = np.tile(np.diag(NOISE**2), (len(seen), 1, 1))

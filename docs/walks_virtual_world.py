@@ -1,0 +1,286 @@
+# SPDX-License-Identifier: MIT
+"""Walks of an independent engine predicted from what other walks say (simulated).
+
+Every walk of the reference data becomes what a lab would have: leg angles counted in steps of 3.6
+degrees, and a track of a pose every two seconds with a tracker's noise. Two walks of a floor inform
+the fit; each other walk of that floor is predicted from its leg angles and its first tracked pose,
+which is not scored. A walk by legs of another arc shares the floor with them, not the legs. Then
+one leg is off by five degrees: in one walk (knocked off), and in all of them (mounted wrong).
+
+Prints the tables of `docs/validation.md`.
+
+Usage: .venv/bin/python docs/walks_virtual_world.py CALIBRATION [PART ...]
+
+CALIBRATION is the folder that `calibrate-slip` made of the reference data's simulated rig. PART is
+half-circles, other-legs, floors or wrong-leg; all of them where none is named.
+"""
+
+import sys
+import tempfile
+import time
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+from against_engine import SHARED, EngineWalk, radius, read_walk
+
+from model.bayes.walk_posterior import WalkPosterior
+from model.bayes.walk_prior import WalkPrior
+from model.bayes.walks import WalkFit
+from model.robot import N_LEGS
+from zebro_lab.robot_file import ROBOT_FILE, RobotFile, render_robot_file
+from zebro_lab.slip_argument import Slip, parse_slip
+from zebro_lab.tracked_walks import WalkOnFile, read_walk_on_file
+from zebro_lab.validation import RunJudged
+from zebro_lab.walk_prediction import fit_walks_on_file, judge_from
+
+STEP = np.radians(3.6)  # of the legs' encoders
+EVERY = 2.0  # s between photographs
+NOISE = np.array(
+    [0.002, 0.002, np.radians(0.3)]
+)  # x, y, yaw; those of docs/tracking.md are smaller
+FIRST = "tripod_s1.10_left_mu0.38_tc2"
+HALF_CIRCLES = (
+    "tripod_s1.00_left_mu0.38_tc2", "tripod_s1.10_left_mu0.38_tc1", FIRST,
+    "tripod_s1.20_left_mu0.38_tc2", "tripod_s1.30_right_mu0.38_tc2",
+)  # fmt: skip
+OTHER_LEGS = ("tripod_s1.10_left_mu0.38_tc2_arc200ideal", "tripod_s1.30_left_mu0.38_tc2_arc200real")
+SLIPPERY = ("tripod_s1.20_left_mu0.20_tc2", "tetrapod_mu0.20_tc3")
+ROUGH = "tripod_s1.20_left_mu0.70_tc2"
+WRONG_DEG = 5.0
+
+
+@dataclass(frozen=True)
+class Scored:
+    """A walk predicted and compared.
+
+    Attributes:
+        walk: The engine's walk.
+        informed_by: What informed the fit.
+        judged: The prediction judged against the track.
+    """
+
+    walk: EngineWalk
+    informed_by: str
+    judged: RunJudged
+
+    @property
+    def turn_error(self) -> tuple[float, str]:
+        """Relative error of the radius, or for a straight walk that of yaw rate [deg/s]."""
+        path, truth = self.judged.rows[0].path, self.walk.truth
+        t, yaw, xy = (truth[c].to_numpy() for c in ("t", "yaw", ["x", "y"]))
+        theirs = radius(t, xy, yaw, self.walk.period)
+        if abs(theirs) > 5.0:
+            ends = np.array([self.walk.period, t[-1]])
+            rates = [
+                np.degrees(np.diff(np.interp(ends, times, angles))[0] / np.ptp(ends))
+                for times, angles in ((path.t, path.yaw), (t, yaw))
+            ]
+            return float(rates[0] - rates[1]), "deg/s"
+        at = np.clip(t, path.t[0], path.t[-1])
+        walked = path.at(at)
+        heading = np.interp(at, path.t, path.yaw)
+        return radius(at, walked.position, heading, self.walk.period) / theirs - 1, "of radius"
+
+
+def write_walk(
+    folder: Path, walk: EngineWalk, *, seed: int, wrong: tuple[int, float] | None = None
+) -> WalkOnFile:
+    """Write a walk as a lab would have it and read it back.
+
+    Args:
+        folder: Where to.
+        walk: The engine's walk.
+        seed: Of the tracker's noise.
+        wrong: A leg's index and the angle by which its log is behind the leg [rad].
+    """
+    theta = walk.log.theta.copy()
+    if wrong is not None:
+        theta[:, wrong[0]] -= wrong[1]
+    counted = STEP * np.round(theta / STEP)
+    rng = np.random.default_rng(seed)
+    seen = np.arange(0.0, walk.duration + 1e-9, EVERY)
+    truth = [np.interp(seen, walk.truth["t"], walk.truth[c]) for c in ("x", "y", "yaw")]
+    x, y, yaw = np.column_stack(truth).T + (rng.normal(size=(len(seen), 3)) * NOISE).T
+    (folder / "track").mkdir(parents=True)
+    pd.DataFrame({"t": walk.log.t} | {f"theta{i + 1}": counted[:, i] for i in range(6)}).to_csv(
+        folder / "legs.csv", index=False
+    )
+    covariance = dict(zip(("cov_xx", "cov_yy", "cov_yawyaw"), NOISE**2, strict=True))
+    pd.DataFrame({
+        "t_s": seen, "x_m": x, "y_m": y, "yaw_rad": yaw, **covariance,
+        "cov_xy": 0.0, "cov_xyaw": 0.0, "cov_yyaw": 0.0,
+    }).to_csv(folder / "track" / "track.csv", index=False)  # fmt: skip
+    (folder / ROBOT_FILE).write_text(render_robot_file(RobotFile(walk.robot)))
+    return read_walk_on_file(folder)
+
+
+class Bench:
+    """All walks as a lab has them, and the rig's calibration."""
+
+    def __init__(self, calibration: Path, scratch: Path) -> None:
+        self.slip: Slip = parse_slip(str(calibration))
+        self._scratch = scratch
+        self.engine = {
+            file.stem: read_walk(file)
+            for file in sorted((SHARED / "virtual-world" / "walks").glob("*.json"))
+        }
+
+    def walk(self, name: str, *, wrong: tuple[int, float] | None = None) -> WalkOnFile:
+        """Return a walk as a lab has it."""
+        label = name if wrong is None else f"{name}-leg{wrong[0] + 1}"
+        folder = self._scratch / label
+        if not folder.exists():
+            seed = 100 + sorted(self.engine).index(name)
+            return write_walk(folder, self.engine[name], seed=seed, wrong=wrong)
+        return read_walk_on_file(folder)
+
+    def fit(self, walks: Sequence[WalkOnFile]) -> WalkFit:
+        """Fit walks, and say how long it took."""
+        began = time.monotonic()
+        fit = fit_walks_on_file(
+            walks, self.slip, prior=WalkPrior(), rng=np.random.default_rng(1), threads=2
+        )
+        note = f"{len(walks)} walks fitted in {time.monotonic() - began:.0f} s"
+        print(f"{note}, {fit.posterior.effective:.0f} effective draws", file=sys.stderr)
+        return fit
+
+    def score(
+        self, posterior: WalkPosterior, walk: WalkOnFile, name: str, informed_by: str,
+        *, index: int | None = None,
+    ) -> Scored:  # fmt: skip
+        """Predict a walk from a posterior and judge it."""
+        rng = np.random.default_rng(2)
+        judged = judge_from(posterior, walk, self.slip, rng=rng, index=index)
+        return Scored(self.engine[name], informed_by, judged)
+
+
+def half_circles(bench: Bench) -> Iterator[Scored]:
+    """Fit each walk and the next in the list; predict the other three."""
+    n = len(HALF_CIRCLES)
+    for i in range(n):
+        names = [HALF_CIRCLES[i], HALF_CIRCLES[(i + 1) % n]]
+        posterior = bench.fit([bench.walk(name) for name in names]).posterior
+        for name in (each for each in HALF_CIRCLES if each not in names):
+            yield bench.score(posterior, bench.walk(name), name, " + ".join(map(short, names)))
+
+
+def other_legs(bench: Bench) -> Iterator[Scored]:
+    """Fit two walks; predict those of a robot with other legs on the same floor."""
+    names = [FIRST, HALF_CIRCLES[3]]
+    floor = bench.fit([bench.walk(name) for name in names]).posterior.of_floor_alone(
+        rng=np.random.default_rng(3)
+    )
+    for name in OTHER_LEGS:
+        yield bench.score(floor, bench.walk(name), name, " + ".join(map(short, names)))
+
+
+def floors(bench: Bench) -> Iterator[Scored]:
+    """On floors that were never on the rig: one walk informs, another is predicted."""
+    for one, other in (SLIPPERY, SLIPPERY[::-1]):
+        posterior = bench.fit([bench.walk(one)]).posterior
+        yield bench.score(posterior, bench.walk(other), other, short(one))
+    nothing = bench.fit([bench.walk(FIRST)]).posterior  # one walk of its own floor is all there is
+    yield bench.score(nothing, bench.walk(ROUGH), ROUGH, short(FIRST) + ", another floor")
+
+
+def wrong_leg(bench: Bench) -> Iterator[Scored]:
+    """One leg is off by five degrees: in one walk of three, and in all of them."""
+    names = [FIRST, HALF_CIRCLES[3], HALF_CIRCLES[4]]
+    for leg in range(N_LEGS):
+        wrong = (leg, np.radians(WRONG_DEG))
+        walks = [bench.walk(names[0]), bench.walk(names[1]), bench.walk(names[2], wrong=wrong)]
+        posterior = bench.fit(walks).posterior
+        print_found(posterior, f"leg {leg + 1} off in {short(names[2])} alone")
+        yield bench.score(
+            posterior, walks[2], names[2], f"all three, leg {leg + 1} off in it", index=2
+        )
+    for leg in range(N_LEGS):
+        wrong = (leg, np.radians(WRONG_DEG))
+        posterior = bench.fit([bench.walk(name, wrong=wrong) for name in names[:2]]).posterior
+        print_found(posterior, f"leg {leg + 1} off in both")
+        walk = bench.walk(names[2], wrong=wrong)
+        yield bench.score(posterior, walk, names[2], f"two others, leg {leg + 1} off in all")
+
+
+def print_found(posterior: WalkPosterior, truth: str) -> None:
+    """Say which legs the posterior takes for wrong."""
+    print(f"\n{truth}, by {WRONG_DEG:g} deg:")
+    for found in posterior.found()[:3]:
+        degrees = (
+            ""
+            if found.case is None
+            else f", {np.degrees(found.offset):.1f} ± {np.degrees(found.sd):.1f} deg"
+        )
+        print(f"  {found.name}: {found.probability:.0%}{degrees}")
+
+
+def short(name: str) -> str:
+    """Shorten a walk's name."""
+    return name.removeprefix("tripod_").removesuffix("_tc2").replace("_mu0.38", "")
+
+
+def print_rows(scored: Sequence[Scored]) -> None:
+    """Print a table, and what holds of all its rows."""
+    print(
+        "\n| predicted | informed by | turn | position, rms of path | 90 % band holds x, y, yaw | "
+        "its half width x, y, yaw | CRPS x, y, yaw | best baseline's CRPS |"
+    )
+    print("|---|---|---:|---:|---:|---:|---:|---:|")
+    for each in scored:
+        print(row(each))
+    shares = np.concatenate([cover(each) for each in scored])
+    print(f"\n90 % bands hold {shares.mean():.0%} of {len(shares)} coordinates of poses")
+
+
+def cover(scored: Scored) -> np.ndarray:
+    """Tell which coordinates of poses lie within the 90 % band, shape (3 n,)."""
+    scores = scored.judged.rows[0].scores
+    level = list(scores.levels).index(0.9)
+    n = len(scored.judged.track)
+    return np.repeat(scores.coverage[level], n) if n else np.empty(0)
+
+
+def row(scored: Scored) -> str:
+    """Return a walk's row of the table."""
+    prediction, *others = scored.judged.rows
+    error, unit = scored.turn_error
+    turn = f"{100 * error:+.2f} % {unit}" if unit == "of radius" else f"{error:+.3f} {unit}"
+    best = [min(other.scores.crps[k] for other in others) for k in range(3)]
+    level = list(prediction.scores.levels).index(0.9)
+    width = 0.5 * prediction.scores.width[level]
+    held = " ".join(f"{share:.0%}" for share in prediction.scores.coverage[level])
+    return " | ".join([
+        f"| {short(scored.walk.name)}", scored.informed_by, turn,
+        f"{100 * prediction.errors.ate_of_length:.2f} %", held,
+        f"{1000 * width[0]:.0f} {1000 * width[1]:.0f} mm {np.degrees(width[2]):.1f}°",
+        _three(prediction.scores.crps), f"{_three(best)} |",
+    ])  # fmt: skip
+
+
+def _three(values: Sequence[float]) -> str:
+    x, y, yaw = values
+    return f"{1000 * x:.1f} {1000 * y:.1f} mm {np.degrees(yaw):.2f}°"
+
+
+PARTS = {
+    "half-circles": half_circles, "other-legs": other_legs, "floors": floors,
+    "wrong-leg": wrong_leg,
+}  # fmt: skip
+
+
+def main() -> None:
+    """Print the tables asked for; all without a name."""
+    if len(sys.argv) < 2:
+        raise SystemExit(__doc__)
+    with tempfile.TemporaryDirectory() as scratch:
+        bench = Bench(Path(sys.argv[1]), Path(scratch))
+        for name in sys.argv[2:] or PARTS:
+            print(f"\n## {name}")
+            print_rows(list(PARTS[name](bench)))
+
+
+if __name__ == "__main__":
+    main()

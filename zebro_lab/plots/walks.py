@@ -1,0 +1,64 @@
+# SPDX-License-Identifier: MIT
+"""What walks said of legs and floor: prior against posterior of each parameter."""
+
+import numpy as np
+from matplotlib.figure import Figure
+from scipy.stats import norm
+
+from model.bayes.walk_posterior import Contraction, WalkPosterior
+from model.bayes.walk_prior import UNITS, WRONG, leg_offsets
+from model.robot import N_LEGS
+from model.slip.law import Array
+from zebro_lab.plots.sheet import BLUE, legend_below, new_figure, styled
+
+_COLUMNS = 4
+_SCALES = {"rad": (180 / np.pi, "deg"), "rad/m": (180 / np.pi, "deg/m"), "-": (100.0, "%")}
+
+
+@styled
+def walk_parameters(posterior: WalkPosterior, *, simulated: bool) -> Figure:
+    """Draw prior and posterior of every parameter; what was not informed is said above it.
+
+    Args:
+        posterior: The posterior after walks.
+        simulated: Say so in the title.
+
+    Returns:
+        The figure.
+    """
+    told = posterior.contractions()
+    rows = -(-len(told) // _COLUMNS)
+    title = f"Legs and floor after {len(posterior.walks)} walk(s): prior and posterior"
+    figure = new_figure(title, simulated, width=9.0, height=1.9 * rows + 0.8)
+    axes = figure.subplots(rows, _COLUMNS, squeeze=False).ravel()
+    values = _values(posterior)
+    for panel, each, unit, drawn in zip(axes, told, UNITS, values.T, strict=False):
+        scale, shown = _SCALES.get(unit, (1.0, "log of factor"))
+        x = np.linspace(-3 * each.prior_sd, 3 * each.prior_sd, 121)
+        panel.plot(
+            scale * x, norm.pdf(x, scale=each.prior_sd) / scale, color="0.5", lw=1.0, label="prior"
+        )
+        panel.hist(
+            scale * drawn, bins=30, weights=posterior.weight, density=True, color=BLUE, alpha=0.5,
+            label="posterior",
+        )  # fmt: skip
+        panel.set(xlabel=f"[{shown}]", yticks=[])
+        panel.set_title(_title(each), loc="left")
+    for panel in axes[len(told) :]:
+        panel.set_axis_off()
+    legend_below(figure, columns=2)
+    return figure
+
+
+def _title(each: Contraction) -> str:
+    name = each.name.replace("_", " ")
+    return name if each.informed else f"{name}: not informed"
+
+
+def _values(posterior: WalkPosterior) -> Array:
+    """Return draws in the order of the parameters; offsets with a wrong leg's further one."""
+    values = posterior.values[:, :WRONG].copy()
+    for i, case in enumerate(posterior.cases):
+        rows = posterior.case == i
+        values[rows, :N_LEGS] = leg_offsets(posterior.values[rows], case)
+    return values

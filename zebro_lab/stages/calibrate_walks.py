@@ -1,0 +1,107 @@
+# SPDX-License-Identifier: MIT
+"""A rig's calibration and tracked walks in, what the walks said beside the calibration out."""
+
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+
+from model.bayes.walk_prior import WalkPrior
+from zebro_lab.calibration_folder import SLIP_TOML
+from zebro_lab.errors import NotFound, SettingsError
+from zebro_lab.slip_argument import parse_slip
+from zebro_lab.tracked_walks import WalkOnFile, read_walks
+from zebro_lab.walk_prediction import WalksFitted, fit_and_leave_out
+from zebro_lab.walking import Watcher
+from zebro_lab.walks_folder import WalksToWrite, write_walks
+
+
+@dataclass(frozen=True)
+class WalksRequest:
+    """What is asked of a fit of walks.
+
+    Attributes:
+        walks: Run folders with leg angles and a track.
+        calibration: The rig's calibration folder, into which `walks/` is written.
+        robot: A `robot.toml` in place of those in the folders.
+        prior: What is believed before.
+        seed: Seed of everything random.
+        threads: Walks computed at once.
+    """
+
+    walks: tuple[Path, ...]
+    calibration: Path
+    robot: Path | None = None
+    prior: WalkPrior = field(default_factory=WalkPrior)
+    seed: int = 1
+    threads: int = 2
+
+
+@dataclass(frozen=True)
+class WalksCalibrated:
+    """A finished fit of walks and where it was written.
+
+    Attributes:
+        fitted: The fit, with each walk predicted from the others.
+        folder: Where it is.
+        source: Where rig data and walks come from.
+        notes: For a person, one line each.
+    """
+
+    fitted: WalksFitted
+    folder: Path
+    source: str
+    notes: tuple[str, ...]
+
+
+def calibrate_walks(request: WalksRequest, watcher: Watcher) -> WalksCalibrated:
+    """Fit legs and floor to walks, predict each from the others, and write `walks/`.
+
+    Args:
+        request: What is asked.
+        watcher: Hears of progress.
+
+    Raises:
+        ZebroLabError: A walk or the calibration is missing or cannot be used; nothing was written.
+        ModelError: A walk diverged; nothing was written.
+    """
+    walks, slip_toml = _read(request, watcher)
+    slip = parse_slip(str(slip_toml), with_walks=False)
+    fitted = fit_and_leave_out(
+        walks,
+        slip,
+        prior=request.prior,
+        rng=np.random.default_rng(request.seed),
+        threads=request.threads,
+        progress=lambda done: watcher.step("fitting walks", done),
+    )
+    notes = (*slip.notes, *(f"{walk.name}: {note}" for walk in walks for note in walk.notes))
+    source = ", ".join(sorted({slip.source, *(walk.source for walk in walks)}))
+    watcher.step("drawing", None)
+    folder = write_walks(
+        request.calibration,
+        WalksToWrite(
+            posterior=fitted.posterior,
+            left_out=fitted.left_out,
+            robot=walks[0].robot,
+            logs=tuple(walk.files[0] for walk in walks),
+            inputs=(slip_toml, *(file for walk in walks for file in walk.files)),
+            settings={"seed": request.seed},
+            source=source,
+            notes=notes,
+        ),
+    )
+    return WalksCalibrated(fitted, folder, source, notes)
+
+
+def _read(request: WalksRequest, watcher: Watcher) -> tuple[list[WalkOnFile], Path]:
+    if not request.walks:
+        raise SettingsError("missing: no walk to fit", key="--walks")
+    slip_toml = request.calibration / SLIP_TOML
+    if not slip_toml.is_file():
+        raise NotFound(
+            f"{slip_toml}: no such file; name rig data to calibrate from, or the --out of a "
+            "finished calibration"
+        )
+    watcher.step("reading walks", None)
+    return read_walks(request.walks, robot=request.robot), slip_toml

@@ -1,0 +1,262 @@
+# SPDX-License-Identifier: MIT
+"""The sole owner of the format of `walks/` in a calibration: what tracked walks said."""
+
+import json
+import tomllib
+import zipfile
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from model.bayes.walk_posterior import WalkPosterior
+from model.bayes.walk_prior import UNITS, WRONG, WalkPrior, WrongLeg, all_cases
+from model.errors import ModelError
+from model.predict import ModelSpread
+from zebro_lab.atomic import atomic_folder
+from zebro_lab.errors import DataError
+from zebro_lab.provenance import file_hash, file_hashes, software
+from zebro_lab.robot_file import RobotFile
+
+if TYPE_CHECKING:
+    from zebro_lab.validation import RunJudged
+
+SCHEMA = 1
+KIND = "walks"
+FOLDER = "walks"
+WALKS_TOML, DRAWS, LEFT_OUT, MANIFEST = "walks.toml", "draws.npz", "left_out.csv", "manifest.json"
+OWNED = (WALKS_TOML, DRAWS, LEFT_OUT, MANIFEST, "*.png")
+
+
+@dataclass(frozen=True)
+class StoredWalks:
+    """A posterior after walks, as it was read.
+
+    Attributes:
+        posterior: The posterior.
+        legs: What describes the legs that were fitted; see `describe_legs`.
+        logs: SHA-256 of the leg log of each walk, in the posterior's order.
+        folder: Its folder.
+    """
+
+    posterior: WalkPosterior
+    legs: Mapping[str, Any]
+    logs: tuple[str, ...]
+    folder: Path
+
+    @property
+    def files(self) -> tuple[Path, ...]:
+        """What it was read from."""
+        return self.folder / WALKS_TOML, self.folder / DRAWS
+
+
+@dataclass(frozen=True)
+class WalksToWrite:
+    """A finished fit of walks.
+
+    Attributes:
+        posterior: The posterior.
+        left_out: Each walk judged by a fit of the others; empty for one walk.
+        robot: The robot that walked.
+        logs: The leg log of each walk.
+        inputs: Every file read, the calibration's first.
+        settings: What was asked, as JSON can hold it.
+        source: Where the walks come from.
+        notes: For a person, one line each.
+    """
+
+    posterior: WalkPosterior
+    left_out: "tuple[RunJudged, ...]"
+    robot: RobotFile
+    logs: tuple[Path, ...]
+    inputs: tuple[Path, ...]
+    settings: Mapping[str, object]
+    source: str
+    notes: tuple[str, ...]
+
+
+def describe_legs(described: RobotFile) -> dict[str, Any]:
+    """Return what makes legs those of one robot, whatever marker it carries."""
+    robot = described.robot
+    return {
+        "hips": robot.hips.tolist(),
+        "leg_offset": robot.leg_offset.tolist(),
+        "leg_radius": float(robot.leg_radius),
+        "leg_arc": float(robot.leg_arc),
+        "mass": float(robot.mass),
+        "inertia": robot.principal_inertia.tolist(),
+        "leg_sign": list(described.leg_sign),
+    }
+
+
+def write_walks(calibration: Path, fitted: WalksToWrite) -> Path:
+    """Write `walks/` into a calibration folder, whole or not at all.
+
+    Args:
+        calibration: The calibration folder.
+        fitted: The finished fit.
+
+    Returns:
+        The folder.
+    """
+    from zebro_lab.validation_folder import metrics, plain_json
+    from zebro_lab.walks_pictures import draw_walks
+
+    folder = calibration / FOLDER
+    with atomic_folder(folder, replaces=OWNED, marker=MANIFEST) as draft:
+        inputs = file_hashes(dict.fromkeys(fitted.inputs))
+        (draft / WALKS_TOML).write_text(_walks_toml(fitted, inputs), encoding="utf-8")
+        posterior = fitted.posterior
+        np.savez_compressed(
+            draft / DRAWS,
+            values=posterior.values, case=posterior.case, weight=posterior.weight,
+            best=posterior.best,
+        )  # fmt: skip
+        _write_left_out(draft / LEFT_OUT, fitted.left_out)
+        draw_walks(draft, fitted.posterior, fitted.left_out, simulated="sim:" in fitted.source)
+        content = {
+            "schema": SCHEMA,
+            "kind": KIND,
+            "source": fitted.source,
+            "settings": fitted.settings,
+            "left_out": {
+                run.name: {row.name: metrics(row) for row in run.rows} for run in fitted.left_out
+            },
+            "notes": list(fitted.notes),
+            "inputs": inputs,
+            "outputs": {p.name: file_hash(p) for p in sorted(draft.iterdir()) if p.is_file()},
+            "software": software(),
+        }
+        (draft / MANIFEST).write_text(json.dumps(plain_json(content), indent=2) + "\n")
+    return folder
+
+
+def read_walks_beside(slip_toml: Path) -> StoredWalks | None:
+    """Read what walks said beside a `slip.toml`; None where no walk informed it.
+
+    Raises:
+        DataError: It is damaged, of a later schema, or was fitted with another slip law.
+    """
+    folder = slip_toml.parent / FOLDER
+    file = folder / WALKS_TOML
+    if not (folder / MANIFEST).is_file() or not file.is_file():
+        return None
+    try:
+        content = tomllib.loads(file.read_text(encoding="utf-8"))
+        if content["schema"] != SCHEMA:
+            raise DataError(
+                f"has schema {content['schema']}, this version reads {SCHEMA}; update zebro-lab",
+                file=file,
+            )
+        _require_same_slip(content, slip_toml, file)
+        with np.load(folder / DRAWS) as drawn:
+            arrays = {name: drawn[name] for name in ("values", "case", "weight", "best")}
+        return StoredWalks(
+            _posterior(content, arrays),
+            content["legs"],
+            tuple(each["leg_log"] for each in content["walk"]),
+            folder,
+        )
+    except (
+        OSError, KeyError, TypeError, ValueError, IndexError, zipfile.BadZipFile, ModelError,
+    ) as error:  # fmt: skip
+        if isinstance(error, DataError):
+            raise
+        raise DataError(
+            f"cannot be read ({type(error).__name__}: {error}); fit the walks again with "
+            f"calibrate-slip --walks, or delete {folder}",
+            file=file,
+        ) from error
+
+
+def _require_same_slip(content: Mapping[str, Any], slip_toml: Path, file: Path) -> None:
+    if content["slip"] != file_hash(slip_toml):
+        raise DataError(
+            f"was fitted with another slip law than the {slip_toml.name} beside it; fit the walks "
+            f"again with calibrate-slip --walks, or delete {file.parent}",
+            file=file,
+        )
+
+
+def _posterior(content: Mapping[str, Any], arrays: Mapping[str, np.ndarray]) -> WalkPosterior:
+    prior = dict(content["prior"])
+    names = tuple(each["name"] for each in content["walk"])
+    values, case, weight, best = (arrays[key] for key in ("values", "case", "weight", "best"))
+    n = len(weight)
+    cases = all_cases(len(names))
+    if values.shape != (n, WRONG + 1) or case.shape != (n,) or best.shape != (WRONG + 1,):
+        raise ValueError(f"draws of shape {values.shape}; expected ({n}, {WRONG + 1})")
+    return WalkPosterior(
+        prior=WalkPrior(**{**prior, "spread": ModelSpread(**prior["spread"])}),
+        walks=names,
+        cases=cases,
+        values=values,
+        case=case,
+        weight=weight / weight.sum(),
+        best=best,
+        best_case=cases[int(content["likeliest_case"])],
+        misfit=tuple(float(each["misfit"]) for each in content["walk"]),
+    )
+
+
+def _walks_toml(fitted: WalksToWrite, inputs: Mapping[str, str]) -> str:
+    import tomlkit
+
+    posterior = fitted.posterior
+    told = posterior.contractions()
+    document = tomlkit.document()
+    document.add(
+        tomlkit.comment("What tracked walks said of legs and floor. SI units and radians.")
+    )
+    if "sim:" in fitted.source:
+        document.add(tomlkit.comment("SIMULATED walks: nothing here was measured."))
+    document.update({
+        "schema": SCHEMA,
+        "source": fitted.source,
+        "slip": next(iter(inputs.values())),
+        "effective_draws": posterior.effective,
+        "reliable": posterior.reliable,
+        "likeliest_case": posterior.cases.index(posterior.best_case),
+        "not_informed": [each.name for each in told if not each.informed],
+        "prior": asdict(posterior.prior),
+        "legs": describe_legs(fitted.robot),
+        "walk": [
+            {"name": name, "misfit": misfit, "leg_log": file_hash(log)}
+            for name, misfit, log in zip(
+                posterior.walks, posterior.misfit, fitted.logs, strict=True
+            )
+        ],
+        "parameter": [
+            {
+                "name": each.name, "unit": unit, "prior_sd": each.prior_sd, "mean": each.mean,
+                "sd": each.sd, "informed": each.contraction,
+            }
+            for each, unit in zip(told, UNITS, strict=True)
+        ],
+        "case": [_case(found, posterior) for found in posterior.found()],
+    })  # fmt: skip
+    return tomlkit.dumps(document)
+
+
+def _case(found: Any, posterior: WalkPosterior) -> dict[str, Any]:
+    row = {"name": found.name, "probability": found.probability}
+    if isinstance(found.case, WrongLeg):
+        row |= {"leg": found.case.leg + 1, "offset": found.offset, "offset_sd": found.sd}
+        if found.case.walk is not None:
+            row["walk"] = posterior.walks[found.case.walk]
+    return row
+
+
+def _write_left_out(file: Path, judged: "Sequence[RunJudged]") -> None:
+    import pandas as pd
+
+    from zebro_lab.validation_folder import metrics
+
+    rows = [
+        {"walk": run.name, "model": row.name, **metrics(row)} for run in judged for row in run.rows
+    ]
+    pd.DataFrame(rows, columns=None if rows else ["walk", "model"]).to_csv(
+        file, index=False, float_format="%.8g", lineterminator="\n"
+    )

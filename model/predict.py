@@ -58,6 +58,7 @@ class LegState:
         offset: Further offset of each leg, shape (m, 6) [rad].
         grip: Factor on traction, shape (m,) [-].
         stiffness: Factor on slip stiffness, shape (m,) [-].
+        fall: Factor on how far traction falls beyond its peak, shape (m,) [-].
         arc: Further angle of the legs' arc, shape (m,) [rad].
         steering: Turn that the robot takes whatever its legs do, shape (m,) [rad/m].
         stride: Relative error of distance: legs that are longer or shorter, shape (m,) [-].
@@ -66,6 +67,7 @@ class LegState:
     offset: Array
     grip: Array
     stiffness: Array
+    fall: Array
     arc: Array
     steering: Array
     stride: Array
@@ -82,17 +84,26 @@ class LegState:
         """
         reach = np.sqrt(3.0) * offset_sd
         offset = rng.uniform(-reach, reach, (n, N_LEGS))
-        return LegState(offset, np.ones(n), np.ones(n), np.zeros(n), np.zeros(n), np.zeros(n))
+        one, no = np.ones(n), np.zeros(n)
+        return LegState(offset, one, one, one, no, no, no)
 
 
-def scaled_table(table: TractionTable, *, grip: float, stiffness: float) -> TractionTable:
-    """Scale a law's traction, and on its own the slope at zero slip.
+def scaled_table(
+    table: TractionTable, *, grip: float, stiffness: float, fall: float = 1.0
+) -> TractionTable:
+    """Scale a law's traction, and apart from it the slope at zero slip and the fall from the peak.
+
+    A rig measures the fall under legs that slide for seconds. A walking leg has let go before, and
+    its slip is a velocity as much as a ratio; so the fall is the part of a law that a walk shares
+    least.
 
     Args:
         table: The law.
         grip: Factor on traction at large slip [-].
         stiffness: Factor on traction per slip at zero slip [-].
+        fall: Factor on what traction loses from its peak on, at zero none [-].
     """
+    table = _with_fall(table, fall)
     shrink = stiffness / grip
     return table._replace(
         phi=table.phi * grip,
@@ -101,6 +112,14 @@ def scaled_table(table: TractionTable, *, grip: float, stiffness: float) -> Trac
         scale=table.scale if table.by_velocity else table.scale / shrink,
         speed_scale=table.speed_scale / shrink,
     )
+
+
+def _with_fall(table: TractionTable, fall: float) -> TractionTable:
+    top = table.phi.max(axis=1)
+    beyond = np.arange(table.phi.shape[1]) >= table.phi.argmax(axis=1)[:, None]
+    phi = np.where(beyond, top[:, None] - fall * (top[:, None] - table.phi), table.phi)
+    slope = np.where(beyond, fall * table.slope, table.slope)
+    return table._replace(phi=phi, slope=slope, toe=top - fall * (top - table.toe))
 
 
 def walk_draws(
@@ -141,7 +160,12 @@ def robot_in(robot: Robot, state: LegState, i: int) -> Robot:
 
 def law_in(table: TractionTable, state: LegState, i: int) -> TractionTable:
     """Return the slip law as a draw of the legs' state has it."""
-    return scaled_table(table, grip=float(state.grip[i]), stiffness=float(state.stiffness[i]))
+    return scaled_table(
+        table,
+        grip=float(state.grip[i]),
+        stiffness=float(state.stiffness[i]),
+        fall=float(state.fall[i]),
+    )
 
 
 def predict_paths(

@@ -52,6 +52,7 @@ class InformedLegs:
             "leg_arc_beyond": float(legs.arc[0]),
             "grip": float(legs.grip[0]),
             "slip_stiffness": float(legs.stiffness[0]),
+            "fall": float(legs.fall[0]),
             "steering": float(legs.steering[0]),
             "stride": float(legs.stride[0]),
         }

@@ -35,7 +35,7 @@ def slip_tables(
     if isinstance(law, VelocityCoulomb):
         return [law.table(weight=weight, toe=toe)]
     tables = []
-    for values in _values(slip, law, min(n, MOST_TABLES), rng):
+    for values in law_draws(slip, law, min(n, MOST_TABLES), rng=rng):
         try:
             tables.append(
                 law_table(law.law, values, weight=weight, definition=law.definition, toe=toe)
@@ -45,8 +45,21 @@ def slip_tables(
     return tables or [slip.traction_table(weight=weight, toe=toe)]
 
 
-def _values(slip: Slip, curve: SlipCurve, n: int, rng: np.random.Generator) -> Array:
-    """Draw parameter values, shape (n, k)."""
+def law_draws(slip: Slip, curve: SlipCurve, n: int, *, rng: np.random.Generator) -> Array:
+    """Draw values of a law's parameters: from the posterior's draws, or from their Gaussian.
+
+    Args:
+        slip: What `--slip` named.
+        curve: Its curve.
+        n: Draws wanted; a law that was assumed has one.
+        rng: Source of randomness.
+
+    Returns:
+        Values, shape (n, k).
+
+    Raises:
+        DataError: The posterior beside the slip.toml is damaged or of another law.
+    """
     if not np.any(curve.covariance):
         return curve.values[None]
     beside = [file.parent / POSTERIOR for file in slip.files]

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from model.errors import InsufficientData, WalkError
+from model.errors import DomainError, InsufficientData, WalkError
 from model.gait.reference import SampledReference
 from model.metrics.consistency import FEWEST_DRAWS, Consistency, consistency
 from model.metrics.path_errors import PathErrors, path_errors
@@ -314,7 +314,7 @@ def walk_baselines(
         run = ModelRun(robot, reference, slip, duration, model.dt, "saturated", direction)
         try:
             path = model.run(run)
-        except WalkError as error:
+        except (WalkError, DomainError) as error:
             notes.append(f"baseline '{name}' cannot walk these leg angles: {error}")
             continue
         paths[name] = Poses(path.t + start, path.position[:, :2], path.yaw)

@@ -25,7 +25,7 @@ from model.slip.law import Array
 
 # Offsets by a tenth of a degree, factors by 5 %: contacts are not smooth below.
 DIFFERENCE = np.array([
-    *[np.radians(0.1)] * N_LEGS, 0.05, 0.05, np.radians(0.1), np.radians(1.0), 1e-3, 1e-3,
+    *[np.radians(0.1)] * N_LEGS, 0.05, 0.05, 0.1, np.radians(0.1), np.radians(1.0), 1e-3, 1e-3,
     np.radians(0.2),
 ])  # fmt: skip
 MOST_MOVES = 8
@@ -79,7 +79,7 @@ class ModeSearch:
         """Climb to the mode of a case by Gauss-Newton, with steps shortened while they overshoot.
 
         Returns:
-            The mode, and the Jacobian of the residuals there, shape (n, 13).
+            The mode, and the Jacobian of the residuals there, shape (n, 14).
         """
         r, J = self._linearised(z, case)
         for _ in range(MOST_MOVES):
@@ -127,7 +127,7 @@ class ModeSearch:
         Args:
             case: Which leg.
             r: Residuals at each of the fine offsets, all else at zero by `J`, shape (241, n).
-            J: Jacobian of the residuals, shape (n, 13).
+            J: Jacobian of the residuals, shape (n, 14).
             follow: Inverse of I + J J^T, shape (n, n).
         """
         wrong = FINE / self.prior.wrong_sd

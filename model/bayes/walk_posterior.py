@@ -79,10 +79,10 @@ class WalkPosterior:
         walks: Names of the walks, in the order that cases count them.
         cases: What may be wrong.
         values: Draws of the parameters in the order of `NAMES` and of the wrong leg's offset, shape
-            (n, 13) [rad, -].
+            (n, 14) [rad, -].
         case: Index of each draw's case, shape (n,).
         weight: Weight of each draw, together one, shape (n,) [-].
-        best: The mean in the likeliest case, shape (13,).
+        best: The mean in the likeliest case, shape (14,).
         best_case: That case.
         misfit: Mean squared whitened residual of each walk there, at most about 1 [-].
     """
@@ -122,8 +122,8 @@ class WalkPosterior:
         """Return the one likeliest state of the legs."""
         return legs_of(self.best[None], self.best_case, walk=walk)
 
-    def contractions(self) -> tuple[Contraction, ...]:
-        """Compare prior and posterior of every parameter, over all cases.
+    def with_wrong_legs(self) -> Array:
+        """Return draws in the order of `NAMES`, shape (n, 13).
 
         An offset counts a wrong leg's further one where it is wrong in every walk.
         """
@@ -131,6 +131,11 @@ class WalkPosterior:
         for i, case in enumerate(self.cases):
             rows = self.case == i
             values[rows, :N_LEGS] = leg_offsets(self.values[rows], case)
+        return values
+
+    def contractions(self) -> tuple[Contraction, ...]:
+        """Compare prior and posterior of every parameter, over all cases."""
+        values = self.with_wrong_legs()
         mean = self.weight @ values
         sd = np.sqrt(self.weight @ (values - mean) ** 2)
         prior = self.prior.sd(len(self.walks))
@@ -173,7 +178,7 @@ def state_in(
     """Turn draws of several cases into the state of the legs in a walk.
 
     Args:
-        values: Draws, shape (m, 13).
+        values: Draws, shape (m, 14).
         case: Index of each one's case, shape (m,).
         cases: The cases.
         walk: The walk's index; None for a walk to come.

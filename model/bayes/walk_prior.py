@@ -13,9 +13,10 @@ from model.robot import N_LEGS
 from model.slip.law import Array
 
 OFFSETS = tuple(f"leg_offset{leg}" for leg in range(1, N_LEGS + 1))
-FLOOR = ("grip", "slip_stiffness")
+FLOOR = ("grip", "slip_stiffness", "fall")
+FALLS = (0.0, 1.5)  # traction that rises from its peak on is none; that which falls more, unheard of
 NAMES = (*OFFSETS, *FLOOR, "common_offset", "leg_arc", "steering", "stride")
-UNITS = (*["rad"] * N_LEGS, "log", "log", "rad", "rad", "rad/m", "-")
+UNITS = (*["rad"] * N_LEGS, "log", "log", "-", "rad", "rad", "rad/m", "-")
 WRONG = len(NAMES)  # index of the wrong leg's further offset, behind the others
 LINEAR = [NAMES.index("steering"), NAMES.index("stride")]  # of which residuals are linear
 WALKED = [i for i in range(WRONG + 1) if i not in LINEAR]  # what a walk must be walked for
@@ -66,6 +67,7 @@ class WalkPrior:
         grip_sd: Standard deviation of the logarithm of the factor on traction: floor and rig differ
             [-].
         stiffness_sd: That of the factor on slip stiffness [-].
+        fall_sd: That of the factor on the fall beyond the peak: 1 is the rig's, 0 none [-].
         steering_sd: Standard deviation of the turn that is not the legs' [rad/m].
         stride_sd: That of the relative error of distance [-].
         spread: What the walking model gets wrong anew in each walk.
@@ -81,6 +83,7 @@ class WalkPrior:
     wrong: float = 0.2
     grip_sd: float = 0.3
     stiffness_sd: float = 0.5
+    fall_sd: float = 0.5
     steering_sd: float = 0.01
     stride_sd: float = 0.005
     spread: ModelSpread = field(default_factory=ModelSpread)
@@ -94,10 +97,10 @@ class WalkPrior:
 
     @property
     def scale(self) -> Array:
-        """Standard deviations in the order of `NAMES`, and that of a wrong leg, shape (13,)."""
+        """Standard deviations in the order of `NAMES`, and that of a wrong leg, shape (14,)."""
         return np.array([
-            *[self.offset_sd] * N_LEGS, self.grip_sd, self.stiffness_sd, self.common_sd,
-            self.arc_sd, self.steering_sd, self.stride_sd, self.wrong_sd,
+            *[self.offset_sd] * N_LEGS, self.grip_sd, self.stiffness_sd, self.fall_sd,
+            self.common_sd, self.arc_sd, self.steering_sd, self.stride_sd, self.wrong_sd,
         ])  # fmt: skip
 
     def log_probability(self, case: Case, *, walks: int) -> float:
@@ -110,7 +113,7 @@ class WalkPrior:
         return float(np.log(self.wrong / 2 / N_LEGS / among))
 
     def sd(self, walks: int) -> Array:
-        """Standard deviations in the order of `NAMES` over all cases, shape (12,)."""
+        """Standard deviations in the order of `NAMES` over all cases, shape (13,)."""
         variance = self.scale[:WRONG] ** 2
         variance[:N_LEGS] += (
             np.exp(self.log_probability(WrongLeg(0), walks=walks)) * self.wrong_sd**2
@@ -127,14 +130,20 @@ def legs_of(values: Array, case: Case, *, walk: int | None = None) -> LegState:
     """Turn parameters into the state of the legs in a walk.
 
     Args:
-        values: Parameters in the order of `NAMES` and that of a wrong leg, shape (m, 13).
+        values: Parameters in the order of `NAMES` and that of a wrong leg, shape (m, 14).
         case: What is wrong.
         walk: The walk's index; None for a walk to come.
     """
     offset = leg_offsets(values, case, walk=walk)
-    grip, stiffness, common, arc, steering, stride = values[:, N_LEGS:WRONG].T
+    grip, stiffness, fall, common, arc, steering, stride = values[:, N_LEGS:WRONG].T
     return LegState(
-        offset + common[:, None], np.exp(grip), np.exp(stiffness), arc, steering, stride
+        offset=offset + common[:, None],
+        grip=np.exp(grip),
+        stiffness=np.exp(stiffness),
+        fall=np.clip(1 + fall, *FALLS),
+        arc=arc,
+        steering=steering,
+        stride=stride,
     )
 
 

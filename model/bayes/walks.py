@@ -150,7 +150,7 @@ class WalkFit:
         )
 
     def _values(self, z: Array, mean: Array, covariance: Array) -> Array:
-        """Draw steering and stride given all else; return all in their own units, (m, 13)."""
+        """Draw steering and stride given all else; return all in their own units, (m, 14)."""
         noise = self._rng.standard_normal((len(z), 2, 1))
         scale = self._density.prior.scale
         values = np.zeros((len(z), WRONG + 1))

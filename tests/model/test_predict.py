@@ -136,3 +136,21 @@ def test_quantiles_are_ordered_and_hold_the_share_they_say():
 def test_a_negative_spread_is_refused():
     with pytest.raises(DomainError):
         ModelSpread(distance=-0.1)
+
+
+def test_without_its_fall_traction_keeps_its_peak():
+    table = law_table(MagicFormula(curvature=0.0), (34.0, 1.56, 0.38), weight=21.0)
+    top = table.phi.max()
+    kept = scaled_table(table, grip=1.0, stiffness=1.0, fall=0.0)
+    half = scaled_table(table, grip=1.0, stiffness=1.0, fall=0.5)
+    assert table_value(kept, 7.0, 50.0) == pytest.approx(top, rel=1e-3)
+    assert kept.toe[0] == pytest.approx(top)
+    lost = [top - table_value(each, 7.0, 50.0) for each in (table, half)]
+    assert lost[1] == pytest.approx(lost[0] / 2, rel=1e-3)
+    for slip in (1e-6, 1e-3, 0.01):  # before the peak nothing changes
+        assert table_value(kept, 7.0, slip) == pytest.approx(table_value(table, 7.0, slip))
+
+
+def test_friction_that_does_not_fall_has_no_fall():
+    scaled = scaled_table(TABLE, grip=1.0, stiffness=1.0, fall=0.0)
+    np.testing.assert_allclose(scaled.phi, TABLE.phi)

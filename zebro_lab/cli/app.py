@@ -9,6 +9,8 @@ from zebro_lab.cli.annotate import EPILOG as ANNOTATE_EPILOG
 from zebro_lab.cli.annotate import annotate
 from zebro_lab.cli.calibrate import EPILOG, calibrate
 from zebro_lab.cli.camera import app as camera
+from zebro_lab.cli.compare import EPILOG as COMPARE_EPILOG
+from zebro_lab.cli.compare import compare
 from zebro_lab.cli.doctor import EPILOG as DOCTOR_EPILOG
 from zebro_lab.cli.doctor import doctor
 from zebro_lab.cli.errors import run
@@ -45,6 +47,7 @@ app.command()(init)
 app.command(epilog=WALK_EPILOG)(walk)
 app.command(epilog=PREDICT_EPILOG)(predict)
 app.command(epilog=VALIDATE_EPILOG)(validate)
+app.command(epilog=COMPARE_EPILOG)(compare)
 app.command(epilog=REPORT_EPILOG)(report)
 app.command(epilog=RECORD_EPILOG)(record)
 app.command("import", epilog=IMPORT_EPILOG)(import_files)

@@ -8,7 +8,7 @@ from rich.table import Table
 from rich.text import Text
 
 from model.bayes.walk_posterior import Contraction, WalkPosterior
-from model.bayes.walk_prior import FLOOR, UNITS
+from model.bayes.walk_prior import UNITS
 from zebro_lab.stages.calibrate_walks import WalksCalibrated
 from zebro_lab.validation import RunJudged
 
@@ -51,10 +51,13 @@ def _parameter_table(posterior: WalkPosterior) -> Table:
 
 def _told(each: Contraction, unit: str) -> tuple[str, str, str, str]:
     informed = f"{max(0.0, each.contraction):.0%}"
-    if each.name in FLOOR:  # logarithms of factors
+    if unit == "log":  # of a factor
         before = f"1 ×/÷ {np.exp(each.prior_sd):.2f}"
         after = f"{np.exp(each.mean):.2f} ×/÷ {np.exp(each.sd):.2f}"
         return before, after, "factor", informed
+    if each.name == "fall":
+        after = f"{1 + each.mean:.2f} ± {each.sd:.2f}"
+        return f"1 ± {each.prior_sd:.2f}", after, "factor", informed
     scale, shown = _SHOWN[unit]
     before = f"0 ± {scale * each.prior_sd:.2f}"
     return before, f"{scale * each.mean:+.2f} ± {scale * each.sd:.2f}", shown, informed

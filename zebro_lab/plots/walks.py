@@ -6,9 +6,7 @@ from matplotlib.figure import Figure
 from scipy.stats import norm
 
 from model.bayes.walk_posterior import Contraction, WalkPosterior
-from model.bayes.walk_prior import UNITS, WRONG, leg_offsets
-from model.robot import N_LEGS
-from model.slip.law import Array
+from model.bayes.walk_prior import UNITS
 from zebro_lab.plots.sheet import BLUE, legend_below, new_figure, styled
 
 _COLUMNS = 4
@@ -31,7 +29,7 @@ def walk_parameters(posterior: WalkPosterior, *, simulated: bool) -> Figure:
     title = f"Legs and floor after {len(posterior.walks)} walk(s): prior and posterior"
     figure = new_figure(title, simulated, width=9.0, height=1.9 * rows + 0.8)
     axes = figure.subplots(rows, _COLUMNS, squeeze=False).ravel()
-    values = _values(posterior)
+    values = posterior.with_wrong_legs()
     for panel, each, unit, drawn in zip(axes, told, UNITS, values.T, strict=False):
         scale, shown = _SCALES.get(unit, (1.0, "log of factor"))
         x = np.linspace(-3 * each.prior_sd, 3 * each.prior_sd, 121)
@@ -53,12 +51,3 @@ def walk_parameters(posterior: WalkPosterior, *, simulated: bool) -> Figure:
 def _title(each: Contraction) -> str:
     name = each.name.replace("_", " ")
     return name if each.informed else f"{name}: not informed"
-
-
-def _values(posterior: WalkPosterior) -> Array:
-    """Return draws in the order of the parameters; offsets with a wrong leg's further one."""
-    values = posterior.values[:, :WRONG].copy()
-    for i, case in enumerate(posterior.cases):
-        rows = posterior.case == i
-        values[rows, :N_LEGS] = leg_offsets(posterior.values[rows], case)
-    return values

@@ -78,7 +78,7 @@ def test_walks_say_more_of_offsets_than_of_grip(straight_legs):
 def test_draws_scatter_as_the_posterior_says(straight_legs):
     state = straight_legs.draw(4000, rng=np.random.default_rng(3))
     assert state.offset.shape == (4000, 6)
-    grip = straight_legs.contractions()[6]
+    grip = straight_legs.contractions()[NAMES.index("grip")]
     assert np.log(state.grip).std() == pytest.approx(grip.sd, rel=0.1)
     assert np.all(state.grip > 0)
 
@@ -102,7 +102,7 @@ def test_another_robot_on_the_floor_shares_what_belongs_to_the_floor(straight_le
 
 
 def test_a_leg_knocked_off_in_one_walk_is_off_in_that_walk_alone():
-    values = np.zeros((1, 13))
+    values = np.zeros((1, 14))
     values[0, -1] = 0.1
     case = WrongLeg(2, walk=1)
     assert legs_of(values, case, walk=1).offset[0, 2] == 0.1

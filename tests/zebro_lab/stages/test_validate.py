@@ -7,7 +7,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from model.gait import tripod_angles, tripod_reference
+from model.gait import tetrapod_reference, tripod_angles, tripod_reference
 from model.robot import Robot
 from model.walk.ensemble import WalkDraw, planar_walk
 from model.walk.traction import VelocityCoulomb
@@ -18,6 +18,7 @@ from zebro_lab.leg_log import read_leg_log
 from zebro_lab.path_band import BandRequest, read_draws
 from zebro_lab.stages.predict import PredictRequest, predict
 from zebro_lab.stages.validate import ValidateRequest, pairs_of_run, validate
+from zebro_lab.validation import read_prediction
 from zebro_lab.walking import ModelRequest
 
 STEP = np.radians(3.6)
@@ -138,6 +139,18 @@ def test_draws_come_back_and_stale_ones_go(tmp_path):
     predicted(tmp_path, legs, draws=0)
     with pytest.raises(NotFound, match="--draws"):
         read_draws(folder)
+
+
+def test_a_gait_that_a_baseline_cannot_walk_is_judged_without_it(tmp_path):
+    t = np.arange(0.0, 4.0, 0.01)
+    reference = tetrapod_reference(np.radians(45.0), np.radians(135.0), cycle_time=3.0)
+    legs = pd.DataFrame(
+        {"t": t} | {f"theta{i + 1}": a for i, a in enumerate(reference.angles(t).T)}
+    )
+    legs.to_csv(tmp_path / "legs.csv", index=False)
+    prediction = read_prediction(predicted(tmp_path, tmp_path / "legs.csv", draws=0))
+    assert set(prediction.baselines) == {"no-slip-simple", "no-slip"}
+    assert any("'thesis' cannot walk" in note for note in prediction.notes)
 
 
 def test_several_walks_get_a_mean_with_an_interval(tmp_path):

@@ -157,7 +157,6 @@ def judge_run(
     track: TrackFile,
     *,
     anchor: bool,
-    time_offset: float = 0.0,
     rng: np.random.Generator,
 ) -> RunJudged:
     """Judge a prediction and the baselines against a track.
@@ -165,17 +164,15 @@ def judge_run(
     Args:
         name: Name of the walk.
         prediction: What was predicted.
-        track: What was tracked.
+        track: What was tracked, by the prediction's clock.
         anchor: Start every path from the first tracked pose, which is then not scored.
-        time_offset: Added to the track's times to bring them to the prediction's clock [s].
         rng: Source of randomness.
 
     Raises:
         DataError: Track and prediction share too little time.
     """
-    moved = replace(track.poses, t=track.poses.t + time_offset)
-    inside = shared_time(moved, prediction.path, file=track.file)
-    seen, covariance = moved.part(inside), track.covariance[inside]
+    inside = shared_time(track.poses, prediction.path, file=track.file)
+    seen, covariance = track.poses.part(inside), track.covariance[inside]
     scored = slice(1, None) if anchor else slice(None)
     if len(seen.part(scored)) < 2:
         raise DataError("leaves fewer than two poses to score", file=track.file)
@@ -251,7 +248,9 @@ def shared_time(track: Poses, path: Poses, *, file: Path) -> NDArray[np.bool_]:
         return overlap(track, path)
     except InsufficientData as error:
         raise DataError(
-            f"{error}. Give --time-offset SECONDS, which is added to the track's times", file=file
+            f"{error} Give --time-offset SECONDS, which is added to the track's times, or "
+            "--estimate-offset",
+            file=file,
         ) from error
 
 

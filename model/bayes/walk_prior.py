@@ -14,7 +14,10 @@ from model.slip.law import Array
 
 OFFSETS = tuple(f"leg_offset{leg}" for leg in range(1, N_LEGS + 1))
 FLOOR = ("grip", "slip_stiffness", "fall")
-FALLS = (0.0, 1.5)  # traction that rises from its peak on is none; that which falls more, unheard of
+FALLS = (
+    0.0,
+    1.5,
+)  # traction that rises from its peak on is none; that which falls more, unheard of
 NAMES = (*OFFSETS, *FLOOR, "common_offset", "leg_arc", "steering", "stride")
 UNITS = (*["rad"] * N_LEGS, "log", "log", "-", "rad", "rad", "rad/m", "-")
 WRONG = len(NAMES)  # index of the wrong leg's further offset, behind the others

@@ -22,6 +22,8 @@ zebro-lab validate --predicted prediction --track track/track.csv --out validati
 
 zebro-lab validate --predicted a/prediction --track a/track --predicted b/prediction --track b/track
 
+zebro-lab validate data/RUN --estimate-offset
+
 Unaligned errors come first: alignment hides a wrong start and a wrong heading. Every path starts
 from the first tracked pose, which is not scored.
 """
@@ -52,6 +54,14 @@ def validate(
     time_offset: Annotated[
         float, typer.Option(help="Added to the track's times: its clock is so far behind [s].")
     ] = 0.0,
+    estimate_offset: Annotated[
+        bool,
+        typer.Option(
+            "--estimate-offset",
+            help="Find in the motion how far the track's clock is behind: starts, stops and turns "
+            "tell it, an even walk does not.",
+        ),
+    ] = False,
     seed: Annotated[int, typer.Option(help="Seed of everything random.")] = 1,
 ) -> None:
     """Judge predicted paths against tracked ones, beside simpler models."""
@@ -67,11 +77,14 @@ def validate(
             f"{len(predicted)} --predicted and {len(track)} --track; name as many of both, or "
             "run folders"
         )
+    if estimate_offset and time_offset:
+        raise typer.BadParameter("give --time-offset, or let --estimate-offset find it; not both")
     pairs = [pairs_of_run(each) for each in runs] + list(zip(predicted, track, strict=True))
     if out is None:
         out = runs[0] / "validation" if len(runs) == 1 and not predicted else Path("validation")
     with progress_bar(Console(stderr=True)) as watcher:
-        validated = run(ValidateRequest(tuple(pairs), out, anchor, time_offset, seed), watcher)
+        offset = None if estimate_offset else time_offset
+        validated = run(ValidateRequest(tuple(pairs), out, anchor, offset, seed), watcher)
     console = Console(highlight=False)
     if not console.is_terminal:
         console = Console(highlight=False, width=120)

@@ -12,6 +12,7 @@ from zebro_lab.errors import DataError, NotFound, SettingsError
 from zebro_lab.provenance import file_hashes
 from zebro_lab.recorded_legs import is_recorded
 from zebro_lab.recorded_tilt import read_recorded_tilt
+from zebro_lab.shared_clock import estimated_clock, given_clock
 from zebro_lab.track_file import read_track
 from zebro_lab.track_folder import TRACK_CSV
 from zebro_lab.tracked_photos import photos_of_track
@@ -39,14 +40,14 @@ class ValidateRequest:
         pairs: Prediction and track of each walk.
         out: Folder to write.
         anchor: Start each path from the first tracked pose, which is then not scored.
-        time_offset: Added to the tracks' times [s].
+        time_offset: Added to the tracks' times; None to find it in the motion of each [s].
         seed: Seed of everything random.
     """
 
     pairs: tuple[tuple[Path, Path], ...]
     out: Path
     anchor: bool = True
-    time_offset: float = 0.0
+    time_offset: float | None = 0.0
     seed: int = 1
 
 
@@ -94,11 +95,13 @@ def validate(request: ValidateRequest, watcher: Watcher) -> Validated:
     for i, (name, (predicted, tracked)) in enumerate(zip(names, request.pairs, strict=True)):
         watcher.step("judging", i / len(names))
         prediction, track = read_prediction(predicted), read_track(tracked)
-        judged = judge_run(
-            name, prediction, track,
-            anchor=request.anchor, time_offset=request.time_offset, rng=rng,
-        )  # fmt: skip
-        judgement, read = _with_surroundings(judged, prediction, tracked, request)
+        clock = (
+            estimated_clock(track, prediction.path)
+            if request.time_offset is None
+            else given_clock(track, request.time_offset)
+        )
+        judged = judge_run(name, prediction, clock.track, anchor=request.anchor, rng=rng)
+        judgement, read = _with_surroundings(judged, prediction, tracked, clock.offset)
         judgements.append(judgement)
         files += [*prediction.files, track.file, *read]
         sources += [prediction.source, track.source]
@@ -110,7 +113,10 @@ def validate(request: ValidateRequest, watcher: Watcher) -> Validated:
         judgements,
         summary=summary,
         settings={
-            "anchor": request.anchor, "time_offset": request.time_offset, "seed": request.seed,
+            "anchor": request.anchor,
+            "time_offset": {each.run.name: each.time_offset for each in judgements},
+            "time_offset_estimated": request.time_offset is None,
+            "seed": request.seed,
         },
         inputs=file_hashes(dict.fromkeys(files)),
         source=source,
@@ -119,7 +125,7 @@ def validate(request: ValidateRequest, watcher: Watcher) -> Validated:
 
 
 def _with_surroundings(
-    judged: RunJudged, prediction: Prediction, tracked: Path, request: ValidateRequest
+    judged: RunJudged, prediction: Prediction, tracked: Path, offset: float
 ) -> tuple[Judgement, tuple[Path, ...]]:
     """Add what else a run knows: its IMU, and the photographs of its track; return files read."""
     notes, files, photos = list(judged.notes), (), None
@@ -136,7 +142,7 @@ def _with_surroundings(
     except (NotFound, DataError) as error:
         notes.append(f"photographs are not shown: {error}")
     judged = replace(judged, notes=tuple(notes))
-    return Judgement(judged, prediction, photos, request.time_offset), files
+    return Judgement(judged, prediction, photos, offset), files
 
 
 def _names(paths: Sequence[Path]) -> list[str]:

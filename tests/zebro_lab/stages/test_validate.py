@@ -247,3 +247,46 @@ def test_the_log_of_the_bundled_walk_is_counted():
 
     log = read_leg_log(Path(__file__).parents[3] / "datasets/walk-sim/legs.csv")
     assert np.degrees(find_step(log.reference.theta)) == pytest.approx(3.6, rel=1e-3)
+
+
+def standing_walk(folder, *, behind):
+    """Write a path that stands, turns a circle and stands, and its track by a clock behind it."""
+    t = np.arange(0.0, 24.0, 0.05)
+    gone = 0.1 * np.clip(t - 2.0, 0.0, 20.0)
+    path = pd.DataFrame(
+        {"t": t, "x": 1.5 * np.sin(gone / 1.5), "y": 1.5 - 1.5 * np.cos(gone / 1.5)}
+    )
+    path["yaw"] = gone / 1.5
+    path.to_csv(folder / "path.csv", index=False)
+    track = path.iloc[6::40].copy()
+    noise = np.random.default_rng(1).normal(0, 0.002, (len(track), 3))
+    track[["x", "y", "yaw"]] += noise
+    track["t"] -= behind
+    track.to_csv(folder / "seen.csv", index=False)
+    return folder / "path.csv", folder / "seen.csv"
+
+
+def test_another_clock_s_offset_is_found_and_told(tmp_path):
+    pair = standing_walk(tmp_path, behind=1234.5)
+    done = validate(ValidateRequest((pair,), tmp_path / "out", time_offset=None), Nobody())
+    assert rows_of(done)["prediction"].errors.ate < 0.01
+    assert any(note.startswith("clock: +1234.") and "±" in note for note in done.runs[0].notes)
+    settings = json.loads((tmp_path / "out/manifest.json").read_text())["settings"]
+    assert settings["time_offset_estimated"]
+    assert settings["time_offset"]["path"] == pytest.approx(1234.5, abs=0.1)
+
+
+def test_an_offset_that_the_motion_does_not_tell_is_asked_for(walk, tmp_path):
+    prediction, track = pairs_of_run(walk)  # an even walk: neither starts nor stops in view
+    request = ValidateRequest(((prediction, track),), tmp_path / "out", time_offset=None)
+    with pytest.raises(DataError, match="--time-offset"):
+        validate(request, Nobody())
+    assert not (tmp_path / "out").exists()
+
+
+def test_a_track_of_two_poses_is_refused(walk, tmp_path):
+    prediction, track = pairs_of_run(walk)
+    pd.read_csv(track / "track.csv").iloc[:2].to_csv(tmp_path / "two.csv", index=False)
+    pair = ((prediction, tmp_path / "two.csv"),)
+    with pytest.raises(DataError, match="has 2 poses; expected 3 or more"):
+        validate(ValidateRequest(pair, tmp_path / "out"), Nobody())

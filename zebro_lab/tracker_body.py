@@ -4,6 +4,7 @@
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
+import cv2
 import numpy as np
 from numpy.typing import NDArray
 
@@ -32,6 +33,7 @@ CLICK_SD = 1.0
 """Standard deviation of a click on a corner of the robot's top [px]."""
 
 _REACH = 0.6  # how far from where it was the robot is looked for first [m]
+_MARK_MARGIN = 1.5  # by how much a floor marker and its margin are larger than its black square
 _WORTH_WORKERS = 6  # photographs: rotating and matching takes a second each
 
 
@@ -94,7 +96,7 @@ def track_body(
 
 def track_composite(
     scene: Scene, photo: Photo, *, times_of: Callable[[tuple[str, ...]], PhotoTimes],
-    reach: float, watcher: Watcher, gap: float | None = None,
+    body_size: tuple[float, float], watcher: Watcher, gap: float | None = None,
 ) -> Tracked:  # fmt: skip
     """Track a robot through the exposures of one composite picture.
 
@@ -104,7 +106,7 @@ def track_composite(
         scene: What is known; the robot's marker, or its annotated template, is what is looked for.
         photo: The picture.
         times_of: Gives the times of the exposures, by their names in order.
-        reach: How far the robot reaches beyond its body's middle [m].
+        body_size: Length and width of the robot's body [m].
         watcher: Who follows.
         gap: Interval longer than which the path is interrupted; None for the tracker's own [s].
 
@@ -123,10 +125,9 @@ def track_composite(
     else:
         template, source = _template(scene, seen, [photo]), "body"
     pixels = read_pixels(photo.path, size=scene.camera.size)
-    rim = max(reach - 0.5 * max(template.plate.length, template.plate.width), 0.0)
     exposures = find_exposures(
         pixels, scene.camera, seen.fit.pose_of(photo.name), template=template, prior=scene.prior,
-        rim=rim,
+        body_size=body_size, hidden=_on_marks(seen, photo.name, pixels.shape[:2]),
     )  # fmt: skip
     poses = np.array([each.alignment.pose.planar for each in exposures])
     order = order_exposures(poses, heading_known=scene.robot is not None)
@@ -138,6 +139,17 @@ def track_composite(
         for name, k in zip(names, order, strict=True)
     ]
     return finish(scene, seen, observations, unseen={}, times=times, gap=gap)
+
+
+def _on_marks(seen: FloorSeen, photo: str, shape: tuple[int, ...]) -> NDArray[np.bool_]:
+    """Mark the pixels of the floor's markers with their margin: they look like the robot's."""
+    hidden = np.zeros(shape, dtype=np.uint8)
+    for detection in seen.detections:
+        for corners in detection.floor.pixels.values() if detection.photo == photo else ():
+            middle = corners.mean(axis=0)
+            outline = middle + _MARK_MARGIN * (corners - middle)
+            cv2.fillConvexPoly(hidden, np.round(outline).astype(np.int32), (1,))
+    return hidden.astype(bool)
 
 
 def _observation(

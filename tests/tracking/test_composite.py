@@ -75,7 +75,7 @@ def test_an_exposure_under_its_successor_is_found_and_none_is_made_up():
     walk = np.array([[-0.2, 0.0, 0.0], [-0.105, 0.0, 0.0], [0.2, 0.0, 0.0]])
     picture = composite_of(walk, "pasted", np.random.default_rng(1))
     found = find_exposures(
-        picture, LENS, VIEW, template=marker_template(MARKER), prior=PRIOR, rim=0.01,
+        picture, LENS, VIEW, template=marker_template(MARKER), prior=PRIOR, body_size=(0.16, 0.16),
         near=(0, 0), reach=0.4,
     )  # fmt: skip
     poses = np.array([exposure.alignment.pose.planar for exposure in found])

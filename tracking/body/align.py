@@ -27,6 +27,9 @@ _FIRST_LOOKS = 5
 HOPELESS_SCORE = 0.25
 """Least correlation after five steps for which an alignment is carried on [-]."""
 
+LEAST_VISIBLE = 0.35
+"""Least share of the robot's picture by which it is aligned [-]."""
+
 SCALE_SD = 5e-3
 """Relative standard deviation of the template's scale [-]."""
 
@@ -56,7 +59,7 @@ class Alignment:
 def align(
     pixels: NDArray[np.uint8], camera: Camera, view: CameraPose, *, template: BodyTemplate,
     prior: BodyPrior, start: Array, blurs_px: tuple[float, ...] = (2.5, 1.0),
-    visible: NDArray[np.bool_] | None = None,
+    visible: NDArray[np.bool_] | None = None, least_visible: float = LEAST_VISIBLE,
 ) -> Alignment | None:  # fmt: skip
     """Align the robot's picture.
 
@@ -70,6 +73,7 @@ def align(
         blurs_px: Blurs of the photograph, coarse to fine, each aligned in turn [px].
         visible: Pixels of the photograph that may show the robot, shape (height, width); the
             others are left out.
+        least_visible: Least share of the picture that must be visible [-].
 
     Returns:
         The alignment, or None where the robot leaves the photograph or little of it is visible.
@@ -77,7 +81,9 @@ def align(
     state = np.array([start[0], start[1], prior.height, 0.0, 0.0, start[2]])
     solution = None
     for blur in blurs_px:
-        job = _Job.prepare(pixels, camera, view, template, prior, state, blur, visible)
+        job = _Job.prepare(
+            pixels, camera, view, template, prior, state, blur, visible, least_visible
+        )
         if job is None:
             return None
         solution = job.solve(state)
@@ -102,11 +108,13 @@ class _Job:
     prior: BodyPrior
     correlated: float
     floor: Array
+    least_visible: float
 
     @classmethod
     def prepare(
         cls, pixels: NDArray[np.uint8], camera: Camera, view: CameraPose, template: BodyTemplate,
         prior: BodyPrior, state: Array, blur: float, visible: NDArray[np.bool_] | None,
+        least_visible: float,
     ) -> "_Job | None":  # fmt: skip
         """Cut out, blur and differentiate the photograph around the robot."""
         points = template.points_body.reshape(-1, 3)
@@ -141,6 +149,7 @@ class _Job:
             prior,
             repeated,
             _least_covariance(template),
+            least_visible,
         )
 
     def solve(self, state: Array) -> Alignment | None:
@@ -212,7 +221,7 @@ class _Job:
             self.camera, self.view, _world(self.points, state)
         )
         used = self._used(seen)
-        if used.sum() < max(60, 0.35 * len(used)):
+        if used.sum() < max(60, self.least_visible * len(used)):
             return None
         R, dR = rotation_with_derivatives(*state[3:6])
         body = self.points[used]

@@ -167,12 +167,11 @@ def match_turned(
     half = 0.5 * np.hypot(front - rear, left - right)
     low, high = area[0] - half, area[1] + half
     floor = _rectified(pixels, camera, view, height, low, high, cell)
-    small = _shrunk(template, cell)
     peaks: list[tuple[float, Array]] = []
     per_turn = max(2, most // 2)
     middle = np.array([(front + rear) / 2, (left + right) / 2])
     for yaw in np.arange(_TURNS) * 2 * np.pi / _TURNS:
-        turned, mask = _turned(small, yaw)
+        turned, mask = turned_template(template, cell, yaw)
         if (np.array(floor.shape[:2]) < turned.shape[:2]).any():
             continue
         match = cv2.matchTemplate(floor, turned, cv2.TM_CCOEFF_NORMED, mask=mask)
@@ -219,15 +218,20 @@ def _rectified(
     return sample(np.asarray(smooth), seen)
 
 
-def _shrunk(template: BodyTemplate, cell: float) -> NDArray[np.float32]:
-    ratio = template.step / cell
-    size = [max(4, round(n * ratio)) for n in template.colours.shape[1::-1]]
-    small = cv2.resize(template.colours, size, interpolation=cv2.INTER_AREA)
-    return np.asarray(small, dtype=np.float32)
+def turned_template(
+    template: BodyTemplate, cell: float, yaw: float
+) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
+    """Draw the robot's picture as seen from above.
 
+    Args:
+        template: The robot's picture, its front up.
+        cell: Size of a pixel [m].
+        yaw: Heading, 0 to the right [rad].
 
-def _turned(small: NDArray[np.float32], yaw: float) -> tuple[NDArray, NDArray]:
-    """Turn a picture whose front is up to heading yaw (0 to the right), with its mask."""
+    Returns:
+        Colours, shape (n, n, 3), the robot's middle in theirs, and of the same shape 1 where it is.
+    """
+    small = _shrunk(template, cell)
     rows, columns = small.shape[:2]
     n = int(np.ceil(np.hypot(rows, columns))) + 1
     matrix = cv2.getRotationMatrix2D(((columns - 1) / 2, (rows - 1) / 2), np.degrees(yaw) - 90, 1.0)
@@ -235,4 +239,11 @@ def _turned(small: NDArray[np.float32], yaw: float) -> tuple[NDArray, NDArray]:
     picture = cv2.warpAffine(small, matrix, (n, n), flags=cv2.INTER_LINEAR)
     mask = cv2.warpAffine(np.ones((rows, columns), np.float32), matrix, (n, n))
     mask = np.where(mask > 0.9, 1.0, 0.0).astype(np.float32)
-    return np.asarray(picture), np.repeat(mask[:, :, None], 3, axis=2)
+    return np.asarray(picture, dtype=np.float32), np.repeat(mask[:, :, None], 3, axis=2)
+
+
+def _shrunk(template: BodyTemplate, cell: float) -> NDArray[np.float32]:
+    ratio = template.step / cell
+    size = [max(4, round(n * ratio)) for n in template.colours.shape[1::-1]]
+    small = cv2.resize(template.colours, size, interpolation=cv2.INTER_AREA)
+    return np.asarray(small, dtype=np.float32)

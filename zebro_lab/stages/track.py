@@ -6,8 +6,6 @@ from dataclasses import dataclass, field, replace
 from datetime import datetime
 from pathlib import Path
 
-import numpy as np
-
 from tracking.images import read_pixels
 from zebro_lab.annotations import (
     ANNOTATIONS_FILE,
@@ -174,10 +172,10 @@ def _tracked(
 ) -> tuple[Tracked, str]:  # fmt: skip
     photos = [Photo(name, path) for name, path in zip(sequence.names, sequence.paths, strict=True)]
     if sequence.times is None:
-        reach = 0.5 * float(np.hypot(*described.robot.body_size[:2])) + described.robot.leg_radius
+        length, width = described.robot.body_size[:2]
         tracked = track_composite(
             scene, photos[0], times_of=lambda names: exposure_times(names, request.times),
-            reach=reach, watcher=watcher, gap=request.gap,
+            body_size=(length, width), watcher=watcher, gap=request.gap,
         )  # fmt: skip
         notes = ()
         if manifest is not None and request.times.table is None:

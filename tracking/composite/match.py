@@ -1,0 +1,164 @@
+# SPDX-License-Identifier: MIT
+"""Turn the robot's picture and compare it with a photograph seen from above.
+
+Of exposures that overlap none looks as it would alone: in a merged picture half of each is under
+another, or all shine through. What is left of the likeness is small, and lost unless the turn is
+right to a few degrees and the place to a fraction of the marker's cells: both steps are finer here
+than where a robot alone is sought (`tracking.body.search`).
+"""
+
+from collections.abc import Iterator, Sequence
+from typing import NamedTuple
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from tracking.body.search import turned_template
+from tracking.body.template import BodyTemplate
+from tracking.camera.lens import Array
+from tracking.composite.plane import Plane
+
+TURNS = 72
+"""Turns that are tried, 5 degrees apart."""
+
+CELLS = 30
+"""Points of the raster along the template's plate."""
+
+_PEAK_CELLS = 3
+_GREY_MIDDLE = 128.0
+
+
+class Match(NamedTuple):
+    """A place where the photograph looks like the robot.
+
+    Attributes:
+        score: Correlation with its picture [-].
+        planar: x, y [m] and yaw [rad], shape (3,).
+    """
+
+    score: float
+    planar: Array
+
+
+def match_whole(
+    picture: NDArray[np.float32], plane: Plane, *, template: BodyTemplate, least: float
+) -> list[Match]:
+    """Find places where all of the robot's picture fits.
+
+    Args:
+        picture: The photograph on `plane`, shape (rows, columns, 3); (rows, columns, 1) where the
+            robot's picture is grey.
+        plane: The raster.
+        template: The robot's picture.
+        least: Least correlation [-].
+
+    Returns:
+        Places at which no turn and no neighbouring place fits better, best first.
+    """
+    best, turn = None, None
+    for index, (turned, mask) in _turns(template, plane.cell):
+        if (np.array(picture.shape[:2]) < turned.shape[:2]).any():
+            return []
+        own, used = (np.ascontiguousarray(part[..., : picture.shape[2]]) for part in (turned, mask))
+        score = cv2.matchTemplate(picture, own, cv2.TM_CCOEFF_NORMED, mask=used)
+        score = np.where(np.isfinite(score) & (score <= 1.0001), score, -1.0).astype(np.float32)
+        if best is None or turn is None:
+            best, turn = np.full_like(score, -1.0), np.zeros(score.shape, int)
+        better = score > best
+        best[better], turn[better] = score[better], index
+    if best is None or turn is None:
+        return []
+    size = _turned_size(template, plane.cell)
+    return _peaks(best, turn, plane, template, least, shift=(size - 1) / 2)
+
+
+def match_visible(
+    picture: NDArray[np.float32], visible: NDArray[np.float32], plane: Plane, *,
+    template: BodyTemplate, least: float, share: float, yaws: Sequence[float], within: float,
+) -> list[Match]:  # fmt: skip
+    """Find places where the visible part of the robot's picture fits.
+
+    The correlation is over what is visible (Padfield 2012, masked normalised cross-correlation).
+
+    Args:
+        picture: The photograph on `plane`, shape (rows, columns, 3).
+        visible: 1 where it may show the robot, 0 elsewhere, shape (rows, columns).
+        plane: The raster.
+        template: The robot's picture.
+        least: Least correlation [-].
+        share: Least share of the picture that must be visible [-].
+        yaws: Headings near which to look [rad].
+        within: How near [rad].
+
+    Returns:
+        Places at which no turn and no neighbouring place fits better, best first.
+    """
+    best = np.full(visible.shape, -1.0, dtype=np.float32)
+    turn = np.zeros(visible.shape, dtype=int)
+    for index, (turned, mask) in _turns(template, plane.cell):
+        if max(np.cos(_yaw(index) - yaw) for yaw in yaws) < np.cos(within):
+            continue
+        score, seen = _masked_correlation(picture, visible, turned, mask[..., 0])
+        better = (seen >= share) & (score > best)
+        best[better], turn[better] = score[better], index
+    size = _turned_size(template, plane.cell)
+    # The anchor of an even kernel is half a point beyond its middle.
+    return _peaks(best, turn, plane, template, least, shift=-0.5 if size % 2 == 0 else 0.0)
+
+
+def _turns(template: BodyTemplate, cell: float) -> Iterator[tuple[int, tuple[NDArray, NDArray]]]:
+    for index in range(TURNS):
+        yield index, turned_template(template, cell, _yaw(index))
+
+
+def _turned_size(template: BodyTemplate, cell: float) -> int:
+    return turned_template(template, cell, 0.0)[0].shape[0]
+
+
+def _yaw(index: int) -> float:
+    return index * 2 * np.pi / TURNS
+
+
+def _peaks(
+    best: NDArray[np.float32], turn: NDArray, plane: Plane, template: BodyTemplate, least: float,
+    *, shift: float,
+) -> list[Match]:  # fmt: skip
+    around = np.ones((2 * _PEAK_CELLS + 1,) * 2, np.uint8)
+    rows, columns = np.nonzero((best >= cv2.dilate(best, around)) & (best >= least))
+    rear, front, right, left = template.plate.extent
+    middle = np.array([(front + rear) / 2, (left + right) / 2])
+    found = []
+    for row, column in zip(rows, columns, strict=True):
+        yaw = _yaw(int(turn[row, column]))
+        c, s = np.cos(yaw), np.sin(yaw)
+        offset = np.array([c * middle[0] - s * middle[1], s * middle[0] + c * middle[1]])
+        xy = plane.xy_at(row + shift, column + shift) - offset
+        found.append(Match(float(best[row, column]), np.array([*xy, yaw])))
+    return sorted(found, key=lambda match: -match.score)
+
+
+def _masked_correlation(
+    picture: NDArray[np.float32], visible: NDArray[np.float32], turned: NDArray, mask: NDArray
+) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
+    """Correlate at every place; return the score and the share of the template that is visible."""
+    weight = np.ascontiguousarray(mask, dtype=np.float32)
+    count = np.maximum(_slide(visible, weight), np.float32(1.0))
+    cross, power_seen, power_own = (np.zeros_like(visible) for _ in range(3))
+    for channel in range(picture.shape[2]):
+        # Near 0, so that sums of squares keep their precision.
+        seen = visible * (picture[..., channel] - _GREY_MIDDLE)
+        own = weight * (turned[..., channel] - _GREY_MIDDLE)
+        sum_seen, sum_own = _slide(seen, weight), _slide(visible, own)
+        cross += _slide(seen, own) - sum_seen * sum_own / count
+        power_seen += _slide(seen * seen, weight) - sum_seen**2 / count
+        power_own += _slide(visible, own * own) - sum_own**2 / count
+    score = cross / np.sqrt(np.maximum(power_seen, 1.0) * np.maximum(power_own, 1.0))
+    return score.astype(np.float32), (count / weight.sum()).astype(np.float32)
+
+
+def _slide(picture: NDArray, kernel: NDArray) -> NDArray[np.float32]:
+    moved = cv2.filter2D(
+        picture, cv2.CV_32F, kernel.astype(np.float32), borderType=cv2.BORDER_CONSTANT
+    )
+    return np.asarray(moved, dtype=np.float32)

@@ -1,0 +1,65 @@
+# SPDX-License-Identifier: MIT
+"""A photograph seen from straight above, on the level plane of the robot's top."""
+
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from tracking.body.template import sample
+from tracking.camera.lens import Array, Camera, CameraPose, project
+
+
+@dataclass(frozen=True)
+class Plane:
+    """A raster on a level plane, x to the right and y up, as seen from above.
+
+    Attributes:
+        low: Lowest x and y, shape (2,) [m].
+        high: Highest x and y, shape (2,) [m].
+        cell: Distance between neighbouring points [m].
+        seen_px: Where the points are in the photograph, shape (rows, columns, 2) [px].
+    """
+
+    low: Array
+    high: Array
+    cell: float
+    seen_px: Array
+
+    @classmethod
+    def over(
+        cls, camera: Camera, view: CameraPose, *, height: float, low: Array, high: Array,
+        cell: float,
+    ) -> "Plane":  # fmt: skip
+        """Lay a raster over a rectangle at a height over the floor [m]."""
+        xx, yy = np.meshgrid(np.arange(low[0], high[0], cell), np.arange(high[1], low[1], -cell))
+        world = np.stack((xx, yy, np.full_like(xx, height)), axis=-1)
+        seen = project(camera, view, world.reshape(-1, 3)).reshape(*xx.shape, 2)
+        return cls(low, high, cell, seen)
+
+    def read(self, pixels: NDArray) -> NDArray[np.float32]:
+        """Read a photograph at the raster's points, 0 outside, shape (rows, columns, ...)."""
+        return sample(pixels, self.seen_px)
+
+    def read_smooth(self, pixels: NDArray[np.uint8]) -> NDArray[np.float32]:
+        """Read a photograph blurred to the size of a cell, so that nothing is aliased."""
+        spacing = float(np.median(np.linalg.norm(np.diff(self.seen_px, axis=1), axis=2)))
+        # Of the far floor nothing is lost by it: there pixels are larger than cells.
+        return self.read(np.asarray(cv2.GaussianBlur(pixels, (0, 0), max(0.4 * spacing, 0.3))))
+
+    def xy_at(self, row: float, column: float) -> Array:
+        """Compute the place of a point, shape (2,) [m]."""
+        return np.array([self.low[0] + column * self.cell, self.high[1] - row * self.cell])
+
+    def window(self, middle_xy: Array, reach: float) -> "Plane":
+        """Cut the raster down to the neighbourhood of places, shape (n, 2) [m]."""
+        rows, columns = self.seen_px.shape[:2]
+        left, bottom = np.floor((middle_xy.min(axis=0) - reach - self.low) / self.cell).astype(int)
+        right, top = np.ceil((middle_xy.max(axis=0) + reach - self.low) / self.cell).astype(int)
+        first = round((self.high[1] - self.low[1]) / self.cell)
+        up, down = max(first - top, 0), min(first - bottom, rows)
+        left, right = max(left, 0), min(right, columns)
+        low = np.array([self.low[0] + left * self.cell, self.high[1] - down * self.cell])
+        high = np.array([self.low[0] + right * self.cell, self.high[1] - up * self.cell])
+        return Plane(low, high, self.cell, self.seen_px[up:down, left:right])

@@ -1,0 +1,300 @@
+# SPDX-License-Identifier: MIT
+"""Find every exposure of the robot in one merged picture.
+
+A picture may have been merged in two ways, and nothing in it says in which:
+
+* exposures shine through each other (mean or darkest value of each pixel): each is there as a
+  whole, among what is seen of the others;
+* exposures lie on each other (cut out and pasted): each is there as far as no other hides it.
+
+It is read in both ways, and the reading that finds more is taken. Of exposures that shine through,
+all of the robot's picture is compared, with a threshold that is lower beside a clearer exposure
+with nearly the same heading than alone. Of exposures that hide each other those that show whole are
+found first; where they are the picture is taken from it, and beside them the whole body, as one of
+them shows it, is compared by its visible part. Nothing is accepted by its place alone.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from tracking.body import (
+    Alignment,
+    BodyTemplate,
+    TopPlate,
+    align,
+    floor_in_view,
+    make_template,
+)
+from tracking.camera.lens import Array, Camera, CameraPose, project
+from tracking.composite.match import CELLS, Match, match_visible, match_whole
+from tracking.composite.plane import Plane
+from tracking.errors import BodyError, CompositeError
+from tracking.pose import BodyPrior, rotation_with_derivatives
+
+LONELY_SCORE = 0.65
+"""Least correlation of an exposure with no clearer one beside it [-]."""
+
+BESIDE_SCORE = 0.5
+"""Least correlation of one beside a clearer one with nearly its heading [-]."""
+
+CLEAR_SCORE = 0.85
+"""Least correlation of one that hides others, and of the visible part of one that is hidden [-]."""
+
+LEAST_SHARE = 0.15
+"""Least share of the body that must be visible [-]."""
+
+_SAME = 0.4  # of the template's length: nearer than this two are one
+_BESIDE = 1.25  # of the body's length
+_TURN = np.radians(32.0)  # from one exposure to the next beside it
+_CUT = 0.05  # of the body's length: what scissors leave around the robot
+_BODY_CELLS = 40
+_MOST_TRIED = 6
+
+
+@dataclass(frozen=True)
+class Exposure:
+    """One exposure of the robot in a composite picture.
+
+    Attributes:
+        alignment: Where it is.
+        visible: Share of its top that no other hides [-].
+    """
+
+    alignment: Alignment
+    visible: float
+
+
+def find_exposures(
+    pixels: NDArray[np.uint8], camera: Camera, view: CameraPose, *, template: BodyTemplate,
+    prior: BodyPrior, body_size: tuple[float, float] | None = None,
+    hidden: NDArray[np.bool_] | None = None, near: ArrayLike | None = None, reach: float = np.inf,
+) -> tuple[Exposure, ...]:  # fmt: skip
+    """Find all exposures of the robot in one picture.
+
+    Args:
+        pixels: The picture, BGR, shape (height, width, 3).
+        camera: The lens.
+        view: Where the camera stood.
+        template: The robot's picture, or its marker's (`tracking.body.marker_template`).
+        prior: Height and tilt.
+        body_size: Length and width of the robot's body, which hides others where it was cut out and
+            pasted; the template's plate when None [m].
+        hidden: Pixels that do not show the robot, as those of the floor's markers, shape
+            (height, width).
+        near: x and y near which to look [m]; the whole picture when None.
+        reach: How far from there [m].
+
+    Returns:
+        The exposures, the clearest first.
+
+    Raises:
+        CompositeError: When none is found.
+    """
+    size = body_size or (template.plate.length, template.plate.width)
+    area = floor_in_view(camera, view, prior.height + template.plate.height, near, reach)
+    search = _Search(_without(pixels, hidden), camera, view, template, prior, size, area)
+    through = search.shining_through()
+    layers = search.layers(through)
+    found = layers if len(layers) >= len(through) else through
+    if not found:
+        raise CompositeError(
+            "no exposure of the robot is found in the composite picture; check the marker's number "
+            "and dictionary, or annotate one exposure as template"
+        )
+    return tuple(found)
+
+
+def _without(pixels: NDArray[np.uint8], hidden: NDArray[np.bool_] | None) -> NDArray[np.uint8]:
+    """Paint over what does not show the robot, in the picture's usual colour."""
+    if hidden is None or not hidden.any():
+        return pixels
+    painted = pixels.copy()
+    painted[hidden] = np.median(pixels[~hidden][::7], axis=0).astype(np.uint8)
+    return painted
+
+
+@dataclass(frozen=True)
+class _Search:
+    pixels: NDArray[np.uint8]
+    camera: Camera
+    view: CameraPose
+    template: BodyTemplate
+    prior: BodyPrior
+    body: tuple[float, float]
+    area: tuple[Array, Array]
+
+    def shining_through(self) -> list[Exposure]:
+        """Find exposures that show as a whole, each among what is seen of others."""
+        plane = self.plane(self.template, self.template.plate.length / CELLS)
+        picture = plane.read_smooth(self.pixels)
+        if np.ptp(self.template.colours, axis=2).max() == 0:
+            picture = picture.mean(axis=2, keepdims=True)
+        matches = match_whole(picture, plane, template=self.template, least=0.9 * BESIDE_SCORE)
+        aligned = [self.aligned(match) for match in self.apart(matches)]
+        good = [each for each in aligned if each is not None and each.score >= BESIDE_SCORE]
+        good.sort(key=lambda alignment: -alignment.score)
+        return [Exposure(each, 1.0) for each in self.along_a_walk(good)]
+
+    def plane(self, template: BodyTemplate, cell: float) -> Plane:
+        half = 0.5 * float(np.hypot(template.plate.length, template.plate.width))
+        height = self.prior.height + template.plate.height
+        low, high = self.area[0] - half, self.area[1] + half
+        return Plane.over(self.camera, self.view, height=height, low=low, high=high, cell=cell)
+
+    def aligned(self, match: Match) -> Alignment | None:
+        return align(
+            self.pixels, self.camera, self.view, template=self.template, prior=self.prior,
+            start=match.planar, blurs_px=(1.0,),
+        )  # fmt: skip
+
+    def apart(self, matches: Sequence[Match]) -> list[Match]:
+        """Keep the best of matches in one place."""
+        kept: list[Match] = []
+        for match in matches:
+            if all(self.distance(match.planar, other.planar) > self.same for other in kept):
+                kept.append(match)
+        return kept
+
+    @property
+    def same(self) -> float:
+        return _SAME * self.template.plate.length
+
+    @staticmethod
+    def distance(a: Array, b: Array) -> float:
+        return float(np.hypot(*(a[:2] - b[:2])))
+
+    def along_a_walk(self, good: Sequence[Alignment]) -> list[Alignment]:
+        """Keep what is clear by itself, and what is beside that, and so on."""
+        kept: list[Alignment] = []
+        left = list(good)
+        while left:
+            index = next((k for k, each in enumerate(left) if self.follows(each, kept)), None)
+            if index is None:
+                break
+            new = left.pop(index)
+            here = new.pose.planar
+            if all(self.distance(here, other.pose.planar) > self.same for other in kept):
+                kept.append(new)
+        return kept
+
+    def follows(self, alignment: Alignment, kept: Sequence[Alignment]) -> bool:
+        here = alignment.pose.planar
+        return alignment.score >= LONELY_SCORE or any(
+            self.distance(here, other.pose.planar) < _BESIDE * self.body[0]
+            and np.cos(here[2] - other.pose.planar[2]) > np.cos(_TURN)
+            for other in kept
+        )
+
+    def layers(self, whole: Sequence[Exposure]) -> list[Exposure]:
+        """Find exposures that hide each other, beginning with those that show whole."""
+        clear = [each for each in whole if each.alignment.score >= CLEAR_SCORE]
+        body = self.body_template(clear)
+        if body is None:
+            return list(clear)
+        plane = self.plane(body, body.plate.length / _BODY_CELLS)
+        stack = _Stack(self, body, plane, plane.read_smooth(self.pixels))
+        return stack.grown(clear)
+
+    def body_template(self, clear: Sequence[Exposure]) -> BodyTemplate | None:
+        """Cut the whole body out of an exposure that shows whole."""
+        plate = TopPlate(*self.body, self.template.plate.height, 0.0, 0.0, 0.0)
+        for exposure in sorted(clear, key=lambda each: -each.alignment.score):
+            try:
+                return make_template(
+                    self.pixels, self.camera, self.view, pose=exposure.alignment.pose, plate=plate
+                )
+            except BodyError:
+                continue  # cut by the picture's edge: the next may not be
+        return None
+
+
+@dataclass(frozen=True)
+class _Stack:
+    """Exposures that hide each other."""
+
+    search: _Search
+    body: BodyTemplate
+    plane: Plane
+    picture: NDArray[np.float32]
+
+    def grown(self, clear: Sequence[Exposure]) -> list[Exposure]:
+        """Look beside every exposure for one that it hides, until none is found."""
+        found = list(clear)
+        visible = np.ones(self.search.pixels.shape[:2], dtype=bool)
+        for each in clear:
+            visible &= ~self.covered(each.alignment)
+        for count, seed in enumerate(found):  # grows while it is gone through
+            while (new := self.beside(seed, found, visible)) is not None:
+                found.append(new)
+                visible &= ~self.covered(new.alignment)
+                if count >= len(clear):
+                    break  # it hides one at most; the others may lie on both sides
+        return found
+
+    def beside(
+        self, seed: Exposure, found: Sequence[Exposure], visible: NDArray[np.bool_]
+    ) -> Exposure | None:
+        """Find the exposure that fits best beside another."""
+        here = seed.alignment.pose.planar
+        reach = _BESIDE * self.search.body[0]
+        half = 0.5 * float(np.hypot(*self.search.body))
+        plane = self.plane.window(here[None, :2], reach + half + 2 * self.plane.cell)
+        seen = (plane.read(255 * visible.astype(np.uint8)) > 230).astype(np.float32)
+        matches = match_visible(
+            self.cut(plane), seen, plane, template=self.body, least=0.6, share=LEAST_SHARE,
+            yaws=[here[2]], within=_TURN,
+        )  # fmt: skip
+        near = [match for match in matches if self.search.distance(match.planar, here) < reach]
+        new = [self.aligned(match, visible) for match in near[:_MOST_TRIED]]
+        fits = [each for each in new if each is not None and self.is_new(each, found)]
+        return max(fits, key=lambda each: each.alignment.score, default=None)
+
+    def cut(self, window: Plane) -> NDArray[np.float32]:
+        column = round(float(window.low[0] - self.plane.low[0]) / self.plane.cell)
+        row = round(float(self.plane.high[1] - window.high[1]) / self.plane.cell)
+        rows, columns = window.seen_px.shape[:2]
+        return self.picture[row : row + rows, column : column + columns]
+
+    def aligned(self, match: Match, visible: NDArray[np.bool_]) -> Exposure | None:
+        alignment = align(
+            self.search.pixels, self.search.camera, self.search.view, template=self.body,
+            prior=self.search.prior, start=match.planar, visible=visible,
+            least_visible=0.8 * LEAST_SHARE,
+        )  # fmt: skip
+        if alignment is None or alignment.score < CLEAR_SCORE:
+            return None
+        return Exposure(alignment, self.share(alignment, visible))
+
+    def is_new(self, exposure: Exposure, found: Sequence[Exposure]) -> bool:
+        here = exposure.alignment.pose.planar
+        same = 0.2 * self.search.body[0]
+        return all(self.search.distance(here, each.alignment.pose.planar) > same for each in found)
+
+    def covered(self, alignment: Alignment) -> NDArray[np.bool_]:
+        """Mark the pixels that an exposure hides: a box, and what scissors leave around it."""
+        (length, width), top = self.search.body, self.search.template.plate.height
+        corners = np.array([
+            (x, y, z)
+            for x in (-0.5 * length, 0.5 * length)
+            for y in (-0.5 * width, 0.5 * width)
+            for z in (-top, top)
+        ])  # fmt: skip
+        corners[:, :2] += _CUT * length * np.sign(corners[:, :2])
+        return self.filled(alignment, corners)
+
+    def share(self, alignment: Alignment, visible: NDArray[np.bool_]) -> float:
+        """Compute the share of an exposure's top that is visible."""
+        own = self.filled(alignment, self.body.plate.corners_body)
+        return float((own & visible).sum() / max(int(own.sum()), 1))
+
+    def filled(self, alignment: Alignment, points_body: Array) -> NDArray[np.bool_]:
+        R, _ = rotation_with_derivatives(*alignment.pose.state[3:])
+        points = points_body @ R.T + alignment.pose.state[:3]
+        seen = np.round(project(self.search.camera, self.search.view, points)).astype(np.int32)
+        mask = np.zeros(self.search.pixels.shape[:2], dtype=np.uint8)
+        cv2.fillConvexPoly(mask, cv2.convexHull(seen), (1,))
+        return mask.astype(bool)

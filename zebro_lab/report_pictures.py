@@ -13,6 +13,8 @@ CAPTIONS: Mapping[str, str] = {
     "corner": "Posterior of the slip law's parameters, each alone and each pair",
     "traces": "The sampler's walkers over its steps",
     "residuals": "What is left of each observation after the fit",
+    "walk_parameters": "What was believed of legs and floor before walks, and after them",
+    "left_out.": "A walk predicted from what the other walks say, beside its track",
     "overlay": "The tracked path over a photograph",
     "map": "The tracked path over the floor as seen from above, with 90 % regions",
     "path": "Predicted path from above, with the body at several times",

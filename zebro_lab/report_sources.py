@@ -14,12 +14,17 @@ from zebro_lab.errors import DataError, NotFound
 from zebro_lab.report_pictures import VALIDATION, place_of
 from zebro_lab.run_folder import MANIFEST_FILE, find_runs
 from zebro_lab.validation import PREDICTION
+from zebro_lab.walks_folder import FOLDER as WALKS
+from zebro_lab.walks_folder import WALKS_TOML
 
 MANIFEST, SUMMARY = "manifest.json", "summary.csv"
 TRACK, CALIBRATION = "track", "calibration"
+BESIDE: Mapping[str, tuple[str, ...]] = {CALIBRATION: (SLIP_TOML, SUMMARY), WALKS: (WALKS_TOML,)}
+"""What else of a stage's result is read, beside its manifest."""
 WALK_PARTS = (TRACK, PREDICTION, VALIDATION)
 MAKERS: Mapping[str, str] = {
     CALIBRATION: "zebro-lab calibrate {data} --out {folder}",
+    WALKS: "zebro-lab calibrate --walks {run} --walks RUN --out {folder}",
     TRACK: "zebro-lab track PHOTOS --camera camera.toml --floor floor.toml --run {run}",
     PREDICTION: "zebro-lab predict {run} --slip calibration --draws 500 --out {folder}",
     VALIDATION: "zebro-lab validate {run} --out {folder}",
@@ -90,18 +95,21 @@ class Sources:
         runs: Its runs, in the order of their names.
         calibration: The calibration.
         together: A validation of several runs together; None where the report is of one run.
+        walks: What walks said beside the calibration; None where none informed it.
     """
 
     data: Path
     runs: Sequence[Run]
     calibration: Part
     together: Part | None = None
+    walks: Part | None = None
 
     @property
     def parts(self) -> Sequence[Part]:
         """Every part, made or missing."""
         walks = [part for run in self.runs for part in run.parts.values()]
-        return [self.calibration, *walks, *([self.together] if self.together else [])]
+        more = [part for part in (self.walks, self.together) if part is not None]
+        return [self.calibration, *walks, *more]
 
     @property
     def simulated(self) -> Sequence[str]:
@@ -126,15 +134,17 @@ def find_sources(data: Path, *, calibration: Path) -> Sources:
     found = find_runs(data)
     own = [name for name in WALK_PARTS if (data / name / MANIFEST).is_file()]
     slip = _part(CALIBRATION, calibration, data)
+    walks = _part(WALKS, calibration / WALKS, data)
+    walks = None if walks.missing else walks
     if not found and not own:
         raise NotFound(
             f"{data} holds no run ({MANIFEST_FILE}) and none of {', '.join(WALK_PARTS)}; name a "
             "run folder, a folder of them, or a folder that track, predict and validate wrote into"
         )
     if data in found or not found:
-        return Sources(data, [_run(data)], slip)
+        return Sources(data, [_run(data)], slip, walks=walks)
     together = _part(VALIDATION, data / VALIDATION, data / "*")
-    return Sources(data, [_run(folder) for folder in found], slip, together)
+    return Sources(data, [_run(folder) for folder in found], slip, together, walks)
 
 
 def _run(folder: Path) -> Run:
@@ -148,8 +158,7 @@ def _part(name: str, folder: Path, data: Path) -> Part:
     maker = MAKERS[name].format(run=data, data=data, folder=folder)
     if not (folder / MANIFEST).is_file():
         return Part(name, folder, {}, (), maker)
-    names = (MANIFEST, *((SLIP_TOML, SUMMARY) if name == CALIBRATION else ()))
-    documents = {each: _read(folder / each) for each in names}
+    documents = {each: _read(folder / each) for each in (MANIFEST, *BESIDE.get(name, ()))}
     kind = documents[MANIFEST].get("kind")
     expected = {"predict", "walk"} if name == PREDICTION else {name}
     if kind not in expected:

@@ -243,7 +243,13 @@ def _walks_toml(fitted: WalksToWrite, inputs: Mapping[str, str]) -> str:
 def _case(found: Any, posterior: WalkPosterior) -> dict[str, Any]:
     row = {"name": found.name, "probability": found.probability}
     if isinstance(found.case, WrongLeg):
-        row |= {"leg": found.case.leg + 1, "offset": found.offset, "offset_sd": found.sd}
+        row |= {
+            "leg": found.case.leg + 1,
+            "offset": found.offset,
+            "offset_sd": found.sd,
+            "offset_deg": float(np.degrees(found.offset)),
+            "offset_sd_deg": float(np.degrees(found.sd)),
+        }
         if found.case.walk is not None:
             row["walk"] = posterior.walks[found.case.walk]
     return row

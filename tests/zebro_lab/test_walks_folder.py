@@ -3,6 +3,7 @@
 
 import json
 from dataclasses import replace
+from datetime import UTC, datetime
 
 import numpy as np
 import pandas as pd
@@ -18,6 +19,7 @@ from zebro_lab.path_band import BandRequest, read_draws
 from zebro_lab.robot_file import RobotFile
 from zebro_lab.slip_argument import parse_slip
 from zebro_lab.stages.predict import PredictRequest, predict
+from zebro_lab.stages.report import ReportRequest, report
 from zebro_lab.validation import read_prediction
 from zebro_lab.walk_folder import read_walk, read_walk_manifest
 from zebro_lab.walking import ModelRequest
@@ -38,6 +40,7 @@ normal_force = [2.0, 13.0]
 slip_ratio = [0.0, 1.0]
 """
 STEERING, STRIDE = LINEAR
+GRIP = NAMES.index("grip")
 KNOCKED = WrongLeg(2, walk=1)
 OFF = np.radians(5.0)
 
@@ -57,6 +60,7 @@ def posterior_of(case, *, steering=0.0):
     cases = all_cases(2)
     values = np.zeros((40, WRONG + 1))
     values[:, WRONG], values[:, STEERING] = OFF, steering
+    values[:, GRIP] = WalkPrior().grip_sd * np.linspace(-1.7, 1.7, len(values))  # not informed
     n = len(values)
     return WalkPosterior(
         prior=WalkPrior(),
@@ -65,7 +69,7 @@ def posterior_of(case, *, steering=0.0):
         values=values,
         case=np.full(n, cases.index(case)),
         weight=np.full(n, 1 / n),
-        best=values[0],
+        best=values[20],
         best_case=case,
         misfit=(0.9, 1.1),
     )
@@ -240,3 +244,20 @@ def test_a_walked_path_is_not_given_offsets_twice(calibration, legs, tmp_path):
     predicted(tmp_path, legs[0], str(calibration))
     again = predicted(tmp_path, tmp_path / "prediction", str(calibration), name="again")
     assert not again.informed.middle.offset.any()
+
+
+def test_a_report_tells_what_walks_said_and_what_they_did_not(calibration, legs, tmp_path):
+    stored(calibration, legs, posterior_of(WrongLeg(2)))
+    run = tmp_path / "run"
+    run.mkdir()
+    predicted(run, legs[0], str(calibration))
+    page = tmp_path / "report.html"
+    report(ReportRequest(run, calibration, page), made=datetime(2026, 1, 2, tzinfo=UTC))
+    text = page.read_text()
+    assert "What walks said of legs and floor" in text
+    assert "Mounted wrong: leg 3" in text
+    assert "SIMULATED: sim:dynamics, sim:test" in text
+    assert text.count("data:image/png") >= 1
+    told = read_walks_beside(calibration / "slip.toml").posterior.contractions()
+    silent = next(each.name for each in told if not each.informed)
+    assert silent.replace("_", " ") in text

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Accuracy, recall and coverage on simulated photographs; the long tests print the table."""
+"""Accuracy and recall on a few simulated photographs; `tests/long` measures them on hundreds."""
 
 from dataclasses import dataclass
 
@@ -97,7 +97,7 @@ def run(case: Case, count: int, seed: int):
     return np.array(errors), np.array(z), len(errors) / count
 
 
-def check(case: Case, count: int, seed: int):
+def check(case: Case, count: int, seed: int) -> None:
     errors, z, recall = run(case, count, seed)
     xy = 1e3 * np.sqrt(np.mean(np.sum(errors[:, :2] ** 2, axis=1)))
     yaw = np.degrees(np.sqrt(np.mean(errors[:, 2] ** 2)))
@@ -107,15 +107,8 @@ def check(case: Case, count: int, seed: int):
     assert xy < case.xy_mm, row
     assert yaw < case.yaw_deg, row
     assert recall >= case.recall, row
-    return row
 
 
 @pytest.mark.parametrize("case", CASES, ids=lambda case: case.name)
 def test_a_few_simulated_photographs_keep_the_promise(case):
     check(case, 6, seed=0)
-
-
-@pytest.mark.long
-@pytest.mark.parametrize("case", CASES, ids=lambda case: case.name)
-def test_a_hundred_simulated_photographs_keep_the_promise(case, record_property):
-    record_property("row", check(case, 100, seed=1))

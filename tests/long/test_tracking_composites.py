@@ -1,0 +1,201 @@
+# SPDX-License-Identifier: MIT
+"""How many exposures are found in simulated composite photographs, and how far they are off."""
+
+from concurrent.futures import ProcessPoolExecutor
+from dataclasses import dataclass
+from functools import cache
+
+import cv2
+import numpy as np
+import pytest
+
+from tracking.body import marker_template
+from tracking.camera import Camera, CameraPose
+from tracking.composite import find_exposures, order_exposures
+from tracking.errors import CompositeError
+from tracking.pose import BodyPrior, RobotMarker
+from tracking.synthetic import (
+    BodyPose,
+    CompositeKind,
+    Conditions,
+    FloorMarker,
+    RobotState,
+    Scene,
+    composite,
+    look_at,
+    render_background,
+    take_photo,
+)
+from tracking.synthetic import RobotMarker as DrawnMarker
+
+pytestmark = pytest.mark.long
+
+PLACES = ((0.1, -0.1, 0.3), (1.5, -0.1, -0.4), (1.6, 1.2, 0.5), (0.0, 1.3, -0.2))
+BODY = (0.24, 0.20)  # m, as drawn
+HEIGHT, HEIGHT_SD, TILT_SD = 0.0645, 3e-4, 2e-3  # m, m, rad
+GOOD = Conditions(defocus_sd_px=0.6)
+WALKS = 15
+LEG_TURN = 2.6  # between exposures, so that legs stand differently in each [rad]
+STANDING = np.array([1.2, 4.4, 4.4, 1.2, 1.2, 4.4])
+# An exposure farther from every true one than this is none [m, rad].
+NEAR, TURN = 0.03, np.radians(20)
+
+
+@dataclass(frozen=True)
+class Case:
+    """A row of the table: how far exposures are apart, and what is promised."""
+
+    name: str
+    step: float
+    exposures: int
+    xy_mm: float
+    yaw_deg: float
+    recall: float
+
+
+CASES = (
+    Case("1.1 body lengths apart", 0.264, 5, 1.0, 0.5, 0.98),
+    Case("half a body apart", 0.12, 8, 4.0, 2.0, 0.70),
+)
+
+
+@cache
+def stage() -> tuple[Scene, np.ndarray, np.ndarray]:
+    """Return the scene, its picture without a robot and the pixels of its markers."""
+    camera = look_at((0.8, -1.2, 1.8), (0.8, 0.6, 0.0))
+    markers = tuple(FloorMarker(10 + k, (x, y), 0.12, yaw) for k, (x, y, yaw) in enumerate(PLACES))
+    hidden = np.zeros((camera.height, camera.width), np.uint8)
+    for marker in markers:
+        corners = camera.project(marker.corners)
+        outline = corners.mean(axis=0) + 1.5 * (corners - corners.mean(axis=0))
+        cv2.fillConvexPoly(hidden, np.round(outline).astype(np.int32), (1,))
+    scene = Scene(camera, markers)
+    return scene, render_background(scene), hidden.astype(bool)
+
+
+def draw_walk(case: Case, rng: np.random.Generator) -> np.ndarray:
+    """Draw a winding walk in the picture's middle; x, y, yaw of its exposures, shape (n, 3)."""
+    while True:
+        yaw = rng.uniform(-np.pi, np.pi) + np.cumsum(
+            rng.normal(0, 0.08) + rng.normal(0, 0.03, case.exposures)
+        )
+        step = case.step * rng.uniform(0.95, 1.05, case.exposures)
+        xy = np.cumsum(step[:, None] * np.column_stack((np.cos(yaw), np.sin(yaw))), axis=0)
+        xy += rng.uniform((0.5, 0.3), (1.1, 0.8)) - xy.mean(axis=0)
+        if ((xy > (0.15, 0.0)) & (xy < (1.45, 1.1))).all():
+            return np.column_stack((xy, yaw))
+
+
+def photographs(walk: np.ndarray, rng: np.random.Generator) -> list:
+    scene, background, _ = stage()
+    photos = []
+    for count, (x, y, yaw) in enumerate(walk):
+        pose = BodyPose(x, y, yaw, HEIGHT + rng.normal(0, HEIGHT_SD), *rng.normal(0, TILT_SD, 2))
+        legs = tuple(np.mod(STANDING + LEG_TURN * count, 2 * np.pi))
+        photos.append(
+            take_photo(scene, RobotState(pose, legs), conditions=GOOD, rng=rng,
+                       background=background)
+        )  # fmt: skip
+    return photos
+
+
+def one_walk(task: tuple[int, int]) -> dict[str, np.ndarray]:
+    """Photograph one walk; return what is found in its composites, in order, shape (n, 3)."""
+    cv2.setNumThreads(1)
+    rng = np.random.default_rng(task)
+    photos = photographs(draw_walk(CASES[task[0]], rng), rng)
+    return {kind.value: exposures_in(composite(photos, kind)) for kind in CompositeKind}
+
+
+def exposures_in(picture: np.ndarray) -> np.ndarray:
+    scene, _, hidden = stage()
+    camera, marker = scene.camera, DrawnMarker()
+    try:
+        found = find_exposures(
+            picture,
+            Camera((camera.width, camera.height), camera.matrix, np.array(camera.distortion)),
+            CameraPose.from_matrix(camera.rotation, camera.translation),
+            template=marker_template(
+                RobotMarker(0, marker.side, "4x4_50", (0.0, 0.0, marker.height))
+            ),
+            prior=BodyPrior(HEIGHT, HEIGHT_SD, TILT_SD), body_size=BODY, hidden=hidden,
+        )  # fmt: skip
+    except CompositeError:
+        return np.zeros((0, 3))
+    poses = np.array([each.alignment.pose.planar for each in found])
+    return poses[list(order_exposures(poses))]
+
+
+@dataclass(frozen=True)
+class Row:
+    """What came of one kind of merging."""
+
+    found: int
+    there: int
+    false: int
+    ordered: bool
+    error: np.ndarray
+
+    @classmethod
+    def of(cls, walks: list[np.ndarray], found: list[np.ndarray]) -> "Row":
+        parts = [_compared(walk, poses) for walk, poses in zip(walks, found, strict=True)]
+        error = np.concatenate([error for _, error in parts])
+        places = [place for place, _ in parts]
+        return cls(
+            sum(len(set(place)) for place in places),
+            sum(len(walk) for walk in walks),
+            sum(len(poses) for poses in found) - sum(len(set(place)) for place in places),
+            all(place == sorted(place) for place in places),
+            error,
+        )
+
+    @property
+    def xy_mm(self) -> float:
+        return 1e3 * float(np.sqrt(np.mean(np.sum(self.error[:, :2] ** 2, axis=1))))
+
+    @property
+    def yaw_deg(self) -> float:
+        return float(np.degrees(np.sqrt(np.mean(self.error[:, 2] ** 2))))
+
+
+def _compared(walk: np.ndarray, poses: np.ndarray) -> tuple[list[int], np.ndarray]:
+    """Return for every exposure found which true one it is, and its error, without the false."""
+    error = poses[:, None] - walk[None]
+    error[..., 2] = np.angle(np.exp(1j * error[..., 2]))
+    distance = np.hypot(error[..., 0], error[..., 1])
+    nearest = distance.argmin(axis=1) if len(poses) else np.zeros(0, int)
+    own = error[np.arange(len(poses)), nearest]
+    true = (np.hypot(own[:, 0], own[:, 1]) < NEAR) & (np.abs(own[:, 2]) < TURN)
+    return nearest[true].tolist(), own[true]
+
+
+@pytest.fixture(scope="module", params=CASES, ids=lambda case: case.name)
+def measured(request) -> tuple[Case, dict[str, Row]]:
+    """Find the exposures of every walk in each kind of composite."""
+    case = request.param
+    tasks = [(CASES.index(case), n) for n in range(WALKS)]
+    with ProcessPoolExecutor(2) as pool:
+        found = list(pool.map(one_walk, tasks))
+    walks = [draw_walk(case, np.random.default_rng(task)) for task in tasks]
+    rows = {
+        kind.value: Row.of(walks, [each[kind.value] for each in found]) for kind in CompositeKind
+    }
+    print("\n\n| simulated | kind | found | false | order | x, y rms | yaw rms |")  # noqa: T201
+    for kind, row in rows.items():
+        print(  # noqa: T201 `make test-long` is run for it
+            f"| {case.name} | {kind} | {row.found} of {row.there} | {row.false} | "
+            f"{'right' if row.ordered else 'wrong'} | {row.xy_mm:.2f} mm | {row.yaw_deg:.2f}° |",
+            flush=True,
+        )
+    return case, rows
+
+
+@pytest.mark.parametrize("kind", [kind.value for kind in CompositeKind])
+def test_exposures_are_found_and_none_is_made_up(measured, kind):
+    case, rows = measured
+    row = rows[kind]
+    assert row.found >= case.recall * row.there
+    assert row.false == 0
+    assert row.ordered
+    assert row.xy_mm < case.xy_mm
+    assert row.yaw_deg < case.yaw_deg

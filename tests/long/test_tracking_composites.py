@@ -34,7 +34,6 @@ PLACES = ((0.1, -0.1, 0.3), (1.5, -0.1, -0.4), (1.6, 1.2, 0.5), (0.0, 1.3, -0.2)
 BODY = (0.24, 0.20)  # m, as drawn
 HEIGHT, HEIGHT_SD, TILT_SD = 0.0645, 3e-4, 2e-3  # m, m, rad
 GOOD = Conditions(defocus_sd_px=0.6)
-WALKS = 15
 LEG_TURN = 2.6  # between exposures, so that legs stand differently in each [rad]
 STANDING = np.array([1.2, 4.4, 4.4, 1.2, 1.2, 4.4])
 # An exposure farther from every true one than this is none [m, rad].
@@ -43,19 +42,20 @@ NEAR, TURN = 0.03, np.radians(20)
 
 @dataclass(frozen=True)
 class Case:
-    """A row of the table: how far exposures are apart, and what is promised."""
+    """A row of the table: how far exposures are apart [m], how many of how many walks, the promise."""
 
     name: str
     step: float
     exposures: int
+    walks: int
     xy_mm: float
     yaw_deg: float
     recall: float
 
 
 CASES = (
-    Case("1.1 body lengths apart", 0.264, 5, 1.0, 0.5, 0.98),
-    Case("half a body apart", 0.12, 8, 4.0, 2.0, 0.70),
+    Case("1.1 body lengths apart", 0.264, 5, 20, 1.0, 0.5, 0.98),
+    Case("half a body apart", 0.12, 8, 13, 4.0, 2.0, 0.70),
 )
 
 
@@ -173,7 +173,7 @@ def _compared(walk: np.ndarray, poses: np.ndarray) -> tuple[list[int], np.ndarra
 def measured(request) -> tuple[Case, dict[str, Row]]:
     """Find the exposures of every walk in each kind of composite."""
     case = request.param
-    tasks = [(CASES.index(case), n) for n in range(WALKS)]
+    tasks = [(CASES.index(case), n) for n in range(case.walks)]
     with ProcessPoolExecutor(2) as pool:
         found = list(pool.map(one_walk, tasks))
     walks = [draw_walk(case, np.random.default_rng(task)) for task in tasks]

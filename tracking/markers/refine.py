@@ -33,6 +33,10 @@ CORNER_FLOOR_PX = 0.003
 _LAGS_PX = 8
 """How far apart pixels may err alike: a block of JPEG [px]."""
 
+_SLOPE = np.array([[1.0, -8.0, 0.0, 8.0, -1.0]]) / 12
+"""Difference of five points: that of three takes a sharp edge for less steep than it is."""
+
+_UNITS = np.eye(8).reshape(8, 4, 2)
 _USUAL_SIDE = 60.0
 _MARGIN = 0.09
 _BLURS_INSIDE = 2.5
@@ -95,7 +99,7 @@ def refine_corners(
 
 @dataclass(frozen=True)
 class _Patch:
-    """A window of the picture: its corner there [px], its pixels, and by how much it is shrunk.
+    """A window of the picture: its corner there, its pixels, its shrinking, its pixels' places.
 
     A marker of hundreds of pixels is shrunk: corners need no more than some dozens a side, and
     time goes with their square. Shrunk, not thinned out: every second pixel of every second row
@@ -106,6 +110,7 @@ class _Patch:
     origin: Array
     values: Array
     shrink: int
+    points: Array
 
     @classmethod
     def around(cls, grey: NDArray[np.uint8], corners_px: Array, shrink: int) -> "_Patch | None":
@@ -120,7 +125,9 @@ class _Patch:
         values = cv2.resize(
             window.astype(np.float32), (width, height), interpolation=cv2.INTER_AREA
         )
-        return cls(low.astype(float), np.asarray(values, dtype=float), shrink)
+        row, column = np.indices((height, width))
+        points = np.column_stack((column.ravel(), row.ravel())).astype(float)
+        return cls(low.astype(float), np.asarray(values, dtype=float), shrink, points)
 
     def own(self, corners_px: Array) -> Array:
         """Turn pixels of the picture into pixels of the patch, centres at integers in both."""
@@ -197,27 +204,29 @@ def _autocovariance(left: Array, used: Array, *, lags: int) -> Array:
 
 def _look(fit: _Fit, patch: _Patch, dictionary: str, marker_id: int) -> _Look | None:
     """Draw the marker as the fit has it and compare it with the picture."""
-    points = _pixels_used(fit, patch, _cells(dictionary))
-    if len(points) < 40:
+    H = square_homography(fit.corners)
+    own = apply_homography(np.linalg.inv(H), patch.points)
+    used = np.flatnonzero(_is_used(own, fit, _cells(dictionary)))
+    if len(used) < 40:
         return None
-    column, row = points.T.astype(int)
-    values = patch.values[row, column]
-    drawn = _draw(dictionary, marker_id, fit.corners, fit.blur, patch.values.shape)
-    shade = np.column_stack((np.ones(len(points)), points - points.mean(axis=0)))
-    tone = drawn[row, column]
-    light_design = np.column_stack((shade, tone, tone * (1 - tone)))
-    light = np.linalg.lstsq(light_design.T @ light_design, light_design.T @ values, rcond=None)[0]
+    points, own, values = patch.points[used], own[used], patch.values.ravel()[used]
+    drawn = _draw(dictionary, marker_id, H, fit, patch.values.shape)
+    tone = drawn.ravel()[used]
+    # One column a row of memory: each is read and written as a whole.
+    design = np.empty((14, len(used)))
+    design[9], design[10:12] = 1.0, (points - points.mean(axis=0)).T
+    design[12], design[13] = tone, tone * (1 - tone)
+    light = np.linalg.lstsq(design[9:] @ design[9:].T, design[9:] @ values, rcond=None)[0]
     contrast = light[3]
     if contrast <= 1.0:  # less than a grey level: nothing, or a negative
         return None
     steepness = contrast + light[4] * (1 - 2 * tone)
-    geometry = steepness[:, None] * _geometry_design(fit, drawn, points)
-    design = np.column_stack((geometry, light_design))
+    design[:9] = steepness * _geometry_design(fit, H, drawn, used, own, points)
     inverse = _inverse_normal(design)
     if inverse is None:
         return None
-    score = _likeness(fit.corners, points, values - shade @ light[:3], tone, dictionary)
-    return _Look(points, design, inverse, values - light_design @ light, contrast, score)
+    score = _likeness(own, values - light[:3] @ design[9:12], tone, dictionary)
+    return _Look(points, design.T, inverse, values - light @ design[9:], contrast, score)
 
 
 def _improved(fit: _Fit, look: _Look) -> tuple[_Fit, float]:
@@ -230,18 +239,39 @@ def _improved(fit: _Fit, look: _Look) -> tuple[_Fit, float]:
     return _Fit(corners, blur), float(np.abs(step[:8]).max())
 
 
-def _geometry_design(fit: _Fit, drawn: Array, points: Array) -> Array:
-    """Compute how drawn pixels change with the eight corner numbers and the blur, shape (n, 9)."""
-    column, row = points.T.astype(int)
-    slope = np.column_stack([np.gradient(drawn, axis=axis)[row, column] for axis in (1, 0)])
-    by_corner = -np.einsum("pa,pak->pk", slope, _corner_flow(fit.corners, points))
+def _geometry_design(
+    fit: _Fit, H: Array, drawn: Array, used: NDArray, own: Array, points: Array
+) -> Array:
+    """Compute how drawn pixels change with the eight corner numbers and the blur, shape (9, n).
+
+    With p = (H own) / w, w the third component, a point of the marker moves with its corners by
+    dp = (dH own - p (dH own)_3) / w, and what is drawn there by minus the slope times dp.
+    """
+    across, down = (
+        np.asarray(cv2.filter2D(drawn, cv2.CV_64F, kernel)).ravel()[used]
+        for kernel in (_SLOPE, _SLOPE.T)
+    )
+    x, y = points.T
+    along = np.stack((-across, -down, across * x + down * y))
+    along /= H[2, 0] * own[:, 0] + H[2, 1] * own[:, 1] + H[2, 2]
+    by_H = np.empty((3, 3, len(used)))
+    by_H[:, 0], by_H[:, 1], by_H[:, 2] = along * own[:, 0], along * own[:, 1], along
+    design = np.empty((9, len(used)))
+    design[:8] = _slopes_of_homography(fit.corners, H).reshape(9, 8).T @ by_H.reshape(9, -1)
     # d/ds of a Gaussian blur of s is s times the Laplacian (heat equation).
-    by_blur = fit.blur * np.asarray(cv2.Laplacian(drawn, cv2.CV_64F))[row, column]
-    return np.column_stack((by_corner, by_blur))
+    design[8] = fit.blur * np.asarray(cv2.Laplacian(drawn, cv2.CV_64F)).ravel()[used]
+    return design
+
+
+def _slopes_of_homography(corners: Array, H: Array) -> Array:
+    """Compute how the perspective changes with its corners, shape (3, 3, 8)."""
+    step = 1e-4 * _shortest_side(corners)
+    moved = [square_homography(corners + step * unit) for unit in _UNITS]
+    return (np.stack(moved, axis=-1) - H[:, :, None]) / step
 
 
 def _inverse_normal(design: Array) -> Array | None:
-    normal = design.T @ design
+    normal = design @ design.T
     normal[8, 8] += 1e-3 * normal[8, 8] + 1e-9  # a sharp picture says nothing about its blur
     try:
         return np.linalg.inv(normal + 1e-12 * np.trace(normal) * np.eye(len(normal)))
@@ -249,9 +279,8 @@ def _inverse_normal(design: Array) -> Array | None:
         return None
 
 
-def _likeness(corners: Array, points: Array, values: Array, drawn: Array, dictionary: str) -> float:
+def _likeness(own: Array, values: Array, drawn: Array, dictionary: str) -> float:
     # Only cells inside the black border tell one marker from another: all have the border.
-    own = apply_homography(np.linalg.inv(square_homography(corners)), points)
     inside = (np.abs(own - 0.5) < 0.5 - 1 / _cells(dictionary)).all(axis=1)
     if inside.sum() < 16:
         return 0.0
@@ -259,41 +288,22 @@ def _likeness(corners: Array, points: Array, values: Array, drawn: Array, dictio
     return float(a @ b / np.sqrt(max((a @ a) * (b @ b), 1e-12)))
 
 
-def _pixels_used(fit: _Fit, patch: _Patch, cells: int) -> Array:
+def _is_used(own: Array, fit: _Fit, cells: int) -> NDArray[np.bool_]:
     """Choose the marker's pixels and those of its white margin that nothing beyond it blurs into.
 
     Every print has a margin one cell wide; what lies beyond it is not known.
     """
-    row, column = np.indices(patch.values.shape)
-    points = np.column_stack((column.ravel(), row.ravel())).astype(float)
-    own = apply_homography(np.linalg.inv(square_homography(fit.corners)), points)
     blurred = _BLURS_INSIDE * fit.blur / _shortest_side(fit.corners)
     margin = np.clip(1 / cells - blurred, 0.0, _MARGIN)
-    return points[(np.abs(own - 0.5) < 0.5 + margin).all(axis=1)]
+    return (np.abs(own - 0.5) < 0.5 + margin).all(axis=1)
 
 
-def _corner_flow(corners: Array, points: Array) -> Array:
-    """Compute how the marker's points in the picture move with its corners, shape (n, 2, 8).
-
-    With p = (H own) / w, w the third component: dp = (dH own - p (dH own)_3) / w.
-    """
-    H = square_homography(corners)
-    step = 1e-4 * _shortest_side(corners)
-    moved = [square_homography(corners + step * unit) for unit in np.eye(8).reshape(8, 4, 2)]
-    slope = (np.stack(moved, axis=-1) - H[:, :, None]) / step
-    own = np.column_stack((apply_homography(np.linalg.inv(H), points), np.ones(len(points))))
-    change = np.tensordot(own, slope, axes=(1, 1)) / (own @ H[2])[:, None, None]
-    return change[:, :2] - points[:, :, None] * change[:, 2:]
-
-
-def _draw(
-    dictionary: str, marker_id: int, corners: Array, blur: float, shape: tuple[int, ...]
-) -> Array:
+def _draw(dictionary: str, marker_id: int, H: Array, fit: _Fit, shape: tuple[int, ...]) -> Array:
     cells = _cells(dictionary)
     n = 4
     # Half as fine as what it is sampled at where the marker is foreshortened most: then reading
     # between its points places an edge along a row of pixels, and not at the nearest sample.
-    fine_px = n * _shortest_side(corners) / cells
+    fine_px = n * _shortest_side(fit.corners) / cells
     cell_px = int(np.clip(2 ** np.floor(np.log2(fine_px / 2)), 4, 64))
     picture = marker_picture(dictionary, marker_id, cell_px)
     inner = cells * cell_px
@@ -302,11 +312,11 @@ def _draw(
     ) / inner  # fmt: skip
     fine = np.array([[n, 0, (n - 1) / 2], [0, n, (n - 1) / 2], [0, 0, 1.0]])
     drawn = cv2.warpPerspective(
-        picture, fine @ square_homography(corners) @ own_from_drawn,
+        picture, fine @ H @ own_from_drawn,
         (shape[1] * n, shape[0] * n), flags=cv2.INTER_LINEAR, borderValue=(1.0,)
     )  # fmt: skip
     drawn = cv2.resize(drawn, (shape[1], shape[0]), interpolation=cv2.INTER_AREA)
-    return np.asarray(cv2.GaussianBlur(drawn.astype(float), (0, 0), blur), dtype=float)
+    return np.asarray(cv2.GaussianBlur(drawn.astype(float), (0, 0), fit.blur), dtype=float)
 
 
 def _cells(dictionary: str) -> int:

@@ -15,6 +15,7 @@ import sys
 import tempfile
 import time
 from pathlib import Path
+from typing import Literal, TypeAlias
 
 import numpy as np
 import pandas as pd
@@ -25,16 +26,23 @@ from model.robot import GRAVITY, Robot
 from model.walk.ensemble import WalkDraw, planar_walk
 from zebro_lab.slip_argument import parse_slip
 
+Side: TypeAlias = Literal["left", "right"]
+
 DURATION = 30.0  # s
 STEP = np.radians(3.6)
 EVERY = 2.0  # s
 NOISE = np.array([0.002, 0.002, np.radians(0.3)])
-TURNS = ((1.0, "left"), (1.1, "left"), (1.2, "right"), (1.3, "left"))
+TURNS: tuple[tuple[float, Side], ...] = (
+    (1.0, "left"),
+    (1.1, "left"),
+    (1.2, "right"),
+    (1.3, "left"),
+)
 DRAWS = 1000
 BIN = Path(sys.executable).parent
 
 
-def write_walk(folder: Path, steering: float, side: str, calibration: Path, seed: int) -> Path:
+def write_walk(folder: Path, steering: float, side: Side, calibration: Path, seed: int) -> Path:
     """Write a walk's counted leg log and its track."""
     reference = tripod_reference(tripod_angles(np.radians(50.0), steering), 2.0, direction=side)
     robot = Robot()
@@ -48,7 +56,8 @@ def write_walk(folder: Path, steering: float, side: str, calibration: Path, seed
     )
     seen = np.arange(0.0, DURATION, EVERY)
     noise = np.random.default_rng(seed).normal(size=(len(seen), 3)) * NOISE
-    x, y, yaw = (np.interp(seen, true.t, a) for a in (true.x, true.y, true.yaw)) + noise.T
+    truth = np.array([np.interp(seen, true.t, a) for a in (true.x, true.y, true.yaw)])
+    x, y, yaw = truth + noise.T
     covariance = dict(zip(("cov_xx", "cov_yy", "cov_yawyaw"), NOISE**2, strict=True))
     pd.DataFrame({
         "t_s": seen, "x_m": x, "y_m": y, "yaw_rad": yaw, **covariance,

@@ -37,10 +37,24 @@ UNLIKELY = 4.0  # below the best log evidence: such a case is not climbed
 
 
 class ModeSearch:
-    """Residuals of all walks in standard normal coordinates, and the searches over them."""
+    """Residuals of all walks in standard normal coordinates, and the searches over them.
 
-    def __init__(self, misfits: Sequence[WalkMisfit], prior: WalkPrior, threads: int) -> None:
+    Args:
+        misfits: The walks.
+        prior: What is believed before.
+        threads: Walks computed at once.
+        numbers: How cases count these walks; in their order when None.
+    """
+
+    def __init__(
+        self,
+        misfits: Sequence[WalkMisfit],
+        prior: WalkPrior,
+        threads: int,
+        numbers: Sequence[int] | None = None,
+    ) -> None:
         self.misfits, self.prior, self.threads = misfits, prior, threads
+        self.numbers = range(len(misfits)) if numbers is None else numbers
         self.ends = np.cumsum([len(misfit.root) for misfit in misfits])
 
     def modes(self, *, tell: Callable[[float], None]) -> list[Mode]:
@@ -70,7 +84,7 @@ class ModeSearch:
         return np.concatenate(
             [
                 misfit.residuals(legs_of(values, case, walk=w), threads=self.threads)
-                for w, misfit in enumerate(self.misfits)
+                for w, misfit in zip(self.numbers, self.misfits, strict=True)
             ],
             axis=1,
         )

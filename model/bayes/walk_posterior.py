@@ -82,7 +82,7 @@ class WalkPosterior:
             (n, 14) [rad, -].
         case: Index of each draw's case, shape (n,).
         weight: Weight of each draw, together one, shape (n,) [-].
-        best: The mean in the likeliest case, shape (14,).
+        best: The mode of the likeliest case, shape (14,).
         best_case: That case.
         misfit: Mean squared whitened residual of each walk there, at most about 1 [-].
     """

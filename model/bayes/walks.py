@@ -163,12 +163,20 @@ class WalkFit:
     def _best(
         self, weight: Array, case: int, keep: Sequence[int]
     ) -> tuple[Array, tuple[float, ...]]:
-        """Return the mean in a case, with the steering and stride that suit it, and its misfit."""
-        mean = (weight @ self._drawn.z / weight.sum())[None]
-        terms = self._density.terms(mean, np.array([case]))
-        y, _ = terms.only(keep).conditional()
-        sizes = [len(misfit.root) for misfit in self._density.misfits]
-        scale = self._density.prior.scale
-        best = np.zeros(WRONG + 1)
-        best[WALKED], best[LINEAR] = mean[0] * scale[WALKED], y[0] * scale[LINEAR]
-        return best, tuple(float(each) for each in terms.squares_at(y)[0] / sizes)
+        """Climb to a case's mode, and return it with every walk's misfit there.
+
+        Not the mean: on a kink of the posterior that lies to the side on which nothing changes, and
+        does not walk as the draws do.
+        """
+        density = self._density
+        start = np.zeros(WRONG + 1)
+        if density.cases[case] is not None:  # a leg's scan has several tops; the draws know which
+            start[WRONG] = (weight @ self._drawn.z / weight.sum())[WALKED.index(WRONG)]
+        search = ModeSearch(
+            [density.misfits[w] for w in keep], density.prior, density.threads, numbers=keep
+        )
+        mode, _ = search.climb(density.cases[case], start)
+        terms = density.terms(mode.z[WALKED][None], np.array([case]))
+        sizes = [len(misfit.root) for misfit in density.misfits]
+        misfit = terms.squares_at(mode.z[LINEAR][None])[0] / sizes
+        return mode.z * density.prior.scale, tuple(float(each) for each in misfit)

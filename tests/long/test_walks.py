@@ -1,0 +1,92 @@
+# SPDX-License-Identifier: MIT
+"""What walks must do for a prediction, on walks of an independent engine; tables are printed."""
+
+import importlib.util
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from model.bayes.walk_prior import WrongLeg
+
+DOCS = Path(__file__).parents[2] / "docs"
+COLUMNS = """
+source = "sim:virtual-world"
+columns.normal_force = "Fn"
+columns.traction_force = "Ft"
+columns.omega_leg = "omega_l"
+columns.omega_ground = "omega_g"
+constants = { radius_leg = "35 mm", radius_ground = "120 mm" }
+runs.by = ["Fn_set", "kappa_set"]
+"""
+RADIUS, YAW_RATE, OF_PATH = 0.02, 0.1, 0.02  # of radius, deg/s, rms of path
+COVERED = (0.80, 0.97)
+OFFSET = np.radians(1.0)
+
+pytestmark = [pytest.mark.long, pytest.mark.reference, pytest.mark.timeout(5400)]
+
+
+@pytest.fixture(scope="module")
+def script():
+    sys.path.insert(0, str(DOCS))
+    spec = importlib.util.spec_from_file_location("walks", DOCS / "walks_virtual_world.py")
+    module = importlib.util.module_from_spec(spec)
+    sys.modules["walks"] = module
+    spec.loader.exec_module(module)
+    yield module
+    sys.path.remove(str(DOCS))
+
+
+@pytest.fixture(scope="module")
+def bench(script, shared, tmp_path_factory):
+    place = tmp_path_factory.mktemp("walks")
+    (place / "columns.toml").write_text(COLUMNS)
+    command = Path(sys.executable).with_name("calibrate-slip")
+    subprocess.run(
+        [command, shared / "virtual-world" / "rig", "--columns", place / "columns.toml",
+         "--curvature", "constant", "--out", place / "calibration"],
+        check=True, capture_output=True,
+    )  # fmt: skip
+    return script.Bench(place / "calibration", place / "walks")
+
+
+@pytest.fixture(scope="module")
+def half_circles(script, bench):
+    scored = list(script.half_circles(bench))
+    script.print_rows(scored)
+    return scored
+
+
+def test_turns_are_predicted_within_two_percent(half_circles):
+    for each in half_circles:
+        error, unit = each.turn_error
+        assert abs(error) < (RADIUS if unit == "of radius" else YAW_RATE), each.walk.name
+
+
+def test_positions_are_predicted_within_two_percent_of_the_path(half_circles):
+    for each in half_circles:
+        assert each.judged.rows[0].errors.ate_of_length < OF_PATH, each.walk.name
+
+
+def test_bands_hold_what_they_say(script, half_circles):
+    held = np.concatenate([script.cover(each) for each in half_circles])
+    assert COVERED[0] <= held.mean() <= COVERED[1]
+
+
+def test_scores_beat_those_of_every_baseline(half_circles):
+    for each in half_circles:
+        prediction, *others = each.judged.rows
+        assert prediction.scores.energy < min(other.scores.energy for other in others)
+
+
+@pytest.mark.parametrize("leg", range(6))
+def test_a_leg_five_degrees_off_in_every_walk_is_found_within_one(script, bench, leg):
+    wrong = (leg, np.radians(5.0))
+    names = [script.FIRST, *script.HALF_CIRCLES[3:]]
+    posterior = bench.fit([bench.walk(name, wrong=wrong) for name in names]).posterior
+    script.print_found(posterior, f"leg {leg + 1} off in all three")
+    likeliest = posterior.found()[0]
+    assert likeliest.case == WrongLeg(leg)
+    assert abs(likeliest.offset - wrong[1]) < OFFSET

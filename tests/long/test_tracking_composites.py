@@ -42,7 +42,7 @@ NEAR, TURN = 0.03, np.radians(20)
 
 @dataclass(frozen=True)
 class Case:
-    """A row of the table: how far exposures are apart [m], how many of how many walks, the promise."""
+    """A row of the table: how far exposures are apart [m], how many there are, the promise."""
 
     name: str
     step: float

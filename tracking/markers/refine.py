@@ -180,8 +180,8 @@ class _Look:
         kernel = _autocovariance(left, used, lags=max(2, round(_LAGS_PX / patch.shrink)))
         freedom = len(self.points) / max(len(self.points) - 14, 1)
         smeared = np.empty_like(self.design)
+        laid = np.zeros(shape)
         for index, slope in enumerate(self.design.T):
-            laid = np.zeros(shape)
             laid[row, column] = slope
             smeared[:, index] = cv2.filter2D(
                 laid, cv2.CV_64F, kernel, borderType=cv2.BORDER_CONSTANT
@@ -192,9 +192,9 @@ class _Look:
 
 def _autocovariance(left: Array, used: Array, *, lags: int) -> Array:
     """Compute the residual's covariance by distance, tapered, shape (2 lags + 1, 2 lags + 1)."""
-    pad = ((0, lags), (0, lags))
-    power = [np.abs(np.fft.fft2(np.pad(part, pad))) ** 2 for part in (left, used)]
-    product, pairs = (np.real(np.fft.ifft2(part)) for part in power)
+    shape = (left.shape[0] + lags, left.shape[1] + lags)
+    power = [np.abs(np.fft.rfft2(part, shape)) ** 2 for part in (left, used)]
+    product, pairs = (np.fft.irfft2(part, shape) for part in power)
     mean = product / np.maximum(pairs, 1.0)
     near = np.roll(mean, (lags, lags), axis=(0, 1))[: 2 * lags + 1, : 2 * lags + 1]
     # Bartlett's window in both directions keeps the covariance positive.
@@ -266,8 +266,8 @@ def _geometry_design(
 def _slopes_of_homography(corners: Array, H: Array) -> Array:
     """Compute how the perspective changes with its corners, shape (3, 3, 8)."""
     step = 1e-4 * _shortest_side(corners)
-    moved = [square_homography(corners + step * unit) for unit in _UNITS]
-    return (np.stack(moved, axis=-1) - H[:, :, None]) / step
+    moved = square_homography(corners + step * _UNITS)
+    return (np.moveaxis(moved, 0, -1) - H[:, :, None]) / step
 
 
 def _inverse_normal(design: Array) -> Array | None:

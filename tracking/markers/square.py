@@ -61,19 +61,23 @@ def square_homography(corners: ArrayLike) -> Array:
     Written out rather than taken from OpenCV, whose version accepts single precision only.
 
     Args:
-        corners: Where the corners of `UNIT_SQUARE` go, shape (4, 2).
+        corners: Where the corners of `UNIT_SQUARE` go, shape (..., 4, 2).
 
     Returns:
-        H with (x, y, 1) ~ H (u, v, 1), shape (3, 3), H[2, 2] = 1.
+        H with (x, y, 1) ~ H (u, v, 1), shape (..., 3, 3), H[2, 2] = 1.
 
     >>> (square_homography([[3, 4], [5, 4], [5, 7], [3, 7]]) + 0.0).round(9).tolist()
     [[2.0, 0.0, 3.0], [0.0, 3.0, 4.0], [0.0, 0.0, 1.0]]
     """
-    p0, p1, p2, p3 = np.asarray(corners, dtype=float)
+    p0, p1, p2, p3 = np.moveaxis(np.asarray(corners, dtype=float), -2, 0)
     # Heckbert 1989, section 2.2.3: the square's own corners make most coefficients 0 or 1.
-    g, h = np.linalg.solve(np.column_stack((p1 - p2, p3 - p2)), p0 - p1 + p2 - p3)
-    across, down = p1 - p0 + g * p1, p3 - p0 + h * p3
-    return np.vstack((np.column_stack((across, down, p0)), [g, h, 1.0]))
+    sides = np.stack((p1 - p2, p3 - p2), axis=-1)
+    gh = np.linalg.solve(sides, (p0 - p1 + p2 - p3)[..., None])[..., 0]
+    H = np.ones((*p0.shape[:-1], 3, 3))
+    H[..., :2, 0] = p1 - p0 + gh[..., :1] * p1
+    H[..., :2, 1] = p3 - p0 + gh[..., 1:] * p3
+    H[..., :2, 2], H[..., 2, :2] = p0, gh
+    return H
 
 
 def apply_homography(H: Array, points: ArrayLike) -> Array:

@@ -12,7 +12,8 @@ Prints the tables of `docs/validation.md`.
 Usage: .venv/bin/python docs/walks_virtual_world.py CALIBRATION [PART ...]
 
 CALIBRATION is the folder that `calibrate-slip` made of the reference data's simulated rig. PART is
-half-circles, other-legs, floors, knocked or mounted; all of them where none is named.
+half-circles, other-legs, floors, knocked or mounted, all of them where none is named; with a
+number, as half-circles:0, one of its fits.
 """
 
 import sys
@@ -157,18 +158,20 @@ class Bench:
         return Scored(self.engine[name], informed_by, judged)
 
 
-def half_circles(bench: Bench) -> Iterator[Scored]:
+def half_circles(bench: Bench, fits: Sequence[int] = range(5)) -> Iterator[Scored]:
     """Fit each walk and the next in the list; predict the other three."""
     n = len(HALF_CIRCLES)
-    for i in range(n):
+    for i in fits:
         names = [HALF_CIRCLES[i], HALF_CIRCLES[(i + 1) % n]]
         posterior = bench.fit([bench.walk(name) for name in names]).posterior
         for name in (each for each in HALF_CIRCLES if each not in names):
             yield bench.score(posterior, bench.walk(name), name, " + ".join(map(short, names)))
 
 
-def other_legs(bench: Bench) -> Iterator[Scored]:
+def other_legs(bench: Bench, fits: Sequence[int] = range(1)) -> Iterator[Scored]:
     """Fit two walks; predict those of a robot with other legs on the same floor."""
+    if 0 not in fits:
+        return
     names = [FIRST, HALF_CIRCLES[3]]
     floor = bench.fit([bench.walk(name) for name in names]).posterior.of_floor_alone(
         rng=np.random.default_rng(3)
@@ -177,19 +180,18 @@ def other_legs(bench: Bench) -> Iterator[Scored]:
         yield bench.score(floor, bench.walk(name), name, " + ".join(map(short, names)))
 
 
-def floors(bench: Bench) -> Iterator[Scored]:
+def floors(bench: Bench, fits: Sequence[int] = range(3)) -> Iterator[Scored]:
     """On floors that were never on the rig: one walk informs, another is predicted."""
-    for one, other in (SLIPPERY, SLIPPERY[::-1]):
+    pairs = (SLIPPERY, SLIPPERY[::-1], (FIRST, ROUGH))  # of the rough floor there is one walk alone
+    for one, other in (pairs[i] for i in fits):
         posterior = bench.fit([bench.walk(one)]).posterior
         yield bench.score(posterior, bench.walk(other), other, short(one))
-    nothing = bench.fit([bench.walk(FIRST)]).posterior  # one walk of its own floor is all there is
-    yield bench.score(nothing, bench.walk(ROUGH), ROUGH, short(FIRST) + ", another floor")
 
 
-def knocked(bench: Bench) -> Iterator[Scored]:
+def knocked(bench: Bench, fits: Sequence[int] = range(N_LEGS)) -> Iterator[Scored]:
     """One leg is off by five degrees in one walk of three; that walk is predicted."""
     names = [FIRST, HALF_CIRCLES[3], HALF_CIRCLES[4]]
-    for leg in range(N_LEGS):
+    for leg in fits:
         wrong = (leg, np.radians(WRONG_DEG))
         walks = [bench.walk(names[0]), bench.walk(names[1]), bench.walk(names[2], wrong=wrong)]
         posterior = bench.fit(walks).posterior
@@ -198,10 +200,10 @@ def knocked(bench: Bench) -> Iterator[Scored]:
         yield bench.score(posterior, walks[2], names[2], informed_by, index=2)
 
 
-def mounted(bench: Bench) -> Iterator[Scored]:
+def mounted(bench: Bench, fits: Sequence[int] = range(N_LEGS)) -> Iterator[Scored]:
     """One leg is off by five degrees in every walk; two inform, a third is predicted."""
     names = [FIRST, HALF_CIRCLES[3], HALF_CIRCLES[4]]
-    for leg in range(N_LEGS):
+    for leg in fits:
         wrong = (leg, np.radians(WRONG_DEG))
         posterior = bench.fit([bench.walk(name, wrong=wrong) for name in names[:2]]).posterior
         print_found(posterior, f"leg {leg + 1} off in both")
@@ -280,9 +282,10 @@ def main() -> None:
         raise SystemExit(__doc__)
     with tempfile.TemporaryDirectory() as scratch:
         bench = Bench(Path(sys.argv[1]), Path(scratch))
-        for name in sys.argv[2:] or PARTS:
-            print(f"\n## {name}")
-            print_rows(list(PARTS[name](bench)))
+        for asked in sys.argv[2:] or PARTS:
+            name, _, number = asked.partition(":")
+            print(f"\n## {asked}")
+            print_rows(list(PARTS[name](bench, [int(number)]) if number else PARTS[name](bench)))
 
 
 if __name__ == "__main__":

@@ -55,7 +55,7 @@ class Case:
 
 CASES = (
     Case("1.1 body lengths apart", 0.264, 5, 20, 1.0, 0.5, 0.98),
-    Case("half a body apart", 0.12, 8, 13, 4.0, 2.0, 0.70),
+    Case("half a body apart", 0.12, 8, 15, 4.0, 2.0, 0.70),
 )
 
 

@@ -44,6 +44,9 @@ BESIDE_SCORE = 0.5
 CLEAR_SCORE = 0.85
 """Least correlation of one that hides others, and of the visible part of one that is hidden [-]."""
 
+CLEAR_SPREAD = 0.03
+"""How much less clear than the clearest an exposure may be that shows whole [-]."""
+
 LEAST_SHARE = 0.15
 """Least share of the body that must be visible [-]."""
 
@@ -191,7 +194,9 @@ class _Search:
 
     def layers(self, whole: Sequence[Exposure]) -> list[Exposure]:
         """Find exposures that hide each other, beginning with those that show whole."""
-        clear = [each for each in whole if each.alignment.score >= CLEAR_SCORE]
+        best = max((each.alignment.score for each in whole), default=0.0)
+        least = max(CLEAR_SCORE, best - CLEAR_SPREAD)
+        clear = [each for each in whole if each.alignment.score >= least]
         body = self.body_template(clear)
         if body is None:
             return list(clear)

@@ -7,7 +7,6 @@ was corrected years later.
 
 import itertools
 import math
-import struct
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -19,6 +18,7 @@ from numpy.typing import NDArray
 from rig.device import Sample
 from zebro_lab.cdr import CdrReader, CdrWriter
 from zebro_lab.errors import DataError
+from zebro_lab.log_damage import DAMAGES_HINT, log_damages
 
 if TYPE_CHECKING:
     from mcap.records import Message
@@ -41,8 +41,6 @@ RAW_SCHEMAS: dict[str, tuple[str, str]] = {
 }
 """Type of the counts and text of each schema, by name: whole numbers for almost all devices,
 doubles for those whose counts have a fraction."""
-
-DAMAGES_HINT = "the file ends early"
 
 
 @dataclass(frozen=True)
@@ -165,7 +163,7 @@ def read_raw_log(path: Path) -> SalvagedStreams:
     except InvalidMagic as error:
         raise DataError("is no MCAP file", file=path) from error
     except log_damages() as error:
-        damage = str(error) or DAMAGES_HINT  # the reader's EndOfFile says nothing
+        damage = str(error) or DAMAGES_HINT
     return SalvagedStreams({topic: _joined(found) for topic, found in parts.items()}, damage)
 
 
@@ -190,12 +188,3 @@ def _messages(file: IO[bytes]) -> "Iterator[tuple[str, str, Message]]":
                 ours[record.id] = (record.topic, RAW_SCHEMAS[name][0])
         elif isinstance(record, Message) and record.channel_id in ours:
             yield *ours[record.channel_id], record
-
-
-def log_damages() -> tuple[type[Exception], ...]:
-    """Name what the reader raises where a log is cut short or damaged."""
-    import zstandard
-    from mcap.exceptions import McapError
-
-    # ValueError also covers the reader's CRC errors and text that is no UTF-8.
-    return McapError, struct.error, zstandard.ZstdError, ValueError, MemoryError

@@ -38,8 +38,8 @@ HORIZON: Final = 0.1
 CELL_PAUSE: Final = 0.04
 """Between two reads of a load cell: the system keeps seconds of its datagrams, and with the wait of
 the recorder this stays well below the 200 ms that a killed run may lack [s]."""
-TWIN_SWEEP: Final = SweepPlan(slips=tuple(np.linspace(0.0, 0.9, 16) ** 1.5), duration=0.25)
-"""What a simulated rig sweeps: all slips in 4 s at each of four loads."""
+TWIN_SWEEP: Final = SweepPlan(slips=tuple(np.linspace(0.0, 0.9, 16) ** 1.5), duration=1.0)
+"""What a simulated rig sweeps: all slips in 16 s at each of four loads."""
 
 
 @dataclass(frozen=True)

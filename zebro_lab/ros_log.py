@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import IO, Any, NamedTuple
 
 from zebro_lab.errors import DataError, NotFound
-from zebro_lab.raw_log import DAMAGES_HINT, log_damages
+from zebro_lab.log_damage import DAMAGES_HINT, log_damages
 
 
 class LoggedMessage(NamedTuple):
@@ -49,7 +49,7 @@ def read_messages(path: Path, *, schema: str) -> tuple[list[LoggedMessage], str 
     except InvalidMagic as error:
         raise DataError("is no MCAP file", file=path) from error
     except log_damages() as error:
-        return messages, str(error) or DAMAGES_HINT  # the reader's EndOfFile says nothing
+        return messages, str(error) or DAMAGES_HINT
     return messages, None
 
 

@@ -5,6 +5,7 @@ from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
 from model.slip.law import Array
 from rig.errors import RigError
@@ -18,6 +19,7 @@ from zebro_lab.slip_rig_log import SlipRigTable
 
 RIG = "rig"
 """Name under which a run keeps the profile of its rig."""
+MANY = 3  # forces to a speed, from which on they are averaged
 _PIECE = 4096  # samples made into objects at a time
 
 
@@ -26,8 +28,10 @@ def derive_table(
 ) -> tuple[SlipRigTable, tuple[str, ...]]:
     """Compute speeds and forces of a recorded run from what its devices sent.
 
-    Where drives and load cell are apart, the speeds are interpolated to the instants of the forces,
-    and what lies outside the speeds is left out: nobody knows the slip there.
+    Where drives and load cell are apart, the slower of them, as a rule the drives, sets the rows:
+    forces are averaged about the instants of the speeds. Were speeds interpolated to many forces,
+    their noise would pass for wander of the slip, to which forces answer. What lies outside the
+    speeds is left out: nobody knows the slip there.
 
     Args:
         folder: The run folder, which keeps the profile.
@@ -74,15 +78,45 @@ def _of_two(
 ) -> Array:
     t = sample_times(forces)
     decoded = [decode_forces(cell, piece.samples()) for piece in pieces(forces)]
+    force = np.vstack(
+        [
+            np.concatenate([part.normal for part in decoded]),
+            np.concatenate([part.traction for part in decoded]),
+        ]
+    )
     disc = decode_speeds(drives.leg, drives.ground, speeds.samples())
+    speed = np.vstack([disc.leg, disc.ground])
+    if len(t) > MANY * len(disc.time):
+        at, around = averages_around(disc.time, t, force)
+        return np.vstack([disc.time[at], speed[:, at], around])
     inside = (t >= disc.time[0]) & (t <= disc.time[-1])
-    return np.vstack([
-        t,
-        np.interp(t, disc.time, disc.leg),
-        np.interp(t, disc.time, disc.ground),
-        np.concatenate([part.normal for part in decoded]),
-        np.concatenate([part.traction for part in decoded]),
-    ])[:, inside]  # fmt: skip
+    across = [np.interp(t[inside], disc.time, row) for row in speed]
+    return np.vstack([t[inside], *across, force[:, inside]])
+
+
+def averages_around(at: Array, t: Array, values: Array) -> tuple[NDArray[np.intp], Array]:
+    """Average values about instants: what lies nearer to one than to its neighbours.
+
+    What is further away than the median interval is nobody's: there were samples lost.
+
+    Args:
+        at: Instants, increasing, shape (m,) [s].
+        t: Times of the values, increasing, shape (n,) [s].
+        values: The values, shape (k, n).
+
+    Returns:
+        Indices of the instants that have values about them, shape (j,), and the averages, shape
+        (k, j).
+    """
+    reach = float(np.median(np.diff(at))) if len(at) > 1 else np.inf
+    middle = 0.5 * (at[1:] + at[:-1])
+    begin = np.maximum(np.append(at[0] - reach / 2, middle), at - reach)
+    end = np.minimum(np.append(middle, at[-1] + reach / 2), at + reach)
+    first, last = np.searchsorted(t, begin), np.searchsorted(t, end)
+    found = np.flatnonzero(last > first)
+    total = np.cumsum(np.insert(values, 0, 0.0, axis=1), axis=1)
+    averages = (total[:, last] - total[:, first]) / np.maximum(last - first, 1)
+    return found, averages[:, found]
 
 
 def _require(streams: Mapping[str, RawStream], name: str, folder: Path) -> RawStream:

@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from zebro_lab.errors import DataError
+from zebro_lab.log_damage import DAMAGES_HINT, log_damages
 
 if TYPE_CHECKING:
     from mcap.records import Message
@@ -143,8 +144,8 @@ def read_log(path: Path) -> SalvagedLog:
                 blocks.append(decode_block(message.data))  # noqa: PERF401 (keeps what came before)
     except InvalidMagic as error:
         raise DataError("is no MCAP file", file=path) from error
-    except _damages() as error:
-        damage = str(error) or "the file ends early"  # the reader's EndOfFile says nothing
+    except log_damages() as error:
+        damage = str(error) or DAMAGES_HINT
     if not blocks:
         raise DataError(
             f"holds no samples on {TOPIC}" + (f" that can be read ({damage})" if damage else ""),
@@ -169,11 +170,3 @@ def _messages(file: IO[bytes]) -> "Iterator[Message]":
             ours.add(record.id)
         elif isinstance(record, Message) and record.channel_id in ours:
             yield record
-
-
-def _damages() -> tuple[type[Exception], ...]:
-    import zstandard
-    from mcap.exceptions import McapError
-
-    # ValueError also covers the reader's CRC errors and text that is no UTF-8.
-    return McapError, struct.error, zstandard.ZstdError, ValueError, MemoryError

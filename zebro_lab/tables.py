@@ -22,6 +22,7 @@ from zebro_lab.columns import (
 from zebro_lab.data_paths import DataSource, find_sources
 from zebro_lab.errors import DataError, SettingsError
 from zebro_lab.raw_table import RawTable
+from zebro_lab.recorded_sweeps import SWEEP, recorded_sweeps
 from zebro_lab.rig_table import RigTable, kept_rows, normal_force
 from zebro_lab.run_folder import read_manifest, read_slip_rig_run
 from zebro_lab.run_separation import Runs, run_times, separate_runs
@@ -168,17 +169,22 @@ def _read_part(
 def _run_folder_table(folder: Path, columns: Columns) -> tuple[RawTable, Columns, tuple[Path, ...]]:
     """Read a run folder as a table.
 
-    Its columns are canonical and it is one run: of a `columns.toml` only the row conditions and
-    the load cell apply to it.
+    Its columns are canonical, and it is one run, or one for each sweep: of a
+    `columns.toml` only the row conditions and the load cell apply to it.
     """
     import pandas as pd
 
-    run = read_slip_rig_run(folder)
-    series = {name: pd.Series(values) for name, values in vars(run.table).items()}
-    raw = RawTable(folder, series, source=run.manifest.source, notes=run.notes)
-    own = replace(
-        columns, source=None, columns={}, constants=run.manifest.constants, runs=RunRule()
-    )
+    run, notes, rule = read_slip_rig_run(folder), (), RunRule()
+    columns_read = dict(vars(run.table))
+    if run.manifest.profiles:  # as devices sent it: nobody has cut it yet
+        number, notes = recorded_sweeps(run)
+        rule = RunRule(by=(SWEEP,)) if number.max() > 1 else rule
+        columns_read = {
+            name: values[number > 0] for name, values in {**columns_read, SWEEP: number}.items()
+        }
+    series = {name: pd.Series(values) for name, values in columns_read.items()}
+    raw = RawTable(folder, series, source=run.manifest.source, notes=(*run.notes, *notes))
+    own = replace(columns, source=None, columns={}, constants=run.manifest.constants, runs=rule)
     return raw, own, run.files
 
 

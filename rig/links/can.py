@@ -5,6 +5,10 @@ No `can.Notifier`: its thread ends without a word when a listener raises.
 """
 
 import contextlib
+import math
+import time
+from collections.abc import Sequence
+from itertools import accumulate
 from typing import TYPE_CHECKING, Final, cast
 
 import can
@@ -18,6 +22,8 @@ if TYPE_CHECKING:
 WRITE_LIMIT: Final = 0.5
 RETRY_AFTER: Final = 0.25
 MOST_AT_ONCE: Final = 4096
+OLDEST: Final = 0.5
+"""Age of a frame beyond which its time stamp is not of the system's clock, or that was set [s]."""
 
 
 class CanLink:
@@ -51,6 +57,7 @@ class CanLink:
         self._clock = clock
         self._bus: can.BusABC | None = None
         self._retry_at = 0.0
+        self._last_arrival = -math.inf
 
     def open(self) -> None:
         """Open the bus.
@@ -89,6 +96,20 @@ class CanLink:
         except (can.CanError, OSError):
             self._lose()
         return messages
+
+    def arrivals(self, messages: Sequence[can.Message]) -> list[float]:
+        """Tell when frames just read arrived, by host time, never running back [s].
+
+        A frame waits until it is read; how long, its time stamp tells where the interface takes it
+        from the system's clock, as socketcan's kernel does. Where it does not, the time of reading
+        stays.
+        """
+        now, wall = self._clock.now(), time.time()
+        ages = [wall - message.timestamp for message in messages]
+        arrived = [now - age if 0 <= age <= OLDEST else now for age in ages]
+        times = list(accumulate(arrived, max, initial=self._last_arrival))
+        self._last_arrival = times[-1]
+        return times[1:]
 
     def write(self, can_id: int, data: bytes) -> bool:
         """Send a frame with an 11-bit id; False while the bus is gone.

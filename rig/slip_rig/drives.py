@@ -256,9 +256,8 @@ class DriveBus:
 
     def _receive(self, timeout: float) -> list[Sample]:
         messages = self._link.read(timeout)
-        now = self._clock.now()
         samples = []
-        for message in messages:
+        for message, arrived in zip(messages, self._link.arrivals(messages), strict=True):
             node, command = split_id(message.arbitration_id)
             axis = self._axes.get(node)
             if axis is None:
@@ -266,18 +265,18 @@ class DriveBus:
             if command == Command.HEARTBEAT and message.dlc >= HEARTBEAT.size:
                 axis.error, axis.state = HEARTBEAT.unpack_from(message.data)
             elif command == Command.ENCODER_ESTIMATES:
-                samples += self._estimate(axis, message, now)
+                samples += self._estimate(axis, message, arrived)
             elif command == Command.TEMPERATURE and message.dlc == TEMPERATURES.size:
                 # A motor without a sensor answers NaN or 0, which the transistors' exceed.
                 known = [t for t in TEMPERATURES.unpack(message.data) if math.isfinite(t)]
                 axis.temperatures += [max(known)] if known else []
         return samples
 
-    def _estimate(self, axis: _Axis, message: can.Message, now: float) -> list[Sample]:
+    def _estimate(self, axis: _Axis, message: can.Message, arrived: float) -> list[Sample]:
         if message.dlc == ESTIMATES.size:
             counts = ESTIMATES.unpack(message.data)
             if all(map(math.isfinite, counts)):
-                return [Sample(now, None, None, counts, axis.error, axis.place.node)]
+                return [Sample(arrived, None, None, counts, axis.error, axis.place.node)]
         self._refused += 1
         return []
 

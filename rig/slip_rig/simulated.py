@@ -97,7 +97,8 @@ class SimulatedRig:
     Args:
         law: The true slip law, in the material slip ratio.
         values: Its values.
-        plan: Radii, and the sweep that the rig drives by itself for as long as no drive commands.
+        plan: Radii, and the sweep that the rig drives by itself for as long as no drive commands:
+            its slips a `duration` apart, gliding from each to the next.
         imperfections: What its sensors and its bump add.
         dynamics: How it moves.
         rng: Source of randomness.
@@ -233,13 +234,14 @@ class SimulatedRig:
         return RigTruth(time, leg, ground, slip, load, normal, traction)
 
     def _follow_plan(self, time: float) -> None:
-        loads, slips = self._plan.set_points()
-        at = int(time / self._plan.duration) % len(slips)
-        speed = self._plan.speed_leg
-        self.load = float(loads[at])
+        """Let slip glide through the plan's values at one load after another."""
+        loads, slips, duration = self._plan.loads, self._plan.slips, self._plan.duration
+        sweep, place = divmod(time / duration, len(slips))
+        slip = float(np.interp(place, np.arange(len(slips)), slips))
+        self.load = float(loads[int(sweep) % len(loads)])
         self._target = {
             "leg": self._plan.omega_leg,
-            "ground": speed * (1 - float(slips[at])) / self._plan.radius_ground,
+            "ground": self._plan.speed_leg * (1 - slip) / self._plan.radius_ground,
         }
 
     def _turn(self, disc: str, n: int) -> Array:

@@ -6,7 +6,7 @@ from rig.profile import shipped_file
 from zebro_lab.errors import DataError
 from zebro_lab.raw_log import RawStream
 from zebro_lab.run_folder import profile_file
-from zebro_lab.slip_rig_decoding import RIG, derive_table
+from zebro_lab.slip_rig_decoding import RIG, averages_around, derive_table
 
 PROFILE = shipped_file("rig-odrive-netft.toml").read_text()
 
@@ -39,3 +39,28 @@ def test_forces_outside_the_speeds_are_left_out(tmp_path):
 def test_a_run_whose_forces_and_speeds_never_meet_is_one_line(tmp_path):
     with pytest.raises(DataError, match="its log holds no force between two speeds"):
         derive(tmp_path, [0.05, 0.35])
+
+
+def test_many_forces_are_averaged_about_few_speeds():
+    t = np.arange(0.0, 1.0, 0.001)
+    at = np.arange(0.1, 0.9, 0.01)
+    found, means = averages_around(at, t, np.vstack([3.0 * t, np.full_like(t, 2.0)]))
+    assert len(found) == len(at)
+    np.testing.assert_allclose(means[0], 3.0 * at, atol=0.0016)  # half a sample
+    np.testing.assert_allclose(means[1], 2.0, rtol=1e-12)
+
+
+def test_no_force_is_used_twice_nor_far_from_any_speed():
+    at = np.array([0.0, 0.01, 0.02, 0.03, 0.13, 0.14, 0.15])  # speeds were lost
+    t = np.arange(-0.05, 0.2, 0.001)
+    counted = np.ones_like(t)
+    _, means = averages_around(at, t, np.vstack([counted, t]))
+    np.testing.assert_allclose(means[0], 1.0)
+    assert np.all(np.abs(means[1] - at) < 0.005)
+
+
+def test_speeds_without_any_force_about_them_are_left_out():
+    at = np.array([0.0, 0.01, 0.02, 0.03])
+    t = np.concatenate([np.arange(-0.004, 0.004, 0.001), np.arange(0.026, 0.034, 0.001)])
+    found, _ = averages_around(at, t, t[None])
+    np.testing.assert_array_equal(found, [0, 3])

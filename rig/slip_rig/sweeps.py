@@ -1,0 +1,91 @@
+# SPDX-License-Identifier: MIT
+r"""Where a recording of a rig that sweeps by itself passes from one sweep to the next.
+
+A sweep that is over begins anew at another slip ratio, and as a rule at another load. The mean slip
+ratio of the next `WINDOW` less that of the last one,
+
+.. math::
+    d(t) = \bar\kappa(t, t + w) - \bar\kappa(t - w, t) ,
+
+is small while slip glides or climbs stairs, and large where it jumps. Stairs are not cut: the zero
+of the load cell is the same on all of them, and only one sweep as a whole can tell it.
+"""
+
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from model.slip.definition import SlipDefinition, slip_ratio
+from model.slip.law import Array
+
+BIN: Final = 0.01
+"""Time that slip is averaged over first: drives tell their speeds no more often [s]."""
+WINDOW: Final = 0.16
+"""Time on either side of a jump that is compared [s]."""
+JUMP: Final = 0.3
+"""Change of slip ratio that no stair of a sweep makes, and every start of one [-]."""
+SETTLED: Final = 0.03
+"""Change below which a jump is over [-]."""
+STANDING: Final = 1e-3
+"""Surface speed of the leg disc below which slip has no meaning [m/s]."""
+
+
+def sweeps(time: Array, speed_leg: Array, speed_ground: Array) -> NDArray[np.intp]:
+    """Number the sweeps of a recording.
+
+    Args:
+        time: Increasing, shape (n,) [s].
+        speed_leg: Surface speed of the leg disc, shape (n,) [m/s].
+        speed_ground: Surface speed of the ground disc, shape (n,) [m/s].
+
+    Returns:
+        Index of each sample's sweep from 0 on, non-decreasing but for -1 where slip jumped or the
+        leg disc stood, shape (n,).
+    """
+    index = np.full(len(time), -1, dtype=np.intp)
+    turning = np.flatnonzero(np.abs(speed_leg) > STANDING)
+    if len(turning) == 0:
+        return index
+    slip = slip_ratio(speed_leg[turning], speed_ground[turning], SlipDefinition.MATERIAL)
+    edges = _bin_edges(time[turning])
+    sizes = np.diff(np.append(edges, len(slip)))
+    swept = _numbered(~_jumping(np.add.reduceat(slip, edges) / sizes))
+    index[turning] = np.repeat(swept, sizes)
+    return index
+
+
+def _bin_edges(time: Array) -> NDArray[np.intp]:
+    """Return the index of the first sample of each bin that holds any."""
+    number = np.floor((time - time[0]) / BIN).astype(np.intp)
+    return np.flatnonzero(np.diff(number, prepend=-1))
+
+
+def _jumping(slip: Array) -> NDArray[np.bool_]:
+    """Tell in which bins slip is on its way to the next sweep, shape (n,)."""
+    w = round(WINDOW / BIN)
+    jumping = np.zeros(len(slip), dtype=bool)
+    if len(slip) < 2 * w:
+        return jumping
+    total = np.concatenate([[0.0], np.cumsum(slip)])
+    d = np.abs(total[2 * w :] - 2 * total[w:-w] + total[: -2 * w]) / w  # d[i] belongs to bin i + w
+    for begin, end in _stretches(d > SETTLED):
+        if d[begin:end].max() > JUMP:
+            # A jump begins to enter the windows w bins before it is reached.
+            first = min(begin + w, end) + w // 2 if begin > 0 else 0
+            jumping[first : end + w if end < len(d) else None] = True
+    return jumping
+
+
+def _numbered(swept: NDArray[np.bool_]) -> NDArray[np.intp]:
+    """Number the stretches between jumps, -1 in jumps."""
+    index = np.full(len(swept), -1, dtype=np.intp)
+    for number, (begin, end) in enumerate(_stretches(swept)):
+        index[begin:end] = number
+    return index
+
+
+def _stretches(true: NDArray[np.bool_]) -> list[tuple[int, int]]:
+    """List where true values begin and end."""
+    edges = np.flatnonzero(np.diff(true, prepend=False, append=False))
+    return list(zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True))

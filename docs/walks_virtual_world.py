@@ -5,17 +5,20 @@ Every walk of the reference data becomes what a lab would have: leg angles count
 degrees, and a track of a pose every two seconds with a tracker's noise. Two walks of a floor inform
 the fit; each other walk of that floor is predicted from its leg angles and its first tracked pose,
 which is not scored. A walk by legs of another arc shares the floor with them, not the legs. Then
-one leg is off by five degrees: in one walk (knocked off), and in all of them (mounted wrong).
+one leg is off by five degrees in one walk, and its log does not know: such walks are made by the
+engine of `datasets/walk-sim`, which needs MuJoCo (the group `bench`).
 
 Prints the tables of `docs/validation.md`.
 
 Usage: .venv/bin/python docs/walks_virtual_world.py CALIBRATION [PART ...]
 
 CALIBRATION is the folder that `calibrate-slip` made of the reference data's simulated rig. PART is
-half-circles, other-legs, floors, knocked or mounted, all of them where none is named; with a
-number, as half-circles:0, one of its fits.
+half-circles, other-legs, floors or wrong-leg, all of them where none is named; with a number, as
+half-circles:0, one of its fits. The engine's walks are kept in ZEBRO_LAB_SCRATCH, or
+where temporary files are.
 """
 
+import os
 import sys
 import tempfile
 import time
@@ -30,13 +33,16 @@ from against_engine import SHARED, EngineWalk, radius, read_walk
 from model.bayes.walk_posterior import WalkPosterior
 from model.bayes.walk_prior import WalkPrior
 from model.bayes.walks import WalkFit
-from model.robot import N_LEGS
+from model.gait.reference import SampledReference
+from model.robot import N_LEGS, Robot
 from zebro_lab.robot_file import ROBOT_FILE, RobotFile, render_robot_file
 from zebro_lab.slip_argument import Slip, parse_slip
 from zebro_lab.tracked_walks import WalkOnFile, read_walk_on_file
 from zebro_lab.validation import RunJudged
 from zebro_lab.walk_prediction import fit_walks_on_file, judge_from
 
+ENGINE = Path(__file__).parents[1] / "datasets" / "walk-sim"
+KEPT = Path(os.environ.get("ZEBRO_LAB_SCRATCH", tempfile.gettempdir())) / "walks-with-a-leg-off"
 STEP = np.radians(3.6)  # of the legs' encoders
 EVERY = 2.0  # s between photographs
 NOISE = np.array(
@@ -50,7 +56,8 @@ HALF_CIRCLES = (
 OTHER_LEGS = ("tripod_s1.10_left_mu0.38_tc2_arc200ideal", "tripod_s1.30_left_mu0.38_tc2_arc200real")
 SLIPPERY = ("tripod_s1.20_left_mu0.20_tc2", "tetrapod_mu0.20_tc3")
 ROUGH = "tripod_s1.20_left_mu0.70_tc2"
-WRONG_DEG = 5.0
+WRONG = ((2, 5.0), (3, 5.0), (0, 5.0), (2, -5.0))  # index of a leg, by how much it is off [deg]
+BENT_STEERING, BENT_CYCLE, BENT_DURATION = 1.2, 2.0, 16.0  # of those walks: -, s, s
 
 
 @dataclass(frozen=True)
@@ -86,21 +93,15 @@ class Scored:
         return radius(at, walked.position, heading, self.walk.period) / theirs - 1, "of radius"
 
 
-def write_walk(
-    folder: Path, walk: EngineWalk, *, seed: int, wrong: tuple[int, float] | None = None
-) -> WalkOnFile:
+def write_walk(folder: Path, walk: EngineWalk, *, seed: int) -> WalkOnFile:
     """Write a walk as a lab would have it and read it back.
 
     Args:
         folder: Where to.
         walk: The engine's walk.
         seed: Of the tracker's noise.
-        wrong: A leg's index and the angle by which its log is behind the leg [rad].
     """
-    theta = walk.log.theta.copy()
-    if wrong is not None:
-        theta[:, wrong[0]] -= wrong[1]
-    counted = STEP * np.round(theta / STEP)
+    counted = STEP * np.round(walk.log.theta / STEP)
     rng = np.random.default_rng(seed)
     seen = np.arange(0.0, walk.duration + 1e-9, EVERY)
     truth = [np.interp(seen, walk.truth["t"], walk.truth[c]) for c in ("x", "y", "yaw")]
@@ -118,6 +119,21 @@ def write_walk(
     return read_walk_on_file(folder)
 
 
+def simulate_bent(leg: int, angle: float) -> pd.DataFrame:
+    """Walk in MuJoCo with one leg ahead of its log by an angle [rad]."""
+    sys.path.append(str(ENGINE))
+    import engine  # pyright: ignore[reportMissingImports]
+
+    gait = engine.tripod_gait(BENT_STEERING, cycle_time=BENT_CYCLE)
+    ahead = angle * np.eye(N_LEGS)[leg]
+    walk = engine.simulate(
+        lambda t: (gait(t)[0] + ahead, gait(t)[1]), duration=BENT_DURATION, friction=0.38
+    )
+    x, y = walk.position[:, :2].T
+    logged = {f"th{i + 1}": angles for i, angles in enumerate((walk.theta - ahead).T)}
+    return pd.DataFrame({"t": walk.t, "x": x, "y": y, "yaw": walk.roll_pitch_yaw[:, 2]} | logged)
+
+
 class Bench:
     """All walks as a lab has them, and the rig's calibration."""
 
@@ -129,14 +145,26 @@ class Bench:
             for file in sorted((SHARED / "virtual-world" / "walks").glob("*.json"))
         }
 
-    def walk(self, name: str, *, wrong: tuple[int, float] | None = None) -> WalkOnFile:
+    def walk(self, name: str) -> WalkOnFile:
         """Return a walk as a lab has it."""
-        label = name if wrong is None else f"{name}-leg{wrong[0] + 1}"
-        folder = self._scratch / label
+        folder = self._scratch / name
         if not folder.exists():
             seed = 100 + sorted(self.engine).index(name)
-            return write_walk(folder, self.engine[name], seed=seed, wrong=wrong)
+            return write_walk(folder, self.engine[name], seed=seed)
         return read_walk_on_file(folder)
+
+    def bent(self, leg: int, degrees: float) -> str:
+        """Let the engine walk with a leg off by an angle that its log does not know; name it."""
+        name = f"s{BENT_STEERING:.2f}_leg{leg + 1}_{degrees:+g}"
+        file = KEPT / f"{name}.csv"
+        if not file.is_file():
+            KEPT.mkdir(parents=True, exist_ok=True)
+            simulate_bent(leg, np.radians(degrees)).to_csv(file, index=False)
+        truth = pd.read_csv(file)
+        theta = truth[[f"th{i}" for i in range(1, 7)]].to_numpy()
+        log = SampledReference(truth["t"].to_numpy(), theta)
+        self.engine[name] = EngineWalk(name, Robot(), log, 0.38, True, BENT_CYCLE, truth)
+        return name
 
     def fit(self, walks: Sequence[WalkOnFile]) -> WalkFit:
         """Fit walks, and say how long it took."""
@@ -188,32 +216,19 @@ def floors(bench: Bench, fits: Sequence[int] = range(3)) -> Iterator[Scored]:
         yield bench.score(posterior, bench.walk(other), other, short(one))
 
 
-def knocked(bench: Bench, fits: Sequence[int] = range(N_LEGS)) -> Iterator[Scored]:
-    """One leg is off by five degrees in one walk of three; that walk is predicted."""
-    names = [FIRST, HALF_CIRCLES[3], HALF_CIRCLES[4]]
-    for leg in fits:
-        wrong = (leg, np.radians(WRONG_DEG))
-        walks = [bench.walk(names[0]), bench.walk(names[1]), bench.walk(names[2], wrong=wrong)]
+def wrong_leg(bench: Bench, fits: Sequence[int] = range(len(WRONG))) -> Iterator[Scored]:
+    """One leg is off in one walk of three, all of which inform; that walk is predicted."""
+    for leg, degrees in (WRONG[i] for i in fits):
+        name = bench.bent(leg, degrees)
+        walks = [bench.walk(each) for each in (FIRST, HALF_CIRCLES[4], name)]
         posterior = bench.fit(walks).posterior
-        print_found(posterior, f"leg {leg + 1} off in {short(names[2])} alone")
-        informed_by = f"all three, leg {leg + 1} off in it"
-        yield bench.score(posterior, walks[2], names[2], informed_by, index=2)
-
-
-def mounted(bench: Bench, fits: Sequence[int] = range(N_LEGS)) -> Iterator[Scored]:
-    """One leg is off by five degrees in every walk; two inform, a third is predicted."""
-    names = [FIRST, HALF_CIRCLES[3], HALF_CIRCLES[4]]
-    for leg in fits:
-        wrong = (leg, np.radians(WRONG_DEG))
-        posterior = bench.fit([bench.walk(name, wrong=wrong) for name in names[:2]]).posterior
-        print_found(posterior, f"leg {leg + 1} off in both")
-        walk = bench.walk(names[2], wrong=wrong)
-        yield bench.score(posterior, walk, names[2], f"two others, leg {leg + 1} off in all")
+        print_found(posterior, f"leg {leg + 1} off by {degrees:+g} deg in {name} alone")
+        yield bench.score(posterior, walks[2], name, "all three", index=2)
 
 
 def print_found(posterior: WalkPosterior, truth: str) -> None:
     """Say which legs the posterior takes for wrong."""
-    print(f"\n{truth}, by {WRONG_DEG:g} deg:")
+    print(f"\n{truth}:")
     for found in posterior.found()[:3]:
         degrees = (
             ""
@@ -272,7 +287,7 @@ def _three(values: Sequence[float] | np.ndarray) -> str:
 
 PARTS = {
     "half-circles": half_circles, "other-legs": other_legs, "floors": floors,
-    "knocked": knocked, "mounted": mounted,
+    "wrong-leg": wrong_leg,
 }  # fmt: skip
 
 

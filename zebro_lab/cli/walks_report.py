@@ -100,7 +100,7 @@ def _left_out_table(left_out: tuple[RunJudged, ...]) -> Table:
     table = Table(
         title="each walk predicted from what the others say", box=box.SIMPLE, title_justify="left"
     )
-    table.add_column("walk")
+    table.add_column("walk", overflow="fold")
     for name in (
         "error, rms [mm]", "of path", "yaw [deg]", "radius [m]", "tracked [m]",
         "90 % band holds x, y, yaw", "CRPS x, y [mm]", "best baseline's",

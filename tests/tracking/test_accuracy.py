@@ -2,6 +2,7 @@
 """Accuracy and recall on a few simulated photographs; `tests/long` measures them on hundreds."""
 
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 import pytest
@@ -48,14 +49,20 @@ CASES = [
 ]
 
 
+@cache
+def empty_scene(size: tuple[int, int]) -> tuple[Scene, np.ndarray]:
+    """Return the scene and its picture without a robot."""
+    taken = look_at((0.8, -1.2, 1.8), (0.8, 0.6, 0.0), width=size[0], height=size[1])
+    markers = (SyntheticFloorMarker(10 + k, place, 0.12) for k, place in enumerate(PLACES))
+    scene = Scene(taken, tuple(markers))
+    return scene, render_background(scene)
+
+
 def run(case: Case, count: int, seed: int):
     """Photograph `count` poses; return errors, standardised errors and recall."""
     rng = np.random.default_rng(seed)
-    width, height = case.size
-    taken = look_at((0.8, -1.2, 1.8), (0.8, 0.6, 0.0), width=width, height=height)
-    scene = Scene(taken, tuple(
-        SyntheticFloorMarker(10 + k, place, 0.12) for k, place in enumerate(PLACES)
-    ))  # fmt: skip
+    scene, background = empty_scene(case.size)
+    taken = scene.camera
     lens = Camera(
         case.size,
         np.array([[taken.focal[0], 0, taken.centre[0]], [0, taken.focal[1], taken.centre[1]],
@@ -68,7 +75,6 @@ def run(case: Case, count: int, seed: int):
     mark = SyntheticRobotMarker()
     robot = RobotMarker(0, mark.side, "4x4_50", (0.0, 0.0, mark.height))
     prior = BodyPrior(0.0645, max(case.bounce, 5e-4), max(case.tilt, 2e-3))
-    background = render_background(scene)
     errors, z, view = [], [], CameraPose.from_matrix(taken.rotation, taken.translation)
     for index in range(count):
         truth = BodyPose(

@@ -1,9 +1,6 @@
 # SPDX-License-Identifier: MIT
 """The robot's own picture is found again; head and tail are told apart or refused."""
 
-import csv
-import json
-
 import cv2
 import numpy as np
 import pytest
@@ -18,8 +15,6 @@ from tracking.body import (
 )
 from tracking.camera import Camera, CameraPose, project
 from tracking.errors import AmbiguousHeading, BodyError
-from tracking.floor import FloorMap, FloorMarker, FloorView, refine_floor
-from tracking.markers import find_markers
 from tracking.pose import BodyPose, BodyPrior, fit_pose, rotation_with_derivatives
 
 LENS = Camera((640, 480), np.array([[700.0, 0, 320], [0, 700, 240], [0, 0, 1]]), np.zeros(5))
@@ -157,46 +152,3 @@ def test_no_flip_in_a_thousand_sequences():
     for _ in range(1000):
         chosen = resolve_headings(sequence(rng.normal(0.5, 3.0, 8)), length=0.2)
         assert all(np.cos(alignment.pose.state[5]) > 0 for alignment in chosen)
-
-
-@pytest.mark.reference
-def test_the_unmarked_walk_of_the_virtual_world_is_found(shared):
-    folder = shared / "virtual-world/photos"
-    world = json.loads((folder / "camera.json").read_text(encoding="utf-8"))
-    lens = Camera((1280, 960), np.array(world["K"]), np.zeros(5))
-    floor = FloorMap("4x4_50", tuple(
-        FloorMarker(int(key), value["side"], *np.mean(value["corners_world"], axis=0)[:2], z=0.002)
-        for key, value in world["floor_markers"].items()
-    ))  # fmt: skip
-    with (folder / "s1.10_B/truth.csv").open(encoding="utf-8") as file:
-        names = ("x", "y", "z", "roll", "pitch", "yaw")
-        truth = np.array([[float(row[k]) for k in names] for row in csv.DictReader(file)])
-    paths = sorted((folder / "s1.10_B").glob("*.jpg"))
-    pictures = [cv2.imread(str(path)) for path in paths]
-    views = [
-        FloorView.of(path.name, find_markers(picture, "4x4_50", wanted=floor.marker_ids))
-        for path, picture in zip(paths, pictures, strict=True)
-    ]
-    fit = refine_floor(lens, floor, views)
-    prior, plate = BodyPrior(0.0615), TopPlate(0.15, 0.15, 0.0385, margin=0.02, front_margin=0.02)
-    view = fit.pose_of(paths[7].name)
-    R, _ = rotation_with_derivatives(*truth[7, 3:])
-    clicks = project(lens, view, plate.corners_body @ R.T + truth[7, :3])
-    clicks += np.random.default_rng(0).normal(0, 0.3, clicks.shape)
-    pose = fit_pose(
-        lens, view, points_body=plate.corners_body, corners_px=clicks,
-        covariance=0.3**2 * np.eye(8), prior=prior,
-    )  # fmt: skip
-    template = make_template(pictures[7], lens, view, pose=pose, plate=plate)
-    near, found = truth[0, :2], []
-    for path, picture in zip(paths, pictures, strict=True):
-        candidates = find_body(
-            picture, lens, fit.pose_of(path.name), template=template, prior=prior, near=near,
-            reach=0.3,
-        )  # fmt: skip
-        near = candidates.best.pose.planar
-        found.append(candidates)
-    chosen = resolve_headings(found, length=0.2)
-    error = np.abs([alignment.pose.planar for alignment in chosen] - truth[:, [0, 1, 5]])
-    assert error[:, :2].max() < 5e-3
-    assert np.degrees(error[:, 2]).max() < 2.0

@@ -45,7 +45,17 @@ def exposure_of(planar, rng):
 
 
 def composite_of(walk, kind, rng):
-    pairs = [exposure_of(planar, rng) for planar in walk]
+    return merged([exposure_of(planar, rng) for planar in walk], kind)
+
+
+@pytest.fixture(scope="module")
+def exposures():
+    """Return the exposures of a walk, each with where it shows the robot."""
+    rng = np.random.default_rng(0)
+    return [exposure_of(planar, rng) for planar in WALK]
+
+
+def merged(pairs, kind):
     stack = np.stack([picture for picture, _ in pairs])
     if kind == "averaged":
         whole = stack.mean(axis=0)
@@ -59,8 +69,8 @@ def composite_of(walk, kind, rng):
 
 
 @pytest.mark.parametrize("kind", ["pasted", "averaged", "darkest"])
-def test_exposures_apart_are_all_found_and_in_order(kind):
-    picture = composite_of(WALK, kind, np.random.default_rng(0))
+def test_exposures_apart_are_all_found_and_in_order(exposures, kind):
+    picture = merged(exposures, kind)
     found = find_exposures(
         picture, LENS, VIEW, template=marker_template(MARKER), prior=PRIOR, near=(0, 0), reach=0.7
     )

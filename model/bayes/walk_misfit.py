@@ -20,9 +20,18 @@ from model.errors import InsufficientData
 from model.gait.quantised import QuantisedLog
 from model.gait.reference import LegReference
 from model.metrics.poses import wrap
-from model.predict import ENSEMBLE_STEP, LegState, ModelSpread, bent, law_in, robot_in, states_at
+from model.predict import (
+    LegState,
+    ModelSpread,
+    bent,
+    ensemble_step,
+    law_in,
+    robot_in,
+    states_at,
+)
 from model.robot import Robot
 from model.slip.law import Array
+from model.walk.dynamics import DynamicsOptions
 from model.walk.ensemble import PathEnsemble, WalkDraw, walk_ensemble
 from model.walk.traction import TractionTable
 
@@ -71,12 +80,14 @@ class WalkMisfit:
         robot: The robot as described.
         table: The slip law as the rig has it.
         walk: The walk.
+        options: How walks are computed.
         root: Turns differences into residuals of unit covariance, shape (k, k).
     """
 
     robot: Robot
     table: TractionTable
     walk: TrackedWalk
+    options: DynamicsOptions
     root: Array
 
     @classmethod
@@ -103,7 +114,9 @@ class WalkMisfit:
         Raises:
             WalkError: A walk diverged.
         """
-        misfit = cls(robot, table, walk, np.eye(3 * (len(walk.t) - 1)))
+        plain = WalkDraw(robot, middle(walk.legs), table)
+        options = ensemble_step(plain, duration=float(walk.t[-1]))
+        misfit = cls(robot, table, walk, options, np.eye(3 * (len(walk.t) - 1)))
         covariance = misfit._covariance(spread, rng, threads)
         # With L L^T the covariance, L^-1 makes the residuals' covariance the identity.
         return replace(misfit, root=np.linalg.inv(np.linalg.cholesky(covariance)))
@@ -152,7 +165,7 @@ class WalkMisfit:
     def _walked(self, draws: Sequence[WalkDraw], threads: int) -> PathEnsemble:
         end = float(self.walk.t[-1])
         t = np.linspace(0.0, end, max(round(end / SAMPLING), 2) + 1)
-        return walk_ensemble(draws, t, options=ENSEMBLE_STEP, threads=threads)
+        return walk_ensemble(draws, t, options=self.options, threads=threads)
 
     def _difference(self, paths: PathEnsemble) -> Array:
         """Predict from the first pose, subtract what was tracked; shape (m, 3 (n - 1))."""

@@ -6,12 +6,16 @@ from hypothesis import strategies as st
 
 from model.errors import DomainError
 from model.gait.quantised import QuantisedLog
+from model.gait.reference import SampledReference
+from model.gait.tetrapod import tetrapod_reference
 from model.gait.tripod import tripod_angles, tripod_reference
 from model.predict import (
+    STEPS,
     LegState,
     ModelSpread,
     anchored,
     bent,
+    ensemble_step,
     mean_path,
     predict_paths,
     quantiles,
@@ -21,11 +25,13 @@ from model.predict import (
 )
 from model.robot import Robot
 from model.slip.magic_formula import MagicFormula
-from model.walk.ensemble import PathEnsemble
+from model.walk.dynamics import DynamicsOptions
+from model.walk.ensemble import PathEnsemble, WalkDraw, planar_walk
 from model.walk.kernel import table_value
 from model.walk.traction import VelocityCoulomb, law_table
 
 T = np.linspace(0.0, 4.0, 41)
+T_LOG = np.arange(0.0, 12.2, 0.01)
 TABLE = VelocityCoulomb(0.38).table(weight=21.0)
 EXACT = ModelSpread(0.0, 0.0)
 GAIT = tripod_reference(tripod_angles(np.radians(50.0), 1.2), 2.0)
@@ -154,3 +160,19 @@ def test_without_its_fall_traction_keeps_its_peak():
 def test_friction_that_does_not_fall_has_no_fall():
     scaled = scaled_table(TABLE, grip=1.0, stiffness=1.0, fall=0.0)
     np.testing.assert_allclose(scaled.phi, TABLE.phi)
+
+
+def test_an_ensemble_takes_the_step_that_its_gait_needs():
+    tripod = WalkDraw(Robot(), SampledReference(T_LOG, GAIT.angles(T_LOG)), TABLE)
+    four = tetrapod_reference(np.radians(45.0), np.radians(135.0), cycle_time=3.0)
+    carried = WalkDraw(Robot(), SampledReference(T_LOG, four.angles(T_LOG)), TABLE)
+    assert ensemble_step(tripod, duration=12.0).dt == STEPS[0]
+    chosen = ensemble_step(carried, duration=12.0)
+    assert chosen.dt < STEPS[0]
+    fine = planar_walk(carried, duration=12.0, options=DynamicsOptions(dt=0.0005))
+    length = np.hypot(np.diff(fine.x), np.diff(fine.y)).sum()
+    off = []
+    for options in (DynamicsOptions(dt=STEPS[0]), chosen):
+        path = planar_walk(carried, duration=12.0, options=options)
+        off.append(np.hypot(path.x[-1] - fine.x[-1], path.y[-1] - fine.y[-1]) / length)
+    assert off[1] < 0.01 < off[0]

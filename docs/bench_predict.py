@@ -9,6 +9,7 @@ Usage: .venv/bin/python docs/bench_predict.py CALIBRATION
 CALIBRATION is a folder that `calibrate-slip` made, for example of `datasets/rig-sim`. It is copied.
 """
 
+import resource
 import shutil
 import subprocess
 import sys
@@ -66,11 +67,16 @@ def write_walk(folder: Path, steering: float, side: Side, calibration: Path, see
     return folder
 
 
-def took(*command: object) -> float:
-    """Run a command and return its wall time [s]."""
-    began = time.perf_counter()
+def took(*command: object) -> tuple[str, str]:
+    """Run a command and return its wall time and its processor time of all threads, in s."""
+    began, used = time.perf_counter(), _processor()
     subprocess.run([str(each) for each in command], check=True, capture_output=True)  # noqa: S603
-    return time.perf_counter() - began
+    return f"{time.perf_counter() - began:.1f}", f"{_processor() - used:.1f}"
+
+
+def _processor() -> float:
+    usage = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return usage.ru_utime + usage.ru_stime
 
 
 def main() -> None:
@@ -91,13 +97,13 @@ def main() -> None:
             "--draws", DRAWS, "--out", place / "prediction",
         ]  # fmt: skip
         took(*predict)  # compiles, where nothing was compiled yet
-        rows = [(f"predict, {DRAWS} draws of {DURATION:g} s, the rig's law", took(*predict))]
+        rows = [(f"predict, {DRAWS} draws of {DURATION:g} s, the rig's law", *took(*predict))]
         named = [each for walk in walks for each in ("--walks", walk)]
         fitted = took(BIN / "calibrate-slip", *named, "--out", calibration)
-        rows.append((f"calibrate-slip --walks, {len(walks)} walks of {DURATION:g} s", fitted))
-        rows.append((f"predict, {DRAWS} draws of {DURATION:g} s, walks informed", took(*predict)))
+        rows.append((f"calibrate-slip --walks, {len(walks)} walks of {DURATION:g} s", *fitted))
+        rows.append((f"predict, {DRAWS} draws of {DURATION:g} s, walks informed", *took(*predict)))
         print()
-        table(("command", "seconds"), *((name, f"{s:.1f}") for name, s in rows))
+        table(("command", "seconds", "processor seconds"), *rows)
 
 
 if __name__ == "__main__":

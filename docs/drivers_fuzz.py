@@ -513,11 +513,13 @@ def fuzz(parser, count, rng):
     return result
 
 
-def main(count):
+def main(count, only):
     logging.disable(logging.CRITICAL)
     print("| parser | inputs | accepted | refused | other exceptions |\n|---|---|---|---|---|")
     wrong = Counter()
     for name, parser in parsers().items():
+        if only not in name:
+            continue
         result = fuzz(parser, max(int(count * parser.share), 1), np.random.default_rng(7))
         others = sum(result.others.values())
         print(f"| {name} | {result.inputs} | {result.accepted} | {result.refused} | {others} |",
@@ -529,4 +531,5 @@ def main(count):
 
 
 if __name__ == "__main__":
-    raise SystemExit(main(int(sys.argv[1]) if len(sys.argv) > 1 else 1_000_000))
+    given = [*sys.argv[1:], "", ""][:2]
+    raise SystemExit(main(int(given[0] or 1_000_000), given[1]))

@@ -193,6 +193,17 @@ def test_a_log_is_read_up_to_where_it_is_cut(tmp_path):
         np.testing.assert_array_equal(numbers, np.arange(len(numbers)))
 
 
+@pytest.mark.parametrize("length", [2**63, 2**64 - 1, 2**40])
+def test_a_length_beyond_the_file_is_damage(tmp_path, length):
+    file, _ = log_of("legs", rows=40)
+    path = tmp_path / "log.mcap"
+    header = len(b"\x89MCAP0\r\n") + 1  # the first record's kind stands before its length
+    data = bytearray(file.getvalue())
+    data[header : header + 8] = length.to_bytes(8, "little")
+    path.write_bytes(data)
+    assert read_raw_log(path).damage is not None
+
+
 def test_a_log_with_flipped_bytes_is_read_in_part_or_refused(tmp_path):
     file, _ = log_of("legs", rows=40)
     whole = file.getvalue()

@@ -14,6 +14,7 @@ from zebro_lab.errors import RecordingError, SettingsError
 from zebro_lab.leg_log import read_leg_log
 from zebro_lab.record_devices import DevicesRequest, OpenDevices, open_devices
 from zebro_lab.recorder import RunDescription, RunRecorder
+from zebro_lab.ros_messages import WARNING
 from zebro_lab.run_manifest import RunManifest, read_manifest
 from zebro_lab.source_names import joined_source
 
@@ -149,6 +150,7 @@ def _run(
     """Record until something ends it; return what went wrong, if anything."""
     with acquiring(opened.devices, sink=recorder, start=recorder.start, clock=clock) as readers:
         board = _Board(recorder, readers, opened, duration)
+        display = _Display(recorder, watcher)
         counted = recorder.start
         problem = None
         while (now := clock.now()) - recorder.start < (duration or float("inf")):
@@ -161,14 +163,33 @@ def _run(
             if problem is not None or reason is not None:
                 recorder.end(f"failed: {problem}" if problem is not None else f"stopped: {reason}")
                 break
-            watcher.show(board.status(now))
+            display.show(board.status(now))
             left = recorder.start + (duration or float("inf")) - clock.now()
             clock.sleep(min(LOOK_EVERY, max(left, 0.0)))
-        watcher.show(board.status(clock.now()))
+        display.show(board.status(clock.now()))
     board.count()
     clocks = {name: reader.clock_watch.result() for name, reader in readers.items()}
     recorder.compare_clocks({name: fit for name, fit in clocks.items() if fit is not None})
     return problem
+
+
+class _Display:
+    """Shows how it is doing, until that fails: a picture is no reason to end a run."""
+
+    def __init__(self, recorder: RunRecorder, watcher: RecordWatcher) -> None:
+        self._recorder = recorder
+        self._watcher: RecordWatcher | None = watcher
+
+    def show(self, status: RecordStatus) -> None:
+        """Show it, or note in the log why from now on nothing is shown."""
+        if self._watcher is None:
+            return
+        try:
+            self._watcher.show(status)
+        except Exception as error:  # whatever a terminal or a plot may raise
+            self._watcher = None
+            text = f"display failed, recording goes on without it: {error!r}"
+            self._recorder.event(text, level=WARNING)
 
 
 class _Board:

@@ -9,6 +9,7 @@ import pytest
 
 from model.gait.reference import SampledReference
 from rig.backends import leg_driver, leg_link, open_imu, open_legs, open_rig
+from rig.clock import ManualClock
 from rig.device import iterate
 from rig.errors import LinkError, RigTimeout
 from rig.links.can import CanLink
@@ -119,6 +120,32 @@ def test_a_bus_that_fails_comes_back():
     assert link.read(0.5) == []
     assert link.reconnected == 1
     link.close()
+
+
+def frame(age):
+    return can.Message(arbitration_id=1, timestamp=time.time() - age)
+
+
+def test_frames_are_dated_by_their_arrival_and_not_by_when_they_were_read():
+    clock = ManualClock(100.0)
+    link = CanLink("virtual:dated", clock=clock)
+    dated = link.arrivals([frame(0.3), frame(0.2), frame(0.05)])
+    np.testing.assert_allclose(dated, [99.7, 99.8, 99.95], atol=0.02)
+    assert link.arrivals([]) == []
+
+
+@pytest.mark.parametrize("age", [-3600.0, 3600.0, 1.7e9], ids=["ahead", "behind", "from zero"])
+def test_a_stamp_of_another_clock_dates_no_frame(age):
+    link = CanLink("virtual:dated", clock=ManualClock(100.0))
+    assert link.arrivals([frame(age)]) == [100.0]
+
+
+def test_dates_of_frames_never_run_back():
+    clock = ManualClock(100.0)
+    link = CanLink("virtual:dated", clock=clock)
+    first = link.arrivals([frame(0.0)])
+    clock.sleep(0.01)
+    assert link.arrivals([frame(0.4), frame(0.0)])[0] == first[0]
 
 
 def test_a_name_without_address_is_an_error_that_names_it():

@@ -91,9 +91,9 @@ def test_the_twins_truth_is_in_the_record(everything):
 def test_a_recorded_rig_is_data_for_a_calibration(everything):
     folder = everything[0].folder
     run = read_slip_rig_run(folder)
-    assert run.notes == ()
+    assert not any("cut short" in note for note in run.notes)
     table = run.table
-    assert len(table) > 1.3 * 7000
+    assert len(table) > 50  # at the drives' 100 Hz, forces averaged about them
     assert np.all(np.diff(table.t) > 0)
     assert np.median(table.omega_leg) == pytest.approx(12.0, abs=0.1)
     assert np.all(table.normal_force > 0)
@@ -172,11 +172,23 @@ def test_a_wish_to_stop_is_the_reason(tmp_path):
     assert recorded.manifest.log_sha256 is not None
 
 
-def test_a_watcher_that_raises_ends_the_run_with_its_record(tmp_path):
-    with pytest.raises(RuntimeError, match="screen"):
-        record(RecordRequest(tmp_path, "x", imus=("sim",)), Watcher(error=RuntimeError("screen")))
+def test_a_display_that_raises_ends_no_run(tmp_path):
+    watcher = Watcher(error=RuntimeError("screen"))
+    found = record(RecordRequest(tmp_path, "x", imus=("sim",), duration=0.6), watcher)
+    assert found.manifest.exit_status == "completed"
+    assert found.manifest.streams["/imu/raw"] > 40
+    assert len(watcher.seen) == 3
+    said = [text for text in events(found.folder) if "display" in text]
+    assert said == ["display failed, recording goes on without it: RuntimeError('screen')"]
+
+
+def test_a_watcher_that_cannot_say_whether_to_stop_ends_the_run_with_its_record(tmp_path):
+    watcher = Watcher()
+    watcher.stop_reason = lambda: 1 / 0
+    with pytest.raises(ZeroDivisionError):
+        record(RecordRequest(tmp_path, "x", imus=("sim",)), watcher)
     (listed,) = list_runs(tmp_path)
-    assert listed.state == "failed: RuntimeError: screen"
+    assert listed.state == "failed: ZeroDivisionError: division by zero"
 
 
 def test_swapped_devices_end_the_run_with_a_line_that_says_so(tmp_path):

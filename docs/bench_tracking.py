@@ -31,9 +31,9 @@ from tracking.synthetic import (
 from tracking.synthetic import FloorMarker as DrawnFloorMarker
 
 SIZE = (4000, 3000)
-PHOTOS = 12
+PHOTOS = 8
 REPEATS = 3
-STRETCHES = (3, 6, 12)
+STRETCHES = (2, 4, 8)
 PLACES = ((0.1, -0.1, 0.3), (1.5, -0.1, -0.4), (1.6, 1.2, 0.5), (0.0, 1.3, -0.2))
 CAMERA = look_at((0.8, -1.2, 1.8), (0.8, 0.6, 0.0), width=SIZE[0], height=SIZE[1])
 LENS = Camera(SIZE, CAMERA.matrix, np.array(CAMERA.distortion))

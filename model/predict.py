@@ -26,6 +26,7 @@ STEPS = (0.005, 0.0025, 0.00125)  # s, of which ensembles take the largest that 
 SAME_PATH = 0.005  # of its length: ends of a path by one step and by half of it
 LEVELS = (0.025, 0.05, 0.25, 0.5, 0.75, 0.95, 0.975)
 STATES = ("x", "y", "yaw")
+MOST_MOTIONS = 300  # a motion costs as much as walking it, and is the least of what spreads paths
 ARCS = (np.pi / 2, np.radians(359.0))  # a robot's legs are arcs of these angles
 
 
@@ -135,19 +136,27 @@ def walk_draws(
 
     Args:
         robot: The robot as described.
-        legs: Its leg angles from time zero on; a quantised log is reconstructed anew each draw.
+        legs: Its leg angles from time zero on; a quantised log is reconstructed anew for each of
+            the first `MOST_MOTIONS` draws, and they are taken in turn.
         tables: Draws of the slip law, taken in turn.
         state: Draws of the legs' state; their number is the ensemble's.
         rng: Source of randomness.
     """
+    motions = _motions(legs, min(len(state), MOST_MOTIONS), rng)
     return [
         WalkDraw(
             robot_in(robot, state, i),
-            legs.smooth(rng) if isinstance(legs, QuantisedLog) else legs,
+            motions[i % len(motions)],
             law_in(tables[i % len(tables)], state, i),
         )
         for i in range(len(state))
     ]
+
+
+def _motions(
+    legs: LegReference | QuantisedLog, n: int, rng: np.random.Generator
+) -> Sequence[LegReference]:
+    return [legs.smooth(rng) for _ in range(n)] if isinstance(legs, QuantisedLog) else [legs]
 
 
 def robot_in(robot: Robot, state: LegState, i: int) -> Robot:

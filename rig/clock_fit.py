@@ -12,6 +12,9 @@ from rig.errors import ProtocolError
 Array: TypeAlias = NDArray[np.float64]
 FEWEST: Final = 10
 MOST_BINS: Final = 60
+DRIFT_SD: Final = 2e-3
+"""What clocks are believed to drift before any sample: quartz far less, oscillators of bare
+micro-controllers a few times as much [-]."""
 
 
 @dataclass(frozen=True)
@@ -40,7 +43,8 @@ def fit_clock(device_time: Array, host_time: Array) -> ClockFit:
     """Estimate offset and drift from when samples were taken and read.
 
     Reading can only be late, never early, so that the line is laid through the least late sample of
-    each of many bins: the delay of the others does not pull at it.
+    each of many bins: the delay of the others does not pull at it. A second of samples read at a
+    loss tells no drift, so that it is drawn towards zero by as much as it scatters (`DRIFT_SD`).
 
     Args:
         device_time: When the device took each sample, increasing, shape (n,) [s].
@@ -67,7 +71,10 @@ def fit_clock(device_time: Array, host_time: Array) -> ClockFit:
     bins = np.array_split(np.arange(len(lag)), min(MOST_BINS, len(lag) // 5))
     least = np.array([part[np.argmin(lag[part])] for part in bins])
     centre = device_time[least].mean()
-    drift, level = np.polyfit(device_time[least] - centre, lag[least], 1)
+    x = device_time[least] - centre
+    level, slope = lag[least].mean(), float(x @ lag[least] / (x @ x))
+    scatter = np.var(lag[least] - level - slope * x)
+    drift = slope / (1 + scatter / (DRIFT_SD**2 * (x @ x)))
     offset = float(level - drift * centre)
     late = lag - (offset + drift * device_time)
     return ClockFit(offset, float(drift), float(np.median(late)))

@@ -32,3 +32,19 @@ def test_a_recording_whose_time_runs_back_is_not_replayed():
         ReplayStream(samples, name="legs", origin="RUN")
     with pytest.raises(ProtocolError, match="replay speed is 0"):
         ReplayStream(samples[:1], name="legs", origin="RUN", speed=0.0)
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_a_moment_of_samples_read_at_a_loss_tells_no_drift(seed):
+    rng = np.random.default_rng(seed)
+    device = np.arange(800) / 1000
+    batch = np.maximum.accumulate(device + rng.exponential(0.02, 800))  # a host that is held up
+    assert abs(fit_clock(device, 3.0 + batch).drift) < 4e-3
+
+
+@pytest.mark.parametrize("drift", [1e-4, -5e-3, 1e-2])
+def test_a_minute_of_samples_tells_any_drift(drift):
+    rng = np.random.default_rng(1)
+    device = np.arange(6000) / 100
+    host = 3.0 + (1 + drift) * device + rng.exponential(0.01, 6000)
+    assert fit_clock(device, host).drift == pytest.approx(drift, abs=2e-5)

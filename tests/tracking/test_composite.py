@@ -24,13 +24,13 @@ PRIOR = BodyPrior(0.1)
 WALK = np.array([[-0.5, -0.15, 0.2], [-0.2, -0.08, 0.3], [0.08, 0.03, 0.45], [0.33, 0.18, 0.6]])
 
 
-def exposure_of(planar, rng):
-    """Draw one exposure: a board with the marker on a level floor."""
+def exposure_of(planar, rng, number=3):
+    """Draw one exposure: a board with a marker on a level floor."""
     u = np.arange(800.0)[None, :] + 0 * np.arange(500.0)[:, None]
     picture = 140 + 8 * np.sin(0.21 * u) + 6 * np.sin(0.05 * u + 0.3 * np.arange(500.0)[:, None])
     R, _ = rotation_with_derivatives(0, 0, planar[2])
     corners = project(LENS, VIEW, MARKER.points_body @ R.T + [planar[0], planar[1], PRIOR.height])
-    drawn = marker_picture("4x4_50", 3, 32)
+    drawn = marker_picture("4x4_50", number, 32)
     own = np.array([[1, 0, 0.5 - 32], [0, 1, 0.5 - 32], [0, 0, 192]]) / 192
     H = square_homography(corners) @ own
     fine = np.array([[4, 0, 1.5], [0, 4, 1.5], [0, 0, 1.0]])
@@ -102,6 +102,15 @@ def test_an_empty_floor_has_no_exposure():
             picture, LENS, VIEW, template=marker_template(MARKER), prior=PRIOR,
             near=(0, 0), reach=0.3,
         )  # fmt: skip
+
+
+def test_a_marker_of_the_floor_is_no_exposure_where_it_is_known_to_lie():
+    picture, board = exposure_of([0.0, 0.0, 0.3], np.random.default_rng(3), number=43)
+    pixels = np.repeat(picture.astype(np.uint8)[:, :, None], 3, axis=2)
+    asked = {"template": marker_template(MARKER), "prior": PRIOR, "near": (0, 0), "reach": 0.3}
+    assert len(find_exposures(pixels, LENS, VIEW, **asked)) == 1  # number 43 looks like number 3
+    with pytest.raises(CompositeError, match="no exposure"):
+        find_exposures(pixels, LENS, VIEW, hidden=board, **asked)
 
 
 @given(

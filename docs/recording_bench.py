@@ -68,6 +68,9 @@ def measure(seconds, folder):
     ours, theirs = multiprocessing.Pipe()
     server = multiprocessing.get_context("spawn").Process(target=serve, args=(theirs,), daemon=True)
     server.start()
+    theirs.close()  # so that a server that fails is heard of
+    if not ours.poll(60):
+        raise TimeoutError("the simulated devices did not start within 60 s")
     legs_port, imu_port, address = ours.recv()
     streams = (
         PacketLegs(SerialLink(legs_port, baudrate=LEGS.baudrate), profile=LEGS),

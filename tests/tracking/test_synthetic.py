@@ -6,7 +6,7 @@ from datetime import datetime, timedelta, timezone
 import cv2
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from PIL import Image
 from PIL.ExifTags import IFD, Base
@@ -143,12 +143,16 @@ def test_the_camera_looks_at_its_target_and_stands_upright():
 
 # sub-pixel geometry
 
+EDGE = 1 / 25  # error of the place of an edge of some twenty pixels, at worst [px]
+
 
 @settings(max_examples=15)
 @given(
     st.floats(0.1, 0.5), st.floats(0.0, 0.4), st.floats(0.0, 0.08), st.floats(-np.pi, np.pi),
     st.floats(-0.4, 0.4),
 )  # fmt: skip
+@example(0.4375, 0.1875, 0.0, 1.359375, 0.0)  # edges whose slope suits the lattice worst
+@example(0.5, 0.125, 0.0, 1.359375, 0.0)
 def test_a_prints_area_and_centroid_are_those_of_its_projected_outline(x, y, z, yaw, tilt):
     rotation = BodyPose(0, 0, yaw, 0, tilt, -tilt).rotation
     sheet = Sheet(np.ones((1, 1), np.float32), (0.11, 0.07), np.array([x, y, z]), rotation)
@@ -160,9 +164,10 @@ def test_a_prints_area_and_centroid_are_those_of_its_projected_outline(x, y, z, 
     drawn = white_quad(sheet)
     v, u = np.indices(drawn.shape)
     share = drawn.sum()
-    assert share == pytest.approx(area, rel=2e-3)
+    perimeter = np.linalg.norm(polygon - np.roll(polygon, 1, axis=0), axis=1).sum()
+    assert share == pytest.approx(area, abs=perimeter * EDGE)
     np.testing.assert_allclose([(u * drawn).sum() / share, (v * drawn).sum() / share], centroid,
-                               atol=0.01)  # fmt: skip
+                               atol=EDGE)  # fmt: skip
 
 
 @pytest.mark.parametrize("yaw", [0.0, 0.3, 0.785, 1.2])

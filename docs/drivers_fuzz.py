@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Generated inputs for every parser of drivers and recorded runs; prints the table of drivers.md.
 
-python docs/drivers_fuzz.py [INPUTS]
+python docs/drivers_fuzz.py [INPUTS [PART OF A PARSER'S NAME]]
 
 Of every five inputs one is random, one valid, and the others are valid ones with bytes changed, cut
 short, or spliced from two. Parsers that cost milliseconds get a tenth, a hundredth or a thousandth.

@@ -19,7 +19,7 @@ from zebro_lab.slip_rig_log import SlipRigTable
 
 RIG = "rig"
 """Name under which a run keeps the profile of its rig."""
-MANY = 3  # forces to a speed, from which on they are averaged
+_MANY = 3  # forces to a speed, from which on they are averaged
 _PIECE = 4096  # samples made into objects at a time
 
 
@@ -86,7 +86,7 @@ def _of_two(
     )
     disc = decode_speeds(drives.leg, drives.ground, speeds.samples())
     speed = np.vstack([disc.leg, disc.ground])
-    if len(t) > MANY * len(disc.time):
+    if len(t) > _MANY * len(disc.time):
         at, around = averages_around(disc.time, t, force)
         return np.vstack([disc.time[at], speed[:, at], around])
     inside = (t >= disc.time[0]) & (t <= disc.time[-1])

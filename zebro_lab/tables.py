@@ -169,8 +169,8 @@ def _read_part(
 def _run_folder_table(folder: Path, columns: Columns) -> tuple[RawTable, Columns, tuple[Path, ...]]:
     """Read a run folder as a table.
 
-    Its columns are canonical, and it is one run, or one for each sweep: of a
-    `columns.toml` only the row conditions and the load cell apply to it.
+    Its columns are canonical, and it is one run, or one for each sweep: of a `columns.toml` only
+    the row conditions and the load cell apply to it.
     """
     import pandas as pd
 

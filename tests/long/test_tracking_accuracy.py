@@ -35,7 +35,6 @@ from tracking.synthetic import RobotMarker as DrawnMarker
 pytestmark = pytest.mark.long
 
 PHOTOS = 100
-# Turned, since drawn edges along pixel rows are but good to 1/68 px, all of an edge alike.
 PLACES = ((0.1, -0.1, 0.3), (1.5, -0.1, -0.4), (1.6, 1.2, 0.5), (0.0, 1.3, -0.2))
 GOOD = Conditions(defocus_sd_px=0.6)
 HEIGHT, SIDE = 0.0645, 0.12  # m

@@ -43,7 +43,6 @@ from tracking.synthetic import RobotMarker as DrawnMarker
 
 pytestmark = pytest.mark.long
 
-# Turned, since drawn edges along pixel rows are but good to 1/68 px, all of an edge alike.
 PLACES = ((0.1, -0.1, 0.3), (1.5, -0.1, -0.4), (1.6, 1.2, 0.5), (0.0, 1.3, -0.2))
 SIDE = 0.12
 TAPE_SD, TURN_SD, SIDE_SD = 2e-4, 2e-3, 1e-4  # m, rad, m

@@ -102,12 +102,14 @@ class _Sampler:
         """Average the values over each pixel, shape (*shape, 5).
 
         A robot at rest is drawn from a few points of each pixel; all are used only where these, or
-        those of the pixels around, disagree. Every surface is flat in colour, so that no edge is
-        missed.
+        those of the pixels around, disagree. Every surface is flat in colour: its edges part the
+        corners of the pixels they cross, or a tip of it comes in over a side.
         """
         if self._moves:
             return self._mean(rays, range(SAMPLES)).reshape(*shape, _PARTS)
-        few = np.stack([self._values(rays, sample) for sample in CORNERS])
+        few = np.stack([
+            self._values(rays.beside(*place), sample) for sample, place in enumerate(CORNERS)
+        ])  # fmt: skip
         low, high = (part.reshape(*shape, _PARTS) for part in (few.min(axis=0), few.max(axis=0)))
         around = np.ones((3, 3), np.uint8)
         edge = np.any(cv2.dilate(high, around) - cv2.erode(low, around) > _FLAT, axis=-1).ravel()
@@ -122,14 +124,13 @@ class _Sampler:
     def _mean(self, rays: RayField, samples: Sequence[int]) -> Picture:
         total = np.zeros((rays.middle.shape[1], _PARTS), np.float32)
         for sample in samples:
-            total += self._values(rays, sample)
+            total += self._values(rays.at(sample), sample)
         return total / np.float32(len(samples))
 
-    def _values(self, rays: RayField, sample: int) -> Picture:
+    def _values(self, directions: NDArray[np.float32], sample: int) -> Picture:
         pose = self.state.pose_at(float(MOMENTS[sample]) * self.exposure_time)
         plate = _plate(self.look.plate_seed, self.look.parts)
         seen = _Seen(pose, self.state.leg_angles, self.look, self.light, plate)
-        directions = rays.at(sample)
         found, colour = seen.along(self.origin, directions)
         lit = np.where(found, 0.0, seen.floor_light(self.origin, directions, DISC[sample]))
         return np.column_stack([colour, found, lit]).astype(np.float32)

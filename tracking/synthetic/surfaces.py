@@ -132,14 +132,22 @@ def half_circle_hit(
     along_x, along_z = direction[0], direction[2]
     a = along_x * along_x + along_z * along_z
     b = from_x * along_x + from_z * along_z
-    root = b * b - a * (from_x * from_x + from_z * from_z - radius * radius)
-    nearest = np.full(np.shape(root), np.inf)
+    root = np.asarray(b * b - a * (from_x * from_x + from_z * from_z - radius * radius))
+    nearest = np.full(root.shape, np.inf)
+    near = np.flatnonzero(root >= 0)  # few do, and only these are looked at more closely
+    parts = (a, b, from_x, from_z, along_x, along_z, direction[1], origin[1] - hip[1])
+    a, b, from_x, from_z, along_x, along_z, along_y, from_y = (
+        part[near] if isinstance(part, np.ndarray) and part.ndim else part for part in parts
+    )
+    root = np.sqrt(root.ravel()[near])
+    found = np.full(len(near), np.inf)
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         for sign in (1.0, -1.0):  # the near crossing last, so that it wins
-            distance = (-b + sign * np.sqrt(root)) / a
+            distance = (-b + sign * root) / a
             x, z = from_x + distance * along_x, from_z + distance * along_z
-            y = origin[1] + distance * direction[1] - hip[1]
+            y = from_y + distance * along_y
             # the half on which the strip is: behind the line from hip to toe
             inside = (-sin * x - cos * z >= 0) & (np.abs(y) <= width / 2) & (distance > 0)
-            nearest = np.where(inside, distance, nearest)
+            found = np.where(inside, distance, found)
+    nearest.flat[near] = found
     return nearest

@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from model.compiled import inlined
+from model.compiled import compiled, inlined
 from model.robot import Robot
 from model.slip.law import Array
 from model.walk.kernel import N_CONTACTS
@@ -118,7 +118,7 @@ def body_arrays(robot: Robot) -> Body:
     )  # fmt: skip
 
 
-@inlined
+@compiled
 def new_work():
     """Make room for what a step fills in; no contact presses."""
     n = N_CONTACTS
@@ -130,7 +130,7 @@ def new_work():
     )  # fmt: skip
 
 
-@inlined
+@compiled
 def new_state():
     """Make room for a state."""
     return State(np.empty(3), np.empty(4), np.empty(3), np.empty(3), np.empty((N_CONTACTS, 3)))

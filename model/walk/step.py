@@ -1,12 +1,14 @@
 # SPDX-License-Identifier: MIT
 """The loop over steps of the walk, compiled."""
 
+from typing import NamedTuple
+
 import numpy as np
 
-from model.compiled import compiled, inlined
+from model.compiled import borrowing, compiled, inlined
 from model.robot import GRAVITY
 from model.slip.law import Array
-from model.walk.arrays import Body, Contacts, State, copy_state, new_state, new_work
+from model.walk.arrays import Body, Contacts, State, Work, copy_state, new_state, new_work
 from model.walk.ground import Ground
 from model.walk.kernel import (
     N_CONTACTS,
@@ -28,6 +30,24 @@ MOST_ROUNDS = 8  # until the contacts that were taken to press are those that do
 FINE_STEP = 0.0005  # s, where contacts change: two tripods on the ground at once is soon over
 FINE_TIME = 0.005  # s, after a change
 BRISTLE_STIFFNESS = 0.1  # of the normal stiffness: a foot gives tenths of a millimetre, then slides
+
+
+class Spare(NamedTuple):
+    """Arrays that the loop writes over.
+
+    Attributes:
+        work: What a step fills in.
+        before: State before a step.
+        speed: Leg speeds in a step, shape (6,) [rad/s].
+        angles: Leg angles at the end of a finer step, shape (6,) [rad].
+        loaded: Loads before a step, shape (14,) [N].
+    """
+
+    work: Work
+    before: State
+    speed: Array
+    angles: Array
+    loaded: Array
 
 
 @compiled
@@ -63,10 +83,14 @@ def run_steps(
     Returns:
         Steps walked: n, or fewer where the state stopped being finite.
     """
-    work = new_work()
-    before = new_state()
-    speed, angles = np.empty(N_LEGS), np.empty(N_LEGS)
-    loaded = np.zeros(N_CONTACTS)
+    spare = Spare(new_work(), new_state(), np.empty(N_LEGS), np.empty(N_LEGS), np.zeros(N_CONTACTS))
+    return _steps(body, table, ground, contacts, state, theta, dt, pose, legs, spare)
+
+
+@borrowing
+def _steps(body, table, ground, contacts, state, theta, dt, pose, legs, spare):
+    """Walk as `run_steps` does, in arrays that it made."""
+    work, before, speed, angles, loaded = spare
     parts = max(int(np.ceil(dt / FINE_STEP - 1e-9)), 1)
     fine_steps = int(np.ceil(FINE_TIME / dt))
     fine_left = fine_steps
@@ -74,12 +98,12 @@ def run_steps(
         for i in range(N_LEGS):
             speed[i] = (theta[step + 1, i] - theta[step, i]) / dt
         copy_state(state, before)
-        loaded[:] = work.load
+        _copy(work.load, loaded)
         if fine_left == 0 or parts == 1:
             one_step(body, table, ground, contacts, state, work, theta[step + 1], speed, dt)
             if parts > 1 and _contacts_changed(work.load, loaded):
                 copy_state(before, state)
-                work.load[:] = loaded
+                _copy(loaded, work.load)
                 fine_left = fine_steps
         if fine_left > 0 and parts > 1:
             for part in range(parts):
@@ -89,8 +113,7 @@ def run_steps(
             fine_left = fine_steps if _contacts_changed(work.load, loaded) else fine_left - 1
         if not np.isfinite(state.p.sum() + state.w.sum()):
             return step
-        pose[step, :3] = state.p
-        pose[step, 3:] = state.q
+        _keep_pose(pose[step], state)
         if len(legs):
             _keep_legs(legs[step], contacts, state, work, speed)
     return theta.shape[0] - 1
@@ -255,7 +278,22 @@ def _stretch_bristle(table, contacts, state, work, i, dt):
     longest = work.load[i] * toe_traction(table, work.load[i])
     longest /= BRISTLE_STIFFNESS * contacts.stiffness
     if np.sqrt(stretched) > longest:
-        state.stretch[i, :] *= longest / np.sqrt(stretched)
+        for a in range(3):
+            state.stretch[i, a] *= longest / np.sqrt(stretched)
+
+
+@inlined
+def _copy(values, to):
+    for i in range(len(values)):
+        to[i] = values[i]
+
+
+@inlined
+def _keep_pose(out, state):
+    for i in range(3):
+        out[i] = state.p[i]
+    for i in range(4):
+        out[3 + i] = state.q[i]
 
 
 @inlined

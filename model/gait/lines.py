@@ -1,0 +1,305 @@
+# SPDX-License-Identifier: MIT
+"""Straight lines through one leg's changes of count, compiled; see `model.gait.quantised`."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from model.compiled import compiled
+from model.slip.law import Array
+
+FASTEST = 60.0  # rad/s, beyond any leg
+HALVINGS = 60
+OWN = 6  # changes of a line, from which on its last ones may be the next line's
+
+
+class Changes(NamedTuple):
+    """Changes of one leg's count: the sample before and the one after each.
+
+    Attributes:
+        early: Times of the samples before, shape (n,) [s].
+        late: Times of the samples after, shape (n,) [s].
+        before: Angles before: middles of their bins, shape (n,) [rad].
+        after: Angles after, shape (n,) [rad].
+    """
+
+    early: Array
+    late: Array
+    before: Array
+    after: Array
+
+
+class Lines(NamedTuple):
+    """A leg at one constant speed after the other.
+
+    Attributes:
+        x: A time on each line, shape (k,) [s].
+        angle: The angle there, shape (k,) [rad].
+        speed: The speed, shape (k,) [rad/s].
+    """
+
+    x: Array
+    angle: Array
+    speed: Array
+
+
+class Log(NamedTuple):
+    """The ends of a log, and what counting leaves open.
+
+    Attributes:
+        begin: Time of the first sample [s].
+        first: Angle counted there [rad].
+        end: Time of the last sample [s].
+        last: Angle counted there [rad].
+        half: Half a count, and what a line may miss it by [rad].
+    """
+
+    begin: float
+    first: float
+    end: float
+    last: float
+    half: float
+
+
+@compiled
+def split(changes: Changes, half: float) -> NDArray[np.intp]:
+    """Return the first change of each of the fewest lines, and the number of changes.
+
+    Args:
+        changes: The changes, at least one.
+        half: Half a count, and what a line may miss it by [rad].
+    """
+    n = len(changes.early)
+    first = np.empty(n + 1, dtype=np.intp)
+    count, at = 1, 0
+    first[0] = 0
+    while at < n:
+        at = _reach(changes, at, half)
+        first[count] = at
+        count += 1
+    return first[:count].copy()
+
+
+@compiled
+def _reach(changes, start, half):
+    """Return the first change that no line from the change `start` on still passes.
+
+    A line passes a change when it lies in the count before at the sample before, and in the count
+    after at the sample after.
+    """
+    early, late, before, after = changes
+    n = len(early)
+    low, high = -FASTEST, FASTEST
+    m = 0.0
+    for end in range(start + 2, n + 1):
+        # max(lower bounds) - min(upper bounds) of the intercept is convex in the slope.
+        fits = False
+        a, b = low, high
+        for attempt in range(HALVINGS):
+            m = m if attempt == 0 else 0.5 * (a + b)
+            floor, ceiling = -np.inf, np.inf
+            floor_t, ceiling_t = 0.0, 0.0
+            for k in range(start, end):
+                for side in range(2):
+                    t = early[k] if side == 0 else late[k]
+                    t -= early[start]
+                    value = before[k] if side == 0 else after[k]
+                    if value - half - m * t > floor:
+                        floor, floor_t = value - half - m * t, t
+                    if value + half - m * t < ceiling:
+                        ceiling, ceiling_t = value + half - m * t, t
+            if floor <= ceiling:
+                fits = True
+                break
+            # The slope of the gap is ceiling_t - floor_t: go down it.
+            if ceiling_t > floor_t:
+                b = m
+            else:
+                a = m
+        if not fits:
+            return end - 1
+    return n
+
+
+@compiled
+def fitted(changes: Changes, first: NDArray[np.intp], place: Array) -> Lines:
+    """Fit a line to each run of changes.
+
+    Args:
+        changes: The changes.
+        first: From `split`.
+        place: Where between its samples each change fell, 0 to 1, shape (n,) [-].
+    """
+    k = len(first) - 1
+    lines = Lines(np.empty(k), np.empty(k), np.empty(k))
+    at = changes.early + place * (changes.late - changes.early)
+    angle = 0.5 * (changes.before + changes.after)
+    for i in range(k):
+        begin, end = first[i], _own_end(first[i], first[i + 1])
+        x, y = at[begin:end], angle[begin:end]
+        lines.x[i], lines.angle[i] = x.mean(), y.mean()
+        d = x - lines.x[i]
+        spread = (d * d).sum()
+        lines.speed[i] = (d * (y - lines.angle[i])).sum() / spread if spread > 0 else 0.0
+    return lines
+
+
+@compiled
+def drawn(
+    lines: Lines,
+    changes: Changes,
+    first: NDArray[np.intp],
+    place: Array,
+    outwards: float,
+    half: float,
+) -> Lines:
+    """Go from lines towards those of other places of the changes, and still pass every change.
+
+    Args:
+        lines: Lines that pass the changes: from `fitted` at their middles.
+        changes: The changes.
+        first: From `split`.
+        place: Where between its samples each change fell, 0 to 1, shape (n,) [-].
+        outwards: How far to go, of what the changes leave room for [-].
+        half: Half a count, and what a line may miss it by [rad].
+    """
+    other = fitted(changes, first, place)
+    moved = Lines(lines.x, np.empty(len(lines.x)), np.empty(len(lines.x)))
+    for i in range(len(lines.x)):
+        at_angle = _at(other, i, lines.x[i])
+        share = outwards * _room(lines, other, i, changes, first, half)
+        moved.angle[i] = lines.angle[i] + share * (at_angle - lines.angle[i])
+        moved.speed[i] = lines.speed[i] + share * (other.speed[i] - lines.speed[i])
+    return moved
+
+
+@compiled
+def _room(lines, other, i, changes, first, half):
+    """Return how far towards another line one may go and still pass all changes, at most 1.
+
+    All the way, where not even the line itself passes them: then the leg went no straight line, and
+    nothing is known but each change on its own.
+    """
+    room = 1.0
+    for k in range(first[i], _own_end(first[i], first[i + 1])):
+        for side in range(2):
+            t = changes.early[k] if side == 0 else changes.late[k]
+            middle = changes.before[k] if side == 0 else changes.after[k]
+            here, there = _at(lines, i, t) - middle, _at(other, i, t) - middle
+            if abs(here) > half:
+                return 1.0
+            if there > here:
+                room = min(room, (half - here) / (there - here))
+            elif there < here:
+                room = min(room, (half + here) / (here - there))
+    return room
+
+
+@compiled
+def rests(lines: Lines, changes: Changes, first: NDArray[np.intp]) -> NDArray[np.bool_]:
+    """Tell whether a leg rested between each line and the next, shape (k - 1,).
+
+    It did where it reached its resting angle well before it left it again.
+    """
+    rested = np.zeros(len(lines.x) - 1, dtype=np.bool_)
+    for i in range(len(rested)):
+        if lines.speed[i] == 0 or lines.speed[i + 1] == 0:
+            continue
+        early, late, angle = _stay(changes, first[i + 1])
+        reached, left = _when(lines, i, angle), _when(lines, i + 1, angle)
+        inside = early <= reached and reached < left and left <= late
+        rested[i] = inside and left - reached > 0.5 * (late - early)
+    return rested
+
+
+@compiled
+def knots(
+    lines: Lines,
+    changes: Changes,
+    first: NDArray[np.intp],
+    rested: NDArray[np.bool_],
+    rest: float,
+    log: Log,
+) -> Array:
+    """Let each line pass into the next where they meet; return times [s] and angles [rad], (2, m).
+
+    Args:
+        lines: The lines.
+        changes: The changes of count.
+        first: From `split`.
+        rested: From `rests`.
+        rest: Angle within its count at which a leg rests [rad].
+        log: The log's ends.
+    """
+    found = np.empty((2, 2 * len(lines.x) + 2))
+    n = _end(lines, 0, log.begin, log.first, rest, log.half, found, 0)
+    for i in range(len(rested)):
+        early, late, angle = _stay(changes, first[i + 1])
+        n = _junction(lines, i, early, late, angle + rest, rested[i], found, n)
+    k, begin = len(lines.x) - 1, n
+    n = _end(lines, k, log.end, log.last, rest, log.half, found, n)
+    found[:, begin:n] = found[:, begin:n][:, ::-1].copy()  # met from behind
+    for i in range(1, n):
+        found[0, i] = max(found[0, i], found[0, i - 1])
+    return found[:, :n]
+
+
+@compiled
+def _junction(lines, i, early, late, angle, rested, found, n):
+    """Add the knots at which a line passes into the next; return their number so far.
+
+    A plateau, if the leg rested between them; where they meet, if that is about where the count
+    stayed the same; else the ends of both.
+    """
+    if rested:
+        n = _add(found, n, _when(lines, i, angle), angle)
+        return _add(found, n, _when(lines, i + 1, angle), angle)
+    near = 1.5 * (late - early)
+    if lines.speed[i] != lines.speed[i + 1]:
+        apart = _at(lines, i + 1, lines.x[i]) - lines.angle[i]
+        x = lines.x[i] + apart / (lines.speed[i] - lines.speed[i + 1])
+        if early - near < x < late + near:
+            return _add(found, n, x, _at(lines, i, x))
+    n = _add(found, n, early, _at(lines, i, early))
+    return _add(found, n, late, _at(lines, i + 1, late))
+
+
+@compiled
+def _end(lines, i, t, theta, rest, half, found, n):
+    """Add a log's first knots: on its line, or at rest until that line is reached."""
+    if abs(_at(lines, i, t) - theta) <= half or lines.speed[i] == 0:
+        return _add(found, n, t, _at(lines, i, t))
+    n = _add(found, n, t, theta + rest)
+    return _add(found, n, _when(lines, i, theta + rest), theta + rest)
+
+
+@compiled
+def _add(found, n, t, angle):
+    found[0, n], found[1, n] = t, angle
+    return n + 1
+
+
+@compiled
+def _stay(changes, change):
+    """Return from when to when the count stayed the same before a change, and its angle."""
+    early = 0.5 * (changes.early[change - 1] + changes.late[change - 1])
+    return early, 0.5 * (changes.early[change] + changes.late[change]), changes.after[change - 1]
+
+
+@compiled
+def _at(lines, i, t):
+    """Return a line's angle at a time [rad]."""
+    return lines.angle[i] + lines.speed[i] * (t - lines.x[i])
+
+
+@compiled
+def _when(lines, i, angle):
+    """Return the time at which a line passes an angle [s]."""
+    return lines.x[i] + (angle - lines.angle[i]) / lines.speed[i]
+
+
+@compiled
+def _own_end(begin, end):
+    """Return where a line's own changes end; the last ones may belong to the next line."""
+    return end - max(1, (end - begin) // 12) if end - begin >= OWN else end

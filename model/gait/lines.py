@@ -131,17 +131,19 @@ def fitted(changes: Changes, first: NDArray[np.intp], place: Array) -> Lines:
         first: From `split`.
         place: Where between its samples each change fell, 0 to 1, shape (n,) [-].
     """
-    k = len(first) - 1
-    lines = Lines(np.empty(k), np.empty(k), np.empty(k))
+    n = len(first) - 1
+    lines = Lines(np.empty(n), np.empty(n), np.empty(n))
     at = changes.early + place * (changes.late - changes.early)
     angle = 0.5 * (changes.before + changes.after)
-    for i in range(k):
+    for i in range(n):
         begin, end = first[i], _own_end(first[i], first[i + 1])
-        x, y = at[begin:end], angle[begin:end]
-        lines.x[i], lines.angle[i] = x.mean(), y.mean()
-        d = x - lines.x[i]
-        spread = (d * d).sum()
-        lines.speed[i] = (d * (y - lines.angle[i])).sum() / spread if spread > 0 else 0.0
+        x, y = at[begin:end].mean(), angle[begin:end].mean()
+        spread = slope = 0.0
+        for k in range(begin, end):
+            spread += (at[k] - x) ** 2
+            slope += (at[k] - x) * (angle[k] - y)
+        lines.x[i], lines.angle[i] = x, y
+        lines.speed[i] = slope / spread if spread > 0 else 0.0
     return lines
 
 
@@ -237,12 +239,13 @@ def knots(
     for i in range(len(rested)):
         early, late, angle = _stay(changes, first[i + 1])
         n = _junction(lines, i, early, late, angle + rest, rested[i], found, n)
-    k, begin = len(lines.x) - 1, n
-    n = _end(lines, k, log.end, log.last, rest, log.half, found, n)
-    found[:, begin:n] = found[:, begin:n][:, ::-1].copy()  # met from behind
-    for i in range(1, n):
+    last = _end(lines, len(lines.x) - 1, log.end, log.last, rest, log.half, found, n)
+    if last == n + 2:  # met from behind: the end before where the leg came to rest
+        for row in range(2):
+            found[row, n], found[row, n + 1] = found[row, n + 1], found[row, n]
+    for i in range(1, last):
         found[0, i] = max(found[0, i], found[0, i - 1])
-    return found[:, :n]
+    return found[:, :last]
 
 
 @compiled

@@ -27,7 +27,7 @@ from rig.twins import robot_twin
 from rig.zebro.profile import load_leg_profile
 from rig.zebro.serial import PacketLegs
 from zebro_lab.acquisition import Device, acquiring
-from zebro_lab.record_devices import CELL_PAUSE, ForceCheck, default_gait
+from zebro_lab.record_devices import PAUSE, ForceCheck, default_gait
 from zebro_lab.recorder import RunDescription, RunRecorder
 from zebro_lab.run_folder import read_manifest
 from zebro_lab.stream_views import ImuView, LegsView, LoadCellView
@@ -80,8 +80,8 @@ def measure(seconds, folder):
     views = (LegsView("legs", profile=LEGS), ImuView("imu", profile=IMU),
              LoadCellView("load_cell", profile=CELL))  # fmt: skip
     devices = [
-        *map(Device, streams[:2], views[:2]),
-        Device(streams[2], views[2], ForceCheck(RIG), pause=CELL_PAUSE),
+        Device(stream, view, check, pause=PAUSE)
+        for stream, view, check in zip(streams, views, (None, None, ForceCheck(RIG)), strict=True)
     ]
     description = RunDescription(kind="walk", label="bench", source="sim:bench")
     recorder = RunRecorder(folder, description=description,

@@ -5,7 +5,7 @@ Real, simulated and replayed devices are siblings behind these protocols. Raw co
 speeds and forces are derived from them with the device's profile, now or years later.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from types import TracebackType
 from typing import NamedTuple, Protocol, Self
@@ -90,7 +90,7 @@ class Stream(Protocol):
         """What happened so far."""
         ...
 
-    def read(self, timeout: float) -> list[Sample]:
+    def read(self, timeout: float) -> Sequence[Sample]:
         """Hand on all samples that have arrived, waiting at most `timeout` for the first.
 
         Args:

@@ -45,8 +45,8 @@ class Device:
         check: Guards every read, in the thread that reads; raises where a limit is broken.
         command: Called before every read, in the same thread: set-points of a gait.
         at_end: Called once before the driver is left: stops what `command` moved.
-        pause: Before each read, for a device that is fast and tells time: waking up for each few
-            samples costs more than reading them [s].
+        pause: Before each read, for a device that tells time: waking up for each few samples
+            costs more than reading them [s].
     """
 
     stream: Stream
@@ -145,7 +145,7 @@ class Acquisition:
             missing = counters.lost - before.lost
             self._sink.event(f"{self.name}: {missing} samples lost", level=WARNING)
 
-    def _listen(self, guard: SilenceGuard, samples: list[Sample]) -> None:
+    def _listen(self, guard: SilenceGuard, samples: Sequence[Sample]) -> None:
         """Make one event of a silence, however long, and one of its end."""
         try:
             guard.check(samples, now=self._clock.now())

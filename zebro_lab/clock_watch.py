@@ -9,7 +9,7 @@ import numpy as np
 from model.slip.law import Array
 from rig.clock_fit import FEWEST, fit_clock
 from rig.device import Sample
-from zebro_lab.raw_log import RawStream
+from rig.sample_columns import SampleColumns
 
 BUCKET: Final = 0.05
 """One comparison of clocks is kept in each of these [s]."""
@@ -31,10 +31,10 @@ class ClockWatch:
 
     def add(self, samples: Sequence[Sample]) -> None:
         """Take what a read gave; its last sample waited least."""
-        device = samples[-1].device_time if samples else None
-        if device is None:
+        latest = samples[-1] if samples else None
+        if latest is None or latest.device_time is None:
             return
-        host = samples[-1].host_time - self._start
+        device, host = latest.device_time, latest.host_time - self._start
         if self._device and abs(host - device - self._host[-1] + self._device[-1]) > RESTARTED:
             self._device, self._host = [], []  # of two clocks, the one that runs now
         if self._host and host // BUCKET == self._host[-1] // BUCKET:
@@ -56,7 +56,7 @@ class ClockWatch:
         return {"offset": fit.offset, "drift": fit.drift, "delay": fit.delay}
 
 
-def sample_times(stream: RawStream) -> Array:
+def sample_times(stream: SampleColumns) -> Array:
     """Compute when samples were taken, by the time of the run, shape (n,) [s].
 
     Reading takes samples in batches; where the device tells time, the batches are undone with its
@@ -78,7 +78,7 @@ def sample_times(stream: RawStream) -> Array:
     return times
 
 
-def _filled(stream: RawStream) -> Array | None:
+def _filled(stream: SampleColumns) -> Array | None:
     """Return device times, those that were lost interpolated by number; None without any."""
     known = np.isfinite(stream.device_time)
     if known.sum() < FEWEST:

@@ -8,6 +8,7 @@ from typing import IO, Final
 import numpy as np
 
 from rig.device import Counters, Sample
+from rig.sample_columns import as_columns
 from zebro_lab.cdr import CdrWriter
 from zebro_lab.message_log import MessageLog
 from zebro_lab.raw_log import RAW_SCHEMAS, encode_raw, raw_topic
@@ -60,13 +61,14 @@ class LogWriter:
     def write(self, stream: str, samples: Sequence[Sample]) -> None:
         """Write samples of a stream, at least one: raw, and as its view shows them."""
         view = self._views[stream]
-        host_time = np.array([sample.host_time for sample in samples]) - self._start
-        stamps = (self._start_ns + np.rint(1e9 * host_time).astype(np.int64)).tolist()
         dtype, _ = RAW_SCHEMAS[view.raw_schema]
+        columns = as_columns(samples, dtype)
+        host_time = columns.host_time - self._start
+        stamps = (self._start_ns + np.rint(1e9 * host_time).astype(np.int64)).tolist()
         topic = raw_topic(stream)
-        self._log.add(topic, stamps[-1], encode_raw(samples, dtype=dtype, start=self._start))
+        self._log.add(topic, stamps[-1], encode_raw(columns, dtype=dtype, start=self._start))
         self.written[topic] += len(samples)
-        for shown, stamp, message in view.messages(samples, stamps):
+        for shown, stamp, message in view.messages(columns, stamps):
             self._log.add(shown, stamp, message)
 
     def event(self, host_time: float, text: str, *, level: int = INFO) -> None:

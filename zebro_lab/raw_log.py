@@ -5,17 +5,13 @@ Counts are kept, not angles or forces: those follow from them with the profile, 
 was corrected years later.
 """
 
-import itertools
-import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import IO, TYPE_CHECKING, Any
-
-import numpy as np
-from numpy.typing import NDArray
+from typing import IO, TYPE_CHECKING
 
 from rig.device import Sample
+from rig.sample_columns import SampleColumns, as_columns
 from zebro_lab.cdr import CdrReader, CdrWriter
 from zebro_lab.errors import DataError
 from zebro_lab.log_damage import DAMAGES_HINT, log_damages
@@ -44,57 +40,15 @@ doubles for those whose counts have a fraction."""
 
 
 @dataclass(frozen=True)
-class RawStream:
-    """What one device sent during a run.
-
-    Attributes:
-        host_time: When each sample was read, since the start of the run, shape (n,) [s].
-        device_time: By the device's clock, NaN where it tells none, shape (n,) [s].
-        sequence: Number of each sample, -1 where it has none, shape (n,).
-        status: Status words, shape (n,).
-        channel: Which of several devices on the link, shape (n,).
-        counts: Raw values, shape (n, width).
-    """
-
-    host_time: NDArray[np.float64]
-    device_time: NDArray[np.float64]
-    sequence: NDArray[np.int64]
-    status: NDArray[np.uint32]
-    channel: NDArray[np.uint32]
-    counts: NDArray[Any]
-
-    def __len__(self) -> int:
-        """Count the samples."""
-        return len(self.host_time)
-
-    def samples(self) -> list[Sample]:
-        """Return the samples as the driver gave them, host time since the start of the run."""
-        return [
-            Sample(
-                host,
-                None if math.isnan(device) else device,
-                None if number < 0 else number,
-                tuple(counts),
-                status,
-                channel,
-            )
-            for host, device, number, counts, status, channel in zip(
-                self.host_time.tolist(), self.device_time.tolist(), self.sequence.tolist(),
-                self.counts.tolist(), self.status.tolist(), self.channel.tolist(), strict=True,
-            )
-        ]  # fmt: skip
-
-
-@dataclass(frozen=True)
 class SalvagedStreams:
     """What could be read of a log.
 
     Attributes:
-        streams: Raw streams by topic.
+        streams: What each device sent, by topic; host times since the start of the run.
         damage: Why reading stopped before the end; None for a whole log.
     """
 
-    streams: dict[str, RawStream]
+    streams: dict[str, SampleColumns]
     damage: str | None
 
 
@@ -115,21 +69,16 @@ def encode_raw(samples: Sequence[Sample], *, dtype: str, start: float) -> bytes:
         ValueError: The samples differ in width, or a count does not fit.
         OverflowError: A count does not fit.
     """
-    host, device, sequence, counts, status, channel = zip(*samples, strict=True)
-    width = len(counts[0])
-    if set(map(len, counts)) != {width}:
-        raise ValueError(f"samples of one stream have {set(map(len, counts))} counts")
-    flat = itertools.chain.from_iterable(counts)  # half the time of an array of tuples
-    values = np.fromiter(flat, dtype=dtype, count=width * len(counts))
-    missing = [-1 if number is None else number for number in sequence]
-    message = CdrWriter().array(np.array(host, dtype="<f8") - start)
-    message.array(np.array(device, dtype="<f8"))  # None becomes NaN
-    message.array(np.array(missing, dtype="<i8"))
-    message.array(np.array(status, dtype="<u4")).array(np.array(channel, dtype="<u4"))
-    return message.uint32(width).array(values).message()
+    columns = as_columns(samples, dtype)
+    message = CdrWriter()
+    message.array((columns.host_time - start).astype("<f8"))
+    message.array(columns.device_time.astype("<f8")).array(columns.sequence.astype("<i8"))
+    message.array(columns.status.astype("<u4")).array(columns.channel.astype("<u4"))
+    counts = columns.counts.astype(dtype, casting="same_kind")
+    return message.uint32(counts.shape[1]).array(counts.ravel()).message()
 
 
-def decode_raw(data: bytes, *, dtype: str) -> RawStream:
+def decode_raw(data: bytes, *, dtype: str) -> SampleColumns:
     """Decode a message of `encode_raw`.
 
     Raises:
@@ -143,7 +92,8 @@ def decode_raw(data: bytes, *, dtype: str) -> RawStream:
     lengths = {len(part) for part in (host, device, sequence, status, channel)}
     if len(lengths) != 1 or len(counts) != len(host) * width:
         raise ValueError(f"a message of {len(data)} bytes does not hold {len(host)} whole samples")
-    return RawStream(host, device, sequence, status, channel, counts.reshape(len(host), width))
+    shaped = counts.reshape(len(host), width)
+    return SampleColumns(host, device, sequence, status, channel, shaped)
 
 
 def read_raw_log(path: Path) -> SalvagedStreams:
@@ -154,7 +104,7 @@ def read_raw_log(path: Path) -> SalvagedStreams:
     """
     from mcap.exceptions import InvalidMagic
 
-    parts: dict[str, list[RawStream]] = {}
+    parts: dict[str, list[SampleColumns]] = {}
     damage = None
     try:
         with path.open("rb") as file:
@@ -164,12 +114,8 @@ def read_raw_log(path: Path) -> SalvagedStreams:
         raise DataError("is no MCAP file", file=path) from error
     except log_damages() as error:
         damage = str(error) or DAMAGES_HINT
-    return SalvagedStreams({topic: _joined(found) for topic, found in parts.items()}, damage)
-
-
-def _joined(parts: Sequence[RawStream]) -> RawStream:
-    columns = zip(*(vars(part).values() for part in parts), strict=True)
-    return RawStream(*(np.concatenate(column) for column in columns))
+    streams = {topic: SampleColumns.joined(found) for topic, found in parts.items()}
+    return SalvagedStreams(streams, damage)
 
 
 def _messages(file: IO[bytes]) -> "Iterator[tuple[str, str, Message]]":

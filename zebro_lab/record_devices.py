@@ -15,6 +15,7 @@ from rig.device import Sample
 from rig.imu.profile import load_imu_profile
 from rig.profile import shipped_file, split_address
 from rig.safety import SampleGuard
+from rig.sample_columns import as_columns
 from rig.slip_rig.imperfections import TYPICAL_RIG
 from rig.slip_rig.profile import RigProfile, load_rig_profile
 from rig.slip_rig.simulated import RigDynamics, SimulatedRig, simulated_rig
@@ -35,9 +36,10 @@ IMU_PROFILE: Final = "imu-quaternion-serial"
 RIG_PROFILE: Final = "rig-odrive-netft"
 HORIZON: Final = 0.1
 """How far ahead of a played gait its set-points lie [s]."""
-CELL_PAUSE: Final = 0.04
-"""Between two reads of a load cell: the system keeps seconds of its datagrams, and with the wait of
-the recorder this stays well below the 200 ms that a killed run may lack [s]."""
+PAUSE: Final = 0.037
+"""Between two reads of a device that tells time: the system keeps what comes meanwhile, and with
+the wait of the recorder this stays well below the 200 ms that a killed run may lack. No multiple of
+a usual period, so that samples are read at every age: the least late tell the clocks apart [s]."""
 TWIN_SWEEP: Final = SweepPlan(slips=tuple(np.linspace(0.0, 0.9, 16) ** 1.5), duration=1.0)
 """What a simulated rig sweeps: all slips in 16 s at each of four loads."""
 
@@ -174,6 +176,7 @@ def _add_legs(
             LegsView("legs", profile=profile),
             command=player,
             at_end=None if player is None else legs.stop,
+            pause=PAUSE if player is None and profile.layout == "packet" else 0.0,
         )
     )
     opened.profiles["legs"] = (profile.name, profile_text(name))
@@ -188,7 +191,7 @@ def _add_imu(
         unit = stack.enter_context(simulated_imu(profile, rng=rng, name=stream))
     else:
         unit = open_imu(address, name=stream)
-    opened.devices.append(Device(unit, ImuView(stream, profile=profile)))
+    opened.devices.append(Device(unit, ImuView(stream, profile=profile), pause=PAUSE))
     opened.profiles[stream] = (profile.name, profile_text(name))
 
 
@@ -209,12 +212,13 @@ def _add_rig(opened: _Opened, stack: ExitStack, address: str, rng: np.random.Gen
 def _of_rig(profile: RigProfile, rig: RigDevices) -> Iterator[Device]:
     check = ForceCheck(profile)
     if rig.board is not None and profile.board is not None:
-        yield Device(rig.board, BoardView(rig.board.name, profile=profile.board), check)
+        view = BoardView(rig.board.name, profile=profile.board)
+        yield Device(rig.board, view, check, pause=PAUSE)
     if rig.drives is not None and profile.drives is not None:
         yield Device(rig.drives, DrivesView(rig.drives.name, profile=profile.drives))
     if rig.load_cell is not None and profile.load_cell is not None:
         view = LoadCellView(rig.load_cell.name, profile=profile.load_cell)
-        yield Device(rig.load_cell, view, check, pause=CELL_PAUSE)
+        yield Device(rig.load_cell, view, check, pause=PAUSE)
 
 
 class GaitPlayer:
@@ -256,7 +260,6 @@ class ForceCheck:
             SampleGuard(limit, quantity=f"{name} force", unit="N")
             for name, limit in zip(("normal", "traction"), limits, strict=True)
         ]
-        self._limits = limits
         self._channels = _force_channels(profile)
 
     def __call__(self, samples: Sequence[Sample]) -> None:
@@ -265,13 +268,9 @@ class ForceCheck:
         Raises:
             LimitExceeded: Several in a row are beyond a limit.
         """
-        for guard, limit, channel in zip(self._guards, self._limits, self._channels, strict=True):
-            values = [sample.counts[channel.index] for sample in samples]
-            if max(map(abs, values)) <= limit * channel.counts_per_newton:
-                guard.check(0.0)  # all is well: one call for hundreds of samples
-                continue
-            for value in values:
-                guard.check(channel.sign * value / channel.counts_per_newton)
+        counts = as_columns(samples).counts
+        for guard, channel in zip(self._guards, self._channels, strict=True):
+            guard.check_all(counts[:, channel.index] / (channel.sign * channel.counts_per_newton))
 
 
 @dataclass(frozen=True)

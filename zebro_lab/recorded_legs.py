@@ -5,8 +5,9 @@ from pathlib import Path
 
 import numpy as np
 
+from rig.sample_columns import SampleColumns
 from zebro_lab.errors import DataError, NotFound
-from zebro_lab.raw_log import RawStream, raw_topic, read_raw_log
+from zebro_lab.raw_log import raw_topic, read_raw_log
 from zebro_lab.raw_table import RawTable
 from zebro_lab.run_folder import (
     LOG_FILE,
@@ -59,13 +60,13 @@ def read_recorded_legs(folder: Path) -> tuple[RawTable, tuple[Path, ...]]:
     return table, (folder / MANIFEST_FILE, profile, log)
 
 
-def _angles(stream: RawStream, profile_path: Path) -> dict[str, np.ndarray]:
+def _angles(stream: SampleColumns, profile_path: Path) -> dict[str, np.ndarray]:
     from rig.errors import RigError
     from rig.zebro.profile import decode_angles, load_leg_profile
     from zebro_lab.clock_watch import sample_times
 
     try:
-        angles = decode_angles(load_leg_profile(str(profile_path)), stream.samples())
+        angles = decode_angles(load_leg_profile(str(profile_path)), stream)
     except RigError as error:
         raise DataError(str(error), file=profile_path) from error
     t = sample_times(stream)

@@ -52,7 +52,7 @@ def read_recorded_tilt(folder: Path) -> Tilt | None:
         return None
     profile = profile_file(folder, name)
     try:
-        decoded = decode_orientation(load_imu_profile(str(profile)), stream.samples())
+        decoded = decode_orientation(load_imu_profile(str(profile)), stream)
     except RigError as error:
         raise DataError(str(error), file=profile) from error
     t = sample_times(stream)

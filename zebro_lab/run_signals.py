@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Everything a run recorded, as curves over time: what devices sent, and where they fell silent."""
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from datetime import datetime
 from pathlib import Path
@@ -11,16 +11,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from model.slip.law import Array
-from rig.device import Sample
 from rig.errors import RigError
 from rig.imu.profile import decode_orientation, load_imu_profile
+from rig.sample_columns import SampleColumns
 from rig.slip_rig.decode import Forces, decode_board, decode_forces
 from rig.slip_rig.drives import disc_speed
 from rig.slip_rig.profile import RigProfile, load_rig_profile
 from rig.zebro.profile import decode_angles, load_leg_profile
 from zebro_lab.clock_watch import sample_times
 from zebro_lab.errors import DataError
-from zebro_lab.raw_log import RawStream, read_raw_log
+from zebro_lab.raw_log import read_raw_log
 from zebro_lab.recorded_legs import LEGS
 from zebro_lab.ros_log import read_messages
 from zebro_lab.ros_messages import LOG, WARNING
@@ -33,7 +33,7 @@ from zebro_lab.run_folder import (
     run_state,
 )
 from zebro_lab.run_manifest import RunManifest
-from zebro_lab.slip_rig_decoding import RIG, pieces
+from zebro_lab.slip_rig_decoding import RIG
 
 GAP_STEPS: Final = 5.0
 GAP_LEAST: Final = 0.05
@@ -144,7 +144,9 @@ def find_gaps(t: Array, sequence: NDArray[np.int64] | None = None) -> Array:
     return np.column_stack([t[at], t[at + 1]])
 
 
-def _panels(folder: Path, manifest: RunManifest, topic: str, stream: RawStream) -> Iterator[Panel]:
+def _panels(
+    folder: Path, manifest: RunManifest, topic: str, stream: SampleColumns
+) -> Iterator[Panel]:
     name = topic.split("/")[1]
     source = manifest.sources.get(name, manifest.source)
     t = sample_times(stream)
@@ -161,7 +163,7 @@ def _panels(folder: Path, manifest: RunManifest, topic: str, stream: RawStream) 
 _Curves = Iterator[tuple[str, str, Array, Mapping[str, Array]]]
 
 
-def _decoded(name: str, place: Path, t: Array, stream: RawStream) -> _Curves:
+def _decoded(name: str, place: Path, t: Array, stream: SampleColumns) -> _Curves:
     """Yield quantity, unit, times and curves of one stream."""
     if name == LEGS:
         yield from _legs(place, t, stream)
@@ -171,9 +173,9 @@ def _decoded(name: str, place: Path, t: Array, stream: RawStream) -> _Curves:
         yield from _rig(load_rig_profile(str(place)), name, t, stream)
 
 
-def _legs(place: Path, t: Array, stream: RawStream) -> _Curves:
+def _legs(place: Path, t: Array, stream: SampleColumns) -> _Curves:
     profile = load_leg_profile(str(place))
-    angles = decode_angles(profile, stream.samples())
+    angles = decode_angles(profile, stream)
     counts = {f"leg {leg}": stream.counts[:, i] for i, leg in enumerate(profile.legs)}
     unit = f"1/{profile.counts_per_revolution} turn"
     yield "counts as sent", unit, t, dict(sorted(counts.items()))
@@ -181,42 +183,30 @@ def _legs(place: Path, t: Array, stream: RawStream) -> _Curves:
     yield "angles, unwrapped", "rad", t, theta
 
 
-def _imu(place: Path, t: Array, stream: RawStream) -> _Curves:
-    seen = decode_orientation(load_imu_profile(str(place)), stream.samples())
+def _imu(place: Path, t: Array, stream: SampleColumns) -> _Curves:
+    seen = decode_orientation(load_imu_profile(str(place)), stream)
     angles = {"roll": seen.roll, "pitch": seen.pitch, "yaw": seen.yaw}
     yield "orientation", "deg", t, {name: np.degrees(angle) for name, angle in angles.items()}
     yield "angular rate", "rad/s", t, dict(zip("xyz", seen.angular_rate.T, strict=True))
     yield "specific force", "m/s²", t, dict(zip("xyz", seen.specific_force.T, strict=True))
 
 
-def _rig(profile: RigProfile, name: str, t: Array, stream: RawStream) -> _Curves:
+def _rig(profile: RigProfile, name: str, t: Array, stream: SampleColumns) -> _Curves:
     if name == "drives" and profile.drives is not None:
         for disc, drive in (("leg", profile.drives.leg), ("ground", profile.drives.ground)):
             own = stream.channel == drive.node
             speed = disc_speed(drive, 1.0) * stream.counts[own, 1]
             yield f"speed of the {disc} disc", "rad/s", t[own], {disc: speed}
     elif name == "load_cell" and profile.load_cell is not None:
-        cell = profile.load_cell
-        forces = _joined(stream, lambda samples: _forces(decode_forces(cell, samples)))
-        yield "forces", "N", t, dict(zip(("normal", "traction"), forces, strict=True))
+        yield "forces", "N", t, _forces(decode_forces(profile.load_cell, stream))
     elif name == "board" and profile.board is not None:
-        board = profile.board
-
-        def both(samples: list[Sample]) -> Array:
-            pressed, speeds = decode_board(board, samples)
-            return np.vstack([_forces(pressed), speeds.leg, speeds.ground])
-
-        normal, traction, leg, ground = _joined(stream, both)
-        yield "forces", "N", t, {"normal": normal, "traction": traction}
-        yield "speeds of the discs", "rad/s", t, {"leg": leg, "ground": ground}
+        forces, speeds = decode_board(profile.board, stream)
+        yield "forces", "N", t, _forces(forces)
+        yield "speeds of the discs", "rad/s", t, {"leg": speeds.leg, "ground": speeds.ground}
 
 
-def _forces(forces: Forces) -> Array:
-    return np.vstack([forces.normal, forces.traction])
-
-
-def _joined(stream: RawStream, decode: Callable[[list[Sample]], Array]) -> Array:
-    return np.hstack([decode(piece.samples()) for piece in pieces(stream)])
+def _forces(forces: Forces) -> Mapping[str, Array]:
+    return {"normal": forces.normal, "traction": forces.traction}
 
 
 def _of_table(rows: Array, manifest: RunManifest) -> Iterator[Panel]:

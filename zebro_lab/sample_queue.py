@@ -6,6 +6,7 @@ from collections import deque
 from collections.abc import Sequence
 
 from rig.device import Sample
+from rig.sample_columns import SampleColumns
 
 
 class SampleQueue:
@@ -21,23 +22,28 @@ class SampleQueue:
     def __init__(self, *, limit: int) -> None:
         self.dropped = 0
         self._limit = limit
-        self._waiting: list[Sample] = []
+        self._waiting: list[Sequence[Sample]] = []
+        self._count = 0
         self._lock = threading.Lock()
 
     def put(self, samples: Sequence[Sample]) -> bool:
         """Take samples, all or none; tell whether there was room."""
         with self._lock:
-            if len(self._waiting) + len(samples) > self._limit:
+            if self._count + len(samples) > self._limit:
                 self.dropped += len(samples)
                 return False
-            self._waiting.extend(samples)
+            self._waiting.append(samples)
+            self._count += len(samples)
             return True
 
-    def take(self) -> list[Sample]:
+    def take(self) -> Sequence[Sample]:
         """Hand on all that wait, in order."""
         with self._lock:
-            taken, self._waiting = self._waiting, []
-        return taken
+            taken, self._waiting, self._count = self._waiting, [], 0
+        columns = [samples for samples in taken if isinstance(samples, SampleColumns)]
+        if taken and len(columns) == len(taken):
+            return SampleColumns.joined(columns)
+        return [sample for samples in taken for sample in samples]
 
 
 class LossyTap:
@@ -50,15 +56,22 @@ class LossyTap:
     """
 
     def __init__(self, *, limit: int = 1000) -> None:
-        self._newest: deque[Sample] = deque(maxlen=limit)
+        self._limit = limit
+        self._newest: deque[Sequence[Sample]] = deque(maxlen=limit)  # reads, none of them empty
 
     def put(self, samples: Sequence[Sample]) -> None:
-        """Keep samples, in place of the oldest where there are too many."""
-        self._newest.extend(samples)
+        """Keep samples, at least one, in place of the oldest where there are too many."""
+        surplus = len(samples) > self._limit
+        self._newest.append(samples[-self._limit :] if surplus else samples)
 
     def take(self) -> list[Sample]:
         """Hand on what is kept, in order, and keep it no more."""
-        taken: list[Sample] = []
+        reads: list[Sequence[Sample]] = []
         while self._newest:
-            taken.append(self._newest.popleft())
-        return taken
+            reads.append(self._newest.popleft())
+        newest: list[Sample] = []
+        for samples in reversed(reads):
+            newest = [*samples, *newest]
+            if len(newest) >= self._limit:
+                break
+        return newest[-self._limit :]

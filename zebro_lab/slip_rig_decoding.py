@@ -9,22 +9,22 @@ from numpy.typing import NDArray
 
 from model.slip.law import Array
 from rig.errors import RigError
+from rig.sample_columns import SampleColumns
 from rig.slip_rig.decode import decode_board, decode_forces, decode_speeds
 from rig.slip_rig.profile import BoardProfile, DriveProfile, LoadCellProfile, load_rig_profile
 from zebro_lab.clock_watch import sample_times
 from zebro_lab.errors import DataError
-from zebro_lab.raw_log import RawStream, raw_topic
+from zebro_lab.raw_log import raw_topic
 from zebro_lab.run_folder import profile_file
 from zebro_lab.slip_rig_log import SlipRigTable
 
 RIG = "rig"
 """Name under which a run keeps the profile of its rig."""
 _MANY = 3  # forces to a speed, from which on they are averaged
-_PIECE = 4096  # samples made into objects at a time
 
 
 def derive_table(
-    folder: Path, streams: Mapping[str, RawStream], *, zero: Mapping[str, float]
+    folder: Path, streams: Mapping[str, SampleColumns], *, zero: Mapping[str, float]
 ) -> tuple[SlipRigTable, tuple[str, ...]]:
     """Compute speeds and forces of a recorded run from what its devices sent.
 
@@ -65,26 +65,19 @@ def derive_table(
     return _increasing(table)
 
 
-def _of_board(profile: BoardProfile, board: RawStream) -> Array:
-    columns = []
-    for piece in pieces(board):
-        forces, speeds = decode_board(profile, piece.samples())
-        columns.append((speeds.leg, speeds.ground, forces.normal, forces.traction))
-    return np.vstack([sample_times(board), np.hstack(columns)])
+def _of_board(profile: BoardProfile, board: SampleColumns) -> Array:
+    forces, speeds = decode_board(profile, board)
+    columns = (speeds.leg, speeds.ground, forces.normal, forces.traction)
+    return np.vstack([sample_times(board), *columns])
 
 
 def _of_two(
-    drives: DriveProfile, cell: LoadCellProfile, speeds: RawStream, forces: RawStream
+    drives: DriveProfile, cell: LoadCellProfile, speeds: SampleColumns, forces: SampleColumns
 ) -> Array:
     t = sample_times(forces)
-    decoded = [decode_forces(cell, piece.samples()) for piece in pieces(forces)]
-    force = np.vstack(
-        [
-            np.concatenate([part.normal for part in decoded]),
-            np.concatenate([part.traction for part in decoded]),
-        ]
-    )
-    disc = decode_speeds(drives.leg, drives.ground, speeds.samples())
+    decoded = decode_forces(cell, forces)
+    force = np.vstack([decoded.normal, decoded.traction])
+    disc = decode_speeds(drives.leg, drives.ground, speeds)
     speed = np.vstack([disc.leg, disc.ground])
     if len(t) > _MANY * len(disc.time):
         at, around = averages_around(disc.time, t, force)
@@ -119,18 +112,10 @@ def averages_around(at: Array, t: Array, values: Array) -> tuple[NDArray[np.intp
     return found, averages[:, found]
 
 
-def _require(streams: Mapping[str, RawStream], name: str, folder: Path) -> RawStream:
+def _require(streams: Mapping[str, SampleColumns], name: str, folder: Path) -> SampleColumns:
     if raw_topic(name) not in streams:
         raise DataError(f"its log holds no samples on {raw_topic(name)}", file=folder)
     return streams[raw_topic(name)]
-
-
-def pieces(stream: RawStream) -> list[RawStream]:
-    """Cut a stream so that a few of its samples at a time need be made into objects."""
-    return [
-        RawStream(*(column[first : first + _PIECE] for column in vars(stream).values()))
-        for first in range(0, len(stream), _PIECE)
-    ]
 
 
 def _increasing(table: Array) -> tuple[SlipRigTable, tuple[str, ...]]:

@@ -13,6 +13,7 @@ from scipy.spatial.transform import Rotation
 from model.slip.law import Array
 from rig.device import Sample
 from rig.imu.profile import ImuProfile
+from rig.sample_columns import as_columns
 from rig.slip_rig.decode import Forces, decode_board, decode_forces
 from rig.slip_rig.drives import disc_speed
 from rig.slip_rig.profile import BoardProfile, DriveProfile, LoadCellProfile
@@ -134,7 +135,7 @@ class ImuView:
     ) -> Iterator[tuple[str, int, bytes]]:
         """Make `Imu` messages; see `View.messages`."""
         chosen = range(0, len(samples), self._stride)
-        counts = np.array([samples[row].counts for row in chosen], dtype=float)
+        counts = as_columns(samples).counts[:: self._stride]
         # Not by way of roll, pitch and yaw, as decode_orientation: that would cost several times
         # as much, ten times a second.
         measured = Rotation.from_quat(counts[:, :4], scalar_first=True)

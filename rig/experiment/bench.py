@@ -16,6 +16,7 @@ from model.slip.law import Array
 from rig.backends import RigDevices
 from rig.device import Drive, Sample, Stream
 from rig.errors import ProfileError
+from rig.sample_columns import SampleColumns, as_columns
 from rig.slip_rig.board import RigBoard
 from rig.slip_rig.decode import Zero, decode_board, decode_forces, decode_further_loads
 from rig.slip_rig.drives import DriveBus, disc_speed
@@ -92,7 +93,7 @@ class Batch:
     heard: Mapping[str, Sequence[object]]
     further: Mapping[str, Array]
     fault: str
-    raw: Mapping[str, list[Sample]]
+    raw: Mapping[str, Sequence[Sample]]
 
 
 class Bench(Protocol):
@@ -167,10 +168,10 @@ class HostTime:
         self._offset = np.inf
         self._latest = -np.inf
 
-    def map(self, samples: list[Sample]) -> Array:
+    def map(self, samples: Sequence[Sample]) -> Array:
         """Return when the samples were taken, shape (n,) [s]."""
-        host = np.array([sample.host_time for sample in samples])
-        device = np.array([np.nan if s.device_time is None else s.device_time for s in samples])
+        columns = as_columns(samples)
+        host, device = columns.host_time, columns.device_time
         if len(samples) == 0 or not np.isfinite(device).all():
             return host  # none came, or the device tells no time
         least = float((host - device).min())
@@ -332,9 +333,7 @@ class DrivesBench(_DiscPair):
         hot = self._drives.take_temperatures()
         for disc, drive in (("leg", self._settings.leg), ("ground", self._settings.ground)):
             heard[f"temperature of the {disc} drive"] = hot[drive.node]
-        status = 0
-        for sample in weighed:
-            status |= sample.status
+        status = int(np.bitwise_or.reduce(weighed.status))
         return Batch(
             readings=self._line_up(),
             normal=forces.normal,
@@ -351,7 +350,7 @@ class DrivesBench(_DiscPair):
         self._drives.require_healthy()
 
     def _further_loads(
-        self, weighed: list[Sample], hot: Mapping[int, list[float]]
+        self, weighed: SampleColumns, hot: Mapping[int, list[float]]
     ) -> dict[str, Array]:
         """Pick what is guarded of the load cell's other channels and of the temperatures."""
         if not self._further:

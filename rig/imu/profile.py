@@ -13,6 +13,7 @@ from scipy.spatial.transform import Rotation
 
 from rig.device import Sample
 from rig.profile import SCHEMA, open_profile
+from rig.sample_columns import as_columns
 from rig.zebro.profile import Array
 
 NORM_TOLERANCE: Final = 0.05
@@ -143,13 +144,14 @@ def decode_orientation(profile: ImuProfile, samples: Sequence[Sample]) -> Orient
     Returns:
         Orientation, angular rate and specific force.
     """
-    counts = np.array([sample.counts for sample in samples], dtype=float).reshape(-1, FIELDS)
+    columns = as_columns(samples)
+    counts = columns.counts.reshape(-1, FIELDS)
     mounting = Rotation.from_quat(profile.mounting, scalar_first=True)
     measured = Rotation.from_quat(_unit(counts[:, :4]), scalar_first=True)
     yaw, pitch, roll = (measured * mounting.inv()).as_euler("ZYX").T
     return Orientation(
-        host_time=np.array([sample.host_time for sample in samples], dtype=float),
-        device_time=np.array([sample.device_time for sample in samples], dtype=float),
+        host_time=columns.host_time,
+        device_time=columns.device_time,
         roll=roll,
         pitch=pitch,
         yaw=np.unwrap(yaw),

@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: MIT
 """Numbers and times that wrap: what is lost, doubled or late, and when a device began anew."""
 
-from collections.abc import Sequence
-from typing import Final
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
 
 LATE_WINDOW: Final = 64
 """A number up to this far back is an old sample; farther back the device has restarted."""
@@ -69,24 +71,35 @@ class SequenceTracker:
         self._last += ahead
         return self._last
 
-    def accept_all(self, numbers: Sequence[int], host_time: float) -> Sequence[int | None]:
+    def accept_all(
+        self, numbers: NDArray[np.integer[Any]], host_time: float
+    ) -> tuple[NDArray[np.bool_], NDArray[np.int64]]:
         """Take the numbers of samples that one read gave; see `accept`.
 
         Numbers without a gap, which are almost all of a fast device's, are taken together.
 
+        Args:
+            numbers: As the device sent them, shape (n,).
+            host_time: When they were read [s].
+
+        Returns:
+            Which of them are accepted, shape (n,), and those with wraps undone.
+
         >>> tracker = SequenceTracker(modulus=256)
-        >>> [*tracker.accept_all((254, 255, 2), 0.0)], [*tracker.accept_all((3, 4), 0.1)]
-        ([254, 255, 258], [259, 260])
+        >>> tracker.accept_all(np.array([254, 255, 2, 2]), 0.0)
+        (array([ True,  True,  True, False]), array([254, 255, 258]))
         """
-        if self._last is not None and numbers:
+        if self._last is not None and len(numbers):
             first = (self._last + 1) % self._modulus
-            end = first + len(numbers)
-            if end <= self._modulus and tuple(numbers) == tuple(range(first, end)):
+            run = np.arange(len(numbers))
+            if np.array_equal(numbers, first + run) and first + run[-1] < self._modulus:
+                accepted = self._last + 1 + run
                 self.accept(first, host_time)
-                run = range(self._last, self._last + len(numbers))
-                self._last = run[-1]
-                return run
-        return [self.accept(number, host_time) for number in numbers]
+                self._last = int(accepted[-1])
+                return np.ones(len(run), bool), accepted
+        one_by_one = [self.accept(number, host_time) for number in numbers.tolist()]
+        kept = np.array([number is not None for number in one_by_one], bool)
+        return kept, np.array([n for n in one_by_one if n is not None], np.int64)
 
     def _plausible(self, ahead: int, elapsed: float) -> bool:
         if self._rate is None:
@@ -119,17 +132,16 @@ class TimeUnwrapper:
         self._last += (ticks - self._last) % self._modulus
         return self._last * self._tick
 
-    def unwrap_all(self, ticks: Sequence[int]) -> list[float]:
-        """Compute the device times of readings in order; see `unwrap`.
+    def unwrap_all(self, ticks: NDArray[np.integer[Any]]) -> NDArray[np.float64]:
+        """Compute the device times of readings in order, shape (n,) [s]; see `unwrap`.
 
-        >>> TimeUnwrapper(modulus=1000, tick=0.001).unwrap_all((990, 999, 4))
-        [0.99, 0.999, 1.004]
+        >>> TimeUnwrapper(modulus=1000, tick=0.001).unwrap_all(np.array([990, 999, 4]))
+        array([0.99 , 0.999, 1.004])
         """
-        if self._last is None or not ticks:
-            return [self.unwrap(tick) for tick in ticks]
-        turns, last = divmod(self._last, self._modulus)
-        if ticks[0] < last or list(ticks) != sorted(ticks):  # they wrap
-            return [self.unwrap(tick) for tick in ticks]
-        base, length = turns * self._modulus, self._tick
-        self._last = base + ticks[-1]
-        return [(base + tick) * length for tick in ticks]
+        if len(ticks) == 0:
+            return np.empty(0)
+        start = int(ticks[0]) if self._last is None else self._last
+        steps = np.diff(ticks.astype(np.int64), prepend=start) % self._modulus
+        total = start + np.cumsum(steps)
+        self._last = int(total[-1])
+        return total * self._tick

@@ -10,8 +10,15 @@ from model.slip.definition import SlipDefinition, slip_ratio
 from model.slip.law import Array
 from rig.device import Sample
 from rig.errors import LimitExceeded, ProtocolError
+from rig.sample_columns import as_columns
 from rig.slip_rig.drives import disc_speed
-from rig.slip_rig.profile import BoardProfile, DiscDrive, LoadCellProfile, RigProfile
+from rig.slip_rig.profile import (
+    BoardProfile,
+    DiscDrive,
+    ForceAxis,
+    LoadCellProfile,
+    RigProfile,
+)
 
 
 @dataclass(frozen=True)
@@ -66,13 +73,13 @@ def decode_forces(profile: LoadCellProfile, samples: Sequence[Sample]) -> Forces
     Returns:
         Forces with the zero that the cell had.
     """
-    counts = np.array([sample.counts for sample in samples], dtype=float).reshape(-1, 6)
-    newtons = counts / profile.counts_per_force
-    return Forces(
-        time=np.array([sample.host_time for sample in samples], dtype=float),
-        normal=profile.normal.sign * newtons[:, profile.normal.index],
-        traction=profile.traction.sign * newtons[:, profile.traction.index],
-    )
+    columns = as_columns(samples)
+    counts = columns.counts.reshape(-1, 6)
+
+    def newtons(axis: ForceAxis) -> Array:
+        return counts[:, axis.index] / (axis.sign * profile.counts_per_force)
+
+    return Forces(columns.host_time, newtons(profile.normal), newtons(profile.traction))
 
 
 def decode_further_loads(
@@ -88,7 +95,7 @@ def decode_further_loads(
         Force on the third axis, shape (n,) [N], and the largest magnitude of the three torques,
         shape (n,) [N m]; None for the torques where the profile has no scale for them.
     """
-    counts = np.array([sample.counts for sample in samples], dtype=float).reshape(-1, 6)
+    counts = as_columns(samples).counts.reshape(-1, 6).astype(float)
     lateral = counts[:, 3 - profile.normal.index - profile.traction.index]
     scale = profile.counts_per_torque
     torque = None if scale is None else np.abs(counts[:, 3:]).max(axis=1) / scale
@@ -112,13 +119,14 @@ def decode_speeds(leg: DiscDrive, ground: DiscDrive, samples: Sequence[Sample]) 
     Raises:
         ProtocolError: One of the drives sent nothing.
     """
+    columns = as_columns(samples)
     time, speed = {}, {}
     for drive in (leg, ground):
-        own = [sample for sample in samples if sample.channel == drive.node]
-        if not own:
+        own = columns.channel == drive.node
+        if not own.any():
             raise ProtocolError(f"no sample came from the drive with node {drive.node}")
-        time[drive.node] = np.array([sample.host_time for sample in own])
-        speed[drive.node] = np.array([disc_speed(drive, sample.counts[1]) for sample in own])
+        time[drive.node] = columns.host_time[own]
+        speed[drive.node] = disc_speed(drive, 1.0) * columns.counts[own, 1]
     at = time[leg.node]
     across = np.interp(at, time[ground.node], speed[ground.node])
     return DiscSpeeds(at, speed[leg.node], across)
@@ -134,8 +142,8 @@ def decode_board(profile: BoardProfile, samples: Sequence[Sample]) -> tuple[Forc
     Returns:
         Forces and speeds at the same instants.
     """
-    counts = np.array([sample.counts for sample in samples], dtype=float).reshape(-1, 4)
-    time = np.array([sample.host_time for sample in samples], dtype=float)
+    columns = as_columns(samples)
+    counts, time = columns.counts.reshape(-1, 4), columns.host_time
     newtons = counts[:, :2] / profile.counts_per_force
     speeds = counts[:, 2:] / profile.counts_per_speed
     forces = Forces(

@@ -7,15 +7,17 @@ from dataclasses import dataclass
 from enum import IntEnum
 from typing import Final
 
+import numpy as np
+
 from rig.errors import ProtocolError
 
 REQUEST: Final = struct.Struct(">HHI")
 RECORD: Final = struct.Struct(">III6i")
 """Number of the record, number of the reading inside the cell, status, Fx Fy Fz Tx Ty Tz."""
-HEAD: Final = struct.Struct(">III24x")
-"""What of a record stands before the counts: both numbers and the status."""
-COUNTS: Final = struct.Struct(">12x6i")
-"""The counts of a record."""
+COLUMNS: Final = np.dtype(
+    [("number", ">u4"), ("reading", ">u4"), ("status", ">u4"), ("counts", ">i4", 6)]
+)
+"""The same for many records at once."""
 MAGIC: Final = 0x1234
 WRAP: Final = 1 << 32
 SATURATED: Final = 1 << 17

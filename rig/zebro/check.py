@@ -13,7 +13,7 @@ from typing import Final, Protocol
 import numpy as np
 
 from rig.clock import SYSTEM_CLOCK, Clock
-from rig.device import Sample, Stream
+from rig.device import Stream
 from rig.errors import DeviceFault, RigTimeout
 from rig.zebro.commands import LegCommands
 from rig.zebro.profile import LegProfile
@@ -147,7 +147,7 @@ def latest_counts(robot: CheckedLegs, *, clock: Clock = SYSTEM_CLOCK) -> tuple[f
     robot.read(0.0)
     end = clock.now() + ANSWER_LIMIT
     while (left := end - clock.now()) > 0:
-        samples: list[Sample] = robot.read(left)
+        samples = robot.read(left)
         if samples:
             return samples[-1].counts
     raise RigTimeout(f"stream '{robot.name}' sent nothing", waited=ANSWER_LIMIT)

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from rig.device import Sample
 from rig.errors import ProtocolError
 from rig.profile import SCHEMA, Table, open_profile
+from rig.sample_columns import as_columns
 
 Array: TypeAlias = NDArray[np.float64]
 Layout: TypeAlias = Literal["packet", "can", "dump", "poll", "table"]
@@ -205,24 +206,21 @@ def decode_angles(profile: LegProfile, samples: Sequence[Sample]) -> LegAngles:
         ProtocolError: The samples have another number of channels than the profile.
     """
     channels = len(profile.legs)
-    counts = np.array([sample.counts for sample in samples], dtype=float)
-    if len(samples) and counts.shape != (len(samples), channels):
+    columns = as_columns(samples)
+    counts = columns.counts
+    if len(samples) and counts.shape[1] != channels:
         raise ProtocolError(
-            f"samples have {len(samples[0].counts)} channels; "
-            f"profile '{profile.name}' has {channels}"
+            f"samples have {counts.shape[1]} channels; profile '{profile.name}' has {channels}"
         )
     turns = (counts.reshape(-1, channels) - profile.zero_counts) / profile.counts_per_revolution
     first = np.remainder(turns[:1] + 0.5, 1.0) - 0.5
     steps = np.remainder(np.diff(turns, axis=0) + 0.5, 1.0) - 0.5
     theta = 2 * np.pi * np.cumsum(np.vstack([first, steps]), axis=0) * profile.sign
-    columns = np.argsort(profile.legs)
     return LegAngles(
-        host_time=np.array([sample.host_time for sample in samples], dtype=float),
-        device_time=np.array(
-            [np.nan if s.device_time is None else s.device_time for s in samples], dtype=float
-        ),
+        host_time=columns.host_time,
+        device_time=columns.device_time,
         legs=tuple(sorted(profile.legs)),
-        theta=theta[:, columns],
+        theta=theta[:, np.argsort(profile.legs)],
         quantisation=profile.quantisation,
     )
 

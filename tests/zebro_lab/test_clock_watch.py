@@ -5,8 +5,8 @@ import numpy as np
 import pytest
 
 from rig.device import Sample
+from rig.sample_columns import SampleColumns
 from zebro_lab.clock_watch import ClockWatch, sample_times
-from zebro_lab.raw_log import RawStream
 
 DRIFT = 5e-5
 
@@ -27,7 +27,7 @@ def batches(start, seconds, rate=1000.0, offset=7.0, rng=None):
 def as_stream(found, *, sequence=True):
     samples = [sample for batch in found for sample in batch]
     n = len(samples)
-    return RawStream(
+    return SampleColumns(
         np.array([s.host_time for s in samples]),
         np.array([np.nan if s.device_time is None else s.device_time for s in samples]),
         np.arange(n) if sequence else np.full(n, -1),

@@ -3,8 +3,8 @@ import numpy as np
 import pytest
 
 from rig.profile import shipped_file
+from rig.sample_columns import SampleColumns
 from zebro_lab.errors import DataError
-from zebro_lab.raw_log import RawStream
 from zebro_lab.run_folder import profile_file
 from zebro_lab.slip_rig_decoding import RIG, averages_around, derive_table
 
@@ -14,7 +14,7 @@ PROFILE = shipped_file("rig-odrive-netft.toml").read_text()
 def stream(times, counts, channels=None):
     n = len(times)
     channel = np.zeros(n, dtype=np.uint32) if channels is None else np.array(channels, np.uint32)
-    return RawStream(
+    return SampleColumns(
         np.array(times), np.full(n, np.nan), np.full(n, -1), np.zeros(n, np.uint32), channel,
         np.array(counts, dtype=float),
     )  # fmt: skip

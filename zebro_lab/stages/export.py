@@ -5,9 +5,10 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, Literal
 
+from rig.sample_columns import SampleColumns
 from zebro_lab.atomic import atomic_folder
 from zebro_lab.errors import AlreadyExists, DataError
-from zebro_lab.raw_log import RawStream, raw_topic, read_raw_log
+from zebro_lab.raw_log import raw_topic, read_raw_log
 from zebro_lab.recorded_legs import LEGS, read_recorded_legs
 from zebro_lab.run_folder import LOG_FILE, read_manifest, read_slip_rig_run
 
@@ -63,7 +64,7 @@ def export_run(folder: Path, *, to: Format, out: Path) -> tuple[Path, ...]:
     return tuple(out / f"{name}.{to}" for name in tables)
 
 
-def _raw_columns(stream: RawStream) -> Columns:
+def _raw_columns(stream: SampleColumns) -> Columns:
     counts = {f"count{i + 1}": column for i, column in enumerate(stream.counts.T)}
     return {name: column for name, column in vars(stream).items() if name != "counts"} | counts
 

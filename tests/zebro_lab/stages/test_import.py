@@ -118,7 +118,7 @@ def test_orientation_is_decoded_as_of_any_imu(files, tmp_path):
     folder, _ = everything(files, tmp_path)
     stream = read_raw_log(folder / "log.mcap").streams["/imu/raw"]
     profile = load_imu_profile(str(profile_file(folder, "imu")))
-    seen = decode_orientation(profile, stream.samples())
+    seen = decode_orientation(profile, stream)
     np.testing.assert_allclose(seen.roll, 0.1 * np.sin(T), atol=1e-12)
     np.testing.assert_allclose(seen.pitch, 0.2 * np.cos(T), atol=1e-12)
     np.testing.assert_allclose(stream.counts[:, 6], np.radians(5.0))

@@ -1,0 +1,91 @@
+# SPDX-License-Identifier: MIT
+"""Many samples of one stream as columns: what takes them all at once costs next to nothing each."""
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any, Self, overload
+
+import numpy as np
+from numpy.typing import DTypeLike, NDArray
+
+from rig.device import Sample
+
+
+@dataclass(frozen=True, eq=False)
+class SampleColumns(Sequence[Sample]):
+    """Samples in order, a column each field; reads like a list of `Sample`.
+
+    Attributes:
+        host_time: When each sample was read, shape (n,) [s].
+        device_time: By the device's clock, NaN where it tells none, shape (n,) [s].
+        sequence: Number of each sample, -1 where it has none, shape (n,).
+        status: Status words, shape (n,).
+        channel: Which of several devices on the link, shape (n,).
+        counts: Raw values, shape (n, width).
+    """
+
+    host_time: NDArray[np.float64]
+    device_time: NDArray[np.float64]
+    sequence: NDArray[np.int64]
+    status: NDArray[np.uint32]
+    channel: NDArray[np.uint32]
+    counts: NDArray[Any]
+
+    @classmethod
+    def joined(cls, parts: Sequence[Self]) -> Self:
+        """Return samples of one stream, at least one part of them, as one."""
+        columns = zip(*(vars(part).values() for part in parts), strict=True)
+        return parts[0] if len(parts) == 1 else cls(*map(np.concatenate, columns))
+
+    def __len__(self) -> int:
+        """Count the samples."""
+        return len(self.host_time)
+
+    def __iter__(self) -> Iterator[Sample]:
+        """Yield the samples one by one."""
+        columns = (column.tolist() for column in vars(self).values())
+        for row in zip(*columns, strict=True):
+            yield _sample(*row)
+
+    @overload
+    def __getitem__(self, index: int) -> Sample: ...
+    @overload
+    def __getitem__(self, index: slice) -> Self: ...
+    def __getitem__(self, index: int | slice) -> "Sample | Self":
+        """Return one sample, or some of them as columns."""
+        if isinstance(index, slice):
+            return type(self)(*(column[index] for column in vars(self).values()))
+        return _sample(*(column[index].tolist() for column in vars(self).values()))
+
+
+def _sample(
+    host: float, device: float, number: int, status: int, channel: int, counts: list[float]
+) -> Sample:
+    time = None if math.isnan(device) else device
+    return Sample(host, time, None if number < 0 else number, tuple(counts), status, channel)
+
+
+def as_columns(samples: Sequence[Sample], dtype: DTypeLike = float) -> SampleColumns:
+    """Return samples as columns; those that are columns already, as they are.
+
+    Args:
+        samples: Of one stream, with equally many counts.
+        dtype: Type of the counts.
+
+    Raises:
+        ValueError: The samples differ in width.
+        OverflowError: A count does not fit the type.
+    """
+    if isinstance(samples, SampleColumns):
+        return samples
+    fields = tuple(zip(*samples, strict=True)) or ((),) * len(Sample._fields)
+    host, device, sequence, counts, status, channel = fields
+    return SampleColumns(
+        host_time=np.array(host, dtype=float),
+        device_time=np.array(device, dtype=float),  # None becomes NaN
+        sequence=np.array([-1 if n is None else n for n in sequence], dtype=np.int64),
+        status=np.array(status, dtype=np.uint32),
+        channel=np.array(channel, dtype=np.uint32),
+        counts=np.array(counts, dtype=dtype),
+    )

@@ -51,11 +51,14 @@ class Alignment:
     Attributes:
         pose: Pose of the robot; its misfit is 0, there being no corners.
         score: Correlation of photograph and picture, mean over channels weighed by contrast [-].
+        sameness: Concordance of the two: as `score`, but less than it where light or contrast
+            differ (Lin 1989) [-].
         log_likelihood: Of the colours, up to a constant the same for all poses in a photograph.
     """
 
     pose: BodyPose
     score: float
+    sameness: float
     log_likelihood: float
 
 
@@ -165,7 +168,7 @@ class _Job:
         normal = np.eye(7)
         for turn in range(_ITERATIONS):
             look = self._look(state)
-            if look is None or (turn == _FIRST_LOOKS and look[4] < HOPELESS_SCORE):
+            if look is None or (turn == _FIRST_LOOKS and look[4][0] < HOPELESS_SCORE):
                 return None
             residual, J, weight, noise, _ = look
             weighed = (weight / (noise * self.correlated)).reshape(-1, 1) * J.reshape(-1, 7)
@@ -183,7 +186,7 @@ class _Job:
         look = self._look(state)
         if look is None:
             return None
-        residual, J, weight, noise, score = look
+        residual, J, weight, noise, (score, sameness) = look
         spread = np.linalg.inv(normal)
         seen, _, by_pose = project_with_derivatives(
             self.camera, self.view, _world(self.points, state)
@@ -201,6 +204,7 @@ class _Job:
                 wrapped, spread[:6, :6] + self.floor, camera_covariance[:6, :6], 0.0, effective
             ),
             score,
+            sameness,
             -0.5 * effective * float(np.log(max(noise.mean(), 1e-6))),
         )
 
@@ -218,8 +222,8 @@ class _Job:
         along = sample(self.slopes, seen - self.origin)
         return np.stack((along[:, :3], along[:, 3:]), axis=2).astype(float)
 
-    def _look(self, state: Array) -> tuple[Array, Array, Array, Array, float] | None:
-        """Compute residual (n, 3), its derivative (n, 3, 7), weights, noise (3,) and score."""
+    def _look(self, state: Array) -> tuple[Array, Array, Array, Array, tuple[float, float]] | None:
+        """Compute residual (n, 3), its derivative (n, 3, 7), weights, noise (3,) and scores."""
         seen, by_point, _ = project_with_derivatives(
             self.camera, self.view, _world(self.points, state)
         )
@@ -238,12 +242,13 @@ class _Job:
         )
         slope = self._slopes_at(seen[used])
         values = sample(self.picture, (seen - self.origin)[used]).astype(float)
-        wanted, score = _relit(self.colours[used], values)
+        wanted = _relit(self.colours[used], values)
+        scores = _likeness(self.colours[used], values)
         residual = wanted - values
         spread = 1.4826 * np.median(np.abs(residual), axis=0)
         noise = np.maximum(spread, 1.0) ** 2
         weight = np.minimum(1.0, _HUBER * np.sqrt(noise) / np.maximum(np.abs(residual), 1e-9))
-        return residual, slope @ (by_point[used] @ by_state), weight, noise, score
+        return residual, slope @ (by_point[used] @ by_state), weight, noise, scores
 
 
 def _least_covariance(template: BodyTemplate) -> Array:
@@ -260,10 +265,19 @@ def _world(points: Array, state: Array) -> Array:
     return (middle + (1 + growth) * (points - middle)) @ R.T + state[:3]
 
 
-def _relit(colours: Array, values: Array) -> tuple[Array, float]:
-    """Give the template the photograph's light; return it and how well the two correlate."""
+def _relit(colours: Array, values: Array) -> Array:
+    """Give the template the photograph's light."""
     a, b = colours - colours.mean(axis=0), values - values.mean(axis=0)
     power, cross = (a * a).sum(axis=0), (a * b).sum(axis=0)
     gain = np.clip(cross / np.maximum(power, 1e-9), 0.0, 4.0)
-    score = cross.sum() / np.sqrt(max(power.sum() * (b * b).sum(), 1e-9))
-    return gain * a + values.mean(axis=0), float(score)
+    return gain * a + values.mean(axis=0)
+
+
+def _likeness(colours: Array, values: Array) -> tuple[float, float]:
+    """Compute how well template and photograph correlate, and how much they are the same."""
+    apart = colours.mean(axis=0) - values.mean(axis=0)
+    a, b = colours - colours.mean(axis=0), values - values.mean(axis=0)
+    cross, power_a, power_b = (a * b).sum(), (a * a).sum(), (b * b).sum()
+    score = cross / np.sqrt(max(power_a * power_b, 1e-9))
+    same = 2 * cross / max(power_a + power_b + len(a) * (apart * apart).sum(), 1e-9)
+    return float(score), float(same)

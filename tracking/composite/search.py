@@ -11,7 +11,9 @@ It is read in both ways, and the reading that finds more is taken. Of exposures 
 all of the robot's picture is compared, with a threshold that is lower beside a clearer exposure
 with nearly the same heading than alone. Of exposures that hide each other those that show whole are
 found first; where they are the picture is taken from it, and beside them the whole body, as one of
-them shows it, is compared by its visible part. Nothing is accepted by its place alone.
+them shows it, is compared by its visible part. How they were cut out is not known either: closely,
+or with the floor and the shadow around them, which hide more and show the body's outline. Nothing
+is accepted by its place alone.
 """
 
 from collections.abc import Sequence
@@ -42,7 +44,7 @@ BESIDE_SCORE = 0.5
 """Least correlation of one beside a clearer one with nearly its heading [-]."""
 
 CLEAR_SCORE = 0.85
-"""Least correlation of one that hides others, and of the visible part of one that is hidden [-]."""
+"""Least correlation of one that hides others [-]."""
 
 CLEAR_SPREAD = 0.03
 """How much less clear than the clearest an exposure may be that shows whole [-]."""
@@ -50,12 +52,39 @@ CLEAR_SPREAD = 0.03
 LEAST_SHARE = 0.15
 """Least share of the body that must be visible [-]."""
 
+LEAST_SAMENESS = 0.6
+"""Least concordance of the visible part of a hidden exposure with the clear one it is compared to.
+Being of one picture they have light and contrast in common, which a floor's pattern has not [-]."""
+
 _SAME = 0.4  # of the template's length: nearer than this two are one
 _BESIDE = 1.25  # of the body's length
 _TURN = np.radians(32.0)  # from one exposure to the next beside it
-_CUT = 0.05  # of the body's length: what scissors leave around the robot
+_SAME_BODY = 0.25  # of the body's length: nearer than this one hides all of the other
 _BODY_CELLS = 40
 _MOST_TRIED = 6
+
+
+@dataclass(frozen=True)
+class Scissors:
+    """How exposures were cut out before they were pasted on each other.
+
+    Attributes:
+        left: What is left around the robot and hides others, as a share of its length [-].
+        outline: How much around the robot is compared, as a share of its length [-].
+        least_score: Least correlation of what is visible of a hidden exposure [-].
+    """
+
+    left: float
+    outline: float
+    least_score: float
+
+
+CLOSE = Scissors(left=0.05, outline=0.0, least_score=CLEAR_SCORE)
+"""Along the robot's edge."""
+
+WIDE = Scissors(left=0.15, outline=0.08, least_score=0.7)
+"""With floor and shadow. Of simulated composites, places of no exposure come to less than 0.6 and
+exposures to 0.75 and more."""
 
 
 @dataclass(frozen=True)
@@ -197,16 +226,21 @@ class _Search:
         best = max((each.alignment.score for each in whole), default=0.0)
         least = max(CLEAR_SCORE, best - CLEAR_SPREAD)
         clear = [each for each in whole if each.alignment.score >= least]
-        body = self.body_template(clear)
+        return max((self.stacked(clear, scissors) for scissors in (CLOSE, WIDE)), key=len)
+
+    def stacked(self, clear: Sequence[Exposure], scissors: Scissors) -> list[Exposure]:
+        """Find what exposures that show whole hide."""
+        body = self.body_template(clear, scissors)
         if body is None:
             return list(clear)
         plane = self.plane(body, body.plate.length / _BODY_CELLS)
-        stack = _Stack(self, body, plane, plane.read_smooth(self.pixels))
+        stack = _Stack(self, scissors, body, plane, plane.read_smooth(self.pixels))
         return stack.grown(clear)
 
-    def body_template(self, clear: Sequence[Exposure]) -> BodyTemplate | None:
+    def body_template(self, clear: Sequence[Exposure], scissors: Scissors) -> BodyTemplate | None:
         """Cut the whole body out of an exposure that shows whole."""
-        plate = TopPlate(*self.body, self.template.plate.height, 0.0, 0.0, 0.0)
+        around = scissors.outline * self.body[0]
+        plate = TopPlate(*self.body, self.template.plate.height, 0.0, around, around)
         for exposure in sorted(clear, key=lambda each: -each.alignment.score):
             try:
                 return make_template(
@@ -222,6 +256,7 @@ class _Stack:
     """Exposures that hide each other."""
 
     search: _Search
+    scissors: Scissors
     body: BodyTemplate
     plane: Plane
     picture: NDArray[np.float32]
@@ -270,13 +305,16 @@ class _Stack:
             prior=self.search.prior, start=match.planar, visible=visible,
             least_visible=0.8 * LEAST_SHARE,
         )  # fmt: skip
-        if alignment is None or alignment.score < CLEAR_SCORE:
+        if alignment is None or alignment.score < self.scissors.least_score:
             return None
-        return Exposure(alignment, self.share(alignment, visible))
+        share = self.share(alignment, visible)
+        if alignment.sameness < LEAST_SAMENESS or share < LEAST_SHARE:
+            return None
+        return Exposure(alignment, share)
 
     def is_new(self, exposure: Exposure, found: Sequence[Exposure]) -> bool:
         here = exposure.alignment.pose.planar
-        same = 0.2 * self.search.body[0]
+        same = _SAME_BODY * self.search.body[0]
         return all(self.search.distance(here, each.alignment.pose.planar) > same for each in found)
 
     def covered(self, alignment: Alignment) -> NDArray[np.bool_]:
@@ -288,7 +326,7 @@ class _Stack:
             for y in (-0.5 * width, 0.5 * width)
             for z in (-top, top)
         ])  # fmt: skip
-        corners[:, :2] += _CUT * length * np.sign(corners[:, :2])
+        corners[:, :2] += self.scissors.left * length * np.sign(corners[:, :2])
         return self.filled(alignment, corners)
 
     def share(self, alignment: Alignment, visible: NDArray[np.bool_]) -> float:

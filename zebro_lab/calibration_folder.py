@@ -12,11 +12,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from model.bayes.convergence import Convergence
-from model.bayes.estimate import Agreement, Draws, Estimate
-from model.bayes.fit import Comparison, PreparedFit
-from model.bayes.residuals import Residuals
-from model.bayes.verdict import Verdict
 from model.errors import ModelError
 from model.slip.curve import SlipCurve
 from model.slip.definition import SlipDefinition
@@ -24,8 +19,13 @@ from model.slip.laws import slip_law
 from zebro_lab.errors import DataError
 from zebro_lab.provenance import file_hash, software
 
-if TYPE_CHECKING:
+if TYPE_CHECKING:  # the fit's own parts take seconds to import, and a law is read in most commands
+    from model.bayes.convergence import Convergence
+    from model.bayes.estimate import Agreement, Draws, Estimate
+    from model.bayes.fit import Comparison, PreparedFit
     from model.bayes.posterior import SlipPosterior
+    from model.bayes.residuals import Residuals
+    from model.bayes.verdict import Verdict
 
 SCHEMA = 1
 SLIP_TOML = "slip.toml"
@@ -67,16 +67,16 @@ class Calibration:
         seconds: Time the sampler took [s].
     """
 
-    fit: PreparedFit
-    comparison: Comparison | None
-    draws: Draws
-    parameters: Sequence[Estimate]
+    fit: "PreparedFit"
+    comparison: "Comparison | None"
+    draws: "Draws"
+    parameters: Sequence["Estimate"]
     levels: np.ndarray
-    curves: Sequence[Sequence[Estimate]]
-    convergence: Convergence
-    residuals: Residuals
-    agreement: Agreement
-    verdict: Verdict
+    curves: Sequence[Sequence["Estimate"]]
+    convergence: "Convergence"
+    residuals: "Residuals"
+    agreement: "Agreement"
+    verdict: "Verdict"
     contraction: Mapping[str, float]
     r_squared: float | None
     source: str

@@ -44,11 +44,13 @@ class _Block:
         columns: Their names.
         values: The attribute, one column each, shape (n, len(columns)).
         may_be_empty: Cells may hold no number, where a model has none.
+        form: How a number is written.
     """
 
     columns: tuple[str, ...]
     values: Callable[[WalkPath], Array]
     may_be_empty: bool = False
+    form: str = _DIGITS
 
 
 def _legs(name: str) -> tuple[str, ...]:
@@ -60,7 +62,7 @@ _BLOCKS = (
     _Block(("x", "y", "z"), lambda path: path.position),
     _Block(("roll", "pitch", "yaw"), lambda path: path.orientation),
     _Block(_legs("theta"), lambda path: path.theta),
-    _Block(_legs("contact"), lambda path: path.contact.astype(float)),
+    _Block(_legs("contact"), lambda path: path.contact.astype(float), form="%d"),
     _Block(_legs("slip_x"), lambda path: path.slip_velocity[..., 0], may_be_empty=True),
     _Block(_legs("slip_y"), lambda path: path.slip_velocity[..., 1], may_be_empty=True),
     _Block(_legs("normal"), lambda path: path.normal_force, may_be_empty=True),
@@ -74,15 +76,11 @@ COLUMNS = tuple(name for block in _BLOCKS for name in block.columns)
 
 def write_path(file: Path, path: WalkPath) -> None:
     """Write a path as CSV in SI with the columns `COLUMNS`; what a model does not have is empty."""
-    import pandas as pd
-
-    columns: dict[str, Array] = {}
-    for block in _BLOCKS:
-        values = block.values(path)
-        columns.update({name: values[:, i] for i, name in enumerate(block.columns)})
-    table = pd.DataFrame(columns)
-    table[list(_legs("contact"))] = table[list(_legs("contact"))].astype(np.int8)
-    table.to_csv(file, index=False, float_format=_DIGITS, lineterminator="\n")
+    values = np.column_stack([block.values(path) for block in _BLOCKS])
+    line = ",".join(block.form for block in _BLOCKS for _ in block.columns)
+    rows = "\n".join([line % tuple(row) for row in values.tolist()])  # a third of pandas' time
+    text = f"{','.join(COLUMNS)}\n{rows.replace('nan', '')}\n"
+    file.write_text(text, encoding="utf-8", newline="\n")
 
 
 @contextmanager

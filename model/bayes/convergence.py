@@ -2,14 +2,15 @@
 """Has the sampler converged? R-hat between ensembles, effective sizes, chain length and error."""
 
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-import arviz as az
 import numpy as np
-import xarray as xr
 
 from model.bayes.sampler import Chains, autocorrelation_times
 from model.slip.law import Array
+
+if TYPE_CHECKING:
+    from xarray import Dataset
 
 MAX_R_HAT = 1.01
 MIN_ESS = 400.0
@@ -95,6 +96,8 @@ def assess(chains: Chains) -> Convergence:
     Args:
         chains: Chains of at least 8 steps.
     """
+    import arviz as az  # here, for it takes longer to import than most commands to run
+
     times = autocorrelation_times(chains.z)
     burn_in = int(min(np.ceil(BURN_IN * times.max()), chains.n_steps // 2))
     kept = chains.z[:, burn_in:]
@@ -111,8 +114,10 @@ def assess(chains: Chains) -> Convergence:
     )
 
 
-def _dataset(chains: Array) -> xr.Dataset:
-    return xr.Dataset({"x": (("chain", "draw", "coordinate"), chains)})
+def _dataset(chains: Array) -> "Dataset":
+    from xarray import Dataset
+
+    return Dataset({"x": (("chain", "draw", "coordinate"), chains)})
 
 
 def _array(dataset: Any) -> Array:

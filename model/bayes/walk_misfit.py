@@ -115,7 +115,7 @@ class WalkMisfit:
             WalkError: A walk diverged.
         """
         plain = WalkDraw(robot, middle(walk.legs), table)
-        options = ensemble_step(plain, duration=float(walk.t[-1]))
+        options = ensemble_step([plain], duration=float(walk.t[-1]))
         misfit = cls(robot, table, walk, options, np.eye(3 * (len(walk.t) - 1)))
         covariance = misfit._covariance(spread, rng, threads)
         # With L L^T the covariance, L^-1 makes the residuals' covariance the identity.

@@ -166,8 +166,8 @@ def test_an_ensemble_takes_the_step_that_its_gait_needs():
     tripod = WalkDraw(Robot(), SampledReference(T_LOG, GAIT.angles(T_LOG)), TABLE)
     four = tetrapod_reference(np.radians(45.0), np.radians(135.0), cycle_time=3.0)
     carried = WalkDraw(Robot(), SampledReference(T_LOG, four.angles(T_LOG)), TABLE)
-    assert ensemble_step(tripod, duration=12.0).dt == STEPS[0]
-    chosen = ensemble_step(carried, duration=12.0)
+    assert ensemble_step([tripod], duration=12.0).dt == STEPS[0]
+    chosen = ensemble_step([carried], duration=12.0)
     assert chosen.dt < STEPS[0]
     fine = planar_walk(carried, duration=12.0, options=DynamicsOptions(dt=0.0005))
     length = np.hypot(np.diff(fine.x), np.diff(fine.y)).sum()

@@ -88,9 +88,15 @@ class LaplaceMixture:
 
 def gradient(log_density: LogDensity, z: Array) -> Array:
     """Compute the gradient by central differences, in one batched call, shape (d,)."""
+    return _value_and_gradient(log_density, z)[1]
+
+
+def _value_and_gradient(log_density: LogDensity, z: Array) -> tuple[float, Array]:
     steps = STEP * np.eye(len(z))
-    both = log_density(np.concatenate([z + steps, z - steps]))
-    return (both[: len(z)] - both[len(z) :]) / (2 * STEP)
+    value, *both = log_density(np.concatenate([z[None], z + steps, z - steps]))
+    ahead, behind = np.reshape(both, (2, len(z)))
+    with np.errstate(invalid="ignore"):  # infinities across the edge of the support
+        return float(value), (ahead - behind) / (2 * STEP)
 
 
 def hessian(log_density: LogDensity, z: Array, *, step: float = 1e-3) -> Array:
@@ -183,10 +189,9 @@ def _tops(log_density: LogDensity, starts: Array) -> list[Array]:
 
 def _climb(log_density: LogDensity, start: Array) -> Array:
     def negative(z: Array) -> tuple[float, Array]:
-        value = float(log_density(z[None])[0])
+        value, slope = _value_and_gradient(log_density, z)
         if not np.isfinite(value):
             return 1e12, np.zeros_like(z)
-        slope = gradient(log_density, z)
         return -value, -np.where(np.isfinite(slope), slope, 0.0)
 
     return minimize(negative, start, jac=True, method="L-BFGS-B", options={"maxiter": 300}).x

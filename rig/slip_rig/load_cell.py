@@ -109,9 +109,10 @@ class NetFtCell:
 
     def _samples(self, datagrams: Sequence[bytes], now: float) -> SampleColumns:
         """Make samples of all records of a read together, column by column."""
-        size = RECORD.size
-        whole = [datagram for datagram in datagrams if len(datagram) == size]
-        self._damaged += len(datagrams) - len(whole)
+        whole = datagrams
+        if not set(map(len, datagrams)) <= {RECORD.size}:
+            whole = [datagram for datagram in datagrams if len(datagram) == RECORD.size]
+            self._damaged += len(datagrams) - len(whole)
         records = np.frombuffer(b"".join(whole), COLUMNS)
         kept, sequence = self._tracker.accept_all(records["number"], now)
         records = records[kept]

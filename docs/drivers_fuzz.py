@@ -137,6 +137,12 @@ class Frames(Datagrams):
     """Like `Feed`, of CAN frames."""
 
     damaged = 0
+    arrivals = ()
+
+    def read(self, timeout):
+        messages = super().read(timeout)
+        self.arrivals = [self.clock.now() for _ in messages]
+        return messages
 
     def write(self, can_id, data):
         return True
@@ -344,119 +350,148 @@ def manifest_text():
     return json.dumps(keys).encode()
 
 
-def parsers():
-    """Return every parser by name."""
-    rng = np.random.default_rng(1)
-    legs = rng.integers(0, 100, (40, 6)).tolist()
-    quaternions = [(16384, 0, 0, 0, *row) for row in rng.integers(-999, 999, (40, 6)).tolist()]
-    forces = [(*row, 0) for row in rng.integers(-999_999, 999_999, (40, 4)).tolist()]
-    dumps = []
-    for count in rng.integers(0, 910, 40).tolist():
+def toml_of(*names):
+    return [shipped_file(f"{name}.toml").read_bytes() for name in names]
+
+
+def leg_counts():
+    return np.random.default_rng(1).integers(0, 100, (40, 6)).tolist()
+
+
+def dumps():
+    """Make dumps of a leg's registers, each with another position."""
+    made = []
+    for count in np.random.default_rng(1).integers(0, 910, 40).tolist():
         registers = bytearray(256)
         registers[110:112] = count.to_bytes(2, "big")
-        dumps.append(bytes(registers) + SYNC)
+        made.append(bytes(registers) + SYNC)
+    return made
+
+
+def leg_frames():
+    ids, legs = CAN_LEGS.can_ids, leg_counts()
+    return [
+        *(frame_bytes(ids.clock, CLOCK.pack(n, n)) for n in range(20)),
+        *(frame_bytes(ids.positions, POSITIONS.pack(*legs[n], n)) for n in range(20)),
+        frame_bytes(ids.set_points, SET_POINTS.pack(*legs[0], 100)),
+        frame_bytes(ids.stop, b""),
+    ]
+
+
+def drive_frames():
+    heartbeat, estimates = HEARTBEAT.pack(0, 8) + bytes(3), ESTIMATES.pack(1.5, 2.5)
+    return [
+        frame_bytes(can_id(node, command), data)
+        for node in (RIG.drives.leg.node, RIG.drives.ground.node)
+        for command, data in (
+            (Command.HEARTBEAT, heartbeat),
+            (Command.ENCODER_ESTIMATES, estimates),
+        )
+    ]
+
+
+def of_streams():
+    """Return the parsers of what devices send by serial lines and UDP, by name."""
+    rng = np.random.default_rng(1)
+    quaternions = [(16384, 0, 0, 0, *row) for row in rng.integers(-999, 999, (40, 6)).tolist()]
+    forces = [(*row, 0) for row in rng.integers(-999_999, 999_999, (40, 4)).tolist()]
+    legs = packets(Kind.LEGS, leg_body(LEGS), leg_counts())
+    imu = packets(Kind.ORIENTATION, IMU.body, quaternions)
+    board = packets(Kind.SLIP_RIG, board_body(BOARD), forces)
     answers = [struct.pack(">6H", *row) for row in rng.integers(0, 910, (40, 6)).tolist()]
-    requests = [b"\xf0\x20\x0c", b"\x0f\x3e\x01\x01",
-                b"\x0f\x30\x0e" + struct.pack(">7H", *range(6), 100)]  # fmt: skip
     records = [RECORD.pack(n, n, 0, *range(n, n + 6)) for n in range(40)]
+    rig_board = stream(RigBoard, BOARD, limits=LIMITS)
+    page = (b"<netft><scfgfu>N</scfgfu><cfgcpf>1000000</cfgcpf><comrdtrate>7000</comrdtrate>"
+            b"</netft>")  # fmt: skip
+    return {
+        "leg packets": Parser(stream(PacketLegs, LEGS), legs, (RigError,), has_memory=True),
+        "IMU packets": Parser(stream(ImuStream, IMU), imu, (RigError,), has_memory=True),
+        "rig board packets": Parser(rig_board, board, (RigError,), has_memory=True),
+        "COBS alone": Parser(
+            whole(cobs.decode), [cobs.encode(each) for each in raw_messages()], (cobs.DecodeError,)
+        ),
+        "register dumps": Parser(stream(DumpLegs, DUMP), dumps()),
+        "ZebroBus answers": Parser(polled, answers),
+        "RDT records": Parser(load_cell, records, has_memory=True),
+        "Net F/T configuration": Parser(whole(parse_configuration), [page], (RigError,)),
+    }
+
+
+def on_can():
+    """Return the parsers of frames on CAN and of SLCAN, by name."""
+    lines = [encode_frame(frame_of(frame)) for frame in leg_frames() + drive_frames()]
+    drives = frames(DriveBus, RIG.drives, limits=LIMITS)
+    line = whole(lambda data: decode_frame(data.rstrip(b"\r")))
+    return {
+        "CANSimple frames": Parser(drives, drive_frames()),
+        "leg frames on CAN": Parser(frames(CanLegs, CAN_LEGS), leg_frames(), has_memory=True),
+        "SLCAN lines": Parser(line, lines, (RigError,)),
+        "SLCAN lines, at the adapter": Parser(adapter, lines),
+        "SLCAN lines, python-can's host": Parser(slcan_host, lines),
+    }
+
+
+def at_twins():
+    """Return the parsers of what hosts send to simulated devices, by name."""
     commands = [
         encode_packet(Packet(Kind.LEG_SET_POINTS, 0, 0, struct.pack("<7H", *range(6), 100))),
         encode_packet(Packet(Kind.STOP, 1, 0, b"")),
         encode_packet(Packet(Kind.DISC_SPEEDS, 2, 0, speed_body(BOARD).pack(1, 2))),
     ]
-    ids = CAN_LEGS.can_ids
-    leg_frames = [frame_bytes(ids.clock, CLOCK.pack(n, n)) for n in range(20)]
-    leg_frames += [frame_bytes(ids.positions, POSITIONS.pack(*legs[n], n)) for n in range(20)]
-    leg_frames += [frame_bytes(ids.set_points, SET_POINTS.pack(*legs[0], 100)),
-                   frame_bytes(ids.stop, b"")]  # fmt: skip
-    drive_frames = []
-    for node in (RIG.drives.leg.node, RIG.drives.ground.node):
-        heartbeat = HEARTBEAT.pack(0, 8) + bytes(3)
-        drive_frames += [
-            frame_bytes(can_id(node, Command.HEARTBEAT), heartbeat),
-            frame_bytes(can_id(node, Command.ENCODER_ESTIMATES), ESTIMATES.pack(1.5, 2.5)),
-        ]
-    lines = [encode_frame(frame_of(frame)) for frame in leg_frames + drive_frames]
-    page = (b"<netft><scfgfu>N</scfgfu><cfgcpf>1000000</cfgcpf><comrdtrate>7000</comrdtrate>"
-            b"</netft>")  # fmt: skip
-    toml = {
-        kind: [shipped_file(f"{name}.toml").read_bytes() for name in names]
-        for kind, names in {
-            "legs": ("zebro-100-serial", "zebro-100-can", "vregs-dump", "zebrobus-uart"),
-            "imu": ("imu-quaternion-serial",),
-            "rig": ("rig-odrive-netft", "rig-board-serial"),
-        }.items()
-    }
-    raw = [encode_raw(samples(n + 1, 6), dtype="<i4", start=0.0) for n in range(20)]
-    blocks = [encode_block(np.ones((n + 1, 5))) for n in range(20)]
-    rig = {"limits": LIMITS}
+    requests = [b"\xf0\x20\x0c", b"\x0f\x3e\x01\x01",
+                b"\x0f\x30\x0e" + struct.pack(">7H", *range(6), 100)]  # fmt: skip
     return {
-        "leg packets": Parser(
-            stream(PacketLegs, LEGS),
-            packets(Kind.LEGS, leg_body(LEGS), legs),
-            (RigError,),
-            has_memory=True,
-        ),
-        "IMU packets": Parser(
-            stream(ImuStream, IMU),
-            packets(Kind.ORIENTATION, IMU.body, quaternions),
-            (RigError,),
-            has_memory=True,
-        ),
-        "rig board packets": Parser(
-            stream(RigBoard, BOARD, **rig),
-            packets(Kind.SLIP_RIG, board_body(BOARD), forces),
-            (RigError,),
-            has_memory=True,
-        ),
-        "COBS alone": Parser(
-            whole(cobs.decode), [cobs.encode(each) for each in raw], (cobs.DecodeError,)
-        ),
-        "register dumps": Parser(stream(DumpLegs, DUMP), dumps),
-        "ZebroBus answers": Parser(polled, answers),
-        "RDT records": Parser(load_cell, records, has_memory=True),
         "RDT requests, at the twin": Parser(
             whole(lambda data: struct.unpack(">HHI", data[:8].ljust(8, b"\0"))),
             [encode_request(request) for request in Request],
         ),
-        "Net F/T configuration": Parser(whole(parse_configuration), [page], (RigError,)),
-        "CANSimple frames": Parser(frames(DriveBus, RIG.drives, **rig), drive_frames),
-        "leg frames on CAN": Parser(frames(CanLegs, CAN_LEGS), leg_frames, has_memory=True),
-        "SLCAN lines": Parser(
-            whole(lambda data: decode_frame(data.rstrip(b"\r"))), lines, (RigError,)
-        ),
-        "SLCAN lines, at the adapter": Parser(adapter, lines),
-        "SLCAN lines, python-can's host": Parser(
-            slcan_host,
-            lines,
-        ),
         "commands to the twin, packets": Parser(twin(PacketRobot, LEGS), commands, has_memory=True),
         "commands to the twin, registers": Parser(twin(PolledRobot, POLL), requests),
-        "commands to the twin, CAN": Parser(can_twin, leg_frames),
-        "profile of legs": Parser(
-            text_file(lambda f: load_leg_profile(str(f)), ".toml"), toml["legs"], (RigError,)
+        "commands to the twin, CAN": Parser(can_twin, leg_frames()),
+    }
+
+
+def of_files():
+    """Return the parsers of profiles and of what a run folder holds, by name."""
+    recorded, events = [recorded_log()], "rcl_interfaces/msg/Log"
+    blocks = [encode_block(np.ones((n + 1, 5))) for n in range(20)]
+    profiles = {
+        "profile of legs": (
+            load_leg_profile,
+            toml_of("zebro-100-serial", "zebro-100-can", "vregs-dump", "zebrobus-uart"),
         ),
-        "profile of an IMU": Parser(
-            text_file(lambda f: load_imu_profile(str(f)), ".toml"), toml["imu"], (RigError,)
-        ),
-        "profile of a rig": Parser(
-            text_file(lambda f: load_rig_profile(str(f)), ".toml"), toml["rig"], (RigError,)
-        ),
+        "profile of an IMU": (load_imu_profile, toml_of("imu-quaternion-serial")),
+        "profile of a rig": (load_rig_profile, toml_of("rig-odrive-netft", "rig-board-serial")),
+    }
+    logs = {
+        "log.mcap, recorded": (read_raw_log, recorded),
+        "log.mcap, at once": (read_log, [rig_log()]),
+        "log.mcap, events": (lambda file: read_messages(file, schema=events), recorded),
+    }
+    return {
+        **{
+            name: Parser(text_file(lambda f, load=load: load(str(f)), ".toml"), valid, (RigError,))
+            for name, (load, valid) in profiles.items()
+        },
         "run.json": Parser(manifest_file(), [manifest_text()], (ZebroLabError,)),
         "raw messages": Parser(
-            whole(lambda data: decode_raw(data, dtype="<i4")), raw, (ValueError,)
+            whole(lambda data: decode_raw(data, dtype="<i4")), raw_messages(), (ValueError,)
         ),
         "rig messages": Parser(whole(decode_block), blocks, (ValueError,)),
-        "log.mcap, recorded": Parser(
-            text_file(read_raw_log, ".mcap"), [recorded_log()], (ZebroLabError,)
-        ),
-        "log.mcap, at once": Parser(text_file(read_log, ".mcap"), [rig_log()], (ZebroLabError,)),
-        "log.mcap, events": Parser(
-            text_file(lambda f: read_messages(f, schema="rcl_interfaces/msg/Log"), ".mcap"),
-            [recorded_log()],
-            (ZebroLabError,),
-        ),
+        **{
+            name: Parser(text_file(load, ".mcap"), valid, (ZebroLabError,))
+            for name, (load, valid) in logs.items()
+        },
     }
+
+
+def raw_messages():
+    return [encode_raw(samples(n + 1, 6), dtype="<i4", start=0.0) for n in range(20)]
+
+
+def parsers():
+    """Return every parser by name."""
+    return of_streams() | on_can() | at_twins() | of_files()
 
 
 def generate(valid, count, rng):

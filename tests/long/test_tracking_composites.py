@@ -103,7 +103,7 @@ def photographs(walk: np.ndarray, rng: np.random.Generator) -> list:
 
 
 def one_walk(task: tuple[int, int]) -> dict[str, np.ndarray]:
-    """Photograph one walk; return what is found in its composites, in order, shape (n, 3)."""
+    """Photograph one walk; return what is found in its composites, as `ordered` does."""
     cv2.setNumThreads(1)
     rng = np.random.default_rng(task)
     photos = photographs(draw_walk(CASES[task[0]], rng), rng)
@@ -121,7 +121,7 @@ def exposures_in(picture: np.ndarray) -> np.ndarray:
 def ordered(
     picture: np.ndarray, lens: Camera, view: CameraPose, prior: BodyPrior, hidden: np.ndarray
 ) -> np.ndarray:
-    """Find the exposures of a picture, in order, shape (n, 3)."""
+    """Find the exposures of a picture, in order: poses, then their deviations, shape (2, n, 3)."""
     marker = DrawnMarker()
     robot = RobotMarker(0, marker.side, "4x4_50", (0.0, 0.0, marker.height))
     try:
@@ -130,9 +130,10 @@ def ordered(
             hidden=hidden,
         )  # fmt: skip
     except CompositeError:
-        return np.zeros((0, 3))
+        return np.zeros((2, 0, 3))
     poses = np.array([each.alignment.pose.planar for each in found])
-    return poses[list(order_exposures(poses))]
+    sd = np.sqrt([np.diag(each.alignment.pose.planar_covariance) for each in found])
+    return np.stack((poses, sd))[:, list(order_exposures(poses))]
 
 
 @dataclass(frozen=True)
@@ -144,18 +145,19 @@ class Row:
     false: int
     ordered: bool
     error: np.ndarray
+    sd: np.ndarray
 
     @classmethod
     def of(cls, walks: list[np.ndarray], found: list[np.ndarray]) -> "Row":
-        parts = [_compared(walk, poses) for walk, poses in zip(walks, found, strict=True)]
-        error = np.concatenate([error for _, error in parts])
-        places = [place for place, _ in parts]
+        parts = [_compared(walk, *each) for walk, each in zip(walks, found, strict=True)]
+        places = [place for place, _, _ in parts]
         return cls(
             sum(len(set(place)) for place in places),
             sum(len(walk) for walk in walks),
-            sum(len(poses) for poses in found) - sum(len(set(place)) for place in places),
+            sum(each.shape[1] for each in found) - sum(len(set(place)) for place in places),
             all(place == sorted(place) for place in places),
-            error,
+            np.concatenate([error for _, error, _ in parts]),
+            np.concatenate([sd for _, _, sd in parts]),
         )
 
     @property
@@ -166,16 +168,33 @@ class Row:
     def yaw_deg(self) -> float:
         return float(np.degrees(np.sqrt(np.mean(self.error[:, 2] ** 2))))
 
+    def line(self, case: str, kind: str) -> str:
+        """Write the row of the table; last, how many 90 % intervals hold x, y and yaw."""
+        inside = np.mean(np.abs(self.error) < 1.645 * self.sd, axis=0)
+        return (
+            f"| {case} | {kind} | {self.found} of {self.there} | {self.false} "
+            f"| {'right' if self.ordered else 'wrong'} | {self.xy_mm:.2f} mm "
+            f"| {self.yaw_deg:.2f}° | {' | '.join(f'{share:.2f}' for share in inside)} |"
+        )
 
-def _compared(walk: np.ndarray, poses: np.ndarray) -> tuple[list[int], np.ndarray]:
-    """Return for every exposure found which true one it is, and its error, without the false."""
+
+HEAD = (
+    "| simulated | kind | found | false | order | x, y rms | yaw rms | 90 % hold x | y | yaw |\n"
+    "|---|---|---:|---:|---|---:|---:|---:|---:|---:|"
+)
+
+
+def _compared(
+    walk: np.ndarray, poses: np.ndarray, sd: np.ndarray
+) -> tuple[list[int], np.ndarray, np.ndarray]:
+    """Return for every true exposure found which it is, its error and what is said of that."""
     error = poses[:, None] - walk[None]
     error[..., 2] = np.angle(np.exp(1j * error[..., 2]))
     distance = np.hypot(error[..., 0], error[..., 1])
     nearest = distance.argmin(axis=1) if len(poses) else np.zeros(0, int)
     own = error[np.arange(len(poses)), nearest]
     true = (np.hypot(own[:, 0], own[:, 1]) < NEAR) & (np.abs(own[:, 2]) < TURN)
-    return nearest[true].tolist(), own[true]
+    return nearest[true].tolist(), own[true], sd[true]
 
 
 @pytest.fixture(scope="module", params=CASES, ids=lambda case: case.name)
@@ -189,13 +208,8 @@ def measured(request) -> tuple[Case, dict[str, Row]]:
     rows = {
         kind.value: Row.of(walks, [each[kind.value] for each in found]) for kind in CompositeKind
     }
-    print("\n\n| simulated | kind | found | false | order | x, y rms | yaw rms |")  # noqa: T201
-    for kind, row in rows.items():
-        print(  # noqa: T201 `make test-long` is run for it
-            f"| {case.name} | {kind} | {row.found} of {row.there} | {row.false} | "
-            f"{'right' if row.ordered else 'wrong'} | {row.xy_mm:.2f} mm | {row.yaw_deg:.2f}° |",
-            flush=True,
-        )
+    lines = [row.line(case.name, kind) for kind, row in rows.items()]
+    print("\n\n" + "\n".join([HEAD, *lines]), flush=True)  # noqa: T201 `make test-long` is run for it
     return case, rows
 
 
@@ -274,12 +288,8 @@ def test_exposures_of_the_virtual_world_are_found(shared, kind, stride, recall):
     picture = world.merged(world.photos[::stride], kind)
     row = Row.of([truth], [ordered(picture, world.lens, world.view, prior, world.hidden)])
     step = np.median(np.hypot(*np.diff(truth[:, :2], axis=0).T))
-    print(  # noqa: T201 `make test-long` is run for it
-        f"\n| virtual world, {step / BODY[0]:.1f} body lengths apart | {kind} | {row.found} of "
-        f"{row.there} | {row.false} | {'right' if row.ordered else 'wrong'} | {row.xy_mm:.2f} mm "
-        f"| {row.yaw_deg:.2f}° |",
-        flush=True,
-    )
+    name = f"virtual world, {step / BODY[0]:.1f} body lengths apart"
+    print(f"\n{row.line(name, kind)}", flush=True)  # noqa: T201 `make test-long` is run for it
     assert row.found >= recall * row.there
     assert row.false == 0
     assert row.ordered

@@ -72,8 +72,9 @@ def merged(pairs, kind):
 def test_exposures_apart_are_all_found_and_in_order(exposures, kind):
     picture = merged(exposures, kind)
     found = find_exposures(
-        picture, LENS, VIEW, template=marker_template(MARKER), prior=PRIOR, near=(0, 0), reach=0.7
-    )
+        picture, LENS, VIEW, template=marker_template(MARKER), prior=PRIOR, near=(-0.1, 0.0),
+        reach=0.5,
+    )  # fmt: skip
     poses = np.array([exposure.alignment.pose.planar for exposure in found])
     assert len(poses) == len(WALK)
     error = poses[list(order_exposures(poses))] - WALK
@@ -86,7 +87,7 @@ def test_an_exposure_under_its_successor_is_found_and_none_is_made_up():
     picture = composite_of(walk, "pasted", np.random.default_rng(1))
     found = find_exposures(
         picture, LENS, VIEW, template=marker_template(MARKER), prior=PRIOR, body_size=(0.16, 0.16),
-        near=(0, 0), reach=0.4,
+        near=(0, 0), reach=0.3,
     )  # fmt: skip
     poses = np.array([exposure.alignment.pose.planar for exposure in found])
     distances = np.hypot(*(poses[:, None, :2] - walk[None, :, :2]).transpose(2, 0, 1))

@@ -19,10 +19,10 @@ from tracking.body.template import BodyTemplate
 from tracking.camera.lens import Array
 from tracking.composite.plane import Plane
 
-TURNS = 72
-"""Turns that are tried, 5 degrees apart."""
+TURNS = 48
+"""Turns that are tried, 7.5 degrees apart."""
 
-CELLS = 30
+CELLS = 22
 """Points of the raster along the template's plate."""
 
 _PEAK_CELLS = 3

@@ -17,7 +17,7 @@ is accepted by its place alone.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import cv2
 import numpy as np
@@ -55,6 +55,12 @@ LEAST_SHARE = 0.15
 LEAST_SAMENESS = 0.6
 """Least concordance of the visible part of a hidden exposure with the clear one it is compared to.
 Being of one picture they have light and contrast in common, which a floor's pattern has not [-]."""
+
+OTHERS_SD = 1 / 75
+"""Error of a place where others show as much as the robot does, in lengths of its template.
+
+What shines through is no noise that many points average away: it has edges and cells of its own,
+which draw the alignment to them. It grows with their share, sqrt(1 - score²) / score."""
 
 _SAME = 0.4  # of the template's length: nearer than this two are one
 _BESIDE = 1.25  # of the body's length
@@ -169,7 +175,16 @@ class _Search:
         aligned = [self.aligned(match) for match in self.apart(matches)]
         good = [each for each in aligned if each is not None and each.score >= BESIDE_SCORE]
         good.sort(key=lambda alignment: -alignment.score)
-        return [Exposure(each, 1.0) for each in self.along_a_walk(good)]
+        return [Exposure(self.among_others(each), 1.0) for each in self.along_a_walk(good)]
+
+    def among_others(self, alignment: Alignment) -> Alignment:
+        """Add what others that shine through do to the place and heading of an exposure."""
+        share = np.sqrt(max(1 - alignment.score**2, 0.0)) / alignment.score
+        slip = OTHERS_SD * self.template.plate.length * share
+        turn = slip / (0.6 * self.template.plate.length)
+        added = np.diag([slip, slip, 0, 0, 0, turn]) ** 2
+        pose = replace(alignment.pose, covariance=alignment.pose.covariance + added)
+        return replace(alignment, pose=pose)
 
     def plane(self, template: BodyTemplate, cell: float) -> Plane:
         half = 0.5 * float(np.hypot(template.plate.length, template.plate.width))

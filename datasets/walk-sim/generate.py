@@ -238,8 +238,11 @@ def write_photos(folder: Path, truth: Truth, rng: np.random.Generator) -> None:
     _table(folder / "photos.csv", ["photo", "t", *POSE], rows)
     chosen = [taken[index][1] for index in COMPOSITE_PHOTOS]
     merged = composite(chosen, "pasted").astype(np.float32) / 255
-    _write_jpeg(folder / "composite" / "simulated_pasted.jpg", merged, rng, kind=Conditions(
+    picture = folder / "composite" / "simulated_pasted.jpg"
+    _write_jpeg(picture, merged, rng, kind=Conditions(
         exposure=1.0, read_noise_counts=0.0, shot_noise_counts=0.0, jpeg_quality=90))  # fmt: skip
+    last = START + timedelta(seconds=taken[COMPOSITE_PHOTOS[-1]][0])
+    picture.write_bytes(with_time_stamp(picture.read_bytes(), last))
     bare = render_background(replace(SCENE, markers=()))  # their numbers are on the board too
     for index, board in enumerate(boards(rng)):
         seen = paint_sheets(bare, [board], camera=SCENE.camera, light=SCENE.light)

@@ -148,8 +148,9 @@ def test_corrections_are_replayed_and_kept(request_, tmp_path, undrawn):
 
 def test_exposures_of_a_composite_picture_come_in_order(request_, undrawn):
     picture = WALK / "composite/simulated_pasted.jpg"
-    asked = replace(request_, photos=picture, times=TimeRequest(interval=4.0), source="sim:walk")
+    asked = replace(request_, photos=picture, times=TimeRequest(interval=4.0))
     result = track(asked, Nobody())
+    assert result.source == "sim:photographs"
     true = truth(f"simulated_{number:02d}.jpg" for number in range(1, 14, 2))
     poses = result.tracked.track.poses
     assert len(poses) == len(true)

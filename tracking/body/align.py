@@ -25,7 +25,7 @@ _HUBER = 1.5
 _FIRST_LOOKS = 5
 
 HOPELESS_SCORE = 0.25
-"""Least correlation after five steps for which an alignment is carried on [-]."""
+"""Least correlation after five steps for which an alignment is carried on, as a rule [-]."""
 
 LEAST_VISIBLE = 0.35
 """Least share of the robot's picture by which it is aligned [-]."""
@@ -66,6 +66,7 @@ def align(
     pixels: NDArray[np.uint8], camera: Camera, view: CameraPose, *, template: BodyTemplate,
     prior: BodyPrior, start: Array, blurs_px: tuple[float, ...] = (2.5, 1.0),
     visible: NDArray[np.bool_] | None = None, least_visible: float = LEAST_VISIBLE,
+    least_hope: float = HOPELESS_SCORE,
 ) -> Alignment | None:  # fmt: skip
     """Align the robot's picture.
 
@@ -80,9 +81,11 @@ def align(
         visible: Pixels of the photograph that may show the robot, shape (height, width); the
             others are left out.
         least_visible: Least share of the picture that must be visible [-].
+        least_hope: Least correlation after five steps for which it is carried on [-].
 
     Returns:
-        The alignment, or None where the robot leaves the photograph or little of it is visible.
+        The alignment, or None where the robot leaves the photograph, little of it is visible or
+        there is no hope.
     """
     state = np.array([start[0], start[1], prior.height, 0.0, 0.0, start[2]])
     solution = None
@@ -92,7 +95,7 @@ def align(
         )
         if job is None:
             return None
-        solution = job.solve(state)
+        solution = job.solve(state, least_hope)
         if solution is None:
             return None
         state = solution.pose.state
@@ -158,7 +161,7 @@ class _Job:
             least_visible,
         )
 
-    def solve(self, state: Array) -> Alignment | None:
+    def solve(self, state: Array, least_hope: float) -> Alignment | None:
         """Iterate Gauss-Newton with Huber's weights."""
         prior = self.prior
         sd = [np.inf, np.inf, prior.height_sd, prior.tilt_sd, prior.tilt_sd, np.inf, SCALE_SD]
@@ -168,7 +171,7 @@ class _Job:
         normal = np.eye(7)
         for turn in range(_ITERATIONS):
             look = self._look(state)
-            if look is None or (turn == _FIRST_LOOKS and look[4][0] < HOPELESS_SCORE):
+            if look is None or (turn == _FIRST_LOOKS and look[4][0] < least_hope):
                 return None
             residual, J, weight, noise, _ = look
             weighed = (weight / (noise * self.correlated)).reshape(-1, 1) * J.reshape(-1, 7)

@@ -67,7 +67,8 @@ _BESIDE = 1.25  # of the body's length
 _TURN = np.radians(32.0)  # from one exposure to the next beside it
 _SAME_BODY = 0.25  # of the body's length: nearer than this one hides all of the other
 _BODY_CELLS = 40
-_MOST_TRIED = 6
+_MOST_TRIED = 4
+_HOPE = 0.8  # of the least correlation: less after a few steps is given up
 
 
 @dataclass(frozen=True)
@@ -195,7 +196,7 @@ class _Search:
     def aligned(self, match: Match) -> Alignment | None:
         return align(
             self.pixels, self.camera, self.view, template=self.template, prior=self.prior,
-            start=match.planar, blurs_px=(1.0,),
+            start=match.planar, blurs_px=(1.0,), least_hope=_HOPE * BESIDE_SCORE,
         )  # fmt: skip
 
     def apart(self, matches: Sequence[Match]) -> list[Match]:
@@ -318,7 +319,7 @@ class _Stack:
         alignment = align(
             self.search.pixels, self.search.camera, self.search.view, template=self.body,
             prior=self.search.prior, start=match.planar, visible=visible,
-            least_visible=0.8 * LEAST_SHARE,
+            least_visible=0.8 * LEAST_SHARE, least_hope=_HOPE * self.scissors.least_score,
         )  # fmt: skip
         if alignment is None or alignment.score < self.scissors.least_score:
             return None

@@ -13,9 +13,9 @@ Prints the tables of `docs/validation.md`.
 Usage: .venv/bin/python docs/walks_virtual_world.py CALIBRATION [PART ...]
 
 CALIBRATION is the folder that `calibrate-slip` made of the reference data's simulated rig. PART is
-half-circles, other-legs, floors or wrong-leg, all of them where none is named; with a number, as
-half-circles:0, one of its fits. The engine's walks are kept in ZEBRO_LAB_SCRATCH, or
-where temporary files are.
+half-circles, other-legs, floors, wrong-leg or wrong-leg-imu (the same walks, with roll and pitch by
+an IMU), all of them where none is named; with a number, as half-circles:0, one of its fits. The
+engine's walks are kept in ZEBRO_LAB_SCRATCH, or where temporary files are.
 """
 
 import os
@@ -23,7 +23,8 @@ import sys
 import tempfile
 import time
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -32,6 +33,7 @@ from against_engine import SHARED, EngineWalk, radius, read_walk
 
 from model.bayes.walk_posterior import WalkPosterior
 from model.bayes.walk_prior import WalkPrior
+from model.bayes.walk_tilt import TiltSeen
 from model.bayes.walks import WalkFit
 from model.gait.reference import SampledReference
 from model.robot import N_LEGS, Robot
@@ -48,6 +50,7 @@ EVERY = 2.0  # s between photographs
 NOISE = np.array(
     [0.002, 0.002, np.radians(0.3)]
 )  # x, y, yaw; those of docs/tracking.md are smaller
+IMU_NOISE, MOUNTED = np.radians(0.3), np.radians([0.8, -1.2])  # of roll and pitch
 FIRST = "tripod_s1.10_left_mu0.38_tc2"
 HALF_CIRCLES = (
     "tripod_s1.00_left_mu0.38_tc2", "tripod_s1.10_left_mu0.38_tc1", FIRST,
@@ -131,7 +134,9 @@ def simulate_bent(leg: int, angle: float) -> pd.DataFrame:
     )
     x, y = walk.position[:, :2].T
     logged = {f"th{i + 1}": angles for i, angles in enumerate((walk.theta - ahead).T)}
-    return pd.DataFrame({"t": walk.t, "x": x, "y": y, "yaw": walk.roll_pitch_yaw[:, 2]} | logged)
+    roll, pitch, yaw = walk.roll_pitch_yaw.T
+    states = {"t": walk.t, "x": x, "y": y, "yaw": yaw, "roll": roll, "pitch": pitch}
+    return pd.DataFrame(states | logged)
 
 
 class Bench:
@@ -165,6 +170,14 @@ class Bench:
         log = SampledReference(truth["t"].to_numpy(), theta)
         self.engine[name] = EngineWalk(name, Robot(), log, 0.38, True, BENT_CYCLE, truth)
         return name
+
+    def with_imu(self, name: str) -> WalkOnFile:
+        """Return a walk with roll and pitch, of noise and of a unit mounted off by `MOUNTED`."""
+        truth = self.engine[name].truth
+        rng = np.random.default_rng(200 + len(name))
+        angles = truth[["roll", "pitch"]].to_numpy() + MOUNTED
+        angles += IMU_NOISE * rng.standard_normal(angles.shape)
+        return replace(self.walk(name), tilt=TiltSeen(truth["t"].to_numpy(), angles))
 
     def fit(self, walks: Sequence[WalkOnFile]) -> WalkFit:
         """Fit walks, and say how long it took."""
@@ -216,11 +229,14 @@ def floors(bench: Bench, fits: Sequence[int] = range(3)) -> Iterator[Scored]:
         yield bench.score(posterior, bench.walk(other), other, short(one))
 
 
-def wrong_leg(bench: Bench, fits: Sequence[int] = range(len(WRONG))) -> Iterator[Scored]:
+def wrong_leg(
+    bench: Bench, fits: Sequence[int] = range(len(WRONG)), *, imu: bool = False
+) -> Iterator[Scored]:
     """One leg is off in one walk of three, all of which inform; that walk is predicted."""
     for leg, degrees in (WRONG[i] for i in fits):
         name = bench.bent(leg, degrees)
-        walks = [bench.walk(each) for each in (FIRST, HALF_CIRCLES[4], name)]
+        read = bench.with_imu if imu else bench.walk
+        walks = [read(each) for each in (FIRST, HALF_CIRCLES[4], name)]
         posterior = bench.fit(walks).posterior
         print_found(posterior, f"leg {leg + 1} off by {degrees:+g} deg in {name} alone")
         yield bench.score(posterior, walks[2], name, "all three", index=2)
@@ -287,7 +303,7 @@ def _three(values: Sequence[float] | np.ndarray) -> str:
 
 PARTS = {
     "half-circles": half_circles, "other-legs": other_legs, "floors": floors,
-    "wrong-leg": wrong_leg,
+    "wrong-leg": wrong_leg, "wrong-leg-imu": partial(wrong_leg, imu=True),
 }  # fmt: skip
 
 

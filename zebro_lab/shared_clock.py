@@ -33,7 +33,9 @@ def given_clock(track: TrackFile, offset: float) -> SharedClock:
     return SharedClock(_moved(track, offset), offset)
 
 
-def estimated_clock(track: TrackFile, path: Poses) -> SharedClock:
+def estimated_clock(
+    track: TrackFile, path: Poses, *, otherwise: str = "Give --time-offset SECONDS"
+) -> SharedClock:
     r"""Find the offset of a track's clock in the motion, and say what it leaves open.
 
     An error of the clock puts every pose ahead or behind by as much time, so the covariance grows
@@ -42,6 +44,7 @@ def estimated_clock(track: TrackFile, path: Poses) -> SharedClock:
     Args:
         track: The track.
         path: The prediction.
+        otherwise: What a person may do where the motion does not tell.
 
     Raises:
         DataError: The motion does not tell the offset.
@@ -50,7 +53,7 @@ def estimated_clock(track: TrackFile, path: Poses) -> SharedClock:
         found = estimate_offset(track.poses, path)
     except InsufficientData as error:
         raise DataError(
-            f"the clock's offset cannot be estimated: {error}. Give --time-offset SECONDS",
+            f"the clock's offset cannot be estimated: {error}. {otherwise}",
             file=track.file,
         ) from error
     moved = _moved(track, found.value)

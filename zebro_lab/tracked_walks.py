@@ -8,15 +8,18 @@ from pathlib import Path
 import numpy as np
 
 from model.bayes.walk_misfit import FEWEST_POSES, TrackedWalk
+from model.bayes.walk_tilt import FEWEST, TIME, TiltSeen
 from model.gait.quantised import QuantisedLog
 from model.gait.reference import SampledReference
 from zebro_lab.errors import DataError, NotFound, SettingsError
 from zebro_lab.leg_angles import angles_from
-from zebro_lab.leg_log import LegLog, read_leg_log
+from zebro_lab.leg_log import read_leg_log
 from zebro_lab.recorded_legs import is_recorded
+from zebro_lab.recorded_tilt import read_recorded_tilt
 from zebro_lab.robot_file import ROBOT_FILE, RobotFile, read_robot_file
 from zebro_lab.track_file import TrackFile, read_track
 from zebro_lab.track_folder import TRACK_CSV
+from zebro_lab.walk_clocks import Clock, since
 from zebro_lab.walks_folder import describe_legs
 
 TRACK = "track"
@@ -35,6 +38,7 @@ class WalkOnFile:
         source: "real", "sim:what", "unknown"; both where log and track differ.
         files: Every file read, the leg log's first.
         notes: For a person, one line each.
+        tilt: Roll and pitch by the run's IMU, in the same time; None where it has none.
     """
 
     name: str
@@ -44,13 +48,14 @@ class WalkOnFile:
     source: str
     files: tuple[Path, ...]
     notes: tuple[str, ...]
+    tilt: TiltSeen | None = None
 
     @property
     def tracked(self) -> TrackedWalk:
         """The walk as `model.bayes.walks` takes it."""
         poses = self.track.poses
         states = np.column_stack([poses.position, poses.yaw])
-        return TrackedWalk(self.name, self.legs, poses.t, states, self.track.covariance)
+        return TrackedWalk(self.name, self.legs, poses.t, states, self.track.covariance, self.tilt)
 
     @property
     def duration(self) -> float:
@@ -58,17 +63,20 @@ class WalkOnFile:
         return float(self.legs.t[-1])
 
 
-def read_walks(folders: Sequence[Path], *, robot: Path | None = None) -> list[WalkOnFile]:
+def read_walks(
+    folders: Sequence[Path], *, robot: Path | None = None, clock: Clock | None = None
+) -> list[WalkOnFile]:
     """Read tracked walks of one robot; folders of one name are told apart by numbers.
 
     Args:
         folders: A folder each, as for `read_walk_on_file`.
         robot: A `robot.toml` in place of those in the folders.
+        clock: Brings each track to its leg log's clock; None to take it as it is.
 
     Raises:
         ZebroLabError: As in `read_walk_on_file`; or the walks are of two robots.
     """
-    walks = [read_walk_on_file(folder, robot=robot) for folder in folders]
+    walks = [read_walk_on_file(folder, robot=robot, clock=clock) for folder in folders]
     for walk in walks[1:]:
         if describe_legs(walk.robot) != describe_legs(walks[0].robot):
             raise SettingsError(
@@ -85,13 +93,16 @@ def read_walks(folders: Sequence[Path], *, robot: Path | None = None) -> list[Wa
     ]
 
 
-def read_walk_on_file(folder: Path, *, robot: Path | None = None) -> WalkOnFile:
+def read_walk_on_file(
+    folder: Path, *, robot: Path | None = None, clock: Clock | None = None
+) -> WalkOnFile:
     """Read a tracked walk.
 
     Args:
         folder: A run folder, or one with a leg log `legs.csv`; `track/track.csv` below it, and
             perhaps its `robot.toml`.
         robot: A `robot.toml` in place of the folder's.
+        clock: Brings the track to the leg log's clock; None to take it as it is.
 
     Raises:
         NotFound: There is no leg log or no track.
@@ -107,22 +118,39 @@ def read_walk_on_file(folder: Path, *, robot: Path | None = None) -> WalkOnFile:
     own = folder / ROBOT_FILE
     described = read_robot_file(robot or own) if robot is not None or own.is_file() else RobotFile()
     log = read_leg_log(log_file, leg_sign=described.leg_sign)
-    track = read_track(track_file)
     start = float(log.reference.t[0])
-    inside, notes = _inside(log, track)
-    _require_states(inside)
     legs, counted = angles_from(log, start)
-    moved = replace(inside.poses, t=inside.poses.t - start)
+    track = since(read_track(track_file), start)
+    track = track if clock is None else clock(track, legs, described.robot)
+    inside, notes = _inside(float(legs.t[-1]), track)
+    _require_states(inside)
+    tilt, imu_files, told = _tilt(folder, start, float(log.reference.t[-1]))
     sources = sorted({log.source, track.source})
     return WalkOnFile(
         name=folder.absolute().name,
         robot=described,
         legs=legs,
-        track=replace(inside, poses=moved),
+        track=inside,
         source=", ".join(sources),
-        files=(*log.files, track.file, *([described.file] if described.file else [])),
-        notes=(*log.notes, *counted, *track.notes, *notes),
+        files=(*log.files, track.file, *([described.file] if described.file else []), *imu_files),
+        notes=(*log.notes, *counted, *track.notes, *notes, *told),
+        tilt=tilt,
     )
+
+
+def _tilt(
+    folder: Path, start: float, end: float
+) -> tuple[TiltSeen | None, tuple[Path, ...], tuple[str, ...]]:
+    """Read what a run's IMU measured from `start` [s] on, its files, and what to tell of it."""
+    measured = read_recorded_tilt(folder) if is_recorded(folder) else None
+    if measured is None:
+        return None, (), ()
+    inside = (measured.t >= start) & (measured.t <= end)
+    if not inside.any() or np.ptp(measured.t[inside]) < FEWEST * TIME:
+        note = f"roll and pitch do not inform: no IMU from {start:g} to {end:g} s, as the log is"
+        return None, (), (note,)
+    seen = TiltSeen(measured.t[inside] - start, measured.angles[inside])
+    return seen, measured.files, ("roll and pitch by the IMU inform which leg is off",)
 
 
 def _legs_of(folder: Path) -> Path:
@@ -139,15 +167,15 @@ def _legs_of(folder: Path) -> Path:
     )
 
 
-def _inside(log: LegLog, track: TrackFile) -> tuple[TrackFile, tuple[str, ...]]:
-    """Leave out the poses that lie outside the leg log's time."""
-    t, begin, end = track.poses.t, float(log.reference.t[0]), float(log.reference.t[-1])
-    keep = (t >= begin) & (t <= end)
+def _inside(end: float, track: TrackFile) -> tuple[TrackFile, tuple[str, ...]]:
+    """Leave out the poses that lie outside the leg log's time, which runs from zero to `end`."""
+    t = track.poses.t
+    keep = (t >= 0) & (t <= end)
     if keep.sum() < FEWEST_POSES:
         raise DataError(
-            f"{keep.sum()} of {len(t)} poses, from {t[0]:g} to {t[-1]:g} s, lie within the leg "
-            f"log's {begin:g} to {end:g} s; expected {FEWEST_POSES} or more: do both keep the same "
-            "clock?",
+            f"{keep.sum()} of {len(t)} poses, from {t[0]:g} to {t[-1]:g} s after the leg log's "
+            f"first sample, lie within its {end:g} s; expected {FEWEST_POSES} or more: do both "
+            "keep the same clock? If not, --estimate-offset may find how far they are apart",
             file=track.file,
         )
     left_out = int((~keep).sum())

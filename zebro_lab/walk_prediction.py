@@ -10,6 +10,7 @@ from model.bayes.walk_misfit import middle
 from model.bayes.walk_posterior import WalkPosterior
 from model.bayes.walk_prior import WalkPrior
 from model.bayes.walks import WalkFit, fit_walks
+from model.errors import InsufficientData
 from model.gait.reference import SampledReference
 from model.metrics.poses import Poses
 from model.predict import LegState, ModelSpread, predict_paths, walk_draws
@@ -65,6 +66,8 @@ def fit_walks_on_file(
     Raises:
         ModelError: There is no walk, or one diverged.
     """
+    if not walks:
+        raise InsufficientData("no walk to fit; name one or more with a track")
     robot = walks[0].robot.robot
     return fit_walks(
         robot,

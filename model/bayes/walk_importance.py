@@ -3,8 +3,9 @@ r"""Draws of what walks say, by adaptive importance sampling from the Gaussians 
 
 A gait whose legs take over from each other at equal heights sits on a kink: a common offset or a
 longer arc lengthens the steps to one side and does nothing to the other. So no Gaussian is the
-posterior. Draws from Student's t around each mode, then around the weighted draws themselves, round
-after round, are weighted by the density they have over that which they were drawn from,
+posterior. Draws from Student's t around each mode, then around the weighted draws themselves, all
+together and some of the best one by one, round after round, are weighted by the density they have
+over that which they were drawn from,
 
 .. math::
     w_i \propto p(x_i) / \sum_k q_k(x_i) .
@@ -15,17 +16,20 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.stats import multivariate_t
+from scipy.linalg import solve_triangular
 
 from model.bayes.walk_prior import Case
 from model.slip.law import Array
 
 DRAWS = 200  # a round
-MOST_ROUNDS = 8
-WANTED = 120.0  # effective draws
+MOST_ROUNDS = 20
+WANTED = 200.0  # effective draws
 TAIL = 5  # degrees of freedom of what is drawn from
 ENOUGH = 60.0  # effective draws that a round's Gaussians are taken from
 FEW = 15.0  # effective draws of a case, below which it keeps the Gaussian it had
+PATIENCE = 3  # rounds of Gaussians alone, which are the better where they do at all
+CENTRES = 50  # draws that a round's narrower bumps are put around
+WIDTHS = (0.6, 0.3)  # of them, in turn, in standard deviations of their case
 _LEAST = 1e-3  # of probability that every case is drawn with
 
 
@@ -83,39 +87,105 @@ def weighted_draws(
         rng: Source of randomness.
         tell: Told the fraction done.
     """
-    rounds, z, case = [list(modes)], np.empty((0, len(modes[0].z))), np.empty(0, dtype=np.intp)
-    log_p = np.empty(0)
+    rounds = [_around_modes(modes)]
+    z, case = np.empty((0, len(modes[0].z))), np.empty(0, dtype=np.intp)
+    log_p, log_q = np.empty(0), np.empty(0)
     while True:
         more, of_case = _draw(rounds[-1], rng)
+        log_q = np.logaddexp(log_q, _log_proposal(rounds[-1], z, case))
+        before = [_log_proposal(each, more, of_case) for each in rounds]
+        log_q = np.concatenate([log_q, np.logaddexp.reduce(before, axis=0)])
         z, case = np.concatenate([z, more]), np.concatenate([case, of_case])
         log_p = np.concatenate([log_p, log_density(more, of_case)])
-        log_q = np.logaddexp.reduce([_log_proposal(each, z, case) for each in rounds], axis=0)
         weight = _weights(log_p - log_q)
         tell(len(rounds) / MOST_ROUNDS)
         if 1 / (weight @ weight) >= WANTED or len(rounds) == MOST_ROUNDS:
             return WeightedDraws(z, case, weight, log_q)
-        rounds.append(_adapted(modes, z, case, _tempered(log_p - log_q)))
+        flat = _tempered(log_p - log_q)
+        adapted = _adapted(modes, z, case, flat)
+        bumps = _around_modes(adapted)
+        if len(rounds) >= PATIENCE and 1 / (weight @ weight) < ENOUGH:
+            width = WIDTHS[len(rounds) % len(WIDTHS)]
+            bumps += _around_draws(adapted, z, case, flat, width, rng)
+        rounds.append(bumps)
 
 
-def _draw(modes: Sequence[Mode], rng: np.random.Generator) -> tuple[Array, NDArray[np.intp]]:
-    counts = rng.multinomial(DRAWS, _shares(modes))
-    parts = [_students_t(mode, count, rng) for mode, count in zip(modes, counts, strict=True)]
-    return np.concatenate(parts), np.repeat(np.arange(len(modes)), counts)
+@dataclass(frozen=True)
+class _Bumps:
+    """Student's t of one shape around some points of one case.
+
+    Attributes:
+        case: Index of the case.
+        means: The points, shape (k, d).
+        root: Lower triangular root of their covariance, shape (d, d).
+        shares: How often each is drawn from; those of a round are scaled to one, shape (k,).
+    """
+
+    case: int
+    means: Array
+    root: Array
+    shares: Array
 
 
-def _students_t(mode: Mode, n: int, rng: np.random.Generator) -> Array:
-    """Draw from Student's t: a Gaussian over the root of a chi-square, shape (n, d)."""
-    normal = rng.standard_normal((n, len(mode.z))) @ np.linalg.cholesky(mode.covariance).T
-    return mode.z + normal * np.sqrt(TAIL / rng.chisquare(TAIL, (n, 1)))
+def _around_modes(modes: Sequence[Mode]) -> list[_Bumps]:
+    """Draw each case from its Gaussian: by evidence, but all now and then."""
+    return [
+        _Bumps(i, mode.z[None], _root(mode.covariance), np.array([share]))
+        for i, (mode, share) in enumerate(zip(modes, _shares(modes), strict=True))
+    ]
 
 
-def _log_proposal(modes: Sequence[Mode], z: Array, case: NDArray[np.intp]) -> Array:
-    log, shares = np.empty(len(z)), _shares(modes)
-    for i in np.unique(case):
-        rows = case == i
-        log[rows] = np.log(shares[i]) + multivariate_t.logpdf(
-            z[rows], modes[i].z, modes[i].covariance, df=TAIL
+def _around_draws(
+    modes: Sequence[Mode],
+    z: Array,
+    case: NDArray[np.intp],
+    weight: Array,
+    width: float,
+    rng: np.random.Generator,
+) -> list[_Bumps]:
+    """Draw from narrower bumps around some of the weighted draws: along a kink, whatever it is."""
+    chosen = np.unique(rng.choice(len(z), size=CENTRES, p=weight))
+    bumps = []
+    for i in np.unique(case[chosen]):
+        centres = chosen[case[chosen] == i]
+        root = width * _root(modes[i].covariance)
+        bumps.append(_Bumps(int(i), z[centres], root, np.full(len(centres), 1 / len(chosen))))
+    return bumps
+
+
+def _root(covariance: Array) -> Array:
+    return np.asarray(np.linalg.cholesky(covariance), dtype=float)
+
+
+def _draw(bumps: Sequence[_Bumps], rng: np.random.Generator) -> tuple[Array, NDArray[np.intp]]:
+    """Draw from Student's t: Gaussians over the root of a chi-square."""
+    shares = np.concatenate([each.shares for each in bumps])
+    means = np.concatenate([each.means for each in bumps])
+    group = np.repeat(np.arange(len(bumps)), [len(each.means) for each in bumps])
+    chosen = rng.choice(len(shares), size=DRAWS, p=shares / shares.sum())
+    normal = rng.standard_normal((DRAWS, means.shape[1]))
+    normal *= np.sqrt(TAIL / rng.chisquare(TAIL, (DRAWS, 1)))
+    roots = np.stack([each.root for each in bumps])[group[chosen]]
+    case = np.array([each.case for each in bumps], dtype=np.intp)[group[chosen]]
+    return means[chosen] + (roots @ normal[..., None])[..., 0], case
+
+
+def _log_proposal(bumps: Sequence[_Bumps], z: Array, case: NDArray[np.intp]) -> Array:
+    """Return the log density that draws of given cases come with, but for a constant."""
+    log = np.full(len(z), -np.inf)
+    total = sum(each.shares.sum() for each in bumps)
+    d = z.shape[1]
+    for each in bumps:
+        rows = np.flatnonzero(case == each.case)
+        if len(rows) == 0:
+            continue
+        away = solve_triangular(
+            each.root, (z[rows][:, None] - each.means).reshape(-1, d).T, lower=True
         )
+        square = (away**2).sum(axis=0).reshape(len(rows), -1)
+        t = -0.5 * (TAIL + d) * np.log1p(square / TAIL) - np.log(np.diag(each.root)).sum()
+        here = np.logaddexp.reduce(t + np.log(each.shares / total), axis=1)
+        log[rows] = np.logaddexp(log[rows], here)
     return log
 
 

@@ -16,6 +16,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from model.bayes.walk_terms import Terms
+from model.bayes.walk_tilt import TiltMisfit, TiltSeen
 from model.errors import InsufficientData
 from model.gait.quantised import QuantisedLog
 from model.gait.reference import LegReference
@@ -38,6 +39,7 @@ from model.walk.traction import TractionTable
 RECONSTRUCTIONS = 16  # of counted angles, for the spread they leave
 FEWEST_POSES = 3  # a start and two to compare
 SAMPLING = 0.05  # s between the poses kept of a path
+FINE_SAMPLING = 0.02  # s, where roll and pitch are compared
 _BEND = 1e-3  # of distance and of curvature, to differentiate by
 
 
@@ -52,6 +54,7 @@ class TrackedWalk:
             shape (n,) [s].
         states: Tracked x, y [m] and yaw [rad], shape (n, 3).
         covariance: The tracker's covariance of each, shape (n, 3, 3).
+        tilt: Roll and pitch by the robot's IMU; None without one.
 
     Raises:
         InsufficientData: There are fewer than three poses.
@@ -62,6 +65,7 @@ class TrackedWalk:
     t: Array
     states: Array
     covariance: Array
+    tilt: TiltSeen | None = None
 
     def __post_init__(self) -> None:
         """Refuse a track that says nothing."""
@@ -82,6 +86,7 @@ class WalkMisfit:
         walk: The walk.
         options: How walks are computed.
         root: Turns differences into residuals of unit covariance, shape (k, k).
+        tilt: What the IMU measured; None without one.
     """
 
     robot: Robot
@@ -89,6 +94,7 @@ class WalkMisfit:
     walk: TrackedWalk
     options: DynamicsOptions
     root: Array
+    tilt: TiltMisfit | None = None
 
     @classmethod
     def of(
@@ -117,19 +123,32 @@ class WalkMisfit:
         plain = WalkDraw(robot, middle(walk.legs), table)
         options = ensemble_step([plain], duration=float(walk.t[-1]))
         misfit = cls(robot, table, walk, options, np.eye(3 * (len(walk.t) - 1)))
+        if walk.tilt is not None:
+            tilt = TiltMisfit.of(walk.tilt, misfit._times(), walk.legs)
+            misfit = replace(misfit, tilt=tilt)
         covariance = misfit._covariance(spread, rng, threads)
         # With L L^T the covariance, L^-1 makes the residuals' covariance the identity.
         return replace(misfit, root=np.linalg.inv(np.linalg.cholesky(covariance)))
 
+    @property
+    def size(self) -> int:
+        """How many residuals there are: of the poses, then of roll and pitch."""
+        return len(self.root) + (0 if self.tilt is None else self.tilt.measured.size)
+
+    @property
+    def count(self) -> float:
+        """As how many independent numbers they count."""
+        return len(self.root) + (0.0 if self.tilt is None else self.tilt.count)
+
     def residuals(self, state: LegState, *, threads: int) -> Array:
-        """Compute residuals of unit covariance for m states of the legs, shape (m, 3 (n - 1)).
+        """Compute residuals of unit covariance for m states of the legs, shape (m, size).
 
         Raises:
             WalkError: A walk diverged.
         """
         walked = self._walked_with(state, threads)
         paths = bent(walked, distance=state.stride, curvature=state.steering)
-        return self._difference(paths) @ self.root.T
+        return self._with_tilt(self._difference(paths) @ self.root.T, walked)
 
     def terms(self, state: LegState, *, steering: float, stride: float, threads: int) -> Terms:
         """Compute residuals for m states of the legs, and how they depend on steering and stride.
@@ -150,9 +169,16 @@ class WalkMisfit:
             self._difference(bent(walked, distance=no, curvature=no + steering)) - here,
             self._difference(bent(walked, distance=no + stride, curvature=no)) - here,
         ]
-        return Terms.of(
-            here @ self.root.T, np.stack([each @ self.root.T for each in bends], axis=2)
-        )
+        residuals = self._with_tilt(here @ self.root.T, walked)
+        by_bend = np.zeros((*residuals.shape, len(bends)))  # roll and pitch do not bend
+        for i, bend in enumerate(bends):
+            by_bend[:, : len(self.root), i] = bend @ self.root.T
+        return Terms.of(residuals, by_bend)
+
+    def _with_tilt(self, residuals: Array, walked: PathEnsemble) -> Array:
+        if self.tilt is None or walked.tilt is None:
+            return residuals
+        return np.concatenate([residuals, self.tilt.residuals(walked.tilt)], axis=1)
 
     def _walked_with(self, state: LegState, threads: int) -> PathEnsemble:
         legs = middle(self.walk.legs)
@@ -163,9 +189,14 @@ class WalkMisfit:
         return self._walked(draws, threads)
 
     def _walked(self, draws: Sequence[WalkDraw], threads: int) -> PathEnsemble:
+        return walk_ensemble(
+            draws, self._times(), options=self.options, threads=threads, tilt=self.tilt is not None
+        )
+
+    def _times(self) -> Array:
         end = float(self.walk.t[-1])
-        t = np.linspace(0.0, end, max(round(end / SAMPLING), 2) + 1)
-        return walk_ensemble(draws, t, options=self.options, threads=threads)
+        step = SAMPLING if self.walk.tilt is None else FINE_SAMPLING
+        return np.linspace(0.0, end, max(round(end / step), 2) + 1)
 
     def _difference(self, paths: PathEnsemble) -> Array:
         """Predict from the first pose, subtract what was tracked; shape (m, 3 (n - 1))."""

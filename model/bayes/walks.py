@@ -131,12 +131,15 @@ class WalkFit:
     def _of(self, keep: Sequence[int]) -> WalkPosterior:
         density, drawn = self._density, self._drawn
         terms = self._terms.only(keep)
-        log = density.log_prior(drawn.z, drawn.case) + terms.log_likelihood() - drawn.log_proposal
+        log_density = density.log_prior(drawn.z, drawn.case) + terms.log_likelihood()
+        log = log_density - drawn.log_proposal
         weight = np.exp(log - log.max())
         weight /= weight.sum()
         values = self._values(drawn.z, *terms.conditional())
         likeliest = int(np.bincount(drawn.case, weight).argmax())
-        best, misfit = self._best(np.where(drawn.case == likeliest, weight, 0.0), likeliest, keep)
+        densest = int(np.where(drawn.case == likeliest, log_density, -np.inf).argmax())
+        starts = self._starts(np.where(drawn.case == likeliest, weight, 0.0), likeliest, densest)
+        best, misfit = self._best(starts, likeliest, keep)
         return WalkPosterior(
             prior=density.prior,
             walks=self._names,
@@ -160,23 +163,32 @@ class WalkFit:
         ]
         return values
 
+    def _starts(self, weight: Array, case: int, densest: int) -> list[Array]:
+        """Return where to climb from: all but a wrong leg at rest, and a case's best draw.
+
+        A leg's scan has several tops; its weighted draws know which.
+        """
+        plain, drawn = np.zeros(WRONG + 1), np.zeros(WRONG + 1)
+        if self._density.cases[case] is not None:
+            plain[WRONG] = (weight @ self._drawn.z / weight.sum())[WALKED.index(WRONG)]
+        drawn[WALKED] = self._drawn.z[densest]
+        return [plain, drawn]
+
     def _best(
-        self, weight: Array, case: int, keep: Sequence[int]
+        self, starts: Sequence[Array], case: int, keep: Sequence[int]
     ) -> tuple[Array, tuple[float, ...]]:
         """Climb to a case's mode, and return it with every walk's misfit there.
 
         Not the mean: on a kink of the posterior that lies to the side on which nothing changes, and
-        does not walk as the draws do.
+        does not walk as the draws do. On a kink a climb may end early too, so the best of some.
         """
-        density = self._density
-        start = np.zeros(WRONG + 1)
-        if density.cases[case] is not None:  # a leg's scan has several tops; the draws know which
-            start[WRONG] = (weight @ self._drawn.z / weight.sum())[WALKED.index(WRONG)]
+        density, which = self._density, self._density.cases[case]
         search = ModeSearch(
             [density.misfits[w] for w in keep], density.prior, density.threads, numbers=keep
         )
-        mode, _ = search.climb(density.cases[case], start)
-        terms = density.terms(mode.z[WALKED][None], np.array([case]))
-        sizes = [len(misfit.root) for misfit in density.misfits]
-        misfit = terms.squares_at(mode.z[LINEAR][None])[0] / sizes
-        return mode.z * density.prior.scale, tuple(float(each) for each in misfit)
+        tops = [search.climb(which, start)[0].z for start in starts]
+        z = min(tops, key=lambda top: search.cost(top, which))
+        terms = density.terms(z[WALKED][None], np.array([case]))
+        counts = [misfit.count for misfit in density.misfits]
+        misfit = terms.squares_at(z[LINEAR][None])[0] / counts
+        return z * density.prior.scale, tuple(float(each) for each in misfit)

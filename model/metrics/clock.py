@@ -19,6 +19,8 @@ FEWEST = 6  # poses of a track
 BLOCKS = 5  # stretches of the track that are left out in turn
 SHARE = 0.5  # of the track's poses and of its length that must lie within the path
 LARGEST_SD = 0.25  # s beyond which an estimate helps nobody
+AS_GOOD = 5.0  # times the least misfit: F of as many errors as there are blocks, two each, at 99 %
+NEAR = 7.0  # standard deviations within which a misfit of that size is the same minimum's
 
 
 @dataclass(frozen=True)
@@ -72,7 +74,25 @@ def estimate_offset(track: Poses, path: Poses) -> ClockOffset:
             f"the motion tells the clocks' offset only to {sd:.2g} s; let the robot start and "
             "stop in view, or give the offset"
         )
+    at = track.t + offsets[:, None]
+    held = ((at >= path.t[0]) & (at <= path.t[-1])).sum(axis=1)
+    rivals = (np.abs(offsets - value) > NEAR * sd + 2 * STEP) & (held >= held[best])
+    _require_one(offsets[rivals], misfit[rivals], value, misfit[best])
     return ClockOffset(value, sd)
+
+
+def _require_one(offsets: Array, misfit: Array, value: float, least: float) -> None:
+    """Refuse an offset beside which another does as well, of at least as many poses.
+
+    Photographs every two seconds miss whole strides.
+    """
+    if len(misfit) and misfit.min() < AS_GOOD * least:
+        other = offsets[int(np.argmin(misfit))]
+        raise InsufficientData(
+            f"the motion fits about as well with clocks {other:+.1f} s apart as with "
+            f"{value:+.1f} s, as strides do that repeat; let the robot start and stop in view, or "
+            "give the offset"
+        )
 
 
 def _possible(track: Poses, path: Poses) -> Array:

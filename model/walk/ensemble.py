@@ -53,11 +53,13 @@ class PathEnsemble:
         t: Times, shape (n,) [s].
         position: Positions, shape (draws, n, 2) [m].
         yaw: Unwrapped headings, shape (draws, n) [rad].
+        tilt: Roll and pitch, shape (draws, n, 2); None where nobody asked [rad].
     """
 
     t: Array
     position: Array
     yaw: Array
+    tilt: Array | None = None
 
 
 def walk_ensemble(
@@ -66,6 +68,7 @@ def walk_ensemble(
     *,
     options: DynamicsOptions = DEFAULT_OPTIONS,
     threads: int = 2,
+    tilt: bool = False,
     progress: Callable[[float], None] | None = None,
 ) -> PathEnsemble:
     """Walk every draw on flat ground; a gait with a period by its stride map.
@@ -75,6 +78,7 @@ def walk_ensemble(
         t: Times wanted, increasing, none before zero, shape (n,) [s].
         options: How the walks are computed.
         threads: Draws walked at once.
+        tilt: Keep roll and pitch, of leg angles that are walked whole.
         progress: Told the fraction done.
 
     Returns:
@@ -93,7 +97,8 @@ def walk_ensemble(
             path = planar_walk(draw, duration=duration, options=options)
         except WalkError as error:
             raise WalkError(f"draw {number} of {len(draws)}: {error}") from error
-        return np.stack([np.interp(t, path.t, a) for a in (path.x, path.y, path.yaw)])
+        columns = [path.x, path.y, path.yaw, *(_tilt_of(path) if tilt else ())]
+        return np.stack([np.interp(t, path.t, a) for a in columns])
 
     paths = []
     with ThreadPoolExecutor(threads) as pool:
@@ -102,7 +107,18 @@ def walk_ensemble(
             if progress is not None:
                 progress(len(paths) / len(draws))
     everything = np.stack(paths)
-    return PathEnsemble(t, np.moveaxis(everything[:, :2], 1, 2), everything[:, 2])
+    return PathEnsemble(
+        t, np.moveaxis(everything[:, :2], 1, 2), everything[:, 2],
+        np.moveaxis(everything[:, 3:], 1, 2) if tilt else None,
+    )  # fmt: skip
+
+
+def _tilt_of(path: PlanarPath) -> Array:
+    if path.tilt is None:
+        raise WalkError(
+            "roll and pitch of a gait walked by strides are not kept; sample its leg angles"
+        )
+    return path.tilt.T
 
 
 def _require_draws(draws: Sequence[WalkDraw], t: Array) -> None:
@@ -146,5 +162,5 @@ def planar_walk(
     )  # fmt: skip
     if done < len(t) - 1:
         raise diverged(t[done], pose[done])
-    yaw = roll_pitch_yaw(pose[:, 3:])[:, 2]
-    return PlanarPath(t, pose[:, 0], pose[:, 1], yaw)
+    angles = roll_pitch_yaw(pose[:, 3:])
+    return PlanarPath(t, pose[:, 0], pose[:, 1], angles[:, 2], angles[:, :2])

@@ -62,12 +62,14 @@ class PlanarPath:
         x: Position [m].
         y: Position [m].
         yaw: Unwrapped heading [rad].
+        tilt: Roll and pitch, shape (n, 2); None where strides are repeated [rad].
     """
 
     t: Array
     x: Array
     y: Array
     yaw: Array
+    tilt: Array | None = None
 
 
 def walk_by_strides(

@@ -49,6 +49,13 @@ Walks = Annotated[
 Robot = Annotated[
     Path | None, typer.Option(help="robot.toml of the walks, in place of those in their folders.")
 ]
+EstimateOffset = Annotated[
+    bool,
+    typer.Option(
+        "--estimate-offset",
+        help="Find in the motion how far each walk's track is behind its leg log's clock.",
+    ),
+]
 Out = Annotated[Path, typer.Option(help="Calibration folder to write.")]
 Columns = Annotated[
     Path | None, typer.Option(help="columns.toml to use in place of those beside the tables.")
@@ -104,6 +111,7 @@ def calibrate(
     resume: Resume = False,
     walks: Walks = None,
     robot: Robot = None,
+    estimate_offset: EstimateOffset = False,
 ) -> None:
     """Fit a slip curve to rig logs by Bayesian inference and say how far to trust it."""
     from zebro_lab.stages.calibrate import CalibrationRequest
@@ -111,7 +119,7 @@ def calibrate(
     if not data:
         if not walks:
             raise typer.BadParameter("needed: rig data, or --walks and the --out of a calibration")
-        _fit_walks(walks, out, robot, seed=seed, threads=threads)
+        _fit_walks(walks, out, robot, seed=seed, threads=threads, estimate_offset=estimate_offset)
         return
     cell = {"zero_stability": zero_stability, "gain_sd": gain_sd}
     request = CalibrationRequest(
@@ -132,7 +140,7 @@ def calibrate(
     )
     converged = _fit_and_report(request)
     if walks:
-        _fit_walks(walks, out, robot, seed=seed, threads=threads)
+        _fit_walks(walks, out, robot, seed=seed, threads=threads, estimate_offset=estimate_offset)
     if not converged:
         raise typer.Exit(NOT_CONVERGED)
 
@@ -157,7 +165,13 @@ def _fit_and_report(request: "CalibrationRequest") -> bool:
 
 
 def _fit_walks(
-    walks: list[Path], out: Path, robot: Path | None, *, seed: int, threads: int
+    walks: list[Path],
+    out: Path,
+    robot: Path | None,
+    *,
+    seed: int,
+    threads: int,
+    estimate_offset: bool,
 ) -> None:
     """Fit walks beside a finished calibration and print what they said."""
     from rich.console import Console
@@ -166,7 +180,9 @@ def _fit_walks(
     from zebro_lab.cli.walks_report import print_walks
     from zebro_lab.stages.calibrate_walks import WalksRequest, calibrate_walks
 
-    request = WalksRequest(tuple(walks), out, robot, seed=seed, threads=threads)
+    request = WalksRequest(
+        tuple(walks), out, robot, seed=seed, threads=threads, estimate_offset=estimate_offset
+    )
     with progress_bar(Console(stderr=True)) as watcher:
         done = calibrate_walks(request, watcher)
     print_walks(_console(), done)

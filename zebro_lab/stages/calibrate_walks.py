@@ -10,7 +10,8 @@ from model.bayes.walk_prior import WalkPrior
 from zebro_lab.calibration_folder import SLIP_TOML
 from zebro_lab.errors import NotFound, SettingsError
 from zebro_lab.slip_argument import parse_slip
-from zebro_lab.tracked_walks import WalkOnFile, read_walks
+from zebro_lab.tracked_walks import read_walks
+from zebro_lab.walk_clocks import checked_clock, estimated_clock_of
 from zebro_lab.walk_prediction import WalksFitted, fit_and_leave_out
 from zebro_lab.walking import Watcher
 from zebro_lab.walks_folder import WalksToWrite, write_walks
@@ -27,6 +28,7 @@ class WalksRequest:
         prior: What is believed before.
         seed: Seed of everything random.
         threads: Walks computed at once.
+        estimate_offset: Find in the motion how far each track's clock is behind its leg log's.
     """
 
     walks: tuple[Path, ...]
@@ -35,6 +37,7 @@ class WalksRequest:
     prior: WalkPrior = field(default_factory=WalkPrior)
     seed: int = 1
     threads: int = 2
+    estimate_offset: bool = False
 
 
 @dataclass(frozen=True)
@@ -65,8 +68,11 @@ def calibrate_walks(request: WalksRequest, watcher: Watcher) -> WalksCalibrated:
         ZebroLabError: A walk or the calibration is missing or cannot be used; nothing was written.
         ModelError: A walk diverged; nothing was written.
     """
-    walks, slip_toml = _read(request, watcher)
+    slip_toml = _slip_of(request)
     slip = parse_slip(str(slip_toml), with_walks=False)
+    watcher.step("reading walks", None)
+    clock = estimated_clock_of(slip) if request.estimate_offset else checked_clock(slip)
+    walks = read_walks(request.walks, robot=request.robot, clock=clock)
     fitted = fit_and_leave_out(
         walks,
         slip,
@@ -86,7 +92,7 @@ def calibrate_walks(request: WalksRequest, watcher: Watcher) -> WalksCalibrated:
             robot=walks[0].robot,
             logs=tuple(walk.files[0] for walk in walks),
             inputs=(slip_toml, *(file for walk in walks for file in walk.files)),
-            settings={"seed": request.seed},
+            settings={"seed": request.seed, "estimate_offset": request.estimate_offset},
             source=source,
             notes=notes,
         ),
@@ -94,7 +100,7 @@ def calibrate_walks(request: WalksRequest, watcher: Watcher) -> WalksCalibrated:
     return WalksCalibrated(fitted, folder, source, notes)
 
 
-def _read(request: WalksRequest, watcher: Watcher) -> tuple[list[WalkOnFile], Path]:
+def _slip_of(request: WalksRequest) -> Path:
     if not request.walks:
         raise SettingsError("missing: no walk to fit", key="--walks")
     slip_toml = request.calibration / SLIP_TOML
@@ -103,5 +109,4 @@ def _read(request: WalksRequest, watcher: Watcher) -> tuple[list[WalkOnFile], Pa
             f"{slip_toml}: no such file; name rig data to calibrate from, or the --out of a "
             "finished calibration"
         )
-    watcher.step("reading walks", None)
-    return read_walks(request.walks, robot=request.robot), slip_toml
+    return slip_toml

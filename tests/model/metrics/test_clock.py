@@ -54,3 +54,12 @@ def test_too_few_poses_are_refused():
     few = tracked(path, 0.0, np.random.default_rng(1), every=6.0)
     with pytest.raises(InsufficientData, match="6 are needed"):
         estimate_offset(few, path)
+
+
+def test_a_gait_that_rocks_as_photographs_come_again_is_not_told_by_its_rocking():
+    path = walk(standing=0.0)
+    rocking = np.column_stack([0.0 * path.t, 0.01 * np.sin(2 * np.pi * path.t / 3.0)])
+    path = Poses(path.t, path.position + rocking, path.yaw)
+    inner = path.part((path.t > 3) & (path.t < 21))
+    with pytest.raises(InsufficientData, match="about as well"):
+        estimate_offset(tracked(inner, 3.0, np.random.default_rng(1)), path)

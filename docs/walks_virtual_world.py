@@ -13,9 +13,10 @@ Prints the tables of `docs/validation.md`.
 Usage: .venv/bin/python docs/walks_virtual_world.py CALIBRATION [PART ...]
 
 CALIBRATION is the folder that `calibrate-slip` made of the reference data's simulated rig. PART is
-half-circles, other-legs, floors, wrong-leg or wrong-leg-imu (the same walks, with roll and pitch by
-an IMU), all of them where none is named; with a number, as half-circles:0, one of its fits. The
-engine's walks are kept in ZEBRO_LAB_SCRATCH, or where temporary files are.
+half-circles, other-legs, floors, wrong-leg, wrong-leg-imu (the same walks, with roll and pitch by
+an IMU) or straight (one walk, seen with other noise again and again), all of them where none is
+named; with a number, as half-circles:0, one of its fits. The engine's walks are kept in
+ZEBRO_LAB_SCRATCH, or where temporary files are.
 """
 
 import os
@@ -60,6 +61,7 @@ OTHER_LEGS = ("tripod_s1.10_left_mu0.38_tc2_arc200ideal", "tripod_s1.30_left_mu0
 SLIPPERY = ("tripod_s1.20_left_mu0.20_tc2", "tetrapod_mu0.20_tc3")
 ROUGH = "tripod_s1.20_left_mu0.70_tc2"
 WRONG = ((2, 5.0), (3, 5.0), (0, 5.0), (2, -5.0))  # index of a leg, by how much it is off [deg]
+AGAIN = 40  # tracks of the straight walk
 BENT_STEERING, BENT_CYCLE, BENT_DURATION = 1.2, 2.0, 16.0  # of those walks: -, s, s
 
 
@@ -150,11 +152,11 @@ class Bench:
             for file in sorted((SHARED / "virtual-world" / "walks").glob("*.json"))
         }
 
-    def walk(self, name: str) -> WalkOnFile:
-        """Return a walk as a lab has it."""
-        folder = self._scratch / name
+    def walk(self, name: str, *, again: int = 0) -> WalkOnFile:
+        """Return a walk as a lab has it; tracked `again` with other noise."""
+        folder = self._scratch / f"{name}-{again}"
         if not folder.exists():
-            seed = 100 + sorted(self.engine).index(name)
+            seed = 100 + sorted(self.engine).index(name) + 1000 * again
             return write_walk(folder, self.engine[name], seed=seed)
         return read_walk_on_file(folder)
 
@@ -242,6 +244,29 @@ def wrong_leg(
         yield bench.score(posterior, walks[2], name, "all three", index=2)
 
 
+def straight(bench: Bench, fits: Sequence[int] = range(1)) -> Iterator[Scored]:
+    """Predict the straight walk, tracked again and again: of one track yaw tells nothing."""
+    if 0 not in fits:
+        return
+    names = [FIRST, HALF_CIRCLES[3]]
+    posterior = bench.fit([bench.walk(name) for name in names]).posterior
+    name, ours, best = HALF_CIRCLES[0], [], []
+    for again in range(AGAIN):
+        scored = bench.score(
+            posterior, bench.walk(name, again=again), name, " + ".join(map(short, names))
+        )
+        prediction, *others = (row.scores.crps for row in scored.judged.rows)
+        ours.append(prediction)
+        best.append(others)
+        if again == 0:
+            yield scored
+    least = np.mean(best, axis=0).min(axis=0)
+    print(
+        f"\n{short(name)} tracked {AGAIN} times, mean CRPS of x, y, yaw: "
+        f"{_three(np.mean(ours, axis=0))}; best baseline's {_three(least)}"
+    )
+
+
 def print_found(posterior: WalkPosterior, truth: str) -> None:
     """Say which legs the posterior takes for wrong."""
     print(f"\n{truth}:")
@@ -303,7 +328,7 @@ def _three(values: Sequence[float] | np.ndarray) -> str:
 
 PARTS = {
     "half-circles": half_circles, "other-legs": other_legs, "floors": floors,
-    "wrong-leg": wrong_leg, "wrong-leg-imu": partial(wrong_leg, imu=True),
+    "wrong-leg": wrong_leg, "wrong-leg-imu": partial(wrong_leg, imu=True), "straight": straight,
 }  # fmt: skip
 
 

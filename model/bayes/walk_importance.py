@@ -22,8 +22,8 @@ from model.bayes.walk_prior import Case
 from model.slip.law import Array
 
 DRAWS = 200  # a round
-MOST_ROUNDS = 20
-WANTED = 200.0  # effective draws
+MOST_ROUNDS = 14
+WANTED = 150.0  # effective draws
 TAIL = 5  # degrees of freedom of what is drawn from
 ENOUGH = 60.0  # effective draws that a round's Gaussians are taken from
 FEW = 15.0  # effective draws of a case, below which it keeps the Gaussian it had

@@ -30,13 +30,14 @@ from model.predict import (
     robot_in,
     states_at,
 )
-from model.robot import Robot
+from model.robot import N_LEGS, Robot
 from model.slip.law import Array
 from model.walk.dynamics import DynamicsOptions
 from model.walk.ensemble import PathEnsemble, WalkDraw, walk_ensemble
 from model.walk.traction import TractionTable
 
-RECONSTRUCTIONS = 16  # of counted angles, for the spread they leave
+RECONSTRUCTIONS = 16  # of counted angles, for the spread they leave; or walks by half the step
+OFFSETS_SD = np.radians(0.2)  # of the legs of those walks
 FEWEST_POSES = 3  # a start and two to compare
 SAMPLING = 0.05  # s between the poses kept of a path
 FINE_SAMPLING = 0.02  # s, where roll and pitch are compared
@@ -216,9 +217,19 @@ class WalkMisfit:
         one = PathEnsemble(paths.t, paths.position[:1], paths.yaw[:1])
         total = self._of_tracker(self._difference(one)[0])
         total += self._of_model(one, spread) + 1e-12 * np.eye(len(total))
-        if len(several) > 1:
-            total += np.cov(self._difference(paths).T)
-        return total
+        if len(several) > 1:  # the step moves each of them its own way, too
+            return total + np.cov(self._difference(paths).T)
+        return total + self._of_step(several[0], rng, threads)
+
+    def _of_step(self, legs: LegReference, rng: np.random.Generator, threads: int) -> Array:
+        """Return the covariance that the step gives: it moves each path a little its own way."""
+        draws = [
+            WalkDraw(replace(self.robot, leg_offset=self.robot.leg_offset + each), legs, self.table)
+            for each in OFFSETS_SD * rng.standard_normal((RECONSTRUCTIONS, N_LEGS))
+        ]
+        half = replace(self, options=replace(self.options, dt=0.5 * self.options.dt))
+        coarse, fine = (each._difference(each._walked(draws, threads)) for each in (self, half))
+        return (coarse - fine).T @ (coarse - fine) / RECONSTRUCTIONS
 
     def _of_tracker(self, difference: Array) -> Array:
         """Return the covariance that the tracker's noise gives, of the first pose and the others.

@@ -31,10 +31,11 @@ DIFFERENCE = np.array([
 ])  # fmt: skip
 MOST_MOVES = 8
 SETTLED = 0.05  # of a prior's standard deviation
+GAINED = 0.3  # of twice the log posterior density: a climb that gains less is at its end
 SCANNED = np.radians(np.linspace(-12.0, 12.0, 17))  # offsets that are walked
 FINE = np.radians(np.linspace(-12.0, 12.0, 241))  # offsets between them
 CLIMBED = 6  # cases, at most, that are climbed after the scans
-UNLIKELY = 15.0  # below the best log evidence: such a case is not climbed; scans err by some ten
+UNLIKELY = 8.0  # below the best log evidence: such a case is not climbed; scans err by some
 
 
 def _evidence(mode: Mode) -> float:
@@ -124,10 +125,13 @@ class ModeSearch:
             trials = z + move * np.array([1.0, 0.5, 0.25, 0.1])[:, None]
             cost = (self.residuals(trials, case) ** 2).sum(axis=1) + (trials**2).sum(axis=1)
             best = int(np.argmin(cost))
-            if cost[best] >= r @ r + z @ z:
+            gained = r @ r + z @ z - cost[best]
+            if gained <= 0:
                 break
             z = trials[best]
             r, J = self._linearised(z, case)
+            if gained < GAINED:
+                break
         covariance = np.linalg.inv(J.T @ J + np.eye(len(z)))
         evidence = -0.5 * (r @ r + z @ z) + 0.5 * np.linalg.slogdet(covariance)[1]
         return self._mode(case, z, covariance, float(evidence)), J

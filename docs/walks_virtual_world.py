@@ -14,9 +14,9 @@ Usage: .venv/bin/python docs/walks_virtual_world.py CALIBRATION [PART ...]
 
 CALIBRATION is the folder that `calibrate-slip` made of the reference data's simulated rig. PART is
 half-circles, other-legs, floors, wrong-leg, wrong-leg-imu (the same walks, with roll and pitch by
-an IMU) or straight (one walk, seen with other noise again and again), all of them where none is
-named; with a number, as half-circles:0, one of its fits. The engine's walks are kept in
-ZEBRO_LAB_SCRATCH, or where temporary files are.
+an IMU), straight (one walk, seen with other noise again and again) or tilt (roll and pitch alone),
+all of them where none is named; with a number, as half-circles:0, one of its fits. The engine's
+walks are kept in ZEBRO_LAB_SCRATCH, or where temporary files are.
 """
 
 import os
@@ -32,12 +32,15 @@ import numpy as np
 import pandas as pd
 from against_engine import SHARED, EngineWalk, radius, read_walk
 
+from model.bayes.walk_misfit import middle
 from model.bayes.walk_posterior import WalkPosterior
 from model.bayes.walk_prior import WalkPrior
-from model.bayes.walk_tilt import TiltSeen
+from model.bayes.walk_tilt import SD, TiltMisfit, TiltSeen
 from model.bayes.walks import WalkFit
 from model.gait.reference import SampledReference
-from model.robot import N_LEGS, Robot
+from model.robot import GRAVITY, N_LEGS, Robot
+from model.walk.dynamics import DynamicsOptions
+from model.walk.ensemble import WalkDraw, walk_ensemble
 from zebro_lab.robot_file import ROBOT_FILE, RobotFile, render_robot_file
 from zebro_lab.slip_argument import Slip, parse_slip
 from zebro_lab.tracked_walks import WalkOnFile, read_walk_on_file
@@ -267,6 +270,25 @@ def straight(bench: Bench, fits: Sequence[int] = range(1)) -> Iterator[Scored]:
     )
 
 
+def tilt(bench: Bench, fits: Sequence[int] = range(1)) -> Iterator[Scored]:
+    """Compare roll and pitch by the rig's law with the engine's, about their means."""
+    print("\n| walk | rms roll, pitch | swing of the engine's |\n|---|---:|---:|")
+    for name in bench.engine if 0 in fits else ():
+        walk, seen = bench.walk(name), bench.engine[name].truth
+        robot = walk.robot.robot
+        table = bench.slip.traction_table(weight=robot.mass * GRAVITY)
+        t = np.arange(0.0, walk.duration, 0.02)
+        draw = WalkDraw(robot, middle(walk.legs), table)
+        walked = walk_ensemble([draw], t, options=DynamicsOptions(dt=0.005), tilt=True)
+        engine = np.column_stack([np.interp(t, seen["t"], seen[c]) for c in ("roll", "pitch")])
+        errors = TiltMisfit.of(TiltSeen(t, engine), t, walk.legs)
+        away = errors.residuals(walked.tilt) * SD * np.sqrt(errors.strides)
+        rms = np.degrees(np.sqrt((away.reshape(-1, 2) ** 2).mean(axis=0)))
+        swing = np.degrees(errors.measured.std(axis=0))
+        print(f"| {short(name)} | {rms[0]:.2f} {rms[1]:.2f}° | {swing[0]:.2f} {swing[1]:.2f}° |")
+    yield from ()
+
+
 def print_found(posterior: WalkPosterior, truth: str) -> None:
     """Say which legs the posterior takes for wrong."""
     print(f"\n{truth}:")
@@ -286,6 +308,8 @@ def short(name: str) -> str:
 
 def print_rows(scored: Sequence[Scored]) -> None:
     """Print a table, and what holds of all its rows."""
+    if not scored:
+        return
     print(
         "\n| predicted | informed by | turn | position, rms of path | 90 % band holds x, y, yaw | "
         "its half width x, y, yaw | CRPS x, y, yaw | best baseline's CRPS |"
@@ -329,6 +353,7 @@ def _three(values: Sequence[float] | np.ndarray) -> str:
 PARTS = {
     "half-circles": half_circles, "other-legs": other_legs, "floors": floors,
     "wrong-leg": wrong_leg, "wrong-leg-imu": partial(wrong_leg, imu=True), "straight": straight,
+    "tilt": tilt,
 }  # fmt: skip
 
 

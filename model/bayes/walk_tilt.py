@@ -22,7 +22,7 @@ from model.gait.quantised import QuantisedLog
 from model.gait.reference import LegReference
 from model.slip.law import Array
 
-# Of an IMU. The model errs by 0.03 degrees where a tripod carries, by 0.5 where four legs do.
+# Of an IMU. The model errs by 0.02 degrees where a tripod carries, by 0.5 where four legs do.
 SD = np.radians(0.3)
 TIME = 0.1  # s over which means are taken
 FEWEST = 10  # means of a walk

@@ -132,7 +132,8 @@ class _Sampler:
         plate = _plate(self.look.plate_seed, self.look.parts)
         seen = _Seen(pose, self.state.leg_angles, self.look, self.light, plate)
         found, colour = seen.along(self.origin, directions)
-        lit = np.where(found, 0.0, seen.floor_light(self.origin, directions, DISC[sample]))
+        lit = np.zeros(len(found), np.float32)
+        lit[~found] = seen.floor_light(self.origin, directions[:, ~found], DISC[sample])
         return np.column_stack([colour, found, lit]).astype(np.float32)
 
 

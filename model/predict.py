@@ -27,6 +27,7 @@ SAME_PATH = 0.005  # of its length: mean ends of some paths by one step and by h
 COMPARED, COMPARED_TIMES = 8, 101  # draws, and their poses, by which the step is chosen
 LEVELS = (0.025, 0.05, 0.25, 0.5, 0.75, 0.95, 0.975)
 STATES = ("x", "y", "yaw")
+FINE = DynamicsOptions(dt=0.001)  # of the single path: a leg that is off turns by 1 % more or less
 MOST_MOTIONS = 300  # a motion costs as much as walking it, and is the least of what spreads paths
 ARCS = (np.pi / 2, np.radians(359.0))  # a robot's legs are arcs of these angles
 
@@ -218,6 +219,7 @@ def predict_paths(
     error: ModelSpread,
     rng: np.random.Generator,
     threads: int = 2,
+    options: DynamicsOptions | None = None,
     progress: Callable[[float], None] | None = None,
 ) -> PathEnsemble:
     """Walk every draw and add its steering and stride, and what the model gets wrong.
@@ -229,12 +231,14 @@ def predict_paths(
         error: The model's own error.
         rng: Source of randomness.
         threads: Draws walked at once.
+        options: How walks are computed; by the step that the draws need when None.
         progress: Told the fraction done.
 
     Raises:
         WalkError: A walk diverged.
     """
-    options = ensemble_step(draws, duration=float(t[-1]), threads=threads)
+    if options is None:
+        options = ensemble_step(draws, duration=float(t[-1]), threads=threads)
     walked = walk_ensemble(draws, t, options=options, threads=threads, progress=progress)
     n = len(draws)
     return bent(

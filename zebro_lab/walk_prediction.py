@@ -13,7 +13,7 @@ from model.bayes.walks import WalkFit, fit_walks
 from model.errors import InsufficientData
 from model.gait.reference import SampledReference
 from model.metrics.poses import Poses
-from model.predict import LegState, ModelSpread, predict_paths, walk_draws
+from model.predict import FINE, LegState, ModelSpread, predict_paths, walk_draws
 from model.robot import GRAVITY
 from model.slip.law import Array
 from model.walk.ensemble import PathEnsemble
@@ -170,5 +170,5 @@ def _middle_path(
     robot = walk.robot.robot
     table = slip.traction_table(weight=robot.mass * GRAVITY)
     drawn = walk_draws(robot, plain.legs, [table], state, rng=rng)
-    path = predict_paths(drawn, t, state=state, error=EXACT, rng=rng, threads=1)
+    path = predict_paths(drawn, t, state=state, error=EXACT, rng=rng, threads=1, options=FINE)
     return Poses(path.t, path.position[0], path.yaw[0])

@@ -22,6 +22,7 @@ from model.gait.quantised import QuantisedLog
 from model.gait.reference import LegReference
 from model.metrics.poses import wrap
 from model.predict import (
+    FINE,
     LegState,
     ModelSpread,
     bent,
@@ -37,6 +38,7 @@ from model.walk.ensemble import PathEnsemble, WalkDraw, walk_ensemble
 from model.walk.traction import TractionTable
 
 RECONSTRUCTIONS = 16  # of counted angles, for the spread they leave; or walks by half the step
+LARGEST_STEP = 0.0025  # s; with a leg that is off 5 ms turn by 3 % more, for two thirds of the time
 OFFSETS_SD = np.radians(0.2)  # of the legs of those walks
 FEWEST_POSES = 3  # a start and two to compare
 SAMPLING = 0.05  # s between the poses kept of a path
@@ -122,7 +124,8 @@ class WalkMisfit:
             WalkError: A walk diverged.
         """
         plain = WalkDraw(robot, middle(walk.legs), table)
-        options = ensemble_step([plain], duration=float(walk.t[-1]))
+        chosen = ensemble_step([plain], duration=float(walk.t[-1]))
+        options = replace(chosen, dt=min(chosen.dt, LARGEST_STEP))
         misfit = cls(robot, table, walk, options, np.eye(3 * (len(walk.t) - 1)))
         if walk.tilt is not None:
             tilt = TiltMisfit.of(walk.tilt, misfit._times(), walk.legs)
@@ -130,6 +133,10 @@ class WalkMisfit:
         covariance = misfit._covariance(spread, rng, threads)
         # With L L^T the covariance, L^-1 makes the residuals' covariance the identity.
         return replace(misfit, root=np.linalg.inv(np.linalg.cholesky(covariance)))
+
+    def finer(self) -> "WalkMisfit":
+        """Return the same, walked by the step of a single path."""
+        return replace(self, options=FINE)
 
     @property
     def size(self) -> int:

@@ -183,11 +183,14 @@ class WalkFit:
         does not walk as the draws do. On a kink a climb may end early too, so the best of some.
         """
         density, which = self._density, self._density.cases[case]
-        search = ModeSearch(
-            [density.misfits[w] for w in keep], density.prior, density.threads, numbers=keep
+        misfits = [density.misfits[w] for w in keep]
+        search, finer = (
+            ModeSearch(walks, density.prior, density.threads, numbers=keep)
+            for walks in (misfits, [each.finer() for each in misfits])
         )
         tops = [search.climb(which, start)[0].z for start in starts]
-        z = min(tops, key=lambda top: search.cost(top, which))
+        best = min(tops, key=lambda top: search.cost(top, which))
+        z = finer.climb(which, best)[0].z  # the single path is walked by the finer step
         terms = density.terms(z[WALKED][None], np.array([case]))
         counts = [misfit.count for misfit in density.misfits]
         misfit = terms.squares_at(z[LINEAR][None])[0] / counts

@@ -5,13 +5,17 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from model.bayes.walk_prior import WalkPrior
+from model.errors import ModelError
 from model.gait import tripod_angles, tripod_reference
 from model.gait.quantised import QuantisedLog
 from zebro_lab.cli.calibrate import app
 from zebro_lab.cli.errors import run as run_app
 from zebro_lab.errors import DataError, NotFound, SettingsError
+from zebro_lab.slip_argument import parse_slip
 from zebro_lab.stages.calibrate_walks import WalksRequest, calibrate_walks
 from zebro_lab.tracked_walks import read_walk_on_file, read_walks
+from zebro_lab.walk_prediction import fit_walks_on_file
 
 STEP = np.radians(3.6)
 SD = 0.002
@@ -113,6 +117,11 @@ def test_walks_of_two_robots_are_not_fitted_together(tmp_path):
     robot = tmp_path / "robot.toml"
     robot.write_text("mass = 2.0\n")
     assert {walk.robot.robot.mass for walk in read_walks([one, other], robot=robot)} == {2.0}
+
+
+def test_no_walks_are_refused_as_the_model_refuses_them():
+    with pytest.raises(ModelError, match="no walk to fit"):
+        fit_walks_on_file([], parse_slip("thesis"), prior=WalkPrior(), rng=np.random.default_rng(1))
 
 
 def test_walks_of_one_name_are_told_apart(tmp_path):

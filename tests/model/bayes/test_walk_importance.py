@@ -43,3 +43,39 @@ def test_cases_get_the_weight_of_their_evidence_whatever_was_guessed():
         shares = [result.weight[result.case == 1].sum() for result in results]
         assert np.mean(shares) == pytest.approx(0.75, abs=0.03)
         assert np.std(shares) < 0.08
+
+
+def kinked(z, case):
+    """A density that bends where two of its coordinates come to nothing together."""
+    a, b = z[:, 0] + z[:, 1], z[:, 2] - z[:, 3]
+    steep = (
+        np.where(a > 0, 8 * a, 0.2 * a) - 1.0,
+        np.where(b > 0.3, 12 * (b - 0.3), 0.0) + 3 * z[:, 0],
+    )
+    return -0.5 * ((z**2).sum(axis=1) + steep[0] ** 2 + steep[1] ** 2)
+
+
+def test_a_kink_comes_back_from_a_narrow_start():
+    narrow = [Mode(None, np.full(D, 0.3), 0.05 * np.eye(D), 0.0)]
+    rng = np.random.default_rng(5)
+    grid = rng.standard_normal((400_000, D))
+    weight = np.exp(kinked(grid, None) + 0.5 * (grid**2).sum(axis=1))
+    truth = weight @ grid / weight.sum()
+    result = weighted_draws(narrow, kinked, rng=rng, tell=lambda _: None)
+    assert 1 / (result.weight @ result.weight) > 60
+    np.testing.assert_allclose(result.weight @ result.z, truth, atol=0.25)
+
+
+def test_bumps_around_draws_leave_the_weights_right(monkeypatch):
+    monkeypatch.setattr("model.bayes.walk_importance.PATIENCE", 1)
+    monkeypatch.setattr("model.bayes.walk_importance.ENOUGH", 1e9)
+    density = lambda z, case: -0.5 * (z**2).sum(axis=1) + np.log(np.where(case == 1, 0.75, 0.25))  # noqa: E731
+    wide = [Mode(case, np.ones(D), 0.3 * np.eye(D), 0.0) for case in CASES]
+    results = [
+        weighted_draws(wide, density, rng=np.random.default_rng(seed), tell=lambda _: None)
+        for seed in range(8)
+    ]
+    shares = [result.weight[result.case == 1].sum() for result in results]
+    assert np.mean(shares) == pytest.approx(0.75, abs=0.06)
+    means = np.array([result.weight @ result.z for result in results])
+    np.testing.assert_allclose(means.mean(axis=0), 0.0, atol=0.1)

@@ -21,13 +21,13 @@ TABLE = VelocityCoulomb(0.38).table(weight=21.3)
 PRIOR = WalkPrior(spread=ModelSpread(0.002, 0.002))
 
 
-def tracked(steering, side, *, offset, seed):
+def tracked(steering, side, *, offset, seed, duration=DURATION):
     """Simulate a tracked walk of a robot with leg offsets [rad]."""
     gait = tripod_reference(tripod_angles(np.radians(50.0), steering), 2.0, direction=side)
-    t = np.arange(0.0, DURATION + 0.005, 0.01)
+    t = np.arange(0.0, duration + 0.005, 0.01)
     legs = SampledReference(t, gait.angles(t))
-    true = planar_walk(WalkDraw(Robot(leg_offset=offset), legs, TABLE), duration=DURATION)
-    seen = np.arange(0.0, DURATION, 1.0)
+    true = planar_walk(WalkDraw(Robot(leg_offset=offset), legs, TABLE), duration=duration)
+    seen = np.arange(0.0, duration, duration / 8)
     states = np.column_stack([np.interp(seen, true.t, a) for a in (true.x, true.y, true.yaw)])
     states += np.random.default_rng(seed).normal(0, 1, states.shape) * NOISE
     covariance = np.tile(np.diag(NOISE**2), (len(seen), 1, 1))
@@ -47,7 +47,11 @@ def fitted(offset, *, turns=THREE):
 
 @pytest.fixture(scope="module")
 def straight_legs():
-    return fitted(np.zeros(6), turns=THREE[1:2])
+    walk = tracked(1.3, "left", offset=np.zeros(6), seed=0, duration=4.0)
+    with pytest.MonkeyPatch.context() as patched:  # no leg is off, so that no case is worth a climb
+        patched.setattr("model.bayes.walk_modes.CLIMBED", 0)
+        fit = fit_walks(Robot(), TABLE, [walk], prior=PRIOR, rng=np.random.default_rng(1))
+    return fit.posterior
 
 
 @pytest.fixture(scope="module")

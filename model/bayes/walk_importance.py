@@ -22,7 +22,7 @@ from model.bayes.walk_prior import Case
 from model.slip.law import Array
 
 DRAWS = 200  # a round
-MOST_ROUNDS = 14
+MOST_ROUNDS = 10
 WANTED = 150.0  # effective draws
 TAIL = 5  # degrees of freedom of what is drawn from
 ENOUGH = 60.0  # effective draws that a round's Gaussians are taken from

@@ -34,7 +34,7 @@ SETTLED = 0.05  # of a prior's standard deviation
 GAINED = 0.3  # of twice the log posterior density: a climb that gains less is at its end
 SCANNED = np.radians(np.linspace(-12.0, 12.0, 17))  # offsets that are walked
 FINE = np.radians(np.linspace(-12.0, 12.0, 241))  # offsets between them
-CLIMBED = 6  # cases, at most, that are climbed after the scans
+CLIMBED = 4  # cases, at most, that are climbed after the scans
 UNLIKELY = 8.0  # below the best log evidence: such a case is not climbed; scans err by some
 
 

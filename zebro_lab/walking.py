@@ -10,6 +10,7 @@ import numpy as np
 
 from model.errors import DomainError
 from model.gait.reference import LegReference
+from model.predict import FINE
 from model.robot import Robot
 from model.walk.path import WalkPath
 from model.walk.traction import ToeLaw
@@ -158,6 +159,8 @@ def walk_with(
             slip.walks, described, logs=logs, same_legs=False if angles_are_true else None
         )
         notes = (*notes, *informed.notes)
+        if request.dt is None:
+            dt = min(dt, FINE.dt)  # the step that its legs were found by
     run = ModelRun(
         described.robot, reference, slip, duration, dt, request.toe, direction,
         None if informed is None else informed.middle,

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: MIT
 """Walks that are to inform a fit: what is read, and every way in which one cannot."""
 
+from pathlib import Path
+
 import numpy as np
 import pandas as pd
 import pytest
@@ -14,9 +16,11 @@ from zebro_lab.cli.errors import run as run_app
 from zebro_lab.errors import DataError, NotFound, SettingsError
 from zebro_lab.slip_argument import parse_slip
 from zebro_lab.stages.calibrate_walks import WalksRequest, calibrate_walks
+from zebro_lab.stages.import_run import ImportRequest, import_run
 from zebro_lab.tracked_walks import read_walk_on_file, read_walks
 from zebro_lab.walk_prediction import fit_walks_on_file
 
+WALK = Path(__file__).parents[2] / "datasets" / "walk-sim"
 STEP = np.radians(3.6)
 SD = 0.002
 
@@ -117,6 +121,35 @@ def test_walks_of_two_robots_are_not_fitted_together(tmp_path):
     robot = tmp_path / "robot.toml"
     robot.write_text("mass = 2.0\n")
     assert {walk.robot.robot.mass for walk in read_walks([one, other], robot=robot)} == {2.0}
+
+
+def imported_walk(folder):
+    """Import the bundled walk, whose IMU comes along, and put a track of its truth beside it."""
+    asked = ImportRequest(
+        folder, legs=WALK / "legs.csv", imu=WALK / "imu.csv", robot=WALK / "robot.toml"
+    )
+    run = import_run(asked, Nobody()).folders[0]
+    truth = pd.read_csv(WALK / "truth.csv")
+    poses = truth[["t", "x", "y", "yaw"]].iloc[:: len(truth) // 6]
+    table = poses.set_axis(["t_s", "x_m", "y_m", "yaw_rad"], axis=1)
+    for name in ("xx", "yy", "yawyaw", "xy", "xyaw", "yyaw"):
+        table[f"cov_{name}"] = SD**2 * (name in ("xx", "yy", "yawyaw"))
+    (run / "track").mkdir()
+    table.to_csv(run / "track" / "track.csv", index=False)
+    return run, truth
+
+
+def test_roll_and_pitch_of_a_run_s_imu_come_with_the_walk(tmp_path):
+    run, truth = imported_walk(tmp_path)
+    walk = read_walk_on_file(run)
+    tilt = walk.tracked.tilt
+    assert tilt is not None
+    assert tilt.t[0] >= 0
+    assert tilt.t[-1] <= walk.duration
+    true = np.interp(tilt.t, truth["t"], truth["pitch"])
+    away = tilt.angles[:, 1] - true
+    assert np.degrees(away.std()) < 0.5
+    assert any("IMU inform" in note for note in walk.notes)
 
 
 def test_no_walks_are_refused_as_the_model_refuses_them():

@@ -14,9 +14,10 @@ Usage: .venv/bin/python docs/walks_virtual_world.py CALIBRATION [PART ...]
 
 CALIBRATION is the folder that `calibrate-slip` made of the reference data's simulated rig. PART is
 half-circles, other-legs, floors, wrong-leg, wrong-leg-imu (the same walks, with roll and pitch by
-an IMU), straight (one walk, seen with other noise again and again) or tilt (roll and pitch alone),
-all of them where none is named; with a number, as half-circles:0, one of its fits. The engine's
-walks are kept in ZEBRO_LAB_SCRATCH, or where temporary files are.
+an IMU), straight (one walk, seen with other noise again and again), tilt (roll and pitch alone) or
+fast-walk (of half-circles the one of one second a cycle, by few draws), all of them where none is
+named; with a number, as half-circles:0, one of its fits. The engine's walks are kept in
+ZEBRO_LAB_SCRATCH, or where temporary files are.
 """
 
 import os
@@ -27,11 +28,13 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
+from unittest import mock
 
 import numpy as np
 import pandas as pd
 from against_engine import SHARED, EngineWalk, radius, read_walk
 
+from model.bayes import walk_importance, walk_modes
 from model.bayes.walk_misfit import middle
 from model.bayes.walk_posterior import WalkPosterior
 from model.bayes.walk_prior import WalkPrior
@@ -270,6 +273,19 @@ def straight(bench: Bench, fits: Sequence[int] = range(1)) -> Iterator[Scored]:
     )
 
 
+def fast_walk(bench: Bench, fits: Sequence[int] = range(3)) -> Iterator[Scored]:
+    """Predict the walk of one second a cycle alone, by few draws and no climbs of cases: quick."""
+    few = mock.patch.multiple(walk_importance, MOST_ROUNDS=2)
+    quick = mock.patch.multiple(walk_modes, CLIMBED=0, SCANNED=np.radians(np.linspace(-12, 12, 5)))
+    n = len(HALF_CIRCLES)
+    for i in (2 + each for each in fits):
+        names = [HALF_CIRCLES[i], HALF_CIRCLES[(i + 1) % n]]
+        with few, quick:
+            posterior = bench.fit([bench.walk(name) for name in names]).posterior
+        fast = HALF_CIRCLES[1]
+        yield bench.score(posterior, bench.walk(fast), fast, " + ".join(map(short, names)))
+
+
 def tilt(bench: Bench, fits: Sequence[int] = range(1)) -> Iterator[Scored]:
     """Compare roll and pitch by the rig's law with the engine's, about their means."""
     print("\n| walk | rms roll, pitch | swing of the engine's |\n|---|---:|---:|")
@@ -353,7 +369,7 @@ def _three(values: Sequence[float] | np.ndarray) -> str:
 PARTS = {
     "half-circles": half_circles, "other-legs": other_legs, "floors": floors,
     "wrong-leg": wrong_leg, "wrong-leg-imu": partial(wrong_leg, imu=True), "straight": straight,
-    "tilt": tilt,
+    "tilt": tilt, "fast-walk": fast_walk,
 }  # fmt: skip
 
 

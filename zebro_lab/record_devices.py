@@ -36,7 +36,7 @@ IMU_PROFILE: Final = "imu-quaternion-serial"
 RIG_PROFILE: Final = "rig-odrive-netft"
 HORIZON: Final = 0.1
 """How far ahead of a played gait its set-points lie [s]."""
-PAUSE: Final = 0.037
+PAUSE: Final = 0.053
 """Between two reads of a device that tells time: the system keeps what comes meanwhile, and with
 the wait of the recorder this stays well below the 200 ms that a killed run may lack. No multiple of
 a usual period, so that samples are read at every age: the least late tell the clocks apart [s]."""

@@ -21,7 +21,7 @@ from rig.zebro.profile import LegProfile, decode_angles
 from zebro_lab.raw_log import COUNTS_NAME, VALUES_NAME
 from zebro_lab.ros_messages import IMU, JOINT_STATE, WRENCH, Schema, imu, joint_state, wrench
 
-FASTEST: Final = 200.0
+FASTEST: Final = 50.0
 """Messages in a second that a viewer is given at most [Hz]."""
 
 

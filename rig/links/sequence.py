@@ -73,7 +73,7 @@ class SequenceTracker:
 
     def accept_all(
         self, numbers: NDArray[np.integer[Any]], host_time: float
-    ) -> tuple[NDArray[np.bool_], NDArray[np.int64]]:
+    ) -> tuple[NDArray[np.bool_] | slice, NDArray[np.int64]]:
         """Take the numbers of samples that one read gave; see `accept`.
 
         Numbers without a gap, which are almost all of a fast device's, are taken together.
@@ -83,7 +83,7 @@ class SequenceTracker:
             host_time: When they were read [s].
 
         Returns:
-            Which of them are accepted, shape (n,), and those with wraps undone.
+            An index of those that are accepted, and those with wraps undone.
 
         >>> tracker = SequenceTracker(modulus=256)
         >>> tracker.accept_all(np.array([254, 255, 2, 2]), 0.0)
@@ -91,12 +91,12 @@ class SequenceTracker:
         """
         if self._last is not None and len(numbers):
             first = (self._last + 1) % self._modulus
-            run = np.arange(len(numbers))
-            if np.array_equal(numbers, first + run) and first + run[-1] < self._modulus:
-                accepted = self._last + 1 + run
+            end = first + len(numbers)
+            if end <= self._modulus and (numbers == np.arange(first, end)).all():
+                accepted = np.arange(self._last + 1, self._last + 1 + len(numbers))
                 self.accept(first, host_time)
                 self._last = int(accepted[-1])
-                return np.ones(len(run), bool), accepted
+                return slice(None), accepted
         one_by_one = [self.accept(number, host_time) for number in numbers.tolist()]
         kept = np.array([number is not None for number in one_by_one], bool)
         return kept, np.array([n for n in one_by_one if n is not None], np.int64)
@@ -141,7 +141,11 @@ class TimeUnwrapper:
         if len(ticks) == 0:
             return np.empty(0)
         start = int(ticks[0]) if self._last is None else self._last
-        steps = np.diff(ticks.astype(np.int64), prepend=start) % self._modulus
-        total = start + np.cumsum(steps)
+        turns, last = divmod(start, self._modulus)
+        ticks = ticks.astype(np.int64)
+        if ticks[0] >= last and (ticks[1:] >= ticks[:-1]).all():  # they do not wrap
+            total = turns * self._modulus + ticks
+        else:
+            total = start + np.cumsum(np.diff(ticks, prepend=start) % self._modulus)
         self._last = int(total[-1])
         return total * self._tick

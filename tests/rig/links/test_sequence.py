@@ -75,8 +75,9 @@ def test_numbers_taken_together_are_taken_as_one_by_one(reads, start, length):
     for at, numbers in enumerate([run[: length // 2], run[length // 2 :], *reads, run]):
         expected = [single.accept(number, float(at)) for number in numbers]
         kept, accepted = together.accept_all(np.array(numbers, int), float(at))
-        assert kept.tolist() == [number is not None for number in expected]
         assert accepted.tolist() == [number for number in expected if number is not None]
+        taken = [n for n, number in zip(numbers, expected, strict=True) if number is not None]
+        assert np.array(numbers, int)[kept].tolist() == taken
     assert vars(together) == vars(single)
 
 

@@ -26,7 +26,7 @@ COMMAND = str(Path(sys.executable).with_name("zebro-lab"))
 KILLS = int(os.environ.get("ZEBRO_LAB_KILLS", "20"))
 SOAK = float(os.environ.get("ZEBRO_LAB_SOAK", "600"))
 
-pytestmark = pytest.mark.long
+pytestmark = [pytest.mark.long, pytest.mark.timeout(5400)]
 
 
 def tell(line):

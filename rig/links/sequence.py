@@ -148,4 +148,4 @@ class TimeUnwrapper:
         else:
             total = start + np.cumsum(np.diff(ticks, prepend=start) % self._modulus)
         self._last = int(total[-1])
-        return total * self._tick
+        return np.asarray(total * self._tick, dtype=float)

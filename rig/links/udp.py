@@ -11,7 +11,8 @@ from rig.errors import LinkError
 
 BUFFER: Final = 4 << 20
 """Seconds of a fast load cell, should the reader be held up [bytes]."""
-LONGEST: Final = 2048
+LONGEST: Final = 256
+"""A datagram beyond this comes cut: no device here sends one [bytes]."""
 MOST_AT_ONCE: Final = 8192
 
 

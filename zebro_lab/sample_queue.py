@@ -49,29 +49,29 @@ class SampleQueue:
 class LossyTap:
     """The newest samples for a viewer, which takes them when it can: what it misses is gone.
 
-    The recorder only ever appends, so that a viewer that is slow, hangs or raises holds up nobody.
+    Reads are kept whole while they come, and handed over whole: a viewer that is slow, hangs or
+    raises holds up nobody.
 
     Args:
-        limit: Most samples kept.
+        limit: Most samples handed on; fewer than that and one read are kept.
     """
 
     def __init__(self, *, limit: int = 1000) -> None:
         self._limit = limit
-        self._newest: deque[Sequence[Sample]] = deque(maxlen=limit)  # reads, none of them empty
+        self._newest: deque[Sequence[Sample]] = deque()
+        self._count = 0
+        self._lock = threading.Lock()
 
     def put(self, samples: Sequence[Sample]) -> None:
-        """Keep samples, at least one, in place of the oldest where there are too many."""
-        surplus = len(samples) > self._limit
-        self._newest.append(samples[-self._limit :] if surplus else samples)
+        """Keep samples, in place of the oldest where there are too many."""
+        with self._lock:
+            self._newest.append(samples)
+            self._count += len(samples)
+            while self._count - len(self._newest[0]) >= self._limit:
+                self._count -= len(self._newest.popleft())
 
     def take(self) -> list[Sample]:
         """Hand on what is kept, in order, and keep it no more."""
-        reads: list[Sequence[Sample]] = []
-        while self._newest:
-            reads.append(self._newest.popleft())
-        newest: list[Sample] = []
-        for samples in reversed(reads):
-            newest = [*samples, *newest]
-            if len(newest) >= self._limit:
-                break
-        return newest[-self._limit :]
+        with self._lock:
+            reads, self._newest, self._count = self._newest, deque(), 0
+        return [sample for samples in reads for sample in samples][-self._limit :]

@@ -35,3 +35,13 @@ def test_a_tap_keeps_the_newest_and_never_refuses():
         tap.put(numbered(first, 7))
     assert [sample.sequence for sample in tap.take()] == list(range(991, 1001))
     assert tap.take() == []
+
+
+def test_a_tap_that_nobody_takes_from_holds_no_more_than_its_limit_and_a_read():
+    tap = LossyTap(limit=10)
+    for size in (1, 400, 3, 7, 400, 2):
+        tap.put(numbered(0, size))
+        assert sum(map(len, tap._newest)) < 10 + 400
+    for first in range(500):
+        tap.put(numbered(first, 1))
+    assert sum(map(len, tap._newest)) == 10

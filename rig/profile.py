@@ -130,7 +130,9 @@ class Table:
     def _take(self, key: str, default: object) -> Any:
         self._known.append(key)
         if key not in self._entries and default is None:
-            raise self.fault("is missing", key)
+            near = difflib.get_close_matches(key, self._entries, n=1, cutoff=0.8)
+            hint = f"; found '{near[0]}': did you mean '{key}'?" if near else ""
+            raise self.fault(f"is missing{hint}", key)
         return self._entries.pop(key, default)
 
     def _finite(self, value: object, key: str) -> float:

@@ -87,6 +87,7 @@ def test_a_saved_profile_comes_back(name, tmp_path):
     ("old", "new", "said"),
     [
         ("counts_per_revolution", "counts_per_revolutoin", "counts_per_revolution: is missing"),
+        ("counts_per_revolution", "counts_per_revolutoin", "did you mean 'counts_per_revolution'"),
         ("rate = 100.0", "rate = 100.0\nrats = 1", "did you mean 'rate'"),
         ("rate = 100.0", "rate = -1.0", "above 0"),
         ("rate = 100.0", "rate = nan", "finite"),

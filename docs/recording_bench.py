@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: MIT
 """What recording costs, beside a robot, an IMU and a load cell at full rate in another process.
 
-python docs/recording_bench.py [SECONDS]
+python docs/recording_bench.py [SECONDS [single]]
+
+The load cell sends many records in a datagram, as `record` asks it to, or each in its own.
 """
 
 import multiprocessing
@@ -22,7 +24,7 @@ from rig.links.serve import PortServer
 from rig.links.udp import UdpLink
 from rig.slip_rig.load_cell import NetFtCell
 from rig.slip_rig.profile import load_rig_profile
-from rig.slip_rig.rdt import RECORD
+from rig.slip_rig.rdt import MOST_IN_ONE, RECORD, REQUEST, Request
 from rig.twins import robot_twin
 from rig.zebro.profile import load_leg_profile
 from rig.zebro.serial import PacketLegs
@@ -48,13 +50,17 @@ def serve(connection):
         PortServer(SimulatedImu(profile=IMU, rng=rng)) as imu,
     ):
         connection.send((legs.port, imu.port, cell.getsockname()))
-        client = cell.recvfrom(64)[1]
-        began, number = time.monotonic(), 0
+        request, client = cell.recvfrom(64)
+        each = MOST_IN_ONE if REQUEST.unpack(request)[1] == Request.START_BUFFERED else 1
+        began, number, pending = time.monotonic(), 0, []
         while not connection.poll():
             forces = (1_500_000 + number % 997, 0, -6_000_000 - number % 1009, 0, 0, 0)
             while number < (time.monotonic() - began) * CELL.rate:
                 number += 1
-                cell.sendto(RECORD.pack(number, number, 0, *forces), client)
+                pending.append(RECORD.pack(number, number, 0, *forces))
+                if len(pending) == each:
+                    cell.sendto(b"".join(pending), client)
+                    pending.clear()
             time.sleep(0.001)
 
 
@@ -63,7 +69,7 @@ def cpu():
     return used.ru_utime + used.ru_stime
 
 
-def measure(seconds, folder):
+def measure(seconds, folder, *, buffered=True):
     """Record for a while; return the end record and the share of a core."""
     ours, theirs = multiprocessing.Pipe()
     server = multiprocessing.get_context("spawn").Process(target=serve, args=(theirs,), daemon=True)
@@ -75,7 +81,7 @@ def measure(seconds, folder):
     streams = (
         PacketLegs(SerialLink(legs_port, baudrate=LEGS.baudrate), profile=LEGS),
         ImuStream(SerialLink(imu_port, baudrate=IMU.baudrate), profile=IMU),
-        NetFtCell(UdpLink(*address), profile=CELL),
+        NetFtCell(UdpLink(*address), profile=CELL, buffered=buffered),
     )
     views = (LegsView("legs", profile=LEGS), ImuView("imu", profile=IMU),
              LoadCellView("load_cell", profile=CELL))  # fmt: skip
@@ -111,4 +117,5 @@ def report(manifest, share, size):
 
 if __name__ == "__main__":
     with tempfile.TemporaryDirectory() as place:
-        report(*measure(float(sys.argv[1]) if len(sys.argv) > 1 else 10.0, Path(place)))
+        seconds = float(sys.argv[1]) if len(sys.argv) > 1 else 10.0
+        report(*measure(seconds, Path(place), buffered="single" not in sys.argv))

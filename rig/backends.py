@@ -153,11 +153,12 @@ class RigDevices:
         return tuple(s for s in (self.drives, self.load_cell, self.board) if s is not None)
 
 
-def open_rig(address: str, *, clock: Clock = SYSTEM_CLOCK) -> RigDevices:
+def open_rig(address: str, *, buffered: bool = False, clock: Clock = SYSTEM_CLOCK) -> RigDevices:
     """Make the drivers of a slip rig; entering each opens it.
 
     Args:
         address: `PROFILE@PORT`; the port is the drives' `INTERFACE:CHANNEL`, or the board's.
+        buffered: Take many records of a load cell at a time, see `NetFtCell`.
         clock: Host time.
 
     Returns:
@@ -177,10 +178,10 @@ def open_rig(address: str, *, clock: Clock = SYSTEM_CLOCK) -> RigDevices:
         link = SerialLink(port, baudrate=profile.board.baudrate, clock=clock)
         board = RigBoard(link, profile=profile.board, limits=profile.limits, clock=clock)
         return RigDevices(profile, board=board)
-    return _drives_and_cell(profile, port, clock)
+    return _drives_and_cell(profile, port, buffered, clock)
 
 
-def _drives_and_cell(profile: "RigProfile", port: str, clock: Clock) -> RigDevices:
+def _drives_and_cell(profile: "RigProfile", port: str, buffered: bool, clock: Clock) -> RigDevices:
     from rig.links.can import CanLink
     from rig.links.udp import UdpLink
     from rig.slip_rig.drives import DriveBus
@@ -193,5 +194,5 @@ def _drives_and_cell(profile: "RigProfile", port: str, clock: Clock) -> RigDevic
     return RigDevices(
         profile,
         drives=DriveBus(bus, profile=profile.drives, limits=profile.limits, clock=clock),
-        load_cell=NetFtCell(datagrams, profile=profile.load_cell, clock=clock),
+        load_cell=NetFtCell(datagrams, profile=profile.load_cell, buffered=buffered, clock=clock),
     )

@@ -141,6 +141,7 @@ def simulated_rig_devices(
     rig: SimulatedRig,
     *,
     watchdog: float = 0.2,
+    buffered: bool = False,
     faults: Faults = PERFECT_LINE,
     rng: np.random.Generator,
 ) -> Iterator[RigDevices]:
@@ -150,6 +151,7 @@ def simulated_rig_devices(
         profile: The rig's profile.
         rig: The rig itself; it sweeps by itself until a drive commands.
         watchdog: Silence after which drives or board stop the discs [s].
+        buffered: Take many records of a load cell at a time, see `NetFtCell`.
         faults: What goes wrong on the load cell's or the board's line.
         rng: Source of the faults' randomness.
 
@@ -164,7 +166,7 @@ def simulated_rig_devices(
             yield devices
     elif profile.drives is not None and profile.load_cell is not None:
         with _drives_and_cell(
-            profile, profile.drives, profile.load_cell, rig, watchdog, faults, rng
+            profile, profile.drives, profile.load_cell, rig, watchdog, buffered, faults, rng
         ) as devices:
             yield devices
     else:
@@ -193,6 +195,7 @@ def _drives_and_cell(
     load_cell: LoadCellProfile,
     rig: SimulatedRig,
     watchdog: float,
+    buffered: bool,
     faults: Faults,
     rng: np.random.Generator,
 ) -> Iterator[RigDevices]:
@@ -214,7 +217,7 @@ def _drives_and_cell(
         yield RigDevices(
             profile,
             drives=DriveBus(link, profile=drives, limits=profile.limits),
-            load_cell=NetFtCell(datagrams, profile=load_cell),
+            load_cell=NetFtCell(datagrams, profile=load_cell, buffered=buffered),
         )
 
 

@@ -200,10 +200,10 @@ def _add_rig(opened: _Opened, stack: ExitStack, address: str, rng: np.random.Gen
     profile = load_rig_profile(name)
     if port == SIMULATED:
         rig = twin_rig(rng)
-        devices = stack.enter_context(simulated_rig_devices(profile, rig, rng=rng))
+        devices = stack.enter_context(simulated_rig_devices(profile, rig, buffered=True, rng=rng))
         opened.truth["rig"] = rig.description() | {"sweep": asdict(TWIN_SWEEP)}
     else:
-        devices = open_rig(address)
+        devices = open_rig(address, buffered=True)  # nothing moves by what is recorded
     opened.devices += _of_rig(profile, devices)
     opened.profiles[RIG] = (profile.name, profile_text(name))
     opened.constants |= {"radius_leg": profile.radius_leg, "radius_ground": profile.radius_ground}

@@ -7,7 +7,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 LATE_WINDOW: Final = 64
-"""A number up to this far back is an old sample; farther back the device has restarted."""
 SLACK: Final = 64
 
 
@@ -21,6 +20,8 @@ class SequenceTracker:
     Args:
         modulus: At what the device's numbers wrap.
         rate: Samples in a second; None where unknown, then only jumps back are restarts [Hz].
+        late_window: A number up to this far back is an old sample; farther back the device has
+            restarted.
 
     Attributes:
         lost: Samples that are missing so far.
@@ -28,12 +29,15 @@ class SequenceTracker:
         restarted: Times that the device began to number anew.
     """
 
-    def __init__(self, *, modulus: int, rate: float | None = None) -> None:
+    def __init__(
+        self, *, modulus: int, rate: float | None = None, late_window: int = LATE_WINDOW
+    ) -> None:
         self.lost = 0
         self.repeated = 0
         self.restarted = 0
         self._modulus = modulus
         self._rate = rate
+        self._late_window = min(late_window, modulus // 2)
         self._last: int | None = None
         self._read_time = self._read_before = 0.0
 
@@ -61,7 +65,7 @@ class SequenceTracker:
             self._read_time, self._read_before = host_time, self._read_time
         ahead = (number - self._last) % self._modulus
         behind = self._modulus - ahead
-        if ahead == 0 or behind < min(LATE_WINDOW, self._modulus // 2):
+        if ahead == 0 or behind < self._late_window:
             self.repeated += 1
             return None
         if self._plausible(ahead, host_time - self._read_before):

@@ -11,8 +11,8 @@ from rig.errors import LinkError
 
 BUFFER: Final = 4 << 20
 """Seconds of a fast load cell, should the reader be held up [bytes]."""
-LONGEST: Final = 256
-"""A datagram beyond this comes cut: no device here sends one [bytes]."""
+LONGEST: Final = 1472
+"""A datagram beyond this comes cut: an Ethernet frame carries no longer one [bytes]."""
 MOST_AT_ONCE: Final = 8192
 
 

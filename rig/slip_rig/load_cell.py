@@ -17,6 +17,7 @@ from rig.sample_columns import SampleColumns
 from rig.slip_rig.profile import LoadCellProfile
 from rig.slip_rig.rdt import (
     COLUMNS,
+    MOST_IN_ONE,
     RECORD,
     WRAP,
     CellConfiguration,
@@ -27,6 +28,10 @@ from rig.slip_rig.rdt import (
 
 START_AGAIN_AFTER: Final = 0.5
 """Silence after which a cell is asked to start once more: requests, too, may be lost [s]."""
+LATE_DATAGRAMS: Final = 4
+"""Datagrams up to so many back are late or doubled; farther back the cell has begun anew."""
+WHOLE: Final = frozenset(RECORD.size * count for count in range(1, MOST_IN_ONE + 1))
+"""Lengths of datagrams [bytes]."""
 LONGEST_PAGE: Final = 1 << 20
 
 
@@ -34,10 +39,14 @@ class NetFtCell:
     """Stream of a Net F/T load cell: counts are Fx, Fy, Fz, Tx, Ty, Tz; status as in `rdt`.
 
     Losses show as gaps in the record numbers. The device time counts the cell's own readings.
+    A datagram of one record or of many is taken, whichever way the cell was asked to send.
 
     Args:
         link: Datagrams to and from the cell.
         profile: Its profile.
+        buffered: Ask for many records in a datagram: a small part of the work, but a few
+            milliseconds late, so that nothing that guards a motion should. A cell that sends
+            nothing then is asked for single ones.
         name: Name of the stream.
         clock: Host time.
     """
@@ -47,6 +56,7 @@ class NetFtCell:
         link: UdpLink,
         *,
         profile: LoadCellProfile,
+        buffered: bool = False,
         name: str = "load_cell",
         clock: Clock = SYSTEM_CLOCK,
     ) -> None:
@@ -54,7 +64,10 @@ class NetFtCell:
         self.profile = profile
         self._link = link
         self._clock = clock
-        self._tracker = SequenceTracker(modulus=WRAP, rate=profile.rate)
+        self._start = Request.START_BUFFERED if buffered else Request.START
+        self._tracker = SequenceTracker(
+            modulus=WRAP, rate=profile.rate, late_window=LATE_DATAGRAMS * MOST_IN_ONE
+        )
         self._device_time = TimeUnwrapper(modulus=WRAP, tick=1 / profile.rate)
         self._received = 0
         self._damaged = 0
@@ -95,7 +108,7 @@ class NetFtCell:
     def __enter__(self) -> Self:
         self._link.open()
         self._heard = self._clock.now()
-        self._link.write(encode_request(Request.START))
+        self._link.write(encode_request(self._start))
         return self
 
     def __exit__(
@@ -110,8 +123,8 @@ class NetFtCell:
     def _samples(self, datagrams: Sequence[bytes], now: float) -> SampleColumns:
         """Make samples of all records of a read together, column by column."""
         whole = datagrams
-        if not set(map(len, datagrams)) <= {RECORD.size}:
-            whole = [datagram for datagram in datagrams if len(datagram) == RECORD.size]
+        if not WHOLE.issuperset(map(len, datagrams)):
+            whole = [datagram for datagram in datagrams if len(datagram) in WHOLE]
             self._damaged += len(datagrams) - len(whole)
         records = np.frombuffer(b"".join(whole), COLUMNS)
         kept, sequence = self._tracker.accept_all(records["number"], now)
@@ -134,7 +147,9 @@ class NetFtCell:
         elif now - self._heard > START_AGAIN_AFTER:
             self._heard = now
             self._silent = self._received > 0
-            self._link.write(encode_request(Request.START))
+            if not self._received:
+                self._start = Request.START  # which every cell knows
+            self._link.write(encode_request(self._start))
 
 
 def read_configuration(host: str, *, port: int = 80, timeout: float = 2.0) -> CellConfiguration:

@@ -21,6 +21,8 @@ COLUMNS: Final = np.dtype(
 MAGIC: Final = 0x1234
 WRAP: Final = 1 << 32
 SATURATED: Final = 1 << 17
+MOST_IN_ONE: Final = 40
+"""Records in a datagram of a buffered stream, as far as a cell can be set."""
 
 STATUS_BITS: Final[dict[int, str]] = {
     1 << 30: "processor or memory error",
@@ -46,10 +48,15 @@ FORCE_UNITS: Final = {"N": 1.0, "kN": 1e3, "lb": 4.4482216152605, "klb": 4448.22
 
 
 class Request(IntEnum):
-    """What a cell can be asked."""
+    """What a cell can be asked.
+
+    START sends each record as soon as it is read. START_BUFFERED sends as many in a datagram as the
+    cell is set to (`comrdtbsiz`, 1 to 40), as soon as the last of them is read.
+    """
 
     STOP = 0x0000
     START = 0x0002
+    START_BUFFERED = 0x0003
     BIAS = 0x0042
 
 

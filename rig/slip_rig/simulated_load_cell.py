@@ -13,7 +13,7 @@ import numpy as np
 
 from rig.links.faults import PERFECT_LINE, Faults
 from rig.slip_rig.profile import LoadCellProfile
-from rig.slip_rig.rdt import MAGIC, RECORD, REQUEST, WRAP, Request
+from rig.slip_rig.rdt import MAGIC, MOST_IN_ONE, RECORD, REQUEST, WRAP, Request
 from rig.slip_rig.simulated import SimulatedRig
 
 INT32 = (1 << 31) - 1
@@ -61,6 +61,8 @@ class SimulatedLoadCell:
         self._number = 0
         self._reading = 0
         self._zero = np.zeros(6)
+        self._each = 1  # records in a datagram
+        self._pending: list[bytes] = []
         self._held: list[bytes] = []
 
     def __enter__(self) -> Self:
@@ -111,21 +113,27 @@ class SimulatedLoadCell:
         self.sent += 1
         biased = [int(v - z) for v, z in zip(values, self._zero.tolist(), strict=True)]
         record = RECORD.pack(self._number % WRAP, reading % WRAP, self.status, *biased)
+        self._pending.append(record)
+        if len(self._pending) >= self._each:
+            datagram, self._pending = b"".join(self._pending), []
+            self._carry(datagram)
+
+    def _carry(self, datagram: bytes) -> None:
         held, self._held = self._held, []
         if self._happens(self._faults.delay):
-            self._held = [record]
+            self._held = [datagram]
         elif not self._happens(self._faults.drop):
             short = self._happens(self._faults.truncate)
-            self._emit(record[:20] if short else record)
+            self._emit(datagram[:-16] if short else datagram)
             if self._happens(self._faults.duplicate):
-                self._emit(record)
+                self._emit(datagram)
         for late in held:
             self._emit(late)
 
-    def _emit(self, record: bytes) -> None:
+    def _emit(self, datagram: bytes) -> None:
         if self._socket is not None and self._client is not None:
             with contextlib.suppress(OSError):  # nobody listens any more
-                self._socket.sendto(record, self._client)
+                self._socket.sendto(datagram, self._client)
 
     def _happens(self, probability: float) -> bool:
         return probability > 0 and self._rng.random() < probability
@@ -147,8 +155,9 @@ class SimulatedLoadCell:
         magic, request, _ = REQUEST.unpack(data)
         if magic != MAGIC:
             return
-        if request == Request.START:
-            self._client, self._number = sender, 0
+        if request in (Request.START, Request.START_BUFFERED):
+            self._client, self._number, self._pending = sender, 0, []
+            self._each = MOST_IN_ONE if request == Request.START_BUFFERED else 1
         elif request == Request.STOP:
             self._client = None
         elif request == Request.BIAS:

@@ -18,7 +18,15 @@ from rig.slip_rig.decode import Forces, Zero, decode_forces, require_zero, tare
 from rig.slip_rig.imperfections import RigImperfections
 from rig.slip_rig.load_cell import NetFtCell, read_configuration
 from rig.slip_rig.profile import load_rig_profile
-from rig.slip_rig.rdt import RECORD, SATURATED, describe_status, parse_configuration
+from rig.slip_rig.rdt import (
+    MOST_IN_ONE,
+    RECORD,
+    REQUEST,
+    SATURATED,
+    Request,
+    describe_status,
+    parse_configuration,
+)
 from rig.slip_rig.simulated import RigDynamics, simulated_rig
 from rig.slip_rig.simulated_load_cell import SimulatedLoadCell
 from rig.slip_rig.sweep import SweepPlan
@@ -31,7 +39,7 @@ PAGE = (
 
 
 @contextmanager
-def twin(faults=PERFECT_LINE):
+def twin(faults=PERFECT_LINE, *, buffered=False):
     world = simulated_rig(
         plan=SweepPlan(loads=(8.0,)),
         imperfections=RigImperfections(),
@@ -42,12 +50,13 @@ def twin(faults=PERFECT_LINE):
     with SimulatedLoadCell(world, profile=PROFILE, faults=faults, rng=rng) as cell:
         with Ticker(cell.poll) as ticker:
             link = UdpLink(cell.host, cell.port, source=cell.source)
-            yield cell, NetFtCell(link, profile=PROFILE)
+            yield cell, NetFtCell(link, profile=PROFILE, buffered=buffered)
         assert ticker.failure is None
 
 
-def test_forces_are_the_rigs():
-    with twin() as (_, stream), stream:
+@pytest.mark.parametrize("buffered", [False, True])
+def test_forces_are_the_rigs(buffered):
+    with twin(buffered=buffered) as (_, stream), stream:
         samples = list(iterate(stream, duration=0.4))
     forces = decode_forces(PROFILE, samples)
     assert forces.normal == pytest.approx(8.0, abs=1e-5)
@@ -59,19 +68,44 @@ def test_forces_are_the_rigs():
     assert rate == pytest.approx(PROFILE.rate, rel=1e-6)
 
 
-@pytest.mark.parametrize(
-    "faults",
-    [Faults(drop=0.05), Faults(duplicate=0.05), Faults(delay=0.05), Faults(truncate=0.05)],
-    ids=str,
-)
-def test_losses_are_counted_by_the_gaps_in_the_record_numbers(faults):
-    with twin(faults) as (_, stream), stream:
-        samples = list(iterate(stream, duration=0.4))
+@pytest.mark.parametrize("buffered", [False, True])
+@pytest.mark.parametrize("fault", ["drop", "duplicate", "delay", "truncate"])
+def test_losses_are_counted_by_the_gaps_in_the_record_numbers(fault, buffered):
+    with twin(Faults(**{fault: 0.05}), buffered=buffered) as (_, stream), stream:
+        samples = list(iterate(stream, duration=0.6))
     numbers = [sample.sequence for sample in samples]
     counters = stream.counters
     assert np.all(np.diff(numbers) > 0)
     assert counters.received + counters.lost == numbers[-1] - numbers[0] + 1
     assert counters.lost + counters.repeated + counters.damaged > 50
+    assert counters.restarted == 0
+
+
+def test_a_buffered_stream_takes_a_small_part_of_the_datagrams(monkeypatch):
+    datagrams = []
+    with twin(buffered=True) as (_, stream), stream:
+        read = stream._link.read
+        monkeypatch.setattr(
+            stream._link, "read", lambda timeout: datagrams.extend(r := read(timeout)) or r
+        )
+        samples = list(iterate(stream, duration=0.3))
+    assert len(samples) == MOST_IN_ONE * len(datagrams) > 0
+
+
+def test_a_cell_that_knows_no_buffered_stream_is_asked_for_single_records(monkeypatch):
+    with twin(buffered=True) as (cell, stream):
+        handle = cell._handle
+        asked = []
+
+        def ignore(data, sender, counts):
+            asked.append(REQUEST.unpack(data)[1])
+            if asked[-1] != Request.START_BUFFERED:
+                handle(data, sender, counts)
+
+        monkeypatch.setattr(cell, "_handle", ignore)
+        with stream:
+            assert some(stream)
+    assert asked[:2] == [Request.START_BUFFERED, Request.START]
 
 
 def some(stream):
@@ -133,11 +167,12 @@ class _OneRead(UdpLink):
 
 
 @given(st.binary(max_size=80))
-def test_any_datagram_is_a_record_or_damaged(datagram):
+def test_any_datagram_is_whole_records_or_damaged(datagram):
     stream = NetFtCell(_OneRead(datagram), profile=PROFILE)
     samples = stream.read(0.0)
-    assert (not samples) == (len(datagram) != RECORD.size)
-    assert stream.counters.damaged == (len(datagram) != RECORD.size)
+    whole = len(datagram) in (RECORD.size, 2 * RECORD.size)
+    assert bool(samples) == whole
+    assert stream.counters.damaged == (not whole)
 
 
 @given(st.lists(st.sampled_from([b"short", 1, 2, 3, 4, 5, 200]), max_size=12))

@@ -3,6 +3,7 @@
 
 from dataclasses import replace
 
+import cv2
 import numpy as np
 import pytest
 
@@ -65,6 +66,31 @@ def test_the_camera_is_found_within_its_covariance():
         ))  # fmt: skip
         z.append(error @ np.linalg.solve(found.covariance, error))
     assert 4.5 < np.mean(z) < 9.0
+
+
+@pytest.mark.parametrize("turn_deg", [0.0, 30.0, 90.0, 180.0, 217.0])
+def test_a_camera_that_looks_straight_down_is_found(turn_deg):
+    c, s = np.cos(np.radians(turn_deg)), np.sin(np.radians(turn_deg))
+    rotation = np.array([[c, -s, 0], [-s, -c, 0], [0, 0, -1.0]])
+    truth = CameraPose.from_matrix(rotation, -rotation @ np.array([1.0, 0.7, 2.6]))
+    found = locate_camera(LENS, FLOOR, see(FLOOR, truth, np.random.default_rng(0)))
+    np.testing.assert_allclose(found.position, [1.0, 0.7, 2.6], atol=5e-3)
+    np.testing.assert_allclose(found.rotation @ rotation.T, np.eye(3), atol=5e-3)
+
+
+def test_a_view_that_opencv_solves_with_no_number_places_the_camera(monkeypatch):
+    nothing = ([np.full((3, 1), np.nan)] * 2, [np.full((3, 1), np.nan)] * 2)
+    solve = cv2.solvePnPGeneric
+
+    def without_ippe(*args, flags):
+        if flags == cv2.SOLVEPNP_IPPE:
+            return 2, *nothing, np.full((2, 1), np.nan)
+        return solve(*args, flags=flags)
+
+    monkeypatch.setattr("tracking.floor.locate.cv2.solvePnPGeneric", without_ippe)
+    truth = camera_pose()
+    found = locate_camera(LENS, FLOOR, see(FLOOR, truth, np.random.default_rng(0)))
+    np.testing.assert_allclose(found.position, truth.position, atol=5e-3)
 
 
 def test_one_marker_is_enough_but_uncertain():

@@ -104,21 +104,32 @@ def _best_pose(camera: Camera, floor: FloorMap, view: FloorView) -> tuple[Camera
 
 def _starting_poses(camera: Camera, points: Array, pixels: Array) -> list[CameraPose]:
     flat = np.ptp(points[:, 2]) < 1e-9
-    method = cv2.SOLVEPNP_IPPE if flat else cv2.SOLVEPNP_SQPNP
     level = points - [0.0, 0.0, points[0, 2] if flat else 0.0]
-    try:
-        _, rotations, translations, _ = cv2.solvePnPGeneric(
-            level, pixels, camera.matrix, camera.distortion, flags=method
-        )
-    except cv2.error:
-        return []
+    # IPPE gives both readings of a flat target, but of one view in a hundred none that is finite.
+    methods = (cv2.SOLVEPNP_IPPE, cv2.SOLVEPNP_SQPNP) if flat else (cv2.SOLVEPNP_SQPNP,)
     poses = []
-    for rotation, translation in zip(rotations, translations, strict=True):
+    for rotation, translation in _solutions(camera, level, pixels, methods):
         R = np.asarray(cv2.Rodrigues(rotation)[0], dtype=float)
         shift = R @ (points[0] - level[0])
-        t = np.ravel(translation).astype(float) - shift
-        poses.append(CameraPose.from_matrix(R, t))
+        poses.append(CameraPose.from_matrix(R, translation - shift))
     return poses
+
+
+def _solutions(
+    camera: Camera, points: Array, pixels: Array, methods: tuple[int, ...]
+) -> list[tuple[Array, Array]]:
+    """Solve for rotation vector and translation by OpenCV's methods; keep what is finite."""
+    found = []
+    for method in methods:
+        try:
+            _, rotations, translations, _ = cv2.solvePnPGeneric(
+                points, pixels, camera.matrix, camera.distortion, flags=method
+            )
+        except cv2.error:
+            continue
+        pairs = zip(rotations, translations, strict=True)
+        found += [(np.ravel(R).astype(float), np.ravel(t).astype(float)) for R, t in pairs]
+    return [pair for pair in found if np.isfinite(pair).all()]
 
 
 def _polish(

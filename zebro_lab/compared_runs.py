@@ -15,8 +15,7 @@ from zebro_lab.errors import DataError, NotFound
 from zebro_lab.path_band import read_draws
 from zebro_lab.track_file import TrackFile, read_track
 from zebro_lab.track_folder import TRACK_CSV
-from zebro_lab.validation import PREDICTION
-from zebro_lab.walk_folder import DRAWS, read_walk_manifest
+from zebro_lab.walk_folder import DRAWS, PREDICTION, read_walk_manifest
 
 TRACK = "track"
 TRACKS = 1000  # drawn from a track's covariance

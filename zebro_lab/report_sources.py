@@ -13,7 +13,7 @@ from zebro_lab.calibration_folder import SLIP_TOML
 from zebro_lab.errors import DataError, NotFound
 from zebro_lab.report_pictures import VALIDATION, place_of
 from zebro_lab.run_folder import MANIFEST_FILE, find_runs
-from zebro_lab.validation import PREDICTION
+from zebro_lab.walk_folder import PREDICTION
 from zebro_lab.walks_folder import FOLDER as WALKS
 from zebro_lab.walks_folder import WALKS_TOML
 

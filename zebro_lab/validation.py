@@ -26,10 +26,16 @@ from zebro_lab.path_band import read_draws
 from zebro_lab.recorded_tilt import Tilt
 from zebro_lab.slip_argument import parse_slip
 from zebro_lab.track_file import TrackFile, read_poses
-from zebro_lab.walk_folder import DRAWS, MANIFEST, PATH_CSV, read_walk, read_walk_manifest
+from zebro_lab.walk_folder import (
+    DRAWS,
+    MANIFEST,
+    PATH_CSV,
+    PREDICTION,
+    read_walk,
+    read_walk_manifest,
+)
 from zebro_lab.walk_models import MODELS, Direction, ModelRun
 
-PREDICTION = "prediction"
 STAND_STILL = "stand still"
 BASELINES = ("no-slip-simple", "no-slip", "thesis")
 

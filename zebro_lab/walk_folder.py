@@ -15,11 +15,13 @@ from model.slip.law import Array
 from model.walk.path import WalkPath
 from zebro_lab.atomic import atomic_folder
 from zebro_lab.errors import AlreadyExists, DataError, NotFound
+from zebro_lab.folder_manifest import read_folder_manifest
 from zebro_lab.provenance import file_hash, software
 from zebro_lab.raw_table import RawTable
 from zebro_lab.table_files import read_table_file
 
 SCHEMA = 1
+PREDICTION = "prediction"  # of a run
 PATH_CSV = "path.csv"
 MANIFEST = "manifest.json"
 KINDS = ("walk", "predict")
@@ -158,21 +160,7 @@ def read_walk_manifest(folder: Path) -> Mapping[str, Any]:
         NotFound: There is none.
         DataError: It is damaged, of a later schema, or that of another command.
     """
-    file = folder / MANIFEST
-    try:
-        content = json.loads(file.read_text(encoding="utf-8"))
-    except FileNotFoundError as error:
-        raise NotFound(f"{folder} is no walk folder: it has no {MANIFEST}") from error
-    except (OSError, ValueError) as error:
-        raise DataError(f"cannot be read as JSON: {error}", file=file) from error
-    if not isinstance(content, dict) or content.get("kind") not in KINDS:
-        raise DataError(f"is not of a walk; expected kind {' or '.join(KINDS)}", file=file)
-    if content.get("schema") != SCHEMA:
-        raise DataError(
-            f"has schema {content.get('schema')}, this version reads {SCHEMA}; update zebro-lab",
-            file=file,
-        )
-    return content
+    return read_folder_manifest(folder / MANIFEST, of="walk", kinds=KINDS, schema=SCHEMA)
 
 
 def require_increasing(table: RawTable, column: str, t: Array) -> None:

@@ -233,8 +233,20 @@ def roll_pitch_yaw(q: Array) -> Array:
     w, x, y, z = q.T
     roll = np.arctan2(2 * (y * z + w * x), 1 - 2 * (x * x + y * y))
     pitch = np.arcsin(np.clip(2 * (w * y - x * z), -1.0, 1.0))
-    yaw = np.unwrap(np.arctan2(2 * (x * y + w * z), 1 - 2 * (y * y + z * z)))
-    return np.column_stack([roll, pitch, yaw])
+    return np.column_stack([roll, pitch, unwrapped_yaw(q)])
+
+
+def unwrapped_yaw(q: Array) -> Array:
+    """Read the unwrapped yaw alone off unit quaternions (w, x, y, z) as `roll_pitch_yaw` does.
+
+    Args:
+        q: Quaternions, shape (n, 4).
+
+    Returns:
+        Yaw, shape (n,) [rad].
+    """
+    w, x, y, z = q.T
+    return np.unwrap(np.arctan2(2 * (x * y + w * z), 1 - 2 * (y * y + z * z)))
 
 
 def _path(t: Array, pose: Array, theta: Array, legs: Array) -> WalkPath:

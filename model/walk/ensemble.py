@@ -21,6 +21,7 @@ from model.walk.dynamics import (
     roll_pitch_yaw,
     start_state,
     step_times,
+    unwrapped_yaw,
 )
 from model.walk.ground import FLAT
 from model.walk.step import run_steps
@@ -94,7 +95,7 @@ def walk_ensemble(
     def walk(numbered: tuple[int, WalkDraw]) -> Array:
         number, draw = numbered
         try:
-            path = planar_walk(draw, duration=duration, options=options)
+            path = planar_walk(draw, duration=duration, options=options, tilt=tilt)
         except WalkError as error:
             raise WalkError(f"draw {number} of {len(draws)}: {error}") from error
         columns = [path.x, path.y, path.yaw, *(_tilt_of(path) if tilt else ())]
@@ -132,7 +133,11 @@ def _require_draws(draws: Sequence[WalkDraw], t: Array) -> None:
 
 
 def planar_walk(
-    draw: WalkDraw, *, duration: float, options: DynamicsOptions = DEFAULT_OPTIONS
+    draw: WalkDraw,
+    *,
+    duration: float,
+    options: DynamicsOptions = DEFAULT_OPTIONS,
+    tilt: bool = False,
 ) -> PlanarPath:
     """Walk one draw on flat ground and keep where it led over the ground.
 
@@ -140,6 +145,7 @@ def planar_walk(
         draw: What to walk.
         duration: Time walked [s].
         options: How it is computed.
+        tilt: Keep roll and pitch, of leg angles that are walked whole.
 
     Raises:
         DomainError: The duration is shorter than a step.
@@ -162,5 +168,6 @@ def planar_walk(
     )  # fmt: skip
     if done < len(t) - 1:
         raise diverged(t[done], pose[done])
-    angles = roll_pitch_yaw(pose[:, 3:])
-    return PlanarPath(t, pose[:, 0], pose[:, 1], angles[:, 2], angles[:, :2])
+    yaw = unwrapped_yaw(pose[:, 3:])
+    tilted = roll_pitch_yaw(pose[:, 3:])[:, :2] if tilt else None
+    return PlanarPath(t, pose[:, 0], pose[:, 1], yaw, tilted)

@@ -75,7 +75,7 @@ def predict(
     from zebro_lab.recorded_legs import is_recorded
     from zebro_lab.stages.predict import PredictRequest
     from zebro_lab.stages.predict import predict as run
-    from zebro_lab.validation import PREDICTION
+    from zebro_lab.walk_folder import PREDICTION
     from zebro_lab.walking import ModelRequest
 
     require_slip(model, slip)

@@ -48,8 +48,8 @@ from zebro_lab.stages.validate import TRACK
 from zebro_lab.stream_views import FASTEST
 from zebro_lab.track_file import TrackFile, read_track
 from zebro_lab.track_folder import TRACK_CSV
-from zebro_lab.validation import PREDICTION, robot_of_walk, shared_time
-from zebro_lab.walk_folder import DRAWS, PATH_CSV, read_walk, read_walk_manifest
+from zebro_lab.validation import robot_of_walk, shared_time
+from zebro_lab.walk_folder import DRAWS, PATH_CSV, PREDICTION, read_walk, read_walk_manifest
 
 FLOOR, BODY, TRACKED = "floor", "body", "tracked"
 SHOWN_DRAWS = 20

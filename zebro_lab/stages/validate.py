@@ -17,7 +17,6 @@ from zebro_lab.track_file import read_track
 from zebro_lab.track_folder import TRACK_CSV
 from zebro_lab.tracked_photos import photos_of_track
 from zebro_lab.validation import (
-    PREDICTION,
     Prediction,
     RunJudged,
     judge_run,
@@ -26,7 +25,7 @@ from zebro_lab.validation import (
 )
 from zebro_lab.validation_folder import Summary, summarise_runs, write_validation
 from zebro_lab.validation_pictures import Judgement
-from zebro_lab.walk_folder import PATH_CSV
+from zebro_lab.walk_folder import PATH_CSV, PREDICTION
 from zebro_lab.walking import Watcher
 
 TRACK = "track"

@@ -17,6 +17,12 @@ def test_a_log_goes_through_its_samples():
     assert LOG.period is None
 
 
+@given(st.lists(st.floats(0.0, 3.0), min_size=1))
+def test_angles_are_straight_lines_between_samples_in_any_order_of_times(t):
+    lines = np.column_stack([np.interp(t, T, column) for column in THETA.T])
+    np.testing.assert_allclose(LOG.angles(t), lines, atol=1e-12)
+
+
 @given(st.floats(0.5, 2.4))
 def test_speeds_are_the_slopes_of_the_angles(t):
     h = 1e-7

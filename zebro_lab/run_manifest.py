@@ -10,7 +10,8 @@ from typing import Any
 
 from zebro_lab.atomic import atomic_write_text
 from zebro_lab.columns import nearest
-from zebro_lab.errors import DataError, NotFound
+from zebro_lab.errors import DataError
+from zebro_lab.folder_manifest import read_json_object
 
 MANIFEST_FILE = "run.json"
 SCHEMA_VERSION = 1
@@ -84,15 +85,7 @@ def read_manifest(folder: Path) -> RunManifest:
         DataError: It is damaged, incomplete, or of another version.
     """
     file = folder / MANIFEST_FILE
-    try:
-        document = json.loads(file.read_text(encoding="utf-8"))
-    except FileNotFoundError as error:
-        raise NotFound(f"{folder} is no run folder: it has no {MANIFEST_FILE}") from error
-    except (OSError, ValueError) as error:
-        raise DataError(f"cannot be read as JSON: {error}", file=file) from error
-    if not isinstance(document, dict):
-        raise DataError("is not a JSON object", file=file)
-    return _checked(document, file)
+    return _checked(read_json_object(file, of="run folder"), file)
 
 
 def write_manifest(folder: Path, manifest: RunManifest) -> Path:

@@ -9,8 +9,9 @@ from typing import Any, Protocol
 
 from zebro_lab.annotations import ANNOTATIONS_FILE
 from zebro_lab.atomic import atomic_folder
-from zebro_lab.errors import AlreadyExists, DataError, NotFound
+from zebro_lab.errors import AlreadyExists, DataError
 from zebro_lab.floor_file import FLOOR_FILE
+from zebro_lab.folder_manifest import read_folder_manifest
 from zebro_lab.provenance import file_hash, software
 
 SCHEMA = 1
@@ -99,21 +100,7 @@ def read_track_manifest(folder: Path) -> Mapping[str, Any]:
         NotFound: There is none.
         DataError: It is damaged, of a later schema, or that of another command.
     """
-    file = folder / MANIFEST
-    try:
-        content = json.loads(file.read_text(encoding="utf-8"))
-    except FileNotFoundError as error:
-        raise NotFound(f"{folder} is no track folder: it has no {MANIFEST}") from error
-    except (OSError, ValueError) as error:
-        raise DataError(f"cannot be read as JSON: {error}", file=file) from error
-    if not isinstance(content, dict) or content.get("kind") != KIND:
-        raise DataError(f"is not of a track; expected kind {KIND}", file=file)
-    if content.get("schema") != SCHEMA:
-        raise DataError(
-            f"has schema {content.get('schema')}, this version reads {SCHEMA}; update zebro-lab",
-            file=file,
-        )
-    return content
+    return read_folder_manifest(folder / MANIFEST, of="track", kinds=(KIND,), schema=SCHEMA)
 
 
 def written(folder: Path) -> Sequence[Path]:

@@ -3,14 +3,14 @@
 
 import struct
 from collections.abc import Callable
-from types import TracebackType
-from typing import Final, Self
+from typing import Final
 
 from rig.clock import SYSTEM_CLOCK, Clock
 from rig.device import Counters, Sample
 from rig.errors import DeviceMismatch
 from rig.links.byte_link import ByteLink
 from rig.links.framing import CobsFramer
+from rig.links.linked_stream import LinkedStream
 from rig.links.packet import (
     CHECKSUM,
     HEADER,
@@ -34,7 +34,7 @@ def always(_: tuple[float, ...]) -> bool:
     return True
 
 
-class PacketStream:
+class PacketStream(LinkedStream[ByteLink]):
     """Samples from packets of one kind; satisfies `rig.device.Stream`.
 
     Args:
@@ -58,8 +58,8 @@ class PacketStream:
         possible: Callable[[tuple[float, ...]], bool] = always,
         clock: Clock = SYSTEM_CLOCK,
     ) -> None:
+        super().__init__(link)
         self.name = name
-        self._link = link
         self._kind = kind
         self._body = body
         self._possible = possible
@@ -72,11 +72,6 @@ class PacketStream:
         self._foreign = 0
         self._sent = 0
         self._connections = 0
-
-    @property
-    def source(self) -> str:
-        """Where the samples come from."""
-        return self._link.source
 
     @property
     def counters(self) -> Counters:
@@ -125,18 +120,6 @@ class PacketStream:
         packet = Packet(kind, self._sent, ticks, body)
         self._sent += 1
         return self._link.write(encode_packet(packet))
-
-    def __enter__(self) -> Self:
-        self._link.open()
-        return self
-
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
-        self._link.close()
 
     def _sample(self, content: bytes, now: float) -> Sample | None:
         packet = decode_packet(content)

@@ -18,6 +18,7 @@ from rig.clock import SYSTEM_CLOCK, Clock
 from rig.device import Counters, Limits, Sample
 from rig.errors import DeviceFault, RigError, RigTimeout
 from rig.links.can import CanLink
+from rig.links.linked_stream import LinkedStream
 from rig.safety import require_within
 from rig.slip_rig.can_simple import (
     AXIS_STATE,
@@ -56,7 +57,7 @@ class _Axis:
     temperatures: list[float] = field(default_factory=list)
 
 
-class DriveBus:
+class DriveBus(LinkedStream[CanLink]):
     """Stream of both drives: counts are position [rev] and velocity [rev/s] of a motor.
 
     A sample's channel is the drive's node, its status the axis error of the last heartbeat.
@@ -79,10 +80,10 @@ class DriveBus:
         name: str = "drives",
         clock: Clock = SYSTEM_CLOCK,
     ) -> None:
+        super().__init__(link)
         self.name = name
         self.profile = profile
         self.limits = limits
-        self._link = link
         self._clock = clock
         self._axes = {
             profile.leg.node: _Axis("leg disc", profile.leg),
@@ -92,11 +93,6 @@ class DriveBus:
         self._ask_at = math.inf
         self._received = 0
         self._refused = 0
-
-    @property
-    def source(self) -> str:
-        """Where the samples come from."""
-        return self._link.source
 
     @property
     def leg(self) -> "OdriveDrive":
@@ -159,7 +155,7 @@ class DriveBus:
                 )
 
     def __enter__(self) -> Self:
-        self._link.open()
+        super().__enter__()
         try:
             self._wait(
                 lambda: all(axis.state for axis in self._axes.values()),
@@ -181,7 +177,7 @@ class DriveBus:
             for axis in self._axes.values():
                 self._disarm(axis)
         finally:
-            self._link.close()
+            super().__exit__(kind, error, trace)
 
     def _arm(self, axis: _Axis, timeout: float) -> None:
         axis.velocity = 0.0

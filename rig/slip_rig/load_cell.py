@@ -11,6 +11,7 @@ import numpy as np
 from rig.clock import SYSTEM_CLOCK, Clock
 from rig.device import Counters
 from rig.errors import LinkError
+from rig.links.linked_stream import LinkedStream
 from rig.links.sequence import SequenceTracker, TimeUnwrapper
 from rig.links.udp import UdpLink
 from rig.sample_columns import SampleColumns
@@ -35,7 +36,7 @@ WHOLE: Final = frozenset(RECORD.size * count for count in range(1, MOST_IN_ONE +
 LONGEST_PAGE: Final = 1 << 20
 
 
-class NetFtCell:
+class NetFtCell(LinkedStream[UdpLink]):
     """Stream of a Net F/T load cell: counts are Fx, Fy, Fz, Tx, Ty, Tz; status as in `rdt`.
 
     Losses show as gaps in the record numbers. The device time counts the cell's own readings.
@@ -60,9 +61,9 @@ class NetFtCell:
         name: str = "load_cell",
         clock: Clock = SYSTEM_CLOCK,
     ) -> None:
+        super().__init__(link)
         self.name = name
         self.profile = profile
-        self._link = link
         self._clock = clock
         self._start = Request.START_BUFFERED if buffered else Request.START
         self._tracker = SequenceTracker(
@@ -74,11 +75,6 @@ class NetFtCell:
         self._reconnected = 0
         self._heard = 0.0
         self._silent = False
-
-    @property
-    def source(self) -> str:
-        """Where the samples come from."""
-        return self._link.source
 
     @property
     def counters(self) -> Counters:
@@ -106,7 +102,7 @@ class NetFtCell:
         self._link.write(encode_request(Request.BIAS))
 
     def __enter__(self) -> Self:
-        self._link.open()
+        super().__enter__()
         self._heard = self._clock.now()
         self._link.write(encode_request(self._start))
         return self
@@ -118,7 +114,7 @@ class NetFtCell:
         trace: TracebackType | None,
     ) -> None:
         self._link.write(encode_request(Request.STOP))
-        self._link.close()
+        super().__exit__(kind, error, trace)
 
     def _samples(self, datagrams: Sequence[bytes], now: float) -> SampleColumns:
         """Make samples of all records of a read together, column by column."""

@@ -2,14 +2,14 @@
 """Leg angles on a CAN bus; the messages are those of `zebro-100-can.dbc`."""
 
 import struct
-from types import TracebackType
-from typing import Final, Self
+from typing import Final
 
 import can
 
 from rig.clock import SYSTEM_CLOCK, Clock
 from rig.device import Counters, Sample
 from rig.links.can import CanLink
+from rig.links.linked_stream import LinkedStream
 from rig.links.sequence import SequenceTracker, TimeUnwrapper
 from rig.zebro.commands import milliseconds
 from rig.zebro.profile import LegProfile
@@ -23,7 +23,7 @@ TICKS_WRAP: Final = 1 << 32
 TICK: Final = 1e-6
 
 
-class CanLegs:
+class CanLegs(LinkedStream[CanLink]):
     """Stream of the layout `can`; satisfies `Stream` and `LegCommands`.
 
     The bus guards each frame by its own checksum. The device time comes in a frame of its own
@@ -44,20 +44,15 @@ class CanLegs:
         name: str = "legs",
         clock: Clock = SYSTEM_CLOCK,
     ) -> None:
+        super().__init__(link)
         self.name = name
         self.profile = profile
-        self._link = link
         self._clock = clock
         self._tracker = SequenceTracker(modulus=SEQUENCE_WRAP, rate=profile.rate)
         self._device_time = TimeUnwrapper(modulus=TICKS_WRAP, tick=TICK)
         self._stamp: tuple[int, int] | None = None
         self._received = 0
         self._refused = 0
-
-    @property
-    def source(self) -> str:
-        """Where the samples come from."""
-        return self._link.source
 
     @property
     def counters(self) -> Counters:
@@ -92,18 +87,6 @@ class CanLegs:
     def stop(self) -> bool:
         """Stop every leg where it is; tell whether the link took the command."""
         return self._link.write(self.profile.can_ids.stop, b"")
-
-    def __enter__(self) -> Self:
-        self._link.open()
-        return self
-
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
-        self._link.close()
 
     def _sample(self, message: can.Message, now: float) -> Sample | None:
         ids = self.profile.can_ids

@@ -6,14 +6,14 @@ inside a value is seen only where the value leaves the circle. Prefer a bridge t
 """
 
 import struct
-from types import TracebackType
-from typing import Final, Self
+from typing import Final
 
 from rig.clock import SYSTEM_CLOCK, Clock
 from rig.device import Counters, Sample
 from rig.errors import ProtocolError
 from rig.links.byte_link import ByteLink
 from rig.links.framing import TrailerFramer
+from rig.links.linked_stream import LinkedStream
 from rig.zebro.commands import milliseconds
 from rig.zebro.profile import DUMP_REGISTERS, LegProfile
 
@@ -25,33 +25,16 @@ QUIET_AFTER_FAILURE: Final = 0.1
 """Pause after a poll without a whole answer, so that a late one arrives before the next [s]."""
 
 
-class _RegisterStream:
+class _RegisterStream(LinkedStream[ByteLink]):
     """What both forms share: a link, a profile and counters."""
 
     def __init__(self, link: ByteLink, *, profile: LegProfile, name: str, clock: Clock) -> None:
+        super().__init__(link)
         self.name = name
         self.profile = profile
-        self._link = link
         self._clock = clock
         self._received = 0
         self._refused = 0
-
-    @property
-    def source(self) -> str:
-        """Where the samples come from."""
-        return self._link.source
-
-    def __enter__(self) -> Self:
-        self._link.open()
-        return self
-
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
-        self._link.close()
 
     def _sample(self, counts: tuple[int, ...]) -> list[Sample]:
         if not self.profile.possible(counts):

@@ -1,0 +1,57 @@
+# SPDX-License-Identifier: MIT
+"""What every stream over one link shares: it is open while the stream is entered."""
+
+from types import TracebackType
+from typing import Generic, Protocol, Self, TypeVar
+
+
+class Link(Protocol):
+    """What is opened and closed: a serial port, a bus, a socket."""
+
+    @property
+    def source(self) -> str:
+        """Where what it carries comes from: `real` or `sim:WHAT`."""
+        ...
+
+    def open(self) -> None:
+        """Open it.
+
+        Raises:
+            LinkError: There is no such port, or no right to open it.
+        """
+        ...
+
+    def close(self) -> None:
+        """Close it; closing twice is no fault."""
+        ...
+
+
+LinkT = TypeVar("LinkT", bound=Link)
+
+
+class LinkedStream(Generic[LinkT]):
+    """A stream over one link, as a context manager.
+
+    Args:
+        link: The link.
+    """
+
+    def __init__(self, link: LinkT) -> None:
+        self._link = link
+
+    @property
+    def source(self) -> str:
+        """Where the samples come from."""
+        return self._link.source
+
+    def __enter__(self) -> Self:
+        self._link.open()
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self._link.close()

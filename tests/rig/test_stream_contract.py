@@ -66,11 +66,11 @@ NUMBERED = {"legs on serial packets", "legs on CAN", "imu", "load cell", "board"
 
 
 @pytest.fixture(scope="module", params=LIVE)
-def recorded(request):
-    """Return a stream's name in the suite, the closed stream, and what it gave in 0.3 s."""
+def recorded(request, take):
+    """Return a stream's name in the suite, the closed stream, and some of what it gave."""
     with LIVE[request.param]() as stream:
         with stream:
-            samples = list(iterate(stream, duration=0.3))
+            samples = take(stream, 20)
         return request.param, stream, samples
 
 
@@ -81,7 +81,6 @@ def test_a_twin_says_that_it_is_simulated(recorded):
 
 def test_every_sample_is_counted_and_none_is_rejected(recorded):
     _, stream, samples = recorded
-    assert len(samples) >= 3  # a busy machine polls less often
     assert stream.counters.received == len(samples)
     assert stream.counters.rejected == 0
     assert stream.counters.lost == 0
@@ -137,11 +136,11 @@ def test_a_read_without_news_ends_in_time(name):
 
 
 @pytest.mark.parametrize("name", LIVE)
-def test_a_stream_can_be_closed_and_opened_again(name):
+def test_a_stream_can_be_closed_and_opened_again(name, take):
     with LIVE[name]() as stream:
         for _ in range(2):
             with stream:
-                assert list(iterate(stream, duration=0.15))
+                assert take(stream, 1)
 
 
 @pytest.mark.parametrize("name", ["zebro-100-serial", "vregs-dump", "zebrobus-uart"])

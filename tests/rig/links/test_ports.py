@@ -29,22 +29,20 @@ def server(**options):
 
 
 @pytest.mark.parametrize("as_socket", [False, True])
-def test_a_device_unplugged_and_back_is_a_counted_gap_and_the_reading_goes_on(as_socket):
+def test_a_device_unplugged_and_back_is_a_counted_gap_and_the_reading_goes_on(as_socket, take):
     with server(as_socket=as_socket) as port:
         link = leg_link(PROFILE, port.port, source="sim:zebro")
         with leg_driver(PROFILE, link) as stream:
-            before = list(iterate(stream, duration=0.3))
+            before = take(stream, 20)
             port.unplug()
             during = list(iterate(stream, duration=0.3))
             port.plug_in()
-            after = list(iterate(stream, duration=0.8))
+            after = take(stream, 20)
         counters = stream.counters
     assert port.failure is None
-    assert len(before) > 20
     assert len(during) < 10
-    assert len(after) > 20
     assert counters.reconnected == 1
-    assert 15 < counters.lost < 100
+    assert counters.lost > 15
     assert counters.received + counters.lost == after[-1].sequence - before[0].sequence + 1
     assert counters.restarted == 0
 
@@ -163,19 +161,19 @@ def test_nobody_at_a_udp_port_is_silence_within_the_limit():
     link.close()
 
 
-def test_a_twin_that_raises_is_kept_for_its_owner_to_see():
+def test_a_twin_that_raises_is_kept_for_its_owner_to_see(wait_until):
     def fail(now):
         raise RuntimeError("broken")
 
     with Ticker(fail) as ticker:
-        time.sleep(0.05)
+        wait_until(lambda: ticker.failure)
     assert isinstance(ticker.failure, RuntimeError)
 
 
-def test_addresses_choose_the_driver():
+def test_addresses_choose_the_driver(take):
     with server() as port, open_legs(f"zebro-100-serial@{port.port}") as stream:
         assert stream.source == "real"  # nobody told it; who serves a twin does
-        assert list(iterate(stream, duration=0.1))
+        assert take(stream, 1)
     assert open_imu("imu-quaternion-serial@/dev/null").name == "imu"
     devices = open_rig("rig-odrive-netft@virtual:x")
     assert [stream.name for stream in devices.streams] == ["drives", "load_cell"]

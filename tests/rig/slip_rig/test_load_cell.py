@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from rig.device import Sample, iterate
+from rig.device import Sample
 from rig.errors import LimitExceeded, LinkError, ProtocolError
 from rig.links.faults import PERFECT_LINE, Faults
 from rig.links.serve import Ticker
@@ -55,9 +55,9 @@ def twin(faults=PERFECT_LINE, *, buffered=False):
 
 
 @pytest.mark.parametrize("buffered", [False, True])
-def test_forces_are_the_rigs(buffered):
+def test_forces_are_the_rigs(buffered, take):
     with twin(buffered=buffered) as (_, stream), stream:
-        samples = list(iterate(stream, duration=0.4))
+        samples = take(stream, 2000)
     forces = decode_forces(PROFILE, samples)
     assert forces.normal == pytest.approx(8.0, abs=1e-5)
     assert np.all(np.abs(forces.traction) < 0.5 * 8.0)
@@ -70,9 +70,9 @@ def test_forces_are_the_rigs(buffered):
 
 @pytest.mark.parametrize("buffered", [False, True])
 @pytest.mark.parametrize("fault", ["drop", "duplicate", "delay", "truncate"])
-def test_losses_are_counted_by_the_gaps_in_the_record_numbers(fault, buffered):
+def test_losses_are_counted_by_the_gaps_in_the_record_numbers(fault, buffered, take):
     with twin(Faults(**{fault: 0.05}), buffered=buffered) as (_, stream), stream:
-        samples = list(iterate(stream, duration=0.6))
+        samples = take(stream, 4000)
     numbers = [sample.sequence for sample in samples]
     counters = stream.counters
     assert np.all(np.diff(numbers) > 0)
@@ -81,18 +81,18 @@ def test_losses_are_counted_by_the_gaps_in_the_record_numbers(fault, buffered):
     assert counters.restarted == 0
 
 
-def test_a_buffered_stream_takes_a_small_part_of_the_datagrams(monkeypatch):
+def test_a_buffered_stream_takes_a_small_part_of_the_datagrams(monkeypatch, take):
     datagrams = []
     with twin(buffered=True) as (_, stream), stream:
         read = stream._link.read
         monkeypatch.setattr(
             stream._link, "read", lambda timeout: datagrams.extend(r := read(timeout)) or r
         )
-        samples = list(iterate(stream, duration=0.3))
-    assert len(samples) == MOST_IN_ONE * len(datagrams) > 0
+        samples = take(stream, 500)
+    assert len(samples) == MOST_IN_ONE * len(datagrams)
 
 
-def test_a_cell_that_knows_no_buffered_stream_is_asked_for_single_records(monkeypatch):
+def test_a_cell_that_knows_no_buffered_stream_is_asked_for_single_records(monkeypatch, take):
     with twin(buffered=True) as (cell, stream):
         handle = cell._handle
         asked = []
@@ -104,52 +104,42 @@ def test_a_cell_that_knows_no_buffered_stream_is_asked_for_single_records(monkey
 
         monkeypatch.setattr(cell, "_handle", ignore)
         with stream:
-            assert some(stream)
+            take(stream, 1)
     assert asked[:2] == [Request.START_BUFFERED, Request.START]
 
 
-def some(stream):
-    """Read until there is something, or five seconds have passed."""
-    end = time.monotonic() + 5
-    while time.monotonic() < end:
-        if samples := stream.read(0.1):
-            return samples
-    raise AssertionError("the load cell sent nothing")
-
-
-def test_bias_makes_the_present_reading_zero():
+def test_bias_makes_the_present_reading_zero(take):
     with twin() as (_, stream), stream:
-        some(stream)
+        take(stream, 1)
         stream.bias()
-        list(iterate(stream, duration=0.1))  # what was under way when the cell took its zero
-        forces = decode_forces(PROFILE, some(stream))
+        take(stream, 3000)  # what was under way when the cell took its zero
+        forces = decode_forces(PROFILE, take(stream, 1))
     assert np.abs(forces.normal).max() < 1e-5
 
 
-def test_a_saturated_cell_says_so_in_every_sample():
+def test_a_saturated_cell_says_so_in_every_sample(take):
     with twin() as (cell, stream), stream:
         cell.status = 1 << 31 | SATURATED
-        list(iterate(stream, duration=0.1))
-        status = some(stream)[-1].status
+        status = take(stream, 3000)[-1].status
     assert describe_status(status) == "transducer saturated"
 
 
-def test_a_cell_that_forgot_its_client_is_asked_again_and_the_gap_is_counted():
+def test_a_cell_that_forgot_its_client_is_asked_again_and_the_gap_is_counted(take):
     with twin() as (cell, stream), stream:
-        list(iterate(stream, duration=0.1))
+        take(stream, 1000)
         cell._client = None  # as after a loss of power
-        list(iterate(stream, duration=0.2))
-        after = list(iterate(stream, duration=0.6))
-        assert after
+        while stream.read(0.2):
+            pass
+        take(stream, 1)
     assert stream.counters.reconnected == 1
     assert stream.counters.restarted == 1
 
 
-def test_leaving_stops_the_cell():
+def test_leaving_stops_the_cell(take, wait_until):
     with twin() as (cell, stream):
         with stream:
-            list(iterate(stream, duration=0.1))
-        time.sleep(0.05)
+            take(stream, 1)
+        wait_until(lambda: cell._client is None)
         sent = cell.sent
         time.sleep(0.05)
         assert cell.sent == sent

@@ -48,17 +48,18 @@ def test_legs_go_to_their_set_points(name):
     assert last.counts == targets
 
 
-def test_legs_on_can_go_to_their_set_points_and_stop():
+def test_legs_on_can_go_to_their_set_points_and_stop(take):
     profile = load_leg_profile("zebro-100-can")
     with simulated_legs(profile, STANDING, rng=np.random.default_rng(0)) as stream, stream:
         targets = (10, 20, 30, 40, 50, 60)
         assert stream.set_points(targets, 0.1)
-        assert list(iterate(stream, duration=0.3))[-1].counts == targets
-        stream.set_points((60,) * 6, 5.0)
-        list(iterate(stream, duration=0.1))
+        assert take(stream, 50)[-1].counts == targets
+        stream.set_points((60,) * 6, 10.0)
+        take(stream, 10)
         stream.stop()
-        held = [s.counts for s in list(iterate(stream, duration=0.3))[5:]]
+        held = [s.counts for s in take(stream, 60)[-20:]]
     assert len(set(held)) == 1
+    assert held[0] != (60,) * 6
 
 
 @pytest.mark.parametrize("name", ["zebro-100-serial", "zebrobus-uart"])

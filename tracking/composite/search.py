@@ -63,6 +63,7 @@ What shines through is no noise that many points average away: it has edges and 
 which draw the alignment to them. It grows with their share, sqrt(1 - score²) / score."""
 
 _SAME = 0.4  # of the template's length: nearer than this two are one
+_SLIP = 0.1  # of the template's length: farther edges alone lead astray
 _BESIDE = 1.25  # of the body's length
 _TURN = np.radians(32.0)  # from one exposure to the next beside it
 _SAME_BODY = 0.25  # of the body's length: nearer than this one hides all of the other
@@ -176,7 +177,21 @@ class _Search:
         aligned = [self.aligned(match) for match in self.apart(matches)]
         good = [each for each in aligned if each is not None and each.score >= BESIDE_SCORE]
         good.sort(key=lambda alignment: -alignment.score)
-        return [Exposure(self.among_others(each), 1.0) for each in self.along_a_walk(good)]
+        return [Exposure(self.sharpened(each), 1.0) for each in self.along_a_walk(good)]
+
+    def sharpened(self, alignment: Alignment) -> Alignment:
+        """Align by edges alone what others, or the floor, are seen through; its score stays."""
+        fine = align(
+            self.pixels, self.camera, self.view, template=self.template, prior=self.prior,
+            start=alignment.pose.planar, blurs_px=(1.0,), least_hope=0.0, shines_through=True,
+        )  # fmt: skip
+        if fine is None or self.distance(fine.pose.planar, alignment.pose.planar) > self.slip:
+            return self.among_others(alignment)
+        return replace(self.among_others(fine), score=alignment.score, sameness=alignment.sameness)
+
+    @property
+    def slip(self) -> float:
+        return _SLIP * self.template.plate.length
 
     def among_others(self, alignment: Alignment) -> Alignment:
         """Add what others that shine through do to the place and heading of an exposure."""

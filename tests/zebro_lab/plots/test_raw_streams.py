@@ -28,9 +28,9 @@ class Onlooker:
 
 @pytest.fixture(scope="module")
 def recorded(tmp_path_factory):
-    """Return a run of all devices, half a second long."""
+    """Return a run of all devices, two seconds long."""
     data = tmp_path_factory.mktemp("runs")
-    request = RecordRequest(data, "all", zebro="sim", imus=("sim",), rig="sim", duration=0.5)
+    request = RecordRequest(data, "all", zebro="sim", imus=("sim",), rig="sim", duration=2.0)
     return record(request, Onlooker()).folder
 
 

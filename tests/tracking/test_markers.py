@@ -118,6 +118,15 @@ def test_a_marker_that_is_not_wanted_is_not_found():
     assert [s.marker_id for s in find_markers(picture, "4x4_50", wanted=range(50))] == [7]
 
 
+@pytest.mark.parametrize("number", [7, 12, 22, 38, 43])
+def test_another_marker_of_the_dictionary_is_not_taken_for_the_one_wanted(number):
+    rng = np.random.default_rng([number, 0])
+    quad = random_quad(rng, 70)
+    grey = photograph(quad, rng, blur=2.2, contrast=0.1, quality=75, number=number)
+    assert find_markers(grey, "4x4_50", wanted=[0]) == ()
+    assert len(find_markers(grey, "4x4_50", wanted=[number])) == 1
+
+
 def test_floor_texture_holds_no_marker():
     rng = np.random.default_rng(5)
     texture = cv2.GaussianBlur(rng.uniform(0, 255, (300, 300)).astype(np.float32), (0, 0), 3)

@@ -21,11 +21,11 @@ from rig.slip_rig.profile import RigProfile, load_rig_profile
 from rig.slip_rig.simulated import RigDynamics, SimulatedRig, simulated_rig
 from rig.slip_rig.sweep import SweepPlan
 from rig.twins import simulated_imu, simulated_legs, simulated_rig_devices
-from rig.zebro.commands import LegCommands, follow
-from rig.zebro.profile import LegProfile, load_leg_profile
+from rig.zebro.profile import load_leg_profile
 from zebro_lab.acquisition import Device
 from zebro_lab.errors import SettingsError
 from zebro_lab.gait_argument import GaitRequest, make_gait
+from zebro_lab.gait_player import GaitPlayer
 from zebro_lab.slip_rig_decoding import RIG
 from zebro_lab.stream_views import BoardView, DrivesView, ImuView, LegsView, LoadCellView
 
@@ -34,8 +34,6 @@ SIMULATED: Final = "sim"
 LEGS_PROFILE: Final = "zebro-100-serial"
 IMU_PROFILE: Final = "imu-quaternion-serial"
 RIG_PROFILE: Final = "rig-odrive-netft"
-HORIZON: Final = 0.1
-"""How far ahead of a played gait its set-points lie [s]."""
 PAUSE: Final = 0.053
 """Between two reads of a device that tells time: the system keeps what comes meanwhile, and with
 the wait of the recorder this stays well below the 200 ms that a killed run may lack. No multiple of
@@ -219,32 +217,6 @@ def _of_rig(profile: RigProfile, rig: RigDevices) -> Iterator[Device]:
     if rig.load_cell is not None and profile.load_cell is not None:
         view = LoadCellView(rig.load_cell.name, profile=profile.load_cell)
         yield Device(rig.load_cell, view, check, pause=PAUSE)
-
-
-class GaitPlayer:
-    """Sends a gait's set-points whenever they are due; to be called with the host time.
-
-    Args:
-        legs: The robot.
-        gait: Leg angles over time; its time 0 is the first call.
-        profile: Profile of the robot.
-    """
-
-    def __init__(self, legs: LegCommands, gait: LegReference, profile: LegProfile) -> None:
-        self._legs = legs
-        self._gait = gait
-        self._start: float | None = None
-        self._due = 0.0
-        # No faster than the robot reports, and twice within the horizon: no set-point runs out.
-        self._interval = max(HORIZON / 2, 1 / profile.rate)
-
-    def __call__(self, now: float) -> None:
-        """Send the next set-point where it is due."""
-        if self._start is None:
-            self._start = self._due = now
-        if now >= self._due:
-            self._due = now + self._interval
-            follow(self._legs, self._gait, start=self._start, now=now, horizon=HORIZON)
 
 
 class ForceCheck:

@@ -24,7 +24,7 @@ from zebro_lab.validation import Prediction, RunJudged, judge_run, walk_baseline
 
 SAMPLING = 0.1  # s between poses of a predicted path
 DRAWS = 300  # of a left-out walk's band
-EXACT = ModelSpread(0.0, 0.0)
+EXACT = ModelSpread(0.0, 0.0, 0.0)
 
 Progress = Callable[[float], None]
 

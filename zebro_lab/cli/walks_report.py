@@ -8,7 +8,7 @@ from rich.table import Table
 from rich.text import Text
 
 from model.bayes.walk_posterior import Contraction, WalkPosterior
-from model.bayes.walk_prior import UNITS
+from model.bayes.walk_prior import FALL, UNITS
 from zebro_lab.stages.calibrate_walks import WalksCalibrated
 from zebro_lab.validation import RunJudged
 
@@ -56,8 +56,8 @@ def _told(each: Contraction, unit: str) -> tuple[str, str, str, str]:
         after = f"{np.exp(each.mean):.2f} ×/÷ {np.exp(each.sd):.2f}"
         return before, after, "factor", informed
     if each.name == "fall":
-        after = f"{1 + each.mean:.2f} ± {each.sd:.2f}"
-        return f"1 ± {each.prior_sd:.2f}", after, "factor", informed
+        after = f"{FALL + each.mean:.2f} ± {each.sd:.2f}"
+        return f"{FALL:g} ± {each.prior_sd:.2f}", after, "factor", informed
     scale, shown = _SHOWN[unit]
     before = f"0 ± {scale * each.prior_sd:.2f}"
     return before, f"{scale * each.mean:+.2f} ± {scale * each.sd:.2f}", shown, informed

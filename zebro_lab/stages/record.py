@@ -11,6 +11,7 @@ from rig.clock import SYSTEM_CLOCK, Clock
 from rig.device import Counters
 from zebro_lab.acquisition import Acquisition, acquiring
 from zebro_lab.errors import RecordingError, SettingsError
+from zebro_lab.gait_player import LEAD_IN
 from zebro_lab.leg_log import read_leg_log
 from zebro_lab.record_devices import DevicesRequest, OpenDevices, open_devices
 from zebro_lab.recorder import RunDescription, RunRecorder
@@ -246,7 +247,7 @@ def _played(path: Path) -> SampledReference:
 
 
 def _duration(request: RecordRequest, play: SampledReference | None) -> float | None:
-    wanted = [] if play is None else [float(play.t[-1])]
+    wanted = [] if play is None else [LEAD_IN + float(play.t[-1])]
     if request.duration is not None:
         if not request.duration > 0:
             raise SettingsError(

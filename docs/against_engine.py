@@ -2,15 +2,16 @@
 """Every walking model against walks of an independent rigid-body engine (simulated).
 
 The walks are reference data (`ZEBRO_LAB_SHARED`, or the folder `shared` beside the checkout), each
-driven by its own logged leg angles. Prints the table of `docs/theory.md`, 3.2.
+driven by its own logged leg angles. Prints the table of `docs/theory.md`, 3.2, and what
+`model.predict.ModelSpread` takes for our model's own errors.
 
 Usage: .venv/bin/python docs/against_engine.py
 """
 
 import json
 import os
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -18,6 +19,7 @@ import pandas as pd
 
 from model.errors import DomainError
 from model.gait.reference import SampledReference
+from model.predict import FINE
 from model.robot import GRAVITY, Robot
 from model.walk.dynamics import DEFAULT_OPTIONS, DynamicsOptions, walk
 from model.walk.no_slip import walk_no_slip, walk_wheels
@@ -26,6 +28,7 @@ from model.walk.thesis import ThesisOptions, table_traction, walk_thesis
 from model.walk.traction import VelocityCoulomb
 
 STRAIGHT = 5.0  # a radius beyond this is a straight line's [m]
+EVERY = 0.1  # s between poses compared
 SHARED = Path(os.environ.get("ZEBRO_LAB_SHARED", Path(__file__).parents[2] / "shared"))
 
 
@@ -110,6 +113,53 @@ def radius(t: np.ndarray, xy: np.ndarray, yaw: np.ndarray, period: float) -> flo
     return turning_radius(xy[at], yaw[at])
 
 
+def bend(one: EngineWalk, path: WalkPath) -> tuple[float, float]:
+    """Compute by how much our path is to be stretched [-] and bent [rad/m] to be the engine's."""
+    t = np.arange(0.0, one.duration - EVERY, EVERY)
+    ours = np.column_stack([np.interp(t, path.t, a) for a in path.position[:, :2].T])
+    theirs = np.column_stack([np.interp(t, one.truth["t"], one.truth[c]) for c in ("x", "y")])
+    walked = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(ours, axis=0), axis=1))])
+    length = np.linalg.norm(np.diff(theirs, axis=0), axis=1).sum()
+    turned = np.interp(t, one.truth["t"], one.truth["yaw"]) - np.interp(t, path.t, path.yaw)
+    return length / walked[-1] - 1, float((turned - turned[0]) @ walked / (walked @ walked))
+
+
+def by_contacts(one: EngineWalk) -> np.ndarray:
+    """Compute how contacts twice as hard or damped, and half, stretch and bend our path."""
+    stiffness, damping = FINE.stiffness, FINE.damping
+    pairs = [
+        [replace(FINE, stiffness=stiffness * each) for each in (2.0, 0.5)],
+        [replace(FINE, damping=damping * each) for each in (2.0, 0.5)],
+    ]
+    ends = np.array([[bend(one, by_dynamics(one, each)) for each in pair] for pair in pairs])
+    moved = 0.5 * (ends[:, 0] - ends[:, 1])
+    return np.sqrt((moved**2).sum(axis=0))
+
+
+def print_bends(walks: Sequence[EngineWalk]) -> None:
+    """Print what each walk, and those of matched heights together, say of the model's errors."""
+    bends = [bend(one, by_dynamics(one, FINE)) for one in walks]
+    matched = [each for one, each in zip(walks, bends, strict=True) if heights_match(one)]
+    print(f"\ndynamics by steps of {1e3 * FINE.dt:g} ms, to be stretched and bent:\n")
+    print("| walk | distance | curvature | by contacts | |\n|---|---:|---:|---:|---:|")
+    for one, (distance, curvature) in zip(walks, bends, strict=True):
+        longer, rounder = by_contacts(one)
+        print(
+            f"| {one.name} | {100 * distance:+.2f} % | {curvature:+.4f} rad/m | "
+            f"{100 * longer:.2f} % | {rounder:.4f} rad/m |"
+        )
+    distance, curvature = np.sqrt((np.array(matched) ** 2).mean(axis=0))
+    print(
+        f"\nroot mean square of tripods that lift off at matched heights: {100 * distance:.2f} %, "
+        f"{curvature:.4f} rad/m"
+    )
+
+
+def heights_match(one: EngineWalk) -> bool:
+    """Tell whether three legs carry at a time and the next three take over at their height."""
+    return one.name.startswith("tripod") and not one.name.endswith("real")
+
+
 def figures(one: EngineWalk, model: Callable[[EngineWalk], WalkPath]) -> str:
     """Say the path's error and the radius's; the source's model walks tripods only."""
     try:
@@ -143,6 +193,7 @@ def main() -> None:
         if file.stem.startswith("tetrapod"):
             one = read_walk(file)
             print(f"| {one.name} | {figures(one, lambda w: by_dynamics(w, hard))} |")
+    print_bends([read_walk(file) for file in files])
 
 
 if __name__ == "__main__":

@@ -3,11 +3,11 @@ r"""How far a tracked walk lies from what parameters predict, in units of what i
 
 Each walk is predicted from its leg angles and its first tracked pose. Differences from the other
 poses have the tracker's noise, that of the first pose, what counted angles leave open and what the
-walking model itself gets wrong; the last three are the same all along a walk, so its poses are
-strongly correlated,
+walking model itself gets wrong: distance, curvature, and how hard contacts are. The last three are
+the same all along a walk, so its poses are strongly correlated,
 
 .. math::
-    r \sim N(0,\; V + J_0 V_0 J_0^T + \sigma_d^2\, d d^T + \sigma_c^2\, c c^T + Q) .
+    r \sim N(0,\; V + J_0 V_0 J_0^T + \sigma_d^2\, d d^T + \sigma_c^2\, c c^T + H + Q) .
 """
 
 from collections.abc import Sequence
@@ -224,6 +224,7 @@ class WalkMisfit:
         one = PathEnsemble(paths.t, paths.position[:1], paths.yaw[:1])
         total = self._of_tracker(self._difference(one)[0])
         total += self._of_model(one, spread) + 1e-12 * np.eye(len(total))
+        total += self._of_contacts(spread, threads)
         if len(several) > 1:  # the step moves each of them its own way, too
             return total + np.cov(self._difference(paths).T)
         return total + self._of_step(several[0], rng, threads)
@@ -262,6 +263,18 @@ class WalkMisfit:
         d = (self._difference(bent(path, distance=small, curvature=no))[0] - here) / _BEND
         c = (self._difference(bent(path, distance=no, curvature=small))[0] - here) / _BEND
         return spread.distance**2 * np.outer(d, d) + spread.curvature**2 * np.outer(c, c)
+
+    def _of_contacts(self, spread: ModelSpread, threads: int) -> Array:
+        """Return the covariance that contacts give which are harder or softer, more or less damped.
+
+        It depends on the gait: where four legs carry, their loads, and so the turn, depend on it.
+        """
+        factors = np.exp(spread.contacts * np.array([[1, 0], [-1, 0], [0, 1], [0, -1]]))
+        plain = WalkDraw(self.robot, middle(self.walk.legs), self.table)
+        draws = [replace(plain, stiffness=k, damping=c) for k, c in factors]
+        paths = self._difference(self._walked(draws, threads))
+        moved = 0.5 * (paths[::2] - paths[1::2])
+        return moved.T @ moved
 
 
 def from_first(states: Array, first: Array) -> Array:

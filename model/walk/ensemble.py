@@ -3,7 +3,7 @@
 
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -38,12 +38,24 @@ class WalkDraw:
         reference: Leg angles over time.
         table: The slip law.
         start: Where the walk starts.
+        stiffness: Factor on the contacts' stiffness of the options [-].
+        damping: Factor on their damping [-].
     """
 
     robot: Robot
     reference: LegReference
     table: TractionTable
     start: Start = ORIGIN
+    stiffness: float = 1.0
+    damping: float = 1.0
+
+    def options(self, common: DynamicsOptions) -> DynamicsOptions:
+        """Return an ensemble's options with the contacts of this draw."""
+        return replace(
+            common,
+            stiffness=common.stiffness * self.stiffness,
+            damping=common.damping * self.damping,
+        )
 
 
 @dataclass(frozen=True)
@@ -151,6 +163,7 @@ def planar_walk(
         DomainError: The duration is shorter than a step.
         WalkError: A step diverged.
     """
+    options = draw.options(options)
     if draw.reference.period is not None:
         return walk_by_strides(
             draw.robot, draw.reference, draw.table,

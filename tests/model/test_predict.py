@@ -22,6 +22,7 @@ from model.predict import (
     scaled_table,
     states_at,
     walk_draws,
+    with_contacts,
 )
 from model.robot import Robot
 from model.slip.magic_formula import MagicFormula
@@ -33,7 +34,7 @@ from model.walk.traction import VelocityCoulomb, law_table
 T = np.linspace(0.0, 4.0, 41)
 T_LOG = np.arange(0.0, 12.2, 0.01)
 TABLE = VelocityCoulomb(0.38).table(weight=21.0)
-EXACT = ModelSpread(0.0, 0.0)
+EXACT = ModelSpread(0.0, 0.0, 0.0)
 GAIT = tripod_reference(tripod_angles(np.radians(50.0), 1.2), 2.0)
 
 
@@ -142,6 +143,28 @@ def test_quantiles_are_ordered_and_hold_the_share_they_say():
 def test_a_negative_spread_is_refused():
     with pytest.raises(DomainError):
         ModelSpread(distance=-0.1)
+
+
+def test_how_hard_contacts_are_decides_where_four_legs_lead_but_hardly_where_a_tripod_does():
+    four = tetrapod_reference(np.radians(45.0), np.radians(135.0), cycle_time=3.0)
+    spread = []
+    for gait in (four, GAIT):
+        log = SampledReference(T_LOG, gait.angles(T_LOG))
+        error = ModelSpread(0.0, 0.0, contacts=np.log(2.0))
+        paths = predicted(8, offset_sd=0.0, error=error, legs=log)
+        length = np.linalg.norm(np.diff(paths.position, axis=1), axis=2).sum(axis=1).mean()
+        spread.append(paths.yaw[:, -1].std() / length)
+    assert spread[0] > 3 * spread[1] > 0
+
+
+def test_contacts_of_no_spread_are_left_as_they_are():
+    draw = WalkDraw(Robot(), SampledReference(T_LOG, GAIT.angles(T_LOG)), TABLE)
+    assert with_contacts([draw], EXACT, rng=np.random.default_rng(1)) == [draw]
+    (drawn,) = with_contacts([draw], ModelSpread(), rng=np.random.default_rng(1))
+    options = drawn.options(DynamicsOptions(stiffness=1e5, damping=100.0))
+    assert options.stiffness == pytest.approx(1e5 * drawn.stiffness)
+    assert options.damping == pytest.approx(100.0 * drawn.damping)
+    assert drawn.stiffness != 1.0 != drawn.damping
 
 
 def test_without_its_fall_traction_keeps_its_peak():

@@ -23,7 +23,7 @@ from zebro_lab.robot_file import RobotFile
 if TYPE_CHECKING:
     from zebro_lab.validation import RunJudged
 
-SCHEMA = 1
+SCHEMA = 2  # 1 counted the fall from another place
 KIND = "walks"
 FOLDER = "walks"
 WALKS_TOML, DRAWS, LEFT_OUT, MANIFEST = "walks.toml", "draws.npz", "left_out.csv", "manifest.json"
@@ -147,7 +147,8 @@ def read_walks_beside(slip_toml: Path) -> StoredWalks | None:
         content = tomllib.loads(file.read_text(encoding="utf-8"))
         if content["schema"] != SCHEMA:
             raise DataError(
-                f"has schema {content['schema']}, this version reads {SCHEMA}; update zebro-lab",
+                f"has schema {content['schema']}, this version reads {SCHEMA}; fit the walks again "
+                "with calibrate-slip --walks, or update zebro-lab where it is the older",
                 file=file,
             )
         _require_same_slip(content, slip_toml, file)

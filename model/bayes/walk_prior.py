@@ -14,10 +14,12 @@ from model.slip.law import Array
 
 OFFSETS = tuple(f"leg_offset{leg}" for leg in range(1, N_LEGS + 1))
 FLOOR = ("grip", "slip_stiffness", "fall")
-FALLS = (
-    0.0,
-    1.5,
-)  # traction that rises from its peak on is none; that which falls more, unheard of
+# Whether a stepping leg's traction falls beyond its peak as under a rig's steady slip (1), or not
+# at all (0), as friction by velocity does, nobody has measured. Mean and standard deviation of both
+# views, equally likely:
+FALL, FALL_SD = 0.5, 0.5
+# Traction that rises from its peak on is none; that which falls more, unheard of.
+FALLS = (0.0, 1.5)
 NAMES = (*OFFSETS, *FLOOR, "common_offset", "leg_arc", "steering", "stride")
 UNITS = (*["rad"] * N_LEGS, "log", "log", "-", "rad", "rad", "rad/m", "-")
 WRONG = len(NAMES)  # index of the wrong leg's further offset, behind the others
@@ -70,7 +72,7 @@ class WalkPrior:
         grip_sd: Standard deviation of the logarithm of the factor on traction: floor and rig differ
             [-].
         stiffness_sd: That of the factor on slip stiffness [-].
-        fall_sd: That of the factor on the fall beyond the peak: 1 is the rig's, 0 none [-].
+        fall_sd: That of the factor on the fall beyond the peak, about `FALL` [-].
         steering_sd: Standard deviation of the turn that is not the legs' [rad/m].
         stride_sd: That of the relative error of distance [-].
         spread: What the walking model gets wrong anew in each walk.
@@ -86,7 +88,7 @@ class WalkPrior:
     wrong: float = 0.2
     grip_sd: float = 0.3
     stiffness_sd: float = 0.5
-    fall_sd: float = 0.5
+    fall_sd: float = FALL_SD
     steering_sd: float = 0.01
     stride_sd: float = 0.005
     spread: ModelSpread = field(default_factory=ModelSpread)
@@ -143,7 +145,7 @@ def legs_of(values: Array, case: Case, *, walk: int | None = None) -> LegState:
         offset=offset + common[:, None],
         grip=np.exp(grip),
         stiffness=np.exp(stiffness),
-        fall=np.clip(1 + fall, *FALLS),
+        fall=np.clip(FALL + fall, *FALLS),
         arc=arc,
         steering=steering,
         stride=stride,

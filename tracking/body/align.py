@@ -35,10 +35,11 @@ SCALE_SD = 5e-3
 
 MODEL_FACTOR = 4.0
 """By how much what a flat picture leaves out (shading, rims, legs) exceeds white noise, as a factor
-of variance [-]."""
+of variance. All of these change slowly: an alignment by edges is not widened by it [-]."""
 
 MODEL_STEPS = 0.03
-"""Error of an alignment that no number of points averages away, in steps of the template [-].
+"""Error of an alignment that no number of points averages away, in steps of the template; in pixels
+of the photograph where the template is drawn and not cut out of another [-].
 
 Both pictures are read between their pixels, and the template errs as the photograph it was cut from
 does. With 0.02, errors along x of 200 simulated poses were 1.11 times what was stated."""
@@ -156,7 +157,7 @@ class _Job:
         colours = cv2.GaussianBlur(template.colours, (0, 0), max(blur / max(density, 1e-3), 0.1))
         hidden = None if visible is None else (~visible[window]).astype(np.float32)
         # Blurred pixels repeat each other over the area of the blur, 4 pi s².
-        repeated = MODEL_FACTOR * max(1.0, (4 * np.pi * blur**2 + 1) / density**2)
+        repeated = max(1.0, (4 * np.pi * blur**2 + 1) / density**2)
         return cls(
             low.astype(float),
             np.asarray(picture, dtype=np.float32),
@@ -167,8 +168,8 @@ class _Job:
             points,
             np.asarray(colours, dtype=float).reshape(-1, 3),
             prior,
-            repeated,
-            _least_covariance(template),
+            repeated if shines_through else MODEL_FACTOR * repeated,
+            _least_covariance(template, density),
             least_visible,
             template.colours.shape[:2] if shines_through else None,
         )
@@ -286,9 +287,13 @@ def _without_slow(field: Array, used: NDArray[np.bool_], raster: tuple[int, int]
     return field - (mean[1:] / mean[0]).T.reshape(field.shape)
 
 
-def _least_covariance(template: BodyTemplate) -> Array:
-    slip = MODEL_STEPS * template.step
-    turn = slip / (0.375 * template.plate.length)  # errors of yaw are then as stated, too
+def _least_covariance(template: BodyTemplate, density: float) -> Array:
+    # Levers in lengths of the top, by which errors of yaw are as stated, too.
+    step, lever = template.step, 0.375
+    if template.drawn:
+        step, lever = template.step / max(density, 1e-3), 0.6
+    slip = MODEL_STEPS * step
+    turn = slip / (lever * template.plate.length)
     return np.diag([slip, slip, 0, 0, 0, turn]) ** 2
 
 

@@ -67,12 +67,14 @@ class BodyTemplate:
         points_body: Places in the body frame, rows from the front to the rear and in each from
             left to right, as a person ahead-up sees it, shape (rows, columns, 3) [m].
         colours: BGR at these places, shape (rows, columns, 3).
+        drawn: Whether it is computed, and not cut out of a photograph and its pixels.
     """
 
     plate: TopPlate
     step: float
     points_body: Array
     colours: NDArray[np.float32]
+    drawn: bool = False
 
     @property
     def contrast(self) -> float:
@@ -173,7 +175,8 @@ def marker_template(marker: RobotMarker, *, points: int = 36) -> BodyTemplate:
         (ahead + marker.position[0], left + marker.position[1], np.full_like(ahead, plate.height)),
         axis=-1,
     )
-    return BodyTemplate(plate, width / points, xyz, np.repeat(grey[:, :, None], 3, axis=2))
+    colours = np.repeat(grey[:, :, None], 3, axis=2)
+    return BodyTemplate(plate, width / points, xyz, colours, drawn=True)
 
 
 def _grid(plate: TopPlate, step: float) -> Array:

@@ -56,12 +56,14 @@ LEAST_SAMENESS = 0.6
 """Least concordance of the visible part of a hidden exposure with the clear one it is compared to.
 Being of one picture they have light and contrast in common, which a floor's pattern has not [-]."""
 
-OTHERS_SD = 1 / 75
+OTHERS_SD = 1 / 200
 """Error of a place where others show as much as the robot does, in lengths of its template.
 
 What shines through is no noise that many points average away: it has edges and cells of its own,
-which draw the alignment to them. It grows with their share, sqrt(1 - score²) / score."""
+which draw the alignment to them. It grows with their power, (1 - score²) / score², and was chosen
+by 336 exposures of simulated walks that no test draws."""
 
+_LEVER = 0.7  # of the template's length: that much off at its ends turns it
 _SAME = 0.4  # of the template's length: nearer than this two are one
 _SLIP = 0.1  # of the template's length: farther edges alone lead astray
 _BESIDE = 1.25  # of the body's length
@@ -195,9 +197,9 @@ class _Search:
 
     def among_others(self, alignment: Alignment) -> Alignment:
         """Add what others that shine through do to the place and heading of an exposure."""
-        share = np.sqrt(max(1 - alignment.score**2, 0.0)) / alignment.score
-        slip = OTHERS_SD * self.template.plate.length * share
-        turn = slip / (0.6 * self.template.plate.length)
+        power = max(1 - alignment.score**2, 0.0) / alignment.score**2
+        slip = OTHERS_SD * self.template.plate.length * power
+        turn = slip / (_LEVER * self.template.plate.length)
         added = np.diag([slip, slip, 0, 0, 0, turn]) ** 2
         pose = replace(alignment.pose, covariance=alignment.pose.covariance + added)
         return replace(alignment, pose=pose)

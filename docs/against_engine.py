@@ -139,7 +139,7 @@ def by_contacts(one: EngineWalk) -> np.ndarray:
 def print_bends(walks: Sequence[EngineWalk]) -> None:
     """Print what each walk, and those of matched heights together, say of the model's errors."""
     bends = [bend(one, by_dynamics(one, FINE)) for one in walks]
-    matched = [each for one, each in zip(walks, bends, strict=True) if heights_match(one)]
+    matched = [bends[i] for i, one in enumerate(walks) if heights_match(one)]
     print(f"\ndynamics by steps of {1e3 * FINE.dt:g} ms, to be stretched and bent:\n")
     print("| walk | distance | curvature | by contacts | |\n|---|---:|---:|---:|---:|")
     for one, (distance, curvature) in zip(walks, bends, strict=True):
@@ -148,11 +148,10 @@ def print_bends(walks: Sequence[EngineWalk]) -> None:
             f"| {one.name} | {100 * distance:+.2f} % | {curvature:+.4f} rad/m | "
             f"{100 * longer:.2f} % | {rounder:.4f} rad/m |"
         )
-    distance, curvature = np.sqrt((np.array(matched) ** 2).mean(axis=0))
-    print(
-        f"\nroot mean square of tripods that lift off at matched heights: {100 * distance:.2f} %, "
-        f"{curvature:.4f} rad/m"
-    )
+    print()
+    for of, some in (("all", bends), ("tripods that lift off at matched heights", matched)):
+        distance, curvature = np.sqrt((np.array(some) ** 2).mean(axis=0))
+        print(f"root mean square of {of}: {100 * distance:.2f} %, {curvature:.4f} rad/m")
 
 
 def heights_match(one: EngineWalk) -> bool:

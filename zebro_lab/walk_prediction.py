@@ -134,6 +134,33 @@ def judge_from(
         index: The walk's index in the posterior, when it was among those fitted.
         threads: Walks computed at once.
     """
+    prediction = predict_from(
+        posterior, walk, slip, rng=rng, draws=draws, index=index, threads=threads
+    )
+    return judge_run(walk.name, prediction, walk.track, anchor=True, rng=rng)
+
+
+def predict_from(
+    posterior: WalkPosterior,
+    walk: WalkOnFile,
+    slip: Slip,
+    *,
+    rng: np.random.Generator,
+    draws: int = DRAWS,
+    index: int | None = None,
+    threads: int = 2,
+) -> Prediction:
+    """Predict a walk from a posterior, and by simpler models; its track is not looked at.
+
+    Args:
+        posterior: What other walks said.
+        walk: The walk.
+        slip: The rig's calibration.
+        rng: Source of randomness.
+        draws: Paths in the band.
+        index: The walk's index in the posterior, when it was among those fitted.
+        threads: Walks computed at once.
+    """
     t = np.linspace(0.0, walk.duration, max(round(walk.duration / SAMPLING), 2) + 1)
     state = posterior.draw(draws, rng=rng, walk=index)
     band = _walked(walk, slip, state, t, posterior.prior.spread, rng, threads)
@@ -143,8 +170,7 @@ def judge_from(
     told = SampledReference(t, angles.angles(t) + robot.leg_offset)
     turned = single.yaw[-1] - single.yaw[0]
     baselines, notes = walk_baselines(robot, told, direction="left" if turned >= 0 else "right")
-    prediction = Prediction(single, band, baselines, walk.source, walk.files, notes)
-    return judge_run(walk.name, prediction, walk.track, anchor=True, rng=rng)
+    return Prediction(single, band, baselines, walk.source, walk.files, notes)
 
 
 def _walked(

@@ -26,7 +26,7 @@ MOST_ROUNDS = 10
 WANTED = 150.0  # effective draws
 TAIL = 5  # degrees of freedom of what is drawn from
 ENOUGH = 60.0  # effective draws that a round's Gaussians are taken from
-BEGUN = 2.0  # draws a dimension that a case's first Gaussian counts as beside weighted ones
+BEFORE = 2.0  # draws a dimension that a case's last covariance counts as beside weighted ones
 PATIENCE = 3  # rounds of Gaussians alone, which are the better where they do at all
 CENTRES = 50  # draws that a round's narrower bumps are put around
 WIDTHS = (0.6, 0.3)  # of them, in turn, in standard deviations of their case
@@ -102,11 +102,11 @@ def weighted_draws(
         if 1 / (weight @ weight) >= WANTED or len(rounds) == MOST_ROUNDS:
             return WeightedDraws(z, case, weight, log_q)
         flat = _tempered(log_p - log_q)
-        adapted = _adapted(modes, z, case, flat)
-        bumps = _around_modes(adapted)
+        modes = _adapted(modes, z, case, flat)
+        bumps = _around_modes(modes)
         if len(rounds) >= PATIENCE and 1 / (weight @ weight) < ENOUGH:
             width = WIDTHS[len(rounds) % len(WIDTHS)]
-            bumps += _around_draws(adapted, z, case, flat, width, rng)
+            bumps += _around_draws(modes, z, case, flat, width, rng)
         rounds.append(bumps)
 
 
@@ -198,10 +198,10 @@ def _shares(modes: Sequence[Mode]) -> Array:
 
 
 def _adapted(modes: Sequence[Mode], z: Array, case: NDArray[np.intp], weight: Array) -> list[Mode]:
-    """Take each case's share, mean and covariance from its weighted draws and what it began with.
+    """Take each case's Gaussian from its weighted draws, but its covariance partly from before.
 
     A covariance from few draws is too narrow where none of them happened to lie, so that one draw
-    there outweighs all others. What a case began with counts as so many draws more.
+    there outweighs all others. That of the round before counts as so many draws more.
     """
     adapted = []
     for i, mode in enumerate(modes):
@@ -209,25 +209,14 @@ def _adapted(modes: Sequence[Mode], z: Array, case: NDArray[np.intp], weight: Ar
         share = float(w.sum())
         if share > 0:
             effective = share**2 / (w @ w)
-            mode = _joined(mode, z, w / share, effective / (effective + BEGUN * z.shape[1]))
+            mean = w @ z / share
+            away = z - mean
+            part = effective / (effective + BEFORE * z.shape[1])
+            covariance = part * (away.T @ (away * w[:, None])) / share
+            covariance += (1 - part) * mode.covariance + 1e-4 * np.eye(z.shape[1])
+            mode = replace(mode, z=mean, covariance=covariance)
         adapted.append(replace(mode, log_evidence=float(np.log(max(share, 1e-12)))))
     return adapted
-
-
-def _joined(mode: Mode, z: Array, weight: Array, part: float) -> Mode:
-    """Return mean and covariance of a Gaussian and of weighted draws together.
-
-    Args:
-        mode: The Gaussian.
-        z: The draws, shape (n, d).
-        weight: Their weights, together one, shape (n,).
-        part: What part of all the draws are [-].
-    """
-    mean = weight @ z
-    away, apart = z - mean, mean - mode.z
-    covariance = part * (away.T @ (away * weight[:, None])) + (1 - part) * mode.covariance
-    covariance += part * (1 - part) * np.outer(apart, apart) + 1e-4 * np.eye(z.shape[1])
-    return replace(mode, z=mode.z + part * apart, covariance=covariance)
 
 
 def _tempered(log: Array) -> Array:

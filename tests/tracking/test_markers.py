@@ -99,6 +99,17 @@ def test_dark_blurred_coded_markers_are_found_where_plain_detection_fails():
     assert np.sqrt(np.mean(np.square(errors))) < 0.25
 
 
+@pytest.mark.parametrize("contrast", [0.05, 0.15])
+def test_dark_markers_are_found_as_bright_ones_are(contrast):
+    found = []
+    for seed in range(8):
+        rng = np.random.default_rng(seed)
+        quad = random_quad(rng, 50)
+        grey = photograph(quad, rng, blur=2.2, noise=0.7, contrast=contrast)
+        found += find_markers(grey, "4x4_50", wanted=[0])
+    assert len(found) == 8
+
+
 def test_the_covariance_of_corners_holds_for_noisy_pictures():
     rng = np.random.default_rng(3)
     distances = []

@@ -27,6 +27,9 @@ LEAST_SCORE = 0.5
 """Least correlation for a marker that OpenCV decoded bit by bit [-]."""
 
 
+_DARK_COUNTS = 128  # from black to white: fewer make a dark picture
+
+
 class Region(NamedTuple):
     """A window of the picture, in whole pixels: left, top, right and bottom (excluded) [px]."""
 
@@ -70,7 +73,8 @@ def find_markers(
         region: Where to look; the whole picture when None.
         effort: 0 OpenCV's detector alone, corners in whole pixels of the black border; 1 corners
             fitted, and quadrilaterals that OpenCV rejected compared; 2 also in a picture that is
-            enlarged and levelled, when something wanted is still missing.
+            brightened, and one that is enlarged and levelled, when something wanted is still
+            missing.
 
     Returns:
         What was found, ordered by number. A number that occurs twice was seen twice.
@@ -84,8 +88,10 @@ def find_markers(
         return tuple(_moved(s, (area.left, area.top)) for s in _plain(grey, dictionary, numbers))
     found = _with_opencv(grey, dictionary, numbers)
     missing = _missing(numbers, found)
-    if effort > 1 and missing:
-        found += _enlarged(grey, dictionary, missing)
+    for again in (_brightened, _enlarged) if effort > 1 else ():
+        if missing:
+            found += again(grey, dictionary, missing)
+            missing = _missing(numbers, found)
     moved = (_moved(sighting, (area.left, area.top)) for sighting in found)
     return tuple(sorted(moved, key=lambda sighting: sighting.marker_id))
 
@@ -149,6 +155,17 @@ def _decoded(
     pairs = zip(corners, [] if ids is None else np.ravel(ids), strict=True)
     quads = [(np.asarray(quad, dtype=float).reshape(4, 2), int(number)) for quad, number in pairs]
     return [(quad, number) for quad, number in quads if number in numbers]
+
+
+def _brightened(grey: NDArray[np.uint8], dictionary: str, numbers: Sequence[int]) -> list[Sighting]:
+    """Look again in a dark picture: OpenCV's threshold is 7 counts, of however few there are."""
+    darkest, brightest = np.percentile(grey, (0.1, 99.9))
+    if not 0 < brightest - darkest < _DARK_COUNTS:
+        return []
+    gain = 255 / (brightest - darkest)
+    bright = cv2.convertScaleAbs(np.maximum(grey, darkest) - darkest, alpha=gain)
+    corners, _, others = _detector(dictionary, patient=False).detectMarkers(bright)
+    return recognise(grey, (*corners, *others), dictionary, numbers)
 
 
 def _enlarged(grey: NDArray[np.uint8], dictionary: str, numbers: Sequence[int]) -> list[Sighting]:

@@ -2,6 +2,7 @@
 """Messages of one type in a ROS 2 log, up to where it is damaged."""
 
 from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import IO, Any, NamedTuple
 
@@ -67,9 +68,25 @@ def _messages(file: IO[bytes], name: str) -> Iterator[LoggedMessage]:
         elif isinstance(record, Channel):
             schema = schemas.get(record.schema_id)
             if schema is not None and schema.name == name:
-                decode = factory.decoder_for(record.message_encoding, schema)
+                with _damage_of(f"the log's description of {name}"):
+                    decode = factory.decoder_for(record.message_encoding, schema)
                 if decode is not None:
                     decoders[record.id] = (record.topic, decode)
         elif isinstance(record, Message) and record.channel_id in decoders:
             topic, decode = decoders[record.channel_id]
-            yield LoggedMessage(topic, record.log_time, decode(record.data))
+            with _damage_of(f"a message of {topic}"):
+                content = decode(record.data)
+            yield LoggedMessage(topic, record.log_time, content)
+
+
+@contextmanager
+def _damage_of(what: str) -> Iterator[None]:
+    """Call damage what the decoder raises: its parser of descriptions has no one error for it.
+
+    Raises:
+        ValueError: The decoder failed.
+    """
+    try:
+        yield
+    except Exception as error:
+        raise ValueError(f"{what} cannot be read: {type(error).__name__}: {error}") from error

@@ -4,7 +4,8 @@
 python docs/drivers_fuzz.py [INPUTS [PART OF A PARSER'S NAME]]
 
 Of every five inputs one is random, one valid, and the others are valid ones with bytes changed, cut
-short, or spliced from two. A million take a few minutes a parser, two hours in all.
+short, or spliced from two. A million take a few minutes a parser, two hours in all; those of files
+write every input, so that a TMPDIR in memory (/dev/shm) saves more than that.
 """
 
 import io

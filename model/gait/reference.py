@@ -70,8 +70,8 @@ class SampledReference:
     def angles(self, t: ArrayLike) -> Array:
         """Interpolate the leg angles; held still before the first and after the last sample."""
         at = np.atleast_1d(np.asarray(t, dtype=float))
-        t, theta = np.ascontiguousarray(self.t), np.ascontiguousarray(self.theta)
-        return _between(t.astype(float), theta.astype(float), np.ascontiguousarray(at))
+        t, theta, at = (np.ascontiguousarray(a, dtype=float) for a in (self.t, self.theta, at))
+        return _between(t, theta, at)
 
     def speeds(self, t: ArrayLike) -> Array:
         """Compute the slope of the line at times t; zero outside the samples [rad/s]."""

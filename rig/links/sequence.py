@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 LATE_WINDOW: Final = 64
+"""Numbers back to which a sample is late, where a device says nothing of its own."""
 SLACK: Final = 64
 
 

@@ -1,0 +1,77 @@
+# SPDX-License-Identifier: MIT
+"""The robot's body as a box, which hides what is behind it."""
+
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from tracking.camera.lens import Array, Camera, CameraPose, project, to_floor
+from tracking.composite.plane import Plane
+from tracking.pose import rotation_with_derivatives
+
+
+@dataclass(frozen=True)
+class BodyBox:
+    """A box as long and wide as the robot, from its top to as far below its origin.
+
+    Attributes:
+        camera: The lens.
+        view: Where the camera stands.
+        size: Length and width [m].
+        top: Height of the robot's top over its origin [m].
+        height: Height of its origin over the floor where it stands level [m].
+    """
+
+    camera: Camera
+    view: CameraPose
+    size: tuple[float, float]
+    top: float
+    height: float
+
+    def hidden(self, state: Array, *, left: float) -> NDArray[np.bool_]:
+        """Mark the pixels of a photograph that it covers.
+
+        Args:
+            state: Pose, shape (6,).
+            left: What scissors leave around it, as a share of its length [-].
+
+        Returns:
+            Shape (height, width).
+        """
+        width, height = self.camera.size
+        return _filled(self._outline(state, self._corners(left)), (height, width))
+
+    def top_seen(self, state: Array) -> NDArray[np.bool_]:
+        """Mark the pixels of its top, shape (height, width)."""
+        width, height = self.camera.size
+        return _filled(self._outline(state, self._corners(0.0)[1::2]), (height, width))
+
+    def hidden_on(self, plane: Plane, pose: Array, *, left: float) -> NDArray[np.bool_]:
+        """Mark the points of a plane at its top that it covers, standing level at x, y and yaw."""
+        state = np.array([pose[0], pose[1], self.height, 0.0, 0.0, pose[2]])
+        seen = self._outline(state, self._corners(left))
+        xy = to_floor(self.camera, self.view, seen, self.height + self.top)
+        points = np.column_stack((xy[:, 0] - plane.low[0], plane.high[1] - xy[:, 1])) / plane.cell
+        return _filled(points, plane.seen_px.shape[:2])
+
+    def _corners(self, left: float) -> Array:
+        length, width = self.size
+        return np.array([
+            (side_x * (0.5 + left) * length, side_y * (0.5 * width + left * length), z)
+            for side_x in (-1, 1)
+            for side_y in (-1, 1)
+            for z in (-self.top, self.top)
+        ])  # fmt: skip
+
+    def _outline(self, state: Array, points_body: Array) -> Array:
+        R, _ = rotation_with_derivatives(*state[3:])
+        return project(self.camera, self.view, points_body @ R.T + state[:3])
+
+
+def _filled(points: Array, shape: tuple[int, ...]) -> NDArray[np.bool_]:
+    mask = np.zeros(shape, dtype=np.uint8)
+    if np.isfinite(points).all():
+        cv2.fillConvexPoly(mask, cv2.convexHull(np.round(points).astype(np.int32)), (1,))
+    return mask.astype(bool)

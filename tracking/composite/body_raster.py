@@ -1,0 +1,113 @@
+# SPDX-License-Identifier: MIT
+"""A raster on the robot's top, to read a picture where it would be and to draw it there."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tracking.body.template import BodyTemplate, TopPlate, sample
+from tracking.camera.lens import Array
+from tracking.composite.plane import Plane
+
+Window = tuple[slice, slice]
+
+
+@dataclass(frozen=True)
+class BodyRaster:
+    """Points of a level rectangle in the body frame, front to rear and in each row left to right.
+
+    Attributes:
+        x: Ahead of the body's middle, shape (rows, columns) [m].
+        y: To its left, shape (rows, columns) [m].
+        cell: Distance between neighbouring points [m].
+        margin: Rows and columns on each side that are around the body.
+    """
+
+    x: Array
+    y: Array
+    cell: float
+    margin: int = 0
+
+    @classmethod
+    def over(cls, size: tuple[float, float], cell: float, margin: int = 0) -> "BodyRaster":
+        """Lay a raster over a body of a length and a width [m], and so many cells around it."""
+        rows, columns = (round(side / cell) + 2 * margin for side in size)
+        ahead = ((rows - 1) / 2 - np.arange(rows)) * cell
+        left = ((columns - 1) / 2 - np.arange(columns)) * cell
+        x, y = np.meshgrid(ahead, left, indexing="ij")
+        return cls(x, y, cell, margin)
+
+    @property
+    def body(self) -> Window:
+        """Rows and columns on the body itself."""
+        rows, columns = self.x.shape
+        return slice(self.margin, rows - self.margin), slice(self.margin, columns - self.margin)
+
+    def thinned(self) -> "BodyRaster":
+        """Take every second point."""
+        return BodyRaster(self.x[1::2, 1::2], self.y[1::2, 1::2], 2 * self.cell)
+
+    def template(self, values: NDArray[np.float32], height: float) -> BodyTemplate:
+        """Take values on the body, shape (rows, columns, 3), for the picture of a flat top."""
+        rows, columns = self.body
+        x, y = self.x[rows, columns], self.y[rows, columns]
+        points = np.stack((x, y, np.full_like(x, height)), axis=-1)
+        plate = TopPlate(
+            x.shape[0] * self.cell, x.shape[1] * self.cell, height, margin=0.0, front_margin=0.0
+        )
+        return BodyTemplate(plate, self.cell, points, values[rows, columns])
+
+    def on(self, plane: Plane, poses: Array) -> Array:
+        """Compute where the points are on a plane's raster, shape (n, rows, columns, 2)."""
+        c, s = (f(poses[:, 2])[:, None, None] for f in (np.cos, np.sin))
+        x = poses[:, 0][:, None, None] + c * self.x - s * self.y
+        y = poses[:, 1][:, None, None] + s * self.x + c * self.y
+        return np.stack(((x - plane.low[0]) / plane.cell, (plane.high[1] - y) / plane.cell), -1)
+
+    def read(self, layer: NDArray, plane: Plane, pose: Array) -> NDArray[np.float32]:
+        """Read a layer of the plane where the robot would be, shape (rows, columns, ...)."""
+        return sample(layer, self.on(plane, pose[None])[0])
+
+    def window(self, plane: Plane, pose: Array) -> Window:
+        """Compute which rows and columns of a plane's raster the robot may cover."""
+        columns_rows = self.on(plane, pose[None])[0][[0, 0, -1, -1], [0, -1, 0, -1]]
+        size = np.array(plane.seen_px.shape[1::-1])
+        low = np.clip(np.floor(columns_rows.min(axis=0)).astype(int), 0, size)
+        high = np.clip(np.ceil(columns_rows.max(axis=0)).astype(int) + 1, low, size)
+        return slice(low[1], high[1]), slice(low[0], high[0])
+
+    def laid(
+        self, values: NDArray[np.float32], plane: Plane, pose: Array
+    ) -> tuple[Window, NDArray[np.float32]]:
+        """Lay values of the raster on a plane.
+
+        Args:
+            values: Shape (rows, columns, ...).
+            plane: Where.
+            pose: x, y [m] and yaw [rad] of the robot, shape (3,).
+
+        Returns:
+            The part of the plane, and the values there, 0 outside the raster.
+        """
+        window = self.window(plane, pose)
+        rows, columns = (np.arange(part.start, part.stop) for part in window)
+        dx = (plane.low[0] + columns * plane.cell - pose[0])[None, :]
+        dy = (plane.high[1] - rows * plane.cell - pose[1])[:, None]
+        c, s = np.cos(pose[2]), np.sin(pose[2])
+        ahead, left = c * dx + s * dy, c * dy - s * dx
+        place = np.stack((self.y[0, 0] - left, self.x[0, 0] - ahead), axis=-1) / self.cell
+        if place.size == 0:
+            return window, np.zeros((*place.shape[:2], *values.shape[2:]), np.float32)
+        return window, sample(values, place)
+
+    def between(self, pose: Array, other: Array) -> Array:
+        """Compute the affine map from this raster at one pose to the same at another, (2, 3)."""
+        return (np.linalg.inv(self._to_world(other)) @ self._to_world(pose))[:2]
+
+    def _to_world(self, pose: Array) -> Array:
+        raster = np.array(
+            [[0, -self.cell, self.x[0, 0]], [-self.cell, 0, self.y[0, 0]], [0, 0, 1]]
+        )
+        c, s = np.cos(pose[2]), np.sin(pose[2])
+        return np.array([[c, -s, pose[0]], [s, c, pose[1]], [0, 0, 1]]) @ raster

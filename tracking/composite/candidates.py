@@ -1,0 +1,79 @@
+# SPDX-License-Identifier: MIT
+"""Places where an exposure may be: beside another, or where the last step leads."""
+
+import numpy as np
+
+from tracking.camera.lens import Array
+from tracking.composite.chain import distances
+
+REACH = 1.25
+"""From one exposure to the next beside it, in lengths of the robot [-]."""
+
+LEAST_STEP = 0.25
+"""Nearer than this two exposures are one, in lengths of the robot [-]."""
+
+_TURNS = np.radians(np.arange(-30.0, 31.0, 7.5))
+_SIDEWAYS = np.radians(40.0)  # a robot walks ahead or back, not to its side
+_NEARBY = 0.16  # of the length: how far a step differs from the one before
+_NEARBY_TURNS = np.radians([-8.0, 0.0, 8.0])
+_NEAR, _NEAR_TURN = 0.3, np.radians(16.0)
+
+
+def beside(pose: Array, length: float, *, spacing: float) -> Array:
+    """List places a step ahead of a pose and behind it.
+
+    Args:
+        pose: x, y [m] and yaw [rad], shape (3,).
+        length: Length of the robot [m].
+        spacing: Distance between places [m].
+
+    Returns:
+        Poses, shape (n, 3).
+    """
+    side = np.arange(-REACH * length, REACH * length + 1e-9, spacing)
+    dx, dy = (part.ravel() for part in np.meshgrid(side, side))
+    distance, direction = np.hypot(dx, dy), np.arctan2(dy, dx)
+    places = []
+    for turn in _TURNS:
+        along = np.abs(np.cos(direction - pose[2] - turn / 2)) > np.cos(_SIDEWAYS)
+        ok = along & (distance > LEAST_STEP * length) & (distance < REACH * length)
+        yaw = np.full(ok.sum(), pose[2] + turn)
+        places.append(np.column_stack((pose[0] + dx[ok], pose[1] + dy[ok], yaw)))
+    return np.concatenate(places)
+
+
+def nearby(pose: Array, length: float) -> Array:
+    """List places around where an exposure is expected, shape (n, 3)."""
+    side = np.linspace(-_NEARBY, _NEARBY, 7) * length
+    dx, dy = (part.ravel() for part in np.meshgrid(side, side))
+    return np.concatenate([
+        np.column_stack((pose[0] + dx, pose[1] + dy, np.full(dx.size, pose[2] + turn)))
+        for turn in _NEARBY_TURNS
+    ])  # fmt: skip
+
+
+def is_near(pose: Array, expected: Array, length: float) -> bool:
+    """Tell whether a pose is about where it was expected."""
+    turned = abs(float(np.angle(np.exp(1j * (pose[2] - expected[2])))))
+    return bool(distances(pose[None], expected)[0] < _NEAR * length and turned < _NEAR_TURN)
+
+
+def apart(poses: Array, values: Array, distance: float, *, most: int) -> list[Array]:
+    """Take the best of many places that are apart from each other.
+
+    Args:
+        poses: Shape (n, 3).
+        values: How good they are, -inf where not at all, shape (n,).
+        distance: How far apart [m].
+        most: How many.
+
+    Returns:
+        The best first.
+    """
+    kept: list[Array] = []
+    for k in np.argsort(-values)[:200]:
+        if len(kept) == most or not np.isfinite(values[k]):
+            break
+        if not kept or distances(np.array(kept), poses[k]).min() > distance:
+            kept.append(poses[k])
+    return kept

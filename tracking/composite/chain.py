@@ -1,0 +1,102 @@
+# SPDX-License-Identifier: MIT
+"""Steps from one exposure to the next, and chains of them.
+
+A step is forward and left of the mean heading, and a turn: shape (3,) [m, m, rad]. Intervals of
+photographs are regular and robots do not leap, so that a step is much like the one before it.
+"""
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+from scipy.optimize import minimize
+
+from tracking.camera.lens import Array
+
+
+def step_between(before: Array, after: Array) -> Array:
+    """Compute the step between two poses x, y [m], yaw [rad], each of shape (3,)."""
+    turn = float(np.angle(np.exp(1j * (after[2] - before[2]))))
+    c, s = np.cos(before[2] + turn / 2), np.sin(before[2] + turn / 2)
+    dx, dy = after[:2] - before[:2]
+    return np.array([c * dx + s * dy, -s * dx + c * dy, turn])
+
+
+def stepped(pose: Array, step: Array) -> Array:
+    """Compute the pose after a step."""
+    forward, left, turn = step
+    c, s = np.cos(pose[2] + turn / 2), np.sin(pose[2] + turn / 2)
+    return np.array(
+        [pose[0] + c * forward - s * left, pose[1] + s * forward + c * left, pose[2] + turn]
+    )
+
+
+def stepped_back(pose: Array, step: Array) -> Array:
+    """Compute the pose before a step."""
+    return stepped(pose, -step)
+
+
+def continued(before: Array, after: Array) -> Array:
+    """Compute the pose after two, by the same step again."""
+    return stepped(after, step_between(before, after))
+
+
+def steady_chain(anchor: Array, step: Array, more_turn: float, ahead: int, behind: int) -> Array:
+    """Lay poses by one step, whose turn may grow, ahead of one and behind it.
+
+    Args:
+        anchor: Pose of the one, shape (3,).
+        step: The step after it, shape (3,).
+        more_turn: By how much each step turns more than the one before [rad].
+        ahead: How many poses along the step.
+        behind: How many against it.
+
+    Returns:
+        The anchor, those ahead of it and those behind it, each away from it, shape (n, 3).
+    """
+    poses, here = [anchor], anchor
+    for number in range(ahead):
+        here = stepped(here, step + [0.0, 0.0, number * more_turn])
+        poses.append(here)
+    here = anchor
+    for number in range(1, behind + 1):
+        here = stepped_back(here, step - [0.0, 0.0, number * more_turn])
+        poses.append(here)
+    return np.array(poses)
+
+
+def distances(poses: Array, pose: Array) -> Array:
+    """Compute how far poses, shape (n, 3), are from one [m]."""
+    return np.hypot(*(np.asarray(poses)[:, :2] - pose[:2]).T)
+
+
+def usual_step(poses: Array) -> float:
+    """Compute how far poses, shape (n, 3), usually are from the nearest other [m]."""
+    if len(poses) < 2:
+        return 0.0
+    nearest = [distances(np.delete(poses, k, axis=0), pose).min() for k, pose in enumerate(poses)]
+    return float(np.median(nearest))
+
+
+def improved(
+    value: Callable[[Array], float], start: Array, *, reach: Sequence[float], tries: int
+) -> tuple[Array, float]:
+    """Raise a value by small changes (Nelder and Mead 1965); it need not be smooth.
+
+    Args:
+        value: What to raise, of an array like `start`.
+        start: Where to begin, shape (n,).
+        reach: First changes, shape (n,).
+        tries: Most evaluations.
+
+    Returns:
+        The best place and its value.
+    """
+    scale = np.asarray(reach, dtype=float)
+    corners = np.vstack((np.zeros(len(scale)), np.eye(len(scale))))
+    found = minimize(
+        lambda change: -value(start + change * scale),
+        corners[0],
+        method="Nelder-Mead",
+        options={"maxfev": tries, "initial_simplex": corners},
+    )
+    return start + found.x * scale, -float(found.fun)

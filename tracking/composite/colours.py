@@ -1,0 +1,104 @@
+# SPDX-License-Identifier: MIT
+"""What colours a floor has, and what colours a part of a picture has."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+from scipy.ndimage import gaussian_filter
+from scipy.stats import chi2
+
+from tracking.camera.lens import Array
+
+_TRUSTED = 0.7  # share of the points by which the floor's scatter is judged
+_ODD = 12.0  # squared distance beyond which a colour does not count to the floor's light
+_ROUNDS = 5
+_LEVELS = 32
+_RARE = 0.1  # share of colours that may be any
+
+
+@dataclass(frozen=True)
+class FloorColours:
+    """How a floor looks: its light, which changes slowly, and how its colours scatter about that.
+
+    Attributes:
+        light: Its colour at every place but for its pattern, shape (rows, columns, 3).
+        covariance: Of the pattern, shape (3, 3).
+    """
+
+    light: NDArray[np.float32]
+    covariance: Array
+
+    @classmethod
+    def of(
+        cls, picture: NDArray[np.float32], used: NDArray[np.bool_], *, width: float, noise: float
+    ) -> "FloorColours":
+        """Judge the floor by the greater part of a picture.
+
+        Args:
+            picture: Colours, shape (rows, columns, 3).
+            used: Where it shows the floor or the robot, shape (rows, columns).
+            width: Over how many points the light changes.
+            noise: Least standard deviation of a colour [grey levels].
+
+        Returns:
+            What the floor looks like; the robot may hide up to three tenths of it.
+        """
+        light = _smooth(picture, used, width)
+        inner = chi2.cdf(chi2.ppf(_TRUSTED, 3), 5) / _TRUSTED
+        covariance = np.cov((picture - light)[used].T)
+        for _ in range(_ROUNDS):
+            floor = cls(light, covariance + noise**2 * np.eye(3))
+            far = floor.oddness(picture)
+            usual = used & (far < np.quantile(far[used], _TRUSTED))
+            covariance = np.cov((picture - light)[usual].T) / inner
+            light = _smooth(picture, used & (far < max(_ODD, np.median(far[used]))), width)
+        return cls(light, covariance + noise**2 * np.eye(3))
+
+    @cached_property
+    def whitening(self) -> Array:
+        """Matrix by which the pattern's colours are multiplied to scatter alike, shape (3, 3)."""
+        return np.linalg.cholesky(np.linalg.inv(self.covariance))
+
+    def oddness(self, picture: NDArray[np.float32]) -> NDArray[np.float32]:
+        """Compute how far colours are from the floor's, squared, in its scatter (Mahalanobis)."""
+        return (((picture - self.light) @ self.whitening) ** 2).sum(axis=-1).astype(np.float32)
+
+    def density(self, picture: NDArray[np.float32]) -> Array:
+        """Compute the density of colours on the floor, per cubed grey level."""
+        scale = np.sqrt((2 * np.pi) ** 3 * np.linalg.det(self.covariance))
+        return np.exp(-0.5 * self.oddness(picture)) / scale
+
+
+@dataclass(frozen=True)
+class ColourDensity:
+    """How dense colours are in some part of a picture, per cubed grey level.
+
+    Attributes:
+        table: By blue, green and red, shape (32, 32, 32).
+    """
+
+    table: Array
+
+    @classmethod
+    def of(cls, colours: NDArray[np.float32], *, blur: float) -> "ColourDensity":
+        """Count colours, shape (n, 3); blurred by so many of 32 levels."""
+        counts, _ = np.histogramdd(colours, bins=(_LEVELS,) * 3, range=[(0, 256)] * 3)
+        known = gaussian_filter(counts, blur) / max(len(colours), 1) / (256 / _LEVELS) ** 3
+        return cls((1 - _RARE) * known + _RARE / 256**3)
+
+    def __call__(self, colours: NDArray[np.float32]) -> Array:
+        """Return the density of colours, shape (..., 3)."""
+        cell = np.clip(colours * (_LEVELS / 256), 0, _LEVELS - 1).astype(int)
+        return self.table[cell[..., 0], cell[..., 1], cell[..., 2]]
+
+
+def _smooth(
+    picture: NDArray[np.float32], used: NDArray[np.bool_], width: float
+) -> NDArray[np.float32]:
+    weight = used.astype(np.float32)
+    total = cv2.GaussianBlur(picture * weight[..., None], (0, 0), width)
+    share = cv2.GaussianBlur(weight, (0, 0), width)
+    return np.asarray(total / np.maximum(share, 1e-3)[..., None], dtype=np.float32)

@@ -1,0 +1,372 @@
+# SPDX-License-Identifier: MIT
+"""Read a picture that holds, of each pixel, the darkest value of all exposures.
+
+Where exposures overlap each shows only where it is the darkest, and never does the picture get
+brighter than any of them: that is what tells where they can be. A set of exposures is judged by
+how much likelier it makes the picture than the bare floor does, point by point of its raster: a
+point that some exposure covers has the darkest of their colours, or, hidden by a leg, a side or a
+shadow, a darker one of those that the robot's neighbourhood has; hardly ever a brighter one.
+
+How the robot looks is known by one exposure, on which others lie; what they hide of it shows in
+others, as the brightest that is seen of a point of its top. While some exposures are still missing
+their pattern repeats as if it were the robot's own, so that exposures are not taken one by one:
+chains of a steady step from the known exposure on are compared as wholes.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import pairwise
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tracking.body.template import sample
+from tracking.camera.lens import Array
+from tracking.composite.body_raster import BodyRaster
+from tracking.composite.candidates import LEAST_STEP, apart, beside, is_near, nearby
+from tracking.composite.chain import (
+    continued,
+    distances,
+    improved,
+    steady_chain,
+    step_between,
+    usual_step,
+)
+from tracking.composite.colours import ColourDensity, FloorColours
+from tracking.composite.plane import Plane
+
+NOISE = 12.0
+"""Standard deviation of a colour of the robot from one exposure to another [grey levels]."""
+
+LEAST_ODDS = 0.25
+"""Least log odds of an exposure, mean over what it claims [-]."""
+
+LEAST_GAIN = 0.15
+"""By how much the log odds of a chain must rise for one exposure more, mean over its points [-]."""
+
+LEAST_CLAIM = 0.12
+"""Least share of its points that an exposure must claim: of these it is the darkest [-]."""
+
+MOST_EXPOSURES = 24
+
+_SEEN = 0.6  # share of the robot's own points that show it and not a darker thing
+_OWN_LOOK = 0.6  # weight of how the known exposure looks, beside the brightest seen of all
+_BRIGHTER = 0.01  # how often a point is brighter than it could be
+_FLOOR_SHARE = 0.85
+_ODD, _LIKE_FLOOR = 20.0, 12.0  # squared distances from the floor's colours
+_OPEN = 1000.0  # brighter than anything: no exposure
+_LEAST_SEEN = 0.6  # share of an exposure that must be in the picture
+_FAR = 2.5  # in standard deviations: another colour
+_CLAIM = 6.0  # darker than others by this, it is an exposure's own [grey levels]
+_FIRST_STEPS = 10
+_CLIMB = (0.01, 0.01, 0.1)
+_POLISH = (0.006, 0.006, 0.05)
+
+
+class Look(NamedTuple):
+    """How the robot's top looks: by the known exposure, and by the brightest seen of each point."""
+
+    own: NDArray[np.float32]
+    brightest: NDArray[np.float32]
+
+
+class Cover(NamedTuple):
+    """The darkest of some exposures at every point, by both looks, and how likely that makes it."""
+
+    own: NDArray[np.float32]
+    brightest: NDArray[np.float32]
+    log_density: NDArray[np.float32]
+
+
+@dataclass(frozen=True)
+class Chain:
+    """Exposures by one steady step from the known one."""
+
+    step: Array  # and by how much it turns more each time
+    ahead: int
+    behind: int
+
+    def poses(self, anchor: Array) -> Array:
+        return steady_chain(anchor, self.step[:3], float(self.step[3]), self.ahead, self.behind)
+
+    @classmethod
+    def through(cls, poses: Sequence[Array]) -> "Chain":
+        """Take the usual step between poses, all ahead of the first."""
+        steps = [step_between(a, b) for a, b in pairwise(poses)]
+        return cls(np.append(np.median(steps, axis=0), 0.0), len(steps), 0)
+
+    @property
+    def with_some_between(self) -> "Chain":
+        """The same chain with an exposure more between each two: every second may be missed."""
+        return Chain(self.step * [0.5, 0.5, 0.5, 0.25], 2 * self.ahead, 2 * self.behind)
+
+    @property
+    def longer(self) -> tuple["Chain", "Chain"]:
+        return (
+            Chain(self.step, self.ahead + 1, self.behind),
+            Chain(self.step, self.ahead, self.behind + 1),
+        )
+
+
+@dataclass(frozen=True)
+class DarkestReading:
+    """A picture of the darkest values, on a raster.
+
+    Attributes:
+        plane: The raster.
+        picture: Colours on it, shape (rows, columns, 3).
+        used: Where it shows floor or robot.
+        body: Points of the robot.
+        length: The robot's length [m].
+    """
+
+    plane: Plane
+    picture: NDArray[np.float32]
+    used: NDArray[np.bool_]
+    body: BodyRaster
+    length: float
+
+    @cached_property
+    def floor(self) -> FloorColours:
+        """How the floor looks."""
+        return FloorColours.of(
+            self.picture, self.used, width=self.length / self.plane.cell, noise=3.0
+        )
+
+    @cached_property
+    def oddness(self) -> NDArray[np.float32]:
+        """How far colours are from the floor's, squared."""
+        return self.floor.oddness(self.picture)
+
+    @cached_property
+    def dark_things(self) -> Array:
+        """Density of the colours that are not the floor's, at every point."""
+        odd = self.used & (self.oddness > _ODD)
+        return ColourDensity.of(self.picture[odd], blur=1.2)(self.picture)
+
+    @cached_property
+    def bare(self) -> NDArray[np.float32]:
+        """Log density of the picture where there is no exposure."""
+        known = _FLOOR_SHARE * self.floor.density(self.picture)
+        return np.log(known + (1 - _FLOOR_SHARE) * self.dark_things).astype(np.float32)
+
+    def find(self, anchor: Array) -> Array:
+        """Find all exposures.
+
+        Args:
+            anchor: x, y [m] and yaw [rad] of an exposure that shows how the robot looks.
+
+        Returns:
+            Poses, that one first, shape (n, 3).
+        """
+        sets = [anchor[None]]
+        for first in self.first_steps(anchor):
+            ahead = self.followed([anchor, first])
+            behind = self.followed([ahead[1], anchor])[2:]
+            chain = Chain.through(ahead)
+            steady = [self.longest(anchor, way) for way in (chain, chain.with_some_between)]
+            sets += [np.array(ahead + behind), *(way.poses(anchor) for way in steady)]
+        return self.polished(max(sets, key=self.worth))
+
+    def worth(self, poses: Array) -> float:
+        """Compute the value of exposures, less what so many must gain; -inf of two in one place."""
+        if any(distances(poses[k + 1 :], pose).min() < LEAST_STEP * self.length
+               for k, pose in enumerate(poses[:-1])):  # fmt: skip
+            return -np.inf
+        return self.value(poses) - LEAST_GAIN * (len(poses) - 1)
+
+    def first_steps(self, anchor: Array) -> list[Array]:
+        """Find where one exposure more makes the picture likelier."""
+        look = self.look(anchor[None])
+        tried = beside(anchor, self.length, spacing=self.length / 20)
+        return self.best_of(tried, look, self.cover(anchor[None], look), most=_FIRST_STEPS)
+
+    def followed(self, poses: list[Array]) -> list[Array]:
+        """Go on from the last pose by its step, as long as there is an exposure."""
+        while len(poses) < MOST_EXPOSURES:
+            known = np.array(poses)
+            look = self.look(known)
+            expected = continued(poses[-2], poses[-1])
+            cover = self.cover(known, look)
+            found = self.best_of(nearby(expected, self.length), look, cover, most=2)
+            new = next((pose for pose in found if is_near(pose, expected, self.length)), None)
+            if new is None or distances(known, new).min() < LEAST_STEP * self.length:
+                break
+            poses.append(new)
+        return poses
+
+    def best_of(self, tried: Array, look: Look, cover: Cover, *, most: int) -> list[Array]:
+        """Improve the best of many places; return those that hold, the best first."""
+        odds = self.odds(tried, look, cover, self.body.thinned())
+        starts = apart(tried, odds, 0.19 * self.length, most=most)
+
+        def value(pose: Array) -> float:
+            return float(self.gains(pose[None], look, cover, self.body)[0][0])
+
+        found = [improved(value, start, reach=_CLIMB, tries=90)[0] for start in starts]
+        if not found:
+            return []
+        held = self.odds(np.array(found), look, cover, self.body)
+        order = np.argsort(-held)
+        return [found[k] for k in order if held[k] >= LEAST_ODDS]
+
+    def longest(self, anchor: Array, chain: Chain) -> Chain:
+        """Fit a chain and lengthen it at both ends while the picture gets likelier."""
+        chain = self.fitted(anchor, chain)
+        worth = self.worth(chain.poses(anchor))
+        while chain.ahead + chain.behind < MOST_EXPOSURES:
+            tried = [self.fitted(anchor, longer) for longer in chain.longer]
+            values = [self.worth(way.poses(anchor)) for way in tried]
+            if max(values) <= worth:
+                break
+            chain, worth = tried[int(np.argmax(values))], max(values)
+        return chain
+
+    def fitted(self, anchor: Array, chain: Chain) -> Chain:
+        """Choose the step of a chain by the likelihood of the picture."""
+
+        def value(step: Array) -> float:
+            return self.value(Chain(step, chain.ahead, chain.behind).poses(anchor))
+
+        step, _ = improved(value, chain.step, reach=(0.02, 0.01, 0.08, 0.02), tries=70)
+        return Chain(step, chain.ahead, chain.behind)
+
+    def polished(self, poses: Array) -> Array:
+        """Improve every pose but the first by itself; drop those that do not hold."""
+        step = usual_step(poses)
+        for k in range(1, len(poses)):
+            poses = self.settled(poses, k, step)
+        return poses[self.own_odds(poses) >= LEAST_ODDS]
+
+    def settled(self, poses: Array, k: int, step: float) -> Array:
+        """Look for a better place of one exposure around its own, and improve the best."""
+        look = self.look(poses)
+        cover = self.cover(np.delete(poses, k, axis=0), look)
+        around = self.best_of(nearby(poses[k], 0.7 * step), look, cover, most=1)
+
+        def value(pose: Array) -> float:
+            return self.value(np.concatenate((poses[:k], pose[None], poses[k + 1 :])))
+
+        near = [pose for pose in around if is_near(pose, poses[k], 0.7 * step)]
+        start = max((poses[k], *near), key=value)
+        best, _ = improved(value, start, reach=_POLISH, tries=35)
+        return np.concatenate((poses[:k], best[None], poses[k + 1 :]))
+
+    def own_odds(self, poses: Array) -> Array:
+        """Compute the log odds of each exposure beside all others; infinite of the first."""
+        look = self.look(poses)
+        odds = [np.inf]
+        for k in range(1, len(poses)):
+            cover = self.cover(np.delete(poses, k, axis=0), look)
+            odds.append(float(self.odds(poses[k][None], look, cover, self.body)[0]))
+        return np.array(odds)
+
+    def look(self, poses: Array) -> Look:
+        """Learn how the robot looks from all exposures, the known one first.
+
+        Where it looks like the floor it may be brighter than that, and nothing is known of it.
+        """
+        seen = np.array([self.body.read(self.picture, self.plane, pose) for pose in poses])
+        odd = np.array([self.body.read(self.oddness, self.plane, pose) for pose in poses])
+        own = np.where((odd[0] < _LIKE_FLOOR)[..., None], _OPEN, seen[0])
+        brightest = np.where((odd.min(axis=0) < _LIKE_FLOOR)[..., None], _OPEN, seen.max(axis=0))
+        return Look(own.astype(np.float32), brightest.astype(np.float32))
+
+    def cover(self, poses: Array, look: Look) -> Cover:
+        """Lay exposures over each other."""
+        own, brightest = (np.full_like(self.picture, _OPEN) for _ in range(2))
+        for pose in poses:
+            for layer, values in ((own, look.own), (brightest, look.brightest)):
+                window, laid = self.body.laid(_OPEN - values, self.plane, pose)
+                layer[window] = np.minimum(layer[window], _OPEN - laid)
+        log_density = self.bare.copy()
+        on = brightest.max(axis=-1) < _OPEN - 100
+        log_density[on] = self.log_density(
+            self.picture[on], own[on], brightest[on], self.dark_things[on]
+        )
+        return Cover(own, brightest, log_density)
+
+    def too_bright(self, poses: Array) -> float:
+        """Compute the share of what exposures cover that is brighter than they are [-].
+
+        Of a picture of darkest values that is next to nothing. Of exposures that were pasted on
+        each other the upper ones are, wherever those under them are darker.
+        """
+        cover = self.cover(poses, self.look(poses))
+        on = self.used & (cover.brightest.max(axis=-1) < _OPEN - 100)
+        over = (self.picture - cover.brightest).max(axis=-1) > _FAR * NOISE
+        return float((over & on).sum() / max(int(on.sum()), 1))
+
+    def shown(self, poses: Array, k: int) -> NDArray[np.bool_]:
+        """Mark the points at which an exposure is the darkest and looks as the first one does.
+
+        Points of the first that others darken are left out: they are not its own.
+        """
+        look = self.look(poses)
+        others = self.cover(np.delete(poses, k, axis=0), look).brightest
+        own, clear = np.full_like(self.picture, _OPEN), np.zeros(self.used.shape, np.float32)
+        for layer, values in ((own, _OPEN - look.own), (clear, self.clear(poses, look))):
+            window, laid = self.body.laid(values, self.plane, poses[k])
+            layer[window] = laid
+        same = (np.abs(self.picture - (_OPEN - own)) < _FAR * NOISE).all(axis=-1)
+        return same & (clear > 0.9) & ((_OPEN - own) <= others + _CLAIM).all(axis=-1) & self.used
+
+    def clear(self, poses: Array, look: Look) -> NDArray[np.float32]:
+        """Mark the points of the robot that the first exposure shows as they are."""
+        others = self.cover(poses[1:], look).brightest
+        around = self.body.read(others, self.plane, poses[0])
+        return (look.own <= around + _CLAIM).all(axis=-1).astype(np.float32)
+
+    def value(self, poses: Array) -> float:
+        """Compute by how much exposures make the picture likelier, in points of one exposure."""
+        gain = (self.cover(poses, self.look(poses)).log_density - self.bare)[self.used]
+        return float(gain.sum()) / self.body.x.size
+
+    def odds(self, poses: Array, look: Look, cover: Cover, body: BodyRaster) -> Array:
+        """Compute the log odds of exposures, mean over what each claims; -inf where too little."""
+        gain, claim, inside = self.gains(poses, look, cover, body)
+        enough = (claim >= LEAST_CLAIM) & (inside >= _LEAST_SEEN)
+        return np.where(enough, gain / np.maximum(claim, LEAST_CLAIM), -np.inf)
+
+    def gains(
+        self, poses: Array, look: Look, cover: Cover, body: BodyRaster
+    ) -> tuple[Array, Array, Array]:
+        """Compute what one exposure more would change, for each of many places, shape (n,).
+
+        Returns:
+            Gain of log density, mean over the exposure's points; shares of them that it claims,
+            and that are in the picture.
+        """
+        if body.x.shape != look.own.shape[:2]:
+            look = Look(look.own[1::2, 1::2], look.brightest[1::2, 1::2])
+        place = body.on(self.plane, poses)
+        inside = sample(self.used.astype(np.float32), place) > 0.9
+        seen, dark, before = (
+            sample(layer, place)
+            for layer in (self.picture, self.dark_things.astype(np.float32), cover.log_density)
+        )
+        others = sample(cover.brightest, place)
+        own = np.minimum(look.own, sample(cover.own, place))
+        brightest = np.minimum(look.brightest, others)
+        on = inside & (brightest.max(axis=-1) < _OPEN - 100)
+        gain = np.where(on, self.log_density(seen, own, brightest, dark) - before, 0.0)
+        claimed = on & (brightest < others - _CLAIM).any(axis=-1)
+        return tuple(field.mean(axis=(1, 2)) for field in (gain, claimed, inside))
+
+    @staticmethod
+    def log_density(
+        seen: NDArray[np.float32], own: NDArray[np.float32], brightest: NDArray[np.float32],
+        dark_things: Array,
+    ) -> Array:  # fmt: skip
+        """Compute how likely colours are where exposures should look like this."""
+        shows = _OWN_LOOK * _bell(seen - own) + (1 - _OWN_LOOK) * _bell(seen - brightest)
+        beyond = np.clip((seen - brightest).max(axis=-1) / NOISE - 1.0, 0.0, 3.5)
+        hidden = (1 - _SEEN) * np.exp(-0.5 * beyond**2) + _BRIGHTER
+        return np.log(_SEEN * shows + hidden * np.maximum(dark_things, 1e-12))
+
+
+def _bell(difference: Array) -> Array:
+    norm = (2 * np.pi) ** 1.5 * NOISE**3
+    return np.exp(-0.5 * (difference**2).sum(axis=-1) / NOISE**2) / norm

@@ -1,0 +1,304 @@
+# SPDX-License-Identifier: MIT
+"""Read a picture that is the mean of several exposures.
+
+Of n exposures each is as faint as 1/n; the floor's pattern is as strong as the robot. But floors
+vary in light more than in colour, and robots do not: colours are weighed by how rare they are on
+the floor (`FloorColours.whitening`). And a mean is a sum: a robot's picture is sought that, laid at
+all exposures at once, comes nearest to the photograph, so that each is compared with what the
+others leave of it.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse.linalg import LinearOperator, cg
+
+from tracking.camera.lens import Array
+from tracking.composite.body_raster import BodyRaster
+from tracking.composite.candidates import LEAST_STEP, REACH
+from tracking.composite.chain import continued, distances, improved
+from tracking.composite.colours import FloorColours
+from tracking.composite.match import Match, match_whole
+from tracking.composite.order import order_exposures
+from tracking.composite.plane import Plane
+
+LONELY_SCORE = 0.6
+"""Least correlation of an exposure beside no other, when only one is known [-]."""
+
+BESIDE_SCORE = 0.5
+"""Least correlation of one beside another with nearly its heading, then [-]."""
+
+LEAST_SCORE = 0.75
+"""Least correlation of an exposure when all others are taken away [-]."""
+
+LEAST_STRENGTH = 0.5
+"""Least strength of an exposure; all are alike in a mean [-]."""
+
+WORTH = 0.4
+"""By how much of what one explains a set must explain more for one exposure more [-]."""
+
+SCALE = 8.0
+"""Grey levels a standard deviation of the floor's pattern is made to be."""
+
+_TURN = np.radians(32.0)
+_DAMPING = 0.02
+_ROUNDS = 30
+_CLIMB = (0.01, 0.01, 0.1)
+_TRIED = 3
+_LEAST_MATCH = 0.4
+_BETTER = 1e-3  # share of the picture's power
+
+
+class Fit(NamedTuple):
+    """Exposures and the robot's picture that fit a photograph best.
+
+    Attributes:
+        poses: Shape (n, 3), the known one first.
+        robot: The robot's picture, shape (rows, columns, 3).
+        scores: Correlation of each with it where the others are taken away, shape (n,).
+        strengths: How strong each is beside all, shape (n,).
+        worth: Share of the photograph's power explained, less `WORTH` for each.
+    """
+
+    poses: Array
+    robot: NDArray[np.float32]
+    scores: Array
+    strengths: Array
+    worth: float
+
+
+@dataclass(frozen=True)
+class MeanReading:
+    """A mean of exposures, on a raster.
+
+    Attributes:
+        plane: The raster.
+        picture: Colours on it, shape (rows, columns, 3).
+        used: Where it shows floor or robot.
+        body: Points of the robot and some around it, which its sides and legs cover.
+        length: The robot's length [m].
+        height: Height of its top over the body's origin [m].
+    """
+
+    plane: Plane
+    picture: NDArray[np.float32]
+    used: NDArray[np.bool_]
+    body: BodyRaster
+    length: float
+    height: float
+
+    @cached_property
+    def floor(self) -> FloorColours:
+        """How the floor looks."""
+        return FloorColours.of(
+            self.picture, self.used, width=self.length / self.plane.cell, noise=0.5
+        )
+
+    @cached_property
+    def weighing(self) -> Array:
+        """Matrix by which colours are multiplied, shape (3, 3)."""
+        return SCALE * self.floor.whitening
+
+    @cached_property
+    def change(self) -> NDArray[np.float32]:
+        """What differs from the floor's light, weighed by how rare it is, (rows, columns, 3)."""
+        change = (self.picture - self.floor.light) @ self.weighing
+        return (change * self.used[..., None]).astype(np.float32)
+
+    @cached_property
+    def power(self) -> float:
+        """Sum of the squared change."""
+        return float((self.change**2).sum())
+
+    def find(self, anchor: Array) -> Fit:
+        """Find all exposures.
+
+        Args:
+            anchor: x, y [m] and yaw [rad] of an exposure that shows how the robot looks.
+
+        Returns:
+            The exposures, that one first; of which any may have too low a score.
+        """
+        best = self.fitted(self.alike(anchor), rounds=2)
+        for _ in range(_ROUNDS):
+            tried = [self.fitted(poses, rounds=1) for poses in self.varied(best)]
+            new = max(tried, key=lambda fit: fit.worth, default=best)
+            if new.worth <= best.worth + _BETTER:
+                break
+            best = self.fitted(new.poses, rounds=1)
+        return self.held(self.fitted(best.poses, rounds=3))
+
+    def held(self, fit: Fit) -> Fit:
+        """Drop exposures that are too weak or too unlike the others."""
+        good = (fit.scores >= LEAST_SCORE) & (fit.strengths >= LEAST_STRENGTH)
+        good[0] = True
+        return Fit(fit.poses[good], fit.robot, fit.scores[good], fit.strengths[good], fit.worth)
+
+    def alike(self, anchor: Array) -> Array:
+        """Find exposures that look like the known one as it is, others and floor in it."""
+        robot = self.body.read(self.change, self.plane, anchor)
+        poses = anchor[None]
+        matches = [m for m in self.matches(self.change, robot) if m.score >= BESIDE_SCORE]
+        while (new := self.next_of(matches, poses)) is not None:
+            poses = np.concatenate((poses, self.refined(self.change, robot, new.planar)[None]))
+        return poses
+
+    def next_of(self, matches: Sequence[Match], poses: Array) -> Match | None:
+        """Take the best match beside an exposure or, where there is none, one far from all."""
+        after = (m for m in matches if self.follows(m, poses))
+        return next(after, None) or next((m for m in matches if self.is_alone(m, poses)), None)
+
+    def matches(self, change: NDArray[np.float32], robot: NDArray[np.float32]) -> list[Match]:
+        """Turn the robot's picture and compare; best first."""
+        template = self.body.template(robot, self.height)
+        return match_whole(change, self.plane, template=template, least=_LEAST_MATCH)
+
+    def follows(self, match: Match, poses: Array) -> bool:
+        """Tell whether a match is a step from another exposure, with nearly its heading."""
+        away = distances(poses, match.planar)
+        near = away < REACH * self.length
+        ahead = np.cos(poses[near, 2] - match.planar[2]) > np.cos(_TURN)
+        return bool(ahead.any() and away.min() > LEAST_STEP * self.length)
+
+    def is_alone(self, match: Match, poses: Array) -> bool:
+        """Tell whether a match is clear, and farther than a step from all exposures."""
+        away = distances(poses, match.planar).min()
+        return match.score >= LONELY_SCORE and bool(away > REACH * self.length)
+
+    def is_new(self, match: Match, poses: Array) -> bool:
+        return self.follows(match, poses) or self.is_alone(match, poses)
+
+    def varied(self, fit: Fit) -> list[Array]:
+        """List sets of exposures that differ by one or two from a set."""
+        left = self.change - self.sum_of(fit.poses, fit.robot)
+        left *= self.used[..., None]
+        new = [m.planar for m in self.matches(left, fit.robot) if self.is_new(m, fit.poses)]
+        sets = [np.concatenate((fit.poses, pose[None])) for pose in new[:_TRIED]]
+        if len(fit.poses) > 1:
+            sets += _shifted(fit.poses)
+            weakest = 1 + int(np.argmin(fit.scores[1:]))
+            sets.append(np.delete(fit.poses, weakest, axis=0))
+        return [poses for poses in sets if self.are_apart(poses)]
+
+    def are_apart(self, poses: Array) -> bool:
+        """Tell whether no two exposures are one."""
+        return all(
+            distances(poses[k + 1 :], pose).min() > LEAST_STEP * self.length
+            for k, pose in enumerate(poses[:-1])
+        )
+
+    def fitted(self, poses: Array, *, rounds: int) -> Fit:
+        """Improve exposures and the robot's picture in turn."""
+        poses = poses.copy()
+        robot = self.robot_at(poses)
+        scores = strengths = np.ones(len(poses))
+        for _ in range(rounds):
+            robot = self.robot_at(poses)
+            scores, strengths = self.improve(poses, robot)
+        left = (self.change - self.sum_of(poses, robot)) * self.used[..., None]
+        own = float((robot[self.body.body] ** 2).sum())
+        worth = 1 - (float((left**2).sum()) + WORTH * own * len(poses)) / self.power
+        return Fit(poses, robot, scores, strengths, worth)
+
+    def improve(self, poses: Array, robot: NDArray[np.float32]) -> tuple[Array, Array]:
+        """Improve all poses but the first in place; return scores and strengths, (n,) each."""
+        left = self.change - self.sum_of(poses, robot)
+        scores, strengths = np.ones(len(poses)), np.ones(len(poses))
+        for k in range(1, len(poses)):
+            window, laid = self.body.laid(robot, self.plane, poses[k])
+            left[window] += laid
+            alone = left * self.used[..., None]
+            poses[k] = self.refined(alone, robot, poses[k])
+            scores[k], strengths[k] = self.likeness(alone, robot, poses[k])
+            window, laid = self.body.laid(robot, self.plane, poses[k])
+            left[window] -= laid
+        return scores, strengths
+
+    def refined(
+        self, change: NDArray[np.float32], robot: NDArray[np.float32], pose: Array
+    ) -> Array:
+        """Improve a pose by the correlation with the robot's picture."""
+        return improved(
+            lambda place: self.likeness(change, robot, place)[0], pose, reach=_CLIMB, tries=120
+        )[0]
+
+    def likeness(
+        self, change: NDArray[np.float32], robot: NDArray[np.float32], pose: Array
+    ) -> tuple[float, float]:
+        """Compute the correlation with the robot's picture, and how strong it is there."""
+        seen = self.body.read(change, self.plane, pose)[self.body.body]
+        own = robot[self.body.body]
+        seen, own = seen - seen.mean(axis=(0, 1)), own - own.mean(axis=(0, 1))
+        cross, power = float((seen * own).sum()), float((own * own).sum())
+        spread = float((seen * seen).sum())
+        return cross / np.sqrt(max(power * spread, 1e-9)), cross / max(power, 1e-9)
+
+    def sum_of(self, poses: Array, robot: NDArray[np.float32]) -> NDArray[np.float32]:
+        """Lay the robot's picture at all poses, (rows, columns, 3)."""
+        total = np.zeros_like(self.change)
+        for pose in poses:
+            window, laid = self.body.laid(robot, self.plane, pose)
+            total[window] += laid
+        return total
+
+    def robot_at(self, poses: Array) -> NDArray[np.float32]:
+        """Solve for the robot's picture of which the sum at poses is the photograph.
+
+        Least squares; what no exposure tells apart is held near zero. Where exposures repeat by a
+        step, a pattern that alternates by it is told by the two ends of the walk alone, which is
+        why the mean of what is seen at all poses does not do.
+        """
+        seen = np.mean([self.body.read(self.change, self.plane, pose) for pose in poses], axis=0)
+        if len(poses) == 1:
+            return seen.astype(np.float32)
+        shape, rows_columns = seen.shape, seen.shape[1::-1]
+        reach = 2.0 * self.length
+        overlaps = [
+            self.body.between(pose, other)
+            for k, pose in enumerate(poses)
+            for other in np.delete(poses, k, axis=0)
+            if np.hypot(*(pose[:2] - other[:2])) < reach
+        ]
+
+        def repeated(values: Array) -> Array:
+            robot = values.reshape(shape).astype(np.float32)
+            total = (1 + _DAMPING) * robot
+            for overlap in overlaps:
+                flags = cv2.INTER_LINEAR | cv2.WARP_INVERSE_MAP
+                total += cv2.warpAffine(robot, overlap, rows_columns, flags=flags) / len(poses)
+            return total.ravel().astype(float)
+
+        operator = LinearOperator((seen.size, seen.size), matvec=repeated, dtype=float)  # pyright: ignore[reportCallIssue] # SciPy's documented arguments
+        solved, _ = cg(operator, seen.ravel().astype(float), rtol=2e-3, maxiter=40)
+        return solved.reshape(shape).astype(np.float32)
+
+    def is_possible(self, fit: Fit) -> bool:
+        """Tell whether a robot so many times as strong as what shows of it has colours at all.
+
+        Of n exposures a robot shows as 1/n of its difference from the floor. Where exposures lie
+        on each other, or the darkest is shown, it shows whole, and n times that is no colour.
+        """
+        faint = fit.robot[self.body.body] @ np.linalg.inv(self.weighing)
+        light = np.median(self.floor.light[self.used], axis=0)
+        colours = light + len(fit.poses) * faint
+        return float(np.mean((colours < -40) | (colours > 295))) < 0.1
+
+
+def _shifted(poses: Array) -> list[Array]:
+    """List chains that end one exposure later or earlier at either end; the first is kept."""
+    chain = [poses[k] for k in order_exposures(poses)]
+    before, after = continued(chain[1], chain[0]), continued(chain[-2], chain[-1])
+    starts: Sequence[list[Array]] = (chain, chain[1:], [before, *chain])
+    sets = []
+    for start in starts:
+        for end in (start, start[:-1], [*start, after]):
+            rest = [pose for pose in end if not np.array_equal(pose, poses[0])]
+            kept = len(rest) < len(end)
+            if kept and rest and end is not chain:
+                sets.append(np.array([poses[0], *rest]))
+    return sets

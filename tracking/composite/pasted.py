@@ -1,0 +1,188 @@
+# SPDX-License-Identifier: MIT
+"""Read a picture of exposures that were cut out and pasted on each other.
+
+Each is there as far as no other hides it, and may be no more than a strip of its top with a leg of
+the next across. A place is judged by its log odds: how much likelier the robot makes the colours
+of what would be visible of it than the picture's own colours do, of which a robot's are rare. That
+asks for no share of agreement: a narrow strip that agrees is worth more than a wide one that half
+agrees, and a point that something lies on costs no more than it tells.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tracking.body.template import sample
+from tracking.camera.lens import Array
+from tracking.composite.body_box import BodyBox
+from tracking.composite.body_raster import BodyRaster
+from tracking.composite.candidates import LEAST_STEP, REACH, apart, beside
+from tracking.composite.chain import distances, improved, usual_step
+from tracking.composite.colours import ColourDensity
+from tracking.composite.match import Match, match_whole
+from tracking.composite.plane import Plane
+
+NOISE = 12.0
+"""Standard deviation of a colour of the robot from one exposure to another [grey levels]."""
+
+LEAST_ODDS = 0.05
+"""Least log odds of an exposure, mean over all points of its top, hidden or not [-]."""
+
+LONELY_ODDS = 0.8
+"""The same of an exposure beside no other [-]."""
+
+MOST_EXPOSURES = 40
+
+_LEAST_OF_STEP = 0.6  # intervals are regular: an exposure is not much nearer to another than usual
+_LEAST_MATCH = 0.5
+_SHOWS = 0.5  # share of visible points on which nothing lies
+_TRIED = 5
+_CLIMB = (0.01, 0.01, 0.1)
+
+
+@dataclass(frozen=True)
+class PastedReading:
+    """A picture of pasted exposures, on a raster.
+
+    Attributes:
+        plane: The raster.
+        picture: Colours on it, shape (rows, columns, 3).
+        used: Where it shows floor or robot.
+        body: Points of the robot's top.
+        box: The robot's body.
+        left: What scissors left around the robot and hides others, as a share of its length [-].
+    """
+
+    plane: Plane
+    picture: NDArray[np.float32]
+    used: NDArray[np.bool_]
+    body: BodyRaster
+    box: BodyBox
+    left: float
+
+    @property
+    def length(self) -> float:
+        """The robot's length [m]."""
+        return self.box.size[0]
+
+    @cached_property
+    def usual(self) -> NDArray[np.float32]:
+        """How dense the colour of every point is in the whole picture."""
+        density = ColourDensity.of(self.picture[self.used], blur=1.0)
+        return density(self.picture).astype(np.float32)
+
+    def find(self, known: Array) -> Array:
+        """Find all exposures.
+
+        Args:
+            known: x, y [m] and yaw [rad] of an exposure that shows whole how the robot looks.
+
+        Returns:
+            Poses, that one first and those on top before those under them, shape (n, 3).
+        """
+        robot = self.body.read(self.picture, self.plane, known)
+        poses, odds = self.stack_under(known, [], [], robot)
+        for match in self.matches(robot):
+            if distances(np.array(poses), match.planar).min() > REACH * self.length:
+                pose, gain = self.climbed(match.planar, poses, robot)
+                if gain >= LONELY_ODDS:
+                    poses, odds = self.stack_under(pose, poses, odds, robot)
+        return np.array(poses)[self.are_steps(np.array(poses), np.array(odds))]
+
+    def matches(self, robot: NDArray[np.float32]) -> list[Match]:
+        """Turn the robot's picture and compare; best first."""
+        template = self.body.template(robot, self.box.top)
+        return match_whole(self.picture, self.plane, template=template, least=_LEAST_MATCH)
+
+    def stack_under(
+        self, top: Array, poses: Sequence[Array], odds: Sequence[float], robot: NDArray[np.float32]
+    ) -> tuple[list[Array], list[float]]:
+        """Add an exposure that shows whole, those that it hides, what they hide, and so on."""
+        poses, odds, visible = [*poses, top], [*odds, np.inf], self.visible(poses)
+        visible &= ~self.hidden_by(top)
+        first = len(poses) - 1
+        for count in range(first, MOST_EXPOSURES):
+            while (new := self.under(poses[count], poses, robot, visible)) is not None:
+                poses.append(new[0])
+                odds.append(new[1])
+                visible &= ~self.hidden_by(new[0])
+                if count > first:
+                    break  # it hides one at most; the others may lie on both sides
+            if count + 1 == len(poses):
+                break
+        return poses, odds
+
+    def visible(self, poses: Sequence[Array]) -> NDArray[np.bool_]:
+        """Mark the points of the raster that no exposure hides."""
+        visible = self.used.copy()
+        for pose in poses:
+            visible &= ~self.hidden_by(pose)
+        return visible
+
+    def are_steps(self, poses: Array, odds: Array) -> NDArray[np.bool_]:
+        """Tell which exposures are not much nearer to a likelier one than steps usually are."""
+        good = np.ones(len(poses), dtype=bool)
+        for k in np.argsort(odds):
+            others = good.copy()
+            others[k] = False
+            if others.sum() > 1:
+                usual = usual_step(poses[others])
+                good[k] = distances(poses[others], poses[k]).min() > _LEAST_OF_STEP * usual
+        return good
+
+    def hidden_by(self, pose: Array) -> NDArray[np.bool_]:
+        """Mark the points of the raster that an exposure hides."""
+        return self.box.hidden_on(self.plane, pose, left=self.left)
+
+    def under(
+        self, seed: Array, poses: Sequence[Array], robot: NDArray[np.float32],
+        visible: NDArray[np.bool_],
+    ) -> tuple[Array, float] | None:  # fmt: skip
+        """Find the likeliest exposure beside another, under all that are known; and its odds."""
+        shown = visible.astype(np.float32)
+        tried = beside(seed, self.length, spacing=self.length / 20)
+        odds = self.odds(tried, robot[1::2, 1::2], shown, self.body.thinned())
+        odds = np.where(self.are_new(tried, poses), odds, -np.inf)
+
+        def value(pose: Array) -> float:
+            return float(self.odds(pose[None], robot, shown, self.body)[0])
+
+        found = [
+            improved(value, start, reach=_CLIMB, tries=90)
+            for start in apart(tried, odds, LEAST_STEP / 2 * self.length, most=_TRIED)
+        ]
+        good = [
+            (pose, gain) for pose, gain in found
+            if gain >= LEAST_ODDS and self.are_new(pose[None], poses).all()
+        ]  # fmt: skip
+        return max(good, key=lambda pair: pair[1], default=None)
+
+    def climbed(
+        self, start: Array, poses: Sequence[Array], robot: NDArray[np.float32]
+    ) -> tuple[Array, float]:
+        """Improve a place where the robot may show whole."""
+        shown = self.visible(poses).astype(np.float32)
+        return improved(
+            lambda pose: float(self.odds(pose[None], robot, shown, self.body)[0]),
+            start, reach=_CLIMB, tries=90,
+        )  # fmt: skip
+
+    def are_new(self, tried: Array, poses: Sequence[Array]) -> NDArray[np.bool_]:
+        """Tell which places are not those of known exposures."""
+        away = np.min([distances(tried, pose) for pose in poses], axis=0)
+        return away > LEAST_STEP * self.length
+
+    def odds(
+        self, poses: Array, robot: NDArray[np.float32], shown: NDArray[np.float32], body: BodyRaster
+    ) -> Array:
+        """Compute log odds of the robot against the picture's own colours, for places (n, 3)."""
+        place = body.on(self.plane, poses)
+        seen, usual = sample(self.picture, place), sample(self.usual, place)
+        visible = sample(shown, place) > 0.9
+        norm = (2 * np.pi) ** 1.5 * NOISE**3
+        same = np.exp(-0.5 * ((seen - robot) ** 2).sum(axis=-1) / NOISE**2) / norm
+        log_odds = np.log(_SHOWS * same / np.maximum(usual, 1e-12) + 0.4 * (1 - _SHOWS))
+        return np.where(visible, log_odds, 0.0).mean(axis=(1, 2))

@@ -6,11 +6,14 @@ photographs are regular and robots do not leap, so that a step is much like the 
 """
 
 from collections.abc import Callable, Sequence
+from itertools import pairwise
 
 import numpy as np
 from scipy.optimize import minimize
 
 from tracking.camera.lens import Array
+
+_STEP_SD, _TURN_SD = 0.1, np.radians(4.0)
 
 
 def step_between(before: Array, after: Array) -> Array:
@@ -62,6 +65,23 @@ def steady_chain(anchor: Array, step: Array, more_turn: float, ahead: int, behin
         here = stepped_back(here, step - [0.0, 0.0, number * more_turn])
         poses.append(here)
     return np.array(poses)
+
+
+def unsteadiness(poses: Array) -> float:
+    """Sum squared changes from step to step, over how much steps usually change.
+
+    Args:
+        poses: In order, shape (n, 3).
+
+    Returns:
+        1 a step where steps change by a tenth of their length or by 4 degrees of turn.
+    """
+    steps = np.array([step_between(a, b) for a, b in pairwise(poses)])
+    if len(steps) < 2:
+        return 0.0
+    usual = float(np.median(np.hypot(steps[:, 0], steps[:, 1])))
+    changes = np.diff(steps, axis=0) / [_STEP_SD * usual, _STEP_SD * usual, _TURN_SD]
+    return float((changes**2).sum())
 
 
 def distances(poses: Array, pose: Array) -> Array:

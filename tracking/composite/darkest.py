@@ -14,7 +14,7 @@ chains of a steady step from the known exposure on are compared as wholes.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import pairwise
 from typing import NamedTuple
@@ -32,9 +32,11 @@ from tracking.composite.chain import (
     improved,
     steady_chain,
     step_between,
+    unsteadiness,
     usual_step,
 )
 from tracking.composite.colours import ColourDensity, FloorColours
+from tracking.composite.order import order_exposures
 from tracking.composite.plane import Plane
 
 NOISE = 12.0
@@ -45,6 +47,9 @@ LEAST_ODDS = 0.25
 
 LEAST_GAIN = 0.15
 """By how much the log odds of a chain must rise for one exposure more, mean over its points [-]."""
+
+UNSTEADY = 0.03
+"""What steps that differ by all the usual scatter (`unsteadiness`) count against a chain [-]."""
 
 LEAST_CLAIM = 0.12
 """Least share of its points that an exposure must claim: of these it is the darkest [-]."""
@@ -235,19 +240,24 @@ class DarkestReading:
 
     def polished(self, poses: Array) -> Array:
         """Improve every pose but the first by itself; drop those that do not hold."""
-        step = usual_step(poses)
+        step, order = usual_step(poses), list(order_exposures(poses))
         for k in range(1, len(poses)):
-            poses = self.settled(poses, k, step)
+            poses = self.settled(poses, k, step, order)
         return poses[self.own_odds(poses) >= LEAST_ODDS]
 
-    def settled(self, poses: Array, k: int, step: float) -> Array:
-        """Look for a better place of one exposure around its own, and improve the best."""
+    def settled(self, poses: Array, k: int, step: float, order: list[int]) -> Array:
+        """Look for a better place of one exposure around its own, and improve the best.
+
+        Sides and legs of one darken the tops of others, and look like a rim a little off its
+        place: steps that differ from their neighbours are held against a place, too.
+        """
         look = self.look(poses)
         cover = self.cover(np.delete(poses, k, axis=0), look)
         around = self.best_of(nearby(poses[k], 0.7 * step), look, cover, most=1)
 
         def value(pose: Array) -> float:
-            return self.value(np.concatenate((poses[:k], pose[None], poses[k + 1 :])))
+            changed = np.concatenate((poses[:k], pose[None], poses[k + 1 :]))
+            return self.value(changed) - UNSTEADY * unsteadiness(changed[order])
 
         near = [pose for pose in around if is_near(pose, poses[k], 0.7 * step)]
         start = max((poses[k], *near), key=value)
@@ -288,17 +298,6 @@ class DarkestReading:
         )
         return Cover(own, brightest, log_density)
 
-    def too_bright(self, poses: Array) -> float:
-        """Compute the share of what exposures cover that is brighter than they are [-].
-
-        Of a picture of darkest values that is next to nothing. Of exposures that were pasted on
-        each other the upper ones are, wherever those under them are darker.
-        """
-        cover = self.cover(poses, self.look(poses))
-        on = self.used & (cover.brightest.max(axis=-1) < _OPEN - 100)
-        over = (self.picture - cover.brightest).max(axis=-1) > _FAR * NOISE
-        return float((over & on).sum() / max(int(on.sum()), 1))
-
     def shown(self, poses: Array, k: int) -> NDArray[np.bool_]:
         """Mark the points at which an exposure is the darkest and looks as the first one does.
 
@@ -321,8 +320,25 @@ class DarkestReading:
 
     def value(self, poses: Array) -> float:
         """Compute by how much exposures make the picture likelier, in points of one exposure."""
-        gain = (self.cover(poses, self.look(poses)).log_density - self.bare)[self.used]
+        look = self.look(poses)
+        windows = [self.body.window(self.plane, pose) for pose in poses]
+        part = self.part(*(
+            slice(min(w[k].start for w in windows), max(w[k].stop for w in windows))
+            for k in (0, 1)
+        ))  # fmt: skip
+        gain = (part.cover(poses, look).log_density - part.bare)[part.used]
         return float(gain.sum()) / self.body.x.size
+
+    def part(self, rows: slice, columns: slice) -> "DarkestReading":
+        """Cut a part out; the floor and the colours of dark things are those of the whole."""
+        window = (rows, columns)
+        part = replace(
+            self, plane=self.plane.part(rows, columns),
+            picture=self.picture[window], used=self.used[window],
+        )  # fmt: skip
+        known = {"bare": self.bare, "dark_things": self.dark_things, "oddness": self.oddness}
+        part.__dict__.update({name: layer[window] for name, layer in known.items()})
+        return part
 
     def odds(self, poses: Array, look: Look, cover: Cover, body: BodyRaster) -> Array:
         """Compute the log odds of exposures, mean over what each claims; -inf where too little."""

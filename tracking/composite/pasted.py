@@ -28,11 +28,11 @@ from tracking.composite.plane import Plane
 NOISE = 12.0
 """Standard deviation of a colour of the robot from one exposure to another [grey levels]."""
 
-LEAST_ODDS = 0.05
+LEAST_GAIN = 0.05
 """Least log odds of an exposure, mean over all points of its top, hidden or not [-]."""
 
-LONELY_ODDS = 0.8
-"""The same of an exposure beside no other [-]."""
+LEAST_ODDS = 0.9
+"""Least log odds of an exposure, mean over what is visible of it [-]."""
 
 MOST_EXPOSURES = 40
 
@@ -74,23 +74,30 @@ class PastedReading:
         density = ColourDensity.of(self.picture[self.used], blur=1.0)
         return density(self.picture).astype(np.float32)
 
-    def find(self, known: Array) -> Array:
+    def find(self, known: Array) -> tuple[Array, float]:
         """Find all exposures.
 
         Args:
             known: x, y [m] and yaw [rad] of an exposure that shows whole how the robot looks.
 
         Returns:
-            Poses, that one first and those on top before those under them, shape (n, 3).
+            Poses, that one first and those on top before those under them, shape (n, 3); and by
+            how much they make the picture likelier, in points of an exposure.
         """
         robot = self.body.read(self.picture, self.plane, known)
-        poses, odds = self.stack_under(known, [], [], robot)
+        poses, odds = self.stack_under(known, [], [], robot, self.whole(known, robot))
         for match in self.matches(robot):
             if distances(np.array(poses), match.planar).min() > REACH * self.length:
-                pose, gain = self.climbed(match.planar, poses, robot)
-                if gain >= LONELY_ODDS:
-                    poses, odds = self.stack_under(pose, poses, odds, robot)
-        return np.array(poses)[self.are_steps(np.array(poses), np.array(odds))]
+                new = self.climbed([match.planar], poses, robot, self.visible(poses))
+                if new is not None and new[1] >= LEAST_ODDS:
+                    poses, odds = self.stack_under(new[0], poses, odds, robot, new[1])
+        steps = self.are_steps(np.array(poses), np.array(odds))
+        return np.array(poses)[steps], float(np.array(odds)[steps].sum())
+
+    def whole(self, pose: Array, robot: NDArray[np.float32]) -> float:
+        """Compute the gain of an exposure that no other hides."""
+        shown = self.used.astype(np.float32)
+        return float(self.gains(pose[None], robot, shown, self.body)[0][0])
 
     def matches(self, robot: NDArray[np.float32]) -> list[Match]:
         """Turn the robot's picture and compare; best first."""
@@ -98,10 +105,11 @@ class PastedReading:
         return match_whole(self.picture, self.plane, template=template, least=_LEAST_MATCH)
 
     def stack_under(
-        self, top: Array, poses: Sequence[Array], odds: Sequence[float], robot: NDArray[np.float32]
-    ) -> tuple[list[Array], list[float]]:
+        self, top: Array, poses: Sequence[Array], odds: Sequence[float],
+        robot: NDArray[np.float32], gain: float,
+    ) -> tuple[list[Array], list[float]]:  # fmt: skip
         """Add an exposure that shows whole, those that it hides, what they hide, and so on."""
-        poses, odds, visible = [*poses, top], [*odds, np.inf], self.visible(poses)
+        poses, odds, visible = [*poses, top], [*odds, gain], self.visible(poses)
         visible &= ~self.hidden_by(top)
         first = len(poses) - 1
         for count in range(first, MOST_EXPOSURES):
@@ -142,47 +150,54 @@ class PastedReading:
         visible: NDArray[np.bool_],
     ) -> tuple[Array, float] | None:  # fmt: skip
         """Find the likeliest exposure beside another, under all that are known; and its odds."""
-        shown = visible.astype(np.float32)
         tried = beside(seed, self.length, spacing=self.length / 20)
-        odds = self.odds(tried, robot[1::2, 1::2], shown, self.body.thinned())
-        odds = np.where(self.are_new(tried, poses), odds, -np.inf)
-
-        def value(pose: Array) -> float:
-            return float(self.odds(pose[None], robot, shown, self.body)[0])
-
-        found = [
-            improved(value, start, reach=_CLIMB, tries=90)
-            for start in apart(tried, odds, LEAST_STEP / 2 * self.length, most=_TRIED)
-        ]
-        good = [
-            (pose, gain) for pose, gain in found
-            if gain >= LEAST_ODDS and self.are_new(pose[None], poses).all()
-        ]  # fmt: skip
-        return max(good, key=lambda pair: pair[1], default=None)
+        shown = visible.astype(np.float32)
+        gains, _ = self.gains(tried, robot[1::2, 1::2], shown, self.body.thinned())
+        gains = np.where(self.are_new(tried, poses), gains, -np.inf)
+        starts = apart(tried, gains, LEAST_STEP / 2 * self.length, most=_TRIED)
+        return self.climbed(starts, poses, robot, visible)
 
     def climbed(
-        self, start: Array, poses: Sequence[Array], robot: NDArray[np.float32]
-    ) -> tuple[Array, float]:
-        """Improve a place where the robot may show whole."""
-        shown = self.visible(poses).astype(np.float32)
-        return improved(
-            lambda pose: float(self.odds(pose[None], robot, shown, self.body)[0]),
-            start, reach=_CLIMB, tries=90,
-        )  # fmt: skip
+        self, starts: Sequence[Array], poses: Sequence[Array], robot: NDArray[np.float32],
+        visible: NDArray[np.bool_],
+    ) -> tuple[Array, float] | None:  # fmt: skip
+        """Improve places; return the best that holds, and its gain."""
+        shown = visible.astype(np.float32)
+
+        def gain(pose: Array) -> float:
+            return float(self.gains(pose[None], robot, shown, self.body)[0][0])
+
+        found = [improved(gain, start, reach=_CLIMB, tries=90) for start in starts]
+        good = [each for each in found if self.holds(each[0], poses, robot, shown)]
+        return max(good, key=lambda each: each[1], default=None)
+
+    def holds(
+        self, pose: Array, poses: Sequence[Array], robot: NDArray[np.float32],
+        shown: NDArray[np.float32],
+    ) -> bool:  # fmt: skip
+        """Tell whether a place is likely enough to be an exposure, and none that is known."""
+        (gain,), (share,) = self.gains(pose[None], robot, shown, self.body)
+        likely = gain >= LEAST_GAIN and gain >= LEAST_ODDS * share
+        return bool(likely and self.are_new(pose[None], poses).all())
 
     def are_new(self, tried: Array, poses: Sequence[Array]) -> NDArray[np.bool_]:
         """Tell which places are not those of known exposures."""
         away = np.min([distances(tried, pose) for pose in poses], axis=0)
         return away > LEAST_STEP * self.length
 
-    def odds(
+    def gains(
         self, poses: Array, robot: NDArray[np.float32], shown: NDArray[np.float32], body: BodyRaster
-    ) -> Array:
-        """Compute log odds of the robot against the picture's own colours, for places (n, 3)."""
+    ) -> tuple[Array, Array]:
+        """Compare the robot with the picture's own colours, for places (n, 3).
+
+        Returns:
+            Log odds, mean over all points of its top, and the share of these that is visible.
+        """
         place = body.on(self.plane, poses)
         seen, usual = sample(self.picture, place), sample(self.usual, place)
         visible = sample(shown, place) > 0.9
         norm = (2 * np.pi) ** 1.5 * NOISE**3
         same = np.exp(-0.5 * ((seen - robot) ** 2).sum(axis=-1) / NOISE**2) / norm
         log_odds = np.log(_SHOWS * same / np.maximum(usual, 1e-12) + 0.4 * (1 - _SHOWS))
-        return np.where(visible, log_odds, 0.0).mean(axis=(1, 2))
+        gain = np.where(visible, log_odds, 0.0).mean(axis=(1, 2))
+        return gain, visible.mean(axis=(1, 2))

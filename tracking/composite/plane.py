@@ -60,6 +60,10 @@ class Plane:
         first = round((self.high[1] - self.low[1]) / self.cell)
         up, down = max(first - top, 0), min(first - bottom, rows)
         left, right = max(left, 0), min(right, columns)
-        low = np.array([self.low[0] + left * self.cell, self.high[1] - down * self.cell])
-        high = np.array([self.low[0] + right * self.cell, self.high[1] - up * self.cell])
-        return Plane(low, high, self.cell, self.seen_px[up:down, left:right])
+        return self.part(slice(up, down), slice(left, right))
+
+    def part(self, rows: slice, columns: slice) -> "Plane":
+        """Cut out rows and columns of the raster."""
+        low = (self.low[0] + columns.start * self.cell, self.high[1] - rows.stop * self.cell)
+        high = (self.low[0] + columns.stop * self.cell, self.high[1] - rows.start * self.cell)
+        return Plane(np.array(low), np.array(high), self.cell, self.seen_px[rows, columns])

@@ -19,11 +19,11 @@ from tracking.body import (
 )
 from tracking.camera import Camera, CameraPose
 from tracking.camera.lens import Array
-from tracking.composite import find_exposures, order_exposures
+from tracking.composite import Exposure, find_exposures, find_exposures_like, order_exposures
 from tracking.errors import PhotoError
 from tracking.images import PhotoTimes, read_pixels
 from tracking.path import Observation
-from tracking.pose import BodyPrior, fit_pose
+from tracking.pose import BodyPose, BodyPrior, fit_pose
 from zebro_lab.annotations import TemplateClicks
 from zebro_lab.errors import DataError, SettingsError
 from zebro_lab.photo_search import Photo, Watcher, batches_of, run_batches
@@ -120,17 +120,10 @@ def track_composite(
     by_floor = Scene(scene.camera, scene.floor, scene.prior, None, scene.said)
     seen = see_floor(by_floor, [photo], watcher)
     watcher.step("exposures", None)
-    if scene.robot is not None:
-        template, source = marker_template(scene.robot.marker), "marker"
-    else:
-        template, source = _template(scene, seen, [photo]), "body"
-    pixels = read_pixels(photo.path, size=scene.camera.size)
-    exposures = find_exposures(
-        pixels, scene.camera, seen.fit.pose_of(photo.name), template=template, prior=scene.prior,
-        body_size=body_size, hidden=_on_marks(seen, photo.name, pixels.shape[:2]),
-    )  # fmt: skip
+    exposures = _exposures(scene, seen, photo, body_size)
     poses = np.array([each.alignment.pose.planar for each in exposures])
-    order = order_exposures(poses, heading_known=scene.robot is not None)
+    order = order_exposures(poses)
+    source = "body" if scene.robot is None else "marker"
     names = tuple(f"{photo.name}#{number}" for number in range(1, len(order) + 1))
     stamps = times_of(names)
     times = dict(zip(names, zip(stamps.t.tolist(), stamps.sd.tolist(), strict=True), strict=True))
@@ -139,6 +132,25 @@ def track_composite(
         for name, k in zip(names, order, strict=True)
     ]
     return finish(scene, seen, observations, unseen={}, times=times, gap=gap)
+
+
+def _exposures(
+    scene: Scene, seen: FloorSeen, photo: Photo, body_size: tuple[float, float]
+) -> tuple[Exposure, ...]:
+    """Find exposures by the robot's marker, or by the one whose top was clicked on."""
+    pixels = read_pixels(photo.path, size=scene.camera.size)
+    view = seen.fit.pose_of(photo.name)
+    hidden = _on_marks(seen, photo.name, pixels.shape[:2])
+    if scene.robot is not None:
+        return find_exposures(
+            pixels, scene.camera, view, template=marker_template(scene.robot.marker),
+            prior=scene.prior, body_size=body_size, hidden=hidden,
+        )  # fmt: skip
+    clicks = _clicks(scene, seen, [photo])
+    return find_exposures_like(
+        pixels, scene.camera, view, known=pose_from_clicks(clicks, scene, view),
+        plate=clicks.plate, prior=scene.prior, body_size=body_size, hidden=hidden,
+    )  # fmt: skip
 
 
 def _on_marks(seen: FloorSeen, photo: str, shape: tuple[int, ...]) -> NDArray[np.bool_]:
@@ -161,7 +173,7 @@ def _observation(
     )
 
 
-def _template(scene: Scene, seen: FloorSeen, photos: Sequence[Photo]) -> BodyTemplate:
+def _clicks(scene: Scene, seen: FloorSeen, photos: Sequence[Photo]) -> TemplateClicks:
     clicks = scene.said.template
     if clicks is None:
         raise SettingsError(
@@ -169,12 +181,17 @@ def _template(scene: Scene, seen: FloorSeen, photos: Sequence[Photo]) -> BodyTem
             "photograph with `zebro-lab annotate PHOTOS --photo NAME --corners ...`",
             key="--annotations",
         )
-    files = {photo.name: photo.path for photo in photos}
-    if clicks.photo not in files:
+    if clicks.photo not in {photo.name for photo in photos}:
         raise DataError(f"the template's photograph '{clicks.photo}' is not among the photographs")
     if clicks.photo in seen.lost:
         raise DataError(f"the template's photograph {clicks.photo}: {seen.lost[clicks.photo]}")
+    return clicks
+
+
+def _template(scene: Scene, seen: FloorSeen, photos: Sequence[Photo]) -> BodyTemplate:
+    clicks = _clicks(scene, seen, photos)
     view = seen.fit.pose_of(clicks.photo)
+    files = {photo.name: photo.path for photo in photos}
     pixels = read_pixels(files[clicks.photo], size=scene.camera.size)
     return template_from_clicks(clicks, pixels, scene, view)
 
@@ -187,11 +204,16 @@ def template_from_clicks(
     Raises:
         BodyError: The robot is cut by the photograph's edge, too small or without contrast.
     """
-    pose = fit_pose(
+    pose = pose_from_clicks(clicks, scene, view)
+    return make_template(pixels, scene.camera, view, pose=pose, plate=clicks.plate)
+
+
+def pose_from_clicks(clicks: TemplateClicks, scene: Scene, view: CameraPose) -> BodyPose:
+    """Fit the robot's pose to clicks on the corners of its top."""
+    return fit_pose(
         scene.camera, view, points_body=clicks.plate.corners_body, corners_px=clicks.corners_px,
         covariance=CLICK_SD**2 * np.eye(8), prior=scene.prior,
     )  # fmt: skip
-    return make_template(pixels, scene.camera, view, pose=pose, plate=clicks.plate)
 
 
 def _find_batch(job: _Search) -> list[BodyCandidates | None]:

@@ -14,9 +14,9 @@ import cv2
 import numpy as np
 import pytest
 
-from tracking.body import BodyTemplate, TopPlate, make_template, marker_template
+from tracking.body import TopPlate, marker_template
 from tracking.camera import Camera, CameraPose, project
-from tracking.composite import find_exposures, order_exposures
+from tracking.composite import find_exposures, find_exposures_like, order_exposures
 from tracking.errors import CompositeError
 from tracking.pose import BodyPose as FoundPose
 from tracking.pose import BodyPrior, RobotMarker
@@ -69,8 +69,8 @@ class Case:
 CASES = (
     Case("1.1 body lengths apart", 0.264, 5, 34, 1.0, 0.5, 0.98),
     Case("half a body apart", 0.12, 8, 24, 4.0, 2.0, 0.70),
-    Case("no marker, 1.1 body lengths apart", 0.264, 5, 6, 1.0, 0.5, 0.98, marked=False),
-    Case("no marker, half a body apart", 0.12, 8, 3, 4.0, 2.0, 0.70, marked=False),
+    Case("no marker, 1.1 body lengths apart", 0.264, 5, 12, 1.0, 0.5, 0.98, marked=False),
+    Case("no marker, half a body apart", 0.12, 8, 8, 4.0, 2.0, 0.70, marked=False),
 )
 MARKED, UNMARKED = CASES[:2], CASES[2:]
 KINDS = tuple(CompositeKind)
@@ -146,12 +146,8 @@ class Window:
         camera = self.scene.camera
         lens = Camera((camera.width, camera.height), camera.matrix, np.array(camera.distortion))
         view = CameraPose.from_matrix(camera.rotation, camera.translation)
-        prior, template = BodyPrior(HEIGHT, HEIGHT_SD, TILT_SD), None
-        if clicked is not None:
-            state = np.array([clicked[0], clicked[1], HEIGHT, 0, 0, clicked[2]])
-            pose = FoundPose(state, np.zeros((6, 6)), np.zeros((6, 6)), 0.0, 0.0)
-            template = make_template(picture, lens, view, pose=pose, plate=PLATE)
-        return ordered(picture, lens, view, prior, self.hidden, template=template)
+        prior = BodyPrior(HEIGHT, HEIGHT_SD, TILT_SD)
+        return ordered(picture, lens, view, prior, self.hidden, clicked=clicked)
 
 
 def one_walk(task: tuple[int, int, int]) -> tuple[np.ndarray, np.ndarray]:
@@ -167,22 +163,29 @@ def one_walk(task: tuple[int, int, int]) -> tuple[np.ndarray, np.ndarray]:
 
 def ordered(
     picture: np.ndarray, lens: Camera, view: CameraPose, prior: BodyPrior, hidden: np.ndarray,
-    *, template: BodyTemplate | None = None,
+    *, clicked: np.ndarray | None = None,
 ) -> np.ndarray:  # fmt: skip
     """Find the exposures of a picture, in order: poses, then their deviations, shape (2, n, 3)."""
-    marker = DrawnMarker()
-    robot = RobotMarker(0, marker.side, "4x4_50", (0.0, 0.0, marker.height))
     try:
-        found = find_exposures(
-            picture, lens, view, template=template or marker_template(robot), prior=prior,
-            body_size=BODY, hidden=hidden,
-        )  # fmt: skip
+        if clicked is None:
+            marker = DrawnMarker()
+            robot = RobotMarker(0, marker.side, "4x4_50", (0.0, 0.0, marker.height))
+            found = find_exposures(
+                picture, lens, view, template=marker_template(robot), prior=prior, body_size=BODY,
+                hidden=hidden,
+            )  # fmt: skip
+        else:
+            state = np.array([clicked[0], clicked[1], prior.height, 0, 0, clicked[2]])
+            known = FoundPose(state, np.zeros((6, 6)), np.zeros((6, 6)), 0.0, 0.0)
+            found = find_exposures_like(
+                picture, lens, view, known=known, plate=PLATE, prior=prior, body_size=BODY,
+                hidden=hidden,
+            )  # fmt: skip
     except CompositeError:
         return np.zeros((2, 0, 3))
     poses = np.array([each.alignment.pose.planar for each in found])
     sd = np.sqrt([np.diag(each.alignment.pose.planar_covariance) for each in found])
-    order = order_exposures(poses, heading_known=template is None)
-    return np.stack((poses, sd))[:, list(order)]
+    return np.stack((poses, sd))[:, list(order_exposures(poses))]
 
 
 @dataclass(frozen=True)

@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: MIT
 """One picture with all exposures of a walk in it: find each, and put them in order."""
 
+from tracking.composite.by_look import find_exposures_like
+from tracking.composite.exposure import Exposure
 from tracking.composite.order import order_exposures
-from tracking.composite.search import Exposure, find_exposures
+from tracking.composite.search import find_exposures
 
-__all__ = ["Exposure", "find_exposures", "order_exposures"]
+__all__ = ["Exposure", "find_exposures", "find_exposures_like", "order_exposures"]

@@ -30,6 +30,11 @@ class BodyBox:
     top: float
     height: float
 
+    @property
+    def is_square(self) -> bool:
+        """Tell whether the body is about as wide as long."""
+        return abs(self.size[0] - self.size[1]) < 0.2 * max(self.size)
+
     def hidden(self, state: Array, *, left: float) -> NDArray[np.bool_]:
         """Mark the pixels of a photograph that it covers.
 

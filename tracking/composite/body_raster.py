@@ -106,8 +106,6 @@ class BodyRaster:
         return (np.linalg.inv(self._to_world(other)) @ self._to_world(pose))[:2]
 
     def _to_world(self, pose: Array) -> Array:
-        raster = np.array(
-            [[0, -self.cell, self.x[0, 0]], [-self.cell, 0, self.y[0, 0]], [0, 0, 1]]
-        )
+        raster = np.array([[0, -self.cell, self.x[0, 0]], [-self.cell, 0, self.y[0, 0]], [0, 0, 1]])
         c, s = np.cos(pose[2]), np.sin(pose[2])
         return np.array([[c, -s, pose[0]], [s, c, pose[1]], [0, 0, 1]]) @ raster

@@ -52,6 +52,28 @@ def nearby(pose: Array, length: float) -> Array:
     ])  # fmt: skip
 
 
+def headed(pose: Array, poses: Array, *, square: bool) -> Array:
+    """Turn a place so that an arc leads to it from the nearest exposure.
+
+    Alone a robot that looks alike from two ends, or a square one from all sides, is found the wrong
+    way round as often as not; a walk tells (`tracking.body.heading`).
+
+    Args:
+        pose: x, y [m] and yaw [rad], shape (3,).
+        poses: Exposures whose heading is known, shape (n, 3).
+        square: Whether the robot is about as wide as long.
+
+    Returns:
+        The pose with its heading, or that turned by a half, or of a square robot a quarter.
+    """
+    nearest = poses[int(np.argmin(distances(poses, pose)))]
+    dx, dy = pose[:2] - nearest[:2]
+    arc_yaw = 2 * np.arctan2(dy, dx) - nearest[2]
+    turns = np.arange(4) * np.pi / 2 if square else np.array([0.0, np.pi])
+    turn = turns[np.argmax(np.cos(pose[2] + turns - arc_yaw))]
+    return np.array([pose[0], pose[1], pose[2] + turn])
+
+
 def is_near(pose: Array, expected: Array, length: float) -> bool:
     """Tell whether a pose is about where it was expected."""
     turned = abs(float(np.angle(np.exp(1j * (pose[2] - expected[2])))))

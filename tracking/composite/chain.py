@@ -58,11 +58,11 @@ def steady_chain(anchor: Array, step: Array, more_turn: float, ahead: int, behin
     """
     poses, here = [anchor], anchor
     for number in range(ahead):
-        here = stepped(here, step + [0.0, 0.0, number * more_turn])
+        here = stepped(here, step + np.array([0.0, 0.0, number * more_turn]))
         poses.append(here)
     here = anchor
     for number in range(1, behind + 1):
-        here = stepped_back(here, step - [0.0, 0.0, number * more_turn])
+        here = stepped_back(here, step - np.array([0.0, 0.0, number * more_turn]))
         poses.append(here)
     return np.array(poses)
 

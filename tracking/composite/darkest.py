@@ -87,13 +87,20 @@ class Cover(NamedTuple):
 
 @dataclass(frozen=True)
 class Chain:
-    """Exposures by one steady step from the known one."""
+    """Exposures by one steady step from the known one.
 
-    step: Array  # and by how much it turns more each time
+    Attributes:
+        step: Forward, left, turn and by how much more it turns each time, shape (4,) [m, rad].
+        ahead: How many along it.
+        behind: How many against it.
+    """
+
+    step: Array
     ahead: int
     behind: int
 
     def poses(self, anchor: Array) -> Array:
+        """Lay the exposures, the known one first, shape (n, 3)."""
         return steady_chain(anchor, self.step[:3], float(self.step[3]), self.ahead, self.behind)
 
     @classmethod
@@ -109,6 +116,7 @@ class Chain:
 
     @property
     def longer(self) -> tuple["Chain", "Chain"]:
+        """The same chain with an exposure more at one end, and at the other."""
         return (
             Chain(self.step, self.ahead + 1, self.behind),
             Chain(self.step, self.ahead, self.behind + 1),
@@ -310,13 +318,14 @@ class DarkestReading:
             window, laid = self.body.laid(values, self.plane, poses[k])
             layer[window] = laid
         same = (np.abs(self.picture - (_OPEN - own)) < _FAR * NOISE).all(axis=-1)
-        return same & (clear > 0.9) & ((_OPEN - own) <= others + _CLAIM).all(axis=-1) & self.used
+        darkest = ((_OPEN - own) <= others + _CLAIM).all(axis=-1)
+        return same & (clear > 0.9) & darkest & self.used
 
     def clear(self, poses: Array, look: Look) -> NDArray[np.float32]:
         """Mark the points of the robot that the first exposure shows as they are."""
         others = self.cover(poses[1:], look).brightest
         around = self.body.read(others, self.plane, poses[0])
-        return (look.own <= around + _CLAIM).all(axis=-1).astype(np.float32)
+        return np.asarray((look.own <= around + _CLAIM).all(axis=-1), dtype=np.float32)
 
     def value(self, poses: Array) -> float:
         """Compute by how much exposures make the picture likelier, in points of one exposure."""

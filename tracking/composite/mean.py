@@ -20,8 +20,8 @@ from scipy.sparse.linalg import LinearOperator, cg
 
 from tracking.camera.lens import Array
 from tracking.composite.body_raster import BodyRaster
-from tracking.composite.candidates import LEAST_STEP, REACH
-from tracking.composite.chain import continued, distances, improved
+from tracking.composite.candidates import LEAST_STEP, REACH, headed
+from tracking.composite.chain import continued, distances, improved, usual_step
 from tracking.composite.colours import FloorColours
 from tracking.composite.match import Match, match_whole
 from tracking.composite.order import order_exposures
@@ -38,6 +38,8 @@ LEAST_SCORE = 0.75
 
 LEAST_STRENGTH = 0.5
 """Least strength of an exposure; all are alike in a mean [-]."""
+
+MOST_EXPOSURES = 24
 
 WORTH = 0.4
 """By how much of what one explains a set must explain more for one exposure more [-]."""
@@ -144,14 +146,26 @@ class MeanReading:
         robot = self.body.read(self.change, self.plane, anchor)
         poses = anchor[None]
         matches = [m for m in self.matches(self.change, robot) if m.score >= BESIDE_SCORE]
-        while (new := self.next_of(matches, poses)) is not None:
-            poses = np.concatenate((poses, self.refined(self.change, robot, new.planar)[None]))
+        while len(poses) < MOST_EXPOSURES and (new := self.next_of(matches, poses)) is not None:
+            poses = np.concatenate((poses, self.refined(self.change, robot, new)[None]))
         return poses
 
-    def next_of(self, matches: Sequence[Match], poses: Array) -> Match | None:
-        """Take the best match beside an exposure or, where there is none, one far from all."""
-        after = (m for m in matches if self.follows(m, poses))
-        return next(after, None) or next((m for m in matches if self.is_alone(m, poses)), None)
+    def next_of(self, matches: Sequence[Match], poses: Array) -> Array | None:
+        """Take the best match beside an exposure or, where steps are long, the nearest beyond."""
+        beside = next((match.planar for match in matches if self.follows(match, poses)), None)
+        if beside is not None:
+            return beside
+        beyond = [match.planar for match in matches if self.is_alone(match, poses)]
+        if not beyond or 0 < usual_step(poses) < REACH * self.length:
+            return None
+        nearest = min(beyond, key=lambda pose: distances(poses, pose).min())
+        return headed(nearest, poses, square=self.is_square)
+
+    @property
+    def is_square(self) -> bool:
+        """Tell whether the robot is about as wide as long."""
+        rows, columns = self.body.x[self.body.body].shape
+        return abs(rows - columns) < 0.2 * max(rows, columns)
 
     def matches(self, change: NDArray[np.float32], robot: NDArray[np.float32]) -> list[Match]:
         """Turn the robot's picture and compare; best first."""
@@ -171,6 +185,7 @@ class MeanReading:
         return match.score >= LONELY_SCORE and bool(away > REACH * self.length)
 
     def is_new(self, match: Match, poses: Array) -> bool:
+        """Tell whether a match may be one exposure more."""
         return self.follows(match, poses) or self.is_alone(match, poses)
 
     def varied(self, fit: Fit) -> list[Array]:

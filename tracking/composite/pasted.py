@@ -19,7 +19,7 @@ from tracking.body.template import sample
 from tracking.camera.lens import Array
 from tracking.composite.body_box import BodyBox
 from tracking.composite.body_raster import BodyRaster
-from tracking.composite.candidates import LEAST_STEP, REACH, apart, beside
+from tracking.composite.candidates import LEAST_STEP, REACH, apart, beside, headed
 from tracking.composite.chain import distances, improved, usual_step
 from tracking.composite.colours import ColourDensity
 from tracking.composite.match import Match, match_whole
@@ -86,10 +86,13 @@ class PastedReading:
         """
         robot = self.body.read(self.picture, self.plane, known)
         poses, odds = self.stack_under(known, [], [], robot, self.whole(known, robot))
-        for match in self.matches(robot):
-            if distances(np.array(poses), match.planar).min() > REACH * self.length:
-                new = self.climbed([match.planar], poses, robot, self.visible(poses))
-                if new is not None and new[1] >= LEAST_ODDS:
+        beyond = [match.planar for match in self.matches(robot)]
+        while beyond:
+            beyond.sort(key=lambda pose: -distances(np.array(poses), pose).min())
+            start = headed(beyond.pop(), np.array(poses), square=self.box.is_square)
+            if distances(np.array(poses), start).min() > REACH * self.length:
+                new = self.climbed([start], poses, robot, self.visible(poses))
+                if new is not None:
                     poses, odds = self.stack_under(new[0], poses, odds, robot, new[1])
         steps = self.are_steps(np.array(poses), np.array(odds))
         return np.array(poses)[steps], float(np.array(odds)[steps].sum())

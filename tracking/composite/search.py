@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Find every exposure of the robot in one merged picture.
+"""Find every exposure of a robot with a marker in one merged picture.
 
 A picture may have been merged in two ways, and nothing in it says in which:
 
@@ -19,7 +19,6 @@ is accepted by its place alone.
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-import cv2
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
@@ -31,11 +30,13 @@ from tracking.body import (
     floor_in_view,
     make_template,
 )
-from tracking.camera.lens import Array, Camera, CameraPose, project
+from tracking.camera.lens import Array, Camera, CameraPose
+from tracking.composite.body_box import BodyBox
+from tracking.composite.exposure import Exposure
 from tracking.composite.match import CELLS, Match, match_visible, match_whole
 from tracking.composite.plane import Plane
 from tracking.errors import BodyError, CompositeError
-from tracking.pose import BodyPrior, rotation_with_derivatives
+from tracking.pose import BodyPrior
 
 LONELY_SCORE = 0.65
 """Least correlation of an exposure with no clearer one beside it [-]."""
@@ -97,19 +98,6 @@ WIDE = Scissors(left=0.15, outline=0.08, least_score=0.7)
 exposures to 0.75 and more."""
 
 
-@dataclass(frozen=True)
-class Exposure:
-    """One exposure of the robot in a composite picture.
-
-    Attributes:
-        alignment: Where it is.
-        visible: Share of its top that no other hides [-].
-    """
-
-    alignment: Alignment
-    visible: float
-
-
 def find_exposures(
     pixels: NDArray[np.uint8], camera: Camera, view: CameraPose, *, template: BodyTemplate,
     prior: BodyPrior, body_size: tuple[float, float] | None = None,
@@ -121,7 +109,7 @@ def find_exposures(
         pixels: The picture, BGR, shape (height, width, 3).
         camera: The lens.
         view: Where the camera stood.
-        template: The robot's picture, or its marker's (`tracking.body.marker_template`).
+        template: The picture of the robot's marker (`tracking.body.marker_template`).
         prior: Height and tilt.
         body_size: Length and width of the robot's body, which hides others where it was cut out and
             pasted; the template's plate when None [m].
@@ -145,7 +133,7 @@ def find_exposures(
     if not found:
         raise CompositeError(
             "no exposure of the robot is found in the composite picture; check the marker's number "
-            "and dictionary, or annotate one exposure as template"
+            "and dictionary, or mark the top of one exposure and go without"
         )
     return tuple(found)
 
@@ -172,9 +160,7 @@ class _Search:
     def shining_through(self) -> list[Exposure]:
         """Find exposures that show as a whole, each among what is seen of others."""
         plane = self.plane(self.template, self.template.plate.length / CELLS)
-        picture = plane.read_smooth(self.pixels)
-        if np.ptp(self.template.colours, axis=2).max() == 0:
-            picture = picture.mean(axis=2, keepdims=True)
+        picture = plane.read_smooth(self.pixels).mean(axis=2, keepdims=True)
         matches = match_whole(picture, plane, template=self.template, least=0.9 * BESIDE_SCORE)
         aligned = [self.aligned(match) for match in self.apart(matches)]
         good = [each for each in aligned if each is not None and each.score >= BESIDE_SCORE]
@@ -351,26 +337,17 @@ class _Stack:
         return all(self.search.distance(here, each.alignment.pose.planar) > same for each in found)
 
     def covered(self, alignment: Alignment) -> NDArray[np.bool_]:
-        """Mark the pixels that an exposure hides: a box, and what scissors leave around it."""
-        (length, width), top = self.search.body, self.search.template.plate.height
-        corners = np.array([
-            (x, y, z)
-            for x in (-0.5 * length, 0.5 * length)
-            for y in (-0.5 * width, 0.5 * width)
-            for z in (-top, top)
-        ])  # fmt: skip
-        corners[:, :2] += self.scissors.left * length * np.sign(corners[:, :2])
-        return self.filled(alignment, corners)
+        """Mark the pixels that an exposure hides, and what scissors leave around it."""
+        return self.box.hidden(alignment.pose.state, left=self.scissors.left)
 
     def share(self, alignment: Alignment, visible: NDArray[np.bool_]) -> float:
         """Compute the share of an exposure's top that is visible."""
-        own = self.filled(alignment, self.body.plate.corners_body)
+        own = self.box.top_seen(alignment.pose.state)
         return float((own & visible).sum() / max(int(own.sum()), 1))
 
-    def filled(self, alignment: Alignment, points_body: Array) -> NDArray[np.bool_]:
-        R, _ = rotation_with_derivatives(*alignment.pose.state[3:])
-        points = points_body @ R.T + alignment.pose.state[:3]
-        seen = np.round(project(self.search.camera, self.search.view, points)).astype(np.int32)
-        mask = np.zeros(self.search.pixels.shape[:2], dtype=np.uint8)
-        cv2.fillConvexPoly(mask, cv2.convexHull(seen), (1,))
-        return mask.astype(bool)
+    @property
+    def box(self) -> BodyBox:
+        """The robot's body."""
+        search = self.search
+        top = search.template.plate.height
+        return BodyBox(search.camera, search.view, search.body, top, search.prior.height)

@@ -1,0 +1,19 @@
+# SPDX-License-Identifier: MIT
+"""What is found of a robot in a composite picture."""
+
+from dataclasses import dataclass
+
+from tracking.body import Alignment
+
+
+@dataclass(frozen=True)
+class Exposure:
+    """One exposure of the robot in a composite picture.
+
+    Attributes:
+        alignment: Where it is.
+        visible: Share of its top that no other hides [-].
+    """
+
+    alignment: Alignment
+    visible: float

@@ -2,8 +2,9 @@
 """Find every exposure of a robot without a marker, by how one of them looks.
 
 Nothing in a picture says how it was merged. It is read in three ways (`mean`, `darkest`,
-`pasted`), and the reading that finds most is taken; but of a mean all must be faint. Each reading finds places on a raster; they are then aligned in the photograph by
-what the reading says is to be seen of each.
+`pasted`), and the reading that finds most is taken; but of a mean all must be faint. Each reading
+finds places on a raster; they are then aligned in the photograph by what the reading says is to be
+seen of each.
 """
 
 from dataclasses import dataclass, replace
@@ -41,7 +42,7 @@ LEAST_CLEAR_SCORE, LEAST_FAINT_SCORE = 0.4, 0.2
 RASTER_SD = 0.02
 """Standard deviation of a place on the raster, in lengths of the robot [-]."""
 
-PASTED_SD, DARKEST_SD, MEAN_SD, MEAN_OVERLAP_SD = 1 / 300, 1 / 40, 1 / 800, 1 / 300
+PASTED_SD, DARKEST_SD, MEAN_SD, MEAN_OVERLAP_SD = 1 / 300, 1 / 40, 1 / 800, 1 / 250
 """Error of a place where others show as much as the robot does, in lengths of the robot; of pasted
 ones of which all shows. It grows with the root of their power, (1 - score²) / score², and was
 chosen by 390 exposures of simulated walks that no test draws [-]."""
@@ -52,7 +53,7 @@ _EDGE = 0.035  # of the top's length: left out where it has a pattern
 _PATTERN = 0.5  # of the contrast with its edges: then it has one
 _SLIP = 0.06  # of the length: an alignment that ends farther off has gone astray
 _TURN = 0.15  # rad: the same
-_LEVER = 0.7  # of the length: that much off at its ends turns it
+_LEVER, _HALF_LEVER = 0.7, 0.5  # of the length: that much off at its ends turns it
 _LEAST_SHARE = 0.05
 
 
@@ -123,8 +124,9 @@ class Likeness:
     area: tuple[Array, Array]
 
     def best_reading(self) -> tuple[Exposure, ...]:
-        """Read the picture in each way; return what is found by the one that is right."""
+        """Read the picture in each way; return what is found by the one that finds most."""
         anchor = self.known.planar
+        self.body_template(self.pixels)  # cut by an edge or too faint: said before the search
         left, pasted = self.pasted
         darkest = self.darkest.find(anchor)
         mean = self.mean.find(anchor)
@@ -213,21 +215,27 @@ class Likeness:
             if alignment is None:
                 exposure = Exposure(self.rough(pose), share)
             else:
-                slip = PASTED_SD / np.sqrt(max(share, _LEAST_SHARE))
-                exposure = Exposure(self.widened(alignment, slip), share)
+                part = float(np.sqrt(max(share, _LEAST_SHARE)))
+                widened = self.widened(alignment, PASTED_SD / part, lever=_LEVER * part)
+                exposure = Exposure(widened, share)
             found.append(exposure)
             visible = visible & ~self.box.hidden(exposure.alignment.pose.state, left=left)
         return tuple(found)
 
     def aligned_in_darkest(self, poses: Array) -> tuple[Exposure, ...]:
-        """Align what is the darkest of each; what does not align is none."""
+        """Align what is the darkest of each, twice; what does not align is none."""
+        found = self.darkest_aligned(poses)
+        return self.darkest_aligned(np.array([each.alignment.pose.planar for each in found]))
+
+    def darkest_aligned(self, poses: Array) -> tuple[Exposure, ...]:
+        """Align what is the darkest of each, judged by where the others are."""
         template, reading, found = self.body_template(self.pixels), self.darkest, []
         for k, pose in enumerate(poses):
             visible = self.on_photo(reading.shown(poses, k), reading.plane, pose) > 0.7
             alignment = self.aligned(pose, self.pixels, template, visible, least=LEAST_SCORE)
             if alignment is not None:
-                alignment = self.widened(alignment, DARKEST_SD)
-                found.append(Exposure(alignment, self.share(pose, visible)))
+                widened = self.widened(alignment, DARKEST_SD, lever=_LEVER)
+                found.append(Exposure(widened, self.share(pose, visible)))
         return tuple(found)
 
     def aligned_in_mean(self, fit: Fit) -> tuple[Exposure, ...]:
@@ -247,13 +255,14 @@ class Likeness:
 
         overlap = usual_step(fit.poses) < self.size[0]
         template = self.body_template(alone(0)) if overlap else self.plate_template(alone(0))
-        slip, found = MEAN_OVERLAP_SD if overlap else MEAN_SD, []
+        slip, lever = (MEAN_OVERLAP_SD, _HALF_LEVER) if overlap else (MEAN_SD, _LEVER)
+        found = []
         for k, pose in enumerate(fit.poses):
             alignment = self.aligned(
                 pose, alone(k), template, ~self.hidden, least=LEAST_FAINT_SCORE, shines_through=True
             )
             if alignment is not None and alignment.score >= LEAST_CLEAR_SCORE:
-                found.append(Exposure(self.widened(alignment, slip), 1.0))
+                found.append(Exposure(self.widened(alignment, slip, lever=lever), 1.0))
             elif alignment is not None or not overlap:
                 found.append(Exposure(self.rough(pose), 1.0))
         return tuple(found)
@@ -297,10 +306,10 @@ class Likeness:
         away = float(np.hypot(*(aligned[:2] - pose[:2])))
         return found.score < least or away > _SLIP * self.size[0] or turned > _TURN
 
-    def widened(self, alignment: Alignment, slip: float) -> Alignment:
+    def widened(self, alignment: Alignment, slip: float, *, lever: float) -> Alignment:
         """Add what others do to the place and the heading of an exposure, by their power."""
         power = max(1 - alignment.score**2, 0.0) / alignment.score**2
-        added = self.slipped(slip * self.size[0] * float(np.sqrt(power)))
+        added = self.slipped(slip * self.size[0] * float(np.sqrt(power)), lever)
         pose = alignment.pose
         return replace(alignment, pose=replace(pose, covariance=pose.covariance + added))
 
@@ -308,13 +317,13 @@ class Likeness:
         """Take a place on the raster for the alignment."""
         height, tilt = self.prior.height_sd, self.prior.tilt_sd
         known = np.diag([0.0, 0.0, height, tilt, tilt, 0.0]) ** 2
-        covariance = known + self.slipped(RASTER_SD * self.size[0])
+        covariance = known + self.slipped(RASTER_SD * self.size[0], _LEVER)
         state = self.level(pose)
         return Alignment(BodyPose(state, covariance, np.zeros((6, 6)), 0.0, 0.0), 0.0, 0.0, 0.0)
 
-    def slipped(self, slip: float) -> Array:
-        """Compute the covariance of a place and heading that slipped by so much, shape (6, 6)."""
-        turn = slip / (_LEVER * self.size[0])
+    def slipped(self, slip: float, lever: float) -> Array:
+        """Compute the covariance of a place that slipped by so much at a lever, shape (6, 6)."""
+        turn = slip / (lever * self.size[0])
         return np.diag([slip, slip, 0.0, 0.0, 0.0, turn]) ** 2
 
     def on_photo(self, layer: NDArray, plane: Plane, pose: Array) -> NDArray[np.float32]:

@@ -190,9 +190,10 @@ def track_lines(result: "TrackResult") -> list[str]:
     simulated = "SIMULATED " if result.source.startswith("sim:") else ""
     moves = np.where(track.gap_before[1:], 0.0, np.hypot(*np.diff(track.poses[:, :2], axis=0).T))
     lost = list(result.tracked.lost.items())
+    what = "exposures" if result.is_composite else "photographs"
     return [
         f"{simulated}track (source {result.source}): {len(track.t)} of {result.photos} "
-        f"photographs, {track.t[-1] - track.t[0]:.4g} s, {moves.sum():.3f} m",
+        f"{what}, {track.t[-1] - track.t[0]:.4g} s, {moves.sum():.3f} m",
         f"times: {result.times}",
         f"standard deviations (median): x {1e3 * np.median(spread[:, 0]):.2f} mm, "
         f"y {1e3 * np.median(spread[:, 1]):.2f} mm, "

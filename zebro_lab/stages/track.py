@@ -104,6 +104,7 @@ class TrackResult:
         photos: How many photographs or exposures there were.
         source: "real", "sim:what" or "unknown".
         times: Where times are from, and from when they are counted.
+        is_composite: Whether they are exposures of one picture.
     """
 
     folder: Path
@@ -111,6 +112,7 @@ class TrackResult:
     photos: int
     source: str
     times: str
+    is_composite: bool = False
 
 
 def track(request: TrackRequest, watcher: Watcher) -> TrackResult:
@@ -129,7 +131,8 @@ def track(request: TrackRequest, watcher: Watcher) -> TrackResult:
         source = source_of(request, manifest, sequence)
         tracked, said = _tracked(request, described, scene, sequence, manifest, watcher)
         tracked = replace(tracked, lost={**sequence.left_out, **tracked.lost})
-        result = TrackResult(folder, tracked, _count(tracked, sequence), source, said)
+        count = _count(tracked, sequence)
+        result = TrackResult(folder, tracked, count, source, said, sequence.is_composite)
         watcher.step("pictures", None)
         _write(request, result, scene, sequence)
     return result

@@ -1,0 +1,203 @@
+# SPDX-License-Identifier: MIT
+"""Exposures of a robot without a marker are found by how one of them looks."""
+
+import cv2
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from tracking.body import TopPlate
+from tracking.camera import Camera, CameraPose, project
+from tracking.composite import find_exposures_like, order_exposures
+from tracking.composite.body_raster import BodyRaster
+from tracking.composite.candidates import headed
+from tracking.composite.chain import (
+    steady_chain,
+    step_between,
+    stepped,
+    stepped_back,
+    unsteadiness,
+)
+from tracking.composite.colours import FloorColours
+from tracking.composite.mean import MeanReading
+from tracking.composite.plane import Plane
+from tracking.errors import CompositeError
+from tracking.markers import square_homography
+from tracking.pose import BodyPose, BodyPrior
+
+LENS = Camera((640, 400), np.array([[760.0, 0, 320], [0, 760, 200], [0, 0, 1]]), np.zeros(5))
+_TURN = np.linalg.svd([[1.0, 0, 0], [0, -0.85, -0.53], [0, 0.53, -0.85]])
+VIEW = CameraPose.from_matrix(_TURN[0] @ _TURN[2], [0.0, 0.15, 1.6])
+SIZE, TOP = (0.20, 0.20), 0.03  # m
+PLATE = TopPlate(0.19, 0.19, TOP)
+PRIOR = BodyPrior(0.06, 1e-3, 5e-3)
+POSES = st.tuples(st.floats(-1, 1), st.floats(-1, 1), st.floats(-3, 3)).map(np.array)
+STEPS = st.tuples(st.floats(0.05, 0.4), st.floats(-0.1, 0.1), st.floats(-0.6, 0.6)).map(np.array)
+
+
+def floor(rng):
+    """Draw a brown floor with a pattern in light."""
+    pattern = cv2.GaussianBlur(rng.normal(0, 1, (400, 640)).astype(np.float32), (0, 0), 2)
+    light = 110 + 9 * pattern / pattern.std()
+    return light[..., None] * np.array([0.75, 0.95, 1.1])
+
+
+def robot():
+    """Draw a blue board with a red head and patches that look alike from no two sides."""
+    picture = np.tile(np.array([120.0, 60, 30]), (80, 80, 1))
+    picture[:10, 25:55] = (30, 30, 190)
+    for row, column, colour in (
+        (20, 12, (60, 140, 90)), (45, 50, (200, 190, 180)), (55, 15, (30, 30, 30)),
+        (25, 45, (140, 90, 170)),
+    ):  # fmt: skip
+        picture[row : row + 16, column : column + 20] = colour
+    return picture
+
+
+def exposure(planar, rng, ground):
+    """Photograph the board; return the picture and where it shows it."""
+    c, s = np.cos(planar[2]), np.sin(planar[2])
+    corners = np.array([[1, 1], [1, -1], [-1, -1], [-1, 1]]) * 0.5 * np.array(SIZE)
+    corners = corners @ np.array([[c, s], [-s, c]]) + planar[:2]
+    seen = project(LENS, VIEW, np.column_stack((corners, np.full(4, PRIOR.height + TOP))))
+    own = np.array([[1, 0, 0.5], [0, 1, 0.5], [0, 0, 80]]) / 80
+    H = square_homography(seen) @ own
+    drawn = cv2.warpPerspective(robot(), H, (640, 400), flags=cv2.INTER_AREA)
+    mask = cv2.warpPerspective(np.ones((80, 80)), H, (640, 400))[..., None]
+    picture = cv2.GaussianBlur(ground * (1 - mask) + drawn * mask, (0, 0), 0.6)
+    return np.clip(picture + rng.normal(0, 1.2, picture.shape), 0, 255), mask[..., 0] > 0.05
+
+
+def composite(walk, kind, seed=0):
+    rng = np.random.default_rng(seed)
+    ground = floor(rng)
+    pictures, masks = zip(*(exposure(planar, rng, ground) for planar in walk), strict=True)
+    if kind == "averaged":
+        return np.rint(np.mean(pictures, axis=0)).astype(np.uint8)
+    if kind == "darkest":
+        return np.min(pictures, axis=0).astype(np.uint8)
+    whole = pictures[0].copy()
+    for picture, mask in zip(pictures, masks, strict=True):
+        whole[mask] = picture[mask]
+    return whole.astype(np.uint8)
+
+
+def known_at(planar):
+    state = np.array([planar[0], planar[1], PRIOR.height, 0, 0, planar[2]])
+    return BodyPose(state, np.zeros((6, 6)), np.zeros((6, 6)), 0.0, 0.0)
+
+
+def found_in(picture, planar, **other):
+    found = find_exposures_like(
+        picture, LENS, VIEW, known=known_at(planar), plate=PLATE, body_size=SIZE, prior=PRIOR,
+        **other,
+    )  # fmt: skip
+    poses = np.array([each.alignment.pose.planar for each in found])
+    return poses[list(order_exposures(poses))]
+
+
+@pytest.mark.parametrize("kind", ["pasted", "averaged", "darkest"])
+def test_exposures_that_overlap_are_found_in_order_and_none_is_made_up(kind):
+    step = np.array([0.11, 0.0, 0.12])
+    walk = steady_chain(np.array([-0.22, -0.1, 0.15]), step, 0.0, 4, 0)
+    poses = found_in(composite(walk, kind), walk[-1], near=(0.0, 0.0), reach=0.35)
+    assert len(poses) == len(walk)
+    assert np.abs(poses[:, :2] - walk[:, :2]).max() < 5e-3
+    assert np.degrees(np.abs(poses[:, 2] - walk[:, 2]).max()) < 2.5
+
+
+def test_exposures_beyond_reach_of_each_other_are_found_in_a_mean():
+    walk = np.array([[-0.4, -0.12, 0.2], [-0.05, -0.03, 0.3], [0.3, 0.08, 0.4]])
+    poses = found_in(composite(walk, "averaged"), walk[1])
+    assert len(poses) == 3
+    assert np.abs(poses[:, :2] - walk[:, :2]).max() < 3e-3
+
+
+def test_one_exposure_alone_is_no_composite():
+    planar = np.array([0.0, 0.0, 0.3])
+    with pytest.raises(CompositeError, match="but the one whose top was marked"):
+        found_in(composite(planar[None], "pasted"), planar, near=(0, 0), reach=0.15)
+
+
+def test_a_known_exposure_cut_by_the_edge_is_refused():
+    picture = composite(np.array([[0.0, 0.0, 0.3]]), "pasted")
+    with pytest.raises(CompositeError, match="edge"):
+        found_in(picture, np.array([0.66, 0.0, 0.0]), near=(0.5, 0), reach=0.4)
+
+
+@given(pose=POSES, step=STEPS)
+def test_a_step_there_and_back_ends_where_it_began(pose, step):
+    np.testing.assert_allclose(step_between(pose, stepped(pose, step)), step, atol=1e-9)
+    np.testing.assert_allclose(stepped_back(stepped(pose, step), step), pose, atol=1e-9)
+
+
+@given(pose=POSES, step=STEPS, more=st.floats(-0.05, 0.05))
+def test_a_chain_is_the_same_from_any_of_its_exposures(pose, step, more):
+    chain = steady_chain(pose, step, more, 4, 0)
+    first = step_between(chain[2], chain[3])
+    again = steady_chain(chain[2], first, more, 2, 2)
+    np.testing.assert_allclose(again[[4, 3, 0, 1, 2]], chain, atol=1e-9)
+
+
+def test_steady_steps_are_steady_and_a_slip_is_not():
+    walk = steady_chain(np.zeros(3), np.array([0.1, 0.0, 0.1]), 0.0, 6, 0)
+    assert unsteadiness(walk) == pytest.approx(0.0, abs=1e-12)
+    walk[3, 0] += 0.02
+    assert unsteadiness(walk) > 10
+
+
+@given(step=STEPS, turned=st.integers(0, 3))
+def test_a_square_robot_is_headed_along_the_arc_that_leads_to_it(step, turned):
+    after = stepped(np.zeros(3), step * [1, 0, 1])
+    seen = after + np.array([0, 0, turned * np.pi / 2])
+    found = headed(seen, np.zeros((1, 3)), square=True)
+    assert np.cos(found[2] - after[2]) == pytest.approx(1.0)
+
+
+def level_plane():
+    low, high = np.array([-0.5, -0.4]), np.array([0.5, 0.4])
+    return Plane.over(LENS, VIEW, height=PRIOR.height + TOP, low=low, high=high, cell=0.006)
+
+
+def test_what_is_laid_on_a_plane_is_read_again():
+    body, plane = BodyRaster.over(SIZE, 0.006), level_plane()
+    rng = np.random.default_rng(1)
+    values = cv2.GaussianBlur(rng.normal(0, 1, (*body.x.shape, 3)).astype(np.float32), (0, 0), 3)
+    pose = np.array([0.1, -0.05, 0.7])
+    layer = np.zeros((*plane.seen_px.shape[:2], 3), np.float32)
+    window, laid = body.laid(values, plane, pose)
+    layer[window] = laid
+    inner = (slice(3, -3), slice(3, -3))
+    np.testing.assert_allclose(
+        body.read(layer, plane, pose)[inner], values[inner], atol=0.1 * values.std()
+    )
+
+
+def test_a_robot_is_told_from_a_sum_of_itself():
+    body, plane = BodyRaster.over(SIZE, 0.006, margin=4), level_plane()
+    rng = np.random.default_rng(2)
+    shape = (*plane.seen_px.shape[:2], 3)
+    picture, used = rng.normal(100, 5, shape).astype(np.float32), np.ones(shape[:2], bool)
+    reading = MeanReading(plane, picture, used, body, SIZE[0], TOP)
+    own = cv2.GaussianBlur(rng.normal(0, 60, (*body.x.shape, 3)).astype(np.float32), (0, 0), 2)
+    poses = steady_chain(np.array([-0.25, 0.0, 0.0]), np.array([0.1, 0.0, 0.1]), 0.0, 4, 0)
+    reading.__dict__["change"] = reading.sum_of(poses, own)
+    seen = np.mean([body.read(reading.change, plane, pose) for pose in poses], axis=0)
+    solved = reading.robot_at(poses)
+    assert np.corrcoef(solved.ravel(), own.ravel())[0, 1] > 0.97
+    assert np.corrcoef(seen.ravel(), own.ravel())[0, 1] < 0.9  # what many others would take
+
+
+def test_a_robot_on_the_floor_does_not_change_how_the_floor_looks():
+    rng = np.random.default_rng(3)
+    picture = (floor(rng) + rng.normal(0, 1, (400, 640, 3))).astype(np.float32)
+    used = np.ones(picture.shape[:2], bool)
+    bare = FloorColours.of(picture, used, width=60, noise=0.5)
+    picture[100:220, 100:220] = (120, 60, 30)
+    with_robot = FloorColours.of(picture, used, width=60, noise=0.5)
+    white = bare.whitening.T @ with_robot.covariance @ bare.whitening
+    np.testing.assert_allclose(white, np.eye(3), atol=0.2)
+    far = with_robot.oddness(picture)
+    assert far[130:190, 130:190].min() > 30
+    assert np.median(far[300:]) == pytest.approx(np.median(bare.oddness(picture)[300:]), rel=0.1)

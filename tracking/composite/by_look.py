@@ -53,7 +53,7 @@ _EDGE = 0.035  # of the top's length: left out where it has a pattern
 _PATTERN = 0.5  # of the contrast with its edges: then it has one
 _SLIP = 0.06  # of the length: an alignment that ends farther off has gone astray
 _TURN = 0.15  # rad: the same
-_LEVER, _HALF_LEVER = 0.7, 0.5  # of the length: that much off at its ends turns it
+_LEVER, _STRIP_LEVER, _HALF_LEVER = 0.7, 0.58, 0.5  # of the length: that much off there turns it
 _LEAST_SHARE = 0.05
 
 
@@ -216,7 +216,7 @@ class Likeness:
                 exposure = Exposure(self.rough(pose), share)
             else:
                 part = float(np.sqrt(max(share, _LEAST_SHARE)))
-                widened = self.widened(alignment, PASTED_SD / part, lever=_LEVER * part)
+                widened = self.widened(alignment, PASTED_SD / part, lever=_STRIP_LEVER * part)
                 exposure = Exposure(widened, share)
             found.append(exposure)
             visible = visible & ~self.box.hidden(exposure.alignment.pose.state, left=left)

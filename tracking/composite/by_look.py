@@ -127,7 +127,7 @@ class Likeness:
         """Read the picture in each way; return what is found by the one that finds most."""
         anchor = self.known.planar
         self.body_template(self.pixels)  # cut by an edge or too faint: said before the search
-        left, pasted = self.pasted
+        left, pasted = self.find_pasted()
         darkest = self.darkest.find(anchor)
         mean = self.mean.find(anchor)
         most = max(len(pasted), len(darkest))
@@ -137,17 +137,11 @@ class Likeness:
             return self.aligned_in_darkest(darkest)
         return self.aligned_in_pasted(left, pasted)
 
-    @property
-    def pasted(self) -> tuple[float, Array]:
-        """What scissors left around pasted exposures, and where these are."""
-        plane, picture, used, body = self.raster(self.size[0] / _CELLS["pasted"])
-        ways = [
-            (
-                left,
-                *PastedReading(plane, picture, used, body, self.box, left).find(self.known.planar),
-            )
-            for left in (CLOSE, WIDE)
-        ]
+    def find_pasted(self) -> tuple[float, Array]:
+        """Find pasted exposures; return what scissors left around them, and where they are."""
+        raster, anchor = self.raster(self.size[0] / _CELLS["pasted"]), self.known.planar
+        readings = [PastedReading(*raster, self.box, left) for left in (CLOSE, WIDE)]
+        ways = [(reading.left, *reading.find(anchor)) for reading in readings]
         left, poses, _ = max(ways, key=lambda way: way[2])
         return left, poses
 

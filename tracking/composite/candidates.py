@@ -12,6 +12,12 @@ REACH = 1.25
 LEAST_STEP = 0.25
 """Nearer than this two exposures are one, in lengths of the robot [-]."""
 
+MOST_EXPOSURES = 24
+"""Where exposures are judged as a set, how many there may be."""
+
+CLIMB = (0.01, 0.01, 0.1)
+"""First changes by which a place is improved [m, m, rad]."""
+
 _TURNS = np.radians(np.arange(-30.0, 31.0, 7.5))
 _SIDEWAYS = np.radians(40.0)  # a robot walks ahead or back, not to its side
 _NEARBY = 0.16  # of the length: how far a step differs from the one before
@@ -72,6 +78,14 @@ def headed(pose: Array, poses: Array, *, square: bool) -> Array:
     turns = np.arange(4) * np.pi / 2 if square else np.array([0.0, np.pi])
     turn = turns[np.argmax(np.cos(pose[2] + turns - arc_yaw))]
     return np.array([pose[0], pose[1], pose[2] + turn])
+
+
+def are_apart(poses: Array, length: float) -> bool:
+    """Tell whether no two exposures of a robot so long, shape (n, 3), are one."""
+    return all(
+        distances(poses[k + 1 :], pose).min() >= LEAST_STEP * length
+        for k, pose in enumerate(poses[:-1])
+    )
 
 
 def is_near(pose: Array, expected: Array, length: float) -> bool:

@@ -19,6 +19,10 @@ _LEVELS = 32
 _RARE = 0.1  # share of colours that may be any
 
 
+NOISE = 12.0
+"""Standard deviation of a colour of the robot from one exposure to another [grey levels]."""
+
+
 @dataclass(frozen=True)
 class FloorColours:
     """How a floor looks: its light, which changes slowly, and how its colours scatter about that.
@@ -93,6 +97,12 @@ class ColourDensity:
         """Return the density of colours, shape (..., 3)."""
         cell = np.clip(colours * (_LEVELS / 256), 0, _LEVELS - 1).astype(int)
         return self.table[cell[..., 0], cell[..., 1], cell[..., 2]]
+
+
+def robot_density(difference: Array) -> Array:
+    """Compute how dense colours are that differ so much from the robot's, per cubed grey level."""
+    norm = (2 * np.pi) ** 1.5 * NOISE**3
+    return np.exp(-0.5 * (difference**2).sum(axis=-1) / NOISE**2) / norm
 
 
 def _smooth(

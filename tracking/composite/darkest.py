@@ -25,7 +25,16 @@ from numpy.typing import NDArray
 from tracking.body.template import sample
 from tracking.camera.lens import Array
 from tracking.composite.body_raster import BodyRaster
-from tracking.composite.candidates import LEAST_STEP, apart, beside, is_near, nearby
+from tracking.composite.candidates import (
+    CLIMB,
+    LEAST_STEP,
+    MOST_EXPOSURES,
+    apart,
+    are_apart,
+    beside,
+    is_near,
+    nearby,
+)
 from tracking.composite.chain import (
     continued,
     distances,
@@ -35,12 +44,9 @@ from tracking.composite.chain import (
     unsteadiness,
     usual_step,
 )
-from tracking.composite.colours import ColourDensity, FloorColours
+from tracking.composite.colours import NOISE, ColourDensity, FloorColours, robot_density
 from tracking.composite.order import order_exposures
-from tracking.composite.plane import Plane
-
-NOISE = 12.0
-"""Standard deviation of a colour of the robot from one exposure to another [grey levels]."""
+from tracking.composite.reading import Reading
 
 LEAST_ODDS = 0.25
 """Least log odds of an exposure, mean over what it claims [-]."""
@@ -54,8 +60,6 @@ UNSTEADY = 0.03
 LEAST_CLAIM = 0.12
 """Least share of its points that an exposure must claim: of these it is the darkest [-]."""
 
-MOST_EXPOSURES = 24
-
 _SEEN = 0.6  # share of the robot's own points that show it and not a darker thing
 _OWN_LOOK = 0.6  # weight of how the known exposure looks, beside the brightest seen of all
 _BRIGHTER = 0.01  # how often a point is brighter than it could be
@@ -66,7 +70,6 @@ _LEAST_SEEN = 0.6  # share of an exposure that must be in the picture
 _FAR = 2.5  # in standard deviations: another colour
 _CLAIM = 6.0  # darker than others by this, it is an exposure's own [grey levels]
 _FIRST_STEPS = 10
-_CLIMB = (0.01, 0.01, 0.1)
 _POLISH = (0.006, 0.006, 0.05)
 
 
@@ -75,6 +78,10 @@ class Look(NamedTuple):
 
     own: NDArray[np.float32]
     brightest: NDArray[np.float32]
+
+    def thinned(self) -> "Look":
+        """Take every second point, as `BodyRaster.thinned` does."""
+        return Look(self.own[1::2, 1::2], self.brightest[1::2, 1::2])
 
 
 class Cover(NamedTuple):
@@ -124,21 +131,13 @@ class Chain:
 
 
 @dataclass(frozen=True)
-class DarkestReading:
+class DarkestReading(Reading):
     """A picture of the darkest values, on a raster.
 
     Attributes:
-        plane: The raster.
-        picture: Colours on it, shape (rows, columns, 3).
-        used: Where it shows floor or robot.
-        body: Points of the robot.
         length: The robot's length [m].
     """
 
-    plane: Plane
-    picture: NDArray[np.float32]
-    used: NDArray[np.bool_]
-    body: BodyRaster
     length: float
 
     @cached_property
@@ -185,8 +184,7 @@ class DarkestReading:
 
     def worth(self, poses: Array) -> float:
         """Compute the value of exposures, less what so many must gain; -inf of two in one place."""
-        if any(distances(poses[k + 1 :], pose).min() < LEAST_STEP * self.length
-               for k, pose in enumerate(poses[:-1])):  # fmt: skip
+        if not are_apart(poses, self.length):
             return -np.inf
         return self.value(poses) - LEAST_GAIN * (len(poses) - 1)
 
@@ -212,13 +210,13 @@ class DarkestReading:
 
     def best_of(self, tried: Array, look: Look, cover: Cover, *, most: int) -> list[Array]:
         """Improve the best of many places; return those that hold, the best first."""
-        odds = self.odds(tried, look, cover, self.body.thinned())
+        odds = self.odds(tried, look.thinned(), cover, self.body.thinned())
         starts = apart(tried, odds, 0.19 * self.length, most=most)
 
         def value(pose: Array) -> float:
             return float(self.gains(pose[None], look, cover, self.body)[0][0])
 
-        found = [improved(value, start, reach=_CLIMB, tries=90)[0] for start in starts]
+        found = [improved(value, start, reach=CLIMB, tries=90)[0] for start in starts]
         if not found:
             return []
         held = self.odds(np.array(found), look, cover, self.body)
@@ -364,8 +362,6 @@ class DarkestReading:
             Gain of log density, mean over the exposure's points; shares of them that it claims,
             and that are in the picture.
         """
-        if body.x.shape != look.own.shape[:2]:
-            look = Look(look.own[1::2, 1::2], look.brightest[1::2, 1::2])
         place = body.on(self.plane, poses)
         inside = sample(self.used.astype(np.float32), place) > 0.9
         seen, dark, before = (
@@ -386,12 +382,8 @@ class DarkestReading:
         dark_things: Array,
     ) -> Array:  # fmt: skip
         """Compute how likely colours are where exposures should look like this."""
-        shows = _OWN_LOOK * _bell(seen - own) + (1 - _OWN_LOOK) * _bell(seen - brightest)
+        shows = _OWN_LOOK * robot_density(seen - own)
+        shows += (1 - _OWN_LOOK) * robot_density(seen - brightest)
         beyond = np.clip((seen - brightest).max(axis=-1) / NOISE - 1.0, 0.0, 3.5)
         hidden = (1 - _SEEN) * np.exp(-0.5 * beyond**2) + _BRIGHTER
         return np.log(_SEEN * shows + hidden * np.maximum(dark_things, 1e-12))
-
-
-def _bell(difference: Array) -> Array:
-    norm = (2 * np.pi) ** 1.5 * NOISE**3
-    return np.exp(-0.5 * (difference**2).sum(axis=-1) / NOISE**2) / norm

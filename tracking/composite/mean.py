@@ -19,13 +19,19 @@ from numpy.typing import NDArray
 from scipy.sparse.linalg import LinearOperator, cg
 
 from tracking.camera.lens import Array
-from tracking.composite.body_raster import BodyRaster
-from tracking.composite.candidates import LEAST_STEP, REACH, headed
+from tracking.composite.candidates import (
+    CLIMB,
+    LEAST_STEP,
+    MOST_EXPOSURES,
+    REACH,
+    are_apart,
+    headed,
+)
 from tracking.composite.chain import continued, distances, improved, usual_step
 from tracking.composite.colours import FloorColours
 from tracking.composite.match import Match, match_whole
 from tracking.composite.order import order_exposures
-from tracking.composite.plane import Plane
+from tracking.composite.reading import Reading
 
 LONELY_SCORE = 0.6
 """Least correlation of an exposure beside no other, when only one is known [-]."""
@@ -39,8 +45,6 @@ LEAST_SCORE = 0.75
 LEAST_STRENGTH = 0.5
 """Least strength of an exposure; all are alike in a mean [-]."""
 
-MOST_EXPOSURES = 24
-
 WORTH = 0.4
 """By how much of what one explains a set must explain more for one exposure more [-]."""
 
@@ -50,7 +54,6 @@ SCALE = 8.0
 _TURN = np.radians(32.0)
 _DAMPING = 0.02
 _ROUNDS = 30
-_CLIMB = (0.01, 0.01, 0.1)
 _TRIED = 3
 _LEAST_MATCH = 0.4
 _BETTER = 1e-3  # share of the picture's power
@@ -75,22 +78,16 @@ class Fit(NamedTuple):
 
 
 @dataclass(frozen=True)
-class MeanReading:
+class MeanReading(Reading):
     """A mean of exposures, on a raster.
 
+    `body` reaches beyond the robot's top, over what its sides and legs cover.
+
     Attributes:
-        plane: The raster.
-        picture: Colours on it, shape (rows, columns, 3).
-        used: Where it shows floor or robot.
-        body: Points of the robot and some around it, which its sides and legs cover.
         length: The robot's length [m].
         height: Height of its top over the body's origin [m].
     """
 
-    plane: Plane
-    picture: NDArray[np.float32]
-    used: NDArray[np.bool_]
-    body: BodyRaster
     length: float
     height: float
 
@@ -198,21 +195,14 @@ class MeanReading:
             sets += _shifted(fit.poses)
             weakest = 1 + int(np.argmin(fit.scores[1:]))
             sets.append(np.delete(fit.poses, weakest, axis=0))
-        return [poses for poses in sets if self.are_apart(poses)]
-
-    def are_apart(self, poses: Array) -> bool:
-        """Tell whether no two exposures are one."""
-        return all(
-            distances(poses[k + 1 :], pose).min() > LEAST_STEP * self.length
-            for k, pose in enumerate(poses[:-1])
-        )
+        return [poses for poses in sets if are_apart(poses, self.length)]
 
     def fitted(self, poses: Array, *, rounds: int) -> Fit:
         """Improve exposures and the robot's picture in turn."""
         poses = poses.copy()
         robot = self.robot_at(poses)
-        scores = strengths = np.ones(len(poses))
-        for _ in range(rounds):
+        scores, strengths = self.improve(poses, robot)
+        for _ in range(rounds - 1):
             robot = self.robot_at(poses)
             scores, strengths = self.improve(poses, robot)
         left = (self.change - self.sum_of(poses, robot)) * self.used[..., None]
@@ -239,7 +229,7 @@ class MeanReading:
     ) -> Array:
         """Improve a pose by the correlation with the robot's picture."""
         return improved(
-            lambda place: self.likeness(change, robot, place)[0], pose, reach=_CLIMB, tries=120
+            lambda place: self.likeness(change, robot, place)[0], pose, reach=CLIMB, tries=120
         )[0]
 
     def likeness(

@@ -11,7 +11,7 @@ from tracking.camera.lens import Array
 _EXACT_ORDER = 12
 
 
-def order_exposures(poses: ArrayLike, *, heading_known: bool = True) -> tuple[int, ...]:
+def order_exposures(poses: ArrayLike) -> tuple[int, ...]:
     """Order exposures along the walk.
 
     A step from one exposure to the next is judged by its length and by how well it follows the
@@ -20,33 +20,25 @@ def order_exposures(poses: ArrayLike, *, heading_known: bool = True) -> tuple[in
 
     Args:
         poses: x, y [m] and yaw [rad] of the exposures, shape (n, 3).
-        heading_known: Whether head and tail are told apart. If not, both directions along the
-            robot are taken alike and the order may be the reverse.
 
     Returns:
         Numbers of the exposures, first to last.
     """
     places = np.asarray(poses, dtype=float).reshape(-1, 3)
-    if len(places) < 3 and not heading_known:
-        return tuple(range(len(places)))
-    cost = _step_costs(places, heading_known)
+    cost = _step_costs(places)
     if len(places) <= _EXACT_ORDER:
         return _best_chain(cost)
     return _improved_chain(cost)
 
 
-def _step_costs(places: Array, heading_known: bool) -> Array:
+def _step_costs(places: Array) -> Array:
     """Compute the cost of a step from i to j, shape (n, n) [m]."""
     move = places[None, :, :2] - places[:, None, :2]
     distance = np.hypot(move[..., 0], move[..., 1])
     turn = np.angle(np.exp(1j * (places[None, :, 2] - places[:, None, 2])))
-    if not heading_known:
-        turn = 0.5 * np.angle(np.exp(2j * turn))
     heading = places[:, None, 2] + turn / 2
     chord = np.arctan2(move[..., 1], move[..., 0])
     along = np.cos(chord - heading)
-    if not heading_known:
-        along = np.abs(along)
     # A step sideways costs three times its length, one backwards seven times.
     cost = distance * (1 + 3 * (1 - along) + 2 * (1 - np.cos(turn)))
     np.fill_diagonal(cost, np.inf)

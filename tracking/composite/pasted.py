@@ -19,14 +19,11 @@ from tracking.body.template import sample
 from tracking.camera.lens import Array
 from tracking.composite.body_box import BodyBox
 from tracking.composite.body_raster import BodyRaster
-from tracking.composite.candidates import LEAST_STEP, REACH, apart, beside, headed
+from tracking.composite.candidates import CLIMB, LEAST_STEP, REACH, apart, beside, headed
 from tracking.composite.chain import distances, improved, usual_step
-from tracking.composite.colours import ColourDensity
+from tracking.composite.colours import ColourDensity, robot_density
 from tracking.composite.match import Match, match_whole
-from tracking.composite.plane import Plane
-
-NOISE = 12.0
-"""Standard deviation of a colour of the robot from one exposure to another [grey levels]."""
+from tracking.composite.reading import Reading
 
 LEAST_GAIN = 0.05
 """Least log odds of an exposure, mean over all points of its top, hidden or not [-]."""
@@ -40,26 +37,17 @@ _LEAST_OF_STEP = 0.6  # intervals are regular: an exposure is not much nearer to
 _LEAST_MATCH = 0.5
 _SHOWS = 0.5  # share of visible points on which nothing lies
 _TRIED = 5
-_CLIMB = (0.01, 0.01, 0.1)
 
 
 @dataclass(frozen=True)
-class PastedReading:
+class PastedReading(Reading):
     """A picture of pasted exposures, on a raster.
 
     Attributes:
-        plane: The raster.
-        picture: Colours on it, shape (rows, columns, 3).
-        used: Where it shows floor or robot.
-        body: Points of the robot's top.
         box: The robot's body.
         left: What scissors left around the robot and hides others, as a share of its length [-].
     """
 
-    plane: Plane
-    picture: NDArray[np.float32]
-    used: NDArray[np.bool_]
-    body: BodyRaster
     box: BodyBox
     left: float
 
@@ -170,7 +158,7 @@ class PastedReading:
         def gain(pose: Array) -> float:
             return float(self.gains(pose[None], robot, shown, self.body)[0][0])
 
-        found = [improved(gain, start, reach=_CLIMB, tries=90) for start in starts]
+        found = [improved(gain, start, reach=CLIMB, tries=90) for start in starts]
         good = [each for each in found if self.holds(each[0], poses, robot, shown)]
         return max(good, key=lambda each: each[1], default=None)
 
@@ -199,8 +187,7 @@ class PastedReading:
         place = body.on(self.plane, poses)
         seen, usual = sample(self.picture, place), sample(self.usual, place)
         visible = sample(shown, place) > 0.9
-        norm = (2 * np.pi) ** 1.5 * NOISE**3
-        same = np.exp(-0.5 * ((seen - robot) ** 2).sum(axis=-1) / NOISE**2) / norm
-        log_odds = np.log(_SHOWS * same / np.maximum(usual, 1e-12) + 0.4 * (1 - _SHOWS))
+        same = robot_density(seen - robot) / np.maximum(usual, 1e-12)
+        log_odds = np.log(_SHOWS * same + 0.4 * (1 - _SHOWS))
         gain = np.where(visible, log_odds, 0.0).mean(axis=(1, 2))
         return gain, visible.mean(axis=(1, 2))

@@ -74,7 +74,7 @@ def align(
     pixels: NDArray[np.uint8], camera: Camera, view: CameraPose, *, template: BodyTemplate,
     prior: BodyPrior, start: Array, blurs_px: tuple[float, ...] = (2.5, 1.0),
     visible: NDArray[np.bool_] | None = None, least_visible: float = LEAST_VISIBLE,
-    least_hope: float = HOPELESS_SCORE, shines_through: bool = False,
+    least_hope: float = HOPELESS_SCORE, shines_through: bool = False, most_odd: float = np.inf,
 ) -> Alignment | None:  # fmt: skip
     """Align the robot's picture.
 
@@ -92,6 +92,8 @@ def align(
         least_hope: Least correlation after five steps for which it is carried on [-].
         shines_through: Whether the floor or other exposures are seen through the robot: what
             changes over more than `SLOW` of its picture is then left out.
+        most_odd: Points that differ by so many standard deviations in any colour are left out:
+            they show something else [-].
 
     Returns:
         The alignment, or None where the robot leaves the photograph, little of it is visible or
@@ -102,7 +104,7 @@ def align(
     for blur in blurs_px:
         job = _Job.prepare(
             pixels, camera, view, template, prior, state, blur, visible, least_visible,
-            shines_through,
+            shines_through, most_odd,
         )  # fmt: skip
         if job is None:
             return None
@@ -130,12 +132,13 @@ class _Job:
     floor: Array
     least_visible: float
     raster: tuple[int, int] | None
+    most_odd: float
 
     @classmethod
     def prepare(
         cls, pixels: NDArray[np.uint8], camera: Camera, view: CameraPose, template: BodyTemplate,
         prior: BodyPrior, state: Array, blur: float, visible: NDArray[np.bool_] | None,
-        least_visible: float, shines_through: bool,
+        least_visible: float, shines_through: bool, most_odd: float,
     ) -> "_Job | None":  # fmt: skip
         """Cut out, blur and differentiate the photograph around the robot."""
         points = template.points_body.reshape(-1, 3)
@@ -172,6 +175,7 @@ class _Job:
             _least_covariance(template, density),
             least_visible,
             template.colours.shape[:2] if shines_through else None,
+            most_odd,
         )
 
     def solve(self, state: Array, least_hope: float) -> Alignment | None:
@@ -268,6 +272,8 @@ class _Job:
         spread = 1.4826 * np.median(np.abs(residual), axis=0)
         noise = np.maximum(spread, 1.0) ** 2
         weight = np.minimum(1.0, _HUBER * np.sqrt(noise) / np.maximum(np.abs(residual), 1e-9))
+        odd = np.abs(residual) > self.most_odd * np.sqrt(noise)
+        weight[odd.any(axis=1)] = 0.0
         return residual, J, weight, noise, scores
 
 

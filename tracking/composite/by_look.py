@@ -25,19 +25,19 @@ from tracking.composite.colours import FloorColours
 from tracking.composite.darkest import DarkestReading
 from tracking.composite.exposure import Exposure
 from tracking.composite.mean import SCALE, Fit, MeanReading
-from tracking.composite.pasted import PastedReading
+from tracking.composite.pasted import FLOOR_LEFT, LEFT, PastedReading
 from tracking.composite.plane import Plane
 from tracking.errors import BodyError, CompositeError
 from tracking.pose import BodyPose, BodyPrior
-
-CLOSE, WIDE = 0.05, 0.15
-"""What scissors leave around a robot: along its edge, or floor and shadow too [of its length]."""
 
 LEAST_SCORE = 0.75
 """Least correlation of what is visible of an exposure with the known one [-]."""
 
 LEAST_CLEAR_SCORE, LEAST_FAINT_SCORE = 0.4, 0.2
 """The same of the edges of an exposure in a mean: to be aligned by them, and to be one at all."""
+
+MOST_ODD = 2.5
+"""Points of a pasted exposure that differ by more usual differences are of something else [-]."""
 
 RASTER_SD = 0.02
 """Standard deviation of a place on the raster, in lengths of the robot [-]."""
@@ -127,7 +127,7 @@ class Likeness:
         """Read the picture in each way; return what is found by the one that finds most."""
         anchor = self.known.planar
         self.body_template(self.pixels)  # cut by an edge or too faint: said before the search
-        left, pasted = self.find_pasted()
+        reading, pasted = self.find_pasted()
         darkest = self.darkest.find(anchor)
         mean = self.mean.find(anchor)
         most = max(len(pasted), len(darkest))
@@ -135,15 +135,15 @@ class Likeness:
             return self.aligned_in_mean(mean)
         if len(darkest) > len(pasted):
             return self.aligned_in_darkest(darkest)
-        return self.aligned_in_pasted(left, pasted)
+        return self.aligned_in_pasted(reading, pasted)
 
-    def find_pasted(self) -> tuple[float, Array]:
-        """Find pasted exposures; return what scissors left around them, and where they are."""
+    def find_pasted(self) -> tuple[PastedReading, Array]:
+        """Find pasted exposures, cut out closely or with floor; return how, and where they are."""
         raster, anchor = self.raster(self.size[0] / _CELLS["pasted"]), self.known.planar
-        readings = [PastedReading(*raster, self.box, left) for left in (CLOSE, WIDE)]
-        ways = [(reading.left, *reading.find(anchor)) for reading in readings]
-        left, poses, _ = max(ways, key=lambda way: way[2])
-        return left, poses
+        readings = [PastedReading(*raster, self.box, with_floor) for with_floor in (False, True)]
+        ways = [(reading, *reading.find(anchor)) for reading in readings]
+        reading, poses, _ = max(ways, key=lambda way: way[2])
+        return reading, poses
 
     @cached_property
     def darkest(self) -> DarkestReading:
@@ -198,14 +198,16 @@ class Likeness:
         except BodyError as error:
             raise CompositeError(str(error)) from error
 
-    def aligned_in_pasted(self, left: float, poses: Array) -> tuple[Exposure, ...]:
+    def aligned_in_pasted(self, reading: PastedReading, poses: Array) -> tuple[Exposure, ...]:
         """Align what no other hides of each, those on top first; else leave it on the raster."""
         template = self.body_template(self.pixels)
         visible = ~self.hidden
         found = []
         for pose in poses:
             share = self.share(pose, visible)
-            alignment = self.aligned(pose, self.pixels, template, visible, least=LEAST_SCORE)
+            alignment = self.aligned(
+                pose, self.pixels, template, visible, least=LEAST_SCORE, most_odd=MOST_ODD
+            )
             if alignment is None:
                 exposure = Exposure(self.rough(pose), share)
             else:
@@ -213,8 +215,16 @@ class Likeness:
                 widened = self.widened(alignment, PASTED_SD / part, lever=_STRIP_LEVER * part)
                 exposure = Exposure(widened, share)
             found.append(exposure)
-            visible = visible & ~self.box.hidden(exposure.alignment.pose.state, left=left)
+            visible = visible & ~self.hidden_under(exposure.alignment.pose, reading)
         return tuple(found)
+
+    def hidden_under(self, pose: BodyPose, reading: PastedReading) -> NDArray[np.bool_]:
+        """Mark the pixels that a pasted exposure hides, or may hide, shape (height, width)."""
+        hidden = self.box.hidden(pose.state, left=LEFT)
+        if reading.with_floor:
+            floor = self.on_photo(reading.floor, reading.plane, pose.planar) > 0.5
+            hidden |= floor & self.box.hidden(pose.state, left=FLOOR_LEFT)
+        return hidden
 
     def aligned_in_darkest(self, poses: Array) -> tuple[Exposure, ...]:
         """Align what is the darkest of each, twice; what does not align is none."""
@@ -283,13 +293,13 @@ class Likeness:
 
     def aligned(
         self, pose: Array, pixels: NDArray, template: BodyTemplate, visible: NDArray[np.bool_], *,
-        least: float, shines_through: bool = False,
+        least: float, shines_through: bool = False, most_odd: float = np.inf,
     ) -> Alignment | None:  # fmt: skip
         """Align one exposure; None where that goes astray."""
         found = align(
             pixels, self.camera, self.view, template=template, prior=self.prior, start=pose,
             visible=visible, blurs_px=(1.0,), least_visible=0.0, least_hope=-1.0,
-            shines_through=shines_through,
+            shines_through=shines_through, most_odd=most_odd,
         )  # fmt: skip
         return None if found is None or self.is_astray(found, pose, least) else found
 

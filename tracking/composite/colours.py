@@ -15,6 +15,8 @@ from tracking.camera.lens import Array
 _TRUSTED = 0.7  # share of the points by which the floor's scatter is judged
 _ODD = 12.0  # squared distance beyond which a colour does not count to the floor's light
 _ROUNDS = 5
+_SHADOW = 0.4  # share of the floor's light that is left in shadow
+_NO_FLOOR = 20.0  # squared distance beyond which a colour is not the floor's
 _LEVELS = 32
 _RARE = 0.1  # share of colours that may be any
 
@@ -69,6 +71,13 @@ class FloorColours:
     def oddness(self, picture: NDArray[np.float32]) -> NDArray[np.float32]:
         """Compute how far colours are from the floor's, squared, in its scatter (Mahalanobis)."""
         return (((picture - self.light) @ self.whitening) ** 2).sum(axis=-1).astype(np.float32)
+
+    def shows(self, picture: NDArray[np.float32]) -> NDArray[np.bool_]:
+        """Tell where colours are the floor's, in its light or in shadow."""
+        seen, light = picture @ self.whitening, self.light @ self.whitening
+        share = (seen * light).sum(axis=-1) / np.maximum((light**2).sum(axis=-1), 1e-6)
+        lit = np.clip(share, _SHADOW, 1.0)[..., None] * light
+        return ((seen - lit) ** 2).sum(axis=-1) < _NO_FLOOR
 
     def density(self, picture: NDArray[np.float32]) -> Array:
         """Compute the density of colours on the floor, per cubed grey level."""

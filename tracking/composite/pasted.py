@@ -5,12 +5,17 @@ Each is there as far as no other hides it, and may be no more than a strip of it
 the next across. A place is judged by its log odds: how much likelier the robot makes the colours
 of what would be visible of it than the picture's own colours do, of which a robot's are rare. That
 asks for no share of agreement: a narrow strip that agrees is worth more than a wide one that half
-agrees, and a point that something lies on costs no more than it tells.
+agrees, and a point that something lies on costs no more than it tells. Light changes over a floor:
+an exposure is compared with how the one a step away looks.
+
+Scissors leave a margin, or cut out floor and shadow with the robot. Then what looks like floor near
+an exposure tells nothing: it may lie on another.
 """
 
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,7 +26,7 @@ from tracking.composite.body_box import BodyBox
 from tracking.composite.body_raster import BodyRaster
 from tracking.composite.candidates import CLIMB, LEAST_STEP, REACH, apart, beside, headed
 from tracking.composite.chain import distances, improved, usual_step
-from tracking.composite.colours import ColourDensity, robot_density
+from tracking.composite.colours import NOISE, ColourDensity, FloorColours, robot_density
 from tracking.composite.match import Match, match_whole
 from tracking.composite.reading import Reading
 
@@ -33,10 +38,22 @@ LEAST_ODDS = 0.9
 
 MOST_EXPOSURES = 40
 
+LEFT, FLOOR_LEFT = 0.05, 0.25
+"""How far around the robot scissors leave anything, and floor, as a share of its length [-]."""
+
 _LEAST_OF_STEP = 0.6  # intervals are regular: an exposure is not much nearer to another than usual
 _LEAST_MATCH = 0.5
 _SHOWS = 0.5  # share of visible points on which nothing lies
 _TRIED = 5
+_FAR = 3.0  # in standard deviations: not how it looked a step away
+
+
+class Pasted(NamedTuple):
+    """An exposure: its pose, its log odds, mean over all points of its top, and how it looks."""
+
+    pose: Array
+    gain: float
+    look: NDArray[np.float32]
 
 
 @dataclass(frozen=True)
@@ -45,11 +62,11 @@ class PastedReading(Reading):
 
     Attributes:
         box: The robot's body.
-        left: What scissors left around the robot and hides others, as a share of its length [-].
+        with_floor: Whether floor and shadow were cut out with the robot.
     """
 
     box: BodyBox
-    left: float
+    with_floor: bool
 
     @property
     def length(self) -> float:
@@ -73,17 +90,20 @@ class PastedReading(Reading):
             how much they make the picture likelier, in points of an exposure.
         """
         robot = self.body.read(self.picture, self.plane, known)
-        poses, odds = self.stack_under(known, [], [], robot, self.whole(known, robot))
+        found = self.stack_under(Pasted(known, self.whole(known, robot), robot), [])
         beyond = [match.planar for match in self.matches(robot)]
         while beyond:
-            beyond.sort(key=lambda pose: -distances(np.array(poses), pose).min())
-            start = headed(beyond.pop(), np.array(poses), square=self.box.is_square)
-            if distances(np.array(poses), start).min() > REACH * self.length:
-                new = self.climbed([start], poses, robot, self.visible(poses))
+            poses = np.array([each.pose for each in found])
+            beyond.sort(key=lambda pose: -distances(poses, pose).min())
+            start = headed(beyond.pop(), poses, square=self.box.is_square)
+            away = distances(poses, start)
+            if away.min() > REACH * self.length:
+                look = found[int(np.argmin(away))].look
+                new = self.climbed([start], found, look, self.visible(found))
                 if new is not None:
-                    poses, odds = self.stack_under(new[0], poses, odds, robot, new[1])
-        steps = self.are_steps(np.array(poses), np.array(odds))
-        return np.array(poses)[steps], float(np.array(odds)[steps].sum())
+                    found = self.stack_under(new, found)
+        steps = self.are_steps(found)
+        return np.array([each.pose for each in steps]), sum(each.gain for each in steps)
 
     def whole(self, pose: Array, robot: NDArray[np.float32]) -> float:
         """Compute the gain of an exposure that no other hides."""
@@ -95,85 +115,114 @@ class PastedReading(Reading):
         template = self.body.template(robot, self.box.top)
         return match_whole(self.picture, self.plane, template=template, least=_LEAST_MATCH)
 
-    def stack_under(
-        self, top: Array, poses: Sequence[Array], odds: Sequence[float],
-        robot: NDArray[np.float32], gain: float,
-    ) -> tuple[list[Array], list[float]]:  # fmt: skip
-        """Add an exposure that shows whole, those that it hides, what they hide, and so on."""
-        poses, odds, visible = [*poses, top], [*odds, gain], self.visible(poses)
-        visible &= ~self.hidden_by(top)
-        first = len(poses) - 1
-        for count in range(first, MOST_EXPOSURES):
-            while (new := self.under(poses[count], poses, robot, visible)) is not None:
-                poses.append(new[0])
-                odds.append(new[1])
-                visible &= ~self.hidden_by(new[0])
-                if count > first:
-                    break  # it hides one at most; the others may lie on both sides
-            if count + 1 == len(poses):
-                break
-        return poses, odds
+    def stack_under(self, top: Pasted, found: Sequence[Pasted]) -> list[Pasted]:
+        """Add an exposure that shows whole, those that it hides on either side, and so on."""
+        found = [*found, top]
+        one_side = self.chain_under(top, found)
+        if not one_side:
+            return found
+        found += one_side
+        return found + self.chain_under(top, found, opposite=one_side[0].pose)
 
-    def visible(self, poses: Sequence[Array]) -> NDArray[np.bool_]:
+    def chain_under(
+        self, above: Pasted, found: Sequence[Pasted], *, opposite: Array | None = None
+    ) -> list[Pasted]:
+        """Find the exposure that another hides, the one that this hides, and so on.
+
+        With a pose given the first of them is on the other side of the one above.
+        """
+        chain: list[Pasted] = []
+        places = beside(above.pose, self.length, spacing=self.length / 20)
+        if opposite is not None:
+            ahead = (places[:, :2] - above.pose[:2]) @ (opposite[:2] - above.pose[:2])
+            places = places[ahead < 0]
+        while len(found) + len(chain) < MOST_EXPOSURES:
+            new = self.under(above, [*found, *chain], places)
+            if new is None:
+                break
+            chain.append(new)
+            above, places = new, beside(new.pose, self.length, spacing=self.length / 20)
+        return chain
+
+    def visible(self, found: Sequence[Pasted]) -> NDArray[np.bool_]:
         """Mark the points of the raster that no exposure hides."""
         visible = self.used.copy()
-        for pose in poses:
-            visible &= ~self.hidden_by(pose)
+        for each in found:
+            visible &= ~self.hidden_by(each.pose)
         return visible
 
-    def are_steps(self, poses: Array, odds: Array) -> NDArray[np.bool_]:
-        """Tell which exposures are not much nearer to a likelier one than steps usually are."""
-        good = np.ones(len(poses), dtype=bool)
-        for k in np.argsort(odds):
-            others = good.copy()
-            others[k] = False
-            if others.sum() > 1:
-                usual = usual_step(poses[others])
-                good[k] = distances(poses[others], poses[k]).min() > _LEAST_OF_STEP * usual
-        return good
+    def are_steps(self, found: Sequence[Pasted]) -> list[Pasted]:
+        """Drop exposures that are much nearer to a likelier one than steps usually are."""
+        kept = list(found)
+        for each in sorted(found, key=lambda each: each.gain):
+            poses = np.array([other.pose for other in kept])
+            others = np.array([other.pose for other in kept if other is not each])
+            if len(others) > 1:
+                nearest = distances(others, each.pose).min()
+                if nearest <= _LEAST_OF_STEP * usual_step(poses):
+                    kept = [other for other in kept if other is not each]
+        return kept
+
+    @cached_property
+    def floor(self) -> NDArray[np.bool_]:
+        """Where the picture looks like floor, lit or in shadow."""
+        width = self.length / self.plane.cell
+        return FloorColours.of(self.picture, self.used, width=width, noise=3.0).shows(self.picture)
 
     def hidden_by(self, pose: Array) -> NDArray[np.bool_]:
-        """Mark the points of the raster that an exposure hides."""
-        return self.box.hidden_on(self.plane, pose, left=self.left)
+        """Mark the points of the raster that an exposure hides, or may hide."""
+        hidden = self.box.hidden_on(self.plane, pose, left=LEFT)
+        if self.with_floor:
+            hidden |= self.box.hidden_on(self.plane, pose, left=FLOOR_LEFT) & self.floor
+        return hidden
 
-    def under(
-        self, seed: Array, poses: Sequence[Array], robot: NDArray[np.float32],
-        visible: NDArray[np.bool_],
-    ) -> tuple[Array, float] | None:  # fmt: skip
-        """Find the likeliest exposure beside another, under all that are known; and its odds."""
-        tried = beside(seed, self.length, spacing=self.length / 20)
+    def under(self, above: Pasted, found: Sequence[Pasted], places: Array) -> Pasted | None:
+        """Find the likeliest exposure beside another, under all that are known."""
+        visible = self.visible(found)
         shown = visible.astype(np.float32)
-        gains, _ = self.gains(tried, robot[1::2, 1::2], shown, self.body.thinned())
-        gains = np.where(self.are_new(tried, poses), gains, -np.inf)
-        starts = apart(tried, gains, LEAST_STEP / 2 * self.length, most=_TRIED)
-        return self.climbed(starts, poses, robot, visible)
+        gains, _ = self.gains(places, above.look[1::2, 1::2], shown, self.body.thinned())
+        gains = np.where(self.are_new(places, found), gains, -np.inf)
+        starts = apart(places, gains, LEAST_STEP / 2 * self.length, most=_TRIED)
+        return self.climbed(starts, found, above.look, visible)
 
     def climbed(
-        self, starts: Sequence[Array], poses: Sequence[Array], robot: NDArray[np.float32],
+        self, starts: Sequence[Array], found: Sequence[Pasted], look: NDArray[np.float32],
         visible: NDArray[np.bool_],
-    ) -> tuple[Array, float] | None:  # fmt: skip
-        """Improve places; return the best that holds, and its gain."""
+    ) -> Pasted | None:  # fmt: skip
+        """Improve places; return the best that holds."""
         shown = visible.astype(np.float32)
 
         def gain(pose: Array) -> float:
-            return float(self.gains(pose[None], robot, shown, self.body)[0][0])
+            return float(self.gains(pose[None], look, shown, self.body)[0][0])
 
-        found = [improved(gain, start, reach=CLIMB, tries=90) for start in starts]
-        good = [each for each in found if self.holds(each[0], poses, robot, shown)]
-        return max(good, key=lambda each: each[1], default=None)
+        places = [improved(gain, start, reach=CLIMB, tries=90)[0] for start in starts]
+        good = [pose for pose in places if self.holds(pose, found, look, shown)]
+        if not good:
+            return None
+        best = max(good, key=gain)
+        return Pasted(best, gain(best), self.seen_again(best, look, shown))
+
+    def seen_again(
+        self, pose: Array, look: NDArray[np.float32], shown: NDArray[np.float32]
+    ) -> NDArray[np.float32]:
+        """Take how an exposure looks in its own light; as expected where others are on it."""
+        place = self.body.on(self.plane, pose[None])[0]
+        seen, visible = sample(self.picture, place), sample(shown, place) > 0.9
+        same = visible & (((seen - look) ** 2).sum(axis=-1) < _FAR**2 * NOISE**2)
+        return np.where(same[..., None], seen, look)
 
     def holds(
-        self, pose: Array, poses: Sequence[Array], robot: NDArray[np.float32],
+        self, pose: Array, found: Sequence[Pasted], look: NDArray[np.float32],
         shown: NDArray[np.float32],
     ) -> bool:  # fmt: skip
         """Tell whether a place is likely enough to be an exposure, and none that is known."""
-        (gain,), (share,) = self.gains(pose[None], robot, shown, self.body)
+        (gain,), (share,) = self.gains(pose[None], look, shown, self.body)
         likely = gain >= LEAST_GAIN and gain >= LEAST_ODDS * share
-        return bool(likely and self.are_new(pose[None], poses).all())
+        return bool(likely and self.are_new(pose[None], found).all())
 
-    def are_new(self, tried: Array, poses: Sequence[Array]) -> NDArray[np.bool_]:
+    def are_new(self, tried: Array, found: Sequence[Pasted]) -> NDArray[np.bool_]:
         """Tell which places are not those of known exposures."""
-        away = np.min([distances(tried, pose) for pose in poses], axis=0)
+        away = np.min([distances(tried, each.pose) for each in found], axis=0)
         return away > LEAST_STEP * self.length
 
     def gains(

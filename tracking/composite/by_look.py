@@ -7,6 +7,7 @@ finds places on a raster; they are then aligned in the photograph by what the re
 seen of each.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -20,7 +21,7 @@ from tracking.body.template import sample
 from tracking.camera.lens import Array, Camera, CameraPose, project, to_floor
 from tracking.composite.body_box import BodyBox
 from tracking.composite.body_raster import BodyRaster
-from tracking.composite.chain import usual_step
+from tracking.composite.chain import step_between, stepped_back, usual_step
 from tracking.composite.colours import FloorColours
 from tracking.composite.darkest import DarkestReading
 from tracking.composite.exposure import Exposure
@@ -28,7 +29,7 @@ from tracking.composite.mean import SCALE, Fit, MeanReading
 from tracking.composite.pasted import FLOOR_LEFT, LEFT, PastedReading
 from tracking.composite.plane import Plane
 from tracking.errors import BodyError, CompositeError
-from tracking.pose import BodyPose, BodyPrior
+from tracking.pose import BodyPose, BodyPrior, rotation_with_derivatives
 
 LEAST_SCORE = 0.75
 """Least correlation of what is visible of an exposure with the known one [-]."""
@@ -42,7 +43,8 @@ MOST_ODD = 2.5
 RASTER_SD = 0.02
 """Standard deviation of a place on the raster, in lengths of the robot [-]."""
 
-PASTED_SD, DARKEST_SD, MEAN_SD, MEAN_OVERLAP_SD = 1 / 300, 1 / 40, 1 / 800, 1 / 250
+PASTED_SD, DARKEST_SD, MEAN_SD, MEAN_OVERLAP_SD = 1 / 300, 1 / 40, 1 / 700, 1 / 220
+MEAN_EDGE_SD = 1 / 80
 """Error of a place where others show as much as the robot does, in lengths of the robot; of pasted
 ones of which all shows. It grows with the root of their power, (1 - score²) / score², and was
 chosen by 390 exposures of simulated walks that no test draws [-]."""
@@ -50,7 +52,7 @@ chosen by 390 exposures of simulated walks that no test draws [-]."""
 _CELLS = {"pasted": 40, "darkest": 32, "mean": 32}
 _AROUND = 0.28  # of the length: how far sides, legs and shadow reach
 _EDGE = 0.035  # of the top's length: left out where it has a pattern
-_PATTERN = 0.5  # of the contrast with its edges: then it has one
+_MEAN_ROUNDS = 2
 _SLIP = 0.06  # of the length: an alignment that ends farther off has gone astray
 _TURN = 0.15  # rad: the same
 _LEVER, _STRIP_LEVER, _HALF_LEVER = 0.7, 0.58, 0.5  # of the length: that much off there turns it
@@ -181,16 +183,6 @@ class Likeness:
         """Cut the body as seen from above out of the known exposure."""
         return self.template(pixels, TopPlate(*self.size, self.plate.height, 0.0, 0.0, 0.0))
 
-    def plate_template(self, pixels: NDArray) -> BodyTemplate:
-        """Cut the flat top out of the known exposure; without its edges where it has a pattern.
-
-        What is around the top lies lower and shifts against it from one place to the next.
-        """
-        inside = -_EDGE * self.plate.length
-        whole = self.template(pixels, self.plate)
-        within = self.template(pixels, replace(self.plate, margin=inside, front_margin=inside))
-        return within if within.contrast > _PATTERN * whole.contrast else whole
-
     def template(self, pixels: NDArray, plate: TopPlate) -> BodyTemplate:
         """Cut a part of the robot out of the known exposure."""
         try:
@@ -243,11 +235,7 @@ class Likeness:
         return tuple(found)
 
     def aligned_in_mean(self, fit: Fit) -> tuple[Exposure, ...]:
-        """Align each with what the others leave of the picture, by edges alone.
-
-        Of one whose edges say little the place on the raster stays; where exposures overlap, one
-        whose edges say nothing is none.
-        """
+        """Align each with what the others leave of the picture, by edges alone."""
         reading, fine = self.mean, self.fine_weighing
         weighed = self.pixels.astype(np.float32) @ fine
         weighed_again = np.linalg.inv(reading.weighing) @ fine
@@ -257,19 +245,103 @@ class Likeness:
             seen = self.on_photo(others, reading.plane, fit.poses[k])
             return (weighed - seen @ weighed_again).astype(np.float32)
 
-        overlap = usual_step(fit.poses) < self.size[0]
-        template = self.body_template(alone(0)) if overlap else self.plate_template(alone(0))
-        slip, lever = (MEAN_OVERLAP_SD, _HALF_LEVER) if overlap else (MEAN_SD, _LEVER)
-        found = []
-        for k, pose in enumerate(fit.poses):
-            alignment = self.aligned(
-                pose, alone(k), template, ~self.hidden, least=LEAST_FAINT_SCORE, shines_through=True
-            )
-            if alignment is not None and alignment.score >= LEAST_CLEAR_SCORE:
-                found.append(Exposure(self.widened(alignment, slip, lever=lever), 1.0))
-            elif alignment is not None or not overlap:
-                found.append(Exposure(self.rough(pose), 1.0))
-        return tuple(found)
+        alones = [alone(k) for k in range(len(fit.poses))]
+        if usual_step(fit.poses) < self.size[0]:
+            return self.aligned_that_overlap(alones, fit.poses)
+        return self.aligned_apart(alones, fit.poses)
+
+    def aligned_apart(
+        self, alones: Sequence[NDArray[np.float32]], poses: Array
+    ) -> tuple[Exposure, ...]:
+        """Align by the pattern of the top; where that says little, by the edges of the top.
+
+        What is around the top lies lower and shifts against it from one place to the next.
+        """
+        inside = -_EDGE * self.plate.length
+        within = replace(self.plate, margin=inside, front_margin=inside)
+        found, slip = self.aligned_with_mean(alones, poses, within), MEAN_SD
+        if np.median([_score(each) for each in found[1:]]) < LEAST_CLEAR_SCORE:
+            found, slip = self.aligned_with_mean(alones, poses, self.plate), MEAN_EDGE_SD
+        return tuple(
+            Exposure(self.clear_or_rough(each, pose, slip, _LEVER), 1.0)
+            for each, pose in zip(found, poses, strict=True)
+        )
+
+    def aligned_that_overlap(
+        self, alones: Sequence[NDArray[np.float32]], poses: Array
+    ) -> tuple[Exposure, ...]:
+        """Align the body with the mean of all exposures; one whose edges say little is none.
+
+        What others and the floor leave in one exposure is not in all.
+        """
+        body = TopPlate(*self.size, self.plate.height, 0.0, 0.0, 0.0)
+        found = self.aligned_with_mean(alones, poses, body)
+        return tuple(
+            Exposure(self.widened(each, MEAN_OVERLAP_SD, lever=_HALF_LEVER), 1.0)
+            for each in found
+            if each is not None and each.score >= LEAST_CLEAR_SCORE
+        )
+
+    def aligned_with_mean(
+        self, alones: Sequence[NDArray[np.float32]], poses: Array, plate: TopPlate
+    ) -> list[Alignment | None]:
+        """Align a part of the robot with its mean in the others; None of what goes astray."""
+        found: list[Alignment | None] = []
+        for _ in range(_MEAN_ROUNDS):
+            templates = self.others_templates(alones, poses, plate)
+            found = self.anchored([
+                self.aligned(pose, alone, template, ~self.hidden, least=LEAST_FAINT_SCORE,
+                             shines_through=True)
+                for pose, alone, template in zip(poses, alones, templates, strict=True)
+            ])  # fmt: skip
+            poses = np.array([
+                pose if each is None else each.pose.planar
+                for each, pose in zip(found, poses, strict=True)
+            ])  # fmt: skip
+        return found
+
+    def others_templates(
+        self, alones: Sequence[NDArray[np.float32]], poses: Array, plate: TopPlate
+    ) -> list[BodyTemplate]:
+        """Cut a part of the robot out of all exposures; for each take the mean of the others.
+
+        The mean of all would hold an exposure where it is, and look like it.
+        """
+        first = self.template(alones[0], plate)
+        points = first.points_body.reshape(-1, 3)
+        looks = []
+        for alone, pose in zip(alones, poses, strict=True):
+            state = self.level(pose)
+            R, _ = rotation_with_derivatives(*state[3:])
+            seen = project(self.camera, self.view, points @ R.T + state[:3])
+            look = sample(alone, seen.reshape(*first.points_body.shape[:2], 2))
+            looks.append(look - look.mean(axis=(0, 1)))
+        total = np.sum(looks, axis=0)
+        return [replace(first, colours=(total - look) / (len(looks) - 1)) for look in looks]
+
+    def anchored(self, found: Sequence[Alignment | None]) -> list[Alignment | None]:
+        """Move all exposures in their own frames so that the first is where it is known to be."""
+        first = found[0]
+        if first is None:
+            return [None] * len(found)
+        off = step_between(self.known.planar, first.pose.planar)
+        moved = []
+        for each in found:
+            if each is not None:
+                state = each.pose.state.copy()
+                state[[0, 1, 5]] = stepped_back(each.pose.planar, off)
+                covariance = each.pose.covariance + first.pose.covariance
+                each = replace(each, pose=replace(each.pose, state=state, covariance=covariance))
+            moved.append(each)
+        return moved
+
+    def clear_or_rough(
+        self, alignment: Alignment | None, pose: Array, slip: float, lever: float
+    ) -> Alignment:
+        """Take an alignment where it is clear, else the place on the raster."""
+        if alignment is None or alignment.score < LEAST_CLEAR_SCORE:
+            return self.rough(pose)
+        return self.widened(alignment, slip, lever=lever)
 
     @property
     def fine_weighing(self) -> Array:
@@ -349,3 +421,7 @@ class Likeness:
         values = sample(layer.astype(np.float32), place.reshape(*u.shape, 2))
         whole[low[1] : high[1], low[0] : high[0]] = values
         return whole
+
+
+def _score(alignment: Alignment | None) -> float:
+    return 0.0 if alignment is None else alignment.score

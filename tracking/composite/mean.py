@@ -39,8 +39,9 @@ LONELY_SCORE = 0.6
 BESIDE_SCORE = 0.5
 """Least correlation of one beside another with nearly its heading, then [-]."""
 
-LEAST_SCORE = 0.75
-"""Least correlation of an exposure when all others are taken away [-]."""
+LEAST_SCORE, LEAST_OF_USUAL = 0.5, 0.75
+"""Least correlation of an exposure when all others are taken away, and as a share of the usual one,
+which is less where light changes or floors are stronger than the robot [-]."""
 
 LEAST_STRENGTH = 0.5
 """Least strength of an exposure; all are alike in a mean [-]."""
@@ -134,7 +135,8 @@ class MeanReading(Reading):
 
     def held(self, fit: Fit) -> Fit:
         """Drop exposures that are too weak or too unlike the others."""
-        good = (fit.scores >= LEAST_SCORE) & (fit.strengths >= LEAST_STRENGTH)
+        least = max(LEAST_SCORE, LEAST_OF_USUAL * float(np.median(fit.scores)))
+        good = (fit.scores >= least) & (fit.strengths >= LEAST_STRENGTH)
         good[0] = True
         return Fit(fit.poses[good], fit.robot, fit.scores[good], fit.strengths[good], fit.worth)
 
@@ -157,6 +159,12 @@ class MeanReading(Reading):
             return None
         nearest = min(beyond, key=lambda pose: distances(poses, pose).min())
         return headed(nearest, poses, square=self.is_square)
+
+    def turned(self, match: Match, poses: Array) -> Array:
+        """Turn the place of a match by the walk where no exposure beside it tells its heading."""
+        if self.follows(match, poses):
+            return match.planar
+        return headed(match.planar, poses, square=self.is_square)
 
     @property
     def is_square(self) -> bool:
@@ -189,7 +197,11 @@ class MeanReading(Reading):
         """List sets of exposures that differ by one or two from a set."""
         left = self.change - self.sum_of(fit.poses, fit.robot)
         left *= self.used[..., None]
-        new = [m.planar for m in self.matches(left, fit.robot) if self.is_new(m, fit.poses)]
+        new = [
+            self.turned(m, fit.poses)
+            for m in self.matches(left, fit.robot)
+            if self.is_new(m, fit.poses)
+        ]
         sets = [np.concatenate((fit.poses, pose[None])) for pose in new[:_TRIED]]
         if len(fit.poses) > 1:
             sets += _shifted(fit.poses)

@@ -39,6 +39,7 @@ pytestmark = pytest.mark.long
 
 PLACES = ((0.1, -0.1, 0.3), (1.5, -0.1, -0.4), (1.6, 1.2, 0.5), (0.0, 1.3, -0.2))
 BODY = (0.24, 0.20)  # m, as drawn
+WORLD_BODY = (0.20, 0.20)  # m, as the virtual world's photographs show it
 PLATE = TopPlate(0.176, 0.176, 0.0385)  # its top, clicked on where there is no marker
 HEIGHT, HEIGHT_SD, TILT_SD = 0.0645, 3e-4, 2e-3  # m, m, rad
 GOOD = Conditions(defocus_sd_px=0.6)
@@ -69,8 +70,8 @@ class Case:
 CASES = (
     Case("1.1 body lengths apart", 0.264, 5, 34, 1.0, 0.5, 0.98),
     Case("half a body apart", 0.12, 8, 24, 4.0, 2.0, 0.70),
-    Case("no marker, 1.1 body lengths apart", 0.264, 5, 12, 1.0, 0.5, 0.98, marked=False),
-    Case("no marker, half a body apart", 0.12, 8, 8, 4.0, 2.0, 0.70, marked=False),
+    Case("no marker, 1.1 body lengths apart", 0.264, 5, 20, 1.0, 0.5, 0.98, marked=False),
+    Case("no marker, half a body apart", 0.12, 8, 13, 4.0, 2.0, 0.70, marked=False),
 )
 KINDS = tuple(CompositeKind)
 
@@ -162,7 +163,7 @@ def one_walk(task: tuple[int, int, int]) -> tuple[np.ndarray, np.ndarray]:
 
 def ordered(
     picture: np.ndarray, lens: Camera, view: CameraPose, prior: BodyPrior, hidden: np.ndarray,
-    *, clicked: np.ndarray | None = None,
+    *, body: tuple[float, float] = BODY, clicked: np.ndarray | None = None,
 ) -> np.ndarray:  # fmt: skip
     """Find the exposures of a picture, in order: poses, then their deviations, shape (2, n, 3)."""
     try:
@@ -170,14 +171,14 @@ def ordered(
             marker = DrawnMarker()
             robot = RobotMarker(0, marker.side, "4x4_50", (0.0, 0.0, marker.height))
             found = find_exposures(
-                picture, lens, view, template=marker_template(robot), prior=prior, body_size=BODY,
+                picture, lens, view, template=marker_template(robot), prior=prior, body_size=body,
                 hidden=hidden,
             )  # fmt: skip
         else:
             state = np.array([clicked[0], clicked[1], prior.height, 0, 0, clicked[2]])
             known = FoundPose(state, np.zeros((6, 6)), np.zeros((6, 6)), 0.0, 0.0)
             found = find_exposures_like(
-                picture, lens, view, known=known, plate=PLATE, prior=prior, body_size=BODY,
+                picture, lens, view, known=known, plate=PLATE, prior=prior, body_size=body,
                 hidden=hidden,
             )  # fmt: skip
     except CompositeError:
@@ -288,10 +289,6 @@ def measure(case: Case) -> dict[str, Row]:
     return rows
 
 
-# What fails today, with its figures in docs/tracking.md.
-MISSED_PLACES = {(CASES[3].name, "darkest")}
-
-
 @pytest.mark.parametrize("kind", [kind.value for kind in CompositeKind])
 def test_exposures_are_found_and_none_is_made_up(measured, kind):
     case, rows = measured
@@ -302,10 +299,8 @@ def test_exposures_are_found_and_none_is_made_up(measured, kind):
 
 
 @pytest.mark.parametrize("kind", [kind.value for kind in CompositeKind])
-def test_exposures_are_where_they_were(measured, kind, request):
+def test_exposures_are_where_they_were(measured, kind):
     case, rows = measured
-    if (case.name, kind) in MISSED_PLACES:
-        request.applymarker(pytest.mark.xfail(reason="4.04 mm: docs/tracking.md", strict=True))
     assert rows[kind].xy_mm < case.xy_mm
     assert rows[kind].yaw_deg < case.yaw_deg
 
@@ -371,44 +366,31 @@ def with_shadow(photo: np.ndarray, empty: np.ndarray) -> np.ndarray:
     return cv2.dilate(robot, np.ones((7, 7), np.uint8)).astype(bool)
 
 
-@pytest.mark.reference
-@pytest.mark.parametrize(
-    ("kind", "stride", "recall"),
-    [
-        ("pasted", 2, 1.0), ("averaged", 2, 1.0), ("darkest", 2, 1.0),
-        ("pasted", 1, 0.7), ("averaged", 1, 0.7), ("darkest", 1, 0.7),
-    ],
-)  # fmt: skip
-def test_exposures_of_the_virtual_world_are_found(shared, kind, stride, recall):
-    world = World.read(shared / "virtual-world/photos")
-    truth, prior = world.truth[::stride], BodyPrior(0.0615, 1e-3, 0.01)
-    picture = world.merged(world.photos[::stride], kind)
-    row = Row.of([truth], [ordered(picture, world.lens, world.view, prior, world.hidden)])
-    step = np.median(np.hypot(*np.diff(truth[:, :2], axis=0).T))
-    name = f"virtual world, {step / BODY[0]:.1f} body lengths apart"
-    print(f"\n{row.line(name, kind)}", flush=True)  # noqa: T201 `make test-long` is run for it
-    assert row.found >= recall * row.there
-    assert row.false == 0
-    assert row.ordered
-
-
-MISSED = {("pasted", 1), ("averaged", 1)}
+# Misses its goal of 1 mm: docs/tracking.md.
+MISSED = {("s1.10_B", "averaged", 2)}
 
 
 @pytest.mark.reference
 @pytest.mark.parametrize("kind", ["pasted", "averaged", "darkest"])
 @pytest.mark.parametrize("stride", [2, 1])
-def test_exposures_of_the_virtual_world_without_a_marker_are_found(shared, kind, stride, request):
-    if (kind, stride) in MISSED:
-        request.applymarker(pytest.mark.xfail(reason="not found: docs/tracking.md", strict=True))
-    world = World.read(shared / "virtual-world/photos", "s1.10_B")
+@pytest.mark.parametrize("walk", ["s1.10_A", "s1.10_B"])
+def test_exposures_of_the_virtual_world_are_found(shared, walk, kind, stride, request):
+    if (walk, kind, stride) in MISSED:
+        request.applymarker(pytest.mark.xfail(reason="off by more than 1 mm", strict=True))
+    world, marked = World.read(shared / "virtual-world/photos", walk), walk == "s1.10_A"
     truth, prior = world.truth[::stride], BodyPrior(0.0615, 1e-3, 0.01)
     picture = world.merged(world.photos[::stride], kind)
-    found = ordered(picture, world.lens, world.view, prior, world.hidden, clicked=truth[-1])
+    found = ordered(
+        picture, world.lens, world.view, prior, world.hidden, body=WORLD_BODY,
+        clicked=None if marked else truth[-1],
+    )  # fmt: skip
     row = Row.of([truth], [found])
-    step = np.median(np.hypot(*np.diff(truth[:, :2], axis=0).T))
-    name = f"no marker, virtual world, {step / BODY[0]:.1f} body lengths apart"
+    step = np.median(np.hypot(*np.diff(truth[:, :2], axis=0).T)) / WORLD_BODY[0]
+    name = f"{'' if marked else 'no marker, '}virtual world, {step:.1f} body lengths apart"
     print(f"\n{row.line(name, kind)}", flush=True)  # noqa: T201 `make test-long` is run for it
-    assert row.found >= (1.0 if stride == 2 else 0.7) * row.there
+    recall, xy_mm, yaw_deg = (1.0, 1.0, 0.5) if step >= 1 else (0.7, 4.0, 2.0)
+    assert row.found >= recall * row.there
     assert row.false == 0
     assert row.ordered
+    assert row.xy_mm < xy_mm
+    assert row.yaw_deg < yaw_deg

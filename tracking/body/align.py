@@ -59,14 +59,11 @@ class Alignment:
         pose: Pose of the robot; its misfit is 0, there being no corners.
         score: Correlation of photograph and picture, mean over channels weighed by contrast; where
             others shine through, of what changes fast [-].
-        sameness: Concordance of the two: as `score`, but less than it where light or contrast
-            differ (Lin 1989) [-].
         log_likelihood: Of the colours, up to a constant the same for all poses in a photograph.
     """
 
     pose: BodyPose
     score: float
-    sameness: float
     log_likelihood: float
 
 
@@ -188,7 +185,7 @@ class _Job:
         normal = np.eye(7)
         for turn in range(_ITERATIONS):
             look = self._look(state)
-            if look is None or (turn == _FIRST_LOOKS and look[4][0] < least_hope):
+            if look is None or (turn == _FIRST_LOOKS and look[4] < least_hope):
                 return None
             residual, J, weight, noise, _ = look
             weighed = (weight / (noise * self.correlated)).reshape(-1, 1) * J.reshape(-1, 7)
@@ -206,7 +203,7 @@ class _Job:
         look = self._look(state)
         if look is None:
             return None
-        residual, J, weight, noise, (score, sameness) = look
+        residual, J, weight, noise, score = look
         spread = np.linalg.inv(normal)
         seen, _, by_pose = project_with_derivatives(
             self.camera, self.view, _world(self.points, state)
@@ -226,7 +223,6 @@ class _Job:
                 wrapped, spread[:6, :6] + self.floor, camera_covariance[:6, :6], 0.0, effective
             ),
             score,
-            sameness,
             -0.5 * effective * float(np.log(max(noise.mean(), 1e-6))),
         )
 
@@ -244,8 +240,8 @@ class _Job:
         along = sample(self.slopes, seen - self.origin)
         return np.stack((along[:, :3], along[:, 3:]), axis=2).astype(float)
 
-    def _look(self, state: Array) -> tuple[Array, Array, Array, Array, tuple[float, float]] | None:
-        """Compute residual (n, 3), its derivative (n, 3, 7), weights, noise (3,) and scores."""
+    def _look(self, state: Array) -> tuple[Array, Array, Array, Array, float] | None:
+        """Compute residual (n, 3), its derivative (n, 3, 7), weights, noise (3,) and score."""
         seen, by_point, _ = project_with_derivatives(
             self.camera, self.view, _world(self.points, state)
         )
@@ -267,14 +263,14 @@ class _Job:
         colours, J = self.colours[used], slope @ (by_point[used] @ by_state)
         if self.raster is not None:
             colours, values, J = (_without_slow(f, used, self.raster) for f in (colours, values, J))
-        scores = _likeness(colours, values)
+        score = _likeness(colours, values)
         residual = _relit(colours, values) - values
         spread = 1.4826 * np.median(np.abs(residual), axis=0)
         noise = np.maximum(spread, 1.0) ** 2
         weight = np.minimum(1.0, _HUBER * np.sqrt(noise) / np.maximum(np.abs(residual), 1e-9))
         odd = np.abs(residual) > self.most_odd * np.sqrt(noise)
         weight[odd.any(axis=1)] = 0.0
-        return residual, J, weight, noise, scores
+        return residual, J, weight, noise, score
 
 
 def _without_slow(field: Array, used: NDArray[np.bool_], raster: tuple[int, int]) -> Array:
@@ -319,11 +315,7 @@ def _relit(colours: Array, values: Array) -> Array:
     return gain * a + values.mean(axis=0)
 
 
-def _likeness(colours: Array, values: Array) -> tuple[float, float]:
-    """Compute how well template and photograph correlate, and how much they are the same."""
-    apart = colours.mean(axis=0) - values.mean(axis=0)
+def _likeness(colours: Array, values: Array) -> float:
+    """Compute how well template and photograph correlate."""
     a, b = colours - colours.mean(axis=0), values - values.mean(axis=0)
-    cross, power_a, power_b = (a * b).sum(), (a * a).sum(), (b * b).sum()
-    score = cross / np.sqrt(max(power_a * power_b, 1e-9))
-    same = 2 * cross / max(power_a + power_b + len(a) * (apart * apart).sum(), 1e-9)
-    return float(score), float(same)
+    return float((a * b).sum() / np.sqrt(max((a * a).sum() * (b * b).sum(), 1e-9)))

@@ -395,7 +395,7 @@ class Likeness:
         known = np.diag([0.0, 0.0, height, tilt, tilt, 0.0]) ** 2
         covariance = known + self.slipped(RASTER_SD * self.size[0], _LEVER)
         state = self.level(pose)
-        return Alignment(BodyPose(state, covariance, np.zeros((6, 6)), 0.0, 0.0), 0.0, 0.0, 0.0)
+        return Alignment(BodyPose(state, covariance, np.zeros((6, 6)), 0.0, 0.0), 0.0, 0.0)
 
     def slipped(self, slip: float, lever: float) -> Array:
         """Compute the covariance of a place that slipped by so much at a lever, shape (6, 6)."""

@@ -7,7 +7,7 @@ right to a few degrees and the place to a fraction of the marker's cells: both s
 than where a robot alone is sought (`tracking.body.search`).
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from typing import NamedTuple
 
 import cv2
@@ -26,7 +26,6 @@ CELLS = 22
 """Points of the raster along the template's plate."""
 
 _PEAK_CELLS = 3
-_GREY_MIDDLE = 128.0
 
 
 class Match(NamedTuple):
@@ -73,40 +72,6 @@ def match_whole(
     return _peaks(best, turn, plane, template, least, shift=(size - 1) / 2)
 
 
-def match_visible(
-    picture: NDArray[np.float32], visible: NDArray[np.float32], plane: Plane, *,
-    template: BodyTemplate, least: float, share: float, yaws: Sequence[float], within: float,
-) -> list[Match]:  # fmt: skip
-    """Find places where the visible part of the robot's picture fits.
-
-    The correlation is over what is visible (Padfield 2012, masked normalised cross-correlation).
-
-    Args:
-        picture: The photograph on `plane`, shape (rows, columns, 3).
-        visible: 1 where it may show the robot, 0 elsewhere, shape (rows, columns).
-        plane: The raster.
-        template: The robot's picture.
-        least: Least correlation [-].
-        share: Least share of the picture that must be visible [-].
-        yaws: Headings near which to look [rad].
-        within: How near [rad].
-
-    Returns:
-        Places at which no turn and no neighbouring place fits better, best first.
-    """
-    best = np.full(visible.shape, -1.0, dtype=np.float32)
-    turn = np.zeros(visible.shape, dtype=int)
-    for index, (turned, mask) in _turns(template, plane.cell):
-        if max(np.cos(_yaw(index) - yaw) for yaw in yaws) < np.cos(within):
-            continue
-        score, seen = _masked_correlation(picture, visible, turned, mask[..., 0])
-        better = (seen >= share) & (score > best)
-        best[better], turn[better] = score[better], index
-    size = _turned_size(template, plane.cell)
-    # The anchor of an even kernel is half a point beyond its middle.
-    return _peaks(best, turn, plane, template, least, shift=-0.5 if size % 2 == 0 else 0.0)
-
-
 def _turns(template: BodyTemplate, cell: float) -> Iterator[tuple[int, tuple[NDArray, NDArray]]]:
     for index in range(TURNS):
         yield index, turned_template(template, cell, _yaw(index))
@@ -136,29 +101,3 @@ def _peaks(
         xy = plane.xy_at(row + shift, column + shift) - offset
         found.append(Match(float(best[row, column]), np.array([*xy, yaw])))
     return sorted(found, key=lambda match: -match.score)
-
-
-def _masked_correlation(
-    picture: NDArray[np.float32], visible: NDArray[np.float32], turned: NDArray, mask: NDArray
-) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
-    """Correlate at every place; return the score and the share of the template that is visible."""
-    weight = np.ascontiguousarray(mask, dtype=np.float32)
-    count = np.maximum(_slide(visible, weight), np.float32(1.0))
-    cross, power_seen, power_own = (np.zeros_like(visible) for _ in range(3))
-    for channel in range(picture.shape[2]):
-        # Near 0, so that sums of squares keep their precision.
-        seen = visible * (picture[..., channel] - _GREY_MIDDLE)
-        own = weight * (turned[..., channel] - _GREY_MIDDLE)
-        sum_seen, sum_own = _slide(seen, weight), _slide(visible, own)
-        cross += _slide(seen, own) - sum_seen * sum_own / count
-        power_seen += _slide(seen * seen, weight) - sum_seen**2 / count
-        power_own += _slide(visible, own * own) - sum_own**2 / count
-    score = cross / np.sqrt(np.maximum(power_seen, 1.0) * np.maximum(power_own, 1.0))
-    return score.astype(np.float32), (count / weight.sum()).astype(np.float32)
-
-
-def _slide(picture: NDArray, kernel: NDArray) -> NDArray[np.float32]:
-    moved = cv2.filter2D(
-        picture, cv2.CV_32F, kernel.astype(np.float32), borderType=cv2.BORDER_CONSTANT
-    )
-    return np.asarray(moved, dtype=np.float32)

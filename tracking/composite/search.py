@@ -10,10 +10,8 @@ A picture may have been merged in two ways, and nothing in it says in which:
 It is read in both ways, and the reading that finds more is taken. Of exposures that shine through,
 all of the robot's picture is compared, with a threshold that is lower beside a clearer exposure
 with nearly the same heading than alone. Of exposures that hide each other those that show whole are
-found first; where they are the picture is taken from it, and beside them the whole body, as one of
-them shows it, is compared by its visible part. How they were cut out is not known either: closely,
-or with the floor and the shadow around them, which hide more and show the body's outline. Nothing
-is accepted by its place alone.
+found first; the others are found by how the whole body looks in the clearest of them, as without a
+marker (`by_look`). Nothing is accepted by its place alone.
 """
 
 from collections.abc import Sequence
@@ -22,20 +20,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from tracking.body import (
-    Alignment,
-    BodyTemplate,
-    TopPlate,
-    align,
-    floor_in_view,
-    make_template,
-)
+from tracking.body import Alignment, BodyTemplate, TopPlate, align, floor_in_view
 from tracking.camera.lens import Array, Camera, CameraPose
-from tracking.composite.body_box import BodyBox
+from tracking.composite.by_look import Likeness
 from tracking.composite.exposure import Exposure
-from tracking.composite.match import CELLS, Match, match_visible, match_whole
+from tracking.composite.match import CELLS, Match, match_whole
 from tracking.composite.plane import Plane
-from tracking.errors import BodyError, CompositeError
+from tracking.errors import CompositeError
 from tracking.pose import BodyPrior
 
 LONELY_SCORE = 0.65
@@ -50,13 +41,6 @@ CLEAR_SCORE = 0.85
 CLEAR_SPREAD = 0.03
 """How much less clear than the clearest an exposure may be that shows whole [-]."""
 
-LEAST_SHARE = 0.15
-"""Least share of the body that must be visible [-]."""
-
-LEAST_SAMENESS = 0.6
-"""Least concordance of the visible part of a hidden exposure with the clear one it is compared to.
-Being of one picture they have light and contrast in common, which a floor's pattern has not [-]."""
-
 OTHERS_SD = 1 / 200
 """Error of a place where others show as much as the robot does, in lengths of its template.
 
@@ -69,33 +53,8 @@ _SAME = 0.4  # of the template's length: nearer than this two are one
 _SLIP = 0.1  # of the template's length: farther edges alone lead astray
 _BESIDE = 1.25  # of the body's length
 _TURN = np.radians(32.0)  # from one exposure to the next beside it
-_SAME_BODY = 0.25  # of the body's length: nearer than this one hides all of the other
-_BODY_CELLS = 40
-_MOST_TRIED = 4
+_SAME_BODY = 0.25  # of the body's length: nearer than this two exposures are one
 _HOPE = 0.8  # of the least correlation: less after a few steps is given up
-
-
-@dataclass(frozen=True)
-class Scissors:
-    """How exposures were cut out before they were pasted on each other.
-
-    Attributes:
-        left: What is left around the robot and hides others, as a share of its length [-].
-        outline: How much around the robot is compared, as a share of its length [-].
-        least_score: Least correlation of what is visible of a hidden exposure [-].
-    """
-
-    left: float
-    outline: float
-    least_score: float
-
-
-CLOSE = Scissors(left=0.05, outline=0.0, least_score=CLEAR_SCORE)
-"""Along the robot's edge."""
-
-WIDE = Scissors(left=0.15, outline=0.08, least_score=0.7)
-"""With floor and shadow. Of simulated composites, places of no exposure come to less than 0.6 and
-exposures to 0.75 and more."""
 
 
 def find_exposures(
@@ -126,7 +85,8 @@ def find_exposures(
     """
     size = body_size or (template.plate.length, template.plate.width)
     area = floor_in_view(camera, view, prior.height + template.plate.height, near, reach)
-    search = _Search(_without(pixels, hidden), camera, view, template, prior, size, area)
+    hidden = np.zeros(pixels.shape[:2], dtype=bool) if hidden is None else hidden
+    search = _Search(_without(pixels, hidden), hidden, camera, view, template, prior, size, area)
     through = search.shining_through()
     layers = search.layers(through)
     found = layers if len(layers) >= len(through) else through
@@ -138,9 +98,9 @@ def find_exposures(
     return tuple(found)
 
 
-def _without(pixels: NDArray[np.uint8], hidden: NDArray[np.bool_] | None) -> NDArray[np.uint8]:
+def _without(pixels: NDArray[np.uint8], hidden: NDArray[np.bool_]) -> NDArray[np.uint8]:
     """Paint over what does not show the robot, in the picture's usual colour."""
-    if hidden is None or not hidden.any():
+    if not hidden.any():
         return pixels
     painted = pixels.copy()
     painted[hidden] = np.median(pixels[~hidden][::7], axis=0).astype(np.uint8)
@@ -150,6 +110,7 @@ def _without(pixels: NDArray[np.uint8], hidden: NDArray[np.bool_] | None) -> NDA
 @dataclass(frozen=True)
 class _Search:
     pixels: NDArray[np.uint8]
+    hidden: NDArray[np.bool_]
     camera: Camera
     view: CameraPose
     template: BodyTemplate
@@ -175,7 +136,7 @@ class _Search:
         )  # fmt: skip
         if fine is None or self.distance(fine.pose.planar, alignment.pose.planar) > self.slip:
             return self.among_others(alignment)
-        return replace(self.among_others(fine), score=alignment.score, sameness=alignment.sameness)
+        return replace(self.among_others(fine), score=alignment.score)
 
     @property
     def slip(self) -> float:
@@ -245,109 +206,24 @@ class _Search:
         best = max((each.alignment.score for each in whole), default=0.0)
         least = max(CLEAR_SCORE, best - CLEAR_SPREAD)
         clear = [each for each in whole if each.alignment.score >= least]
-        return max((self.stacked(clear, scissors) for scissors in (CLOSE, WIDE)), key=len)
+        return [*clear, *self.hidden_by(clear)]
 
-    def stacked(self, clear: Sequence[Exposure], scissors: Scissors) -> list[Exposure]:
-        """Find what exposures that show whole hide."""
-        body = self.body_template(clear, scissors)
-        if body is None:
-            return list(clear)
-        plane = self.plane(body, body.plate.length / _BODY_CELLS)
-        stack = _Stack(self, scissors, body, plane, plane.read_smooth(self.pixels))
-        return stack.grown(clear)
-
-    def body_template(self, clear: Sequence[Exposure], scissors: Scissors) -> BodyTemplate | None:
-        """Cut the whole body out of an exposure that shows whole."""
-        around = scissors.outline * self.body[0]
-        plate = TopPlate(*self.body, self.template.plate.height, 0.0, around, around)
-        for exposure in sorted(clear, key=lambda each: -each.alignment.score):
+    def hidden_by(self, clear: Sequence[Exposure]) -> list[Exposure]:
+        """Find exposures that others hide, by how the clearest of these looks."""
+        top = TopPlate(*self.body, self.template.plate.height, 0.0, 0.0, 0.0)
+        for exposure in clear:
+            picture = Likeness(
+                self.pixels, self.camera, self.view, self.prior, exposure.alignment.pose, top,
+                self.body, self.hidden, self.area,
+            )  # fmt: skip
             try:
-                return make_template(
-                    self.pixels, self.camera, self.view, pose=exposure.alignment.pose, plate=plate
-                )
-            except BodyError:
+                found = picture.aligned_in_pasted(*picture.find_pasted())
+            except CompositeError:
                 continue  # cut by the picture's edge: the next may not be
-        return None
+            return [each for each in found if self.is_new(each, clear)]
+        return []
 
-
-@dataclass(frozen=True)
-class _Stack:
-    """Exposures that hide each other."""
-
-    search: _Search
-    scissors: Scissors
-    body: BodyTemplate
-    plane: Plane
-    picture: NDArray[np.float32]
-
-    def grown(self, clear: Sequence[Exposure]) -> list[Exposure]:
-        """Look beside every exposure for one that it hides, until none is found."""
-        found = list(clear)
-        visible = np.ones(self.search.pixels.shape[:2], dtype=bool)
-        for each in clear:
-            visible &= ~self.covered(each.alignment)
-        for count, seed in enumerate(found):  # grows while it is gone through
-            while (new := self.beside(seed, found, visible)) is not None:
-                found.append(new)
-                visible &= ~self.covered(new.alignment)
-                if count >= len(clear):
-                    break  # it hides one at most; the others may lie on both sides
-        return found
-
-    def beside(
-        self, seed: Exposure, found: Sequence[Exposure], visible: NDArray[np.bool_]
-    ) -> Exposure | None:
-        """Find the exposure that fits best beside another."""
-        here = seed.alignment.pose.planar
-        reach = _BESIDE * self.search.body[0]
-        half = 0.5 * float(np.hypot(*self.search.body))
-        plane = self.plane.window(here[None, :2], reach + half + 2 * self.plane.cell)
-        seen = (plane.read(255 * visible.astype(np.uint8)) > 230).astype(np.float32)
-        matches = match_visible(
-            self.cut(plane), seen, plane, template=self.body, least=0.6, share=LEAST_SHARE,
-            yaws=[here[2]], within=_TURN,
-        )  # fmt: skip
-        near = [match for match in matches if self.search.distance(match.planar, here) < reach]
-        new = [self.aligned(match, visible) for match in near[:_MOST_TRIED]]
-        fits = [each for each in new if each is not None and self.is_new(each, found)]
-        return max(fits, key=lambda each: each.alignment.score, default=None)
-
-    def cut(self, window: Plane) -> NDArray[np.float32]:
-        column = round(float(window.low[0] - self.plane.low[0]) / self.plane.cell)
-        row = round(float(self.plane.high[1] - window.high[1]) / self.plane.cell)
-        rows, columns = window.seen_px.shape[:2]
-        return self.picture[row : row + rows, column : column + columns]
-
-    def aligned(self, match: Match, visible: NDArray[np.bool_]) -> Exposure | None:
-        alignment = align(
-            self.search.pixels, self.search.camera, self.search.view, template=self.body,
-            prior=self.search.prior, start=match.planar, visible=visible,
-            least_visible=0.8 * LEAST_SHARE, least_hope=_HOPE * self.scissors.least_score,
-        )  # fmt: skip
-        if alignment is None or alignment.score < self.scissors.least_score:
-            return None
-        share = self.share(alignment, visible)
-        if alignment.sameness < LEAST_SAMENESS or share < LEAST_SHARE:
-            return None
-        return Exposure(alignment, share)
-
-    def is_new(self, exposure: Exposure, found: Sequence[Exposure]) -> bool:
-        here = exposure.alignment.pose.planar
-        same = _SAME_BODY * self.search.body[0]
-        return all(self.search.distance(here, each.alignment.pose.planar) > same for each in found)
-
-    def covered(self, alignment: Alignment) -> NDArray[np.bool_]:
-        """Mark the pixels that an exposure hides, and what scissors leave around it."""
-        return self.box.hidden(alignment.pose.state, left=self.scissors.left)
-
-    def share(self, alignment: Alignment, visible: NDArray[np.bool_]) -> float:
-        """Compute the share of an exposure's top that is visible."""
-        own = self.box.top_seen(alignment.pose.state)
-        return float((own & visible).sum() / max(int(own.sum()), 1))
-
-    @property
-    def box(self) -> BodyBox:
-        """The robot's body."""
-        search = self.search
-        top = search.template.plate.height
-        return BodyBox(search.camera, search.view, search.body, top, search.prior.height)
+    def is_new(self, exposure: Exposure, known: Sequence[Exposure]) -> bool:
+        """Tell whether an exposure is none that is known."""
+        here, same = exposure.alignment.pose.planar, _SAME_BODY * self.body[0]
+        return all(self.distance(here, each.alignment.pose.planar) > same for each in known)

@@ -177,7 +177,7 @@ def exposures(monkeypatch) -> pd.DataFrame:
         for x, y, yaw in true[["x", "y", "yaw"]].to_numpy()
     ]
     shuffled = np.random.default_rng(0).permutation(len(poses))
-    found = tuple(Exposure(Alignment(poses[k], 0.9, 0.9, 0.0), 1.0) for k in shuffled)
+    found = tuple(Exposure(Alignment(poses[k], 0.9, 0.0), 1.0) for k in shuffled)
     monkeypatch.setattr("zebro_lab.tracker_body.find_exposures", lambda *_, **__: found)
     return true
 

@@ -7,10 +7,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tracking.body import TopPlate
+from tracking.body import Alignment, TopPlate, floor_in_view
 from tracking.camera import Camera, CameraPose, project
 from tracking.composite import find_exposures_like, order_exposures
 from tracking.composite.body_raster import BodyRaster
+from tracking.composite.by_look import Likeness
 from tracking.composite.candidates import headed
 from tracking.composite.chain import (
     steady_chain,
@@ -55,31 +56,38 @@ def robot():
     return picture
 
 
-def exposure(planar, rng, ground):
-    """Photograph the board; return the picture and where it shows it."""
+def exposure(planar, rng, ground, light=1.0):
+    """Photograph the board in some light; return the picture and where it shows it."""
     c, s = np.cos(planar[2]), np.sin(planar[2])
     corners = np.array([[1, 1], [1, -1], [-1, -1], [-1, 1]]) * 0.5 * np.array(SIZE)
     corners = corners @ np.array([[c, s], [-s, c]]) + planar[:2]
     seen = project(LENS, VIEW, np.column_stack((corners, np.full(4, PRIOR.height + TOP))))
     own = np.array([[1, 0, 0.5], [0, 1, 0.5], [0, 0, 80]]) / 80
     H = square_homography(seen) @ own
-    drawn = cv2.warpPerspective(robot(), H, (640, 400), flags=cv2.INTER_AREA)
+    drawn = cv2.warpPerspective(light * robot(), H, (640, 400), flags=cv2.INTER_AREA)
     mask = cv2.warpPerspective(np.ones((80, 80)), H, (640, 400))[..., None]
     picture = cv2.GaussianBlur(ground * (1 - mask) + drawn * mask, (0, 0), 0.6)
     return np.clip(picture + rng.normal(0, 1.2, picture.shape), 0, 255), mask[..., 0] > 0.05
 
 
-def composite(walk, kind, seed=0):
+def composite(walk, kind, seed=0, lights=None, around_px=0):
+    """Merge exposures; pasted ones are cut out with so much floor around them."""
     rng = np.random.default_rng(seed)
     ground = floor(rng)
-    pictures, masks = zip(*(exposure(planar, rng, ground) for planar in walk), strict=True)
+    lights = np.ones(len(walk)) if lights is None else lights
+    pictures, masks = zip(
+        *(exposure(planar, rng, ground, light) for planar, light in zip(walk, lights, strict=True)),
+        strict=True,
+    )
     if kind == "averaged":
         return np.rint(np.mean(pictures, axis=0)).astype(np.uint8)
     if kind == "darkest":
         return np.min(pictures, axis=0).astype(np.uint8)
     whole = pictures[0].copy()
+    scissors = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (2 * around_px + 1,) * 2)
     for picture, mask in zip(pictures, masks, strict=True):
-        whole[mask] = picture[mask]
+        cut = cv2.dilate(mask.astype(np.uint8), scissors) > 0
+        whole[cut] = picture[cut]
     return whole.astype(np.uint8)
 
 
@@ -97,6 +105,13 @@ def found_in(picture, planar, **other):
     return poses[list(order_exposures(poses))]
 
 
+def likeness(picture, planar, *, reach):
+    """Take a picture in which one exposure is known, to look around the middle."""
+    area = floor_in_view(LENS, VIEW, PRIOR.height + TOP, (0.0, 0.0), reach)
+    hidden = np.zeros(picture.shape[:2], dtype=bool)
+    return Likeness(picture, LENS, VIEW, PRIOR, known_at(planar), PLATE, SIZE, hidden, area)
+
+
 @pytest.mark.parametrize("kind", ["pasted", "averaged", "darkest"])
 def test_exposures_that_overlap_are_found_in_order_and_none_is_made_up(kind):
     step = np.array([0.11, 0.0, 0.12])
@@ -107,11 +122,45 @@ def test_exposures_that_overlap_are_found_in_order_and_none_is_made_up(kind):
     assert np.degrees(np.abs(poses[:, 2] - walk[:, 2]).max()) < 2.5
 
 
+@pytest.mark.parametrize(
+    "how", [{"lights": np.linspace(1.5, 1.0, 5)}, {"around_px": 22}], ids=["light", "floor"]
+)
+def test_pasted_exposures_are_found_in_light_that_changes_and_cut_out_with_floor(how):
+    step = np.array([0.15, 0.0, 0.08])
+    walk = steady_chain(np.array([-0.3, -0.1, 0.1]), step, 0.0, 4, 0)
+    picture = likeness(composite(walk, "pasted", **how), walk[-1], reach=0.45)
+    found = picture.aligned_in_pasted(*picture.find_pasted())
+    poses = np.array([each.alignment.pose.planar for each in found])[::-1]
+    assert len(poses) == len(walk)
+    assert np.abs(poses[:, :2] - walk[:, :2]).max() < 3e-3
+
+
 def test_exposures_beyond_reach_of_each_other_are_found_in_a_mean():
     walk = np.array([[-0.4, -0.12, 0.2], [-0.05, -0.03, 0.3], [0.3, 0.08, 0.4]])
     poses = found_in(composite(walk, "averaged"), walk[1])
     assert len(poses) == 3
     assert np.abs(poses[:, :2] - walk[:, :2]).max() < 3e-3
+
+
+def test_exposures_aligned_with_each_other_are_moved_to_where_one_is_known_to_be():
+    walk = steady_chain(np.array([0.1, 0.0, 0.3]), np.array([0.2, 0.01, 0.1]), 0.0, 3, 0)
+    off = np.array([0.004, -0.003, 0.02])
+    picture = likeness(np.zeros((400, 640, 3), np.uint8), walk[0], reach=0.4)
+    found = [Alignment(known_at(stepped(planar, off)), 0.9, 0.0) for planar in walk]
+    moved = picture.anchored([*found, None])
+    assert moved[-1] is None
+    planar = [each.pose.planar for each in moved[:-1]]
+    np.testing.assert_allclose(planar, walk, atol=1e-9)
+
+
+def test_a_floor_in_shadow_is_still_the_floor_and_the_robot_is_not():
+    picture = composite(np.array([[0.0, 0.0, 0.3]]), "pasted").astype(np.float32)
+    _, mask = exposure(np.array([0.0, 0.0, 0.3]), np.random.default_rng(0), picture)
+    look = FloorColours.of(picture, np.ones(mask.shape, bool), width=80, noise=3.0)
+    far = cv2.dilate(mask.astype(np.uint8), np.ones((9, 9))) == 0
+    assert look.shows(picture)[far].mean() > 0.99
+    assert look.shows(0.6 * picture)[far].mean() > 0.95
+    assert look.shows(picture)[mask].mean() < 0.1
 
 
 def test_one_exposure_alone_is_no_composite():

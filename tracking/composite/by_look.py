@@ -44,10 +44,13 @@ RASTER_SD = 0.02
 """Standard deviation of a place on the raster, in lengths of the robot [-]."""
 
 PASTED_SD, DARKEST_SD, MEAN_SD, MEAN_OVERLAP_SD = 1 / 300, 1 / 40, 1 / 700, 1 / 220
-MEAN_EDGE_SD = 1 / 80
 """Error of a place where others show as much as the robot does, in lengths of the robot; of pasted
 ones of which all shows. It grows with the root of their power, (1 - score²) / score², and was
 chosen by 390 exposures of simulated walks that no test draws [-]."""
+
+MEAN_EDGE_SD = 1 / 80
+"""The same in a mean of a plain top that is placed by its edges; chosen by the one walk that has
+one, the virtual world's [-]."""
 
 _CELLS = {"pasted": 40, "darkest": 32, "mean": 32}
 _AROUND = 0.28  # of the length: how far sides, legs and shadow reach
@@ -270,16 +273,16 @@ class Likeness:
     def aligned_that_overlap(
         self, alones: Sequence[NDArray[np.float32]], poses: Array
     ) -> tuple[Exposure, ...]:
-        """Align the body with the mean of all exposures; one whose edges say little is none.
+        """Align the body; one but the known whose edges say little is none.
 
-        What others and the floor leave in one exposure is not in all.
+        If those of the known one say nothing, the others cannot be judged and stay on the raster.
         """
         body = TopPlate(*self.size, self.plate.height, 0.0, 0.0, 0.0)
         found = self.aligned_with_mean(alones, poses, body)
         return tuple(
-            Exposure(self.widened(each, MEAN_OVERLAP_SD, lever=_HALF_LEVER), 1.0)
-            for each in found
-            if each is not None and each.score >= LEAST_CLEAR_SCORE
+            Exposure(self.clear_or_rough(each, pose, MEAN_OVERLAP_SD, _HALF_LEVER), 1.0)
+            for k, (each, pose) in enumerate(zip(found, poses, strict=True))
+            if k == 0 or found[0] is None or _score(each) >= LEAST_CLEAR_SCORE
         )
 
     def aligned_with_mean(

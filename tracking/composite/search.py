@@ -41,6 +41,9 @@ CLEAR_SCORE = 0.85
 CLEAR_SPREAD = 0.03
 """How much less clear than the clearest an exposure may be that shows whole [-]."""
 
+SHOWS_WHOLE = 0.9
+"""Visible share of a body from which on its marker, if it is one, has been found [-]."""
+
 OTHERS_SD = 1 / 200
 """Error of a place where others show as much as the robot does, in lengths of its template.
 
@@ -89,7 +92,7 @@ def find_exposures(
     search = _Search(_without(pixels, hidden), hidden, camera, view, template, prior, size, area)
     through = search.shining_through()
     layers = search.layers(through)
-    found = layers if len(layers) >= len(through) else through
+    found = layers if search.is_more(layers, through) else through
     if not found:
         raise CompositeError(
             "no exposure of the robot is found in the composite picture; check the marker's number "
@@ -206,7 +209,17 @@ class _Search:
         best = max((each.alignment.score for each in whole), default=0.0)
         least = max(CLEAR_SCORE, best - CLEAR_SPREAD)
         clear = [each for each in whole if each.alignment.score >= least]
-        return [*clear, *self.hidden_by(clear)]
+        hidden = [
+            each
+            for each in self.hidden_by(clear)
+            if each.visible < SHOWS_WHOLE or not self.is_new(each, whole)
+        ]
+        return [*clear, *hidden]
+
+    def is_more(self, layers: Sequence[Exposure], through: Sequence[Exposure]) -> bool:
+        """Tell whether exposures that hide each other are those that shine through, and more."""
+        missed = sum(self.is_new(each, layers) for each in through)
+        return len(layers) >= len(through) + 2 * missed
 
     def hidden_by(self, clear: Sequence[Exposure]) -> list[Exposure]:
         """Find exposures that others hide, by how the clearest of these looks."""

@@ -366,8 +366,8 @@ def with_shadow(photo: np.ndarray, empty: np.ndarray) -> np.ndarray:
     return cv2.dilate(robot, np.ones((7, 7), np.uint8)).astype(bool)
 
 
-# Misses its goal of 1 mm: docs/tracking.md.
-MISSED = {("s1.10_B", "averaged", 2)}
+# Farther off than 1 mm, its goal: docs/tracking.md.
+MISSED_PLACES = {("s1.10_B", "averaged", 2)}
 
 
 @pytest.mark.reference
@@ -375,8 +375,6 @@ MISSED = {("s1.10_B", "averaged", 2)}
 @pytest.mark.parametrize("stride", [2, 1])
 @pytest.mark.parametrize("walk", ["s1.10_A", "s1.10_B"])
 def test_exposures_of_the_virtual_world_are_found(shared, walk, kind, stride, request):
-    if (walk, kind, stride) in MISSED:
-        request.applymarker(pytest.mark.xfail(reason="off by more than 1 mm", strict=True))
     world, marked = World.read(shared / "virtual-world/photos", walk), walk == "s1.10_A"
     truth, prior = world.truth[::stride], BodyPrior(0.0615, 1e-3, 0.01)
     picture = world.merged(world.photos[::stride], kind)
@@ -392,5 +390,7 @@ def test_exposures_of_the_virtual_world_are_found(shared, walk, kind, stride, re
     assert row.found >= recall * row.there
     assert row.false == 0
     assert row.ordered
-    assert row.xy_mm < xy_mm
     assert row.yaw_deg < yaw_deg
+    if (walk, kind, stride) in MISSED_PLACES:
+        request.applymarker(pytest.mark.xfail(reason="off by more than 1 mm", strict=True))
+    assert row.xy_mm < xy_mm

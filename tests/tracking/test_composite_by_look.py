@@ -142,6 +142,34 @@ def test_exposures_beyond_reach_of_each_other_are_found_in_a_mean():
     assert np.abs(poses[:, :2] - walk[:, :2]).max() < 3e-3
 
 
+@pytest.mark.parametrize("count", [2, 3])
+def test_places_of_few_exposures_in_a_mean_do_not_depend_on_where_they_were_first_seen(count):
+    walk = np.array([[-0.3, -0.1, 0.2], [0.0, 0.0, 0.3], [0.3, 0.1, 0.4]])[:count]
+    picture = likeness(composite(walk, "averaged"), walk[0], reach=0.45)
+    started = walk + np.outer(np.arange(count) > 0, [0.004, -0.002, 0.02])
+    found = picture.aligned_apart([picture.pixels.astype(np.float32)] * count, started)
+    poses = np.array([each.alignment.pose.planar for each in found])
+    assert np.abs(poses[:, :2] - walk[:, :2]).max() < 1e-3
+    assert np.degrees(np.abs(poses[:, 2] - walk[:, 2]).max()) < 0.5
+
+
+def test_something_that_lies_on_a_robot_does_not_draw_it_where_odd_points_are_left_out():
+    planar = np.array([0.0, 0.0, 0.3])
+    clean = composite(planar[None], "pasted")
+    view = likeness(clean, planar, reach=0.3)
+    seen = project(LENS, VIEW, np.array([[*planar[:2], PRIOR.height + TOP]]))[0].astype(int)
+    covered = clean.copy()
+    covered[seen[1] + 8 : seen[1] + 40, seen[0] - 60 : seen[0] + 8] = (20, 220, 220)
+
+    def off(most_odd):
+        found = view.aligned(planar, covered, view.body_template(clean), ~view.hidden,
+                             least=0.0, most_odd=most_odd)  # fmt: skip
+        return np.inf if found is None else np.hypot(*(found.pose.planar - planar)[:2])
+
+    assert off(2.5) < 5e-4
+    assert off(2.5) < 0.5 * off(np.inf)
+
+
 def test_exposures_aligned_with_each_other_are_moved_to_where_one_is_known_to_be():
     walk = steady_chain(np.array([0.1, 0.0, 0.3]), np.array([0.2, 0.01, 0.1]), 0.0, 3, 0)
     off = np.array([0.004, -0.003, 0.02])

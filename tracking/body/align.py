@@ -90,7 +90,7 @@ def align(
         shines_through: Whether the floor or other exposures are seen through the robot: what
             changes over more than `SLOW` of its picture is then left out.
         most_odd: Points that differ by so many standard deviations in any colour are left out:
-            they show something else [-].
+            they show something else; they count in the score [-].
 
     Returns:
         The alignment, or None where the robot leaves the photograph, little of it is visible or

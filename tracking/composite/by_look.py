@@ -21,7 +21,7 @@ from tracking.body.template import sample
 from tracking.camera.lens import Array, Camera, CameraPose, project, to_floor
 from tracking.composite.body_box import BodyBox
 from tracking.composite.body_raster import BodyRaster
-from tracking.composite.chain import step_between, stepped_back, usual_step
+from tracking.composite.chain import step_between, stepped, stepped_back, usual_step
 from tracking.composite.colours import FloorColours
 from tracking.composite.darkest import DarkestReading
 from tracking.composite.exposure import Exposure
@@ -35,7 +35,7 @@ LEAST_SCORE = 0.75
 """Least correlation of what is visible of an exposure with the known one [-]."""
 
 LEAST_CLEAR_SCORE, LEAST_FAINT_SCORE = 0.4, 0.2
-"""The same of the edges of an exposure in a mean: to be aligned by them, and to be one at all."""
+"""The same of the edges of an exposure in a mean: to be aligned by them, and not to be astray."""
 
 MOST_ODD = 2.5
 """Points of a pasted exposure that differ by more usual differences are of something else [-]."""
@@ -60,6 +60,7 @@ _SLIP = 0.06  # of the length: an alignment that ends farther off has gone astra
 _TURN = 0.15  # rad: the same
 _LEVER, _STRIP_LEVER, _HALF_LEVER = 0.7, 0.58, 0.5  # of the length: that much off there turns it
 _LEAST_SHARE = 0.05
+_PLANAR = [0, 1, 5]  # x, y and yaw in a state
 
 
 def find_exposures_like(
@@ -217,7 +218,7 @@ class Likeness:
         """Mark the pixels that a pasted exposure hides, or may hide, shape (height, width)."""
         hidden = self.box.hidden(pose.state, left=LEFT)
         if reading.with_floor:
-            floor = self.on_photo(reading.floor, reading.plane, pose.planar) > 0.5
+            floor = self.on_photo(reading.floor, reading.plane, pose.planar, reach=1.25) > 0.5
             hidden |= floor & self.box.hidden(pose.state, left=FLOOR_LEFT)
         return hidden
 
@@ -289,6 +290,7 @@ class Likeness:
         self, alones: Sequence[NDArray[np.float32]], poses: Array, plate: TopPlate
     ) -> list[Alignment | None]:
         """Align a part of the robot with its mean in the others; None of what goes astray."""
+        share = (len(poses) - 1) / len(poses)
         found: list[Alignment | None] = []
         for _ in range(_MEAN_ROUNDS):
             templates = self.others_templates(alones, poses, plate)
@@ -297,11 +299,17 @@ class Likeness:
                              shines_through=True)
                 for pose, alone, template in zip(poses, alones, templates, strict=True)
             ])  # fmt: skip
+            # The others err, too: n exposures come nearest by that share of the way.
             poses = np.array([
-                pose if each is None else each.pose.planar
+                pose
+                if each is None
+                else stepped(pose, share * step_between(pose, each.pose.planar))
                 for each, pose in zip(found, poses, strict=True)
             ])  # fmt: skip
-        return found
+        return [
+            each and replace(each, pose=_moved(each.pose, pose))
+            for each, pose in zip(found, poses, strict=True)
+        ]
 
     def others_templates(
         self, alones: Sequence[NDArray[np.float32]], poses: Array, plate: TopPlate
@@ -311,31 +319,46 @@ class Likeness:
         The mean of all would hold an exposure where it is, and look like it.
         """
         first = self.template(alones[0], plate)
-        points = first.points_body.reshape(-1, 3)
-        looks = []
+        shape, points = first.points_body.shape[:2], first.points_body.reshape(-1, 3)
+        shown = (~self.hidden).astype(np.float32)
+        looks, weights = [], []
         for alone, pose in zip(alones, poses, strict=True):
             state = self.level(pose)
             R, _ = rotation_with_derivatives(*state[3:])
-            seen = project(self.camera, self.view, points @ R.T + state[:3])
-            look = sample(alone, seen.reshape(*first.points_body.shape[:2], 2))
-            looks.append(look - look.mean(axis=(0, 1)))
-        total = np.sum(looks, axis=0)
-        return [replace(first, colours=(total - look) / (len(looks) - 1)) for look in looks]
+            seen = project(self.camera, self.view, points @ R.T + state[:3]).reshape(*shape, 2)
+            weight = (sample(shown, seen) > 0.99)[..., None].astype(float)  # 0 outside, too
+            look = sample(alone, seen) * weight
+            usual = look.sum(axis=(0, 1)) / max(float(weight.sum()), 1.0)
+            looks.append(look - usual * weight)
+            weights.append(weight)
+        total, count = np.sum(looks, axis=0), np.sum(weights, axis=0)
+        return [
+            replace(
+                first, colours=((total - look) / np.maximum(count - weight, 1)).astype(np.float32)
+            )
+            for look, weight in zip(looks, weights, strict=True)
+        ]
 
     def anchored(self, found: Sequence[Alignment | None]) -> list[Alignment | None]:
-        """Move all exposures in their own frames so that the first is where it is known to be."""
+        """Move all exposures in their own frames so that the first is where it is known to be.
+
+        Its error of alignment becomes that of the others; where it is unclear none can be judged.
+        What is wrong with the pose that is known is not in their covariance.
+        """
         first = found[0]
-        if first is None:
+        if first is None or first.score < LEAST_CLEAR_SCORE:
             return [None] * len(found)
         off = step_between(self.known.planar, first.pose.planar)
-        moved = []
-        for each in found:
-            if each is not None:
-                state = each.pose.state.copy()
-                state[[0, 1, 5]] = stepped_back(each.pose.planar, off)
-                covariance = each.pose.covariance + first.pose.covariance
-                each = replace(each, pose=replace(each.pose, state=state, covariance=covariance))
-            moved.append(each)
+        common = np.zeros((6, 6))
+        common[np.ix_(_PLANAR, _PLANAR)] = first.pose.covariance[np.ix_(_PLANAR, _PLANAR)]
+        moved: list[Alignment | None] = []
+        for k, each in enumerate(found):
+            if each is None:
+                moved.append(None)
+                continue
+            pose = _moved(each.pose, stepped_back(each.pose.planar, off))
+            covariance = pose.covariance + (common if k else 0.0)
+            moved.append(replace(each, pose=replace(pose, covariance=covariance)))
         return moved
 
     def clear_or_rough(
@@ -405,9 +428,11 @@ class Likeness:
         turn = slip / (lever * self.size[0])
         return np.diag([slip, slip, 0.0, 0.0, 0.0, turn]) ** 2
 
-    def on_photo(self, layer: NDArray, plane: Plane, pose: Array) -> NDArray[np.float32]:
-        """Read a layer of a plane at the pixels around an exposure; 0 elsewhere."""
-        reach = 0.75 * float(np.hypot(*self.size))
+    def on_photo(
+        self, layer: NDArray, plane: Plane, pose: Array, *, reach: float = 0.75
+    ) -> NDArray[np.float32]:
+        """Read a layer of a plane at the pixels around an exposure; 0 beyond so many diagonals."""
+        reach *= float(np.hypot(*self.size))
         height = self.prior.height + self.plate.height
         sides = np.array([-reach, reach])
         around = [[pose[0] + dx, pose[1] + dy, height] for dx in sides for dy in sides]
@@ -428,3 +453,9 @@ class Likeness:
 
 def _score(alignment: Alignment | None) -> float:
     return 0.0 if alignment is None else alignment.score
+
+
+def _moved(pose: BodyPose, planar: Array) -> BodyPose:
+    state = pose.state.copy()
+    state[_PLANAR] = planar
+    return replace(pose, state=state)

@@ -15,7 +15,7 @@ from tracking.camera.lens import Array
 _TRUSTED = 0.7  # share of the points by which the floor's scatter is judged
 _ODD = 12.0  # squared distance beyond which a colour does not count to the floor's light
 _ROUNDS = 5
-_SHADOW = 0.4  # share of the floor's light that is left in shadow
+_SHADOW = 0.4  # least share of the floor's light that is left in shadow
 _NO_FLOOR = 20.0  # squared distance beyond which a colour is not the floor's
 _LEVELS = 32
 _RARE = 0.1  # share of colours that may be any

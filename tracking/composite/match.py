@@ -68,8 +68,7 @@ def match_whole(
         best[better], turn[better] = score[better], index
     if best is None or turn is None:
         return []
-    size = _turned_size(template, plane.cell)
-    return _peaks(best, turn, plane, template, least, shift=(size - 1) / 2)
+    return _peaks(best, turn, plane, template, least)
 
 
 def _turns(template: BodyTemplate, cell: float) -> Iterator[tuple[int, tuple[NDArray, NDArray]]]:
@@ -86,18 +85,18 @@ def _yaw(index: int) -> float:
 
 
 def _peaks(
-    best: NDArray[np.float32], turn: NDArray, plane: Plane, template: BodyTemplate, least: float,
-    *, shift: float,
-) -> list[Match]:  # fmt: skip
+    best: NDArray[np.float32], turn: NDArray, plane: Plane, template: BodyTemplate, least: float
+) -> list[Match]:
     around = np.ones((2 * _PEAK_CELLS + 1,) * 2, np.uint8)
     rows, columns = np.nonzero((best >= cv2.dilate(best, around)) & (best >= least))
     rear, front, right, left = template.plate.extent
     middle = np.array([(front + rear) / 2, (left + right) / 2])
+    half = (_turned_size(template, plane.cell) - 1) / 2
     found = []
     for row, column in zip(rows, columns, strict=True):
         yaw = _yaw(int(turn[row, column]))
         c, s = np.cos(yaw), np.sin(yaw)
         offset = np.array([c * middle[0] - s * middle[1], s * middle[0] + c * middle[1]])
-        xy = plane.xy_at(row + shift, column + shift) - offset
+        xy = plane.xy_at(row + half, column + half) - offset
         found.append(Match(float(best[row, column]), np.array([*xy, yaw])))
     return sorted(found, key=lambda match: -match.score)

@@ -122,7 +122,7 @@ class MeanReading(Reading):
             anchor: x, y [m] and yaw [rad] of an exposure that shows how the robot looks.
 
         Returns:
-            The exposures, that one first; of which any may have too low a score.
+            The exposures, that one first, whatever its score.
         """
         best = self.fitted(self.alike(anchor), rounds=2)
         for _ in range(_ROUNDS):
@@ -135,7 +135,8 @@ class MeanReading(Reading):
 
     def held(self, fit: Fit) -> Fit:
         """Drop exposures that are too weak or too unlike the others."""
-        least = max(LEAST_SCORE, LEAST_OF_USUAL * float(np.median(fit.scores)))
+        usual = float(np.median(fit.scores[1:])) if len(fit.scores) > 1 else 0.0
+        least = max(LEAST_SCORE, LEAST_OF_USUAL * usual)
         good = (fit.scores >= least) & (fit.strengths >= LEAST_STRENGTH)
         good[0] = True
         return Fit(fit.poses[good], fit.robot, fit.scores[good], fit.strengths[good], fit.worth)

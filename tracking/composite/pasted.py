@@ -102,8 +102,8 @@ class PastedReading(Reading):
                 new = self.climbed([start], found, look, self.visible(found))
                 if new is not None:
                     found = self.stack_under(new, found)
-        steps = self.are_steps(found)
-        return np.array([each.pose for each in steps]), sum(each.gain for each in steps)
+        kept = self.in_step(found)
+        return np.array([each.pose for each in kept]), sum(each.gain for each in kept)
 
     def whole(self, pose: Array, robot: NDArray[np.float32]) -> float:
         """Compute the gain of an exposure that no other hides."""
@@ -151,16 +151,17 @@ class PastedReading(Reading):
             visible &= ~self.hidden_by(each.pose)
         return visible
 
-    def are_steps(self, found: Sequence[Pasted]) -> list[Pasted]:
-        """Drop exposures that are much nearer to a likelier one than steps usually are."""
+    def in_step(self, found: Sequence[Pasted]) -> list[Pasted]:
+        """Drop exposures that are much nearer to a likelier one than steps usually are.
+
+        The first stays, and of three none can be told: that in the middle is half as far.
+        """
         kept = list(found)
-        for each in sorted(found, key=lambda each: each.gain):
+        for each in sorted(found[1:], key=lambda each: each.gain):
             poses = np.array([other.pose for other in kept])
-            others = np.array([other.pose for other in kept if other is not each])
-            if len(others) > 1:
-                nearest = distances(others, each.pose).min()
-                if nearest <= _LEAST_OF_STEP * usual_step(poses):
-                    kept = [other for other in kept if other is not each]
+            away = distances(poses, each.pose)
+            if len(kept) > 3 and np.sort(away)[1] <= _LEAST_OF_STEP * usual_step(poses):
+                kept = [other for other in kept if other is not each]
         return kept
 
     @cached_property

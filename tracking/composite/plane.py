@@ -52,16 +52,6 @@ class Plane:
         """Compute the place of a point, shape (2,) [m]."""
         return np.array([self.low[0] + column * self.cell, self.high[1] - row * self.cell])
 
-    def window(self, middle_xy: Array, reach: float) -> "Plane":
-        """Cut the raster down to the neighbourhood of places, shape (n, 2) [m]."""
-        rows, columns = self.seen_px.shape[:2]
-        left, bottom = np.floor((middle_xy.min(axis=0) - reach - self.low) / self.cell).astype(int)
-        right, top = np.ceil((middle_xy.max(axis=0) + reach - self.low) / self.cell).astype(int)
-        first = round((self.high[1] - self.low[1]) / self.cell)
-        up, down = max(first - top, 0), min(first - bottom, rows)
-        left, right = max(left, 0), min(right, columns)
-        return self.part(slice(up, down), slice(left, right))
-
     def part(self, rows: slice, columns: slice) -> "Plane":
         """Cut out rows and columns of the raster."""
         low = (self.low[0] + columns.start * self.cell, self.high[1] - rows.stop * self.cell)

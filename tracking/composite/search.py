@@ -7,7 +7,8 @@ A picture may have been merged in two ways, and nothing in it says in which:
   whole, among what is seen of the others;
 * exposures lie on each other (cut out and pasted): each is there as far as no other hides it.
 
-It is read in both ways, and the reading that finds more is taken. Of exposures that shine through,
+It is read in both ways; what hides each other is taken if it is as much and misses no marker, or
+clearly more. Of exposures that shine through,
 all of the robot's picture is compared, with a threshold that is lower beside a clearer exposure
 with nearly the same heading than alone. Of exposures that hide each other those that show whole are
 found first; the others are found by how the whole body looks in the clearest of them, as without a
@@ -74,7 +75,7 @@ def find_exposures(
         template: The picture of the robot's marker (`tracking.body.marker_template`).
         prior: Height and tilt.
         body_size: Length and width of the robot's body, which hides others where it was cut out and
-            pasted; the template's plate when None [m].
+            pasted, and is compared there; the template's plate when None [m].
         hidden: Pixels that do not show the robot, as those of the floor's markers, shape
             (height, width).
         near: x and y near which to look [m]; the whole picture when None.
@@ -217,9 +218,13 @@ class _Search:
         return [*clear, *hidden]
 
     def is_more(self, layers: Sequence[Exposure], through: Sequence[Exposure]) -> bool:
-        """Tell whether exposures that hide each other are those that shine through, and more."""
+        """Tell whether those that hide each other are all that shine through, or clearly more.
+
+        A marker that they miss counts against them as much as one more counts for them. Of as many
+        they are taken, too: a body that shows whole places the robot better than its marker alone.
+        """
         missed = sum(self.is_new(each, layers) for each in through)
-        return len(layers) >= len(through) + 2 * missed
+        return len(layers) - missed >= len(through) + missed
 
     def hidden_by(self, clear: Sequence[Exposure]) -> list[Exposure]:
         """Find exposures that others hide, by how the clearest of these looks."""
@@ -230,9 +235,10 @@ class _Search:
                 self.body, self.hidden, self.area,
             )  # fmt: skip
             try:
-                found = picture.aligned_in_pasted(*picture.find_pasted())
+                picture.body_template(self.pixels)
             except CompositeError:
-                continue  # cut by the picture's edge: the next may not be
+                continue  # cut by the picture's edge, too small or too faint: the next may not be
+            found = picture.aligned_in_pasted(*picture.find_pasted())
             return [each for each in found if self.is_new(each, clear)]
         return []
 

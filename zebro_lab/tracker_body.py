@@ -2,7 +2,7 @@
 """Track a robot without a marker, by its own picture; and many exposures in one picture."""
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import cv2
 import numpy as np
@@ -34,6 +34,7 @@ CLICK_SD = 1.0
 
 _REACH = 0.6  # how far from where it was the robot is looked for first [m]
 _MARK_MARGIN = 1.5  # by how much a floor marker and its margin are larger than its black square
+_MANY_ROUGH = 1 / 3  # of a composite's exposures
 _WORTH_WORKERS = 6  # photographs: rotating and matching takes a second each
 
 
@@ -131,7 +132,19 @@ def track_composite(
         _observation(name, exposures[k].alignment, times, source)
         for name, k in zip(names, order, strict=True)
     ]
-    return finish(scene, seen, observations, unseen={}, times=times, gap=gap)
+    tracked = finish(scene, seen, observations, unseen={}, times=times, gap=gap)
+    return replace(tracked, notes=(*tracked.notes, *_rough_note(exposures)))
+
+
+def _rough_note(exposures: Sequence[Exposure]) -> list[str]:
+    rough = sum(exposure.is_rough for exposure in exposures)
+    if rough < _MANY_ROUGH * len(exposures):
+        return []
+    return [
+        f"{rough} of {len(exposures)} exposures are placed only roughly, if they are exposures at "
+        "all: look at overlay.png; the exposure whose top is marked must show whole, and body_size "
+        "in robot.toml must be the robot's"
+    ]
 
 
 def _exposures(

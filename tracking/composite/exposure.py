@@ -17,3 +17,8 @@ class Exposure:
 
     alignment: Alignment
     visible: float
+
+    @property
+    def is_rough(self) -> bool:
+        """Whether it could not be aligned and is where a raster showed it."""
+        return self.alignment.score == 0.0

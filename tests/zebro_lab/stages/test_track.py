@@ -169,15 +169,16 @@ def test_exposures_of_a_composite_picture_are_found(request_, undrawn):
 
 
 @pytest.fixture
-def exposures(monkeypatch) -> pd.DataFrame:
+def exposures(monkeypatch, request) -> pd.DataFrame:
     """Let the composite's exposures be found where they are, in no order; return the walk."""
+    score = getattr(request, "param", 0.9)
     true = walk_of_the_composite()
     poses = [
         BodyPose(np.array([x, y, 0.06, 0, 0, yaw]), 1e-6 * np.eye(6), 0 * np.eye(6), 0.0, 0.0)
         for x, y, yaw in true[["x", "y", "yaw"]].to_numpy()
     ]
     shuffled = np.random.default_rng(0).permutation(len(poses))
-    found = tuple(Exposure(Alignment(poses[k], 0.9, 0.0), 1.0) for k in shuffled)
+    found = tuple(Exposure(Alignment(poses[k], score, 0.0), 1.0) for k in shuffled)
     monkeypatch.setattr("zebro_lab.tracker_body.find_exposures", lambda *_, **__: found)
     return true
 
@@ -192,6 +193,15 @@ def test_exposures_of_a_composite_picture_come_in_order(request_, undrawn, expos
     planar = [seen.planar for seen in observations]
     np.testing.assert_allclose(planar, exposures[["x", "y", "yaw"]], atol=1e-9)
     np.testing.assert_allclose(np.diff([seen.t for seen in observations]), 4.0)
+
+
+@pytest.mark.parametrize(
+    ("exposures", "warned"), [(0.9, False), (0.0, True)], indirect=["exposures"]
+)
+def test_exposures_that_could_not_be_aligned_are_told_of(request_, undrawn, exposures, warned):
+    asked = replace(request_, photos=COMPOSITE, times=TimeRequest(interval=4.0))
+    notes = track(asked, Nobody()).tracked.notes
+    assert any("only roughly" in note for note in notes) == warned
 
 
 def test_a_composite_picture_without_times_asks_for_the_interval(request_, undrawn, exposures):

@@ -7,8 +7,8 @@ A picture may have been merged in two ways, and nothing in it says in which:
   whole, among what is seen of the others;
 * exposures lie on each other (cut out and pasted): each is there as far as no other hides it.
 
-It is read in both ways; what hides each other is taken if it is as much and misses no marker, or
-clearly more. Of exposures that shine through,
+It is read in both ways, and the reading that finds more is taken; a marker that the other one
+misses counts against it. Of exposures that shine through,
 all of the robot's picture is compared, with a threshold that is lower beside a clearer exposure
 with nearly the same heading than alone. Of exposures that hide each other those that show whole are
 found first; the others are found by how the whole body looks in the clearest of them, as without a
@@ -218,13 +218,12 @@ class _Search:
         return [*clear, *hidden]
 
     def is_more(self, layers: Sequence[Exposure], through: Sequence[Exposure]) -> bool:
-        """Tell whether those that hide each other are all that shine through, or clearly more.
+        """Tell whether those that hide each other are more than those that shine through.
 
-        A marker that they miss counts against them as much as one more counts for them. Of as many
-        they are taken, too: a body that shows whole places the robot better than its marker alone.
+        A marker that they miss counts against them as much as one more counts for them.
         """
         missed = sum(self.is_new(each, layers) for each in through)
-        return len(layers) - missed >= len(through) + missed
+        return len(layers) - missed > len(through) + missed
 
     def hidden_by(self, clear: Sequence[Exposure]) -> list[Exposure]:
         """Find exposures that others hide, by how the clearest of these looks."""

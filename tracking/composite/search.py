@@ -8,11 +8,11 @@ A picture may have been merged in two ways, and nothing in it says in which:
 * exposures lie on each other (cut out and pasted): each is there as far as no other hides it.
 
 It is read in both ways, and the reading that finds more is taken; a marker that the other one
-misses counts against it. Of exposures that shine through,
-all of the robot's picture is compared, with a threshold that is lower beside a clearer exposure
-with nearly the same heading than alone. Of exposures that hide each other those that show whole are
-found first; the others are found by how the whole body looks in the clearest of them, as without a
-marker (`by_look`). Nothing is accepted by its place alone.
+misses counts against it. Of exposures that shine through, all of the robot's picture is compared,
+with a threshold that is lower beside a clearer exposure with nearly the same heading than alone. Of
+exposures that hide each other those that show whole are found first; the others are found by how
+the whole body looks in the clearest of them, as without a marker (`by_look`). Nothing is accepted
+by its place alone.
 """
 
 from collections.abc import Sequence
@@ -210,20 +210,22 @@ class _Search:
         best = max((each.alignment.score for each in whole), default=0.0)
         least = max(CLEAR_SCORE, best - CLEAR_SPREAD)
         clear = [each for each in whole if each.alignment.score >= least]
-        hidden = [
-            each
-            for each in self.hidden_by(clear)
-            if each.visible < SHOWS_WHOLE or not self.is_new(each, whole)
-        ]
-        return [*clear, *hidden]
+        hidden = [self.by_marker(each, whole) for each in self.hidden_by(clear)]
+        return [*clear, *(each for each in hidden if each is not None)]
+
+    def by_marker(self, exposure: Exposure, whole: Sequence[Exposure]) -> Exposure | None:
+        """Take what its marker says of an exposure that shows whole; None if it shows none."""
+        if exposure.visible < SHOWS_WHOLE:
+            return exposure
+        return next((each for each in whole if not self.is_new(exposure, [each])), None)
 
     def is_more(self, layers: Sequence[Exposure], through: Sequence[Exposure]) -> bool:
-        """Tell whether those that hide each other are more than those that shine through.
+        """Tell whether those that hide each other are as many as those that shine through, or more.
 
         A marker that they miss counts against them as much as one more counts for them.
         """
         missed = sum(self.is_new(each, layers) for each in through)
-        return len(layers) - missed > len(through) + missed
+        return len(layers) - missed >= len(through) + missed
 
     def hidden_by(self, clear: Sequence[Exposure]) -> list[Exposure]:
         """Find exposures that others hide, by how the clearest of these looks."""

@@ -22,6 +22,7 @@ from tracking.composite.chain import (
 )
 from tracking.composite.colours import FloorColours
 from tracking.composite.mean import MeanReading
+from tracking.composite.mean_alignment import MeanAlignment
 from tracking.composite.plane import Plane
 from tracking.errors import CompositeError
 from tracking.markers import square_homography
@@ -147,7 +148,8 @@ def test_places_of_few_exposures_in_a_mean_do_not_depend_on_where_they_were_firs
     walk = np.array([[-0.3, -0.1, 0.2], [0.0, 0.0, 0.3], [0.3, 0.1, 0.4]])[:count]
     picture = likeness(composite(walk, "averaged"), walk[0], reach=0.45)
     started = walk + np.outer(np.arange(count) > 0, [0.004, -0.002, 0.02])
-    found = picture.aligned_apart([picture.pixels.astype(np.float32)] * count, started)
+    alones = [picture.pixels.astype(np.float32)] * count
+    found = MeanAlignment(picture, alones, started).apart()
     poses = np.array([each.alignment.pose.planar for each in found])
     assert np.abs(poses[:, :2] - walk[:, :2]).max() < 1e-3
     assert np.degrees(np.abs(poses[:, 2] - walk[:, 2]).max()) < 0.5
@@ -175,7 +177,7 @@ def test_exposures_aligned_with_each_other_are_moved_to_where_one_is_known_to_be
     off = np.array([0.004, -0.003, 0.02])
     picture = likeness(np.zeros((400, 640, 3), np.uint8), walk[0], reach=0.4)
     found = [Alignment(known_at(stepped(planar, off)), 0.9, 0.0) for planar in walk]
-    moved = picture.anchored([*found, None])
+    moved = MeanAlignment(picture, [], walk).anchored([*found, None])
     assert moved[-1] is None
     planar = [each.pose.planar for each in moved[:-1]]
     np.testing.assert_allclose(planar, walk, atol=1e-9)

@@ -1,0 +1,160 @@
+# SPDX-License-Identifier: MIT
+"""A picture in which one exposure of a robot without a marker is known, to align others with it."""
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from tracking.body import Alignment, BodyTemplate, TopPlate, align, make_template
+from tracking.body.template import sample
+from tracking.camera.lens import Array, Camera, CameraPose, project, to_floor
+from tracking.composite.body_box import BodyBox
+from tracking.composite.body_raster import BodyRaster
+from tracking.composite.plane import Plane
+from tracking.errors import BodyError, CompositeError
+from tracking.pose import BodyPose, BodyPrior
+
+LEVER = 0.7
+"""How far from the robot's middle that much off turns it, in lengths of the robot [-]."""
+
+RASTER_SD = 0.02
+"""Standard deviation of a place on the raster, in lengths of the robot [-]."""
+
+_SLIP = 0.06  # of the length: an alignment that ends farther off has gone astray
+_TURN = 0.15  # rad: the same
+
+
+@dataclass(frozen=True)
+class KnownExposure:
+    """A picture in which one exposure is known.
+
+    Attributes:
+        pixels: The picture, BGR, shape (height, width, 3).
+        camera: The lens.
+        view: Where the camera stood.
+        prior: Height and tilt.
+        known: Pose of the known exposure.
+        plate: The robot's flat top.
+        size: Length and width of its body [m].
+        hidden: Pixels that do not show the robot, shape (height, width).
+        area: Lowest and highest x, y of the body's middle, each of shape (2,) [m].
+    """
+
+    pixels: NDArray[np.uint8]
+    camera: Camera
+    view: CameraPose
+    prior: BodyPrior
+    known: BodyPose
+    plate: TopPlate
+    size: tuple[float, float]
+    hidden: NDArray[np.bool_]
+    area: tuple[Array, Array]
+
+    @cached_property
+    def box(self) -> BodyBox:
+        """The robot's body."""
+        return BodyBox(self.camera, self.view, self.size, self.plate.height, self.prior.height)
+
+    def raster(
+        self, cell: float, around: int = 0
+    ) -> tuple[Plane, NDArray[np.float32], NDArray[np.bool_], BodyRaster]:
+        """Lay a raster on the plane of the robot's top; what is seen there and where it counts."""
+        half = 0.5 * float(np.hypot(*self.size))
+        plane = Plane.over(
+            self.camera, self.view, height=self.prior.height + self.plate.height,
+            low=self.area[0] - half, high=self.area[1] + half, cell=cell,
+        )  # fmt: skip
+        widened = cv2.dilate(self.hidden.astype(np.uint8), np.ones((5, 5), np.uint8))
+        edge = np.subtract(self.camera.size, 1)
+        inside = ((plane.seen_px >= 0) & (plane.seen_px <= edge)).all(axis=-1)
+        used = inside & (plane.read(255 * widened) < 1)
+        return plane, plane.read_smooth(self.pixels), used, BodyRaster.over(self.size, cell, around)
+
+    @property
+    def body_plate(self) -> TopPlate:
+        """The whole body as a flat top."""
+        return TopPlate(*self.size, self.plate.height, 0.0, 0.0, 0.0)
+
+    def body_template(self, pixels: NDArray) -> BodyTemplate:
+        """Cut the body as seen from above out of the known exposure."""
+        return self.template(pixels, self.body_plate)
+
+    def template(self, pixels: NDArray, plate: TopPlate) -> BodyTemplate:
+        """Cut a part of the robot out of the known exposure."""
+        try:
+            return make_template(pixels, self.camera, self.view, pose=self.known, plate=plate)
+        except BodyError as error:
+            raise CompositeError(str(error)) from error
+
+    def share(self, pose: Array, visible: NDArray[np.bool_]) -> float:
+        """Compute the share of an exposure's top that is visible."""
+        top = self.box.top_seen(self.level(pose))
+        return float((top & visible).sum() / max(int(top.sum()), 1))
+
+    def level(self, pose: Array) -> Array:
+        """Stand the robot level at x, y and yaw; its state, shape (6,)."""
+        return np.array([pose[0], pose[1], self.prior.height, 0.0, 0.0, pose[2]])
+
+    def aligned(
+        self, pose: Array, pixels: NDArray, template: BodyTemplate, visible: NDArray[np.bool_], *,
+        least: float, shines_through: bool = False, most_odd: float = np.inf,
+    ) -> Alignment | None:  # fmt: skip
+        """Align one exposure; None where that goes astray."""
+        found = align(
+            pixels, self.camera, self.view, template=template, prior=self.prior, start=pose,
+            visible=visible, blurs_px=(1.0,), least_visible=0.0, least_hope=-1.0,
+            shines_through=shines_through, most_odd=most_odd,
+        )  # fmt: skip
+        return None if found is None or self.is_astray(found, pose, least) else found
+
+    def is_astray(self, found: Alignment, pose: Array, least: float) -> bool:
+        """Tell whether an alignment is too far from where it began, or too unlike the robot."""
+        aligned = found.pose.planar
+        turned = abs(float(np.angle(np.exp(1j * (aligned[2] - pose[2])))))
+        away = float(np.hypot(*(aligned[:2] - pose[:2])))
+        return found.score < least or away > _SLIP * self.size[0] or turned > _TURN
+
+    def widened(self, alignment: Alignment, slip: float, *, lever: float) -> Alignment:
+        """Add what others do to the place and the heading of an exposure, by their power."""
+        power = max(1 - alignment.score**2, 0.0) / alignment.score**2
+        added = self.slipped(slip * self.size[0] * float(np.sqrt(power)), lever)
+        pose = alignment.pose
+        return replace(alignment, pose=replace(pose, covariance=pose.covariance + added))
+
+    def rough(self, pose: Array) -> Alignment:
+        """Take a place on the raster for the alignment."""
+        height, tilt = self.prior.height_sd, self.prior.tilt_sd
+        known = np.diag([0.0, 0.0, height, tilt, tilt, 0.0]) ** 2
+        covariance = known + self.slipped(RASTER_SD * self.size[0], LEVER)
+        state = self.level(pose)
+        return Alignment(BodyPose(state, covariance, np.zeros((6, 6)), 0.0, 0.0), 0.0, 0.0)
+
+    def slipped(self, slip: float, lever: float) -> Array:
+        """Compute the covariance of a place that slipped by so much at a lever, shape (6, 6)."""
+        turn = slip / (lever * self.size[0])
+        return np.diag([slip, slip, 0.0, 0.0, 0.0, turn]) ** 2
+
+    def on_photo(
+        self, layer: NDArray, plane: Plane, pose: Array, *, reach: float = 0.75
+    ) -> NDArray[np.float32]:
+        """Read a layer of a plane at the pixels around an exposure; 0 beyond so many diagonals."""
+        reach *= float(np.hypot(*self.size))
+        height = self.prior.height + self.plate.height
+        sides = np.array([-reach, reach])
+        around = [[pose[0] + dx, pose[1] + dy, height] for dx in sides for dy in sides]
+        seen = project(self.camera, self.view, np.array(around))
+        low = np.clip(np.floor(seen.min(axis=0)).astype(int), 0, self.camera.size)
+        high = np.clip(np.ceil(seen.max(axis=0)).astype(int) + 1, low, self.camera.size)
+        u, v = np.meshgrid(np.arange(low[0], high[0]), np.arange(low[1], high[1]))
+        whole = np.zeros((*self.pixels.shape[:2], *layer.shape[2:]), np.float32)
+        if u.size == 0:
+            return whole
+        pixels = np.stack((u, v), axis=-1).reshape(-1, 2).astype(float)
+        xy = to_floor(self.camera, self.view, pixels, height)
+        place = np.column_stack((xy[:, 0] - plane.low[0], plane.high[1] - xy[:, 1])) / plane.cell
+        values = sample(layer.astype(np.float32), place.reshape(*u.shape, 2))
+        whole[low[1] : high[1], low[0] : high[0]] = values
+        return whole

@@ -1,0 +1,219 @@
+# SPDX-License-Identifier: MIT
+"""Align the exposures of a mean, each as faint as 1/n, with each other.
+
+A picture of the robot cut out of one exposure of a mean holds the floor of that place, as strong as
+in the picture. Each exposure is aligned with the mean of the others, in which there is less of it,
+by edges in colours that are rare on the floor; then all are moved so that the known one is where it
+is known to be.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tracking.body import Alignment, BodyTemplate, TopPlate
+from tracking.body.align import SLOW
+from tracking.body.template import sample
+from tracking.camera.lens import Array, project
+from tracking.composite.chain import step_between, stepped, stepped_back, usual_step
+from tracking.composite.colours import FloorColours
+from tracking.composite.exposure import Exposure
+from tracking.composite.known import LEVER, KnownExposure
+from tracking.composite.mean import SCALE, Fit, MeanReading
+from tracking.pose import BodyPose, rotation_with_derivatives
+
+LEAST_CLEAR_SCORE, LEAST_FAINT_SCORE = 0.4, 0.2
+"""Least correlation of an exposure's edges: to be aligned by them, and not to be astray [-]."""
+
+MEAN_SD, MEAN_OVERLAP_SD = 1 / 700, 1 / 220
+"""Error of a place, as `tracking.composite.by_look.DARKEST_SD`, of exposures that are apart and of
+those that overlap [-]."""
+
+MEAN_EDGE_SD = 1 / 80
+"""The same in a mean of a plain top that is placed by its edges; chosen by the one walk that has
+one, the virtual world's [-]."""
+
+_EDGE = 0.035  # of the top's length: left out where it has a pattern
+_ROUNDS = 2
+_HALF_LEVER = 0.5  # of the length: that much off there turns it
+_PLANAR = [0, 1, 5]  # x, y and yaw in a state
+
+
+def exposures_in_mean(
+    picture: KnownExposure, reading: MeanReading, fit: Fit
+) -> tuple[Exposure, ...]:
+    """Align each exposure of a mean with what the others leave of the picture.
+
+    Args:
+        picture: The picture and the known exposure.
+        reading: The picture on a raster.
+        fit: Places on that raster, the known one first, and how the robot looks.
+
+    Returns:
+        The exposures, the known one first; where they overlap, without those that are unclear.
+    """
+    fine = fine_weighing(picture)
+    weighed = picture.pixels.astype(np.float32) @ fine
+    weighed_again = np.linalg.inv(reading.weighing) @ fine
+    alones = []
+    for k, pose in enumerate(fit.poses):
+        others = reading.sum_of(np.delete(fit.poses, k, axis=0), fit.robot)
+        seen = picture.on_photo(others, reading.plane, pose)
+        alones.append((weighed - seen @ weighed_again).astype(np.float32))
+    alignment = MeanAlignment(picture, alones, fit.poses)
+    overlap = usual_step(fit.poses) < picture.size[0]
+    return alignment.overlapping() if overlap else alignment.apart()
+
+
+def fine_weighing(picture: KnownExposure) -> Array:
+    """Matrix that makes the floor's fine pattern scatter alike in all colours, shape (3, 3).
+
+    Lenses and JPEG spare fine colour more than fine light.
+    """
+    width = SLOW * picture.size[0] / picture.body_template(picture.pixels).step
+    pixels = picture.pixels.astype(np.float32)
+    floor = FloorColours.of(pixels, ~picture.hidden, width=width, noise=0.5)
+    return (SCALE * floor.whitening).astype(np.float32)
+
+
+@dataclass(frozen=True)
+class MeanAlignment:
+    """Exposures of a mean.
+
+    Attributes:
+        picture: The picture and the known exposure.
+        alones: What the others leave of the picture around each, shape (height, width, 3).
+        poses: Where they are on a raster, the known one first, shape (n, 3).
+    """
+
+    picture: KnownExposure
+    alones: Sequence[NDArray[np.float32]]
+    poses: Array
+
+    def apart(self) -> tuple[Exposure, ...]:
+        """Align by the pattern of the top; where that says little, by the edges of the top.
+
+        What is around the top lies lower and shifts against it from one place to the next.
+        """
+        inside = -_EDGE * self.picture.plate.length
+        within = replace(self.picture.plate, margin=inside, front_margin=inside)
+        found, slip = self.with_others(within), MEAN_SD
+        if np.median([_score(each) for each in found[1:]]) < LEAST_CLEAR_SCORE:
+            found, slip = self.with_others(self.picture.plate), MEAN_EDGE_SD
+        return tuple(
+            Exposure(self.clear_or_rough(each, pose, slip, LEVER), 1.0)
+            for each, pose in zip(found, self.poses, strict=True)
+        )
+
+    def overlapping(self) -> tuple[Exposure, ...]:
+        """Align the body; one but the known whose edges say little is none.
+
+        If those of the known one say nothing, the others cannot be judged and stay on the raster.
+        """
+        found = self.with_others(self.picture.body_plate)
+        return tuple(
+            Exposure(self.clear_or_rough(each, pose, MEAN_OVERLAP_SD, _HALF_LEVER), 1.0)
+            for k, (each, pose) in enumerate(zip(found, self.poses, strict=True))
+            if k == 0 or found[0] is None or _score(each) >= LEAST_CLEAR_SCORE
+        )
+
+    def with_others(self, plate: TopPlate) -> list[Alignment | None]:
+        """Align a part of the robot with its mean in the others; None of what goes astray."""
+        poses = self.poses
+        share = (len(poses) - 1) / len(poses)
+        found: list[Alignment | None] = []
+        for _ in range(_ROUNDS):
+            templates = self.others_templates(poses, plate)
+            found = self.anchored(self.aligned(poses, templates))
+            # The others err, too: n exposures come nearest by that share of the way.
+            poses = np.array([
+                _nearer(pose, each, share) for each, pose in zip(found, poses, strict=True)
+            ])  # fmt: skip
+        return [
+            each and replace(each, pose=_moved(each.pose, pose))
+            for each, pose in zip(found, poses, strict=True)
+        ]
+
+    def aligned(self, poses: Array, templates: Sequence[BodyTemplate]) -> list[Alignment | None]:
+        """Align each with its template; None of what goes astray."""
+        return [
+            self.picture.aligned(
+                pose, alone, template, ~self.picture.hidden, least=LEAST_FAINT_SCORE,
+                shines_through=True,
+            )
+            for pose, alone, template in zip(poses, self.alones, templates, strict=True)
+        ]  # fmt: skip
+
+    def others_templates(self, poses: Array, plate: TopPlate) -> list[BodyTemplate]:
+        """Cut a part of the robot out of all exposures; for each take the mean of the others.
+
+        The mean of all would hold an exposure where it is, and look like it.
+        """
+        picture, first = self.picture, self.picture.template(self.alones[0], plate)
+        shape, points = first.points_body.shape[:2], first.points_body.reshape(-1, 3)
+        shown = (~picture.hidden).astype(np.float32)
+        looks, weights = [], []
+        for alone, pose in zip(self.alones, poses, strict=True):
+            state = picture.level(pose)
+            R, _ = rotation_with_derivatives(*state[3:])
+            seen = project(picture.camera, picture.view, points @ R.T + state[:3])
+            seen = seen.reshape(*shape, 2)
+            weight = (sample(shown, seen) > 0.99)[..., None].astype(float)  # 0 outside, too
+            look = sample(alone, seen) * weight
+            usual = look.sum(axis=(0, 1)) / max(float(weight.sum()), 1.0)
+            looks.append(look - usual * weight)
+            weights.append(weight)
+        total, count = np.sum(looks, axis=0), np.sum(weights, axis=0)
+        means = [
+            (total - look) / np.maximum(count - weight, 1)
+            for look, weight in zip(looks, weights, strict=True)
+        ]
+        return [replace(first, colours=mean.astype(np.float32)) for mean in means]
+
+    def anchored(self, found: Sequence[Alignment | None]) -> list[Alignment | None]:
+        """Move all exposures in their own frames so that the first is where it is known to be.
+
+        Its error of alignment becomes that of the others; where it is unclear none can be judged.
+        What is wrong with the pose that is known is not in their covariance.
+        """
+        first = found[0]
+        if first is None or first.score < LEAST_CLEAR_SCORE:
+            return [None] * len(found)
+        off = step_between(self.picture.known.planar, first.pose.planar)
+        common = np.zeros((6, 6))
+        common[np.ix_(_PLANAR, _PLANAR)] = first.pose.covariance[np.ix_(_PLANAR, _PLANAR)]
+        moved: list[Alignment | None] = []
+        for k, each in enumerate(found):
+            if each is None:
+                moved.append(None)
+                continue
+            pose = _moved(each.pose, stepped_back(each.pose.planar, off))
+            covariance = pose.covariance + (common if k else 0.0)
+            moved.append(replace(each, pose=replace(pose, covariance=covariance)))
+        return moved
+
+    def clear_or_rough(
+        self, alignment: Alignment | None, pose: Array, slip: float, lever: float
+    ) -> Alignment:
+        """Take an alignment where it is clear, else the place on the raster."""
+        if alignment is None or alignment.score < LEAST_CLEAR_SCORE:
+            return self.picture.rough(pose)
+        return self.picture.widened(alignment, slip, lever=lever)
+
+
+def _score(alignment: Alignment | None) -> float:
+    return 0.0 if alignment is None else alignment.score
+
+
+def _nearer(pose: Array, alignment: Alignment | None, share: float) -> Array:
+    if alignment is None:
+        return pose
+    return stepped(pose, share * step_between(pose, alignment.pose.planar))
+
+
+def _moved(pose: BodyPose, planar: Array) -> BodyPose:
+    state = pose.state.copy()
+    state[_PLANAR] = planar
+    return replace(pose, state=state)

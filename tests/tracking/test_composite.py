@@ -9,12 +9,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tracking.body import marker_template
+from tracking.body import Alignment, marker_template
 from tracking.camera import Camera, CameraPose, project
 from tracking.composite import find_exposures, order_exposures
+from tracking.composite.exposure import Exposure, is_more
 from tracking.errors import CompositeError
 from tracking.markers import marker_picture, square_homography
-from tracking.pose import BodyPrior, RobotMarker, rotation_with_derivatives
+from tracking.pose import BodyPose, BodyPrior, RobotMarker, rotation_with_derivatives
 
 LENS = Camera((800, 500), np.array([[900.0, 0, 400], [0, 900, 250], [0, 0, 1]]), np.zeros(5))
 _TURN = np.linalg.svd([[1.0, 0, 0], [0, -0.85, -0.53], [0, 0.53, -0.85]])
@@ -94,6 +95,21 @@ def test_an_exposure_under_its_successor_is_found_and_none_is_made_up():
     assert sorted(distances.argmin(axis=1)) == [0, 1, 2]
     assert distances.min(axis=1).max() < 5e-3
     assert min(exposure.visible for exposure in found) < 0.95
+
+
+def exposures_at(*places):
+    poses = [BodyPose(np.array([x, 0, 0.1, 0, 0, 0]), *np.zeros((2, 6, 6)), 0, 0) for x in places]
+    return [Exposure(Alignment(pose, 0.9, 0.0), 1.0) for pose in poses]
+
+
+def test_a_reading_that_misses_an_exposure_must_find_more_to_be_taken():
+    through = exposures_at(0.0, 0.3, 0.6)
+    assert is_more(exposures_at(0.0, 0.3, 0.6), through, same=0.05)
+    assert is_more(exposures_at(0.01, 0.29, 0.45, 0.6), through, same=0.05)
+    assert not is_more(exposures_at(0.0, 0.3), through, same=0.05)
+    assert not is_more(exposures_at(0.0, 0.3, 0.45), through, same=0.05)  # misses one
+    assert not is_more(exposures_at(0.0, 0.3, 0.4, 0.5), through, same=0.05)
+    assert is_more(exposures_at(0.0, 0.3, 0.4, 0.5, 0.7), through, same=0.05)
 
 
 def test_an_empty_floor_has_no_exposure():

@@ -21,8 +21,8 @@ from tracking.composite.chain import (
     unsteadiness,
 )
 from tracking.composite.colours import FloorColours
-from tracking.composite.mean import MeanReading
-from tracking.composite.mean_alignment import MeanAlignment
+from tracking.composite.mean import Fit, MeanReading
+from tracking.composite.mean_alignment import MeanAlignment, floor_pattern
 from tracking.composite.plane import Plane
 from tracking.errors import CompositeError
 from tracking.markers import square_homography
@@ -148,8 +148,9 @@ def test_places_of_few_exposures_in_a_mean_do_not_depend_on_where_they_were_firs
     walk = np.array([[-0.3, -0.1, 0.2], [0.0, 0.0, 0.3], [0.3, 0.1, 0.4]])[:count]
     picture = likeness(composite(walk, "averaged"), walk[0], reach=0.45)
     started = walk + np.outer(np.arange(count) > 0, [0.004, -0.002, 0.02])
-    alones = [picture.pixels.astype(np.float32)] * count
-    found = MeanAlignment(picture, alones, started).apart()
+    pattern = floor_pattern(picture, picture.pixels.astype(np.float32), walk)
+    flat = pattern.flat(picture.pixels.astype(np.float32))
+    found = MeanAlignment(picture, [flat] * count, started, pattern).exposures()
     poses = np.array([each.alignment.pose.planar for each in found])
     assert np.abs(poses[:, :2] - walk[:, :2]).max() < 1e-3
     assert np.degrees(np.abs(poses[:, 2] - walk[:, 2]).max()) < 0.5
@@ -266,6 +267,20 @@ def test_a_robot_is_told_from_a_sum_of_itself():
     solved = reading.robot_at(poses)
     assert np.corrcoef(solved.ravel(), own.ravel())[0, 1] > 0.97
     assert np.corrcoef(seen.ravel(), own.ravel())[0, 1] < 0.9  # what many others would take
+
+
+def test_of_a_mean_what_is_weaker_or_less_like_the_robot_than_is_usual_is_dropped():
+    body, plane = BodyRaster.over(SIZE, 0.006, margin=4), level_plane()
+    picture = np.zeros((*plane.seen_px.shape[:2], 3), np.float32)
+    reading = MeanReading(plane, picture, np.ones(picture.shape[:2], bool), body, SIZE[0], TOP)
+    poses = steady_chain(np.array([-0.4, 0.0, 0.0]), np.array([0.1, 0.0, 0.0]), 0.0, 6, 0)
+    scores = np.array([0.1, 0.9, 0.9, 0.65, 0.9, 0.9, 0.7])
+    strengths = np.array([0.1, 1.0, 1.0, 1.0, 0.4, 1.0, 1.0])
+    held = reading.held(Fit(poses, picture, scores, strengths, 0.0))
+    np.testing.assert_array_equal(held.poses, poses[[0, 1, 2, 5, 6]])
+    faint = np.full(len(poses), 0.55)
+    assert len(reading.held(Fit(poses, picture, faint, np.ones(len(poses)), 0.0)).poses) == 7
+    assert len(reading.held(Fit(poses, picture, 0.9 * faint, strengths, 0.0)).poses) == 1
 
 
 def test_a_robot_on_the_floor_does_not_change_how_the_floor_looks():

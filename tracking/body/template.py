@@ -12,7 +12,8 @@ from tracking.errors import BodyError
 from tracking.markers import marker_picture
 from tracking.pose import BodyPose, RobotMarker, rotation_with_derivatives
 
-_MOST_POINTS = 2500
+MOST_POINTS = 2500
+"""Most points of a template, as a rule."""
 
 
 @dataclass(frozen=True)
@@ -104,8 +105,9 @@ def sample(pixels: NDArray, corners_px: Array) -> NDArray[np.float32]:
 
 
 def make_template(
-    pixels: NDArray[np.uint8], camera: Camera, view: CameraPose, *, pose: BodyPose, plate: TopPlate
-) -> BodyTemplate:
+    pixels: NDArray[np.uint8], camera: Camera, view: CameraPose, *, pose: BodyPose, plate: TopPlate,
+    most_points: int = MOST_POINTS,
+) -> BodyTemplate:  # fmt: skip
     """Cut the robot's picture out of an annotated photograph.
 
     Args:
@@ -114,9 +116,10 @@ def make_template(
         view: Where the camera stands.
         pose: Where the robot is: `tracking.pose.fit_pose` to clicks on `plate.corners_body`.
         plate: The robot's top.
+        most_points: Of a robot that shows on more pixels, the picture has about so many points.
 
     Returns:
-        The picture, one point a pixel of the photograph or, of a large robot, some 2500 in all.
+        The picture, one point a pixel of the photograph, or fewer.
 
     Raises:
         BodyError: When the robot is cut by the photograph's edge, too small or without contrast.
@@ -126,7 +129,7 @@ def make_template(
     _refuse_cut(corners_px, camera.size)
     metres = np.sqrt(plate.length * plate.width / cv2.contourArea(corners_px.astype(np.float32)))
     rear, front, right, left = plate.extent
-    step = max(float(metres), np.sqrt((front - rear) * (left - right) / _MOST_POINTS))
+    step = max(float(metres), np.sqrt((front - rear) * (left - right) / most_points))
     if plate.length / step < 16:
         raise BodyError(
             f"the robot's top is {plate.length / step:.0f} px long in the annotated photograph; "

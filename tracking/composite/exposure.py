@@ -1,7 +1,10 @@
 # SPDX-License-Identifier: MIT
 """What is found of a robot in a composite picture."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+
+import numpy as np
 
 from tracking.body import Alignment
 
@@ -22,3 +25,18 @@ class Exposure:
     def is_rough(self) -> bool:
         """Whether it could not be aligned and is where a raster showed it."""
         return self.alignment.score == 0.0
+
+
+def is_new(exposure: Exposure, known: Sequence[Exposure], same: float) -> bool:
+    """Tell whether an exposure is farther than so many metres from all that are known."""
+    here = exposure.alignment.pose.planar
+    return all(np.hypot(*(here - each.alignment.pose.planar)[:2]) > same for each in known)
+
+
+def is_more(some: Sequence[Exposure], others: Sequence[Exposure], same: float) -> bool:
+    """Tell whether one reading of a picture finds as many exposures as another, or more.
+
+    An exposure of the other that it misses counts against it as much as one more counts for it.
+    """
+    missed = sum(is_new(each, some, same) for each in others)
+    return len(some) - missed >= len(others) + missed

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracking.body import Alignment, BodyTemplate, TopPlate, align, make_template
-from tracking.body.template import sample
+from tracking.body.template import MOST_POINTS, sample
 from tracking.camera.lens import Array, Camera, CameraPose, project, to_floor
 from tracking.composite.body_box import BodyBox
 from tracking.composite.body_raster import BodyRaster
@@ -82,10 +82,15 @@ class KnownExposure:
         """Cut the body as seen from above out of the known exposure."""
         return self.template(pixels, self.body_plate)
 
-    def template(self, pixels: NDArray, plate: TopPlate) -> BodyTemplate:
+    def template(
+        self, pixels: NDArray, plate: TopPlate, *, most_points: int = MOST_POINTS
+    ) -> BodyTemplate:
         """Cut a part of the robot out of the known exposure."""
         try:
-            return make_template(pixels, self.camera, self.view, pose=self.known, plate=plate)
+            return make_template(
+                pixels, self.camera, self.view, pose=self.known, plate=plate,
+                most_points=most_points,
+            )  # fmt: skip
         except BodyError as error:
             raise CompositeError(str(error)) from error
 
@@ -141,6 +146,23 @@ class KnownExposure:
         self, layer: NDArray, plane: Plane, pose: Array, *, reach: float = 0.75
     ) -> NDArray[np.float32]:
         """Read a layer of a plane at the pixels around an exposure; 0 beyond so many diagonals."""
+        whole = np.zeros((*self.pixels.shape[:2], *layer.shape[2:]), np.float32)
+        window, xy = self.around(pose, reach=reach)
+        place = np.stack((xy[..., 0] - plane.low[0], plane.high[1] - xy[..., 1]), axis=-1)
+        if place.size:
+            whole[window] = sample(layer.astype(np.float32), place / plane.cell)
+        return whole
+
+    def around(self, pose: Array, *, reach: float) -> tuple[tuple[slice, slice], Array]:
+        """Compute the rows and columns of the pixels around an exposure, and what they show.
+
+        Args:
+            pose: Of the exposure.
+            reach: Half a side of the square that they show, in diagonals of the body.
+
+        Returns:
+            Rows and columns; x and y of the plane of the robot's top, (rows, columns, 2) [m].
+        """
         reach *= float(np.hypot(*self.size))
         height = self.prior.height + self.plate.height
         sides = np.array([-reach, reach])
@@ -149,12 +171,6 @@ class KnownExposure:
         low = np.clip(np.floor(seen.min(axis=0)).astype(int), 0, self.camera.size)
         high = np.clip(np.ceil(seen.max(axis=0)).astype(int) + 1, low, self.camera.size)
         u, v = np.meshgrid(np.arange(low[0], high[0]), np.arange(low[1], high[1]))
-        whole = np.zeros((*self.pixels.shape[:2], *layer.shape[2:]), np.float32)
-        if u.size == 0:
-            return whole
         pixels = np.stack((u, v), axis=-1).reshape(-1, 2).astype(float)
-        xy = to_floor(self.camera, self.view, pixels, height)
-        place = np.column_stack((xy[:, 0] - plane.low[0], plane.high[1] - xy[:, 1])) / plane.cell
-        values = sample(layer.astype(np.float32), place.reshape(*u.shape, 2))
-        whole[low[1] : high[1], low[0] : high[0]] = values
-        return whole
+        xy = to_floor(self.camera, self.view, pixels, height).reshape(*u.shape, 2)
+        return (slice(low[1], high[1]), slice(low[0], high[0])), xy

@@ -3,8 +3,8 @@
 
 A picture of the robot cut out of one exposure of a mean holds the floor of that place, as strong as
 in the picture. Each exposure is aligned with the mean of the others, in which there is less of it,
-by edges in colours that are rare on the floor; then all are moved so that the known one is where it
-is known to be.
+in colours that are rare on the floor; then all are moved so that the known one is where it is known
+to be.
 """
 
 from collections.abc import Sequence
@@ -15,30 +15,32 @@ from numpy.typing import NDArray
 
 from tracking.body import Alignment, BodyTemplate, TopPlate
 from tracking.body.align import SLOW
-from tracking.body.template import sample
+from tracking.body.template import MOST_POINTS, sample
 from tracking.camera.lens import Array, project
 from tracking.composite.chain import step_between, stepped, stepped_back, usual_step
 from tracking.composite.colours import FloorColours
 from tracking.composite.exposure import Exposure
+from tracking.composite.floor_pattern import FloorPattern
 from tracking.composite.known import LEVER, KnownExposure
 from tracking.composite.mean import SCALE, Fit, MeanReading
-from tracking.pose import BodyPose, rotation_with_derivatives
+from tracking.composite.pattern_alignment import AROUND, PatternAlignment
+from tracking.pose import PLANAR, BodyPose, rotation_with_derivatives
 
 LEAST_CLEAR_SCORE, LEAST_FAINT_SCORE = 0.4, 0.2
 """Least correlation of an exposure's edges: to be aligned by them, and not to be astray [-]."""
 
-MEAN_SD, MEAN_OVERLAP_SD = 1 / 700, 1 / 220
+LEAST_NEW_SCORE = 0.1
+"""Least correlation of what the floor does not foretell of an exposure [-]."""
+
+MEAN_SD, MEAN_OVERLAP_SD = 1 / 1200, 1 / 220
 """Error of a place, as `tracking.composite.by_look.DARKEST_SD`, of exposures that are apart and of
 those that overlap [-]."""
 
-MEAN_EDGE_SD = 1 / 80
-"""The same in a mean of a plain top that is placed by its edges; chosen by the one walk that has
-one, the virtual world's [-]."""
-
-_EDGE = 0.035  # of the top's length: left out where it has a pattern
 _ROUNDS = 2
+_FLOOR_LEFT = 0.15  # of the length: farther from all exposures is the floor
+_EVERY_PIXEL = 250_000  # points: of a robot of 500 x 500 px
+_PATTERN_WIDTH = 0.25  # of the length: what changes over more is no pattern
 _HALF_LEVER = 0.5  # of the length: that much off there turns it
-_PLANAR = [0, 1, 5]  # x, y and yaw in a state
 
 
 def exposures_in_mean(
@@ -55,16 +57,29 @@ def exposures_in_mean(
         The exposures, the known one first; where they overlap, without those that are unclear.
     """
     fine = fine_weighing(picture)
-    weighed = picture.pixels.astype(np.float32) @ fine
+    weighed = (picture.pixels @ fine).astype(np.float32)
     weighed_again = np.linalg.inv(reading.weighing) @ fine
     alones = []
     for k, pose in enumerate(fit.poses):
         others = reading.sum_of(np.delete(fit.poses, k, axis=0), fit.robot)
         seen = picture.on_photo(others, reading.plane, pose)
         alones.append((weighed - seen @ weighed_again).astype(np.float32))
-    alignment = MeanAlignment(picture, alones, fit.poses)
-    overlap = usual_step(fit.poses) < picture.size[0]
-    return alignment.overlapping() if overlap else alignment.apart()
+    if usual_step(fit.poses) < picture.size[0]:
+        return MeanAlignment(picture, alones, fit.poses).exposures()
+    pattern = floor_pattern(picture, weighed, fit.poses)
+    flat = [pattern.flat(alone) for alone in alones]
+    return MeanAlignment(picture, flat, fit.poses, pattern).exposures()
+
+
+def floor_pattern(
+    picture: KnownExposure, weighed: NDArray[np.float32], poses: Array
+) -> FloorPattern:
+    """Judge the floor's pattern by what is far from all exposures."""
+    floor = ~picture.hidden
+    for pose in poses:
+        floor &= ~picture.box.hidden(picture.level(pose), left=_FLOOR_LEFT)
+    pixel = picture.body_template(picture.pixels).step
+    return FloorPattern.of(weighed, floor, width=_PATTERN_WIDTH * picture.size[0] / pixel)
 
 
 def fine_weighing(picture: KnownExposure) -> Array:
@@ -86,24 +101,25 @@ class MeanAlignment:
         picture: The picture and the known exposure.
         alones: What the others leave of the picture around each, shape (height, width, 3).
         poses: Where they are on a raster, the known one first, shape (n, 3).
+        pattern: Of the floor, where exposures are apart: what it does not foretell of their tops is
+            aligned, and `alones` are flat. None where they overlap: edges of their bodies are.
     """
 
     picture: KnownExposure
     alones: Sequence[NDArray[np.float32]]
     poses: Array
+    pattern: FloorPattern | None = None
+
+    def exposures(self) -> tuple[Exposure, ...]:
+        """Align all exposures, the known one first."""
+        return self.overlapping() if self.pattern is None else self.apart()
 
     def apart(self) -> tuple[Exposure, ...]:
-        """Align by the pattern of the top; where that says little, by the edges of the top.
-
-        What is around the top lies lower and shifts against it from one place to the next.
-        """
-        inside = -_EDGE * self.picture.plate.length
-        within = replace(self.picture.plate, margin=inside, front_margin=inside)
-        found, slip = self.with_others(within), MEAN_SD
-        if np.median([_score(each) for each in found[1:]]) < LEAST_CLEAR_SCORE:
-            found, slip = self.with_others(self.picture.plate), MEAN_EDGE_SD
+        """Align the top alone: what is around it lies lower and shifts against it."""
+        around = AROUND * self.picture.plate.length
+        found = self.with_others(replace(self.picture.plate, margin=around, front_margin=around))
         return tuple(
-            Exposure(self.clear_or_rough(each, pose, slip, LEVER), 1.0)
+            Exposure(self.clear_or_rough(each, pose, MEAN_SD, LEVER), 1.0)
             for each, pose in zip(found, self.poses, strict=True)
         )
 
@@ -138,20 +154,41 @@ class MeanAlignment:
 
     def aligned(self, poses: Array, templates: Sequence[BodyTemplate]) -> list[Alignment | None]:
         """Align each with its template; None of what goes astray."""
-        return [
-            self.picture.aligned(
-                pose, alone, template, ~self.picture.hidden, least=LEAST_FAINT_SCORE,
-                shines_through=True,
-            )
-            for pose, alone, template in zip(poses, self.alones, templates, strict=True)
-        ]  # fmt: skip
+        pairs = zip(poses, self.alones, templates, strict=True)
+        if self.pattern is None:
+            return [self.edges_aligned(*each) for each in pairs]
+        return [self.pattern_aligned(*each, self.pattern) for each in pairs]
+
+    def edges_aligned(
+        self, pose: Array, alone: NDArray[np.float32], template: BodyTemplate
+    ) -> Alignment | None:
+        """Align the edges of one exposure."""
+        return self.picture.aligned(
+            pose, alone, template, ~self.picture.hidden, least=LEAST_FAINT_SCORE,
+            shines_through=True,
+        )  # fmt: skip
+
+    def pattern_aligned(
+        self, pose: Array, alone: NDArray[np.float32], template: BodyTemplate, pattern: FloorPattern
+    ) -> Alignment | None:
+        """Align what the floor does not foretell of one exposure."""
+        found = PatternAlignment(self.picture, alone, template, pattern, pose).solved()
+        astray = found is None or self.picture.is_astray(found, pose, LEAST_NEW_SCORE)
+        return None if astray else found
+
+    @property
+    def least_clear(self) -> float:
+        """Least correlation of an exposure to be placed by it."""
+        return LEAST_CLEAR_SCORE if self.pattern is None else LEAST_NEW_SCORE
 
     def others_templates(self, poses: Array, plate: TopPlate) -> list[BodyTemplate]:
         """Cut a part of the robot out of all exposures; for each take the mean of the others.
 
         The mean of all would hold an exposure where it is, and look like it.
         """
-        picture, first = self.picture, self.picture.template(self.alones[0], plate)
+        picture = self.picture
+        most = MOST_POINTS if self.pattern is None else _EVERY_PIXEL
+        first = picture.template(self.alones[0], plate, most_points=most)
         shape, points = first.points_body.shape[:2], first.points_body.reshape(-1, 3)
         shown = (~picture.hidden).astype(np.float32)
         looks, weights = [], []
@@ -179,11 +216,11 @@ class MeanAlignment:
         What is wrong with the pose that is known is not in their covariance.
         """
         first = found[0]
-        if first is None or first.score < LEAST_CLEAR_SCORE:
+        if first is None or first.score < self.least_clear:
             return [None] * len(found)
         off = step_between(self.picture.known.planar, first.pose.planar)
         common = np.zeros((6, 6))
-        common[np.ix_(_PLANAR, _PLANAR)] = first.pose.covariance[np.ix_(_PLANAR, _PLANAR)]
+        common[np.ix_(PLANAR, PLANAR)] = first.pose.covariance[np.ix_(PLANAR, PLANAR)]
         moved: list[Alignment | None] = []
         for k, each in enumerate(found):
             if each is None:
@@ -198,7 +235,7 @@ class MeanAlignment:
         self, alignment: Alignment | None, pose: Array, slip: float, lever: float
     ) -> Alignment:
         """Take an alignment where it is clear, else the place on the raster."""
-        if alignment is None or alignment.score < LEAST_CLEAR_SCORE:
+        if alignment is None or alignment.score < self.least_clear:
             return self.picture.rough(pose)
         return self.picture.widened(alignment, slip, lever=lever)
 
@@ -215,5 +252,5 @@ def _nearer(pose: Array, alignment: Alignment | None, share: float) -> Array:
 
 def _moved(pose: BodyPose, planar: Array) -> BodyPose:
     state = pose.state.copy()
-    state[_PLANAR] = planar
+    state[PLANAR] = planar
     return replace(pose, state=state)

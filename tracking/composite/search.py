@@ -24,7 +24,7 @@ from numpy.typing import ArrayLike, NDArray
 from tracking.body import Alignment, BodyTemplate, TopPlate, align, floor_in_view
 from tracking.camera.lens import Array, Camera, CameraPose
 from tracking.composite.by_look import Likeness
-from tracking.composite.exposure import Exposure
+from tracking.composite.exposure import Exposure, is_more, is_new
 from tracking.composite.match import CELLS, Match, match_whole
 from tracking.composite.plane import Plane
 from tracking.errors import CompositeError
@@ -93,7 +93,7 @@ def find_exposures(
     search = _Search(_without(pixels, hidden), hidden, camera, view, template, prior, size, area)
     through = search.shining_through()
     layers = search.layers(through)
-    found = layers if search.is_more(layers, through) else through
+    found = layers if is_more(layers, through, search.same_body) else through
     if not found:
         raise CompositeError(
             "no exposure of the robot is found in the composite picture; check the marker's number "
@@ -179,6 +179,10 @@ class _Search:
     def same(self) -> float:
         return _SAME * self.template.plate.length
 
+    @property
+    def same_body(self) -> float:
+        return _SAME_BODY * self.body[0]
+
     @staticmethod
     def distance(a: Array, b: Array) -> float:
         return float(np.hypot(*(a[:2] - b[:2])))
@@ -217,15 +221,7 @@ class _Search:
         """Take what its marker says of an exposure that shows whole; None if it shows none."""
         if exposure.visible < SHOWS_WHOLE:
             return exposure
-        return next((each for each in whole if not self.is_new(exposure, [each])), None)
-
-    def is_more(self, layers: Sequence[Exposure], through: Sequence[Exposure]) -> bool:
-        """Tell whether those that hide each other are as many as those that shine through, or more.
-
-        A marker that they miss counts against them as much as one more counts for them.
-        """
-        missed = sum(self.is_new(each, layers) for each in through)
-        return len(layers) - missed >= len(through) + missed
+        return next((each for each in whole if not is_new(exposure, [each], self.same_body)), None)
 
     def hidden_by(self, clear: Sequence[Exposure]) -> list[Exposure]:
         """Find exposures that others hide, by how the clearest of these looks."""
@@ -240,10 +236,5 @@ class _Search:
             except CompositeError:
                 continue  # cut by the picture's edge, too small or too faint: the next may not be
             found = picture.aligned_in_pasted(*picture.find_pasted())
-            return [each for each in found if self.is_new(each, clear)]
+            return [each for each in found if is_new(each, clear, self.same_body)]
         return []
-
-    def is_new(self, exposure: Exposure, known: Sequence[Exposure]) -> bool:
-        """Tell whether an exposure is none that is known."""
-        here, same = exposure.alignment.pose.planar, _SAME_BODY * self.body[0]
-        return all(self.distance(here, each.alignment.pose.planar) > same for each in known)

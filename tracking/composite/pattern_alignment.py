@@ -1,0 +1,195 @@
+# SPDX-License-Identifier: MIT
+"""Align a faint exposure with a picture of the robot that is clearer than it.
+
+Photograph and picture are compared by what the floor does not foretell (`floor_pattern`): least
+squares where what is left of the floor is white noise. Slopes are those of the picture. Those of
+the photograph, which `tracking.body.align` takes, are mostly the floor's where the robot is faint.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from tracking.body import Alignment, BodyTemplate
+from tracking.body.template import sample
+from tracking.camera.lens import Array, project_with_derivatives
+from tracking.composite.floor_pattern import REACH_PX, FloorPattern
+from tracking.composite.known import KnownExposure
+from tracking.pose import PLANAR, BodyPose, rotation_with_derivatives
+
+AROUND = 0.15
+"""How far the picture of the robot must reach beyond its top, in lengths of the top [-]."""
+
+_REACH = 0.6  # of the body's diagonal: half a side of what is looked at
+_ITERATIONS = 6
+_HUBER = 1.5
+_LIMIT = np.array([0.01, 0.01, 0.05])  # m, m, rad: longest step
+_LEAST_POINTS = 200
+_TOLD = [2, 3, 4]  # height, roll and pitch in a state
+_CAMERA = slice(6, 12)
+
+
+@dataclass(frozen=True)
+class Look:
+    """Photograph and picture where a pose puts the top, as n values.
+
+    Attributes:
+        seen: Of the photograph, shape (n,).
+        expected: Of the picture, shape (n,).
+        slopes: Derivative of `expected` by the state and the camera's pose, shape (n, 12).
+    """
+
+    seen: Array
+    expected: Array
+    slopes: Array
+
+    @cached_property
+    def residual(self) -> Array:
+        """What is left of the photograph with the picture's best gain, shape (n,)."""
+        gain = self.expected @ self.seen / max(self.expected @ self.expected, 1e-9)
+        return self.seen - gain * self.expected
+
+    @cached_property
+    def noise(self) -> float:
+        """Standard deviation of what is left, by its median."""
+        return max(1.4826 * float(np.median(np.abs(self.residual))), 1e-6)
+
+    @cached_property
+    def weight(self) -> Array:
+        """Huber's weights, shape (n,)."""
+        return np.minimum(1.0, _HUBER * self.noise / np.maximum(np.abs(self.residual), 1e-9))
+
+    @property
+    def score(self) -> float:
+        """Correlation of photograph and picture."""
+        power = (self.expected @ self.expected) * (self.seen @ self.seen)
+        return float(self.expected @ self.seen / np.sqrt(max(power, 1e-9)))
+
+    def step(self) -> Array:
+        """Compute by how much x, y and yaw are off, shape (3,)."""
+        J = np.column_stack((self.slopes[:, PLANAR], self.expected))
+        weighed = self.weight[:, None] * J
+        change = np.linalg.lstsq(weighed.T @ J, weighed.T @ (self.seen - self.expected))[0]
+        return np.clip(change[:3], -_LIMIT, _LIMIT)
+
+
+@dataclass(frozen=True)
+class PatternAlignment:
+    """One exposure and what it is aligned with.
+
+    Attributes:
+        picture: The picture and the known exposure.
+        alone: The photograph without the other exposures, flat, shape (height, width, 3).
+        template: The robot's top and `AROUND`, flat.
+        pattern: Of the floor.
+        start: x, y [m] and yaw [rad] to start from, shape (3,).
+    """
+
+    picture: KnownExposure
+    alone: NDArray[np.float32]
+    template: BodyTemplate
+    pattern: FloorPattern
+    start: Array
+
+    def solved(self) -> Alignment | None:
+        """Align by Gauss-Newton steps.
+
+        Returns:
+            The alignment, or None where little of the top is visible. Height, roll and pitch are
+            those of `picture.prior`, and what is unknown of them is in the covariance.
+        """
+        pose = self.start.copy()
+        for _ in range(_ITERATIONS):
+            look = self.look(pose)
+            if look is None:
+                return None
+            pose = pose + look.step()
+        look = self.look(pose)
+        return None if look is None else self.concluded(pose, look)
+
+    @cached_property
+    def window(self) -> tuple[tuple[slice, slice], Array]:
+        """Rows and columns around the exposure, and x and y of the top's plane there [m]."""
+        return self.picture.around(self.start, reach=_REACH)
+
+    @cached_property
+    def seen(self) -> NDArray[np.float32]:
+        """What the floor does not foretell of the photograph, in the window."""
+        return self.pattern.new_in(self.alone[self.window[0]])
+
+    @cached_property
+    def shown(self) -> NDArray[np.bool_]:
+        """Pixels of the window that nothing hides, as far as they are foretold from others."""
+        hidden = self.picture.hidden[self.window[0]].astype(np.uint8)
+        side = 2 * REACH_PX + 1
+        return cv2.dilate(hidden, np.ones((side, side), np.uint8)) == 0
+
+    def look(self, pose: Array) -> Look | None:
+        """Compare photograph and picture for a pose; None where little is visible."""
+        body = self.body_at(pose)
+        half = 0.5 * np.array([self.picture.plate.length, self.picture.plate.width])
+        inside = (np.abs(body - [self.picture.plate.centre_x, 0.0]) <= half).all(axis=-1)
+        used = inside & self.shown
+        if used.sum() < _LEAST_POINTS:
+            return None
+        drawn = self.drawn(body)
+        expected = self.pattern.new_in(drawn)[used]
+        slopes = self.pattern.new_in(self.slopes(drawn, body, pose))[used]
+        return Look(
+            self.seen[used].ravel().astype(float),
+            expected.ravel().astype(float),
+            slopes.reshape(-1, slopes.shape[-1]).astype(float),
+        )
+
+    def body_at(self, pose: Array) -> Array:
+        """Place the pixels of the window in the body's frame, shape (rows, columns, 2) [m]."""
+        c, s = np.cos(pose[2]), np.sin(pose[2])
+        return (self.window[1] - pose[:2]) @ np.array([[c, -s], [s, c]])
+
+    def drawn(self, body: Array) -> NDArray[np.float32]:
+        """Draw the robot's picture at places of its body, shape (rows, columns, 3)."""
+        front_left = self.template.points_body[0, 0, :2]
+        return sample(self.template.colours, (front_left - body)[..., ::-1] / self.template.step)
+
+    def slopes(self, drawn: NDArray[np.float32], body: Array, pose: Array) -> Array:
+        """Compute how the drawn picture changes with state and camera, (rows, columns, 3, 12)."""
+        state = self.picture.level(pose)
+        points = np.concatenate(
+            (body, np.full((*body.shape[:2], 1), self.picture.plate.height)), axis=2
+        ).reshape(-1, 3)
+        R, dR = rotation_with_derivatives(*state[3:])
+        _, by_point, by_camera = project_with_derivatives(
+            self.picture.camera, self.picture.view, points @ R.T + state[:3]
+        )
+        turned = (points @ dR.transpose(0, 2, 1)).transpose(1, 2, 0)
+        moved = np.concatenate((by_point, by_point @ turned, by_camera), axis=2)
+        along = [cv2.Scharr(drawn, cv2.CV_32F, *axis, scale=1 / 32) for axis in ((1, 0), (0, 1))]
+        slope = np.stack(along, axis=-1)
+        return -slope @ moved.reshape(*body.shape[:2], 2, 12)
+
+    def concluded(self, pose: Array, look: Look) -> Alignment:
+        """Put the pose and its covariance together."""
+        J, prior = look.slopes[:, PLANAR], self.picture.prior
+        weighed = look.weight[:, None] * J / look.noise**2
+        spread = np.linalg.inv(weighed.T @ J)
+        follow = spread @ weighed.T @ look.slopes  # x, y and yaw by state and camera's pose
+        covariance, by_camera = np.zeros((6, 6)), np.zeros((6, 6))
+        covariance[np.ix_(PLANAR, PLANAR)] = spread
+        by_told = np.zeros((6, 3))
+        by_told[PLANAR], by_told[_TOLD] = follow[:, _TOLD], -np.eye(3)
+        by_camera[PLANAR] = follow[:, _CAMERA]
+        told = np.square([prior.height_sd, prior.tilt_sd, prior.tilt_sd])
+        return Alignment(
+            BodyPose(
+                self.picture.level(pose),
+                covariance + by_told * told @ by_told.T,
+                by_camera @ self.picture.view.covariance @ by_camera.T,
+                0.0,
+                float(look.seen.size),
+            ),
+            look.score,
+            -look.seen.size * float(np.log(look.noise)),
+        )

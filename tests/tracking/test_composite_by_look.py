@@ -262,9 +262,9 @@ def test_a_robot_is_told_from_a_sum_of_itself():
     reading = MeanReading(plane, picture, used, body, SIZE[0], TOP)
     own = cv2.GaussianBlur(rng.normal(0, 60, (*body.x.shape, 3)).astype(np.float32), (0, 0), 2)
     poses = steady_chain(np.array([-0.25, 0.0, 0.0]), np.array([0.1, 0.0, 0.1]), 0.0, 4, 0)
-    reading.__dict__["change"] = reading.sum_of(poses, own)
-    seen = np.mean([body.read(reading.change, plane, pose) for pose in poses], axis=0)
-    solved = reading.robot_at(poses)
+    change = reading.sum_of(poses, own)
+    seen = np.mean([body.read(change, plane, pose) for pose in poses], axis=0)
+    solved = reading.robot_at(poses, change)
     assert np.corrcoef(solved.ravel(), own.ravel())[0, 1] > 0.97
     assert np.corrcoef(seen.ravel(), own.ravel())[0, 1] < 0.9  # what many others would take
 

@@ -37,7 +37,7 @@ chosen by 390 exposures of simulated walks that no test draws [-]."""
 
 _CELLS = {"pasted": 40, "darkest": 32, "mean": 32}
 _AROUND = 0.28  # of the length: how far sides, legs and shadow reach
-_STRIP_LEVER = 0.58  # of the length: that much off there turns a strip
+_STRIP_LEVER = 0.9  # of the length: that much off there turns a strip
 _LEAST_SHARE = 0.05
 
 

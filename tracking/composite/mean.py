@@ -34,7 +34,8 @@ from tracking.composite.order import order_exposures
 from tracking.composite.reading import Reading
 
 LONELY_SCORE = 0.6
-"""Least correlation of an exposure beside no other, when only one is known [-]."""
+"""Least correlation of an exposure beside no other, or the wrong way round, when only one is known
+[-]."""
 
 BESIDE_SCORE = 0.5
 """Least correlation of one beside another with nearly its heading, then [-]."""
@@ -49,10 +50,14 @@ LEAST_STRENGTH = 0.5
 WORTH = 0.4
 """By how much of what one explains a set must explain more for one exposure more [-]."""
 
+DETAIL = 1 / 4
+"""Width of what is left out where exposures are compared, in lengths of the robot [-]."""
+
 SCALE = 8.0
 """Grey levels a standard deviation of the floor's pattern is made to be."""
 
 _TURN = np.radians(32.0)
+_OFF = 6.0  # grey levels by which what shows of a robot may be off
 _DAMPING = 0.02
 _ROUNDS = 30
 _TRIED = 3
@@ -65,10 +70,10 @@ class Fit(NamedTuple):
 
     Attributes:
         poses: Shape (n, 3), the known one first.
-        robot: The robot's picture, shape (rows, columns, 3).
-        scores: Correlation of each with it where the others are taken away, shape (n,).
+        robot: The robot's picture, in change, shape (rows, columns, 3).
+        scores: Correlation of each with it, in detail, where the others are taken away, shape (n,).
         strengths: How strong each is beside all, shape (n,).
-        worth: Share of the photograph's power explained, less `WORTH` for each.
+        worth: Share of the detail's power explained, less `WORTH` for each.
     """
 
     poses: Array
@@ -111,9 +116,22 @@ class MeanReading(Reading):
         return (change * self.used[..., None]).astype(np.float32)
 
     @cached_property
+    def detail(self) -> NDArray[np.float32]:
+        """The change without what varies over more than `DETAIL` of the length.
+
+        Planks, and the lamp over them, are as strong as a robot at 1/n; they vary slowly.
+        """
+        width = DETAIL * self.length / self.plane.cell
+        weight = self.used.astype(np.float32)
+        slow = cv2.GaussianBlur(self.change, (0, 0), width)
+        share = np.maximum(cv2.GaussianBlur(weight, (0, 0), width), 1e-3)
+        detail = (self.change - slow / share[..., None]) * weight[..., None]
+        return detail.astype(np.float32)
+
+    @cached_property
     def power(self) -> float:
-        """Sum of the squared change."""
-        return float((self.change**2).sum())
+        """Sum of the squared detail."""
+        return float((self.detail**2).sum())
 
     def find(self, anchor: Array) -> Fit:
         """Find all exposures.
@@ -131,7 +149,8 @@ class MeanReading(Reading):
             if new.worth <= best.worth + _BETTER:
                 break
             best = self.fitted(new.poses, rounds=1)
-        return self.held(self.fitted(best.poses, rounds=3))
+        held = self.held(self.fitted(best.poses, rounds=3))
+        return held._replace(robot=self.robot_at(held.poses, self.change))
 
     def held(self, fit: Fit) -> Fit:
         """Drop exposures that are too weak or too unlike the others."""
@@ -143,18 +162,18 @@ class MeanReading(Reading):
 
     def alike(self, anchor: Array) -> Array:
         """Find exposures that look like the known one as it is, others and floor in it."""
-        robot = self.body.read(self.change, self.plane, anchor)
+        robot = self.body.read(self.detail, self.plane, anchor)
         poses = anchor[None]
-        matches = [m for m in self.matches(self.change, robot) if m.score >= BESIDE_SCORE]
+        matches = [m for m in self.matches(self.detail, robot) if m.score >= BESIDE_SCORE]
         while len(poses) < MOST_EXPOSURES and (new := self.next_of(matches, poses)) is not None:
-            poses = np.concatenate((poses, self.refined(self.change, robot, new)[None]))
+            poses = np.concatenate((poses, self.refined(self.detail, robot, new)[None]))
         return poses
 
     def next_of(self, matches: Sequence[Match], poses: Array) -> Array | None:
         """Take the best match beside an exposure or, where steps are long, the nearest beyond."""
-        beside = next((match.planar for match in matches if self.follows(match, poses)), None)
+        beside = next((match for match in matches if self.is_beside(match, poses)), None)
         if beside is not None:
-            return beside
+            return self.turned(beside, poses)
         beyond = [match.planar for match in matches if self.is_alone(match, poses)]
         if not beyond or 0 < usual_step(poses) < REACH * self.length:
             return None
@@ -162,8 +181,8 @@ class MeanReading(Reading):
         return headed(nearest, poses, square=self.is_square)
 
     def turned(self, match: Match, poses: Array) -> Array:
-        """Turn the place of a match by the walk where no exposure beside it tells its heading."""
-        if self.follows(match, poses):
+        """Turn the place of a match by the walk where no exposure beside it has its heading."""
+        if self.follows(match.planar, poses):
             return match.planar
         return headed(match.planar, poses, square=self.is_square)
 
@@ -178,11 +197,16 @@ class MeanReading(Reading):
         template = self.body.template(robot, self.height)
         return match_whole(change, self.plane, template=template, least=_LEAST_MATCH)
 
-    def follows(self, match: Match, poses: Array) -> bool:
-        """Tell whether a match is a step from another exposure, with nearly its heading."""
-        away = distances(poses, match.planar)
+    def is_beside(self, match: Match, poses: Array) -> bool:
+        """Tell whether a match follows an exposure; a clear one may be the wrong way round."""
+        pose = self.turned(match, poses) if match.score >= LONELY_SCORE else match.planar
+        return self.follows(pose, poses)
+
+    def follows(self, pose: Array, poses: Array) -> bool:
+        """Tell whether a pose is a step from another exposure, with nearly its heading."""
+        away = distances(poses, pose)
         near = away < REACH * self.length
-        ahead = np.cos(poses[near, 2] - match.planar[2]) > np.cos(_TURN)
+        ahead = np.cos(poses[near, 2] - pose[2]) > np.cos(_TURN)
         return bool(ahead.any() and away.min() > LEAST_STEP * self.length)
 
     def is_alone(self, match: Match, poses: Array) -> bool:
@@ -192,11 +216,11 @@ class MeanReading(Reading):
 
     def is_new(self, match: Match, poses: Array) -> bool:
         """Tell whether a match may be one exposure more."""
-        return self.follows(match, poses) or self.is_alone(match, poses)
+        return self.is_beside(match, poses) or self.is_alone(match, poses)
 
     def varied(self, fit: Fit) -> list[Array]:
         """List sets of exposures that differ by one or two from a set."""
-        left = self.change - self.sum_of(fit.poses, fit.robot)
+        left = self.detail - self.sum_of(fit.poses, fit.robot)
         left *= self.used[..., None]
         new = [
             self.turned(m, fit.poses)
@@ -213,19 +237,19 @@ class MeanReading(Reading):
     def fitted(self, poses: Array, *, rounds: int) -> Fit:
         """Improve exposures and the robot's picture in turn."""
         poses = poses.copy()
-        robot = self.robot_at(poses)
+        robot = self.robot_at(poses, self.detail)
         scores, strengths = self.improve(poses, robot)
         for _ in range(rounds - 1):
-            robot = self.robot_at(poses)
+            robot = self.robot_at(poses, self.detail)
             scores, strengths = self.improve(poses, robot)
-        left = (self.change - self.sum_of(poses, robot)) * self.used[..., None]
+        left = (self.detail - self.sum_of(poses, robot)) * self.used[..., None]
         own = float((robot[self.body.body] ** 2).sum())
         worth = 1 - (float((left**2).sum()) + WORTH * own * len(poses)) / self.power
         return Fit(poses, robot, scores, strengths, worth)
 
     def improve(self, poses: Array, robot: NDArray[np.float32]) -> tuple[Array, Array]:
         """Improve all poses but the first in place; return scores and strengths, (n,) each."""
-        left = self.change - self.sum_of(poses, robot)
+        left = self.detail - self.sum_of(poses, robot)
         scores, strengths = np.ones(len(poses)), np.ones(len(poses))
         for k in range(1, len(poses)):
             window, laid = self.body.laid(robot, self.plane, poses[k])
@@ -264,14 +288,14 @@ class MeanReading(Reading):
             total[window] += laid
         return total
 
-    def robot_at(self, poses: Array) -> NDArray[np.float32]:
-        """Solve for the robot's picture of which the sum at poses is the photograph.
+    def robot_at(self, poses: Array, change: NDArray[np.float32]) -> NDArray[np.float32]:
+        """Solve for the robot's picture of which the sum at poses is the change, or its detail.
 
         Least squares; what no exposure tells apart is held near zero. Where exposures repeat by a
         step, a pattern that alternates by it is told by the two ends of the walk alone, which is
         why the mean of what is seen at all poses does not do.
         """
-        seen = np.mean([self.body.read(self.change, self.plane, pose) for pose in poses], axis=0)
+        seen = np.mean([self.body.read(change, self.plane, pose) for pose in poses], axis=0)
         if len(poses) == 1:
             return seen.astype(np.float32)
         shape, rows_columns = seen.shape, seen.shape[1::-1]
@@ -304,7 +328,8 @@ class MeanReading(Reading):
         faint = fit.robot[self.body.body] @ np.linalg.inv(self.weighing)
         light = np.median(self.floor.light[self.used], axis=0)
         colours = light + len(fit.poses) * faint
-        return float(np.mean((colours < -40) | (colours > 295))) < 0.1
+        beyond = max(40.0, _OFF * len(fit.poses))
+        return float(np.mean((colours < -beyond) | (colours > 255 + beyond))) < 0.1
 
 
 def _shifted(poses: Array) -> list[Array]:

@@ -308,6 +308,7 @@ class MeanReading(Reading):
         ]
 
         def repeated(values: Array) -> Array:
+            """Add up what a robot's picture gives to itself at all poses."""
             robot = values.reshape(shape).astype(np.float32)
             total = (1 + _DAMPING) * robot
             for overlap in overlaps:

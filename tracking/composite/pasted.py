@@ -194,6 +194,7 @@ class PastedReading(Reading):
         shown = visible.astype(np.float32)
 
         def gain(pose: Array) -> float:
+            """Log odds of one place."""
             return float(self.gains(pose[None], look, shown, self.body)[0][0])
 
         places = [improved(gain, start, reach=CLIMB, tries=90)[0] for start in starts]

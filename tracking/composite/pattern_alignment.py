@@ -29,7 +29,7 @@ _HUBER = 1.5
 _LIMIT = np.array([0.01, 0.01, 0.05])  # m, m, rad: longest step
 _LEAST_POINTS = 200
 _TOLD = [2, 3, 4]  # height, roll and pitch in a state
-_CAMERA = slice(6, 12)
+_ALL, _CAMERA = list(range(12)), slice(6, 12)  # of a state, then of the camera's pose
 
 
 @dataclass(frozen=True)
@@ -39,7 +39,7 @@ class Look:
     Attributes:
         seen: Of the photograph, shape (n,).
         expected: Of the picture, shape (n,).
-        slopes: Derivative of `expected` by the state and the camera's pose, shape (n, 12).
+        slopes: Derivative of `expected` by some of the state and the camera's pose, shape (n, m).
     """
 
     seen: Array
@@ -69,8 +69,8 @@ class Look:
         return float(self.expected @ self.seen / np.sqrt(max(power, 1e-9)))
 
     def step(self) -> Array:
-        """Compute by how much x, y and yaw are off, shape (3,)."""
-        J = np.column_stack((self.slopes[:, PLANAR], self.expected))
+        """Compute by how much x, y and yaw are off, by their slopes alone, shape (3,)."""
+        J = np.column_stack((self.slopes, self.expected))
         weighed = self.weight[:, None] * J
         change = np.linalg.lstsq(weighed.T @ J, weighed.T @ (self.seen - self.expected))[0]
         return np.clip(change[:3], -_LIMIT, _LIMIT)
@@ -103,11 +103,11 @@ class PatternAlignment:
         """
         pose = self.start.copy()
         for _ in range(_ITERATIONS):
-            look = self.look(pose)
+            look = self.look(pose, PLANAR)
             if look is None:
                 return None
             pose = pose + look.step()
-        look = self.look(pose)
+        look = self.look(pose, _ALL)
         return None if look is None else self.concluded(pose, look)
 
     @cached_property
@@ -127,8 +127,13 @@ class PatternAlignment:
         side = 2 * REACH_PX + 1
         return cv2.dilate(hidden, np.ones((side, side), np.uint8)) == 0
 
-    def look(self, pose: Array) -> Look | None:
-        """Compare photograph and picture for a pose; None where little is visible."""
+    def look(self, pose: Array, by: list[int]) -> Look | None:
+        """Compare photograph and picture for a pose; None where little is visible.
+
+        Args:
+            pose: x, y [m] and yaw [rad].
+            by: Of state and camera's pose, what slopes are taken by.
+        """
         body = self.body_at(pose)
         half = 0.5 * np.array([self.picture.plate.length, self.picture.plate.width])
         inside = (np.abs(body - [self.picture.plate.centre_x, 0.0]) <= half).all(axis=-1)
@@ -137,7 +142,7 @@ class PatternAlignment:
             return None
         drawn = self.drawn(body)
         expected = self.pattern.new_in(drawn)[used]
-        slopes = self.pattern.new_in(self.slopes(drawn, body, pose))[used]
+        slopes = self.pattern.new_in(self.slopes(drawn, body, pose)[..., by])[used]
         return Look(
             self.seen[used].ravel().astype(float),
             expected.ravel().astype(float),

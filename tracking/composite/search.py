@@ -124,7 +124,7 @@ class _Search:
 
     def shining_through(self) -> list[Exposure]:
         """Find exposures that show as a whole, each among what is seen of others."""
-        plane = self.plane(self.template, self.template.plate.length / CELLS)
+        plane = self.plane
         picture = plane.read_smooth(self.pixels).mean(axis=2, keepdims=True)
         matches = match_whole(picture, plane, template=self.template, least=0.9 * BESIDE_SCORE)
         aligned = [self.aligned(match) for match in self.apart(matches)]
@@ -144,6 +144,7 @@ class _Search:
 
     @property
     def slip(self) -> float:
+        """How far edges alone may move an exposure [m]."""
         return _SLIP * self.template.plate.length
 
     def among_others(self, alignment: Alignment) -> Alignment:
@@ -155,13 +156,18 @@ class _Search:
         pose = replace(alignment.pose, covariance=alignment.pose.covariance + added)
         return replace(alignment, pose=pose)
 
-    def plane(self, template: BodyTemplate, cell: float) -> Plane:
-        half = 0.5 * float(np.hypot(template.plate.length, template.plate.width))
-        height = self.prior.height + template.plate.height
-        low, high = self.area[0] - half, self.area[1] + half
-        return Plane.over(self.camera, self.view, height=height, low=low, high=high, cell=cell)
+    @property
+    def plane(self) -> Plane:
+        """The raster on which the marker is sought, as high as it."""
+        top = self.template.plate
+        half = 0.5 * float(np.hypot(top.length, top.width))
+        return Plane.over(
+            self.camera, self.view, height=self.prior.height + top.height,
+            low=self.area[0] - half, high=self.area[1] + half, cell=top.length / CELLS,
+        )  # fmt: skip
 
     def aligned(self, match: Match) -> Alignment | None:
+        """Align the marker with the photograph; None where there is no hope."""
         return align(
             self.pixels, self.camera, self.view, template=self.template, prior=self.prior,
             start=match.planar, blurs_px=(1.0,), least_hope=_HOPE * BESIDE_SCORE,
@@ -177,14 +183,17 @@ class _Search:
 
     @property
     def same(self) -> float:
+        """Nearer than this two markers are one [m]."""
         return _SAME * self.template.plate.length
 
     @property
     def same_body(self) -> float:
+        """Nearer than this two exposures are one [m]."""
         return _SAME_BODY * self.body[0]
 
     @staticmethod
     def distance(a: Array, b: Array) -> float:
+        """Distance between two poses [m]."""
         return float(np.hypot(*(a[:2] - b[:2])))
 
     def along_a_walk(self, good: Sequence[Alignment]) -> list[Alignment]:
@@ -202,6 +211,7 @@ class _Search:
         return kept
 
     def follows(self, alignment: Alignment, kept: Sequence[Alignment]) -> bool:
+        """Tell whether an exposure is clear, or beside another with nearly its heading."""
         here = alignment.pose.planar
         return alignment.score >= LONELY_SCORE or any(
             self.distance(here, other.pose.planar) < _BESIDE * self.body[0]

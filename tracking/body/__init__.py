@@ -4,7 +4,13 @@
 from tracking.body.align import Alignment, align
 from tracking.body.heading import resolve_headings
 from tracking.body.search import BodyCandidates, find_body, floor_in_view, match_turned
-from tracking.body.template import BodyTemplate, TopPlate, make_template, marker_template
+from tracking.body.template import (
+    BodyTemplate,
+    TopPlate,
+    make_template,
+    marker_template,
+    pixel_on_top,
+)
 
 __all__ = [
     "Alignment",
@@ -17,5 +23,6 @@ __all__ = [
     "make_template",
     "marker_template",
     "match_turned",
+    "pixel_on_top",
     "resolve_headings",
 ]

@@ -104,6 +104,12 @@ def sample(pixels: NDArray, corners_px: Array) -> NDArray[np.float32]:
     return values.reshape(*shape, *values.shape[2:])
 
 
+def pixel_on_top(camera: Camera, view: CameraPose, *, pose: BodyPose, plate: TopPlate) -> float:
+    """Compute how much of the robot's top a pixel shows, as a square's side [m]."""
+    corners_px = _corners_px(camera, view, pose, plate).astype(np.float32)
+    return float(np.sqrt(plate.length * plate.width / cv2.contourArea(corners_px)))
+
+
 def make_template(
     pixels: NDArray[np.uint8], camera: Camera, view: CameraPose, *, pose: BodyPose, plate: TopPlate,
     most_points: int = MOST_POINTS,
@@ -125,11 +131,11 @@ def make_template(
         BodyError: When the robot is cut by the photograph's edge, too small or without contrast.
     """
     R, _ = rotation_with_derivatives(*pose.state[3:])
-    corners_px = project(camera, view, plate.corners_body @ R.T + pose.state[:3])
+    corners_px = _corners_px(camera, view, pose, plate)
     _refuse_cut(corners_px, camera.size)
-    metres = np.sqrt(plate.length * plate.width / cv2.contourArea(corners_px.astype(np.float32)))
     rear, front, right, left = plate.extent
-    step = max(float(metres), np.sqrt((front - rear) * (left - right) / most_points))
+    most = np.sqrt((front - rear) * (left - right) / most_points)
+    step = max(pixel_on_top(camera, view, pose=pose, plate=plate), most)
     if plate.length / step < 16:
         raise BodyError(
             f"the robot's top is {plate.length / step:.0f} px long in the annotated photograph; "
@@ -188,6 +194,11 @@ def _grid(plate: TopPlate, step: float) -> Array:
     y = np.arange(left, right, -step)
     xx, yy = np.meshgrid(x, y, indexing="ij")
     return np.stack((xx, yy, np.full_like(xx, plate.height)), axis=-1)
+
+
+def _corners_px(camera: Camera, view: CameraPose, pose: BodyPose, plate: TopPlate) -> Array:
+    R, _ = rotation_with_derivatives(*pose.state[3:])
+    return project(camera, view, plate.corners_body @ R.T + pose.state[:3])
 
 
 def _refuse_cut(corners_px: Array, size: tuple[int, int]) -> None:

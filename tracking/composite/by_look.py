@@ -90,13 +90,14 @@ class Likeness(KnownExposure):
         anchor = self.known.planar
         self.body_template(self.pixels)  # cut by an edge or too faint: said before the search
         reading, pasted = self.find_pasted()
-        darkest = self.darkest.find(anchor)
+        places = self.darkest.find(anchor)
+        darkest = self.aligned_in_darkest(places)  # of a mean hardly any align
         mean = self.mean.find(anchor)
         most = max(len(pasted), len(darkest))
         if len(mean.poses) > 1 and len(mean.poses) >= most and self.mean.is_possible(mean):
             return exposures_in_mean(self, self.mean, mean)
-        if len(darkest) > len(pasted):
-            return self.aligned_in_darkest(darkest)
+        if len(places) > len(pasted):
+            return darkest
         return self.aligned_in_pasted(reading, pasted)
 
     def find_pasted(self) -> tuple[PastedReading, Array]:

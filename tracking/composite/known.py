@@ -8,7 +8,14 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from tracking.body import Alignment, BodyTemplate, TopPlate, align, make_template
+from tracking.body import (
+    Alignment,
+    BodyTemplate,
+    TopPlate,
+    align,
+    make_template,
+    pixel_on_top,
+)
 from tracking.body.template import MOST_POINTS, sample
 from tracking.camera.lens import Array, Camera, CameraPose, project, to_floor
 from tracking.composite.body_box import BodyBox
@@ -77,6 +84,12 @@ class KnownExposure:
     def body_plate(self) -> TopPlate:
         """The whole body as a flat top."""
         return TopPlate(*self.size, self.plate.height, 0.0, 0.0, 0.0)
+
+    @property
+    def length_px(self) -> float:
+        """The robot's length where it is known [px]."""
+        pixel = pixel_on_top(self.camera, self.view, pose=self.known, plate=self.body_plate)
+        return self.size[0] / pixel
 
     def body_template(self, pixels: NDArray) -> BodyTemplate:
         """Cut the body as seen from above out of the known exposure."""

@@ -58,6 +58,7 @@ SCALE = 8.0
 
 _TURN = np.radians(32.0)
 _OFF = 6.0  # grey levels by which what shows of a robot may be off
+_NO_COLOUR = 0.2  # of the robot: more than this would have no colour
 _DAMPING = 0.02
 _ROUNDS = 30
 _TRIED = 3
@@ -73,14 +74,25 @@ class Fit(NamedTuple):
         robot: The robot's picture, in change, shape (rows, columns, 3).
         scores: Correlation of each with it, in detail, where the others are taken away, shape (n,).
         strengths: How strong each is beside all, shape (n,).
-        worth: Share of the detail's power explained, less `WORTH` for each.
+        explained: Share of the detail's power that they explain.
+        cost: `WORTH` of what the robot's picture by itself explains.
     """
 
     poses: Array
     robot: NDArray[np.float32]
     scores: Array
     strengths: Array
-    worth: float
+    explained: float
+    cost: float
+
+    def gain(self, other: "Fit") -> float:
+        """Compute by how much more is explained than by another set, less exposures' cost.
+
+        The cost is the same for both sets: a picture of the robot solved at too few exposures is
+        fainter, and each of them would seem to cost less.
+        """
+        more = len(self.poses) - len(other.poses)
+        return self.explained - other.explained - 0.5 * (self.cost + other.cost) * more
 
 
 @dataclass(frozen=True)
@@ -145,8 +157,8 @@ class MeanReading(Reading):
         best = self.fitted(self.alike(anchor), rounds=2)
         for _ in range(_ROUNDS):
             tried = [self.fitted(poses, rounds=1) for poses in self.varied(best)]
-            new = max(tried, key=lambda fit: fit.worth, default=best)
-            if new.worth <= best.worth + _BETTER:
+            new = max(tried, key=lambda fit: fit.gain(best), default=best)
+            if new.gain(best) <= _BETTER:
                 break
             best = self.fitted(new.poses, rounds=1)
         held = self.held(self.fitted(best.poses, rounds=3))
@@ -158,7 +170,8 @@ class MeanReading(Reading):
         least = max(LEAST_SCORE, LEAST_OF_USUAL * usual)
         good = (fit.scores >= least) & (fit.strengths >= LEAST_STRENGTH)
         good[0] = True
-        return Fit(fit.poses[good], fit.robot, fit.scores[good], fit.strengths[good], fit.worth)
+        poses, scores, strengths = fit.poses[good], fit.scores[good], fit.strengths[good]
+        return fit._replace(poses=poses, scores=scores, strengths=strengths)
 
     def alike(self, anchor: Array) -> Array:
         """Find exposures that look like the known one as it is, others and floor in it."""
@@ -244,8 +257,8 @@ class MeanReading(Reading):
             scores, strengths = self.improve(poses, robot)
         left = (self.detail - self.sum_of(poses, robot)) * self.used[..., None]
         own = float((robot[self.body.body] ** 2).sum())
-        worth = 1 - (float((left**2).sum()) + WORTH * own * len(poses)) / self.power
-        return Fit(poses, robot, scores, strengths, worth)
+        explained = 1 - float((left**2).sum()) / self.power
+        return Fit(poses, robot, scores, strengths, explained, WORTH * own / self.power)
 
     def improve(self, poses: Array, robot: NDArray[np.float32]) -> tuple[Array, Array]:
         """Improve all poses but the first in place; return scores and strengths, (n,) each."""
@@ -330,7 +343,7 @@ class MeanReading(Reading):
         light = np.median(self.floor.light[self.used], axis=0)
         colours = light + len(fit.poses) * faint
         beyond = max(40.0, _OFF * len(fit.poses))
-        return float(np.mean((colours < -beyond) | (colours > 255 + beyond))) < 0.1
+        return float(np.mean((colours < -beyond) | (colours > 255 + beyond))) < _NO_COLOUR
 
 
 def _shifted(poses: Array) -> list[Array]:

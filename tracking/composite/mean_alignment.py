@@ -14,7 +14,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracking.body import Alignment, BodyTemplate, TopPlate
-from tracking.body.align import SLOW
 from tracking.body.template import MOST_POINTS, sample
 from tracking.camera.lens import Array, project
 from tracking.composite.chain import step_between, stepped, stepped_back, usual_step
@@ -39,6 +38,7 @@ those that overlap [-]."""
 _ROUNDS = 2
 _FLOOR_LEFT = 0.15  # of the length: farther from all exposures is the floor
 _EVERY_PIXEL = 250_000  # points: of a robot of 500 x 500 px
+_FINE_WIDTH = 1 / 24  # of the length: what changes over more is no fine pattern
 _PATTERN_WIDTH = 0.25  # of the length: what changes over more is no pattern
 _HALF_LEVER = 0.5  # of the length: that much off there turns it
 
@@ -78,8 +78,7 @@ def floor_pattern(
     floor = ~picture.hidden
     for pose in poses:
         floor &= ~picture.box.hidden(picture.level(pose), left=_FLOOR_LEFT)
-    pixel = picture.body_template(picture.pixels).step
-    return FloorPattern.of(weighed, floor, width=_PATTERN_WIDTH * picture.size[0] / pixel)
+    return FloorPattern.of(weighed, floor, width=_PATTERN_WIDTH * picture.length_px)
 
 
 def fine_weighing(picture: KnownExposure) -> Array:
@@ -87,8 +86,7 @@ def fine_weighing(picture: KnownExposure) -> Array:
 
     Lenses and JPEG spare fine colour more than fine light.
     """
-    width = SLOW * picture.size[0] / picture.body_template(picture.pixels).step
-    pixels = picture.pixels.astype(np.float32)
+    pixels, width = picture.pixels.astype(np.float32), _FINE_WIDTH * picture.length_px
     floor = FloorColours.of(pixels, ~picture.hidden, width=width, noise=0.5)
     return (SCALE * floor.whitening).astype(np.float32)
 

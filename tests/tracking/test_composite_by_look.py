@@ -21,6 +21,7 @@ from tracking.composite.chain import (
     unsteadiness,
 )
 from tracking.composite.colours import FloorColours
+from tracking.composite.darkest import DarkestReading
 from tracking.composite.mean import Fit, MeanReading
 from tracking.composite.mean_alignment import MeanAlignment, floor_pattern
 from tracking.composite.plane import Plane
@@ -139,6 +140,17 @@ def test_pasted_exposures_are_found_in_light_that_changes_and_cut_out_with_floor
 def test_exposures_beyond_reach_of_each_other_are_found_in_a_mean():
     walk = np.array([[-0.4, -0.12, 0.2], [-0.05, -0.03, 0.3], [0.3, 0.08, 0.4]])
     poses = found_in(composite(walk, "averaged"), walk[1])
+    assert len(poses) == 3
+    assert np.abs(poses[:, :2] - walk[:, :2]).max() < 3e-3
+
+
+def test_a_mean_in_which_more_dark_places_are_found_than_look_like_the_robot_stays_a_mean(
+    monkeypatch,
+):
+    walk = np.array([[-0.3, -0.1, 0.2], [0.0, 0.0, 0.3], [0.3, 0.1, 0.4]])
+    dark = np.array([[x, y, 0.3] for x in (-0.3, 0.3) for y in (-0.25, 0.25)])
+    monkeypatch.setattr(DarkestReading, "find", lambda _, anchor: np.vstack((anchor, dark)))
+    poses = found_in(composite(walk, "averaged"), walk[1], near=(0.0, 0.0), reach=0.45)
     assert len(poses) == 3
     assert np.abs(poses[:, :2] - walk[:, :2]).max() < 3e-3
 

@@ -91,12 +91,14 @@ class Likeness(KnownExposure):
         self.body_template(self.pixels)  # cut by an edge or too faint: said before the search
         reading, pasted = self.find_pasted()
         places = self.darkest.find(anchor)
-        darkest = self.aligned_in_darkest(places)  # of a mean hardly any align
+        is_darkest = len(places) > len(pasted)
+        # A mean, too, is darker where the robot stood: only what aligns counts against one.
+        darkest = self.aligned_in_darkest(places) if is_darkest else ()
         mean = self.mean.find(anchor)
         most = max(len(pasted), len(darkest))
         if len(mean.poses) > 1 and len(mean.poses) >= most and self.mean.is_possible(mean):
             return exposures_in_mean(self, self.mean, mean)
-        if len(places) > len(pasted):
+        if is_darkest:
             return darkest
         return self.aligned_in_pasted(reading, pasted)
 

@@ -52,7 +52,7 @@ class FloorColours:
         Returns:
             What the floor looks like; the robot may hide up to three tenths of it.
         """
-        light = _smooth(picture, used, width)
+        light = smooth(picture, used, width)
         inner = chi2.cdf(chi2.ppf(_TRUSTED, 3), 5) / _TRUSTED
         covariance = np.cov((picture - light)[used].T)
         for _ in range(_ROUNDS):
@@ -60,7 +60,7 @@ class FloorColours:
             far = floor.oddness(picture)
             usual = used & (far < np.quantile(far[used], _TRUSTED))
             covariance = np.cov((picture - light)[usual].T) / inner
-            light = _smooth(picture, used & (far < max(_ODD, np.median(far[used]))), width)
+            light = smooth(picture, used & (far < max(_ODD, np.median(far[used]))), width)
         return cls(light, covariance + noise**2 * np.eye(3))
 
     @cached_property
@@ -114,9 +114,19 @@ def robot_density(difference: Array) -> Array:
     return np.exp(-0.5 * (difference**2).sum(axis=-1) / NOISE**2) / norm
 
 
-def _smooth(
+def smooth(
     picture: NDArray[np.float32], used: NDArray[np.bool_], width: float
 ) -> NDArray[np.float32]:
+    """Blur colours by a standard deviation of so many points, leaving out what is not used.
+
+    Args:
+        picture: Shape (rows, columns, 3).
+        used: Points that count, shape (rows, columns).
+        width: Standard deviation of the blur [points].
+
+    Returns:
+        Shape (rows, columns, 3); 0 where nothing near counts.
+    """
     weight = used.astype(np.float32)
     total = cv2.GaussianBlur(picture * weight[..., None], (0, 0), width)
     share = cv2.GaussianBlur(weight, (0, 0), width)

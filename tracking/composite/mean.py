@@ -28,7 +28,7 @@ from tracking.composite.candidates import (
     headed,
 )
 from tracking.composite.chain import continued, distances, improved, usual_step
-from tracking.composite.colours import FloorColours
+from tracking.composite.colours import FloorColours, smooth
 from tracking.composite.match import Match, match_whole
 from tracking.composite.order import order_exposures
 from tracking.composite.reading import Reading
@@ -134,11 +134,8 @@ class MeanReading(Reading):
         Planks, and the lamp over them, are as strong as a robot at 1/n; they vary slowly.
         """
         width = DETAIL * self.length / self.plane.cell
-        weight = self.used.astype(np.float32)
-        slow = cv2.GaussianBlur(self.change, (0, 0), width)
-        share = np.maximum(cv2.GaussianBlur(weight, (0, 0), width), 1e-3)
-        detail = (self.change - slow / share[..., None]) * weight[..., None]
-        return detail.astype(np.float32)
+        detail = self.change - smooth(self.change, self.used, width)
+        return detail * self.used[..., None]
 
     @cached_property
     def power(self) -> float:

@@ -14,10 +14,12 @@ from typer.testing import CliRunner
 from rig.experiment.control import Control
 from rig.experiment.steps import Point
 from rig.experiment.verdict import Verdict
+from rig.safety import StopCategory
 from rig.twins import simulated_rig_devices
 from zebro_lab.cli.app import app
 from zebro_lab.cli.rig_screen import ExperimentScreen, experiment_screen, slip_chart
 from zebro_lab.stages.rig_check import check_runs
+from zebro_lab.stages.rig_run import RigRunRequest, run_experiment
 
 SOURCE_PLAN = Path(__file__).parents[3] / "examples" / "plan-source.toml"
 
@@ -135,6 +137,26 @@ def test_without_a_terminal_a_prompt_is_one_line():
     for normal in (1.0, 2.0, 3.0):
         screen.prompt("set it", normal=normal)
     assert console.file.getvalue() == "set it\n"
+
+
+@pytest.mark.xfail(strict=True, raises=AssertionError)
+def test_a_hold_is_visible_and_says_which_key_goes_on(plan, tmp_path):
+    control = Control()
+
+    class Holding(ExperimentScreen):
+        def judged(self, point, verdict, *, attempt):
+            super().judged(point, verdict, attempt=attempt)
+            control.stop.request(StopCategory.SOFT, "Ctrl-C, time 1")
+
+    plan.write_text(plan.read_text().replace("hold = 600.0", "hold = 1.0"))
+    console = Console(file=io.StringIO(), width=200)
+    request = RigRunRequest(plan, "sim", tmp_path / "data", fast=True)
+    run_experiment(request, Holding(console, None), control)
+    shown = console.file.getvalue()
+    assert "HOLDING" in shown
+    assert "discs energised" in shown
+    assert "r: go on" in shown
+    assert "safe stop" in shown
 
 
 def test_a_rig_that_lost_friction_has_drifted(plan, tmp_path, monkeypatch):

@@ -1,0 +1,89 @@
+# SPDX-License-Identifier: MIT
+"""A device has one owner among all programs of a machine, until that program is over."""
+
+import signal
+import subprocess
+import sys
+
+import can
+import pytest
+
+from rig.errors import LinkError
+from rig.links.can import CanLink
+from rig.links.serial import SerialLink
+from rig.links.serve import PortServer
+from rig.links.udp import UdpLink
+
+NOT_YET = (pytest.fail.Exception, AssertionError)
+HOLD = """
+import sys, can
+from rig.links.can import CanLink
+from rig.links.serial import SerialLink
+from rig.links.udp import UdpLink
+can.Bus = lambda **_: can.interface.Bus(interface="virtual", channel="held")
+link = {link}
+link.open()
+print("open", flush=True)
+sys.stdin.read()
+link.close()
+"""
+
+
+class Silent:
+    """A twin that says nothing; satisfies `ByteTwin`."""
+
+    source = "sim:nothing"
+
+    def poll(self, now, received):
+        return b""
+
+
+@pytest.fixture(name="bus", autouse=True)
+def _bus(monkeypatch):
+    """Let every CAN channel be a virtual one."""
+    monkeypatch.setattr(
+        can, "Bus", lambda **_: can.interface.Bus(interface="virtual", channel="here")
+    )
+
+
+def hold(link):
+    """Start a program that keeps a link open."""
+    process = subprocess.Popen(
+        [sys.executable, "-c", HOLD.format(link=link)], stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE, text=True,
+    )  # fmt: skip
+    assert process.stdout.readline() == "open\n"
+    return process
+
+
+def require_one_owner(expression, link):
+    process = hold(expression)
+    try:
+        with pytest.raises(LinkError, match=rf"in use by process {process.pid} \(.*python"):
+            link.open()
+    finally:
+        link.close()
+        process.send_signal(signal.SIGKILL)
+        process.communicate()
+    link.open()  # the system let go of it when its owner died
+    link.close()
+
+
+@pytest.mark.xfail(strict=True, raises=NOT_YET)
+@pytest.mark.parametrize("channel", ["socketcan:can7", "slcan:/dev/ttyACM7"])
+def test_a_bus_in_use_is_refused_with_its_owner(channel):
+    require_one_owner(f"CanLink({channel!r})", CanLink(channel))
+
+
+@pytest.mark.xfail(strict=True, raises=NOT_YET)
+def test_a_load_cell_in_use_is_refused_with_its_owner():
+    require_one_owner("UdpLink('127.0.0.1', 49999)", UdpLink("127.0.0.1", 49999))
+
+
+@pytest.mark.xfail(strict=True, raises=NOT_YET)
+def test_a_serial_port_in_use_is_refused_with_its_owner_under_another_name(tmp_path):
+    with PortServer(Silent()) as server:
+        other = tmp_path / "other-name"
+        other.symlink_to(server.port)
+        link = SerialLink(str(other), baudrate=115_200)
+        require_one_owner(f"SerialLink({server.port!r}, baudrate=115_200)", link)

@@ -1,0 +1,84 @@
+# SPDX-License-Identifier: MIT
+"""An emergency stop stays latched, whatever happens beside it."""
+
+import pytest
+
+from rig.errors import LimitExceeded, RigError
+from rig.experiment.acquire import Acquisition
+from rig.experiment.control import Control
+from rig.safety import StopCategory
+from zebro_lab.errors import SettingsError
+from zebro_lab.experiment_journal import JOURNAL_FILE, JournalWriter
+
+NOT_YET = pytest.fail.Exception
+
+
+def stop_by_emergency(lab, plan, data, reason="planted", action=lambda: None):
+    control = Control()
+
+    def push():
+        control.stop.request(StopCategory.EMERGENCY, reason)
+        action()
+
+    return lab.run(plan, data, watcher=lab.StopAfter(2, push), control=control)
+
+
+def require_latched(lab, plan, data):
+    with pytest.raises(SettingsError, match="latched"):
+        lab.run(plan, data, resume=True)
+    assert lab.run(plan, data, resume=True, reset_emergency=True).completed
+    assert lab.run(plan, data, resume=True).attempts == 0
+
+
+@pytest.mark.xfail(strict=True, raises=NOT_YET)
+@pytest.mark.parametrize("separator", ["\u2028", "\u2029", "\x85"])
+def test_a_line_separator_in_the_reason_releases_nothing(lab, plan, tmp_path, separator):
+    data = tmp_path / "data"
+    stop_by_emergency(lab, plan, data, reason=f"smoke{separator}fire")
+    require_latched(lab, plan, data)
+
+
+@pytest.mark.xfail(strict=True, raises=LimitExceeded)
+def test_an_emergency_beside_a_guard_is_latched(lab, plan, tmp_path, monkeypatch):
+    plan.write_text(plan.read_text().replace("traction_force = 15.0", "traction_force = 0.6"))
+    data, control, guard = tmp_path / "data", Control(), Acquisition._guard
+
+    def trip(self, batch, now):
+        try:
+            guard(self, batch, now)
+        except RigError:  # the operator sees it in the same moment
+            control.stop.request(StopCategory.EMERGENCY, "planted")
+            raise
+
+    monkeypatch.setattr(Acquisition, "_guard", trip)
+    with pytest.raises(RigError, match="traction force"):
+        lab.run(plan, data, control=control)
+    with pytest.raises(SettingsError, match="latched"):
+        lab.run(plan, data, resume=True)
+
+
+@pytest.mark.xfail(strict=True, raises=NOT_YET)
+def test_an_emergency_on_a_full_disk_is_latched(lab, plan, tmp_path, monkeypatch):
+    def full(self, kind, text, **more):
+        raise OSError(28, "No space left on device")
+
+    data = tmp_path / "data"
+    with pytest.raises(OSError, match="No space left"):
+        stop_by_emergency(
+            lab, plan, data, action=lambda: monkeypatch.setattr(JournalWriter, "append", full)
+        )
+    monkeypatch.undo()
+    require_latched(lab, plan, data)
+
+
+@pytest.mark.xfail(strict=True, raises=(NOT_YET, UnicodeDecodeError))
+@pytest.mark.parametrize(
+    "damage", [b'{"kind": "e\xff\xfe"}\n', b"\x00\x00\x00\n", b"[1]\n", b'{"kind": "end", "te\n']
+)
+def test_a_journal_with_a_damaged_line_counts_as_latched(lab, plan, tmp_path, damage):
+    data, control = tmp_path / "data", Control()
+    stop = lab.StopAfter(2, lambda: control.stop.request(StopCategory.SAFE, "planted"))
+    lab.run(plan, data, watcher=stop, control=control)
+    with (data / JOURNAL_FILE).open("ab") as file:
+        file.write(damage + b'{"kind": "note", "text": "after it"}\n')
+    require_latched(lab, plan, data)

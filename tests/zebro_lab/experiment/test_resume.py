@@ -1,0 +1,116 @@
+# SPDX-License-Identifier: MIT
+"""A killed experiment is resumed so that each point is measured exactly once."""
+
+import subprocess
+import sys
+from collections import Counter
+
+import pytest
+
+from zebro_lab.run_folder import find_runs, read_manifest
+from zebro_lab.run_manifest import MANIFEST_FILE
+
+KILLED_BEFORE_A_POINTS_LINE = """
+import os, signal, sys
+from zebro_lab.experiment_journal import JournalWriter
+append, left = JournalWriter.append, [int(sys.argv.pop(1))]
+
+def killed(self, kind, text, **more):
+    if kind == "point":
+        left[0] -= 1
+        if left[0] == 0:
+            os.kill(os.getpid(), signal.SIGKILL)
+    return append(self, kind, text, **more)
+
+JournalWriter.append = killed
+from zebro_lab.cli.app import main
+main()
+"""
+
+
+def killed_run(plan, data, *, at):
+    """Run a plan in a process that is killed between a run's end record and its journal line."""
+    arguments = ["rig", "run", str(plan), "--rig", "sim", "--fast", "--data", str(data)]
+    done = subprocess.run(
+        [sys.executable, "-c", KILLED_BEFORE_A_POINTS_LINE, str(at), *arguments],
+        capture_output=True, text=True, timeout=120,
+    )  # fmt: skip
+    assert done.returncode == -9, done.stdout + done.stderr
+
+
+def counted(data):
+    """Count the runs that a calibration takes, by the label of their point."""
+    manifests = [read_manifest(run) for run in find_runs(data)]
+    return Counter(m.label.partition(" attempt")[0].partition(" again")[0]
+                   for m in manifests if m.excluded is None)  # fmt: skip
+
+
+@pytest.mark.xfail(strict=True, raises=AssertionError)
+def test_a_point_killed_before_its_journal_line_is_counted_once(lab, plan, tmp_path):
+    data = tmp_path / "data"
+    killed_run(plan, data, at=3)
+    assert lab.run(plan, data, resume=True).finished == 6
+    assert sorted(counted(data).values()) == [1] * 6
+
+
+@pytest.mark.xfail(strict=True, raises=AssertionError)
+def test_a_refused_attempt_killed_before_its_journal_line_is_not_counted(
+    lab, plan, tmp_path, monkeypatch
+):
+    plan.write_text(plan.read_text().replace("slip = 0.02   ", "slip = 1e-9   "))
+    data = tmp_path / "data"
+    killed_run_at_exclusion(plan, data)
+    assert not counted(data)
+
+
+def killed_run_at_exclusion(plan, data):
+    """Run a plan in a process that is killed right after the first run's end record."""
+    code = """
+import os, signal
+from zebro_lab import recorder
+write = recorder.write_manifest
+
+def killed(folder, manifest):
+    write(folder, manifest)
+    if manifest.exit_status != "recording":
+        os.kill(os.getpid(), signal.SIGKILL)
+
+recorder.write_manifest = killed
+from zebro_lab.cli.app import main
+main()
+"""
+    arguments = ["rig", "run", str(plan), "--rig", "sim", "--fast", "--data", str(data)]
+    done = subprocess.run(
+        [sys.executable, "-c", code, *arguments], capture_output=True, text=True, timeout=120
+    )
+    assert done.returncode == -9, done.stdout + done.stderr
+
+
+@pytest.mark.xfail(strict=True, raises=ValueError)
+def test_a_damaged_run_does_not_keep_an_experiment_from_going_on(lab, plan, tmp_path):
+    from rig.experiment.control import Control
+    from rig.safety import StopCategory
+
+    data, control = tmp_path / "data", Control()
+    stop = lab.StopAfter(3, lambda: control.stop.request(StopCategory.SAFE, "planted"))
+    lab.run(plan, data, watcher=stop, control=control)
+    (find_runs(data)[1] / MANIFEST_FILE).write_text("{ not JSON")
+    foreign = data / "20200101T000000Z_slip-rig_foreign"
+    foreign.mkdir()
+    (foreign / MANIFEST_FILE).write_text("[1, 2]")
+    outcome = lab.run(plan, data, resume=True)
+    assert (outcome.finished, outcome.attempts) == (6, 4)  # the damaged point is measured again
+
+
+@pytest.mark.xfail(strict=True, raises=(pytest.fail.Exception, AssertionError))
+def test_an_experiment_has_one_owner(lab, plan, tmp_path):
+    data, refused = tmp_path / "data", []
+
+    def second():
+        with pytest.raises(OSError, match=r"is in use by process \d+") as found:
+            lab.run(plan, data, resume=True)
+        refused.append(str(found.value))
+
+    assert lab.run(plan, data, watcher=lab.StopAfter(2, second)).completed
+    assert "experiment" in refused[0]
+    assert lab.run(plan, data, resume=True).attempts == 0  # and afterwards it is free

@@ -12,6 +12,22 @@ class LinkError(RigError, ConnectionError):
     """A port or bus cannot be opened, or is gone and nobody can wait for it."""
 
 
+class InUse(LinkError):
+    """Another program uses a device or a folder that has one user at a time."""
+
+
+class PartFailed(RigError, RuntimeError):
+    """A part of a running experiment failed: a thread, the keyboard, the control socket.
+
+    Attributes:
+        part: Its name.
+    """
+
+    def __init__(self, part: str, error: BaseException) -> None:
+        super().__init__(" ".join(f"{part} failed: {type(error).__name__}: {error}".split()))
+        self.part = part
+
+
 class RigTimeout(RigError, TimeoutError):
     """A device did not do within its time limit what it was asked.
 

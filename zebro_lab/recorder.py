@@ -58,6 +58,9 @@ class RunDescription:
         robot: Name of the robot.
         truth: What simulated devices know to be true.
         commit: Commit of this software.
+        excluded: Why the run is left out of calibrations until `RunRecorder.judge` says otherwise;
+            empty where it is not.
+        point: Which point of an experiment it is.
     """
 
     kind: str
@@ -71,6 +74,8 @@ class RunDescription:
     robot: str | None = None
     truth: Mapping[str, Any] = field(default_factory=dict)
     commit: str = "unknown"
+    excluded: str = ""
+    point: Mapping[str, Any] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -122,6 +127,8 @@ class RunRecorder:
         self._clocks: dict[str, Mapping[str, float]] = {}
         self._failure: str | None = None
         self._reason = "completed"
+        self._excluded = description.excluded
+        self._point = description.point
         self._ending = threading.Event()
         self._threads: list[threading.Thread] = []
         self._manifest: RunManifest | None = None
@@ -162,6 +169,15 @@ class RunRecorder:
         """Say why the run ends; the first reason stays."""
         if self._reason == "completed":
             self._reason = reason
+
+    def judge(self, *, excluded: str, point: Mapping[str, Any]) -> None:
+        """Say what the run is worth; the end record takes it, in one step with all else.
+
+        Args:
+            excluded: Why it is left out of every calibration; empty where it counts.
+            point: Which point of an experiment it is, and whether it is good.
+        """
+        self._excluded, self._point = excluded, point
 
     def require_space(self) -> None:
         """Check that the disk has room.
@@ -244,6 +260,8 @@ class RunRecorder:
             sources=given.sources,
             robot=given.robot,
             truth=given.truth,
+            excluded=_exclusion(self._excluded),
+            point=self._point,
         )
         write_manifest(self.folder, self._manifest)
 
@@ -315,6 +333,9 @@ class RunRecorder:
             return
         lasted = timedelta(seconds=self._clock.now() - self.start)
         log = self.folder / LOG_FILE
+        if self._point and not whole:  # samples may be missing: the point is not finished
+            self._point = {**self._point, "accepted": False}
+            self._excluded = self._excluded or self._reason
         self._manifest = replace(
             self._manifest,
             stop=(datetime.fromisoformat(self._manifest.start) + lasted).isoformat(),
@@ -326,8 +347,14 @@ class RunRecorder:
                 for name, counters in self._counters.items()
             },
             clocks=self._clocks,
+            excluded=_exclusion(self._excluded),
+            point=self._point,
         )
         write_manifest(self.folder, self._manifest)
+
+
+def _exclusion(why: str) -> Mapping[str, str] | None:
+    return {"why": why} if why else None
 
 
 def _one_line(error: BaseException) -> str:

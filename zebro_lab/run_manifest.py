@@ -51,6 +51,7 @@ class RunManifest:
         robot: Name of the robot, for a walk.
         truth: What a simulated device knows to be true.
         inputs: SHA-256 of the files that an imported run was made from, by their names.
+        point: Which point of an experiment the run is, and whether it is good.
         schema_version: Version of this form.
     """
 
@@ -74,6 +75,7 @@ class RunManifest:
     robot: str | None = None
     truth: Mapping[str, Any] = field(default_factory=dict)
     inputs: Mapping[str, str] = field(default_factory=dict)
+    point: Mapping[str, Any] = field(default_factory=dict)
     schema_version: int = SCHEMA_VERSION
 
 
@@ -115,9 +117,9 @@ _FIELD_TYPES: Mapping[str, type] = {
     "stop": str, "exit_status": str, "software": dict, "constants": dict, "streams": dict,
     "log_sha256": str, "excluded": dict, "profiles": dict, "sources": dict, "counters": dict,
     "clocks": dict, "robot": str, "truth": dict,
-    "inputs": dict,
+    "inputs": dict, "point": dict,
 }  # fmt: skip
-_ADDED = ("profiles", "sources", "counters", "clocks", "robot", "truth", "inputs")
+_ADDED = ("profiles", "sources", "counters", "clocks", "robot", "truth", "inputs", "point")
 _OPTIONAL = {"stop", "log_sha256", "excluded", *_ADDED}
 
 

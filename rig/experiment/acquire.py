@@ -34,8 +34,8 @@ FURTHER_NAMES: Final = {
     "torque": "torque on the load cell",
     "temperature_celsius": "temperature of a drive or its motor",
 }
-ROOM_PERIOD: Final = 1.0
-"""Between two looks at the room left for data [s]."""
+ROOM_PERIOD: Final = 0.1
+"""Between two questions whether data can still be kept [s]."""
 
 
 @dataclass(frozen=True)
@@ -75,6 +75,7 @@ class Acquisition:
     Attributes:
         reaction: Time from the arrival of a sample that tripped a guard to the stop's being sent;
             None while no guard has tripped [s].
+        energised: Whether the drives have been energised, and not been told to stop since.
     """
 
     def __init__(
@@ -88,10 +89,11 @@ class Acquisition:
         period: float = PERIOD,
     ) -> None:
         self.reaction: float | None = None
+        self.energised = False
         self._bench = bench
         self._limits = limits
         self._control = control
-        self._sink = sink
+        self._sink: Sink | None = sink
         self._clock = clock
         self._period = period
         self._heeded: StopCategory | None = None
@@ -138,6 +140,7 @@ class Acquisition:
             RigError: A device is not there or stays faulty.
         """
         self._bench.read()  # what lay in buffers
+        self.energised = True
         self._bench.arm()
         self._await_health()
         self._sent = None
@@ -146,6 +149,11 @@ class Acquisition:
             name: SilenceGuard(name, limit=self._limits.silence, now=now)
             for name in self._bench.watched
         }
+
+    def disarm(self) -> None:
+        """De-energise both drives at once; never fails."""
+        self._bench.disarm()
+        self.energised = False
 
     def aim(self, leg: float, slip: float | None) -> None:
         """Begin to change the set-points, no faster than allowed.
@@ -187,19 +195,15 @@ class Acquisition:
             try:
                 self._guard(batch, arrived)
             except RigError:
-                self._bench.disarm()
+                self.disarm()
                 self.reaction = self._clock.now() - arrived
                 raise
             self._turn()
         except RigError:
-            self._bench.disarm()
+            self.disarm()
             raise
         self._heed()
-        for note in self._control.take_notes():
-            self._sink.event(note.kind, note.text)
-        if arrived >= self._room_at:
-            self._room_at = arrived + ROOM_PERIOD
-            self._sink.require_room(self._limits.free_space)
+        self._tell_sink(arrived)
         return batch
 
     def come_to_rest(self, longest: float) -> None:
@@ -236,13 +240,23 @@ class Acquisition:
                 return True
         return False
 
-    def ask_no_more_for_room(self) -> None:
+    def ignore_sink(self) -> None:
         """Take the sink as lost: the way to standstill needs none."""
-        self._room_at = float("inf")
+        self._sink = None
 
     def heed_no_more(self, category: StopCategory | None) -> None:
         """Take stops up to a category as already being obeyed; None heeds all again."""
         self._heeded = category
+
+    def _tell_sink(self, now: float) -> None:
+        """Hand notes on, and ask now and then whether data can still be kept."""
+        if self._sink is None:
+            return
+        for note in self._control.take_notes():
+            self._sink.event(note.kind, note.text)
+        if now >= self._room_at:
+            self._room_at = now + ROOM_PERIOD
+            self._sink.require_room(self._limits.free_space)
 
     def _await_health(self) -> None:
         """Let reports of a fault that arming has cleared, and that were underway, pass."""
@@ -255,7 +269,7 @@ class Acquisition:
             except DeviceFault:
                 if self._clock.now() < end:
                     continue
-                self._bench.disarm()
+                self.disarm()
                 raise
             return
 
@@ -264,7 +278,7 @@ class Acquisition:
         if stop is None or (self._heeded is not None and stop.category <= self._heeded):
             return
         if stop.category is StopCategory.EMERGENCY:
-            self._bench.disarm()
+            self.disarm()
         raise StopRequested(stop)
 
     def _turn(self) -> None:

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Final
 
-from rig.errors import ProtocolError
+from rig.errors import PartFailed, ProtocolError
 from rig.safety import StopCategory, StopSwitch
 
 STOPS: Final = {category.name.lower(): category for category in StopCategory}
@@ -34,12 +34,14 @@ class Control:
         stop: Where stops are asked for.
         status: One line on where the run is, for whoever asks.
         paused: Whether the run is to hold after the point it is at.
+        failure: The first part of the run that failed; None while all work.
     """
 
     def __init__(self) -> None:
         self.stop = StopSwitch()
         self.status = "not started"
         self.paused = False
+        self.failure: PartFailed | None = None
         self._confirmed = False
         self._notes: deque[Note] = deque()
 
@@ -60,9 +62,9 @@ class Control:
         if command == "status":
             return self.status
         if command in STOPS:
-            self.stop.request(STOPS[command], text or f"asked for by {who}")
+            self.stop.request(STOPS[command], encodable(text) or f"asked for by {who}")
         elif command == "note" and text:
-            self._notes.append(Note("note", f"{who}: {text[:LONGEST_NOTE]}"))
+            self._notes.append(Note("note", f"{who}: {encodable(text)}"))
         elif command == "pause":
             self.pause()
         elif command == "resume":
@@ -72,6 +74,18 @@ class Control:
         else:
             raise ProtocolError(f"found '{line.strip()[:80]}'; expected {', '.join(COMMANDS)}")
         return "done"
+
+    def fail(self, part: str, error: BaseException) -> None:
+        """Report that a part of the run failed; a safe stop follows, and the run is an error.
+
+        Args:
+            part: Name of the part: a thread, the keyboard.
+            error: What it raised.
+        """
+        failure = PartFailed(part, error)
+        if self.failure is None:
+            self.failure = failure
+        self.stop.request(StopCategory.SAFE, str(failure))
 
     def pause(self) -> None:
         """Hold after the point that is being measured."""
@@ -97,3 +111,14 @@ class Control:
         """Hand on what is to be kept in the log, each once."""
         while self._notes:
             yield self._notes.popleft()
+
+
+def encodable(text: str) -> str:
+    r"""Return a text, no longer than a note may be, that every file and log can encode.
+
+    What is no character, such as bytes of a foreign encoding, becomes an escape.
+
+    >>> encodable("caf\udce9")
+    'caf\\udce9'
+    """
+    return text[:LONGEST_NOTE].encode("utf-8", "backslashreplace").decode("utf-8")

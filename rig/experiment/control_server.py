@@ -10,12 +10,15 @@ import hmac
 import secrets
 import socket
 import socketserver
+import sys
 import threading
+from functools import partial
 from types import TracebackType
 from typing import Final, Self
 
-from rig.errors import LinkError, ProtocolError
+from rig.errors import LinkError, PartFailed, ProtocolError
 from rig.experiment.control import Control
+from rig.experiment.supervision import start_thread
 
 LONGEST_LINE: Final = 4096
 PATIENCE: Final = 600.0
@@ -65,16 +68,27 @@ class ControlServer:
                         reply = answer(line.decode("utf-8", "replace"))
                         self.wfile.write(f"{reply}\n".encode())
 
+        control = self._control
+
         class Server(socketserver.ThreadingTCPServer):
             daemon_threads = True
             block_on_close = False
 
+            def handle_error(self, request: object, client_address: object) -> None:
+                """Report what a connection raised, which Python's server only prints."""
+                del request, client_address
+                error = sys.exception()
+                control.fail("control socket", error or RuntimeError("unknown"))
+
         self._server = Server(("127.0.0.1", 0), Handler)
         self.port = self._server.server_address[1]
-        self._thread = threading.Thread(
-            target=self._server.serve_forever, args=(0.05,), daemon=True, name="control"
-        )
-        self._thread.start()
+        try:
+            self._thread = start_thread(
+                partial(self._server.serve_forever, 0.05), name="control socket", control=control
+            )
+        except PartFailed:
+            self._server.server_close()
+            raise
         return self
 
     def __exit__(

@@ -9,6 +9,7 @@ from rig.clock import SYSTEM_CLOCK, Clock
 from rig.errors import LimitExceeded, ProtocolError, RigError
 from rig.experiment.acquire import PERIOD, Acquisition
 from rig.experiment.bench import Batch, Bench, Readings, join
+from rig.experiment.condition import Condition, State
 from rig.experiment.control import Control
 from rig.experiment.load import LoadSetter
 from rig.experiment.plan import Plan
@@ -78,6 +79,7 @@ def run_plan(
     Raises:
         LimitExceeded: The plan would break a limit, before motion; or a guard tripped.
         SinkFailed: What was measured could not be kept; the rig was ramped to rest first.
+        PartFailed: A thread of the program failed; the rig was ramped to rest first.
         RigError: A guard tripped or a device failed; the rig was de-energised.
         ProtocolError: An emergency stop is latched.
     """
@@ -128,12 +130,14 @@ class _Run:
         """Run, and whatever happens leave the rig at rest and say why."""
         reason = "failed"
         try:
+            self._show(State.PREPARING)
             with self._bench:
                 reason = self._guarded()
         except BaseException as error:
             reason = f"{type(error).__name__}: {error}"
             raise
         finally:
+            self._acquire.energised = False  # leaving a bench de-energises it
             self._load.halt()
             self._finish(reason)
         return Outcome(reason, len(self._done), tuple(self._refused), self._attempts)
@@ -143,14 +147,19 @@ class _Run:
         self._sink.event("begin", f"{self._plan.name}, {self._bench.source}")
         try:
             self._acquire.arm()
+            self._show(State.RUNNING)
             for step in self._remaining():
                 self._softly(step)
+            self._show(State.STOPPING, "the plan is done")
             self._acquire.come_to_rest(REST_LIMIT)
         except StopRequested as asked:
             self._obey(asked)
+            if self._control.failure is not None:
+                raise self._control.failure from asked
             hardest = self._control.stop.pending  # another may have come on the way to rest
             return str(asked if hardest is None else StopRequested(hardest))
-        except SinkFailed:
+        except SinkFailed as failed:
+            self._show(State.STOPPING, str(failed))
             self._acquire.heed_no_more(StopCategory.SAFE)
             self._rest_without_sink()
             raise
@@ -191,10 +200,13 @@ class _Run:
 
     def _hold(self, why: str) -> None:
         """Ramp to standstill and wait, energised, for a word to go on."""
+        if self._control.stop.pending is None:
+            self._control.stop.request(StopCategory.SOFT, why)  # the next one is a harder one
         self._acquire.heed_no_more(StopCategory.SOFT)
         self._sink.event("hold", why)
-        self._control.status = f"holding: {why}"
+        self._show(State.STOPPING, why)
         self._acquire.come_to_rest(REST_LIMIT)
+        self._show(State.HOLDING, why)
 
         def released(_: Batch) -> bool:
             return self._control.stop.pending is None and not self._control.paused
@@ -205,6 +217,18 @@ class _Run:
         self._acquire.heed_no_more(None)
         self._acquire.look()  # raises where the wait ended in a harder stop
         self._sink.event("go on", why)
+        self._show(State.RUNNING)
+
+    def _show(self, state: State, why: str = "") -> None:
+        """Tell the watcher, and whoever asks for the status, in which state the run is."""
+        pending = self._control.stop.pending
+        condition = Condition(
+            state, self._acquire.energised, why, None if pending is None else pending.category,
+            self._plan.limits.hold,
+        )  # fmt: skip
+        if state is not State.RUNNING:
+            self._control.status = f"{condition.headline}; {condition.keys}"
+        self._watcher.changed(condition)
 
     def _tare(self) -> None:
         self._tell("zero of the load cell")
@@ -333,25 +357,30 @@ class _Run:
     def _obey(self, asked: StopRequested) -> None:
         """Come to rest as a safe or an emergency stop wants."""
         if asked.stop.category is StopCategory.EMERGENCY:
-            self._bench.disarm()
+            self._acquire.disarm()
+            self._sink.latch(asked.stop.reason)
             return
+        self._show(State.STOPPING, str(asked))
         self._acquire.heed_no_more(asked.stop.category)
         try:
             self._acquire.come_to_rest(REST_LIMIT)
         except StopRequested:  # harder still
             pass
+        except SinkFailed:
+            self._rest_without_sink()
+            raise
         finally:
-            self._bench.disarm()
+            self._acquire.disarm()
 
     def _rest_without_sink(self) -> None:
         """Ramp down although nothing can be kept any more."""
-        self._acquire.ask_no_more_for_room()
+        self._acquire.ignore_sink()
         try:
             self._acquire.come_to_rest(REST_LIMIT)
         except (RigError, OSError):
             pass
         finally:
-            self._bench.disarm()
+            self._acquire.disarm()
 
     def _close(self, reason: str, verdict: Verdict | None = None) -> None:
         if self._recording:
@@ -359,11 +388,18 @@ class _Run:
             self._sink.close_run(verdict, reason=reason)
 
     def _finish(self, reason: str) -> None:
-        """Tell the sink how it ended; a sink that fails hides no earlier error."""
+        """Keep how it ended, and an emergency stop above all; then show it.
+
+        A sink that fails hides no earlier error.
+        """
+        stop = self._control.stop.pending
+        latched = stop is not None and stop.category is StopCategory.EMERGENCY
+        if stop is not None and latched:
+            self._sink.latch(stop.reason)  # it may have come beside a guard, or on the way to rest
         try:
             self._close(reason)
             self._sink.event("end", reason)
         except SinkFailed:
             if reason == "completed":
                 raise
-        self._control.status = f"over: {reason}"
+        self._show(State.LATCHED if latched else State.STOPPED, reason)

@@ -1,37 +1,44 @@
 # SPDX-License-Identifier: MIT
-"""Ctrl-C and SIGTERM as stops: soft, then safe, then emergency."""
+"""Signals of the system as stops: Ctrl-C, a terminal that is closed, a process that is ended."""
 
 import signal
 from collections.abc import Iterator
 from contextlib import contextmanager
 from types import FrameType
+from typing import Final
 
+from rig.experiment.condition import next_stop
 from rig.safety import StopCategory, StopSwitch
+
+ENDING: Final = ("SIGTERM", "SIGHUP", "SIGQUIT", "SIGTSTP")
+"""Signals that ask for a safe stop: an end, a lost connection or closed terminal, Ctrl-\\, and
+Ctrl-Z, because a suspended program reads nothing and guards nothing."""
 
 
 @contextmanager
 def signal_stops(switch: StopSwitch) -> Iterator[None]:
-    """Let SIGINT ask for a soft, a safe, then an emergency stop, and SIGTERM for a safe one.
+    """Let each SIGINT ask for the next harder stop, and each of `ENDING` for a safe one.
 
-    Only the main thread may do so. The handlers that were there come back afterwards.
+    Only the main thread may do so. The handlers that were there come back afterwards. A signal
+    that is ignored stays so: that is how `nohup` asks for a run that outlives its terminal.
 
     Args:
         switch: Where stops are asked for.
     """
-    pressed: list[int] = []
 
-    def interrupt(number: int, _frame: FrameType | None) -> None:
-        # One Ctrl-C may come while the last is being answered: a generator could not be re-entered.
-        pressed.append(number)
-        category = StopCategory(min(len(pressed), StopCategory.EMERGENCY))
+    def interrupt(_number: int, _frame: FrameType | None) -> None:
+        category = next_stop(None if switch.pending is None else switch.pending.category)
         switch.request(category, f"Ctrl-C, time {category.value}")
 
-    def terminate(_number: int, _frame: FrameType | None) -> None:
-        switch.request(StopCategory.SAFE, "SIGTERM")
+    def end(number: int, _frame: FrameType | None) -> None:
+        switch.request(StopCategory.SAFE, signal.Signals(number).name)
 
+    handlers = {signal.SIGINT: interrupt}
+    handlers |= {getattr(signal, name): end for name in ENDING if hasattr(signal, name)}
     earlier = {
-        signal.SIGINT: signal.signal(signal.SIGINT, interrupt),
-        signal.SIGTERM: signal.signal(signal.SIGTERM, terminate),
+        number: signal.signal(number, handler)
+        for number, handler in handlers.items()
+        if signal.getsignal(number) is not signal.SIG_IGN
     }
     try:
         yield

@@ -68,6 +68,10 @@ class Sink(Protocol):
         """Raise SinkFailed where less than `least` can still be written [bytes]."""
         ...
 
+    def latch(self, reason: str) -> None:
+        """Keep, at once and whatever else has failed, that an emergency stop holds."""
+        ...
+
 
 @dataclass
 class MemoryRun:
@@ -97,11 +101,13 @@ class MemorySink:
     Attributes:
         runs: Every run, also those broken off.
         events: Kind and text of what happened.
+        latched: Reasons of emergency stops.
         room: Room left [bytes].
     """
 
     def __init__(self) -> None:
         self.runs: list[MemoryRun] = []
+        self.latched: list[str] = []
         self.events: list[tuple[str, str]] = []
         self.room = float("inf")
 
@@ -132,3 +138,7 @@ class MemorySink:
         """Raise SinkFailed where too little room is left [bytes]."""
         if self.room < least:
             raise SinkFailed(f"room left is {self.room:g} bytes; its limit is {least:g} bytes")
+
+    def latch(self, reason: str) -> None:
+        """Keep that an emergency stop holds."""
+        self.latched.append(reason)

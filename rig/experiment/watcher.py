@@ -1,14 +1,23 @@
 # SPDX-License-Identifier: MIT
-"""Who follows a run of a plan: a terminal, or nobody."""
+"""Who follows a run of a plan: a terminal, or nobody; never keeps the acquiring thread waiting."""
 
 from typing import Protocol
 
+from rig.experiment.condition import Condition
 from rig.experiment.steps import Point
 from rig.experiment.verdict import Verdict
 
 
 class Watcher(Protocol):
     """Who follows a run: a terminal, or nobody."""
+
+    def changed(self, condition: Condition) -> None:
+        """Hear that the state of the run, or whether the discs are energised, has changed."""
+        ...
+
+    def notice(self, text: str) -> None:
+        """Hear something that a person should know."""
+        ...
 
     def doing(self, what: str, *, done: int, of: int, left: float) -> None:
         """Hear what begins.
@@ -32,6 +41,12 @@ class Watcher(Protocol):
 
 class NobodyWatches:
     """A watcher that does nothing."""
+
+    def changed(self, condition: Condition) -> None:
+        """Ignore it."""
+
+    def notice(self, text: str) -> None:
+        """Ignore it."""
 
     def doing(self, what: str, *, done: int, of: int, left: float) -> None:
         """Ignore it."""

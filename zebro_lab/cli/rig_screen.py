@@ -1,78 +1,144 @@
 # SPDX-License-Identifier: MIT
-"""What is seen of an experiment: progress, prompts and the slip curve as it grows; and its keys."""
+"""What is seen of an experiment: state, progress, prompts and the slip curve; and its keys.
 
-import contextlib
+The acquiring thread only leaves word here. A thread of its own draws, so that a terminal that is
+stopped or slow keeps no guard waiting.
+"""
+
 import sys
 import threading
+from collections import deque
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import dataclass, replace
+from typing import Final
 
-from rich.console import Console, Group
+from rich.console import Console, Group, RenderableType
 from rich.live import Live
 from rich.progress_bar import ProgressBar
 from rich.text import Text
 
-from rig.errors import ProtocolError
+from rig.experiment.condition import Condition, State
 from rig.experiment.control import Control
 from rig.experiment.steps import Point
+from rig.experiment.supervision import start_thread
 from rig.experiment.verdict import Verdict
+from zebro_lab.experiment.keyboard import Keyboard
 
 WIDTH, HEIGHT = 64, 14
 MARKS = "ox+*#@%&"
-KEYS = {"p": "pause", "r": "resume", "": "confirm", "s": "soft", "ss": "safe", "e": "emergency"}
-HELP = "keys, each with Enter: Enter confirm, p pause, r resume, s soft, ss safe, e emergency stop"
+PERIOD: Final = 0.125
+"""Between two pictures [s]."""
+LAST_PICTURE: Final = 1.0
+"""How long a terminal may take for the last lines; a stopped one shows them when it goes on [s]."""
+_STYLES: Final = {
+    State.RUNNING: "green", State.HOLDING: "bold yellow", State.STOPPING: "bold yellow",
+    State.LATCHED: "bold red",
+}  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Picture:
+    """What the screen shows.
+
+    Attributes:
+        condition: State of the run; None before it begins.
+        head: What is done, and how far the run is.
+        done: Points finished.
+        of: Points in all.
+        prompt: What the operator is to do; empty where nothing.
+        points: Load [N], slip ratio [-] and friction [-] of the points that are good.
+    """
+
+    condition: Condition | None = None
+    head: str = ""
+    done: int = 0
+    of: int = 1
+    prompt: str = ""
+    points: tuple[tuple[float, float, float], ...] = ()
+
+    def render(self) -> RenderableType:
+        """Make the picture for a terminal."""
+        parts: list[RenderableType] = []
+        if self.condition is not None:
+            style = _STYLES.get(self.condition.state, "")
+            parts = [Text(self.condition.headline, style=style), Text(self.condition.keys)]
+        # A run that holds or stops makes no progress: its figures would only mislead.
+        if self.condition is None or self.condition.state is State.RUNNING:
+            parts.append(Text(self.head))
+        parts.append(ProgressBar(total=self.of, completed=self.done, width=WIDTH))
+        return Group(*parts, Text(slip_chart(list(self.points))), Text(self.prompt, style="bold"))
 
 
 class ExperimentScreen:
-    """Follows an experiment on a console; without a terminal each point is a line.
+    """Follows an experiment; satisfies `Watcher`, and never waits for the console.
 
     Args:
         console: Where to draw.
-        live: The part that is drawn anew; None without a terminal.
+        live: The part that is drawn anew; None without a terminal, where changes are lines.
     """
 
     def __init__(self, console: Console, live: Live | None) -> None:
         self._console = console
         self._live = live
-        self._points: list[tuple[float, float, float]] = []
-        self._head = ""
-        self._done, self._of = 0, 1
-        self._prompt = ""
+        self._picture = Picture()
+        self._shown: Picture | None = None
+        self._lines: deque[str] = deque()
+        self._over = threading.Event()
+
+    def changed(self, condition: Condition) -> None:
+        """Show the state of the run; see `Watcher.changed`."""
+        self._picture = replace(self._picture, condition=condition, prompt="")
+        if self._live is None:
+            self._lines.append(f"{condition.headline}; {condition.keys}")
+
+    def notice(self, text: str) -> None:
+        """Show a line that stays; see `Watcher.notice`."""
+        self._lines.append(text)
 
     def doing(self, what: str, *, done: int, of: int, left: float) -> None:
         """Show what begins; see `Watcher.doing`."""
         minutes, seconds = divmod(round(left), 60)
-        self._head = f"{what}: {done} of {of} points, {minutes}:{seconds:02d} left"
-        self._done, self._of, self._prompt = done, max(of, 1), ""
-        self._draw()
+        head = f"{what}: {done} of {of} points, {minutes}:{seconds:02d} left"
+        self._picture = replace(self._picture, head=head, done=done, of=max(of, 1), prompt="")
 
     def prompt(self, text: str, *, normal: float) -> None:
         """Show what the operator is to do and the force now; see `Watcher.prompt`."""
-        if self._live is None and self._prompt != text:
-            self._console.print(text)
-            self._prompt = text
-        elif self._live is not None:
-            self._prompt = f"{text}; now {normal:.2f} N"
-            self._draw()
+        if self._live is not None:
+            self._picture = replace(self._picture, prompt=f"{text}; now {normal:.2f} N")
+        elif self._picture.prompt != text:
+            self._lines.append(text)
+            self._picture = replace(self._picture, prompt=text)
 
     def judged(self, point: Point, verdict: Verdict, *, attempt: int) -> None:
         """Show what a point is worth; see `Watcher.judged`."""
         worth = "; ".join(verdict.problems) or "good"
         if verdict.accepted:
-            self._points.append((point.load, verdict.slip, verdict.friction))
+            good = (point.load, verdict.slip, verdict.friction)
+            self._picture = replace(self._picture, points=(*self._picture.points, good))
         if self._live is None or not verdict.accepted:
-            self._console.print(
+            self._lines.append(
                 f"{point.label} (attempt {attempt}): {worth}; slip {verdict.slip:.4f}, "
                 f"friction {verdict.friction:.3f}, normal {verdict.normal_force:.2f} N"
             )
-        self._draw()
 
-    def _draw(self) -> None:
-        if self._live is None:
-            return
-        bar = ProgressBar(total=self._of, completed=self._done, width=WIDTH)
-        chart = Text(slip_chart(self._points))
-        self._live.update(Group(Text(self._head), bar, chart, Text(self._prompt), Text(HELP)))
+    def draw_on(self) -> None:
+        """Draw what has changed, again and again, until closed."""
+        while not self._over.wait(PERIOD):
+            self.draw()
+        self.draw()
+
+    def draw(self) -> None:
+        """Draw what has changed since the last time."""
+        while self._lines:
+            self._console.print(self._lines.popleft(), markup=False)
+        if self._live is not None and self._picture is not self._shown:
+            self._shown = self._picture
+            self._live.update(self._shown.render(), refresh=True)
+
+    def close(self) -> None:
+        """Draw no more but what is left."""
+        self._over.set()
 
 
 def slip_chart(points: list[tuple[float, float, float]]) -> str:
@@ -105,19 +171,40 @@ def experiment_screen(console: Console, control: Control) -> Iterator[Experiment
 
     Args:
         console: Where to draw.
-        control: Mailbox of the run.
+        control: Mailbox of the run; told where the screen or the keyboard fails.
+
+    Raises:
+        PartFailed: The system gives no thread to draw or to listen.
     """
-    if not console.is_terminal:
-        yield ExperimentScreen(console, None)
+    live = Live(console=console, auto_refresh=False) if console.is_terminal else None
+    screen = ExperimentScreen(console, live)
+
+    def draw() -> None:
+        if live is None:
+            screen.draw_on()
+            return
+        with live:
+            screen.draw_on()
+
+    with _keys(console, control):
+        thread = start_thread(draw, name="screen", control=control)
+        try:
+            yield screen
+        finally:
+            screen.close()
+            thread.join(LAST_PICTURE)
+
+
+@contextmanager
+def _keys(console: Console, control: Control) -> Iterator[None]:
+    """Listen to the keys of a terminal while the body runs."""
+    if not (console.is_terminal and sys.stdin.isatty()):
+        yield
         return
-    with Live(console=console, refresh_per_second=8) as live:
-        if sys.stdin.isatty():
-            threading.Thread(target=_listen, args=(control,), daemon=True, name="keys").start()
-        yield ExperimentScreen(console, live)
-
-
-def _listen(control: Control) -> None:
-    for line in sys.stdin:
-        key = line.strip()
-        with contextlib.suppress(ProtocolError):  # a slip of the finger commands nothing
-            control.obey(KEYS.get(key, key), who="keyboard")
+    keyboard = Keyboard(sys.stdin.fileno(), control)
+    thread = start_thread(keyboard.listen, name="keyboard", control=control)
+    try:
+        yield
+    finally:
+        keyboard.close()
+        thread.join(LAST_PICTURE)

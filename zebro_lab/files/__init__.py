@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: MIT
-"""Files on disk: opening what users bring within bounds, and writing results whole or not at all."""
+"""Files on disk: opening what users bring within bounds, writing results whole or not at all."""

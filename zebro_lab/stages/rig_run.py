@@ -4,27 +4,31 @@
 import json
 import os
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
+from rig.errors import InUse
+from rig.exclusive import Exclusive
 from rig.experiment.control import Control
 from rig.experiment.control_server import ControlServer, send_command
+from rig.experiment.plan import Plan
 from rig.experiment.run import Outcome, run_plan
 from rig.experiment.signal_stops import signal_stops
 from rig.experiment.steps import require_allowed
+from rig.experiment.supervision import supervised
 from rig.experiment.watcher import Watcher
-from zebro_lab.errors import NotFound
+from zebro_lab.errors import NotFound, RecordingError, ZebroLabError
+from zebro_lab.experiment.points import finished_points
 from zebro_lab.experiment_folder import ExperimentFolder
-from zebro_lab.experiment_journal import begin_or_resume, read_journal
+from zebro_lab.experiment_journal import JOURNAL_FILE, begin_or_resume
 from zebro_lab.plan_file import read_plan
 from zebro_lab.recorder import RunDescription
-from zebro_lab.rig_at_hand import rig_at_hand
-from zebro_lab.run_folder import exclude_run, find_runs
-from zebro_lab.run_manifest import RECORDING, read_manifest
+from zebro_lab.rig_at_hand import RigAtHand, rig_at_hand
 
 CONTROL_FILE: Final = "control.json"
+LOCK_FILE: Final = ".experiment.lock"
 
 
 @dataclass(frozen=True)
@@ -63,37 +67,79 @@ def run_experiment(request: RigRunRequest, watcher: Watcher, control: Control) -
 
     Raises:
         ZebroLabError: The plan, the folder or the request is at fault; nothing moved.
+        InUse: Another program runs an experiment into this folder, or uses a device.
         RigError: A limit, a guard or a device; the motors are at rest and the journal says why.
     """
     plan = read_plan(request.plan)
+    text = request.plan.read_text(encoding="utf-8")
     with rig_at_hand(request.rig, seed=request.seed, fast=request.fast) as rig:
         require_allowed(plan, rig.bench.profile)
         load = rig.load_setter(plan.load, control)
-        done = begin_or_resume(
-            request.data, request.plan.read_text(encoding="utf-8"),
-            resume=request.resume, reset=request.reset_emergency,
-        )  # fmt: skip
-        _leave_out_what_was_cut_short(request.data)
-        description = RunDescription(
-            kind="slip-rig",
-            label=plan.name,
-            source=rig.bench.source,
-            material=plan.material,
-            operator=plan.operator or "unknown",
-            constants=rig.constants,
-            profiles=rig.profiles,
-            sources={stream.name: stream.source for stream in rig.bench.streams},
-            truth=rig.truth,
-        )
-        folder = ExperimentFolder(
-            request.data, description=description, views=rig.views, clock=rig.clock,
-            in_step=rig.fast,
-        )  # fmt: skip
-        with folder, _commandable(request.data, control), signal_stops(control.stop):
-            return run_plan(
-                plan, bench=rig.bench, load=load, sink=folder, control=control, watcher=watcher,
-                clock=rig.clock, period=rig.period, done=done,
+        with _owned(request.data):
+            journal = begin_or_resume(
+                request.data, text, resume=request.resume, reset=request.reset_emergency
+            )
+            finished = finished_points(request.data, journal)
+            for notice in finished.notices:
+                watcher.notice(notice)
+            folder = ExperimentFolder(
+                request.data, plan=journal.plan, description=_description(plan, rig),
+                views=rig.views, clock=rig.clock, in_step=rig.fast,
             )  # fmt: skip
+            with (
+                signal_stops(control.stop),
+                supervised(control),
+                folder,
+                _commandable(request.data, control),
+            ):
+                for notice in finished.notices:
+                    folder.event("warning", notice)
+                return run_plan(
+                    plan, bench=rig.bench, load=load, sink=folder, control=control,
+                    watcher=watcher, clock=rig.clock, period=rig.period, done=finished.numbers,
+                )  # fmt: skip
+
+
+def _description(plan: Plan, rig: RigAtHand) -> RunDescription:
+    """Describe what all runs of an experiment have in common."""
+    return RunDescription(
+        kind="slip-rig",
+        label=plan.name,
+        source=rig.bench.source,
+        material=plan.material,
+        operator=plan.operator or "unknown",
+        constants=rig.constants,
+        profiles=rig.profiles,
+        sources={stream.name: stream.source for stream in rig.bench.streams},
+        truth=rig.truth,
+    )
+
+
+@contextmanager
+def _owned(data: Path) -> Iterator[None]:
+    """Make the folder of an experiment this program's own; one that stays empty is taken away."""
+    new = not data.exists()
+    try:
+        data.mkdir(parents=True, exist_ok=True)
+        lock = Exclusive(data / LOCK_FILE, what=f"the experiment in {data}")
+        lock.take()
+    except InUse:
+        raise
+    except OSError as error:
+        raise RecordingError(
+            f"cannot write to {data}: {error.strerror}; name another --data"
+        ) from (error)
+    try:
+        yield
+    except ZebroLabError:
+        if not (data / JOURNAL_FILE).exists():
+            (data / LOCK_FILE).unlink(missing_ok=True)
+            with suppress(OSError):
+                if new:
+                    data.rmdir()
+        raise
+    finally:
+        lock.release()
 
 
 def command_run(data: Path, command: str) -> str:
@@ -123,14 +169,3 @@ def _commandable(data: Path, control: Control) -> Iterator[None]:
             yield
         finally:
             file.unlink(missing_ok=True)
-
-
-def _leave_out_what_was_cut_short(data: Path) -> None:
-    """Exclude runs that a crash left open: their points are measured again."""
-    closed = read_journal(data).folders
-    for run in find_runs(data):
-        if run.name in closed:
-            continue
-        manifest = read_manifest(run)
-        if manifest.exit_status == RECORDING and manifest.excluded is None:
-            exclude_run(run, why="cut short; its point is measured again")

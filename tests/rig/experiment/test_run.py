@@ -7,6 +7,7 @@ from rig.experiment.load import DrivenShaft, HandShaft
 from rig.experiment.simulated_load import SimulatedAxis
 from rig.experiment.sink import MemorySink, SinkFailed
 from rig.experiment.verdict import measured_slip
+from rig.experiment.watcher import NobodyWatches
 from rig.safety import StopCategory
 from rig.slip_rig.sweep import SOURCE_LAW, SOURCE_VALUES
 
@@ -180,7 +181,7 @@ def test_a_soft_stop_holds_and_the_point_is_done_anew(lab):
 
     def passing(duration):
         sleep(duration)
-        if twin.control.status.startswith("hold"):
+        if twin.control.status.startswith("HOLDING, discs energised: soft stop: planted; r: go on"):
             held.append(twin.clock.now())
             if twin.clock.now() - held[0] > 2.0:
                 speeds.append(twin.rig.speeds()["leg"][1])
@@ -281,10 +282,7 @@ def test_a_person_is_asked_and_believed_only_within_the_tolerance(lab):
     twin.rig.load = 1e-3
     asked = []
 
-    class Operator:
-        def doing(self, what, *, done, of, left):
-            pass
-
+    class Operator(NobodyWatches):
         def prompt(self, text, *, normal):
             asked.append(text)
             if asked.count(text) == 5:

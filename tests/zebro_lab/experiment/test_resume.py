@@ -45,7 +45,6 @@ def counted(data):
                    for m in manifests if m.excluded is None)  # fmt: skip
 
 
-@pytest.mark.xfail(strict=True, raises=AssertionError)
 def test_a_point_killed_before_its_journal_line_is_counted_once(lab, plan, tmp_path):
     data = tmp_path / "data"
     killed_run(plan, data, at=3)
@@ -53,7 +52,6 @@ def test_a_point_killed_before_its_journal_line_is_counted_once(lab, plan, tmp_p
     assert sorted(counted(data).values()) == [1] * 6
 
 
-@pytest.mark.xfail(strict=True, raises=AssertionError)
 def test_a_refused_attempt_killed_before_its_journal_line_is_not_counted(
     lab, plan, tmp_path, monkeypatch
 ):
@@ -86,7 +84,6 @@ main()
     assert done.returncode == -9, done.stdout + done.stderr
 
 
-@pytest.mark.xfail(strict=True, raises=ValueError)
 def test_a_damaged_run_does_not_keep_an_experiment_from_going_on(lab, plan, tmp_path):
     from rig.experiment.control import Control
     from rig.safety import StopCategory
@@ -102,7 +99,6 @@ def test_a_damaged_run_does_not_keep_an_experiment_from_going_on(lab, plan, tmp_
     assert (outcome.finished, outcome.attempts) == (6, 4)  # the damaged point is measured again
 
 
-@pytest.mark.xfail(strict=True, raises=(pytest.fail.Exception, AssertionError))
 def test_an_experiment_has_one_owner(lab, plan, tmp_path):
     data, refused = tmp_path / "data", []
 

@@ -16,7 +16,6 @@ from zebro_lab.experiment_journal import JOURNAL_FILE, JournalWriter
 from zebro_lab.recorder import RunDescription
 from zebro_lab.run_folder import find_runs, read_manifest
 
-NOT_YET = (pytest.fail.Exception, pytest.PytestUnhandledThreadExceptionWarning, ExceptionGroup)
 PATIENCE = 30.0
 """Longest time that a run of the small plan may take on a busy machine [s]."""
 
@@ -40,7 +39,6 @@ def ends(data):
     return [entry["text"] for entry in entries if entry["kind"] == "end"]
 
 
-@pytest.mark.xfail(strict=True, raises=NOT_YET)
 @pytest.mark.timeout(PATIENCE, method="signal")
 def test_whatever_ends_the_writer_stops_the_experiment(lab, plan, tmp_path, monkeypatch):
     monkeypatch.setattr(JournalWriter, "append", fail_once(JournalWriter.append, "note"))
@@ -53,7 +51,6 @@ def test_whatever_ends_the_writer_stops_the_experiment(lab, plan, tmp_path, monk
     assert all(read_manifest(run).exit_status != "recording" for run in find_runs(data))
 
 
-@pytest.mark.xfail(strict=True, raises=NOT_YET)
 @pytest.mark.timeout(PATIENCE, method="signal")
 def test_a_note_of_undecodable_bytes_is_kept_and_stops_nothing(lab, plan, tmp_path):
     data, control = tmp_path / "data", Control()
@@ -63,7 +60,6 @@ def test_a_note_of_undecodable_bytes_is_kept_and_stops_nothing(lab, plan, tmp_pa
     assert b"caf" in (data / JOURNAL_FILE).read_bytes()
 
 
-@pytest.mark.xfail(strict=True, raises=NOT_YET)
 @pytest.mark.timeout(PATIENCE, method="signal")
 def test_a_thread_that_cannot_be_started_stops_the_experiment(lab, plan, tmp_path, monkeypatch):
     start = threading.Thread.start
@@ -84,7 +80,6 @@ def test_a_thread_that_cannot_be_started_stops_the_experiment(lab, plan, tmp_pat
     assert lab.run(plan, data, resume=True).finished == 6
 
 
-@pytest.mark.xfail(strict=True, raises=NOT_YET)
 @pytest.mark.timeout(PATIENCE, method="signal")
 def test_an_exception_in_any_thread_stops_the_experiment(lab, plan, tmp_path):
     def fail():
@@ -99,7 +94,6 @@ def test_an_exception_in_any_thread_stops_the_experiment(lab, plan, tmp_path):
     assert len(find_runs(data)) < 6
 
 
-@pytest.mark.xfail(strict=True, raises=AssertionError)
 @pytest.mark.timeout(PATIENCE, method="signal")
 def test_a_full_queue_cannot_block_the_stop(tmp_path, monkeypatch):
     entered, go_on = threading.Event(), threading.Event()

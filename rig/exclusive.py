@@ -1,0 +1,168 @@
+# SPDX-License-Identifier: MIT
+"""Exclusive use of a device or a folder among all programs of a machine, by a lock of the kernel.
+
+The kernel releases the lock when its process ends, however it ends. A device's lock may be taken
+again and again inside one process, because two drivers may share a bus; it is released with the
+last.
+Windows has no such locks: there only the exclusive opening of serial ports remains.
+"""
+
+import hashlib
+import importlib
+import os
+import shlex
+import sys
+import tempfile
+import threading
+from dataclasses import dataclass, field
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import Any, Final
+
+from rig.errors import InUse
+
+fcntl: Any = importlib.import_module("fcntl") if os.name == "posix" else None
+
+LONGEST: Final = 300
+"""Longest description of an owner that is kept and shown [characters]."""
+
+
+@dataclass
+class _Held:
+    """A lock that this process holds."""
+
+    handle: int
+    count: int = 1
+
+
+@dataclass
+class _Registry:
+    """The locks that this process holds, by their file."""
+
+    held: dict[str, _Held] = field(default_factory=dict)
+    guard: threading.Lock = field(default_factory=threading.Lock)
+
+
+_REGISTRY: Final = _Registry()
+
+
+class Exclusive:
+    """The exclusive use of something; taken and released, or a context manager.
+
+    Args:
+        file: The lock's file; made when missing, and never removed.
+        what: What is locked, for the message.
+        shared: Let other parts of this process take it as well.
+    """
+
+    def __init__(self, file: Path, *, what: str, shared: bool = False) -> None:
+        self._file = Path(os.path.realpath(file))
+        self._what = what
+        self._shared = shared
+        self._taken = False
+
+    def take(self) -> None:
+        """Take the lock without waiting; taking it twice is no fault.
+
+        Raises:
+            InUse: Another process holds it; the message says which.
+            OSError: The file cannot be made.
+        """
+        if self._taken or fcntl is None:
+            return
+        with _REGISTRY.guard:
+            held = _REGISTRY.held.get(str(self._file))
+            if held is not None and self._shared:
+                held.count += 1
+            else:  # a process's second handle of a file is refused the lock like another's
+                _REGISTRY.held[str(self._file)] = _Held(self._lock())
+        self._taken = True
+
+    def release(self) -> None:
+        """Release the lock; releasing it twice is no fault."""
+        if not self._taken:
+            return
+        self._taken = False
+        with _REGISTRY.guard:
+            held = _REGISTRY.held[str(self._file)]
+            held.count -= 1
+            if held.count == 0:
+                del _REGISTRY.held[str(self._file)]
+                os.close(held.handle)
+
+    def __enter__(self) -> "Exclusive":
+        self.take()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.release()
+
+    def _lock(self) -> int:
+        handle = _open(self._file)
+        try:
+            fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError as error:
+            owner = _readable(os.pread(handle, 4 * LONGEST, 0))
+            os.close(handle)
+            raise InUse(
+                f"{self._what} is in use by {owner or 'another program'}; end that program first, "
+                "or name another"
+            ) from error
+        os.ftruncate(handle, 0)
+        os.pwrite(handle, _owner().encode(), 0)
+        return handle
+
+
+def device_lock(name: str) -> Exclusive:
+    """Return the lock of a device.
+
+    Args:
+        name: A path, followed through links so that all its names are one device, or a name that
+            begins with its kind, such as `socketcan:can0` or `udp:192.168.1.1:49152`.
+    """
+    real = os.path.realpath(name) if name.startswith("/") else name
+    return Exclusive(
+        _lock_folder() / hashlib.sha256(real.encode()).hexdigest()[:32], what=name, shared=True
+    )
+
+
+def _lock_folder() -> Path:
+    """Return the folder of device locks, which all users of the machine share."""
+    folder = Path(tempfile.gettempdir()) / "zebro-lab-locks"
+    try:
+        folder.mkdir()
+        folder.chmod(0o1777)
+    except FileExistsError:
+        pass
+    return folder
+
+
+def _open(file: Path) -> int:
+    """Open a lock's file; one that another user made must not be opened as if it were to be made.
+
+    Linux refuses that in folders that everybody may write to (`fs.protected_regular`).
+    """
+    flags = os.O_RDWR | getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_CLOEXEC", 0)
+    try:
+        return os.open(file, flags)
+    except FileNotFoundError:
+        pass
+    try:
+        handle = os.open(file, flags | os.O_CREAT | os.O_EXCL, 0o666)
+    except FileExistsError:  # another program was quicker
+        return os.open(file, flags)
+    os.fchmod(handle, 0o666)  # whatever the umask: other users lock the same file
+    return handle
+
+
+def _owner() -> str:
+    """Describe this process: number, command and when it took the lock."""
+    command = shlex.join([Path(sys.executable).name, *sys.argv])
+    since = datetime.now(UTC).isoformat(timespec="seconds")
+    return f"process {os.getpid()} ({command[:LONGEST]}) since {since}"
+
+
+def _readable(content: bytes) -> str:
+    """Return an owner's description as one line that any terminal can show."""
+    text = content.decode("utf-8", "replace")
+    return "".join(character if character.isprintable() else "?" for character in text)[:LONGEST]

@@ -1,0 +1,97 @@
+# SPDX-License-Identifier: MIT
+"""Which points of an experiment are finished: the end records of its run folders decide.
+
+A run is left out of every calibration from its first moment. Its end record, written in one step
+(`run.json`, replaced whole), says what its point is worth and, where it is good, counts it in. So a
+run that a crash cut short, at whatever instant, is either finished and counted or neither.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Final
+
+from zebro_lab.errors import ZebroLabError
+from zebro_lab.experiment_journal import Journal
+from zebro_lab.run_folder import exclude_run, find_runs
+from zebro_lab.run_manifest import RECORDING, RunManifest, read_manifest
+
+UNJUDGED: Final = "it ended before it was judged; its point is measured again"
+"""Why a run is left out until its end record says what it is worth."""
+
+
+@dataclass(frozen=True)
+class Finished:
+    """What earlier runs of a plan have left.
+
+    Attributes:
+        numbers: Numbers of the points that are finished.
+        notices: What a person should know, one line each.
+    """
+
+    numbers: frozenset[int]
+    notices: tuple[str, ...]
+
+
+def point_record(plan: str, *, number: int, attempt: int, accepted: bool) -> dict[str, Any]:
+    """Make the `point` of an end record.
+
+    Args:
+        plan: Fingerprint of the plan.
+        number: Number of the point in it.
+        attempt: Which time it was tried, from 1.
+        accepted: Whether it is good.
+    """
+    return {"plan": plan, "number": number, "attempt": attempt, "accepted": accepted}
+
+
+def finished_points(data: Path, journal: Journal) -> Finished:
+    """Find the points that earlier runs of a plan have finished.
+
+    Runs of earlier versions have no `point` in their end record; for them the journal decides, and
+    those that were cut short are left out here.
+
+    Args:
+        data: Folder of the experiment; its lock is held.
+        journal: Its journal.
+    """
+    numbers: set[int] = set()
+    manifests, notices = _read_all(data)
+    # Runs that count come first: where a point has two, it is one of them that stays.
+    for run, manifest in sorted(manifests, key=lambda item: item[1].excluded is not None):
+        number = _accepted(manifest, journal, run.name)
+        if number is None:
+            if manifest.exit_status == RECORDING and manifest.excluded is None:
+                exclude_run(run, why=UNJUDGED)
+        elif number not in numbers:
+            numbers.add(number)
+        elif manifest.excluded is None:
+            why = f"point {number} is finished by another run"
+            exclude_run(run, why=why)
+            notices.append(f"{run.name}: {why}; left out")
+    notices += [f"{name}: the run folder is gone; its point is measured again"
+                for name in sorted(journal.accepted) if not (data / name).exists()]  # fmt: skip
+    return Finished(frozenset(numbers), tuple(notices))
+
+
+def _read_all(data: Path) -> tuple[list[tuple[Path, RunManifest]], list[str]]:
+    """Read the manifests of all runs; a damaged one is a notice and keeps nothing from going on."""
+    manifests: list[tuple[Path, RunManifest]] = []
+    notices: list[str] = []
+    for run in find_runs(data):
+        try:
+            manifests.append((run, read_manifest(run)))
+        except ZebroLabError as error:
+            notices.append(f"{error}; a point it may hold is measured again")
+    return manifests, notices
+
+
+def _accepted(manifest: RunManifest, journal: Journal, name: str) -> int | None:
+    """Return the number of the point that a run has finished; None where it has none."""
+    point: Mapping[str, Any] = manifest.point
+    if not point:
+        return journal.accepted.get(name)
+    if point.get("plan") != journal.plan or point.get("accepted") is not True:
+        return None
+    number = point.get("number")
+    return number if type(number) is int else None

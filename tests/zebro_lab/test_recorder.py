@@ -4,6 +4,8 @@
 import errno
 import json
 import os
+import shutil
+import threading
 import time
 from datetime import datetime
 
@@ -198,3 +200,131 @@ def test_no_step_of_the_wall_clock_shows_in_the_log(tmp_path, monkeypatch):
     monkeypatch.undo()
     host = read_raw_log(run.folder / "log.mcap").streams["/legs/raw"].host_time
     assert 0 <= host[0] <= host[1] < 1.0
+
+
+REMOVALS = {
+    "the run folder removed": lambda folder: shutil.rmtree(folder),
+    "the data folder removed": lambda folder: shutil.rmtree(folder.parent),
+    "the run folder renamed": lambda folder: folder.rename(folder.with_name("renamed")),
+    "the data folder renamed": lambda folder: folder.parent.rename(
+        folder.parent.with_name("renamed")
+    ),
+    "another log in its place": lambda folder: (
+        (folder / "copy").write_bytes(b"") or (folder / "copy").replace(folder / "log.mcap")
+    ),
+}
+
+
+@pytest.mark.xfail(strict=True, raises=(AssertionError, FileNotFoundError))
+@pytest.mark.parametrize("remove", REMOVALS.values(), ids=REMOVALS)
+def test_a_folder_that_goes_while_recording_is_a_failure_within_a_second(tmp_path, remove):
+    with recorder(tmp_path / "data") as run:
+        run.write("legs", some(0, 10))
+        until(lambda: count_in(run) == 10)
+        remove(run.folder)
+        until(lambda: run.failure is not None, limit=1.0)
+    assert "log.mcap" in run.failure
+    assert "removed or renamed" in run.failure
+    assert not any(thread.name == "recorder" for thread in threading.enumerate())
+
+
+@pytest.mark.xfail(strict=True, raises=(AssertionError, FileNotFoundError))
+def test_a_run_folder_renamed_while_recording_gets_its_end_record(tmp_path):
+    with recorder(tmp_path) as run:
+        run.write("legs", some(0, 10))
+        until(lambda: count_in(run) == 10)
+        there = run.folder.rename(tmp_path / "renamed")
+        until(lambda: run.failure is not None, limit=1.0)
+    assert "removed or renamed" in read_manifest(there).exit_status
+    assert len(read_raw_log(there / "log.mcap").streams["/legs/raw"]) == 10
+
+
+@pytest.mark.xfail(strict=True, raises=AssertionError)
+@pytest.mark.filterwarnings("ignore::pytest.PytestUnhandledThreadExceptionWarning")
+@pytest.mark.parametrize("error", [OSError(errno.EIO, "Input/output error"), MemoryError("full")])
+def test_a_disk_that_cannot_be_synchronised_ends_the_run(tmp_path, monkeypatch, error):
+    monkeypatch.setattr(module, "SYNC_EVERY", 0.05)
+
+    def fail(_file):
+        raise error
+
+    with recorder(tmp_path) as run:
+        monkeypatch.setattr(os, "fsync", fail)
+        end = time.monotonic() + 2.0
+        while run.failure is None and time.monotonic() < end:
+            time.sleep(0.01)
+        monkeypatch.undo()
+    assert str(error) in str(run.failure)
+    assert read_manifest(run.folder).exit_status == f"failed: {run.failure}"
+
+
+@pytest.mark.xfail(strict=True, raises=(ValueError, SystemExit))
+@pytest.mark.parametrize("error", [ValueError("no such chunk"), SystemExit("over")])
+def test_whatever_closing_the_log_raises_is_the_reason_in_the_end_record(
+    tmp_path, monkeypatch, error
+):
+    def fail(_log):
+        raise error
+
+    with recorder(tmp_path) as run:
+        run.write("legs", some(0, 10))
+        monkeypatch.setattr(module.LogWriter, "finish", fail)
+    assert str(error) in run.failure
+    assert read_manifest(run.folder).exit_status == f"failed: {run.failure}"
+
+
+@pytest.mark.xfail(strict=True, raises=AssertionError)
+@pytest.mark.filterwarnings("ignore::pytest.PytestUnhandledThreadExceptionWarning")
+def test_whatever_ends_the_writer_is_the_reason(tmp_path, monkeypatch):
+    def fail(_log):
+        raise SystemExit("over")
+
+    with recorder(tmp_path) as run:
+        monkeypatch.setattr(module.LogWriter, "flush", fail)
+        until(lambda: run.failure is not None, limit=2.0)
+    assert "SystemExit: over" in read_manifest(run.folder).exit_status
+
+
+@pytest.mark.xfail(strict=True, raises=OSError)
+def test_an_end_record_that_cannot_be_written_is_a_failure_that_says_so(tmp_path, monkeypatch):
+    def fail(_folder, _manifest):
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    with recorder(tmp_path) as run:
+        monkeypatch.setattr(module, "write_manifest", fail)
+    assert "end record" in run.failure
+    assert "No space left on device" in run.failure
+
+
+@pytest.mark.xfail(strict=True, raises=RuntimeError)
+@pytest.mark.parametrize("starts", [0, 1])
+def test_a_writer_that_cannot_be_started_leaves_nothing(tmp_path, monkeypatch, starts):
+    left = [starts]
+    start = threading.Thread.start
+
+    def few(thread):
+        if not left[0]:
+            raise RuntimeError("can't start new thread")
+        left[0] -= 1
+        start(thread)
+
+    monkeypatch.setattr(threading.Thread, "start", few)
+    with pytest.raises(RecordingError, match="can't start new thread"):
+        recorder(tmp_path).__enter__()
+    assert list(tmp_path.iterdir()) == []
+    assert not any(thread.name == "recorder" for thread in threading.enumerate())
+
+
+@pytest.mark.xfail(strict=True, raises=AssertionError)
+def test_the_beginning_of_a_run_waits_for_no_disk(tmp_path, monkeypatch):
+    real = os.fsync
+    monkeypatch.setattr(os, "fsync", lambda file: (time.sleep(0.5), real(file))[1])
+    began = time.monotonic()
+    with recorder(tmp_path) as run:
+        assert time.monotonic() - began < 0.5
+        assert read_manifest(run.folder).exit_status == "recording"
+        time.sleep(0.1)
+        ended = time.monotonic()
+    manifest = read_manifest(run.folder)
+    start, stop = map(datetime.fromisoformat, (manifest.start, manifest.stop))
+    assert (stop - start).total_seconds() < ended - began + 0.1

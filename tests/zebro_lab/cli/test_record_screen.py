@@ -4,6 +4,7 @@
 import io
 import os
 import signal
+import threading
 from pathlib import Path
 
 import pytest
@@ -75,3 +76,56 @@ def test_a_key_is_a_wish_to_stop_and_others_are_not():
         typist.write(b"q")
         assert screen.stop_reason() == "key"
         assert not screen.signalled
+
+
+@pytest.mark.xfail(strict=True, raises=AssertionError)
+@pytest.mark.filterwarnings("ignore::pytest.PytestUnhandledThreadExceptionWarning")
+@pytest.mark.parametrize("typed", [b"xq", b"\xe4\xff q", b"\xc3", b"\xffq"])
+def test_no_byte_typed_hides_the_key_that_stops(typed):
+    reading, writing = os.pipe()
+    with os.fdopen(reading) as keys, os.fdopen(writing, "wb", buffering=0) as typist:
+        screen = RecordScreen(None, keys)
+        typist.write(typed)
+        heard = []
+        asker = threading.Thread(target=lambda: heard.append(screen.stop_reason()), daemon=True)
+        asker.start()
+        asker.join(1.0)
+        hung = asker.is_alive()
+        typist.write(b"q")
+        asker.join(1.0)
+        assert not hung
+        assert heard == [None if b"q" not in typed else "key"]
+
+
+@pytest.mark.xfail(strict=True, raises=AssertionError)
+def test_a_keyboard_that_is_gone_is_a_stop():
+    reading, writing = os.pipe()
+    os.close(writing)
+    with os.fdopen(reading) as keys:
+        screen = RecordScreen(None, keys)
+        assert screen.stop_reason() == "terminal closed"
+        assert screen.signalled
+
+
+@pytest.mark.xfail(strict=True, raises=AssertionError)
+def test_a_lost_connection_is_a_stop_however_often_it_is_told(monkeypatch):
+    heard = []
+    before = signal.signal(signal.SIGHUP, lambda *_: heard.append("unheard"))
+    try:
+        with record_screen(console(terminal=False)) as screen:
+            for _ in range(3):
+                signal.raise_signal(signal.SIGHUP)
+            assert heard == []
+            assert (screen.stop_reason(), screen.signalled) == ("SIGHUP", True)
+    finally:
+        signal.signal(signal.SIGHUP, before)
+
+
+def test_a_recording_told_to_outlive_its_terminal_does():
+    before = signal.signal(signal.SIGHUP, signal.SIG_IGN)
+    try:
+        with record_screen(console(terminal=False)) as screen:
+            signal.raise_signal(signal.SIGHUP)
+            assert (screen.stop_reason(), screen.signalled) == (None, False)
+    finally:
+        signal.signal(signal.SIGHUP, before)

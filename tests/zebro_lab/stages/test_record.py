@@ -1,14 +1,17 @@
 # SPDX-License-Identifier: MIT
 """Live devices into run folders: real drivers over twins, and what goes wrong with them."""
 
+import os
+import threading
 import time
+from contextlib import contextmanager
 
 import numpy as np
 import pytest
 
 from model.gait.reference import SampledReference
 from rig.backends import leg_driver, leg_link
-from rig.device import Sample
+from rig.device import Counters, Sample
 from rig.errors import DeviceMismatch, LimitExceeded, ProfileError
 from rig.links.serve import PortServer
 from rig.replay import ReplayStream
@@ -20,10 +23,11 @@ from zebro_lab.errors import DataError, RecordingError, SettingsError
 from zebro_lab.gait_player import LEAD_IN
 from zebro_lab.leg_log import read_leg_log
 from zebro_lab.raw_log import read_raw_log
-from zebro_lab.record_devices import ForceCheck, default_gait
+from zebro_lab.record_devices import ForceCheck, OpenDevices, default_gait
 from zebro_lab.recorder import RunDescription, RunRecorder
 from zebro_lab.run_folder import profile_file, read_slip_rig_run
 from zebro_lab.sample_queue import LossyTap
+from zebro_lab.stages import record as module
 from zebro_lab.stages.record import RecordRequest, record
 from zebro_lab.stages.runs import list_runs
 from zebro_lab.stages.simulate import TwinRequest, serve_zebro
@@ -304,3 +308,188 @@ def test_a_viewer_that_hangs_slows_nobody(tmp_path):
             reader.stop()
     newest = reader.tap.take()
     assert newest == taken[-10:]
+
+
+class Legs:
+    """A stream of legs at 100 Hz that can begin late, raise, or stand still in a read."""
+
+    source = "sim:test"
+
+    def __init__(self, name="legs", *, late=0.0, error=None, hang=None):
+        self.name = name
+        self.closed = False
+        self.fails = threading.Event()
+        self._late, self._error, self._hang = late, error, hang
+        self._number = 0
+
+    @property
+    def counters(self):
+        return Counters(received=self._number)
+
+    def read(self, timeout):
+        if self.fails.is_set():
+            raise self._error
+        if time.monotonic() < self._begins:
+            time.sleep(min(timeout, 0.01))
+            return []
+        time.sleep(0.01)
+        self._number += 1
+        now = time.monotonic()
+        return [Sample(now, now - self._begins, self._number, (self._number % 100,) * 6)]
+
+    def __enter__(self):
+        self._begins = time.monotonic() + self._late
+        return self
+
+    def __exit__(self, *_):
+        self.closed = True
+
+
+@pytest.fixture
+def given(monkeypatch):
+    """Return a way to let the next recording open streams of this test."""
+
+    def give(*streams, **changes):
+        devices = [Device(s, LegsView(s.name, profile=LEGS), **changes) for s in streams]
+
+        @contextmanager
+        def opened(_request):
+            for device in devices:
+                device.stream.__enter__()
+            try:
+                yield OpenDevices(tuple(devices), {})
+            finally:
+                for device in devices:
+                    device.stream.__exit__(None, None, None)
+
+        monkeypatch.setattr(module, "open_devices", opened)
+
+    return give
+
+
+def spans(folder):
+    """Return the time from the first to the last sample of each stream [s]."""
+    streams = read_raw_log(folder / "log.mcap").streams
+    return {name.split("/")[1]: np.ptp(found.host_time) for name, found in streams.items()}
+
+
+def ended(act, limit):
+    """Run something beside the test; return what it returned, or fail after a limit."""
+    outcome = []
+    thread = threading.Thread(target=lambda: outcome.append(act()), daemon=True)
+    thread.start()
+    thread.join(limit)
+    assert not thread.is_alive(), f"has not ended within {limit} s"
+    return outcome[0]
+
+
+@pytest.mark.xfail(strict=True, raises=KeyError)
+def test_the_duration_counts_from_the_first_sample_of_the_stream_that_begins_last(tmp_path, given):
+    given(Legs("legs"), Legs("late", late=0.6))
+    found = record(RecordRequest(tmp_path, "x", zebro="sim", duration=0.5), Watcher())
+    assert spans(found.folder)["late"] >= 0.48
+    assert spans(found.folder)["legs"] >= 1.0
+    assert found.manifest.exit_status == "completed"
+    assert found.manifest.duration["asked"] == 0.5
+    assert 0.5 < found.manifest.duration["from"] < 5.0
+
+
+@pytest.mark.xfail(strict=True, raises=pytest.fail.Exception)
+def test_a_device_without_a_first_sample_ends_a_run_with_a_duration(tmp_path, given, monkeypatch):
+    monkeypatch.setattr(module, "FIRST_SAMPLE", 0.3, raising=False)
+    given(Legs("legs"), Legs("silent", late=1e6))
+    with pytest.raises(RecordingError, match=r"no sample of silent within 0\.3 s"):
+        record(RecordRequest(tmp_path, "x", zebro="sim", duration=0.2), Watcher())
+    (listed,) = list_runs(tmp_path)
+    assert "no sample of silent" in listed.state
+
+
+@pytest.mark.xfail(strict=True, raises=AssertionError)
+def test_a_slow_disk_falsifies_neither_duration_nor_clocks(tmp_path, monkeypatch):
+    real = os.fsync
+    monkeypatch.setattr(os, "fsync", lambda file: (time.sleep(0.7), real(file))[1])
+    found = record(RecordRequest(tmp_path, "x", zebro="sim", duration=1.0), Watcher())
+    assert 0.98 < spans(found.folder)["legs"] < 1.5
+    assert set(found.manifest.clocks) == {"legs"}
+    assert found.manifest.counters["legs"]["lost"] == 0
+
+
+@pytest.mark.xfail(strict=True, raises=AssertionError)
+def test_a_display_that_hangs_holds_up_nothing(tmp_path):
+    watcher, released = Watcher(), threading.Event()
+    watcher.show = lambda _status: released.wait(60)
+    request = RecordRequest(tmp_path, "x", imus=("sim",), duration=0.5)
+    try:
+        found = ended(lambda: record(request, watcher), limit=8.0)
+    finally:
+        released.set()
+    assert found.manifest.exit_status == "completed"
+    assert 0.48 < spans(found.folder)["imu"] < 2.0
+    assert any("display has not returned" in text for text in events(found.folder))
+
+
+@pytest.mark.xfail(strict=True, raises=RuntimeError)
+@pytest.mark.parametrize("which", ["first", "second"])
+def test_a_thread_that_cannot_be_started_ends_the_run_with_its_record(
+    tmp_path, given, monkeypatch, which
+):
+    first, second = Legs("first"), Legs("second")
+    stopped = []
+    given(first, second, at_end=lambda: stopped.append(True))
+    start = threading.Thread.start
+
+    def fail(thread):
+        if thread.name == which:
+            raise RuntimeError("can't start new thread")
+        start(thread)
+
+    monkeypatch.setattr(threading.Thread, "start", fail)
+    with pytest.raises(RecordingError, match="can't start new thread"):
+        record(RecordRequest(tmp_path, "x", zebro="sim", duration=0.2), Watcher())
+    assert first.closed
+    assert stopped == [True, True]
+    (listed,) = list_runs(tmp_path)
+    assert listed.state.startswith("failed: ")
+    names = {thread.name for thread in threading.enumerate()}
+    assert not names & {"first", "second", "recorder", "display"}
+
+
+@pytest.mark.xfail(strict=True, raises=(AssertionError, pytest.fail.Exception))
+@pytest.mark.filterwarnings("ignore::pytest.PytestUnhandledThreadExceptionWarning")
+@pytest.mark.parametrize("error", [SystemExit("over"), GeneratorExit("over")])
+def test_whatever_ends_a_reader_ends_the_run(tmp_path, given, error):
+    legs = Legs(error=error)
+    given(legs)
+    watcher = Watcher()
+    watcher.stop_reason = lambda: legs.fails.set()
+    with pytest.raises(RecordingError, match="over"):
+        record(RecordRequest(tmp_path, "x", zebro="sim", duration=2.0), watcher)
+    (listed,) = list_runs(tmp_path)
+    assert "over" in listed.state
+
+
+@pytest.mark.xfail(strict=True, raises=pytest.fail.Exception)
+def test_a_fault_in_the_last_read_is_not_completed(tmp_path, given):
+    legs = Legs(error=OSError("link lost"))
+    given(legs)
+    watcher = Watcher(looks=3)
+    asked = watcher.stop_reason
+
+    def stop_reason():
+        reason = asked()
+        if reason is not None:
+            legs.fails.set()
+        return reason
+
+    watcher.stop_reason = stop_reason
+    with pytest.raises(RecordingError, match="link lost"):
+        record(RecordRequest(tmp_path, "x", zebro="sim"), watcher)
+
+
+@pytest.mark.xfail(strict=True, raises=AssertionError)
+def test_all_streams_end_together(tmp_path, given):
+    given(*[Legs(f"legs{k}") for k in range(3)], pause=0.3)
+    found = record(RecordRequest(tmp_path, "x", zebro="sim", duration=1.0), Watcher())
+    streams = read_raw_log(found.folder / "log.mcap").streams.values()
+    assert np.ptp([stream.host_time[-1] for stream in streams]) < 0.15
+    assert min(stream.host_time[0] for stream in streams) < 0.2

@@ -10,7 +10,7 @@ import os
 import shutil
 import threading
 from collections import deque
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
@@ -19,13 +19,21 @@ from typing import IO, Any, Final, Self
 
 from rig.clock import SYSTEM_CLOCK, Clock
 from rig.device import Counters, Sample
-from zebro_lab.atomic import atomic_write_text
 from zebro_lab.errors import RecordingError
 from zebro_lab.log_writer import LogWriter
 from zebro_lab.provenance import file_hash
+from zebro_lab.recording.place import OpenPlace, sync_folder
+from zebro_lab.recording.threads import needing_threads
 from zebro_lab.ros_messages import INFO
 from zebro_lab.run_folder import LOG_FILE, epoch_ns, new_run_folder, profile_file
-from zebro_lab.run_manifest import RECORDING, RunManifest, software_version, write_manifest
+from zebro_lab.run_manifest import (
+    MANIFEST_FILE,
+    RECORDING,
+    RunManifest,
+    manifest_text,
+    software_version,
+    write_manifest,
+)
 from zebro_lab.sample_queue import SampleQueue
 from zebro_lab.stream_views import View
 
@@ -39,6 +47,9 @@ LEAST_FREE: Final = 64 << 20
 RESERVE: Final = 1 << 16
 """Kept in the run folder, so that a full disk still takes the end record [bytes]."""
 JOIN_LIMIT: Final = 30.0
+"""Longest wait for what the disk has been given before the end [s]."""
+END_LIMIT: Final = 60.0
+"""Longest wait for the end of the log and the end record [s]."""
 _RESERVE_FILE = ".reserve"
 
 
@@ -89,6 +100,8 @@ class RunRecorder:
     """A run folder that is being written: a context manager.
 
     Leaving it writes the end of the log and the end record, with the reason; an exception is one.
+    Beginning waits for no disk: the thread that lets the disk catch up does so with the first
+    files too. While it writes, the folder is looked for under its name, and the disk for room.
 
     Args:
         data_dir: Folder of run folders; made when missing.
@@ -99,7 +112,7 @@ class RunRecorder:
         clock: Host time.
 
     Attributes:
-        folder: The run folder.
+        folder: The run folder; where it is renamed meanwhile and can be found, its new name.
         start: Host time at which the run began [s].
     """
 
@@ -126,26 +139,33 @@ class RunRecorder:
         self._counters = dict.fromkeys(views, Counters())
         self._clocks: dict[str, Mapping[str, float]] = {}
         self._failure: str | None = None
+        self._failing = threading.Lock()
         self._reason = "completed"
         self._excluded = description.excluded
         self._point = description.point
+        self._duration: dict[str, float] = {}
+        self._ended: float | None = None
         self._ending = threading.Event()
         self._threads: list[threading.Thread] = []
         self._manifest: RunManifest | None = None
         self._log: LogWriter | None = None
         self._file: IO[bytes] | None = None
+        self._place: OpenPlace | None = None
 
     @property
     def failure(self) -> str | None:
-        """Why nothing is written any more; None while all is well."""
+        """Why nothing is written any more, or the end is not whole; None while all is well.
+
+        It shows within a second what a thread of the recorder met: a disk that is full or fails, a
+        folder that was removed or renamed. Whoever drives motors looks here.
+        """
         return self._failure
 
     def write(self, stream: str, samples: Sequence[Sample]) -> bool:
         """Hand samples of a stream over; tell whether there was room. Never waits."""
         if self._queues[stream].put(samples):
             return True
-        if self._failure is None:
-            self._failure = f"disk too slow: more than {self._limit} samples of '{stream}' wait"
+        self._fail(f"disk too slow: more than {self._limit} samples of '{stream}' wait")
         return False
 
     def event(self, text: str, *, level: int = INFO) -> None:
@@ -165,8 +185,13 @@ class RunRecorder:
         """Take offset [s], drift [-] and delay [s] of each device's clock, for the end record."""
         self._clocks = dict(clocks)
 
-    def end(self, reason: str) -> None:
-        """Say why the run ends; the first reason stays."""
+    def count_duration(self, asked: float, *, since: float) -> None:
+        """Take how long the run was to last [s] and the host time from which that counts [s]."""
+        self._duration = {"asked": asked, "from": since - self.start}
+
+    def end(self, reason: str = "completed") -> None:
+        """Say that the run ends now, and why; the first reason stays."""
+        self._ended = self._clock.now()
         if self._reason == "completed":
             self._reason = reason
 
@@ -205,15 +230,13 @@ class RunRecorder:
         try:
             self.require_space()
             self._begin(began)
+            for target in (self._write_on, self._sync_on):
+                self._start_thread(target)
         except (RecordingError, OSError) as error:
-            shutil.rmtree(self.folder, ignore_errors=True)
+            self._leave_nothing()
             if isinstance(error, RecordingError):
                 raise
             raise RecordingError(f"cannot write {self.folder}: {error.strerror}") from error
-        for target in (self._write_on, self._sync_on):
-            thread = threading.Thread(target=target, daemon=True, name="recorder")
-            thread.start()
-            self._threads.append(thread)
         return self
 
     def __exit__(
@@ -224,19 +247,52 @@ class RunRecorder:
     ) -> None:
         if error is not None:
             self.end(f"failed: {_one_line(error)}")
+        if self._ended is None:
+            self.end()
+        self._ending.set()
+        try:
+            finishing = self._start_thread(self._finish)
+        except RecordingError:  # no thread any more: then in this one
+            self._finish()
+            return
+        try:  # not in this thread, so that an impatient Ctrl-C costs no end record
+            finishing.join(JOIN_LIMIT + END_LIMIT)
+        except KeyboardInterrupt:
+            finishing.join(JOIN_LIMIT + END_LIMIT)
+            raise
+        if finishing.is_alive():
+            self._fail(f"the disk did not take the end of the run within {END_LIMIT:g} s")
+
+    def _start_thread(self, target: Callable[[], None]) -> threading.Thread:
+        thread = threading.Thread(target=target, daemon=True, name="recorder")
+        with needing_threads():
+            thread.start()
+        self._threads.append(thread)
+        return thread
+
+    def _leave_nothing(self) -> None:
         self._ending.set()
         for thread in self._threads:
             thread.join(JOIN_LIMIT)
-        self._finish()
+        if self._file is not None:
+            self._file.close()
+        shutil.rmtree(self.folder, ignore_errors=True)
+
+    def _fail(self, why: str) -> None:
+        """Keep why nothing is written any more; the first reason stays."""
+        with self._failing:
+            if self._failure is None:
+                self._failure = why
 
     def _begin(self, began: datetime) -> None:
         given = self._description
         texts = {name: text for name, (_, text) in given.profiles.items()}
         for name, text in texts.items():
             profile_file(self.folder, name).parent.mkdir(exist_ok=True)
-            atomic_write_text(profile_file(self.folder, name), text)
+            profile_file(self.folder, name).write_text(text, encoding="utf-8", newline="")
         (self.folder / _RESERVE_FILE).write_bytes(os.urandom(RESERVE))
         self._file = (self.folder / LOG_FILE).open("xb")
+        self._place = OpenPlace(self.folder / LOG_FILE, self._file)
         attachments = {f"profiles/{name}.toml": text for name, text in texts.items()}
         self._log = LogWriter(
             self._file, views=self._views, attachments=attachments, start=self.start,
@@ -263,22 +319,41 @@ class RunRecorder:
             excluded=_exclusion(self._excluded),
             point=self._point,
         )
-        write_manifest(self.folder, self._manifest)
+        draft = self.folder / f".{MANIFEST_FILE}.part"
+        draft.write_text(manifest_text(self._manifest), encoding="utf-8", newline="")
+        draft.replace(self.folder / MANIFEST_FILE)
 
     def _write_on(self) -> None:
+        seen = self._clock.now()
         try:
             while not self._ending.wait(FLUSH_EVERY):
                 self._drain()
                 self._flush()
+                self._require_place()
+                if self._clock.now() - seen >= SYNC_EVERY:
+                    seen = self._clock.now()
+                    self.require_space()
             self._drain()
-        except Exception as error:  # noqa: BLE001, RUF100 - kept for the owner, who ends the run
-            self._failure = f"{self.folder / LOG_FILE}: {_one_line(error)}"
+            self._flush()
+            self._require_place()
+        except RecordingError as error:
+            self._fail(str(error))
+        except BaseException as error:  # noqa: BLE001, RUF100 - kept for the owner, who ends the run
+            self._fail(f"{self.folder / LOG_FILE}: {_one_line(error)}")
+
+    def _require_place(self) -> None:
+        problem = None if self._place is None else self._place.problem()
+        if problem is not None:
+            raise RecordingError(f"{problem} while recording")
 
     def _sync_on(self) -> None:
-        while not self._ending.wait(SYNC_EVERY):
-            with contextlib.suppress(OSError, ValueError):  # the writer meets it too, and says so
+        try:
+            sync_folder(self.folder)
+            while not self._ending.wait(SYNC_EVERY):
                 if self._file is not None:
                     os.fsync(self._file.fileno())
+        except BaseException as error:  # noqa: BLE001, RUF100 - kept for the owner, who ends the run
+            self._fail(f"the disk does not keep {self.folder}: {_one_line(error)}")
 
     def _drain(self) -> None:
         if self._log is None:
@@ -301,20 +376,29 @@ class RunRecorder:
 
     def _finish(self) -> None:
         """Close the log and write the end record; what fails becomes its reason."""
-        (self.folder / _RESERVE_FILE).unlink(missing_ok=True)
-        if self._failure is not None:
-            self.end(f"failed: {self._failure}")
-        whole = self._failure is None and not any(thread.is_alive() for thread in self._threads)
+        before = [thread for thread in self._threads if thread is not threading.current_thread()]
+        for thread in before:
+            thread.join(JOIN_LIMIT)
+        whole = False
         try:
-            whole = self._close_log() if whole else False
-        except OSError as error:
-            whole, self._failure = False, f"{self.folder / LOG_FILE}: {_one_line(error)}"
-            self.end(f"failed: {self._failure}")
+            self._require_taken(before)
+            with contextlib.suppress(FileNotFoundError):
+                (self.folder / _RESERVE_FILE).unlink()
+            whole = self._failure is None and self._close_log()
+        except BaseException as error:  # noqa: BLE001, RUF100 - kept for the owner
+            self._fail(f"{self.folder / LOG_FILE}: {_one_line(error)}")
+        try:
+            self._write_end_record(whole=whole)
+        except BaseException as error:  # noqa: BLE001, RUF100 - kept for the owner
+            self._fail(f"{self.folder}: its end record cannot be written: {_one_line(error)}")
         finally:
-            if self._file is not None:
+            if self._file is not None and not any(thread.is_alive() for thread in before):
                 with contextlib.suppress(OSError):
                     self._file.close()
-        self._write_end_record(whole=whole)
+
+    def _require_taken(self, threads: Sequence[threading.Thread]) -> None:
+        if any(thread.is_alive() for thread in threads):
+            raise RecordingError(f"the disk took nothing for {JOIN_LIMIT:g} s")
 
     def _close_log(self) -> bool:
         if self._log is None or self._file is None:
@@ -329,19 +413,24 @@ class RunRecorder:
         return True
 
     def _write_end_record(self, *, whole: bool) -> None:
-        if self._manifest is None or self._log is None:
+        if self._manifest is None or self._log is None or self._place is None:
             return
-        lasted = timedelta(seconds=self._clock.now() - self.start)
-        log = self.folder / LOG_FILE
+        folder = self._place.folder()
+        if folder is None:
+            raise RecordingError("the folder is gone")
+        self.folder = folder
+        ended = self._clock.now() if self._ended is None else self._ended
+        lasted = timedelta(seconds=ended - self.start)
+        failed = self._failure is not None and not self._reason.startswith("failed: ")
         if self._point and not whole:  # samples may be missing: the point is not finished
             self._point = {**self._point, "accepted": False}
             self._excluded = self._excluded or self._reason
         self._manifest = replace(
             self._manifest,
             stop=(datetime.fromisoformat(self._manifest.start) + lasted).isoformat(),
-            exit_status=self._reason,
+            exit_status=f"failed: {self._failure}" if failed else self._reason,
             streams=self._log.written,
-            log_sha256=file_hash(log) if whole else None,
+            log_sha256=file_hash(folder / LOG_FILE) if whole else None,
             counters={
                 name: asdict(counters) | {"dropped": self.dropped(name)}
                 for name, counters in self._counters.items()
@@ -349,8 +438,9 @@ class RunRecorder:
             clocks=self._clocks,
             excluded=_exclusion(self._excluded),
             point=self._point,
+            duration=self._duration,
         )
-        write_manifest(self.folder, self._manifest)
+        write_manifest(folder, self._manifest)
 
 
 def _exclusion(why: str) -> Mapping[str, str] | None:

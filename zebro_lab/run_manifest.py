@@ -48,6 +48,9 @@ class RunManifest:
             recorder itself dropped.
         clocks: Offset [s], drift [-] and delay [s] of each device's clock against the time of the
             run, where the device tells time.
+        duration: How long the run was to last ("asked") and the time of the run from which that
+            counts ("from"), when every stream had sent its first sample; empty where it was to
+            last until it was stopped [s].
         robot: Name of the robot, for a walk.
         truth: What a simulated device knows to be true.
         inputs: SHA-256 of the files that an imported run was made from, by their names.
@@ -72,6 +75,7 @@ class RunManifest:
     sources: Mapping[str, str] = field(default_factory=dict)
     counters: Mapping[str, Mapping[str, int]] = field(default_factory=dict)
     clocks: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
+    duration: Mapping[str, float] = field(default_factory=dict)
     robot: str | None = None
     truth: Mapping[str, Any] = field(default_factory=dict)
     inputs: Mapping[str, str] = field(default_factory=dict)
@@ -91,17 +95,21 @@ def read_manifest(folder: Path) -> RunManifest:
 
 
 def write_manifest(folder: Path, manifest: RunManifest) -> Path:
-    """Write a run folder's `run.json`, whole or not at all; what is None or empty is left out.
+    """Write a run folder's `run.json`, whole or not at all.
 
     Raises:
         OSError: The folder cannot be written.
     """
+    return atomic_write_text(folder / MANIFEST_FILE, manifest_text(manifest))
+
+
+def manifest_text(manifest: RunManifest) -> str:
+    """Render `run.json`; what is None or empty is left out."""
     document = {
         key: value for key, value in asdict(manifest).items()
         if value is not None and (value or key not in _OPTIONAL)
     }  # fmt: skip
-    text = json.dumps(document, indent=2, ensure_ascii=False)
-    return atomic_write_text(folder / MANIFEST_FILE, text + "\n")
+    return json.dumps(document, indent=2, ensure_ascii=False) + "\n"
 
 
 def software_version(commit: str = "unknown") -> dict[str, str]:
@@ -116,10 +124,11 @@ _FIELD_TYPES: Mapping[str, type] = {
     "kind": str, "label": str, "material": str, "operator": str, "source": str, "start": str,
     "stop": str, "exit_status": str, "software": dict, "constants": dict, "streams": dict,
     "log_sha256": str, "excluded": dict, "profiles": dict, "sources": dict, "counters": dict,
-    "clocks": dict, "robot": str, "truth": dict,
-    "inputs": dict, "point": dict,
+    "clocks": dict, "duration": dict, "robot": str, "truth": dict, "inputs": dict, "point": dict,
 }  # fmt: skip
-_ADDED = ("profiles", "sources", "counters", "clocks", "robot", "truth", "inputs", "point")
+_ADDED = (
+    "profiles", "sources", "counters", "clocks", "duration", "robot", "truth", "inputs", "point",
+)  # fmt: skip
 _OPTIONAL = {"stop", "log_sha256", "excluded", *_ADDED}
 
 

@@ -215,7 +215,6 @@ REMOVALS = {
 }
 
 
-@pytest.mark.xfail(strict=True, raises=(AssertionError, FileNotFoundError))
 @pytest.mark.parametrize("remove", REMOVALS.values(), ids=REMOVALS)
 def test_a_folder_that_goes_while_recording_is_a_failure_within_a_second(tmp_path, remove):
     with recorder(tmp_path / "data") as run:
@@ -228,7 +227,6 @@ def test_a_folder_that_goes_while_recording_is_a_failure_within_a_second(tmp_pat
     assert not any(thread.name == "recorder" for thread in threading.enumerate())
 
 
-@pytest.mark.xfail(strict=True, raises=(AssertionError, FileNotFoundError))
 def test_a_run_folder_renamed_while_recording_gets_its_end_record(tmp_path):
     with recorder(tmp_path) as run:
         run.write("legs", some(0, 10))
@@ -239,7 +237,6 @@ def test_a_run_folder_renamed_while_recording_gets_its_end_record(tmp_path):
     assert len(read_raw_log(there / "log.mcap").streams["/legs/raw"]) == 10
 
 
-@pytest.mark.xfail(strict=True, raises=AssertionError)
 @pytest.mark.filterwarnings("ignore::pytest.PytestUnhandledThreadExceptionWarning")
 @pytest.mark.parametrize("error", [OSError(errno.EIO, "Input/output error"), MemoryError("full")])
 def test_a_disk_that_cannot_be_synchronised_ends_the_run(tmp_path, monkeypatch, error):
@@ -258,7 +255,6 @@ def test_a_disk_that_cannot_be_synchronised_ends_the_run(tmp_path, monkeypatch, 
     assert read_manifest(run.folder).exit_status == f"failed: {run.failure}"
 
 
-@pytest.mark.xfail(strict=True, raises=(ValueError, SystemExit))
 @pytest.mark.parametrize("error", [ValueError("no such chunk"), SystemExit("over")])
 def test_whatever_closing_the_log_raises_is_the_reason_in_the_end_record(
     tmp_path, monkeypatch, error
@@ -273,7 +269,6 @@ def test_whatever_closing_the_log_raises_is_the_reason_in_the_end_record(
     assert read_manifest(run.folder).exit_status == f"failed: {run.failure}"
 
 
-@pytest.mark.xfail(strict=True, raises=AssertionError)
 @pytest.mark.filterwarnings("ignore::pytest.PytestUnhandledThreadExceptionWarning")
 def test_whatever_ends_the_writer_is_the_reason(tmp_path, monkeypatch):
     def fail(_log):
@@ -285,7 +280,6 @@ def test_whatever_ends_the_writer_is_the_reason(tmp_path, monkeypatch):
     assert "SystemExit: over" in read_manifest(run.folder).exit_status
 
 
-@pytest.mark.xfail(strict=True, raises=OSError)
 def test_an_end_record_that_cannot_be_written_is_a_failure_that_says_so(tmp_path, monkeypatch):
     def fail(_folder, _manifest):
         raise OSError(errno.ENOSPC, "No space left on device")
@@ -296,7 +290,6 @@ def test_an_end_record_that_cannot_be_written_is_a_failure_that_says_so(tmp_path
     assert "No space left on device" in run.failure
 
 
-@pytest.mark.xfail(strict=True, raises=RuntimeError)
 @pytest.mark.parametrize("starts", [0, 1])
 def test_a_writer_that_cannot_be_started_leaves_nothing(tmp_path, monkeypatch, starts):
     left = [starts]
@@ -315,7 +308,6 @@ def test_a_writer_that_cannot_be_started_leaves_nothing(tmp_path, monkeypatch, s
     assert not any(thread.name == "recorder" for thread in threading.enumerate())
 
 
-@pytest.mark.xfail(strict=True, raises=AssertionError)
 def test_the_beginning_of_a_run_waits_for_no_disk(tmp_path, monkeypatch):
     real = os.fsync
     monkeypatch.setattr(os, "fsync", lambda file: (time.sleep(0.5), real(file))[1])

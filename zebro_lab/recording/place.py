@@ -1,0 +1,77 @@
+# SPDX-License-Identifier: MIT
+"""Notices that a folder is removed, renamed or replaced while a file in it is being written.
+
+Writing to a file whose name is gone succeeds on Linux and macOS: only the path tells.
+"""
+
+import os
+import sys
+from contextlib import ExitStack
+from pathlib import Path
+from typing import IO
+
+
+class OpenPlace:
+    """Where a file that is being written, and its folder, are expected.
+
+    Args:
+        path: The file.
+        file: The same, open.
+    """
+
+    def __init__(self, path: Path, file: IO[bytes]) -> None:
+        self._path = path
+        self._number = file.fileno()
+        self._file = _identity(os.fstat(self._number))
+        self._folder = _identity(path.parent.stat())
+
+    def problem(self) -> str | None:
+        """Say why what is written can no longer be found under its path; None where it can."""
+        try:
+            found = self._path.stat()
+        except FileNotFoundError:
+            return f"{self._path} is gone: its folder was removed or renamed"
+        except OSError as error:
+            return f"{self._path} cannot be seen any more: {error.strerror}"
+        if _identity(found) != self._file:
+            return f"{self._path} is another file now: it was removed or renamed, and made anew"
+        return None
+
+    def folder(self) -> Path | None:
+        """Find the folder, renamed or not; None where it is gone, or cannot be found."""
+        for place in (self._path.parent, *self._renamed()):
+            try:
+                if _identity(place.stat()) == self._folder:
+                    return place
+            except OSError:
+                continue
+        return None
+
+    def _renamed(self) -> list[Path]:
+        """Ask the system where the open file lies now; Linux tells."""
+        try:
+            return [Path(f"/proc/self/fd/{self._number}").readlink().parent]
+        except OSError:
+            return []
+
+
+def sync_folder(folder: Path) -> None:
+    """Wait until the disk keeps a folder with all its files.
+
+    Raises:
+        OSError: It does not, or one of them is gone.
+    """
+    files = [path for path in folder.rglob("*") if path.is_file()]
+    with ExitStack() as stack:
+        for file in [stack.enter_context(path.open("r+b")) for path in files]:
+            os.fsync(file.fileno())
+    if sys.platform != "win32":
+        number = os.open(folder, os.O_RDONLY)
+        try:
+            os.fsync(number)
+        finally:
+            os.close(number)
+
+
+def _identity(status: os.stat_result) -> tuple[int, int]:
+    return status.st_dev, status.st_ino

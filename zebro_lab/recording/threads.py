@@ -1,0 +1,25 @@
+# SPDX-License-Identifier: MIT
+"""Threads that the system refuses to start, as an error of one line."""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+from zebro_lab.errors import RecordingError
+
+
+@contextmanager
+def needing_threads() -> Iterator[None]:
+    """Start threads in the body, or say in one line that the system allows no more of them.
+
+    Raises:
+        RecordingError: A thread could not be started.
+    """
+    try:
+        yield
+    except RuntimeError as error:
+        if "start new thread" not in str(error):
+            raise
+        raise RecordingError(
+            f"{error}: this computer allows no more of them; end other programs, or raise the "
+            "limit (ulimit -u)"
+        ) from error

@@ -12,6 +12,7 @@ from rig.device import Counters, Sample, Stream
 from rig.errors import RigTimeout
 from rig.safety import SilenceGuard
 from zebro_lab.clock_watch import ClockWatch
+from zebro_lab.recording.threads import needing_threads
 from zebro_lab.ros_messages import WARNING
 from zebro_lab.sample_queue import LossyTap
 from zebro_lab.stream_views import View
@@ -45,7 +46,7 @@ class Device:
         check: Guards every read, in the thread that reads; raises where a limit is broken.
         command: Called before every read, in the same thread: set-points of a gait.
         at_end: Called once before the driver is left: stops what `command` moved.
-        pause: Before each read, for a device that tells time: waking up for each few samples
+        pause: Between two reads, for a device that tells time: waking up for each few samples
             costs more than reading them [s].
     """
 
@@ -74,7 +75,8 @@ class Acquisition:
     Attributes:
         tap: The newest samples, for viewers.
         clock_watch: Its clock beside the host's.
-        failure: What ended the reading before it was told to stop.
+        first: Host time of the first sample; None before it [s].
+        failure: What ended the reading before it was told to stop, or that it did not end then.
     """
 
     def __init__(
@@ -82,7 +84,8 @@ class Acquisition:
     ) -> None:
         self.tap = LossyTap()
         self.clock_watch = ClockWatch(start=start)
-        self.failure: Exception | None = None
+        self.first: float | None = None
+        self.failure: BaseException | None = None
         self._device = device
         self._sink = sink
         self._clock = clock
@@ -102,31 +105,47 @@ class Acquisition:
         return self._counters
 
     def start(self) -> None:
-        """Begin to read."""
-        self._thread.start()
+        """Begin to read.
+
+        Raises:
+            RecordingError: The system allows no more threads.
+        """
+        with needing_threads():
+            self._thread.start()
+
+    def ask_to_stop(self) -> None:
+        """Read once more what has arrived, then end; does not wait for that."""
+        self._done.set()
 
     def stop(self) -> None:
         """Read no more; waits for the read that is under way, which has a time limit."""
         self._done.set()
         if self._thread.is_alive():
             self._thread.join(JOIN_LIMIT)
+            if self._thread.is_alive() and self.failure is None:
+                self.failure = RigTimeout("a read has not ended", waited=JOIN_LIMIT)
 
     def _run(self) -> None:
-        guard = SilenceGuard(self.name, limit=SILENCE, now=self._clock.now())
+        device = self._device
         try:
+            guard = SilenceGuard(self.name, limit=SILENCE, now=self._clock.now())
             while not self._done.is_set():
-                self._step(guard)
-        except Exception as failure:  # noqa: BLE001, RUF100 - kept for the owner, who ends the run
+                if device.command is not None:
+                    device.command(self._clock.now())
+                self._read(guard, READ_WAIT)
+                if device.pause > 0:
+                    self._done.wait(device.pause)
+            if device.pause > 0:
+                self._read(guard, 0.0)  # what came during the pause
+        except BaseException as failure:  # noqa: BLE001, RUF100 - kept for the owner, who ends the run
             self.failure = failure
 
-    def _step(self, guard: SilenceGuard) -> None:
+    def _read(self, guard: SilenceGuard, wait: float) -> None:
         device = self._device
-        if device.command is not None:
-            device.command(self._clock.now())
-        if device.pause > 0:
-            self._clock.sleep(device.pause)
-        samples = device.stream.read(READ_WAIT)
+        samples = device.stream.read(wait)
         if samples:
+            if self.first is None:
+                self.first = samples[0].host_time
             self._sink.write(self.name, samples)
             self.tap.put(samples)
             self.clock_watch.add(samples)
@@ -173,6 +192,9 @@ def acquiring(
 
     Yields:
         What reads each, by its name.
+
+    Raises:
+        RecordingError: The system allows no more threads.
     """
     readers = {d.name: Acquisition(d, sink=sink, start=start, clock=clock) for d in devices}
     with ExitStack() as stack:
@@ -182,4 +204,8 @@ def acquiring(
         for reader in readers.values():
             stack.callback(reader.stop)
             reader.start()
-        yield readers
+        try:
+            yield readers
+        finally:
+            for reader in readers.values():
+                reader.ask_to_stop()  # all at once, so that their streams end together

@@ -237,7 +237,6 @@ def test_a_run_folder_renamed_while_recording_gets_its_end_record(tmp_path):
     assert len(read_raw_log(there / "log.mcap").streams["/legs/raw"]) == 10
 
 
-@pytest.mark.filterwarnings("ignore::pytest.PytestUnhandledThreadExceptionWarning")
 @pytest.mark.parametrize("error", [OSError(errno.EIO, "Input/output error"), MemoryError("full")])
 def test_a_disk_that_cannot_be_synchronised_ends_the_run(tmp_path, monkeypatch, error):
     monkeypatch.setattr(module, "SYNC_EVERY", 0.05)
@@ -269,7 +268,6 @@ def test_whatever_closing_the_log_raises_is_the_reason_in_the_end_record(
     assert read_manifest(run.folder).exit_status == f"failed: {run.failure}"
 
 
-@pytest.mark.filterwarnings("ignore::pytest.PytestUnhandledThreadExceptionWarning")
 def test_whatever_ends_the_writer_is_the_reason(tmp_path, monkeypatch):
     def fail(_log):
         raise SystemExit("over")

@@ -2,6 +2,7 @@
 """Devices in, run folder out."""
 
 from collections.abc import Mapping
+from contextlib import ExitStack, closing
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Final, Protocol
@@ -9,18 +10,23 @@ from typing import Final, Protocol
 from model.gait.reference import SampledReference
 from rig.clock import SYSTEM_CLOCK, Clock
 from rig.device import Counters
+from rig.errors import RigError
 from zebro_lab.acquisition import Acquisition, acquiring
 from zebro_lab.errors import RecordingError, SettingsError
 from zebro_lab.gait_player import LEAD_IN
 from zebro_lab.leg_log import read_leg_log
 from zebro_lab.record_devices import DevicesRequest, OpenDevices, open_devices
 from zebro_lab.recorder import RunDescription, RunRecorder
+from zebro_lab.recording.display import Display
+from zebro_lab.recording.threads import needing_threads
 from zebro_lab.ros_messages import WARNING
 from zebro_lab.run_manifest import RunManifest, read_manifest
 from zebro_lab.source_names import joined_source
 
 LOOK_EVERY: Final = 0.05
 COUNT_EVERY: Final = 1.0
+FIRST_SAMPLE: Final = 10.0
+"""Longest wait for the first sample of every stream, where a duration is to count from it [s]."""
 
 
 @dataclass(frozen=True)
@@ -34,7 +40,8 @@ class RecordRequest:
         imus: Inertial measurement units, the same.
         rig: Slip rig, the same.
         play: Table or walk folder with leg angles that the robot is to follow.
-        duration: How long to record; None until it is stopped, or the played gait ends [s].
+        duration: How long to record, from the first sample of the stream that begins last; None
+            until it is stopped, or the played gait ends [s].
         material: Leg and ground material.
         operator: Who records.
         robot: Name of the robot.
@@ -77,7 +84,7 @@ class RecordStatus:
 
     Attributes:
         folder: The run folder.
-        elapsed: Time since it began [s].
+        elapsed: Time since every stream has sent its first sample [s].
         duration: How long it is to be; None where nobody knows [s].
         streams: Each stream, by its name.
     """
@@ -92,7 +99,10 @@ class RecordWatcher(Protocol):
     """Who looks on, and may end a recording."""
 
     def show(self, status: RecordStatus) -> None:
-        """Take how it is doing, some twenty times a second."""
+        """Take how it is doing, up to twenty times a second.
+
+        Called in a thread of its own; where it raises or hangs, the recording goes on without it.
+        """
         ...
 
     def stop_reason(self) -> str | None:
@@ -126,18 +136,19 @@ def record(
     play = None if request.play is None else _played(request.play)
     duration = _duration(request, play)
     wanted = DevicesRequest(request.zebro, request.imus, request.rig, play, request.seed)
-    with open_devices(wanted) as opened:
+    with needing_threads(), ExitStack() as kept, open_devices(wanted) as opened:
         views = {device.name: device.view for device in opened.devices}
         recorder = RunRecorder(
             request.data, description=_description(request, opened), views=views, clock=clock
         )
-        with recorder:
-            problem = _run(recorder, opened, watcher, duration, clock)
+        kept.enter_context(recorder)  # left after the devices: they wait for no disk
+        problem = _run(recorder, opened, watcher, duration, clock)
     if problem is not None or recorder.failure is not None:
-        raise RecordingError(
-            f"recording ended early: {problem or recorder.failure}; what came before is in "
-            f"{recorder.folder}"
-        )
+        what = recorder.failure or problem
+        where = f"what came before is in {recorder.folder}"
+        if not recorder.folder.is_dir():
+            where = "what came before is gone with it"
+        raise RecordingError(f"recording ended early: {what}; {where}")
     return Recorded(recorder.folder, read_manifest(recorder.folder))
 
 
@@ -149,52 +160,65 @@ def _run(
     clock: Clock,
 ) -> str | None:
     """Record until something ends it; return what went wrong, if anything."""
-    with acquiring(opened.devices, sink=recorder, start=recorder.start, clock=clock) as readers:
-        board = _Board(recorder, readers, opened, duration)
-        display = _Display(recorder, watcher)
-        counted = recorder.start
-        problem = None
-        while (now := clock.now()) - recorder.start < (duration or float("inf")):
-            if now - counted >= COUNT_EVERY:
-                counted = now
-                board.count()
-                recorder.require_space()
-            problem = recorder.failure or _failed(readers)
-            reason = watcher.stop_reason()
-            if problem is not None or reason is not None:
-                recorder.end(f"failed: {problem}" if problem is not None else f"stopped: {reason}")
-                break
-            display.show(board.status(now))
-            left = recorder.start + (duration or float("inf")) - clock.now()
-            clock.sleep(min(LOOK_EVERY, max(left, 0.0)))
-        display.show(board.status(clock.now()))
-    board.count()
-    clocks = {name: reader.clock_watch.result() for name, reader in readers.items()}
-    recorder.compare_clocks({name: fit for name, fit in clocks.items() if fit is not None})
-    return problem
+    readers: Mapping[str, Acquisition] = {}
+    display = Display[RecordStatus](
+        watcher.show, give_up=lambda why: recorder.event(why, level=WARNING)
+    )
+    try:
+        with (
+            closing(display),
+            acquiring(opened.devices, sink=recorder, start=recorder.start, clock=clock) as readers,
+        ):
+            board = _Board(recorder, readers, opened, duration)
+            try:
+                problem = _watch(board, display, watcher, clock)
+            finally:
+                recorder.end()
+                display.show(board.status(clock.now()))
+        problem = problem or _failed(readers)
+        if problem is not None:
+            recorder.end(f"failed: {problem}")
+        return problem
+    finally:
+        _summarise(recorder, readers)
 
 
-class _Display:
-    """Shows how it is doing, until that fails: a picture is no reason to end a run."""
+def _watch(
+    board: "_Board", display: Display[RecordStatus], watcher: RecordWatcher, clock: Clock
+) -> str | None:
+    """Look at everything that can end the recording until something does; return what failed."""
+    counted = clock.now()
+    while (left := board.left(now := clock.now())) > 0:
+        if now - counted >= COUNT_EVERY:
+            counted = now
+            board.count()
+        problem = board.problem(now)
+        reason = watcher.stop_reason()
+        if problem is not None or reason is not None:
+            board.end(f"failed: {problem}" if problem is not None else f"stopped: {reason}")
+            return problem
+        display.show(board.status(now))
+        clock.sleep(min(LOOK_EVERY, left))
+    return None
 
-    def __init__(self, recorder: RunRecorder, watcher: RecordWatcher) -> None:
-        self._recorder = recorder
-        self._watcher: RecordWatcher | None = watcher
 
-    def show(self, status: RecordStatus) -> None:
-        """Show it, or note in the log why from now on nothing is shown."""
-        if self._watcher is None:
-            return
+def _summarise(recorder: RunRecorder, readers: Mapping[str, Acquisition]) -> None:
+    """Give the recorder the last counters and the clocks, for the end record."""
+    clocks = {}
+    for name, reader in readers.items():
+        recorder.count(name, reader.counters)
         try:
-            self._watcher.show(status)
-        except Exception as error:  # whatever a terminal or a plot may raise
-            self._watcher = None
-            text = f"display failed, recording goes on without it: {error!r}"
-            self._recorder.event(text, level=WARNING)
+            fit = reader.clock_watch.result()
+        except RigError as error:
+            recorder.event(f"{name}: clocks cannot be compared: {error}", level=WARNING)
+            continue
+        if fit is not None:
+            clocks[name] = fit
+    recorder.compare_clocks(clocks)
 
 
 class _Board:
-    """Keeps the counters of all streams, for the log and for the watcher."""
+    """Keeps time and the counters of all streams, for the log and for the watcher."""
 
     def __init__(
         self,
@@ -209,6 +233,41 @@ class _Board:
         self._duration = duration
         self._rates = dict.fromkeys(readers, 0.0)
         self._before = (recorder.start, dict.fromkeys(readers, 0))
+        self._began: float | None = None
+
+    def left(self, now: float) -> float:
+        """Say how long the recording still is to last, at least [s]."""
+        if self._duration is None:
+            return float("inf")
+        began = self._first_samples()
+        return self._duration if began is None else began + self._duration - now
+
+    def problem(self, now: float) -> str | None:
+        """Say what keeps the recording from going on; None where nothing does."""
+        problem = self._recorder.failure or _failed(self._readers)
+        waited = now - self._recorder.start
+        if problem is None and self._duration is not None and waited > FIRST_SAMPLE:
+            silent = [name for name, reader in self._readers.items() if reader.first is None]
+            if silent:
+                return (
+                    f"no sample of {', '.join(silent)} within {FIRST_SAMPLE:g} s, from which the "
+                    "duration would count; switch it on, or leave it out"
+                )
+        return problem
+
+    def end(self, reason: str) -> None:
+        """Write down why the recording ends."""
+        self._recorder.end(reason)
+
+    def _first_samples(self) -> float | None:
+        """Return when every stream had sent its first sample, None before, and note it."""
+        firsts = [reader.first for reader in self._readers.values()]
+        known = [first for first in firsts if first is not None]
+        if self._began is None and len(known) == len(firsts):
+            self._began = max(known)
+            if self._duration is not None:
+                self._recorder.count_duration(self._duration, since=self._began)
+        return self._began
 
     def count(self) -> None:
         """Write all counters to the log."""
@@ -230,7 +289,8 @@ class _Board:
             )
             for name, reader in self._readers.items()
         }  # fmt: skip
-        elapsed = now - self._recorder.start
+        first = self._first_samples()
+        elapsed = 0.0 if first is None else now - first
         return RecordStatus(self._recorder.folder, elapsed, self._duration, streams)
 
 

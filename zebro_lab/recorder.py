@@ -22,7 +22,7 @@ from rig.device import Counters, Sample
 from zebro_lab.errors import RecordingError
 from zebro_lab.log_writer import LogWriter
 from zebro_lab.provenance import file_hash
-from zebro_lab.recording.place import OpenPlace, sync_folder
+from zebro_lab.recording.place import OpenPlace, sync_files
 from zebro_lab.recording.threads import needing_threads
 from zebro_lab.ros_messages import INFO
 from zebro_lab.run_folder import LOG_FILE, epoch_ns, new_run_folder, profile_file
@@ -348,7 +348,8 @@ class RunRecorder:
 
     def _sync_on(self) -> None:
         try:
-            sync_folder(self.folder)
+            profiles = [profile_file(self.folder, name) for name in self._description.profiles]
+            sync_files([self.folder / MANIFEST_FILE, *profiles])
             while not self._ending.wait(SYNC_EVERY):
                 if self._file is not None:
                     os.fsync(self._file.fileno())

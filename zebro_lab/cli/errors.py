@@ -21,7 +21,10 @@ def _guard(command: Callable[[], object]) -> None:
     except Exception as error:
         if not _is_known(error):
             raise
-        sys.stderr.write(f"error: {error}\n")
+        from zebro_lab.terminal.messages import leave_at_once, say
+
+        if not say(f"error: {error}", err=True):
+            leave_at_once(1)
         raise SystemExit(1) from None
 
 

@@ -35,7 +35,10 @@ Play = Annotated[
 ]
 Duration = Annotated[
     float | None,
-    typer.Option(help="How long; without it until q, Ctrl-C or the played gait's end [s]."),
+    typer.Option(
+        help="How long, from the first samples; without it until q, Ctrl-C or the played gait's "
+        "end [s]."
+    ),
 ]
 Label = Annotated[str, typer.Option(help="Name of the run.")]
 Data = Annotated[Path, typer.Option(metavar="DIR", help="Folder of run folders.")]
@@ -64,6 +67,7 @@ def record(
     from zebro_lab.cli.record_screen import record_screen
     from zebro_lab.stages.record import RecordRequest
     from zebro_lab.stages.record import record as run
+    from zebro_lab.terminal.messages import leave_at_once, say
 
     request = RecordRequest(
         data=data,
@@ -80,23 +84,25 @@ def record(
     )
     with record_screen(Console(stderr=True)) as screen:
         recorded = run(request, screen)
-    _report(recorded)
-    if screen.signalled:
-        raise typer.Exit(STOPPED)
+        code = STOPPED if screen.signalled else 0
+        if not (screen.close() and say(_report(recorded))):
+            leave_at_once(code)
+    raise typer.Exit(code)
 
 
-def _report(recorded: "Recorded") -> None:
+def _report(recorded: "Recorded") -> str:
     manifest = recorded.manifest
+    lines = []
     for name, counters in manifest.counters.items():
         rejected = sum(counters[key] for key in ("damaged", "repeated", "refused"))
         simulated = "SIMULATED " if manifest.sources[name].startswith("sim:") else ""
-        typer.echo(
+        lines.append(
             f"{simulated}{name}: {counters['received']} samples, {counters['lost']} lost, "
             f"{rejected} rejected, {counters['dropped']} dropped"
         )
     for name, clock in manifest.clocks.items():
-        typer.echo(
+        lines.append(
             f"clock of {name}: offset {clock['offset']:.6f} s, drift {1e6 * clock['drift']:+.1f} "
             f"ppm, read {1e3 * clock['delay']:.2f} ms late"
         )
-    typer.echo(f"{manifest.exit_status}: {recorded.folder}")
+    return "\n".join([*lines, f"{manifest.exit_status}: {recorded.folder}"])

@@ -2,13 +2,16 @@
 """What is seen of a recording: counters on a terminal, silence in a pipe; and how to end it."""
 
 import contextlib
+import errno
+import os
 import select
 import signal
 import sys
+import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from types import FrameType
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Final
 
 from rich.console import Console, Group
 from rich.live import Live
@@ -16,10 +19,14 @@ from rich.progress_bar import ProgressBar
 from rich.table import Table
 from rich.text import Text
 
+from zebro_lab.terminal.messages import in_time
+
 if TYPE_CHECKING:
     from zebro_lab.stages.record import RecordStatus
 
-STOP_KEYS = ("q", "Q", "\x1b")
+STOP_KEYS: Final = b"qQ\x1b"
+DRAW_EVERY: Final = 0.125
+_HANGUP: Final = getattr(signal, "SIGHUP", None)
 
 
 class RecordScreen:
@@ -30,7 +37,7 @@ class RecordScreen:
         keys: Where keys are typed; None where nobody can.
 
     Attributes:
-        signalled: A signal ended the recording.
+        signalled: A signal, or a terminal that was closed, ended the recording.
     """
 
     def __init__(self, live: Live | None, keys: Any = None) -> None:
@@ -38,31 +45,75 @@ class RecordScreen:
         self._live = live
         self._keys = keys
         self._reason: str | None = None
+        self._asked = False
+        self._drawn = float("-inf")
+        # `nohup` and its kin: whoever ignores hangups wants to outlive the terminal.
+        self._outlives = _HANGUP is not None and signal.getsignal(_HANGUP) == signal.SIG_IGN
 
     def show(self, status: "RecordStatus") -> None:
-        """Draw how the recording is doing."""
-        if self._live is not None:
-            self._live.update(_drawn(status))
+        """Draw how the recording is doing; in another thread than the rest."""
+        if self._live is None or time.monotonic() - self._drawn < DRAW_EVERY:
+            return
+        try:
+            if not self._live.is_started:
+                self._live.start()
+            self._live.update(_drawn(status), refresh=True)
+        except OSError as error:
+            if error.errno == errno.EIO:
+                self._hang_up()
+            raise
+        self._drawn = time.monotonic()
 
     def stop_reason(self) -> str | None:
         """Say which signal or key asked for the end; None where none did."""
-        if self._keys is not None and select.select([self._keys], [], [], 0)[0]:
-            key = self._keys.read(1)
-            if key in STOP_KEYS and self._reason is None:
-                self._reason = "key"
+        typed = self._typed()
+        if any(key in STOP_KEYS for key in typed):
+            self._reason = self._reason or "key"
         return self._reason
 
     def request_stop(self, number: int, _frame: FrameType | None) -> None:
-        """Note a signal; a second one is obeyed at once."""
-        if self.signalled:
-            raise KeyboardInterrupt
+        """Note a signal; a second one is obeyed at once, unless it is told of a lost connection.
+
+        That is told several times: by the terminal, the shell and the service.
+        """
+        if number != _HANGUP:
+            if self._asked:
+                raise KeyboardInterrupt
+            self._asked = True
         self.signalled = True
-        self._reason = signal.Signals(number).name
+        self._reason = self._reason or signal.Signals(number).name
+
+    def close(self) -> bool:
+        """End the drawing; tell whether the terminal took that in time."""
+        live, self._live = self._live, None
+        return live is None or in_time(live.stop)
+
+    def _typed(self) -> bytes:
+        """Take the bytes that were typed, whatever they are; a keyboard that is gone is a stop."""
+        if self._keys is None:
+            return b""
+        try:
+            if not select.select([self._keys], [], [], 0)[0]:
+                return b""
+            typed = os.read(self._keys.fileno(), 4096)
+        except BlockingIOError:
+            return b""
+        except (OSError, ValueError):
+            typed = b""
+        if not typed:
+            self._keys = None
+            self._hang_up()
+        return typed
+
+    def _hang_up(self) -> None:
+        if not self._outlives:
+            self.signalled = True
+            self._reason = self._reason or "terminal closed"
 
 
 @contextmanager
 def record_screen(console: Console) -> Iterator[RecordScreen]:
-    """Watch a recording while the body runs.
+    """Watch a recording while the body runs; nothing here waits for the terminal.
 
     Args:
         console: Where to draw; nothing is drawn, and no key heard, unless it is a terminal.
@@ -73,9 +124,17 @@ def record_screen(console: Console) -> Iterator[RecordScreen]:
     with contextlib.ExitStack() as stack:
         screen = RecordScreen(None)
         if console.is_terminal:
-            live = stack.enter_context(Live(console=console, transient=True, refresh_per_second=8))
+            # Drawn by who calls `show` alone: a thread of its own would hold the lock of a terminal
+            # that is stopped.
+            live = Live(
+                console=console, transient=True, auto_refresh=False, redirect_stdout=False,
+                redirect_stderr=False,
+            )  # fmt: skip
             screen = RecordScreen(live, stack.enter_context(_single_keys()))
-        numbers = (signal.SIGINT, signal.SIGTERM)
+            stack.callback(screen.close)
+        numbers = [signal.SIGINT, signal.SIGTERM]
+        if _HANGUP is not None and signal.getsignal(_HANGUP) != signal.SIG_IGN:
+            numbers.append(_HANGUP)
         earlier = {number: signal.signal(number, screen.request_stop) for number in numbers}
         try:
             yield screen
@@ -95,10 +154,11 @@ def _single_keys() -> Iterator[Any]:
 
     before = termios.tcgetattr(sys.stdin)
     try:
-        tty.setcbreak(sys.stdin)
+        tty.setcbreak(sys.stdin, termios.TCSANOW)  # to wait for output to drain may be for ever
         yield sys.stdin
     finally:
-        termios.tcsetattr(sys.stdin, termios.TCSADRAIN, before)
+        with contextlib.suppress(termios.error):  # the terminal is gone
+            termios.tcsetattr(sys.stdin, termios.TCSANOW, before)
 
 
 def _drawn(status: "RecordStatus") -> Group:

@@ -9,7 +9,7 @@ from typing import Final, Generic, TypeVar
 from zebro_lab.errors import RecordingError
 from zebro_lab.recording.threads import needing_threads
 
-PATIENCE: Final = 2.0
+PATIENCE: Final = 1.0
 """A display that has not returned after this is given up [s]."""
 
 Status = TypeVar("Status")

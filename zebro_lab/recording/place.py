@@ -5,7 +5,7 @@ Writing to a file whose name is gone succeeds on Linux and macOS: only the path 
 """
 
 import os
-import sys
+from collections.abc import Iterable
 from contextlib import ExitStack
 from pathlib import Path
 from typing import IO
@@ -55,22 +55,15 @@ class OpenPlace:
             return []
 
 
-def sync_folder(folder: Path) -> None:
-    """Wait until the disk keeps a folder with all its files.
+def sync_files(paths: Iterable[Path]) -> None:
+    """Wait until the disk keeps files.
 
     Raises:
         OSError: It does not, or one of them is gone.
     """
-    files = [path for path in folder.rglob("*") if path.is_file()]
     with ExitStack() as stack:
-        for file in [stack.enter_context(path.open("r+b")) for path in files]:
+        for file in [stack.enter_context(path.open("r+b")) for path in paths]:
             os.fsync(file.fileno())
-    if sys.platform != "win32":
-        number = os.open(folder, os.O_RDONLY)
-        try:
-            os.fsync(number)
-        finally:
-            os.close(number)
 
 
 def _identity(status: os.stat_result) -> tuple[int, int]:

@@ -7,7 +7,7 @@ import threading
 from collections.abc import Callable
 from typing import Final, NoReturn
 
-PATIENCE: Final = 2.0
+PATIENCE: Final = 1.0
 """How long a terminal or pipe may take nothing before it is given up [s]."""
 
 

@@ -425,7 +425,7 @@ class RunRecorder:
         failed = self._failure is not None and not self._reason.startswith("failed: ")
         if self._point and not whole:  # samples may be missing: the point is not finished
             self._point = {**self._point, "accepted": False}
-            self._excluded = self._excluded or self._reason
+            self._excluded = self._excluded or self._failure or self._reason
         self._manifest = replace(
             self._manifest,
             stop=(datetime.fromisoformat(self._manifest.start) + lasted).isoformat(),

@@ -132,6 +132,19 @@ def test_frames_are_dated_by_their_arrival_and_not_by_when_they_were_read():
     assert link.arrivals([]) == []
 
 
+@pytest.mark.xfail(strict=True, raises=AssertionError)
+def test_a_frame_that_waited_for_seconds_is_not_dated_as_new(monkeypatch):
+    clock = ManualClock(100.0)
+    link = CanLink("virtual:dated", clock=clock)
+    link.open()
+    assert link.read(0.0) == []
+    waited = can.Message(arbitration_id=1, timestamp=time.time())
+    monkeypatch.setattr("rig.links.can.time.time", lambda: waited.timestamp + 2.0)
+    clock.sleep(2.0)
+    np.testing.assert_allclose(link.arrivals([waited]), [100.0], atol=0.02)
+    link.close()
+
+
 @pytest.mark.parametrize("age", [-3600.0, 3600.0, 1.7e9], ids=["ahead", "behind", "from zero"])
 def test_a_stamp_of_another_clock_dates_no_frame(age):
     link = CanLink("virtual:dated", clock=ManualClock(100.0))

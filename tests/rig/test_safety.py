@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 import math
 
+import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -31,6 +32,16 @@ def test_a_guard_trips_at_the_last_of_so_many_in_a_row(values, in_a_row):
             with pytest.raises(LimitExceeded, match="normal force is"):
                 guard.check(value)
             return
+
+
+@pytest.mark.xfail(strict=True, raises=pytest.fail.Exception)
+@given(st.integers(2, 10), st.randoms())
+def test_a_guard_trips_where_two_samples_of_three_are_beyond(in_a_row, random):
+    guard = SampleGuard(30.0, quantity="normal force", unit="N", in_a_row=in_a_row)
+    start = random.randrange(3)
+    values = [50.0 if k % 3 else 0.0 for k in range(start, start + 4 * in_a_row)]
+    with pytest.raises(LimitExceeded, match="normal force is 50 N"):
+        guard.check_all(np.array(values))
 
 
 def test_silence_is_an_event_that_names_the_stream():

@@ -3,6 +3,7 @@
 
 from collections import deque
 
+import numpy as np
 import pytest
 
 from rig.backends import RigDevices
@@ -53,6 +54,69 @@ def spoil_records(twin, monkeypatch, spoil, *, after=0):
         return encode_packet(Packet(Kind.SLIP_RIG, number, ticks, body.pack(*counts)))
 
     monkeypatch.setattr(twin.board, "_encode", encode)
+
+
+@pytest.mark.xfail(strict=True, raises=NOT_RAISED)
+def test_forces_frozen_bit_for_bit_while_the_discs_turn_stop_them(lab, monkeypatch):
+    twin = lab["twin"]()
+    spoil_records(
+        twin, monkeypatch, lambda number, c: (number, (400_000, 100_000, *c[2:])), after=2000
+    )
+    with pytest.raises(RigError, match=r"forces .* did not change.*; its limit is 0\.25 s"):
+        twin.run()
+    assert twin.at_rest()
+
+
+@pytest.mark.xfail(strict=True, raises=NOT_RAISED)
+def test_speeds_frozen_bit_for_bit_while_the_discs_turn_stop_them(lab, monkeypatch):
+    twin = lab["twin"]()
+    frozen = []
+    acquire = acquisition(twin, lab["plan"]())
+
+    def freeze(number, counts):
+        return number, (*counts[:2], *(frozen or counts[2:4]), counts[4])
+
+    spoil_records(twin, monkeypatch, freeze)
+    with twin.bench:
+        turn(acquire)
+        acquire.until(lambda _: False, 1.0)
+        frozen += [round(12.0 * 10_000), round(2.8 * 10_000)]
+        began = twin.clock.now()
+        with pytest.raises(RigError, match=r"speed of the leg disc did not change.* 0\.25 s"):
+            acquire.until(lambda _: False, 5.0)
+        assert twin.clock.now() - began < 0.3
+    assert twin.at_rest()
+
+
+@pytest.mark.xfail(strict=True, raises=NOT_RAISED)
+@pytest.mark.parametrize("numbering", ["restarting", "random"])
+def test_records_that_restart_again_and_again_or_are_numbered_at_random_stop(
+    lab, monkeypatch, numbering
+):
+    twin = lab["twin"]()
+    rng = np.random.default_rng(0)
+
+    def number(true, counts):
+        anew = 1_000_000 * (true // 50) + true % 50  # 20 times a second at 1 kHz
+        return (anew if numbering == "restarting" else int(rng.integers(1 << 32))), counts
+
+    spoil_records(twin, monkeypatch, number, after=2000)
+    with pytest.raises(RigError, match=r"stream 'board'.* numbering"):
+        twin.run()
+    assert twin.at_rest()
+
+
+@pytest.mark.xfail(strict=True, raises=NOT_RAISED)
+def test_a_force_beyond_its_limit_in_two_samples_of_three_stops(lab, monkeypatch):
+    twin = lab["twin"]()
+
+    def saturate(number, counts):
+        return number, (counts if number % 3 == 0 else ((1 << 31) - 1, *counts[1:]))
+
+    spoil_records(twin, monkeypatch, saturate, after=2000)
+    with pytest.raises(RigError, match=r"normal force is .* N; its limit is 25 N"):
+        twin.run()
+    assert twin.at_rest()
 
 
 class LaggingLink(MemoryLink):

@@ -119,6 +119,21 @@ def test_a_malformed_plan_is_refused_and_the_place_named(lab, changes, said):
         lab["plan"](**changes)
 
 
+@pytest.mark.xfail(strict=True, raises=pytest.fail.Exception)
+@pytest.mark.parametrize(
+    ("limit", "said"),
+    [
+        ({"silence": 1.5}, r"limits.silence: found 1.5 s, above 1 s"),
+        ({"speed_error_time": 1.5}, r"limits.speed_error_time: found 1.5 s, above 1 s"),
+        ({"speed_error": 6.5}, r"limits.speed_error: found 6.5 rad/s, above 6 rad/s"),
+        ({"in_a_row": 11}, r"limits.in_a_row: found 11 samples, above 10"),
+    ],
+)
+def test_a_limit_so_high_that_its_guard_is_off_is_refused(lab, limit, said):
+    with pytest.raises(ProfileError, match=said):
+        lab["plan"](limits=limit)
+
+
 def test_an_even_series_has_both_ends(lab):
     plan = lab["plan"](points={"slips": {"first": 0.0, "last": 1.0, "count": 62}})
     assert len(plan.points.slips) == 62

@@ -11,6 +11,7 @@ from rig.clock import ManualClock
 from rig.errors import RigError
 from rig.experiment.acquire import Acquisition
 from rig.experiment.bench import make_bench
+from rig.experiment.load import HandShaft
 from rig.links.memory import MemoryLink
 from rig.links.packet import Kind, Packet, encode_packet
 from rig.slip_rig.board import RigBoard
@@ -54,6 +55,48 @@ def spoil_records(twin, monkeypatch, spoil, *, after=0):
         return encode_packet(Packet(Kind.SLIP_RIG, number, ticks, body.pack(*counts)))
 
     monkeypatch.setattr(twin.board, "_encode", encode)
+
+
+@pytest.mark.xfail(strict=True, raises=NOT_RAISED)
+def test_empty_reads_are_not_rest(lab, monkeypatch):
+    twin = lab["twin"]()
+    acquire = acquisition(twin, lab["plan"](limits={"silence": 0.9}))
+    with twin.bench:
+        turn(acquire)
+        monkeypatch.setattr(twin.board, "_frames", lambda due: [])
+        with pytest.raises(RigError, match="leg disc did not come to rest"):
+            acquire.come_to_rest(0.3)
+        assert twin.at_rest()  # de-energised
+
+
+@pytest.mark.xfail(strict=True, raises=NOT_RAISED)
+@pytest.mark.parametrize("slowest", [0.3, 3.0])
+def test_a_disc_that_creeps_within_the_tracking_limit_is_not_at_rest(lab, monkeypatch, slowest):
+    twin = lab["twin"]()
+    keep_turning(twin, monkeypatch, slowest)
+    acquire = acquisition(twin, lab["plan"]())
+    with twin.bench:
+        turn(acquire)
+        with pytest.raises(RigError, match=rf"leg disc .* {slowest:.1g}.* rad/s; .* 0\.1 rad/s"):
+            acquire.come_to_rest(1.0)
+
+
+@pytest.mark.xfail(strict=True, raises=AssertionError)
+def test_nobody_is_asked_to_turn_the_shaft_while_a_disc_turns(lab, monkeypatch):
+    twin = lab["twin"]()
+    keep_turning(twin, monkeypatch, 3.0)
+
+    class Bystander:
+        def doing(self, what, *, done, of, left):
+            pass
+
+        def prompt(self, text, *, normal):
+            raise AssertionError(f"asked to {text!r} while a disc turns")
+
+    with pytest.raises(RigError, match="leg disc did not come to rest"):
+        twin.run(load=HandShaft(twin.control, tolerance=0.3), watcher=Bystander())
+    assert "prompt" not in [kind for kind, _ in twin.sink.events]
+    assert twin.sink.events[-1][1].startswith("NotAtRest")
 
 
 @pytest.mark.xfail(strict=True, raises=NOT_RAISED)

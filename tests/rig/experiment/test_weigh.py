@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from rig.errors import ProtocolError
+from rig.errors import ProtocolError, RigError
 from rig.experiment.weigh import Weighing, check_gain, weigh
 
 FORCES = (0.0, 2.0, 5.0, 10.0)
@@ -65,3 +65,18 @@ def test_a_gain_error_of_the_twin_is_weighed(lab):
     check = check_gain(weighing)
     assert check.slope == pytest.approx(1 / 1.02, abs=1e-3)
     assert check.zero == pytest.approx(0.1 / 1.02, abs=2e-3)
+
+
+@pytest.mark.xfail(strict=True, raises=AssertionError)
+def test_no_weight_is_asked_for_while_a_disc_turns(lab):
+    class Bystander:
+        def request(self, target, *, now):
+            raise AssertionError(f"asked to hang {target:g} N on a rig that turns")
+
+    twin = lab["twin"]()
+    twin.rig.command("leg", 2.0)
+    with twin.bench, pytest.raises(RigError, match="leg disc did not come to rest"):
+        weigh(
+            twin.bench, (2.0,), load=Bystander(), prompt=lambda text, normal: None,
+            clock=twin.clock, period=0.01,
+        )  # fmt: skip

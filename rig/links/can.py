@@ -17,13 +17,18 @@ from rig.clock import SYSTEM_CLOCK, Clock
 from rig.errors import LinkError, RigTimeout
 
 if TYPE_CHECKING:
+    import serial
     from can.interfaces.slcan import slcanBus
 
 WRITE_LIMIT: Final = 0.5
 RETRY_AFTER: Final = 0.25
 MOST_AT_ONCE: Final = 4096
-OLDEST: Final = 0.5
-"""Age of a frame beyond which its time stamp is not of the system's clock, or that was set [s]."""
+LONGEST_READ: Final = 0.05
+"""After so long a read hands on what it has, although more may wait [s]."""
+STAMPED: Final = frozenset({"socketcan", "virtual"})
+"""Interfaces whose time stamps tell when a frame arrived, by the system's clock."""
+STAMP_ERROR: Final = 0.001
+"""How far a time stamp may be off because both clocks are read one after the other [s]."""
 
 
 class CanLink:
@@ -58,6 +63,7 @@ class CanLink:
         self._bus: can.BusABC | None = None
         self._retry_at = 0.0
         self._last_arrival = -math.inf
+        self._empty_at = self._since = clock.now()
 
     def open(self) -> None:
         """Open the bus.
@@ -67,6 +73,7 @@ class CanLink:
         """
         try:
             self._bus = self._connect()
+            self._empty_at = self._since = self._clock.now()
         except (can.CanError, OSError, ValueError, ImportError) as problem:
             raise LinkError(
                 f"cannot open CAN bus {self._channel}: {problem}; name it INTERFACE:CHANNEL, such "
@@ -83,16 +90,17 @@ class CanLink:
                 bus.shutdown()
 
     def read(self, timeout: float) -> list[can.Message]:
-        """Hand on all data frames there are, waiting at most `timeout` for the first [s]."""
+        """Hand on all data frames there are, waiting at most `timeout` for the first [s].
+
+        Nothing that has arrived is left waiting, up to `MOST_AT_ONCE` frames and `LONGEST_READ`.
+        """
         if self._bus is None and not self._come_back(timeout):
             return []
         messages: list[can.Message] = []
-        bus, wait = self._bus, timeout
+        self._since = self._empty_at
         try:
-            for _ in range(MOST_AT_ONCE):
-                if bus is None or not self._receive(bus, wait, messages):
-                    break
-                wait = 0.0
+            if self._bus is not None:
+                self._drain(self._bus, timeout, messages)
         except (can.CanError, OSError):
             self._lose()
         return messages
@@ -100,13 +108,18 @@ class CanLink:
     def arrivals(self, messages: Sequence[can.Message]) -> list[float]:
         """Tell when frames just read arrived, by host time, never running back [s].
 
-        A frame waits until it is read; how long, its time stamp tells where the interface takes it
-        from the system's clock, as socketcan's kernel does. Where it does not, the time of reading
-        stays.
+        A frame waits until it is read, but no longer than since the bus was last found empty. How
+        long, its time stamp tells where the interface takes it from the system's clock, as
+        socketcan's kernel does. Where it does not, the frames are spread evenly over that time.
         """
         now, wall = self._clock.now(), time.time()
-        ages = [wall - message.timestamp for message in messages]
-        arrived = [now - age if 0 <= age <= OLDEST else now for age in ages]
+        longest = now - self._since
+        arrived = []
+        for count, message in enumerate(messages, 1):
+            age = wall - message.timestamp
+            if not (self._stamped and -STAMP_ERROR <= age <= longest + STAMP_ERROR):
+                age = longest * (1 - count / len(messages))
+            arrived.append(now - max(age, 0.0))
         times = list(accumulate(arrived, max, initial=self._last_arrival))
         self._last_arrival = times[-1]
         return times[1:]
@@ -141,6 +154,30 @@ class CanLink:
             self._lose()
             return False
         return True
+
+    @property
+    def _stamped(self) -> bool:
+        """Whether time stamps tell when frames arrived."""
+        if isinstance(self._channel, str):
+            return self._channel.partition(":")[0] in STAMPED
+        return _serial_port(self._channel) is None
+
+    def _drain(self, bus: can.BusABC, timeout: float, messages: list[can.Message]) -> None:
+        """Take frames until none waits, or a bound is reached."""
+        port = _serial_port(bus)
+        began, wait = self._clock.now(), timeout
+        for _ in range(MOST_AT_ONCE):
+            looked = self._clock.now()
+            # An adapter's acknowledgements stand between its frames, and recv gives None for each.
+            if wait == 0 and port is not None and not port.in_waiting:
+                self._empty_at = looked
+                return
+            if not self._receive(bus, wait, messages) and port is None:
+                self._empty_at = looked
+                return
+            if looked - began > timeout + LONGEST_READ:
+                return
+            wait = 0.0
 
     def _receive(self, bus: can.BusABC, wait: float, messages: list[can.Message]) -> bool:
         """Take one frame; tell whether there was any."""
@@ -189,5 +226,11 @@ class CanLink:
             self._bus = self._connect()
         except (can.CanError, OSError, ValueError):
             return False
+        self._empty_at = self._clock.now()
         self.reconnected += 1
         return True
+
+
+def _serial_port(bus: can.BusABC) -> "serial.Serial | None":
+    """Return the port behind python-can's slcan; None of any other bus."""
+    return getattr(bus, "serialPortOrig", None)

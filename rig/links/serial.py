@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """A serial port: bulk reads with a time limit, and a port that may be unplugged and come back."""
 
+import contextlib
 import os
 import select
 import time
@@ -12,6 +13,8 @@ from rig.clock import SYSTEM_CLOCK, Clock
 from rig.errors import LinkError, RigTimeout
 
 CHUNK: Final = 1 << 16
+MOST_AT_ONCE: Final = 1 << 18
+"""A read hands on so much at most: nearly a second of a line of 3 Mbaud [bytes]."""
 RETRY_AFTER: Final = 0.25
 WRITE_LIMIT: Final = 1.0
 
@@ -19,7 +22,7 @@ WRITE_LIMIT: Final = 1.0
 class SerialLink:
     """Bytes to and from a serial port, or any URL that pyserial knows (`socket://host:port`).
 
-    Reads take all that is there: one system call for hundreds of frames. A port that goes away is
+    Reads take all that is there, many frames with one system call. A port that goes away is
     closed and reopened while the stream goes on; `reconnected` counts that.
 
     Args:
@@ -129,6 +132,19 @@ def _take(port: serial.Serial) -> bytes:
     """
     if os.name != "posix" or not hasattr(port, "fileno"):
         return port.read(CHUNK)
+    data = _take_piece(port)
+    with contextlib.suppress(OSError):  # the next read will meet it again
+        while len(data) < MOST_AT_ONCE and _readable(port, 0.0):
+            data += _take_piece(port)
+    return data
+
+
+def _take_piece(port: serial.Serial) -> bytes:
+    """Take what one system call gives; of a terminal that is 4 KiB at most.
+
+    Raises:
+        OSError: The port is gone.
+    """
     data = os.read(port.fileno(), CHUNK)  # pyserial would ask once more whether there are any
     if not data:
         raise OSError(f"port {port.port} was readable and had no bytes: unplugged")

@@ -255,7 +255,6 @@ def behind_an_adapter(request):
         )
 
 
-@pytest.mark.xfail(strict=True, raises=AssertionError)
 def test_a_speed_read_over_slcan_in_a_ramp_is_not_behind(request):
     with behind_an_adapter(request) as (world, clock, drives), drives:
         turn(drives, leg=0.0, ground=0.0)

@@ -79,6 +79,25 @@ class LimitExceeded(RigError, ValueError):
         self.unit = unit
 
 
+class StaleReading(LimitExceeded):
+    """A reading was looked at so late that it no longer tells what the rig does."""
+
+
+class FrozenReading(LimitExceeded):
+    """A sensor gives the same counts again and again while what it measures must change."""
+
+
+class UnreliableRecords(LimitExceeded):
+    """The numbering of a device's records jumps, or most of them are missing or refused."""
+
+
+class NotAtRest(LimitExceeded):
+    """Discs that should stand were not seen to; nobody may touch them.
+
+    The value is NaN where too few new readings came to tell.
+    """
+
+
 class ProfileError(RigError, ValueError):
     """A device profile says something that cannot be followed.
 

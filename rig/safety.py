@@ -13,7 +13,7 @@ from enum import IntEnum
 import numpy as np
 from numpy.typing import NDArray
 
-from rig.errors import LimitExceeded, RigError, RigTimeout
+from rig.errors import LimitExceeded, RigError, RigTimeout, StaleReading
 
 
 def require_within(value: float, limit: float, *, quantity: str, unit: str) -> None:
@@ -33,7 +33,7 @@ def require_within(value: float, limit: float, *, quantity: str, unit: str) -> N
 
 
 class SampleGuard:
-    """Watches one measured quantity: one outlier is noise, several in a row are real.
+    """Watches one measured quantity: one outlier is noise, several close together are real.
 
     Args:
         limit: Largest magnitude allowed.
@@ -137,6 +137,32 @@ class SilenceGuard:
             self._heard = now
         elif now - self._heard > self._limit:
             raise RigTimeout(f"stream '{self._name}' sent nothing", waited=now - self._heard)
+
+
+class AgeGuard:
+    """Makes a fault of readings that waited too long in a buffer before they were looked at.
+
+    Args:
+        name: Name of the stream, for the message.
+        limit: Largest age allowed [s].
+    """
+
+    def __init__(self, name: str, *, limit: float) -> None:
+        self._name = name
+        self._limit = limit
+
+    def check(self, taken: NDArray[np.float64], *, now: float) -> None:
+        """Take when the readings of one look were taken, by host time, shape (n,) [s].
+
+        Raises:
+            StaleReading: One of them is older than the limit.
+        """
+        age = now - float(taken.min(initial=now))
+        if age > self._limit:
+            raise StaleReading(
+                f"age of a reading of stream '{self._name}'",
+                value=age, limit=self._limit, unit="s",
+            )  # fmt: skip
 
 
 class StopCategory(IntEnum):

@@ -16,6 +16,7 @@ from rig.experiment.control import Control
 from rig.experiment.plan import RunLimits, ground_speed, rig_limits
 from rig.experiment.sink import Sink
 from rig.safety import (
+    AgeGuard,
     FollowingGuard,
     SampleGuard,
     SilenceGuard,
@@ -118,6 +119,7 @@ class Acquisition:
             for disc in ("leg", "ground")
         }
         self._silence: dict[str, SilenceGuard] = {}
+        self._age = {name: AgeGuard(name, limit=limits.reading_age) for name in bench.watched}
         self._room_at = -float("inf")
         now = clock.now()
         self._ramp = Ramp(now, 0.0, (0.0, 0.0), (0.0, 0.0))
@@ -297,6 +299,8 @@ class Acquisition:
         for name, guard in self._silence.items():
             guard.check(batch.heard.get(name, []), now=now)
         self._bench.require_healthy()
+        for name, taken in batch.taken.items():
+            self._age[name].check(taken, now=now)
         for (disc, guard), wanted in zip(self._following.items(), self.wanted, strict=True):
             if disc in batch.speeds:
                 guard.check(batch.speeds[disc], wanted, now=now)

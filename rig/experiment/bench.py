@@ -26,6 +26,10 @@ from rig.slip_rig.rdt import describe_status
 
 ARM_LIMIT: Final = 2.0
 """How long a drive may take to enter closed loop [s]."""
+FASTEST_DRIFT: Final = 0.01
+"""What a device's clock drifts at most: oscillators without a quartz are off by so much [-]."""
+BEGAN_ANEW: Final = 0.1
+"""How much later than possible a device time must come to be of a clock that began anew [s]."""
 
 
 @dataclass(frozen=True)
@@ -82,6 +86,8 @@ class Batch:
         speeds: Latest speed of each disc that was heard, by name [rad/s].
         heard: What came of each device and answer that is watched for silence, by name.
         further: What has just arrived of other guarded quantities, by the name of their limit.
+        taken: When each reading that has just arrived was taken, by host time, by device; where the
+            device tells no time, when it arrived, shape (n,) [s].
         fault: What a device's status says is wrong; empty where nothing is.
         raw: Samples as they came, by stream, for a log.
     """
@@ -92,6 +98,7 @@ class Batch:
     speeds: Mapping[str, float]
     heard: Mapping[str, Sequence[object]]
     further: Mapping[str, Array]
+    taken: Mapping[str, Array]
     fault: str
     raw: Mapping[str, Sequence[Sample]]
 
@@ -161,12 +168,13 @@ class HostTime:
     """Puts device times on the host's clock: what was underway least tells the offset.
 
     Times never run back: where a quicker sample shows that the others were late, they stand until
-    the better ones have caught up.
+    the better ones have caught up. Clocks drift, so that the offset is believed to grow by
+    `FASTEST_DRIFT`: readings that come later by more than that are late, and not the clock.
     """
 
     def __init__(self) -> None:
-        self._offset = np.inf
-        self._latest = -np.inf
+        self._offset = self._lag = np.inf
+        self._read_at = self._latest = -np.inf
 
     def map(self, samples: Sequence[Sample]) -> Array:
         """Return when the samples were taken, shape (n,) [s]."""
@@ -174,9 +182,14 @@ class HostTime:
         host, device = columns.host_time, columns.device_time
         if len(samples) == 0 or not np.isfinite(device).all():
             return host  # none came, or the device tells no time
-        least = float((host - device).min())
-        # Jitter only ever delays; what is half a second off is a device that began anew.
-        self._offset = least if abs(least - self._offset) > 0.5 else min(self._offset, least)
+        lag = host - device
+        least, elapsed = float(lag.min()), float(host[-1]) - self._read_at
+        # Nothing waits longer than time has passed: what does is of a device that began anew.
+        if lag[-1] > self._lag + elapsed + BEGAN_ANEW:
+            self._offset = least
+        else:
+            self._offset = min(self._offset + FASTEST_DRIFT * max(elapsed, 0.0), least)
+        self._lag, self._read_at = float(lag[-1]), float(host[-1])
         times = np.maximum.accumulate(np.maximum(device + self._offset, self._latest))
         self._latest = float(times[-1])
         return times
@@ -239,14 +252,20 @@ class BoardBench(_DiscPair):
         """Hand on what has arrived; see `Bench.read`."""
         samples = self._board.read(0.0)
         forces, speeds = decode_board(self._settings, samples)
-        readings = Readings(
-            self._time.map(samples), speeds.leg, speeds.ground, forces.normal, forces.traction
-        )
+        taken = self._time.map(samples)
+        readings = Readings(taken, speeds.leg, speeds.ground, forces.normal, forces.traction)
         latest = {"leg": speeds.leg[-1], "ground": speeds.ground[-1]} if samples else {}
         return Batch(
-            readings, forces.normal, forces.traction, latest, {"board": samples}, {}, "",
-            {self._board.name: samples},
-        )  # fmt: skip
+            readings=readings,
+            normal=forces.normal,
+            traction=forces.traction,
+            speeds=latest,
+            heard={"board": samples},
+            further={},
+            taken={"board": taken},
+            fault="",
+            raw={self._board.name: samples},
+        )
 
     def require_healthy(self) -> None:
         """Check the board; see `Bench.require_healthy`."""
@@ -322,14 +341,16 @@ class DrivesBench(_DiscPair):
         """Hand on what has arrived; see `Bench.read`."""
         turned, weighed = self._drives.read(0.0), self._cell.read(0.0)
         forces = decode_forces(self._cell_settings, weighed)
-        new = np.column_stack([self._time.map(weighed), forces.normal, forces.traction])
+        taken = {"load cell": self._time.map(weighed)}
+        new = np.column_stack([taken["load cell"], forces.normal, forces.traction])
         self._waiting = np.concatenate([self._waiting, new])
         heard: dict[str, Sequence[object]] = {"load cell": weighed}
         for disc, drive in (("leg", self._settings.leg), ("ground", self._settings.ground)):
             own = [sample for sample in turned if sample.channel == drive.node]
             heard[f"{disc} drive"] = own
-            rows = [(s.host_time, disc_speed(drive, s.counts[1])) for s in own]
-            self._speeds[disc] = np.concatenate([self._speeds[disc], np.reshape(rows, (-1, 2))])
+            rows = np.reshape([(s.host_time, disc_speed(drive, s.counts[1])) for s in own], (-1, 2))
+            taken[f"{disc} drive"] = rows[:, 0]
+            self._speeds[disc] = np.concatenate([self._speeds[disc], rows])
         hot = self._drives.take_temperatures()
         for disc, drive in (("leg", self._settings.leg), ("ground", self._settings.ground)):
             heard[f"temperature of the {disc} drive"] = hot[drive.node]
@@ -341,6 +362,7 @@ class DrivesBench(_DiscPair):
             speeds={d: float(s[-1, 1]) for d, s in self._speeds.items() if len(s)},
             heard=heard,
             further=self._further_loads(weighed, hot),
+            taken=taken,
             fault=f"load cell: {describe_status(status)}" if describe_status(status) else "",
             raw={self._drives.name: turned, self._cell.name: weighed},
         )

@@ -14,6 +14,12 @@ MOST_POINTS: Final = 100_000
 """Largest number of points between two zeros or checks."""
 Order: TypeAlias = Literal["monotone", "shuffled", "up-down"]
 ORDERS: Final[tuple[Order, ...]] = ("monotone", "shuffled", "up-down")
+LIMIT_UNITS: Final = {
+    "speed": "rad/s", "acceleration": "rad/s2", "normal_force": "N", "traction_force": "N",
+    "in_a_row": "samples", "speed_error": "rad/s", "speed_error_time": "s", "silence": "s",
+    "reading_age": "s", "free_space": "bytes", "hold": "s", **FURTHER_LIMITS,
+}  # fmt: skip
+"""Unit of each limit of an experiment."""
 
 
 @dataclass(frozen=True)
@@ -125,6 +131,7 @@ class RunLimits:
         speed_error: Distance of a disc from its set-point [rad/s].
         speed_error_time: How long that may last [s].
         silence: How long a stream may be silent [s].
+        reading_age: How old a reading may be when it is looked at [s].
         free_space: What must be left where data is written [bytes].
         hold: How long a soft stop holds before it becomes a safe one [s].
         lateral_force: Force on the load cell's third axis; None where it is not guarded [N].
@@ -140,6 +147,7 @@ class RunLimits:
     speed_error: float
     speed_error_time: float
     silence: float
+    reading_age: float
     free_space: float
     hold: float
     lateral_force: float | None
@@ -306,6 +314,7 @@ def _controls(table: PlanTable) -> Controls:
 
 
 def _limits(table: PlanTable) -> RunLimits:
+    silence = table.positive("silence", 0.25)
     return RunLimits(
         speed=table.positive("speed"),
         acceleration=table.positive("acceleration"),
@@ -314,7 +323,8 @@ def _limits(table: PlanTable) -> RunLimits:
         in_a_row=table.whole("in_a_row", 3, least=1, most=1000),
         speed_error=table.positive("speed_error"),
         speed_error_time=table.positive("speed_error_time", 0.2),
-        silence=table.positive("silence", 0.25),
+        silence=silence,
+        reading_age=table.positive("reading_age", silence),
         free_space=table.positive("free_space", 100e6),
         hold=table.positive("hold", 600.0),
         **{key: table.positive_or_none(key) for key in FURTHER_LIMITS},

@@ -178,6 +178,7 @@ class _Asker:
 
 
 def _print_plan(foreseen: "Foreseen", *, steps: bool) -> None:
+    from rig.experiment.plan import LIMIT_UNITS
     from rig.experiment.steps import Point
 
     plan, points = foreseen.plan, foreseen.plan.points
@@ -193,15 +194,7 @@ def _print_plan(foreseen: "Foreseen", *, steps: bool) -> None:
     typer.echo("every set-point lies within the limits:")
     for name, value in vars(plan.limits).items():
         said = "not limited" if value is None else f"{value:g}"
-        typer.echo(f"  {name:<20}{said:>12} {_UNITS[name]}")
+        typer.echo(f"  {name:<20}{said:>12} {LIMIT_UNITS[name]}")
     if steps:
         for step in foreseen.steps:
             typer.echo(step.label if isinstance(step, Point) else f"zero-{step.number:04d}")
-
-
-_UNITS = {
-    "speed": "rad/s", "acceleration": "rad/s2", "normal_force": "N", "traction_force": "N",
-    "in_a_row": "samples", "speed_error": "rad/s", "speed_error_time": "s", "silence": "s",
-    "free_space": "bytes", "hold": "s", "lateral_force": "N", "torque": "N m",
-    "temperature_celsius": "degC",
-}  # fmt: skip

@@ -185,7 +185,6 @@ class LaggingLink(MemoryLink):
         return out
 
 
-@pytest.mark.xfail(strict=True, raises=NOT_RAISED)
 def test_readings_that_come_ever_later_stop_the_discs(lab):
     twin = lab["twin"]()
     profile = twin.bench.profile

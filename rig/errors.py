@@ -91,11 +91,19 @@ class UnreliableRecords(LimitExceeded):
     """The numbering of a device's records jumps, or most of them are missing or refused."""
 
 
-class NotAtRest(LimitExceeded):
+class NotAtRest(RigError, TimeoutError):
     """Discs that should stand were not seen to; nobody may touch them.
 
-    The value is NaN where too few new readings came to tell.
+    Attributes:
+        limit: Largest speed of a disc that stands [rad/s].
+
+    >>> str(NotAtRest("leg disc did not come to rest: its mean speed is 3 rad/s", limit=0.1))
+    'leg disc did not come to rest: its mean speed is 3 rad/s; its limit is 0.1 rad/s'
     """
+
+    def __init__(self, problem: str, *, limit: float) -> None:
+        super().__init__(f"{problem}; its limit is {limit:g} rad/s")
+        self.limit = limit
 
 
 class ProfileError(RigError, ValueError):

@@ -9,11 +9,15 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import IntEnum
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
 from rig.errors import LimitExceeded, RigError, RigTimeout, StaleReading
+
+REST_SPEED: Final = 0.1
+"""Mean speed below which a disc stands, unless a plan says otherwise [rad/s]."""
 
 
 def require_within(value: float, limit: float, *, quantity: str, unit: str) -> None:
@@ -88,25 +92,26 @@ class FollowingGuard:
         self._longest = longest
         self._since: float | None = None
 
-    def check(self, speed: float, wanted: float, *, now: float) -> None:
+    def check(self, speed: float, wanted: float, *, now: float, narrower: float = math.inf) -> None:
         """Take the latest speed and its set-point [rad/s].
 
         Args:
             speed: Measured.
             wanted: Commanded.
             now: Host time [s].
+            narrower: A smaller limit that holds for now.
 
         Raises:
             LimitExceeded: The disc has departed too far for too long, or its speed is no number.
         """
-        departure = speed - wanted
-        if abs(departure) <= self._limit:
+        departure, limit = speed - wanted, min(self._limit, narrower)
+        if abs(departure) <= limit:
             self._since = None
             return
         self._since = now if self._since is None else self._since
         if now - self._since >= self._longest:
             quantity = f"departure of the {self._name} from its set-point of {wanted:g} rad/s"
-            raise LimitExceeded(quantity, value=departure, limit=self._limit, unit="rad/s")
+            raise LimitExceeded(quantity, value=departure, limit=limit, unit="rad/s")
 
 
 class SilenceGuard:

@@ -5,15 +5,17 @@ Reading feeds the watchdogs of the drives. After a fault nothing is read any mor
 feeds them: should the command to stop be lost, the drives stop by themselves.
 """
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Final
 
 from rig.clock import Clock
-from rig.errors import DeviceFault, RigError
+from rig.errors import DeviceFault, NotAtRest, RigError
 from rig.experiment.bench import Batch, Bench
 from rig.experiment.control import Control
 from rig.experiment.plan import RunLimits, ground_speed, rig_limits
+from rig.experiment.rest import prove_rest
 from rig.experiment.sink import Sink
 from rig.safety import (
     AgeGuard,
@@ -35,6 +37,8 @@ FURTHER_NAMES: Final = {
     "torque": "torque on the load cell",
     "temperature_celsius": "temperature of a drive or its motor",
 }
+STANDING: Final = 1.0
+"""Speed at which a disc that was proved to stand counts as turning again [rad/s]."""
 ROOM_PERIOD: Final = 0.1
 """Between two questions whether data can still be kept [s]."""
 
@@ -124,6 +128,7 @@ class Acquisition:
         now = clock.now()
         self._ramp = Ramp(now, 0.0, (0.0, 0.0), (0.0, 0.0))
         self._sent: tuple[float, float] | None = None
+        self._standing = False
 
     @property
     def wanted(self) -> tuple[float, float]:
@@ -179,6 +184,7 @@ class Acquisition:
         change = max(abs(leg - before[0]), abs(ground - before[1]))
         duration = change / self._limits.acceleration
         self._ramp = Ramp(self._clock.now(), duration, before, (leg, ground))
+        self._standing = False
 
     def look(self) -> Batch:
         """Wait for the next samples, command what is due and guard what has come.
@@ -209,22 +215,24 @@ class Acquisition:
         return batch
 
     def come_to_rest(self, longest: float) -> None:
-        """Ramp to standstill, heeding only stops that are harder than the one being obeyed.
+        """Ramp to standstill and prove it; only stops harder than the one obeyed are heeded.
 
         Args:
-            longest: Time after which the ramp is taken to have failed [s].
+            longest: Time after the ramp in which both discs must be seen to stand [s].
 
         Raises:
+            NotAtRest: They were not; the drives are de-energised.
             RigError: A guard tripped meanwhile.
             StopRequested: A harder stop was asked for.
         """
         self.aim(0.0, None)
-        end = self._clock.now() + max(self._ramp.duration, 0.0) + longest
-        still = 0
-        while still < 5 and self._clock.now() < end:
-            batch = self.look()
-            slow = all(abs(speed) < self._limits.speed_error for speed in batch.speeds.values())
-            still = still + 1 if slow and not self.ramping else 0
+        self.until(lambda _: not self.ramping, float("inf"))
+        try:
+            prove_rest(self.look, self._limits.rest_speed, longest=longest, clock=self._clock)
+        except NotAtRest:
+            self._bench.disarm()
+            raise
+        self._standing = True
 
     def until(self, holds: Callable[[Batch], bool], longest: float) -> bool:
         """Look until something holds.
@@ -302,5 +310,6 @@ class Acquisition:
         for name, taken in batch.taken.items():
             self._age[name].check(taken, now=now)
         for (disc, guard), wanted in zip(self._following.items(), self.wanted, strict=True):
-            if disc in batch.speeds:
-                guard.check(batch.speeds[disc], wanted, now=now)
+            if len(speeds := batch.speeds[disc]):
+                narrower = STANDING if self._standing else math.inf
+                guard.check(float(speeds[-1]), wanted, now=now, narrower=narrower)

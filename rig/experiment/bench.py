@@ -83,7 +83,8 @@ class Batch:
         readings: Lined-up samples; a force waits here until both speeds around it are known.
         normal: Every normal force that has just arrived, for guards, shape (m,) [N].
         traction: Every traction force that has just arrived, shape (m,) [N].
-        speeds: Latest speed of each disc that was heard, by name [rad/s].
+        speeds: Every speed of each disc that has just arrived, by `leg` and `ground`, each of
+            shape (k,) [rad/s].
         heard: What came of each device and answer that is watched for silence, by name.
         further: What has just arrived of other guarded quantities, by the name of their limit.
         taken: When each reading that has just arrived was taken, by host time, by device; where the
@@ -95,7 +96,7 @@ class Batch:
     readings: Readings
     normal: Array
     traction: Array
-    speeds: Mapping[str, float]
+    speeds: Mapping[str, Array]
     heard: Mapping[str, Sequence[object]]
     further: Mapping[str, Array]
     taken: Mapping[str, Array]
@@ -254,12 +255,11 @@ class BoardBench(_DiscPair):
         forces, speeds = decode_board(self._settings, samples)
         taken = self._time.map(samples)
         readings = Readings(taken, speeds.leg, speeds.ground, forces.normal, forces.traction)
-        latest = {"leg": speeds.leg[-1], "ground": speeds.ground[-1]} if samples else {}
         return Batch(
             readings=readings,
             normal=forces.normal,
             traction=forces.traction,
-            speeds=latest,
+            speeds={"leg": speeds.leg, "ground": speeds.ground},
             heard={"board": samples},
             further={},
             taken={"board": taken},
@@ -345,11 +345,12 @@ class DrivesBench(_DiscPair):
         new = np.column_stack([taken["load cell"], forces.normal, forces.traction])
         self._waiting = np.concatenate([self._waiting, new])
         heard: dict[str, Sequence[object]] = {"load cell": weighed}
+        speeds: dict[str, Array] = {}
         for disc, drive in (("leg", self._settings.leg), ("ground", self._settings.ground)):
             own = [sample for sample in turned if sample.channel == drive.node]
             heard[f"{disc} drive"] = own
             rows = np.reshape([(s.host_time, disc_speed(drive, s.counts[1])) for s in own], (-1, 2))
-            taken[f"{disc} drive"] = rows[:, 0]
+            taken[f"{disc} drive"], speeds[disc] = rows.T
             self._speeds[disc] = np.concatenate([self._speeds[disc], rows])
         hot = self._drives.take_temperatures()
         for disc, drive in (("leg", self._settings.leg), ("ground", self._settings.ground)):
@@ -359,7 +360,7 @@ class DrivesBench(_DiscPair):
             readings=self._line_up(),
             normal=forces.normal,
             traction=forces.traction,
-            speeds={d: float(s[-1, 1]) for d, s in self._speeds.items() if len(s)},
+            speeds=speeds,
             heard=heard,
             further=self._further_loads(weighed, hot),
             taken=taken,

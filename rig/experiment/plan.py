@@ -7,6 +7,7 @@ from typing import Final, Literal, TypeAlias
 
 from rig.device import Limits
 from rig.experiment.plan_table import PlanTable
+from rig.safety import REST_SPEED
 from rig.slip_rig.profile import FURTHER_LIMITS
 
 SCHEMA: Final = 1
@@ -17,7 +18,7 @@ ORDERS: Final[tuple[Order, ...]] = ("monotone", "shuffled", "up-down")
 LIMIT_UNITS: Final = {
     "speed": "rad/s", "acceleration": "rad/s2", "normal_force": "N", "traction_force": "N",
     "in_a_row": "samples", "speed_error": "rad/s", "speed_error_time": "s", "silence": "s",
-    "reading_age": "s", "free_space": "bytes", "hold": "s", **FURTHER_LIMITS,
+    "reading_age": "s", "rest_speed": "rad/s", "free_space": "bytes", "hold": "s", **FURTHER_LIMITS,
 }  # fmt: skip
 """Unit of each limit of an experiment."""
 
@@ -132,6 +133,7 @@ class RunLimits:
         speed_error_time: How long that may last [s].
         silence: How long a stream may be silent [s].
         reading_age: How old a reading may be when it is looked at [s].
+        rest_speed: Mean speed below which a disc counts as standing [rad/s].
         free_space: What must be left where data is written [bytes].
         hold: How long a soft stop holds before it becomes a safe one [s].
         lateral_force: Force on the load cell's third axis; None where it is not guarded [N].
@@ -148,6 +150,7 @@ class RunLimits:
     speed_error_time: float
     silence: float
     reading_age: float
+    rest_speed: float
     free_space: float
     hold: float
     lateral_force: float | None
@@ -325,6 +328,7 @@ def _limits(table: PlanTable) -> RunLimits:
         speed_error_time=table.positive("speed_error_time", 0.2),
         silence=silence,
         reading_age=table.positive("reading_age", silence),
+        rest_speed=table.positive("rest_speed", REST_SPEED),
         free_space=table.positive("free_space", 100e6),
         hold=table.positive("hold", 600.0),
         **{key: table.positive_or_none(key) for key in FURTHER_LIMITS},

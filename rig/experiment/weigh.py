@@ -10,10 +10,14 @@ import numpy as np
 from rig.clock import SYSTEM_CLOCK, Clock
 from rig.errors import ProtocolError
 from rig.experiment.acquire import PERIOD
-from rig.experiment.bench import Bench
+from rig.experiment.bench import Batch, Bench
 from rig.experiment.load import LoadSetter
+from rig.experiment.rest import prove_rest
+from rig.safety import REST_SPEED
 
 BATCHES: Final = 10
+REST_LIMIT: Final = 5.0
+"""How long it may take until both discs are proved to stand [s]."""
 
 
 @dataclass(frozen=True)
@@ -67,6 +71,8 @@ def weigh(
 ) -> Weighing:
     """Read the normal channel without load and under each weight; nothing is energised.
 
+    Nobody is asked to hang a weight before both discs are proved to stand.
+
     Args:
         bench: The rig, entered.
         forces: Weights [N].
@@ -77,19 +83,22 @@ def weigh(
         period: Between two looks [s].
 
     Raises:
+        NotAtRest: A disc turns, or its speed is not told.
         ProtocolError: The load cell gives too few samples.
     """
 
-    def look() -> np.ndarray:
+    def look() -> Batch:
         clock.sleep(period)
-        return bench.read().normal
+        return bench.read()
 
+    bench.read()  # what lay in buffers
     readings, errors = [], []
     for force in (0.0, *forces):
+        prove_rest(look, REST_SPEED, longest=REST_LIMIT, clock=clock)
         text = load.request(force, now=clock.now())
         waiting = True
         while waiting:
-            normal = look()
+            normal = look().normal
             if len(normal):
                 prompt(text, float(normal.mean()))
                 waiting = not load.follow(float(normal.mean()), now=clock.now())
@@ -130,12 +139,12 @@ def check_gain(weighing: Weighing, *, weight_sd: float = 1e-3) -> GainCheck:
     )
 
 
-def _read(look: Callable[[], np.ndarray], duration: float, clock: Clock) -> tuple[float, float]:
+def _read(look: Callable[[], Batch], duration: float, clock: Clock) -> tuple[float, float]:
     """Read for a while; return mean and its error from batch means [N]."""
     end = clock.now() + duration
     parts = []
     while clock.now() < end:
-        parts.append(look())
+        parts.append(look().normal)
     values = np.concatenate(parts)
     if len(values) < 2 * BATCHES:
         raise ProtocolError(f"{len(values)} samples in {duration:g} s; is the load cell running?")

@@ -57,7 +57,6 @@ def spoil_records(twin, monkeypatch, spoil, *, after=0):
     monkeypatch.setattr(twin.board, "_encode", encode)
 
 
-@pytest.mark.xfail(strict=True, raises=NOT_RAISED)
 def test_empty_reads_are_not_rest(lab, monkeypatch):
     twin = lab["twin"]()
     acquire = acquisition(twin, lab["plan"](limits={"silence": 0.9}))
@@ -69,7 +68,6 @@ def test_empty_reads_are_not_rest(lab, monkeypatch):
         assert twin.at_rest()  # de-energised
 
 
-@pytest.mark.xfail(strict=True, raises=NOT_RAISED)
 @pytest.mark.parametrize("slowest", [0.3, 3.0])
 def test_a_disc_that_creeps_within_the_tracking_limit_is_not_at_rest(lab, monkeypatch, slowest):
     twin = lab["twin"]()
@@ -81,7 +79,6 @@ def test_a_disc_that_creeps_within_the_tracking_limit_is_not_at_rest(lab, monkey
             acquire.come_to_rest(1.0)
 
 
-@pytest.mark.xfail(strict=True, raises=AssertionError)
 def test_nobody_is_asked_to_turn_the_shaft_while_a_disc_turns(lab, monkeypatch):
     twin = lab["twin"]()
     keep_turning(twin, monkeypatch, 3.0)

@@ -67,7 +67,6 @@ def test_a_gain_error_of_the_twin_is_weighed(lab):
     assert check.zero == pytest.approx(0.1 / 1.02, abs=2e-3)
 
 
-@pytest.mark.xfail(strict=True, raises=AssertionError)
 def test_no_weight_is_asked_for_while_a_disc_turns(lab):
     class Bystander:
         def request(self, target, *, now):

@@ -83,12 +83,27 @@ class StaleReading(LimitExceeded):
     """A reading was looked at so late that it no longer tells what the rig does."""
 
 
-class FrozenReading(LimitExceeded):
-    """A sensor gives the same counts again and again while what it measures must change."""
+class FrozenReading(RigError, ValueError):
+    """A sensor gives the same value, bit for bit, while what it measures must change.
+
+    Attributes:
+        value: Time without any change [s].
+        limit: Longest time allowed [s].
+
+    >>> str(FrozenReading("speed of the leg disc", value=0.3, limit=0.25))
+    'speed of the leg disc did not change by a bit for 0.3 s; its limit is 0.25 s'
+    """
+
+    def __init__(self, what: str, *, value: float, limit: float) -> None:
+        super().__init__(
+            f"{what} did not change by a bit for {value:.3g} s; its limit is {limit:g} s"
+        )
+        self.value = value
+        self.limit = limit
 
 
-class UnreliableRecords(LimitExceeded):
-    """The numbering of a device's records jumps, or most of them are missing or refused."""
+class UnreliableRecords(RigError, ValueError):
+    """Numbering of a device's records restarts again and again, or most records are missing."""
 
 
 class NotAtRest(RigError, TimeoutError):

@@ -6,6 +6,7 @@ stop.
 """
 
 import math
+from collections import deque
 from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import IntEnum
@@ -14,7 +15,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from rig.errors import LimitExceeded, RigError, RigTimeout, StaleReading
+from rig.errors import LimitExceeded, RigError, RigTimeout
 
 REST_SPEED: Final = 0.1
 """Mean speed below which a disc stands, unless a plan says otherwise [rad/s]."""
@@ -43,7 +44,9 @@ class SampleGuard:
         limit: Largest magnitude allowed.
         quantity: What is watched, for the message.
         unit: Unit of the limit.
-        in_a_row: So many consecutive samples beyond the limit are a fault.
+        in_a_row: So many samples beyond the limit are a fault, in a row or as most of the latest
+            2 in_a_row - 1: a sensor that saturates in two samples of three never gives three in a
+            row.
     """
 
     def __init__(self, limit: float, *, quantity: str, unit: str, in_a_row: int = 3) -> None:
@@ -51,7 +54,7 @@ class SampleGuard:
         self._quantity = quantity
         self._unit = unit
         self._in_a_row = in_a_row
-        self._beyond = 0
+        self._latest: deque[bool] = deque(maxlen=2 * in_a_row - 1)
 
     def check(self, value: float) -> None:
         """Take the next value.
@@ -60,18 +63,19 @@ class SampleGuard:
             LimitExceeded: It is the last of so many beyond the limit.
         """
         beyond = not (math.isfinite(value) and abs(value) <= self._limit)
-        self._beyond = self._beyond + 1 if beyond else 0
-        if self._beyond >= self._in_a_row:
+        self._latest.append(beyond)
+        if beyond and sum(self._latest) >= self._in_a_row:
             raise LimitExceeded(self._quantity, value=value, limit=self._limit, unit=self._unit)
 
     def check_all(self, values: NDArray[np.float64]) -> None:
         """Take the next values, shape (n,), in order; at 7 kHz one by one would cost too much.
 
         Raises:
-            LimitExceeded: So many of them in a row, those before counted, are beyond the limit.
+            LimitExceeded: So many of the latest ones, those before counted, are beyond the limit.
         """
         within = np.abs(values) <= self._limit  # NaN is not
-        if self._beyond == 0 and within.all():
+        if within.all():
+            self._latest.extend(not w for w in within[-self._in_a_row * 2 :].tolist())
             return
         for value in values.tolist():
             self.check(value)
@@ -142,32 +146,6 @@ class SilenceGuard:
             self._heard = now
         elif now - self._heard > self._limit:
             raise RigTimeout(f"stream '{self._name}' sent nothing", waited=now - self._heard)
-
-
-class AgeGuard:
-    """Makes a fault of readings that waited too long in a buffer before they were looked at.
-
-    Args:
-        name: Name of the stream, for the message.
-        limit: Largest age allowed [s].
-    """
-
-    def __init__(self, name: str, *, limit: float) -> None:
-        self._name = name
-        self._limit = limit
-
-    def check(self, taken: NDArray[np.float64], *, now: float) -> None:
-        """Take when the readings of one look were taken, by host time, shape (n,) [s].
-
-        Raises:
-            StaleReading: One of them is older than the limit.
-        """
-        age = now - float(taken.min(initial=now))
-        if age > self._limit:
-            raise StaleReading(
-                f"age of a reading of stream '{self._name}'",
-                value=age, limit=self._limit, unit="s",
-            )  # fmt: skip
 
 
 class StopCategory(IntEnum):

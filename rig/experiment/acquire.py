@@ -10,6 +10,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Final
 
+import numpy as np
+
 from rig.clock import Clock
 from rig.errors import DeviceFault, NotAtRest, RigError
 from rig.experiment.bench import Batch, Bench
@@ -18,7 +20,6 @@ from rig.experiment.plan import RunLimits, ground_speed, rig_limits
 from rig.experiment.rest import prove_rest
 from rig.experiment.sink import Sink
 from rig.safety import (
-    AgeGuard,
     FollowingGuard,
     SampleGuard,
     SilenceGuard,
@@ -26,6 +27,7 @@ from rig.safety import (
     StopRequested,
     require_within,
 )
+from rig.sensor_guards import AgeGuard, FrozenGuard, RecordGuard
 from rig.slip_rig.profile import FURTHER_LIMITS
 
 PERIOD: Final = 0.004
@@ -37,8 +39,10 @@ FURTHER_NAMES: Final = {
     "torque": "torque on the load cell",
     "temperature_celsius": "temperature of a drive or its motor",
 }
-STANDING: Final = 1.0
-"""Speed at which a disc that was proved to stand counts as turning again [rad/s]."""
+DISCS: Final[tuple[str, ...]] = ("leg", "ground")
+TURNING: Final = 1.0
+"""Set-point above which a disc's sensors must move, and speed at which a disc that was proved to
+stand counts as turning again [rad/s]."""
 ROOM_PERIOD: Final = 0.1
 """Between two questions whether data can still be kept [s]."""
 
@@ -120,9 +124,14 @@ class Acquisition:
             disc: FollowingGuard(
                 limits.speed_error, name=f"{disc} disc", longest=limits.speed_error_time
             )
-            for disc in ("leg", "ground")
+            for disc in DISCS
         }
         self._silence: dict[str, SilenceGuard] = {}
+        self._records = {stream.name: RecordGuard(stream.name) for stream in bench.streams}
+        self._frozen_forces = FrozenGuard("forces of the load cell", limit=limits.frozen)
+        self._frozen_speeds = {
+            disc: FrozenGuard(f"speed of the {disc} disc", limit=limits.frozen) for disc in DISCS
+        }
         self._age = {name: AgeGuard(name, limit=limits.reading_age) for name in bench.watched}
         self._room_at = -float("inf")
         now = clock.now()
@@ -309,7 +318,21 @@ class Acquisition:
         self._bench.require_healthy()
         for name, taken in batch.taken.items():
             self._age[name].check(taken, now=now)
-        for (disc, guard), wanted in zip(self._following.items(), self.wanted, strict=True):
-            if len(speeds := batch.speeds[disc]):
-                narrower = STANDING if self._standing else math.inf
-                guard.check(float(speeds[-1]), wanted, now=now, narrower=narrower)
+        for stream in self._bench.streams:
+            self._records[stream.name].check(stream.counters, now=now)
+        self._guard_motion(batch, now)
+
+    def _guard_motion(self, batch: Batch, now: float) -> None:
+        """Check that both discs follow, and that sensors of what turns are not frozen."""
+        forces = np.column_stack([batch.normal, batch.traction])
+        wanted = dict(zip(DISCS, self.wanted, strict=True))
+        self._frozen_forces.check(forces, turning=abs(wanted["leg"]) > TURNING, now=now)
+        for disc, speeds in batch.speeds.items():
+            self._frozen_speeds[disc].check(
+                speeds[:, None], turning=abs(wanted[disc]) > TURNING, now=now
+            )
+            if len(speeds):
+                narrower = TURNING if self._standing else math.inf
+                self._following[disc].check(
+                    float(speeds[-1]), wanted[disc], now=now, narrower=narrower
+                )

@@ -18,9 +18,15 @@ ORDERS: Final[tuple[Order, ...]] = ("monotone", "shuffled", "up-down")
 LIMIT_UNITS: Final = {
     "speed": "rad/s", "acceleration": "rad/s2", "normal_force": "N", "traction_force": "N",
     "in_a_row": "samples", "speed_error": "rad/s", "speed_error_time": "s", "silence": "s",
-    "reading_age": "s", "rest_speed": "rad/s", "free_space": "bytes", "hold": "s", **FURTHER_LIMITS,
+    "reading_age": "s", "frozen": "s", "rest_speed": "rad/s", "free_space": "bytes", "hold": "s",
+    **FURTHER_LIMITS,
 }  # fmt: skip
 """Unit of each limit of an experiment."""
+OFF_ABOVE: Final = {
+    "in_a_row": 10.0, "speed_error_time": 1.0, "silence": 1.0, "reading_age": 1.0, "frozen": 1.0,
+    "rest_speed": 1.0,
+}  # fmt: skip
+"""Limits above which a guard counts as off; so does `speed_error` above half the top speed."""
 
 
 @dataclass(frozen=True)
@@ -128,17 +134,20 @@ class RunLimits:
         acceleration: With which set-points of a disc change [rad/s^2].
         normal_force: Normal force [N].
         traction_force: Traction force [N].
-        in_a_row: Samples beyond a force limit that make a fault.
+        in_a_row: Samples beyond a force limit, among the latest 2 in_a_row - 1, that make a fault.
         speed_error: Distance of a disc from its set-point [rad/s].
         speed_error_time: How long that may last [s].
         silence: How long a stream may be silent [s].
         reading_age: How old a reading may be when it is looked at [s].
+        frozen: How long forces and speeds may stay the same, bit for bit, while discs turn [s].
         rest_speed: Mean speed below which a disc counts as standing [rad/s].
         free_space: What must be left where data is written [bytes].
         hold: How long a soft stop holds before it becomes a safe one [s].
         lateral_force: Force on the load cell's third axis; None where it is not guarded [N].
         torque: Torque on any of its axes; None where it is not guarded [N m].
         temperature_celsius: Of a drive or its motor; None where it is not guarded [degC].
+        guards_off: Those of the limits that are so high, by a person's explicit wish, that they
+            guard nothing.
     """
 
     speed: float
@@ -150,12 +159,21 @@ class RunLimits:
     speed_error_time: float
     silence: float
     reading_age: float
+    frozen: float
     rest_speed: float
     free_space: float
     hold: float
     lateral_force: float | None
     torque: float | None
     temperature_celsius: float | None
+    guards_off: tuple[str, ...]
+
+    @property
+    def off_said(self) -> str:
+        """Which guards are off, with their limits, in words; empty where none is."""
+        return ", ".join(
+            f"{name} ({getattr(self, name):g} {LIMIT_UNITS[name]})" for name in self.guards_off
+        )
 
 
 @dataclass(frozen=True)
@@ -200,16 +218,17 @@ def parse_plan(table: PlanTable) -> Plan:
     table.whole("schema", least=SCHEMA, most=SCHEMA)
     parts = {key: table.table(key) for key in
              ("points", "load", "settle", "accept", "controls", "limits")}  # fmt: skip
+    points = _points(parts["points"])
     plan = Plan(
         name=table.text("name"),
         material=table.text("material"),
         operator=table.text("operator", ""),
-        points=_points(parts["points"]),
+        points=points,
         load=_load(parts["load"]),
         settle=_settle(parts["settle"]),
         accept=_accept(parts["accept"]),
         controls=_controls(parts["controls"]),
-        limits=_limits(parts["limits"]),
+        limits=_limits(parts["limits"], top_speed=points.omega_leg),
     )
     for part in (*parts.values(), table):
         part.finish()
@@ -316,9 +335,10 @@ def _controls(table: PlanTable) -> Controls:
     )
 
 
-def _limits(table: PlanTable) -> RunLimits:
+def _limits(table: PlanTable, *, top_speed: float) -> RunLimits:
+    off_above = OFF_ABOVE | {"speed_error": top_speed / 2}
     silence = table.positive("silence", 0.25)
-    return RunLimits(
+    limits = RunLimits(
         speed=table.positive("speed"),
         acceleration=table.positive("acceleration"),
         normal_force=table.positive("normal_force"),
@@ -327,9 +347,35 @@ def _limits(table: PlanTable) -> RunLimits:
         speed_error=table.positive("speed_error"),
         speed_error_time=table.positive("speed_error_time", 0.2),
         silence=silence,
-        reading_age=table.positive("reading_age", silence),
+        reading_age=table.positive("reading_age", min(silence, OFF_ABOVE["reading_age"])),
+        frozen=table.positive("frozen", 0.25),
         rest_speed=table.positive("rest_speed", REST_SPEED),
         free_space=table.positive("free_space", 100e6),
         hold=table.positive("hold", 600.0),
         **{key: table.positive_or_none(key) for key in FURTHER_LIMITS},
+        guards_off=table.names("guards_off", tuple(off_above)),
     )
+    for name, highest in off_above.items():
+        _require_guard(table, limits, name, highest)
+    return limits
+
+
+def _require_guard(table: PlanTable, limits: RunLimits, name: str, highest: float) -> None:
+    """Refuse a limit that turns its guard off without saying so, and saying so of one that is on.
+
+    Raises:
+        ProfileError: The limit and `guards_off` contradict each other.
+    """
+    value, unit = getattr(limits, name), LIMIT_UNITS[name]
+    if value > highest and name not in limits.guards_off:
+        raise table.fault(
+            f"found {value:g} {unit}, above {highest:g} {unit}, where the guard is as good as off; "
+            f'lower it, or write guards_off = ["{name}"]',
+            name,
+        )
+    if value <= highest and name in limits.guards_off:
+        raise table.fault(
+            f"names '{name}', whose limit of {value:g} {unit} guards; take it out, or raise the "
+            f"limit above {highest:g} {unit}",
+            "guards_off",
+        )

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A table of a plan: what a profile's table gives, and series and flags."""
+"""A table of a plan: what a profile's table gives, and series, names and flags."""
 
 from typing import Final
 
@@ -36,6 +36,13 @@ class PlanTable(Table):
                 key,
             )
         return tuple(self._finite(item, key) for item in value)
+
+    def names(self, key: str, known: tuple[str, ...]) -> tuple[str, ...]:
+        """Take a list of known names, each once; an absent one is empty."""
+        value = self._take(key, [])
+        if not isinstance(value, list) or not all(item in known for item in value):
+            raise self.fault(f"found {value!r}; expected a list of {', '.join(known)}", key)
+        return tuple(dict.fromkeys(value))
 
     @staticmethod
     def _even(table: "PlanTable") -> tuple[float, ...]:

@@ -145,6 +145,8 @@ class _Run:
     def _guarded(self) -> str:
         """Go through the steps; obey stops that end the run."""
         self._sink.event("begin", f"{self._plan.name}, {self._bench.source}")
+        if self._plan.limits.guards_off:
+            self._sink.event("guards off", self._plan.limits.off_said)
         try:
             self._acquire.arm()
             self._show(State.RUNNING)
@@ -348,6 +350,8 @@ class _Run:
         return batches
 
     def _tell(self, what: str) -> None:
+        if self._plan.limits.guards_off:
+            what = f"{what} [guards off: {', '.join(self._plan.limits.guards_off)}]"
         left = [step for step in self._steps if step.number not in self._past]
         seconds = estimate(self._plan, tuple(left)).seconds
         done = len(self._done)

@@ -38,7 +38,8 @@ SMALL = {
     "friction = 0.15": "friction = 0.4",
     "slip_drift = 0.02": "slip_drift = 0.05",
     "friction_drift = 0.2": "friction_drift = 0.5",
-    "silence = 0.25": "silence = 2.0\ntemperature_celsius = 80.0\ntorque = 1.0",
+    "silence = 0.25": "silence = 2.0\nreading_age = 2.0\ntemperature_celsius = 80.0\ntorque = 1.0\n"
+    'guards_off = ["silence", "reading_age", "speed_error_time"]',
     "speed_error_time = 0.2": "speed_error_time = 2.0",
 }
 

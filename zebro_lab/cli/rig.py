@@ -192,9 +192,12 @@ def _print_plan(foreseen: "Foreseen", *, steps: bool) -> None:
     typer.echo(f"the normal force is set {foreseen.estimate.loads} times, by {plan.load.set_by}")
     typer.echo(f"takes about {minutes} min {seconds} s where no point is repeated")
     typer.echo("every set-point lies within the limits:")
-    for name, value in vars(plan.limits).items():
+    for name, unit in LIMIT_UNITS.items():
+        value = getattr(plan.limits, name)
         said = "not limited" if value is None else f"{value:g}"
-        typer.echo(f"  {name:<20}{said:>12} {LIMIT_UNITS[name]}")
+        typer.echo(f"  {name:<20}{said:>12} {unit}")
+    if plan.limits.guards_off:
+        typer.echo(f"guards that are off, as the plan wants: {plan.limits.off_said}")
     if steps:
         for step in foreseen.steps:
             typer.echo(step.label if isinstance(step, Point) else f"zero-{step.number:04d}")

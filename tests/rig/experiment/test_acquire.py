@@ -16,8 +16,6 @@ from rig.links.memory import MemoryLink
 from rig.links.packet import Kind, Packet, encode_packet
 from rig.slip_rig.board import RigBoard
 
-NOT_RAISED = pytest.fail.Exception
-
 
 def acquisition(twin, plan):
     return Acquisition(
@@ -96,7 +94,6 @@ def test_nobody_is_asked_to_turn_the_shaft_while_a_disc_turns(lab, monkeypatch):
     assert twin.sink.events[-1][1].startswith("NotAtRest")
 
 
-@pytest.mark.xfail(strict=True, raises=NOT_RAISED)
 def test_forces_frozen_bit_for_bit_while_the_discs_turn_stop_them(lab, monkeypatch):
     twin = lab["twin"]()
     spoil_records(
@@ -107,7 +104,6 @@ def test_forces_frozen_bit_for_bit_while_the_discs_turn_stop_them(lab, monkeypat
     assert twin.at_rest()
 
 
-@pytest.mark.xfail(strict=True, raises=NOT_RAISED)
 def test_speeds_frozen_bit_for_bit_while_the_discs_turn_stop_them(lab, monkeypatch):
     twin = lab["twin"]()
     frozen = []
@@ -128,7 +124,6 @@ def test_speeds_frozen_bit_for_bit_while_the_discs_turn_stop_them(lab, monkeypat
     assert twin.at_rest()
 
 
-@pytest.mark.xfail(strict=True, raises=NOT_RAISED)
 @pytest.mark.parametrize("numbering", ["restarting", "random"])
 def test_records_that_restart_again_and_again_or_are_numbered_at_random_stop(
     lab, monkeypatch, numbering
@@ -146,7 +141,6 @@ def test_records_that_restart_again_and_again_or_are_numbered_at_random_stop(
     assert twin.at_rest()
 
 
-@pytest.mark.xfail(strict=True, raises=NOT_RAISED)
 def test_a_force_beyond_its_limit_in_two_samples_of_three_stops(lab, monkeypatch):
     twin = lab["twin"]()
 

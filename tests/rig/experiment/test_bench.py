@@ -29,7 +29,7 @@ from rig.twins import simulated_rig_devices
 PROFILE = load_rig_profile("rig-odrive-netft")
 WATCHDOG = 1.0
 """Several times a real one's [s]: a busy machine holds a process up for longer than that."""
-PATIENT = {"silence": 0.8, "speed_error_time": 2.0}
+PATIENT = {"silence": 0.8, "speed_error_time": 1.0}
 
 
 @contextmanager
@@ -45,8 +45,8 @@ def turning(lab, monkeypatch, *, speed=12.0, slip=0.2, **limits):
 
         monkeypatch.setattr(kind, "__init__", keep)
     rig = simulated_rig(
-        plan=SweepPlan(), imperfections=RigImperfections(), dynamics=RigDynamics(),
-        rng=np.random.default_rng(0),
+        plan=SweepPlan(), imperfections=RigImperfections(noise_sd0=0.01, speed_noise=0.01),
+        dynamics=RigDynamics(), rng=np.random.default_rng(0),
     )  # fmt: skip
     rig.load = 5.0
     rng = np.random.default_rng(1)

@@ -119,7 +119,6 @@ def test_a_malformed_plan_is_refused_and_the_place_named(lab, changes, said):
         lab["plan"](**changes)
 
 
-@pytest.mark.xfail(strict=True, raises=pytest.fail.Exception)
 @pytest.mark.parametrize(
     ("limit", "said"),
     [
@@ -127,11 +126,24 @@ def test_a_malformed_plan_is_refused_and_the_place_named(lab, changes, said):
         ({"speed_error_time": 1.5}, r"limits.speed_error_time: found 1.5 s, above 1 s"),
         ({"speed_error": 6.5}, r"limits.speed_error: found 6.5 rad/s, above 6 rad/s"),
         ({"in_a_row": 11}, r"limits.in_a_row: found 11 samples, above 10"),
+        ({"reading_age": 1.5}, r"limits.reading_age: found 1.5 s, above 1 s"),
+        ({"frozen": 1.5}, r"limits.frozen: found 1.5 s, above 1 s"),
+        ({"rest_speed": 1.5}, r"limits.rest_speed: found 1.5 rad/s, above 1 rad/s"),
     ],
 )
 def test_a_limit_so_high_that_its_guard_is_off_is_refused(lab, limit, said):
     with pytest.raises(ProfileError, match=said):
         lab["plan"](limits=limit)
+
+
+def test_a_guard_is_off_only_where_it_is_named_so(lab):
+    plan = lab["plan"](limits={"silence": 1.5, "frozen": 9.0, "guards_off": ["silence", "frozen"]})
+    assert plan.limits.off_said == "silence (1.5 s), frozen (9 s)"
+    assert lab["plan"]().limits.off_said == ""
+    with pytest.raises(ProfileError, match=r"guards_off: names 'silence', whose limit of 0.25 s"):
+        lab["plan"](limits={"guards_off": ["silence"]})
+    with pytest.raises(ProfileError, match=r"guards_off: found \['everything'\]; expected a list"):
+        lab["plan"](limits={"guards_off": ["everything"]})
 
 
 def test_an_even_series_has_both_ends(lab):

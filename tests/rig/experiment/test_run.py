@@ -300,3 +300,20 @@ def test_a_person_is_asked_and_believed_only_within_the_tolerance(lab):
     assert outcome.completed
     assert len([text for kind, text in twin.sink.events if kind == "prompt"]) == 3
     assert asked.count("set the normal force to 8 N +/- 3 N, then confirm") >= 5
+
+
+def test_guards_that_are_off_are_kept_in_the_log_and_shown(lab):
+    twin = lab["twin"]()
+    shown = []
+
+    class Screen:
+        def doing(self, what, *, done, of, left):
+            shown.append(what)
+
+        def judged(self, point, verdict, *, attempt):
+            pass
+
+    limits = {"silence": 1.5, "guards_off": ["silence"]}
+    assert twin.run(lab["plan"](limits=limits), watcher=Screen()).completed
+    assert ("guards off", "silence (1.5 s)") in twin.sink.events[:2]
+    assert all(what.endswith("[guards off: silence]") for what in shown)

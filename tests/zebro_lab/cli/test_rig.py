@@ -37,7 +37,9 @@ def _plan(tmp_path):
         "duration = 1.0": "duration = 0.3",
         "tare_duration = 10.0": "tare_duration = 0.3",
         "check_every = 62": "check_every = 0",
-        "silence = 0.25": "silence = 3.0",  # a busy machine may hold a process up
+        # A busy machine may hold a process up.
+        "silence = 0.25": "silence = 3.0\nreading_age = 3.0\nguards_off = "
+        '["silence", "reading_age", "speed_error_time"]',
         "speed_error_time = 0.2": "speed_error_time = 2.0",
     }.items():
         assert old in text
@@ -172,7 +174,7 @@ def test_a_rig_that_lost_friction_has_drifted(plan, tmp_path, monkeypatch):
     curve = source_curve()
     monkeypatch.setattr(rig_check, "read_slip", lambda path: curve)
     assert not any(found.drifted for found in check_runs([data], tmp_path))
-    slippery = replace(curve, values=curve.values * np.array([1.0, 1.0, 0.8, 1.0]))
+    slippery = replace(curve, values=curve.values * np.array([1.0, 1.0, 0.6, 1.0]))
     monkeypatch.setattr(rig_check, "read_slip", lambda path: slippery)
     assert all(found.drifted for found in check_runs([data], tmp_path))
     result = zebro_lab("check", data, "--slip", tmp_path)

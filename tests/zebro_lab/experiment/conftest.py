@@ -23,7 +23,9 @@ SMALL = {
     "friction = 0.15": "friction = 0.4",
     "slip_drift = 0.02": "slip_drift = 0.05",
     "friction_drift = 0.2": "friction_drift = 0.5",
-    "silence = 0.25": "silence = 3.0",  # a busy machine may hold a process up
+    # A busy machine may hold a process up.
+    "silence = 0.25": "silence = 3.0\nreading_age = 3.0\nguards_off = "
+    '["silence", "reading_age", "speed_error_time"]',
     "speed_error_time = 0.2": "speed_error_time = 2.0",
 }
 

@@ -306,7 +306,7 @@ def test_guards_that_are_off_are_kept_in_the_log_and_shown(lab):
     twin = lab["twin"]()
     shown = []
 
-    class Screen:
+    class Screen(NobodyWatches):
         def doing(self, what, *, done, of, left):
             shown.append(what)
 

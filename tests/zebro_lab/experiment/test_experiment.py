@@ -16,7 +16,7 @@ from rig.experiment.control import Control
 from rig.experiment.sink import SinkFailed
 from rig.links.serve import PortServer
 from rig.safety import StopCategory
-from rig.slip_rig.imperfections import RigImperfections
+from rig.slip_rig.imperfections import TYPICAL_RIG
 from rig.slip_rig.profile import load_rig_profile
 from rig.slip_rig.simulated import RigDynamics, simulated_rig
 from rig.slip_rig.simulated_board import SimulatedBoard
@@ -185,7 +185,7 @@ class Rig:
         rng = np.random.default_rng(0)
         self.data = data
         self.rig = simulated_rig(
-            plan=SweepPlan(), imperfections=RigImperfections(), dynamics=RigDynamics(), rng=rng
+            plan=SweepPlan(), imperfections=TYPICAL_RIG, dynamics=RigDynamics(), rng=rng
         )
         self.rig.load = 1e-3
         twin = SimulatedBoard(self.rig, profile=profile.board, rng=rng, watchdog=WATCHDOG)

@@ -2,7 +2,7 @@
 """Guards against sensors that lie: readings that are old, frozen, or of records in disorder."""
 
 from collections import deque
-from typing import Final
+from typing import Final, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,8 +10,20 @@ from numpy.typing import NDArray
 from rig.device import Counters
 from rig.errors import FrozenReading, StaleReading, UnreliableRecords
 
+Values: TypeAlias = NDArray[np.float64]
+
+TURNING: Final = 1.0
+"""Set-point above which a disc's sensors must move, and change of one which they must show [rad/s].
+"""
 FEWEST_SAME: Final = 8
 """Equal readings in a row below which a sensor is not frozen, however slow it is."""
+LARGE: Final = 3.0
+"""Smallest steps of a sensor that are more than its rounding."""
+LATEST_LOOKS: Final = 9
+SCATTER_TIME: Final = 1.0
+"""Time over which the share of looks with a large change is averaged [s]."""
+SINGLE_PRECISION: Final = 2.0**-22
+"""Relative step of what travels as a single-precision number [-]."""
 RESTART_WINDOW: Final = 10.0
 """Time within which a device may restart its numbering once [s]."""
 SHARE_WINDOW: Final = 0.25
@@ -48,43 +60,69 @@ class AgeGuard:
 
 
 class FrozenGuard:
-    """Makes a fault of a sensor that gives the same value, bit for bit, again and again.
+    """Makes a fault of a sensor that gives the same value, bit for bit, while discs turn.
 
-    A sensor at rest may do so by right, where its noise is below one count. So only readings count
-    that were taken while what is measured must change.
+    A sensor may do so by right: at rest, where its noise is below one count, and a simulated one
+    without noise at any steady speed. So what does not change is frozen only where it must change:
+    where it scattered by several of its smallest steps up to its last change, and a speed also
+    where its set-point has changed.
 
     Args:
         what: What is measured, for the message.
         limit: Longest time without any change [s].
+        follows: Whether it is the speed that is commanded.
     """
 
-    def __init__(self, what: str, *, limit: float) -> None:
+    def __init__(self, what: str, *, limit: float, follows: bool = False) -> None:
         self._what = what
         self._limit = limit
-        self._last: NDArray[np.float64] | None = None
-        self._changed = 0.0
+        self._follows = follows
+        self._last: Values | None = None
+        self._looked = self._changed = 0.0
         self._same = 0
+        self._wanted = self._steady = 0.0
+        self._smallest = self._share = np.zeros(0)
+        self._large: deque[NDArray[np.bool_]] = deque(maxlen=LATEST_LOOKS)
+        self._scattered = False
 
-    def check(self, values: NDArray[np.float64], *, turning: bool, now: float) -> None:
-        """Take the next values, in order.
+    def check(self, values: Values, *, wanted: float, now: float) -> None:
+        """Take what a look gave, in order.
 
         Args:
             values: What the channels of the sensor gave, shape (n, channels).
-            turning: Whether what is measured must change.
+            wanted: Set-point of the disc that makes the value change [rad/s].
             now: Host time [s].
 
         Raises:
             FrozenReading: None of the channels has changed for longer than the limit.
         """
-        if not turning:
+        if abs(wanted) <= TURNING:
             self._last = None
         elif len(values):
             if self._last is None or (values != self._last).any():
-                self._changed, self._same = now, 0
-            self._last = values[-1].copy()
+                self._changed, self._wanted, self._same = now, wanted, 0
+            if self._last is not None and wanted == self._steady:
+                self._learn(values, self._last, now)
+            self._last, self._steady, self._looked = values[-1].copy(), wanted, now
             self._same += len(values)
-            if now - self._changed > self._limit and self._same >= FEWEST_SAME:
+            ramped = self._follows and abs(wanted - self._wanted) > TURNING
+            must_change = self._scattered or ramped
+            if must_change and self._same >= FEWEST_SAME and now - self._changed > self._limit:
                 raise FrozenReading(self._what, value=now - self._changed, limit=self._limit)
+
+    def _learn(self, values: Values, last: Values, now: float) -> None:
+        """Take note of how the channels scatter at a steady set-point."""
+        steps = np.abs(np.diff(values, axis=0, prepend=last[None]))
+        if not len(self._smallest):
+            self._smallest, self._share = np.full(len(last), np.inf), np.zeros(len(last))
+        self._smallest = np.minimum(self._smallest, np.where(steps > 0, steps, np.inf).min(axis=0))
+        resolution = np.maximum(self._smallest, SINGLE_PRECISION * np.abs(last))
+        large = np.abs(values[-1] - last) >= LARGE * resolution
+        self._share += -np.expm1((self._looked - now) / SCATTER_TIME) * (large - self._share)
+        if steps.any():
+            self._large.append(large)
+            often = np.mean(self._large, axis=0) > 0.5
+            self._scattered = bool((often & (self._share > 0.5)).any())
 
 
 class RecordGuard:

@@ -27,7 +27,7 @@ from rig.safety import (
     StopRequested,
     require_within,
 )
-from rig.sensor_guards import AgeGuard, FrozenGuard, RecordGuard
+from rig.sensor_guards import TURNING, AgeGuard, FrozenGuard, RecordGuard
 from rig.slip_rig.profile import FURTHER_LIMITS
 
 PERIOD: Final = 0.004
@@ -40,9 +40,6 @@ FURTHER_NAMES: Final = {
     "temperature_celsius": "temperature of a drive or its motor",
 }
 DISCS: Final[tuple[str, ...]] = ("leg", "ground")
-TURNING: Final = 1.0
-"""Set-point above which a disc's sensors must move, and speed at which a disc that was proved to
-stand counts as turning again [rad/s]."""
 ROOM_PERIOD: Final = 0.1
 """Between two questions whether data can still be kept [s]."""
 
@@ -130,7 +127,8 @@ class Acquisition:
         self._records = {stream.name: RecordGuard(stream.name) for stream in bench.streams}
         self._frozen_forces = FrozenGuard("forces of the load cell", limit=limits.frozen)
         self._frozen_speeds = {
-            disc: FrozenGuard(f"speed of the {disc} disc", limit=limits.frozen) for disc in DISCS
+            disc: FrozenGuard(f"speed of the {disc} disc", limit=limits.frozen, follows=True)
+            for disc in DISCS
         }
         self._age = {name: AgeGuard(name, limit=limits.reading_age) for name in bench.watched}
         self._room_at = -float("inf")
@@ -325,14 +323,13 @@ class Acquisition:
     def _guard_motion(self, batch: Batch, now: float) -> None:
         """Check that both discs follow, and that sensors of what turns are not frozen."""
         forces = np.column_stack([batch.normal, batch.traction])
-        wanted = dict(zip(DISCS, self.wanted, strict=True))
-        self._frozen_forces.check(forces, turning=abs(wanted["leg"]) > TURNING, now=now)
-        for disc, speeds in batch.speeds.items():
-            self._frozen_speeds[disc].check(
-                speeds[:, None], turning=abs(wanted[disc]) > TURNING, now=now
-            )
+        leg, ground = self.wanted
+        self._frozen_forces.check(forces, wanted=leg, now=now)
+        for disc, speeds, wanted in (
+            ("leg", batch.speeds["leg"], leg),
+            ("ground", batch.speeds["ground"], ground),
+        ):
+            self._frozen_speeds[disc].check(speeds[:, None], wanted=wanted, now=now)
             if len(speeds):
                 narrower = TURNING if self._standing else math.inf
-                self._following[disc].check(
-                    float(speeds[-1]), wanted[disc], now=now, narrower=narrower
-                )
+                self._following[disc].check(float(speeds[-1]), wanted, now=now, narrower=narrower)

@@ -45,7 +45,7 @@ def turning(lab, monkeypatch, *, speed=12.0, slip=0.2, **limits):
 
         monkeypatch.setattr(kind, "__init__", keep)
     rig = simulated_rig(
-        plan=SweepPlan(), imperfections=RigImperfections(noise_sd0=0.01, speed_noise=0.01),
+        plan=SweepPlan(), imperfections=RigImperfections(),
         dynamics=RigDynamics(), rng=np.random.default_rng(0),
     )  # fmt: skip
     rig.load = 5.0

@@ -15,6 +15,7 @@ import can
 
 from rig.clock import SYSTEM_CLOCK, Clock
 from rig.errors import LinkError, RigTimeout
+from rig.exclusive import Exclusive, device_lock
 
 if TYPE_CHECKING:
     import serial
@@ -61,27 +62,37 @@ class CanLink:
         self._bitrate = bitrate
         self._clock = clock
         self._bus: can.BusABC | None = None
+        self._lock = _bus_lock(channel)
         self._retry_at = 0.0
         self._last_arrival = -math.inf
         self._empty_at = self._since = clock.now()
 
     def open(self) -> None:
-        """Open the bus.
+        """Open the bus, for this program alone.
 
         Raises:
+            InUse: Another program has it; the message says which.
             LinkError: There is no such bus, or no right to open it.
         """
+        if self._lock is not None:
+            self._lock.take()
         try:
             self._bus = self._connect()
             self._empty_at = self._since = self._clock.now()
         except (can.CanError, OSError, ValueError, ImportError) as problem:
+            self.close()
             raise LinkError(
                 f"cannot open CAN bus {self._channel}: {problem}; name it INTERFACE:CHANNEL, such "
                 "as socketcan:can0, and bring it up first"
             ) from problem
 
     def close(self) -> None:
-        """Close the bus; closing twice is no fault."""
+        """Close the bus and let others have it; closing twice is no fault."""
+        self._disconnect()
+        if self._lock is not None:
+            self._lock.release()
+
+    def _disconnect(self) -> None:
         bus, self._bus = self._bus, None
         if bus is not None:
             with contextlib.suppress(
@@ -212,7 +223,7 @@ class CanLink:
         return can.Bus(channel=channel, interface=interface, bitrate=self._bitrate)
 
     def _lose(self) -> None:
-        self.close()
+        self._disconnect()
         self._retry_at = self._clock.now() + RETRY_AFTER
 
     def _come_back(self, timeout: float) -> bool:
@@ -234,3 +245,14 @@ class CanLink:
 def _serial_port(bus: can.BusABC) -> "serial.Serial | None":
     """Return the port behind python-can's slcan; None of any other bus."""
     return getattr(bus, "serialPortOrig", None)
+
+
+def _bus_lock(channel: "str | can.BusABC") -> Exclusive | None:
+    """Return the lock of a bus; None where no other program can open it.
+
+    An adapter on a serial line is locked as that line, whatever it is opened as.
+    """
+    if isinstance(channel, can.BusABC) or channel.startswith("virtual:"):
+        return None
+    interface, _, place = channel.partition(":")
+    return device_lock(place.partition("@")[0] if interface == "slcan" else channel)

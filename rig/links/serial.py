@@ -11,6 +11,7 @@ import serial
 
 from rig.clock import SYSTEM_CLOCK, Clock
 from rig.errors import LinkError, RigTimeout
+from rig.exclusive import device_lock
 
 CHUNK: Final = 1 << 16
 MOST_AT_ONCE: Final = 1 << 18
@@ -42,26 +43,29 @@ class SerialLink:
         self._clock = clock
         self._serial: serial.Serial | None = None
         self._retry_at = 0.0
+        self._lock = device_lock(port)
 
     def open(self) -> None:
-        """Open the port.
+        """Open the port, for this program alone.
 
         Raises:
-            LinkError: There is no such port, it is taken, or there is no right to open it.
+            InUse: Another program has it; the message says which.
+            LinkError: There is no such port, or no right to open it.
         """
+        self._lock.take()
         try:
             self._serial = self._connect()
         except (OSError, ValueError) as problem:
+            self._lock.release()
             raise LinkError(
                 f"cannot open port {self.port}: {problem}; check the cable and the name, that no "
                 "other program has it, and on Linux that you are in the group that owns it"
             ) from problem
 
     def close(self) -> None:
-        """Close the port; closing twice is no fault."""
-        port, self._serial = self._serial, None
-        if port is not None:
-            port.close()
+        """Close the port and let others have it; closing twice is no fault."""
+        self._disconnect()
+        self._lock.release()
 
     def read(self, timeout: float) -> bytes:
         """Hand on all bytes there are, waiting at most `timeout` for the first [s]."""
@@ -104,8 +108,13 @@ class SerialLink:
         port.open()
         return port
 
+    def _disconnect(self) -> None:
+        port, self._serial = self._serial, None
+        if port is not None:
+            port.close()
+
     def _lose(self) -> None:
-        self.close()
+        self._disconnect()
         self._retry_at = self._clock.now() + RETRY_AFTER
 
     def _come_back(self, timeout: float) -> bool:

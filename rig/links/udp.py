@@ -8,6 +8,7 @@ from typing import Final
 
 from rig.clock import SYSTEM_CLOCK, Clock
 from rig.errors import LinkError
+from rig.exclusive import device_lock
 
 BUFFER: Final = 4 << 20
 """Seconds of a fast load cell, should the reader be held up [bytes]."""
@@ -44,14 +45,17 @@ class UdpLink:
         self._gather = gather
         self._clock = clock
         self._socket: socket.socket | None = None
+        self._lock = device_lock(f"udp:{self.address}")
         self._read_at = 0.0
 
     def open(self) -> None:
-        """Open the socket; the device need not be there yet.
+        """Open the socket, for this program alone; the device need not be there yet.
 
         Raises:
+            InUse: Another program hears this device; the message says which.
             LinkError: The name means nothing, or there is no network.
         """
+        self._lock.take()
         opened = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
         try:
             opened.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, BUFFER)
@@ -59,16 +63,18 @@ class UdpLink:
             opened.setblocking(False)
         except OSError as problem:
             opened.close()
+            self._lock.release()
             raise LinkError(
                 f"cannot reach {self.address}: {problem}; check the address and the network"
             ) from problem
         self._socket = opened
 
     def close(self) -> None:
-        """Close the socket; closing twice is no fault."""
+        """Close the socket and let others have the device; closing twice is no fault."""
         opened, self._socket = self._socket, None
         if opened is not None:
             opened.close()
+        self._lock.release()
 
     def read(self, timeout: float) -> list[bytes]:
         """Hand on the datagrams there are, waiting at most `timeout` for the first [s]."""

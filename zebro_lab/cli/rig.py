@@ -27,7 +27,8 @@ Seed = Annotated[int, typer.Option(help="Of a simulated rig: its load cell, nois
 
 EPILOG = """
 Ctrl-C: once a soft stop (holds, energised; resume goes on), twice a safe stop (ends at rest),
-three times an emergency stop (de-energised at once, latched). SIGTERM: a safe stop.
+three times an emergency stop (de-energised at once, latched). SIGTERM, a lost connection or closed
+terminal (SIGHUP, unless started with nohup), Ctrl-\\ and Ctrl-Z: a safe stop.
 
 Exit codes: 0 completed, 1 error, 2 usage, 3 completed but points were refused, 130 stopped.
 """
@@ -65,23 +66,34 @@ def run(
     from rig.experiment.control import Control
     from zebro_lab.cli.rig_screen import experiment_screen
     from zebro_lab.stages.rig_run import RigRunRequest, run_experiment
+    from zebro_lab.terminal import messages
 
     request = RigRunRequest(
         plan=file, rig=rig, data=data, resume=resume, reset_emergency=reset_emergency,
         fast=fast, seed=seed,
     )  # fmt: skip
     control = Control()
-    with experiment_screen(Console(highlight=False, soft_wrap=True), control) as screen:
-        outcome = run_experiment(request, screen, control)
-    typer.echo(
+    try:
+        with experiment_screen(Console(highlight=False, soft_wrap=True), control) as screen:
+            outcome = run_experiment(request, screen, control)
+    finally:
+        if control.stop.latched:
+            messages.say(
+                f"an emergency stop is latched in {data}; look after the rig, then go on with "
+                "--resume --reset-emergency",
+                err=True,
+            )
+    words = (
         f"{outcome.reason}: {outcome.finished} points finished, {len(outcome.refused)} refused, "
         f"{outcome.attempts} attempts; {data}"
     )
     if not outcome.completed:
-        typer.echo("go on with --resume", err=True)
-        raise typer.Exit(STOPPED)
-    if outcome.refused:
-        raise typer.Exit(REFUSED)
+        words += "\ngo on with --resume"
+    refused = REFUSED if outcome.refused else 0
+    code = refused if outcome.completed else STOPPED
+    if not messages.say(words):
+        messages.leave_at_once(code)
+    raise typer.Exit(code)
 
 
 @app.command()

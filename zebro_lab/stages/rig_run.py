@@ -94,10 +94,15 @@ def run_experiment(request: RigRunRequest, watcher: Watcher, control: Control) -
             ):
                 for notice in finished.notices:
                     folder.event("warning", notice)
-                return run_plan(
-                    plan, bench=rig.bench, load=load, sink=folder, control=control,
-                    watcher=watcher, clock=rig.clock, period=rig.period, done=finished.numbers,
-                )  # fmt: skip
+                try:
+                    return run_plan(
+                        plan, bench=rig.bench, load=load, sink=folder, control=control,
+                        watcher=watcher, clock=rig.clock, period=rig.period, done=finished.numbers,
+                    )  # fmt: skip
+                finally:
+                    stop = control.stop.pending
+                    if stop is not None and control.stop.latched:  # it may have come at the end
+                        folder.latch(stop.reason)
 
 
 def _description(plan: Plan, rig: RigAtHand) -> RunDescription:

@@ -498,3 +498,14 @@ def test_a_display_that_cannot_be_started_ends_no_run(tmp_path, given, monkeypat
     found = record(RecordRequest(tmp_path, "x", zebro="sim", duration=0.2), Watcher())
     assert found.manifest.exit_status == "completed"
     assert any("display cannot be started" in text for text in events(found.folder))
+
+
+@pytest.mark.xfail(strict=True, raises=AssertionError)
+@pytest.mark.parametrize("pause", [0.0, 0.05])
+def test_a_loop_that_is_held_up_ends_no_recording_late(tmp_path, given, pause):
+    given(Legs(), pause=pause)
+    watcher = Watcher()
+    looks = iter([0.0] * 4)
+    watcher.stop_reason = lambda: time.sleep(next(looks, 0.7))
+    found = record(RecordRequest(tmp_path, "x", zebro="sim", duration=0.5), watcher)
+    assert 0.48 < spans(found.folder)["legs"] < 0.65

@@ -112,8 +112,8 @@ def removed(place: Path, rng: np.random.Generator) -> tuple[float, float]:
     with recording(place, stderr=subprocess.PIPE) as process:
         folder = growing(place)
         time.sleep(rng.uniform(0.0, 1.0))
-        began = time.monotonic()
         shutil.rmtree(folder)
+        began = time.monotonic()
         if process.stderr is None:
             raise RuntimeError("the recording has no stderr")
         line = process.stderr.readline()

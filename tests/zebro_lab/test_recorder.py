@@ -288,7 +288,7 @@ def test_an_end_record_that_cannot_be_written_is_a_failure_that_says_so(tmp_path
     assert "No space left on device" in run.failure
 
 
-@pytest.mark.parametrize("starts", [0, 1])
+@pytest.mark.parametrize("starts", [0, 1, 2])
 def test_a_writer_that_cannot_be_started_leaves_nothing(tmp_path, monkeypatch, starts):
     left = [starts]
     start = threading.Thread.start

@@ -500,7 +500,6 @@ def test_a_display_that_cannot_be_started_ends_no_run(tmp_path, given, monkeypat
     assert any("display cannot be started" in text for text in events(found.folder))
 
 
-@pytest.mark.xfail(strict=True, raises=AssertionError)
 @pytest.mark.parametrize("pause", [0.0, 0.05])
 def test_a_loop_that_is_held_up_ends_no_recording_late(tmp_path, given, pause):
     given(Legs(), pause=pause)

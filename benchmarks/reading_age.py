@@ -7,7 +7,8 @@ A twin in a process of its own is driven through ramps by the guarded loop of `r
 full rate, while `calibrate-slip` fits in a third process. All clocks are the machine's monotonic
 one, so that the true age of each reading is known: the board and the load cell tell when a reading
 was taken, and the drives' twin sends the time in place of the position. The age counts from when
-the reading was due, so that what the twin itself is late by is in it. A CAN interface of the kernel
+the reading was due, so that what the twin itself is late by is in it, though it comes first in turn
+where that is allowed. A CAN interface of the kernel
 must be up, and nothing but the twin be on it.
 """
 
@@ -77,6 +78,10 @@ class StampedDrives(SimulatedDrives):
 
 def serve(link: str, channel: str) -> None:
     """Serve a twin until this process is ended; print where it is and when it was switched on."""
+    # It stands for hardware that waits for no processor: first in turn, where that is allowed.
+    with contextlib.suppress(PermissionError):
+        os.sched_setscheduler(0, os.SCHED_RR, os.sched_param(1))
+    sys.setswitchinterval(0.0005)
     rng = np.random.default_rng(0)
     rig = simulated_rig(
         plan=SweepPlan(), imperfections=TYPICAL_RIG, dynamics=RigDynamics(ripple=0.005), rng=rng
@@ -153,7 +158,7 @@ def fitting(wanted: bool) -> Iterator[None]:
         fit = "from zebro_lab.cli.calibrate import main; main()"
         once = f"{sys.executable} -c '{fit}' datasets/rig-sim --out {folder}/c$((++i))"
         process = subprocess.Popen(
-            ["bash", "-c", f"while true; do {once}; done"], cwd=PROJECT, start_new_session=True,
+            ["bash", "-c", f"while true; do {once}; done"], cwd=PROJECT, process_group=0,
             stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
         )  # fmt: skip
         try:

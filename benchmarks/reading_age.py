@@ -81,7 +81,6 @@ def serve(link: str, channel: str) -> None:
     # It stands for hardware that waits for no processor: first in turn, where that is allowed.
     with contextlib.suppress(PermissionError):
         os.sched_setscheduler(0, os.SCHED_RR, os.sched_param(1))
-    sys.setswitchinterval(0.0005)
     rng = np.random.default_rng(0)
     rig = simulated_rig(
         plan=SweepPlan(), imperfections=TYPICAL_RIG, dynamics=RigDynamics(ripple=0.005), rng=rng
@@ -115,12 +114,14 @@ def _serve_drives(
         near, far = (
             stack.enter_context(can.Bus(interface="virtual", channel="bench")) for _ in range(2)
         )
-        server = stack.enter_context(PortServer(SlcanAdapter(far, source="sim:rig")))
-        place = f"slcan:{server.port}"
+        adapter = PortServer(SlcanAdapter(far, source="sim:rig"))
+        adapter.plug_in()
+        stack.callback(adapter.unplug)
+        place, also = f"slcan:{adapter.port}", adapter._tick
     else:
         interface, _, name = channel.partition(":")
         near = stack.enter_context(can.Bus(interface=interface, channel=name))
-        place = channel
+        place, also = channel, None
     drives = StampedDrives(rig, near, profile=profile.drives, watchdog=WATCHDOG)
     cell = stack.enter_context(
         SimulatedLoadCell(rig, profile=profile.load_cell, rng=np.random.default_rng(1))
@@ -128,6 +129,8 @@ def _serve_drives(
 
     def tick(now: float) -> None:
         drives.poll(now)
+        if also is not None:  # in the same thread: two would wait for one another
+            also(now)
         cell.poll(now)
 
     stack.enter_context(Ticker(tick))

@@ -237,7 +237,10 @@ class Acquisition:
         self.aim(0.0, None)
         self.until(lambda _: not self.ramping, float("inf"))
         try:
-            prove_rest(self.look, self._limits.rest_speed, longest=longest, clock=self._clock)
+            prove_rest(
+                self.look, self._limits.rest_speed, longest=longest, clock=self._clock,
+                oldest=self._limits.reading_age,
+            )  # fmt: skip
         except NotAtRest:
             self._bench.disarm()
             raise

@@ -3,7 +3,6 @@
 
 import csv
 import io
-import json
 import tomllib
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
@@ -17,7 +16,8 @@ from model.slip.curve import SlipCurve
 from model.slip.definition import SlipDefinition
 from model.slip.laws import slip_law
 from zebro_lab.errors import DataError
-from zebro_lab.provenance import file_hash, software
+from zebro_lab.files.replacement import settle
+from zebro_lab.files.result_folder import ResultKind
 
 if TYPE_CHECKING:  # the fit's own parts take seconds to import, and a law is read in most commands
     from model.bayes.convergence import Convergence
@@ -30,15 +30,14 @@ if TYPE_CHECKING:  # the fit's own parts take seconds to import, and a law is re
 SCHEMA = 1
 SLIP_TOML = "slip.toml"
 PICTURES = ("curves", "surface", "corner", "traces", "residuals")
-OWNED = (
-    "slip.toml", "summary.csv", "posterior.nc", "manifest.json", *(f"{n}.png" for n in PICTURES),
-    "walks/*",
-)  # fmt: skip
-"""What a calibration writes; an earlier run's files of these names are replaced.
-
-What walks said was fitted with the earlier run's law, and goes.
-"""
-
+CALIBRATION = ResultKind(
+    "calibration",
+    "calibrate-slip",
+    (SLIP_TOML, "summary.csv", "posterior.nc", *(f"{name}.png" for name in PICTURES)),
+    schema=SCHEMA,
+    inside={"walks": "walks"},
+)
+"""What walks said lies inside: it was fitted with the earlier law, and goes with it."""
 
 SUMMARY_COLUMNS = (
     "parameter", "symbol", "unit", "mean", "sd", "q05", "median", "q95", "prior", "contraction",
@@ -106,30 +105,6 @@ def write_tables(folder: Path, calibration: Calibration, *, inputs: Mapping[str,
     _write_posterior(folder / "posterior.nc", calibration)
 
 
-def write_manifest(
-    folder: Path, *, inputs: Mapping[str, str], settings: Mapping[str, object], source: str
-) -> None:
-    """Write `manifest.json`: hashes of what was read and of what was written, versions, settings.
-
-    Args:
-        folder: Folder with everything else in it already.
-        inputs: SHA-256 of each file that was read.
-        settings: What the fit was asked to do.
-        source: Where the data come from.
-    """
-    outputs = {path.name: file_hash(path) for path in sorted(folder.iterdir()) if path.is_file()}
-    content = {
-        "schema": SCHEMA,
-        "kind": "calibration",
-        "source": source,
-        "settings": settings,
-        "inputs": inputs,
-        "outputs": outputs,
-        "software": software(),
-    }
-    (folder / "manifest.json").write_text(json.dumps(content, indent=2) + "\n")
-
-
 def read_slip(path: Path) -> SlipCurve:
     """Read the slip curve of a calibration.
 
@@ -139,6 +114,7 @@ def read_slip(path: Path) -> SlipCurve:
     Raises:
         DataError: It is missing, damaged, or of a later schema.
     """
+    settle(path)
     file = path / SLIP_TOML if path.is_dir() else path
     try:
         content = tomllib.loads(file.read_text())

@@ -94,6 +94,10 @@ class AlreadyExists(ZebroLabError, FileExistsError):
     """Writing would destroy what is already there."""
 
 
+class NotWritten(ZebroLabError, OSError):
+    """A result cannot be written: the file system refuses."""
+
+
 class RecordingError(ZebroLabError, OSError):
     """A run cannot be recorded, or could not be recorded to its end."""
 

@@ -11,6 +11,7 @@ from typing import Any
 
 from zebro_lab.calibration_folder import SLIP_TOML
 from zebro_lab.errors import DataError, NotFound
+from zebro_lab.files.replacement import settle
 from zebro_lab.report_pictures import VALIDATION, place_of
 from zebro_lab.run_folder import MANIFEST_FILE, find_runs
 from zebro_lab.walk_folder import PREDICTION
@@ -131,8 +132,11 @@ def find_sources(data: Path, *, calibration: Path) -> Sources:
         NotFound: There is no such folder, or nothing in it to report on.
         DataError: A manifest is damaged.
     """
+    for name in WALK_PARTS:
+        settle(data / name)
     found = find_runs(data)
     own = [name for name in WALK_PARTS if (data / name / MANIFEST).is_file()]
+    settle(calibration)
     slip = _part(CALIBRATION, calibration, data)
     walks = _part(WALKS, calibration / WALKS, data)
     walks = None if walks.missing else walks
@@ -155,6 +159,7 @@ def _run(folder: Path) -> Run:
 
 
 def _part(name: str, folder: Path, data: Path) -> Part:
+    settle(folder)
     maker = MAKERS[name].format(run=data, data=data, folder=folder)
     if not (folder / MANIFEST).is_file():
         return Part(name, folder, {}, (), maker)

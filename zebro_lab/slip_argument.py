@@ -13,6 +13,7 @@ from model.slip.definition import SlipDefinition
 from model.walk.traction import ToeLaw, TractionTable, VelocityCoulomb, curve_table
 from zebro_lab.calibration_folder import SLIP_TOML, read_slip
 from zebro_lab.errors import NotFound, SettingsError
+from zebro_lab.files.replacement import settle
 from zebro_lab.walks_folder import StoredWalks, read_walks_beside
 
 if TYPE_CHECKING:
@@ -114,7 +115,7 @@ def parse_slip(text: str, *, with_walks: bool = True) -> Slip:
     name, *numbers = text.split(":")
     if name == COULOMB:
         return Slip(text, _coulomb(text, numbers), source="assumed")
-    path = Path(text)
+    path = settle(Path(text))
     if not path.exists():
         raise NotFound(f"--slip: '{text}' is no file or folder; expected {EXPECTED_SLIP}")
     return _calibrated(text, path, with_walks=with_walks)

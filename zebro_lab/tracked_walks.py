@@ -12,6 +12,7 @@ from model.bayes.walk_tilt import FEWEST, TIME, TiltSeen
 from model.gait.quantised import QuantisedLog
 from model.gait.reference import SampledReference
 from zebro_lab.errors import DataError, NotFound, SettingsError
+from zebro_lab.files.replacement import settle
 from zebro_lab.leg_angles import angles_from
 from zebro_lab.leg_log import read_leg_log
 from zebro_lab.recorded_legs import is_recorded
@@ -110,7 +111,7 @@ def read_walk_on_file(
             little of it lies within the log's time.
     """
     log_file = _legs_of(folder)
-    track_file = folder / TRACK / TRACK_CSV
+    track_file = settle(folder / TRACK) / TRACK_CSV
     if not track_file.is_file():
         raise NotFound(
             f"{folder}: a walk without a track; zebro-lab track --out {folder / TRACK} makes one"

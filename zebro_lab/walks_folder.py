@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: MIT
 """The sole owner of the format of `walks/` in a calibration: what tracked walks said."""
 
-import json
 import tomllib
 import zipfile
 from collections.abc import Mapping, Sequence
@@ -15,19 +14,21 @@ from model.bayes.walk_posterior import WalkPosterior
 from model.bayes.walk_prior import UNITS, WRONG, WalkPrior, WrongLeg, all_cases
 from model.errors import ModelError
 from model.predict import ModelSpread
-from zebro_lab.atomic import atomic_folder
 from zebro_lab.errors import DataError
-from zebro_lab.provenance import file_hash, file_hashes, software
+from zebro_lab.files.replacement import settle
+from zebro_lab.files.result_folder import MANIFEST, ResultKind, result_folder
+from zebro_lab.provenance import file_hash, file_hashes
 from zebro_lab.robot_file import RobotFile
 
 if TYPE_CHECKING:
     from zebro_lab.validation import RunJudged
 
 SCHEMA = 2  # 1 counted the fall from another place
-KIND = "walks"
 FOLDER = "walks"
-WALKS_TOML, DRAWS, LEFT_OUT, MANIFEST = "walks.toml", "draws.npz", "left_out.csv", "manifest.json"
-OWNED = (WALKS_TOML, DRAWS, LEFT_OUT, MANIFEST, "*.png")
+WALKS_TOML, DRAWS, LEFT_OUT = "walks.toml", "draws.npz", "left_out.csv"
+WALKS = ResultKind(
+    "walks", "calibrate-slip --walks", (WALKS_TOML, DRAWS, LEFT_OUT, "*.png"), SCHEMA
+)
 
 
 @dataclass(frozen=True)
@@ -101,12 +102,21 @@ def write_walks(calibration: Path, fitted: WalksToWrite) -> Path:
     Returns:
         The folder.
     """
-    from zebro_lab.validation_folder import metrics, plain_json
+    from zebro_lab.validation_folder import metrics
     from zebro_lab.walks_pictures import draw_walks
 
     folder = calibration / FOLDER
-    with atomic_folder(folder, replaces=OWNED, marker=MANIFEST) as draft:
-        inputs = file_hashes(dict.fromkeys(fitted.inputs))
+    inputs = file_hashes(dict.fromkeys(fitted.inputs))
+    content = {
+        "source": fitted.source,
+        "settings": fitted.settings,
+        "left_out": {
+            run.name: {row.name: metrics(row) for row in run.rows} for run in fitted.left_out
+        },
+        "notes": list(fitted.notes),
+        "inputs": inputs,
+    }
+    with result_folder(folder, WALKS, content=content) as draft:
         (draft / WALKS_TOML).write_text(_walks_toml(fitted, inputs), encoding="utf-8")
         posterior = fitted.posterior
         np.savez_compressed(
@@ -116,20 +126,6 @@ def write_walks(calibration: Path, fitted: WalksToWrite) -> Path:
         )  # fmt: skip
         _write_left_out(draft / LEFT_OUT, fitted.left_out)
         draw_walks(draft, fitted.posterior, fitted.left_out, simulated="sim:" in fitted.source)
-        content = {
-            "schema": SCHEMA,
-            "kind": KIND,
-            "source": fitted.source,
-            "settings": fitted.settings,
-            "left_out": {
-                run.name: {row.name: metrics(row) for row in run.rows} for run in fitted.left_out
-            },
-            "notes": list(fitted.notes),
-            "inputs": inputs,
-            "outputs": {p.name: file_hash(p) for p in sorted(draft.iterdir()) if p.is_file()},
-            "software": software(),
-        }
-        (draft / MANIFEST).write_text(json.dumps(plain_json(content), indent=2) + "\n")
     return folder
 
 
@@ -139,7 +135,7 @@ def read_walks_beside(slip_toml: Path) -> StoredWalks | None:
     Raises:
         DataError: It is damaged, of a later schema, or was fitted with another slip law.
     """
-    folder = slip_toml.parent / FOLDER
+    folder = settle(slip_toml.parent / FOLDER)
     file = folder / WALKS_TOML
     if not (folder / MANIFEST).is_file() or not file.is_file():
         return None

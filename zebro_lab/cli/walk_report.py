@@ -13,7 +13,8 @@ from rich.text import Text
 
 from model.gait import CyclicReference
 from zebro_lab.cli.progress import progress_bar
-from zebro_lab.walk_folder import OWNED
+from zebro_lab.files.result_folder import MANIFEST
+from zebro_lab.walk_folder import FILES
 from zebro_lab.walk_summary import WalkSummary, summarise
 from zebro_lab.walking import ModelRequest, Walked, WalkStopped, Watcher
 
@@ -59,7 +60,7 @@ def print_walk(console: Console, walked: Walked, out: Path) -> None:
         console.print(Text(line))
     console.print(Text(f"\nwritten to {out}:"))
     for path in sorted(out.iterdir()):
-        if path.name in OWNED:
+        if path.name in (*FILES, MANIFEST):
             console.print(Text(f"  {path}"))
 
 

@@ -9,6 +9,8 @@ import numpy as np
 
 from model.errors import InsufficientData
 from zebro_lab.errors import DataError, NotFound, SettingsError
+from zebro_lab.files.replacement import settle
+from zebro_lab.files.result_folder import require_replaceable
 from zebro_lab.provenance import file_hashes
 from zebro_lab.recorded_legs import is_recorded
 from zebro_lab.recorded_tilt import read_recorded_tilt
@@ -23,7 +25,7 @@ from zebro_lab.validation import (
     judge_tilt,
     read_prediction,
 )
-from zebro_lab.validation_folder import Summary, summarise_runs, write_validation
+from zebro_lab.validation_folder import VALIDATION, Summary, summarise_runs, write_validation
 from zebro_lab.validation_pictures import Judgement
 from zebro_lab.walk_folder import PATH_CSV, PREDICTION
 from zebro_lab.walking import Watcher
@@ -71,7 +73,7 @@ def pairs_of_run(run: Path) -> tuple[Path, Path]:
     Raises:
         NotFound: One of them is missing.
     """
-    prediction, track = run / PREDICTION, run / TRACK
+    prediction, track = settle(run / PREDICTION), settle(run / TRACK)
     if not (prediction / PATH_CSV).is_file():
         raise NotFound(f"{prediction}: no prediction; predict {run} --out {prediction} makes it")
     if not (track / TRACK_CSV).is_file():
@@ -88,6 +90,8 @@ def validate(request: ValidateRequest, watcher: Watcher) -> Validated:
     """
     if not request.pairs:
         raise SettingsError("missing: nothing to validate", key="--predicted, --track")
+    inputs = [path for pair in request.pairs for path in pair]
+    require_replaceable(request.out, VALIDATION, inputs=inputs)
     rng = np.random.default_rng(request.seed)
     judgements, files, sources = [], [], []
     names = _names([predicted for predicted, _ in request.pairs])

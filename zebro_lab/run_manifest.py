@@ -2,7 +2,7 @@
 """What `run.json` of a run folder says: read, checked and written here alone."""
 
 import json
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
@@ -42,6 +42,8 @@ class RunManifest:
         streams: Samples recorded, by topic.
         log_sha256: SHA-256 of `log.mcap`; None where the recorder could not close it.
         excluded: {"why": reason} where the run is to be left out of every calibration.
+        exclusions: What was excluded and undone, in order: {"did": "excluded" or "undone", "why":
+            reason, "at": time}.
         profiles: Name of each device's profile, by stream; the profile itself lies in the folder.
         sources: Source of each stream.
         counters: What happened to each stream: received, lost, damaged and so on, and how many the
@@ -71,6 +73,7 @@ class RunManifest:
     streams: Mapping[str, int]
     log_sha256: str | None = None
     excluded: Mapping[str, str] | None = None
+    exclusions: Sequence[Mapping[str, str]] = ()
     profiles: Mapping[str, str] = field(default_factory=dict)
     sources: Mapping[str, str] = field(default_factory=dict)
     counters: Mapping[str, Mapping[str, int]] = field(default_factory=dict)
@@ -125,9 +128,11 @@ _FIELD_TYPES: Mapping[str, type] = {
     "stop": str, "exit_status": str, "software": dict, "constants": dict, "streams": dict,
     "log_sha256": str, "excluded": dict, "profiles": dict, "sources": dict, "counters": dict,
     "clocks": dict, "duration": dict, "robot": str, "truth": dict, "inputs": dict, "point": dict,
+    "exclusions": list,
 }  # fmt: skip
 _ADDED = (
-    "profiles", "sources", "counters", "clocks", "duration", "robot", "truth", "inputs", "point",
+    "exclusions", "profiles", "sources", "counters", "clocks", "duration", "robot", "truth",
+    "inputs", "point",
 )  # fmt: skip
 _OPTIONAL = {"stop", "log_sha256", "excluded", *_ADDED}
 
@@ -147,6 +152,9 @@ def _checked(document: Mapping[str, Any], file: Path) -> RunManifest:
             raise DataError(
                 f"'{name}' is {document.get(name)!r}, expected {expected.__name__}", file=file
             )
+    for each in document.get("exclusions") or ():
+        if not (isinstance(each, dict) and {"did", "why"} <= each.keys()):
+            raise DataError(f"'exclusions' holds {each!r}, expected did and why", file=file)
     if document["kind"] not in KINDS:
         raise DataError(f"unknown kind '{document['kind']}'; {nearest(document['kind'], KINDS)}",
                         file=file)  # fmt: skip

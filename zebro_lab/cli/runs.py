@@ -18,7 +18,8 @@ class ExportFormat(StrEnum):
 
 DataDir = Annotated[Path, typer.Argument(metavar="DATA", help="Folder of run folders.")]
 RunFolder = Annotated[Path, typer.Argument(metavar="RUN", help="Run folder.")]
-Why = Annotated[str, typer.Option(help="Reason, kept with the run.")]
+Why = Annotated[str | None, typer.Option(help="Reason, kept with the run and those of before.")]
+Undo = Annotated[bool, typer.Option("--undo", help="Take the run in again.")]
 
 To = Annotated[
     ExportFormat,
@@ -42,10 +43,16 @@ def runs(data: DataDir) -> None:
     typer.echo(f"{len(listed)} run{'s' * (len(listed) != 1)} in {data}")
 
 
-def exclude(run: RunFolder, why: Why) -> None:
-    """Leave a run out of every calibration, and keep it."""
-    from zebro_lab.run_folder import exclude_run
+def exclude(run: RunFolder, why: Why = None, undo: Undo = False) -> None:
+    """Leave a run out of every calibration, and keep it; or take it in again."""
+    from zebro_lab.run_exclusion import exclude_run, take_in_again
 
+    if undo:
+        take_in_again(run, why=why)
+        typer.echo(f"{run.name} counts again from now on")
+        return
+    if why is None:
+        raise typer.BadParameter("needed: the reason, kept with the run", param_hint="'--why'")
     manifest = exclude_run(run, why=why)
     typer.echo(f"{run.name} is left out from now on: {(manifest.excluded or {})['why']}")
 

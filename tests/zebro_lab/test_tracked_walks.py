@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Walks that are to inform a fit: what is read, and every way in which one cannot."""
 
+import shutil
 from pathlib import Path
 
 import numpy as np
@@ -176,3 +177,13 @@ def test_the_command_needs_rig_data_or_walks(monkeypatch, capsys):
         run_app(app)
     assert ended.value.code == 2
     assert "needed: rig data" in capsys.readouterr().err
+
+
+@pytest.mark.xfail(strict=True, raises=AssertionError)
+def test_a_walk_under_two_names_counts_once_and_is_told(tmp_path):
+    one = write_walk(tmp_path / "one")
+    copy = shutil.copytree(one, tmp_path / "copy")
+    (copy / "notes.txt").write_text("from the other disk")
+    found = read_walks([one, copy, write_walk(tmp_path / "other", begin=7.0, every=1.5)])
+    assert [walk.name for walk in found] == ["one", "other"]
+    assert any("copy" in note and "once" in note for note in found[0].notes)

@@ -166,8 +166,8 @@ def test_missing_and_foreign_files_are_named(tmp_path):
 
 
 def test_many_run_folders_are_as_many_runs_without_the_excluded(tmp_path):
-    for label in "abc":
-        make_run(tmp_path, label=label)
+    for n, label in enumerate("abc", 200):
+        make_run(tmp_path, n, label=label)
     bad = tmp_path / "20260304T050607Z_slip-rig_b"
     edit(bad, excluded={"why": "belt came off"})
     data = read_rig_data([tmp_path])

@@ -293,7 +293,6 @@ def test_a_track_of_two_poses_is_refused(walk, tmp_path):
         validate(ValidateRequest(pair, tmp_path / "out"), Nobody())
 
 
-@pytest.mark.xfail(strict=True, raises=AssertionError)
 def test_a_run_under_two_names_is_averaged_once_and_told(walk, tmp_path):
     copy = shutil.copytree(walk, tmp_path / "copy")
     pairs = tuple(pairs_of_run(folder) for folder in (walk, copy))

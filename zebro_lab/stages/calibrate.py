@@ -20,7 +20,14 @@ from model.bayes.estimate import (
     estimate,
     thin_draws,
 )
-from model.bayes.fit import Comparison, PreparedFit, compare, prepare_fit, scaled_load_cell
+from model.bayes.fit import (
+    Comparison,
+    PreparedFit,
+    breakdown_told,
+    compare,
+    prepare_fit,
+    scaled_load_cell,
+)
 from model.bayes.laplace import importance_draws
 from model.bayes.posterior import LoadCell
 from model.bayes.preliminary import BlockChoice
@@ -160,10 +167,11 @@ def calibrate(request: CalibrationRequest, watcher: Watcher) -> tuple[Calibratio
     fit, comparison = _choose_law(request, data.samples, cell, rng, watcher)
     began = time.monotonic()
     judging = rng.spawn(1)[0]  # its draws are the same whether or not the fit was resumed
-    chains, convergence = _sample(request, fit, earlier, mark, rng, watcher)
-    seconds = time.monotonic() - began
-    watcher.step("judging", None)
-    calibration = _conclude(fit, comparison, chains, convergence, data, seconds, judging)
+    with breakdown_told(data.samples, fit.posterior.law):
+        chains, convergence = _sample(request, fit, earlier, mark, rng, watcher)
+        seconds = time.monotonic() - began
+        watcher.step("judging", None)
+        calibration = _conclude(fit, comparison, chains, convergence, data, seconds, judging)
     watcher.step("drawing", None)
     _write(request, calibration, inputs)
     if convergence.converged:

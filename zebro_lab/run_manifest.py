@@ -4,6 +4,7 @@
 import json
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field
+from datetime import UTC, datetime
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any
@@ -130,6 +131,12 @@ _FIELD_TYPES: Mapping[str, type] = {
     "clocks": dict, "duration": dict, "robot": str, "truth": dict, "inputs": dict, "point": dict,
     "exclusions": list,
 }  # fmt: skip
+_ENTRY_TYPES: Mapping[str, tuple[type, ...]] = {
+    "software": (str,), "constants": (int, float), "streams": (int,), "excluded": (str,),
+    "profiles": (str,), "sources": (str,), "counters": (dict,), "clocks": (dict,),
+    "duration": (int, float), "inputs": (str,),
+}  # fmt: skip
+_NUMBERS = ("counters", "clocks")  # tables of tables of numbers
 _ADDED = (
     "exclusions", "profiles", "sources", "counters", "clocks", "duration", "robot", "truth",
     "inputs", "point",
@@ -158,6 +165,42 @@ def _checked(document: Mapping[str, Any], file: Path) -> RunManifest:
     if document["kind"] not in KINDS:
         raise DataError(f"unknown kind '{document['kind']}'; {nearest(document['kind'], KINDS)}",
                         file=file)  # fmt: skip
+    _require_entries(document, file)
+    for name in ("start", "stop"):
+        if document.get(name) is not None:
+            _require_moment(name, document[name], file)
     known: dict[str, Any] = {"stop": None}
     known |= {name: document[name] for name in _FIELD_TYPES if document.get(name) is not None}
     return RunManifest(**known)
+
+
+def _require_entries(document: Mapping[str, Any], file: Path) -> None:
+    for name, kinds in _ENTRY_TYPES.items():
+        for key, value in (document.get(name) or {}).items():
+            _require_entry(name, key, value, kinds, file)
+            if name in _NUMBERS:
+                for inner, number in value.items():
+                    _require_entry(name, f"{key}.{inner}", number, (int, float), file)
+
+
+def _require_entry(name: str, key: str, value: object, kinds: tuple[type, ...], file: Path) -> None:
+    # An angle or a count that could not be told is null in JSON.
+    if value is None and kinds != (str,) and kinds != (dict,):
+        return
+    if not isinstance(value, kinds) or isinstance(value, bool):
+        expected = " or ".join(kind.__name__ for kind in kinds)
+        raise DataError(f"'{name}' has {key!r}: {value!r}, expected {expected}", file=file)
+
+
+def _require_moment(name: str, text: str, file: Path) -> None:
+    try:
+        moment = datetime.fromisoformat(text)
+        known = moment.tzinfo is not None and moment.astimezone(UTC)
+    except (ValueError, OverflowError):
+        known = None
+    if not known:
+        raise DataError(
+            f"'{name}' is {text!r}, expected a moment with its time zone, such as "
+            "2026-01-01T12:00:00+00:00",
+            file=file,
+        )

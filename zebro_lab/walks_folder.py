@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: MIT
 """The sole owner of the format of `walks/` in a calibration: what tracked walks said."""
 
-import tomllib
-import zipfile
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
@@ -12,9 +10,10 @@ import numpy as np
 
 from model.bayes.walk_posterior import WalkPosterior
 from model.bayes.walk_prior import UNITS, WRONG, WalkPrior, WrongLeg, all_cases
-from model.errors import ModelError
 from model.predict import ModelSpread
 from zebro_lab.errors import DataError
+from zebro_lab.files.documents import read_toml_document
+from zebro_lab.files.opening import parsing
 from zebro_lab.files.replacement import settle
 from zebro_lab.files.result_folder import MANIFEST, ResultKind, result_folder
 from zebro_lab.provenance import file_hash, file_hashes
@@ -26,6 +25,7 @@ if TYPE_CHECKING:
 SCHEMA = 2  # 1 counted the fall from another place
 FOLDER = "walks"
 WALKS_TOML, DRAWS, LEFT_OUT = "walks.toml", "draws.npz", "left_out.csv"
+_ANEW = "fit the walks again with calibrate-slip --walks"
 WALKS = ResultKind(
     "walks", "calibrate-slip --walks", (WALKS_TOML, DRAWS, LEFT_OUT, "*.png"), SCHEMA
 )
@@ -139,12 +139,13 @@ def read_walks_beside(slip_toml: Path) -> StoredWalks | None:
     file = folder / WALKS_TOML
     if not (folder / MANIFEST).is_file() or not file.is_file():
         return None
-    try:
-        content = tomllib.loads(file.read_text(encoding="utf-8"))
+    remedy = f"{_ANEW}, or delete {folder}"
+    content = read_toml_document(file, remedy=remedy, fault=DataError)
+    with parsing(file, "be read", advice=remedy):
         if content["schema"] != SCHEMA:
             raise DataError(
-                f"has schema {content['schema']}, this version reads {SCHEMA}; fit the walks again "
-                "with calibrate-slip --walks, or update zebro-lab where it is the older",
+                f"has schema {content['schema']}, this version reads {SCHEMA}; {_ANEW}, or update "
+                "zebro-lab where it is the older",
                 file=file,
             )
         _require_same_slip(content, slip_toml, file)
@@ -156,16 +157,6 @@ def read_walks_beside(slip_toml: Path) -> StoredWalks | None:
             tuple(each["leg_log"] for each in content["walk"]),
             folder,
         )
-    except (
-        OSError, KeyError, TypeError, ValueError, IndexError, zipfile.BadZipFile, ModelError,
-    ) as error:  # fmt: skip
-        if isinstance(error, DataError):
-            raise
-        raise DataError(
-            f"cannot be read ({type(error).__name__}: {error}); fit the walks again with "
-            f"calibrate-slip --walks, or delete {folder}",
-            file=file,
-        ) from error
 
 
 def _require_same_slip(content: Mapping[str, Any], slip_toml: Path, file: Path) -> None:

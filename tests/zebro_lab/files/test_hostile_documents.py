@@ -79,12 +79,10 @@ def run_json(folder: Path, text: str) -> Path:
 
 
 @pytest.mark.parametrize("name", TOML_READERS)
-@pytest.mark.xfail(strict=True, raises=RecursionError)
 def test_deeply_nested_toml_is_refused(name, tmp_path):
     one_line(TOML_READERS[name], toml(tmp_path, "a = " + "[" * DEEP))
 
 
-@pytest.mark.xfail(strict=True, raises=RecursionError)
 def test_deeply_nested_json_is_refused(tmp_path):
     text = json.dumps(RUN)[:-1] + ', "truth": {"a": ' + "[" * DEEP + "]" * DEEP + "}}"
     one_line(read_manifest, run_json(tmp_path, text))
@@ -92,14 +90,12 @@ def test_deeply_nested_json_is_refused(tmp_path):
 
 @pytest.mark.parametrize("digits", ["9" * 400, "9" * 5000, "0x" + "f" * 6000])
 @pytest.mark.parametrize(("reader", "key"), [(read_robot_file, "mass"), (read_camera_file, "size")])
-@pytest.mark.xfail(strict=True, raises=(OverflowError, ValueError))
 def test_an_integer_that_toml_cannot_hold_is_refused(reader, key, digits, tmp_path):
     value = f"[{digits}, 5]" if key == "size" else digits
     focal = "focal = [1, 1]\ncentre = [1, 1]\n" if key == "size" else ""
     one_line(reader, toml(tmp_path, f"{key} = {value}\n{focal}"))
 
 
-@pytest.mark.xfail(strict=True, raises=OverflowError)
 def test_an_integer_beyond_64_bits_in_json_is_refused(tmp_path):
     text = json.dumps(RUN).replace("0.035", "9" * 400)
     one_line(lambda folder: float(read_manifest(folder).constants["radius_leg"]),
@@ -109,7 +105,6 @@ def test_an_integer_beyond_64_bits_in_json_is_refused(tmp_path):
 @pytest.mark.parametrize(
     "start", ["yesterday", "", "2026-01-01", "2026-01-01T00:00:00", "9999-99-99T99:99:99+00:00"]
 )
-@pytest.mark.xfail(strict=True, raises=pytest.fail.Exception)
 def test_a_start_that_is_no_moment_with_a_time_zone_is_refused(start, tmp_path):
     assert "'start'" in one_line(
         read_manifest, run_json(tmp_path, json.dumps(RUN | {"start": start}))
@@ -131,7 +126,6 @@ def test_a_start_that_is_no_moment_with_a_time_zone_is_refused(start, tmp_path):
     ],
     ids=lambda change: next(iter(change)),
 )
-@pytest.mark.xfail(strict=True, raises=pytest.fail.Exception)
 def test_a_value_of_another_type_in_run_json_is_refused(change, tmp_path):
     assert f"'{next(iter(change))}'" in one_line(
         read_manifest, run_json(tmp_path, json.dumps(RUN | change))
@@ -141,12 +135,10 @@ def test_a_value_of_another_type_in_run_json_is_refused(change, tmp_path):
 @pytest.mark.parametrize(
     "more", ["verdict = 5", "verdict = [1]", 'verdict = "fine"', "verdict = { headline = [1] }"]
 )
-@pytest.mark.xfail(strict=True, raises=(AttributeError, pytest.fail.Exception))
 def test_a_verdict_that_is_no_table_is_refused(more, tmp_path):
     one_line(lambda file: parse_slip(str(file)), toml(tmp_path, SLIP.format(more=more)))
 
 
-@pytest.mark.xfail(strict=True, raises=pytest.fail.Exception)
 def test_slip_toml_is_read_once(tmp_path, monkeypatch):
     import tomllib
 
@@ -158,8 +150,7 @@ def test_slip_toml_is_read_once(tmp_path, monkeypatch):
         pytest.fail(f"parsed {len(parsed)} times")
 
 
-@pytest.mark.parametrize("name", [name for name in TOML_READERS if name != "profile"])
-@pytest.mark.xfail(strict=True, raises=pytest.fail.Exception)
+@pytest.mark.parametrize("name", TOML_READERS)
 def test_a_fifo_named_as_a_settings_file_does_not_hang(name, tmp_path):
     fifo = tmp_path / "x.toml"
     os.mkfifo(fifo)
@@ -181,7 +172,6 @@ def test_a_fifo_named_as_a_settings_file_does_not_hang(name, tmp_path):
 
 
 @pytest.mark.parametrize("name", TOML_READERS)
-@pytest.mark.xfail(strict=True, raises=AssertionError)
 def test_a_settings_file_of_many_megabytes_is_refused_by_its_size(name, tmp_path):
     file = tmp_path / "x.toml"
     with file.open("wb") as sparse:

@@ -143,7 +143,7 @@ def read_slip_file(path: Path) -> SlipFile:
         content = read_toml_document(file, remedy=_ADVICE, fault=DataError)
     except NotFound as error:
         raise DataError(f"is no slip calibration (no such file); {_ADVICE}", file=file) from error
-    with parsing(file, "be read as a slip calibration", advice=_ADVICE):
+    with parsing(file, "cannot be read as a slip calibration", advice=_ADVICE):
         if content["schema"] != SCHEMA:
             raise DataError(
                 f"has schema {content['schema']}, this version reads {SCHEMA}; update zebro-lab",

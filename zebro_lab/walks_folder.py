@@ -12,6 +12,7 @@ from model.bayes.walk_posterior import WalkPosterior
 from model.bayes.walk_prior import UNITS, WRONG, WalkPrior, WrongLeg, all_cases
 from model.predict import ModelSpread
 from zebro_lab.errors import DataError
+from zebro_lab.files.arrays import read_arrays
 from zebro_lab.files.documents import read_toml_document
 from zebro_lab.files.opening import parsing
 from zebro_lab.files.replacement import settle
@@ -141,7 +142,7 @@ def read_walks_beside(slip_toml: Path) -> StoredWalks | None:
         return None
     remedy = f"{_ANEW}, or delete {folder}"
     content = read_toml_document(file, remedy=remedy, fault=DataError)
-    with parsing(file, "be read", advice=remedy):
+    with parsing(file, "cannot be read", advice=remedy):
         if content["schema"] != SCHEMA:
             raise DataError(
                 f"has schema {content['schema']}, this version reads {SCHEMA}; {_ANEW}, or update "
@@ -149,8 +150,8 @@ def read_walks_beside(slip_toml: Path) -> StoredWalks | None:
                 file=file,
             )
         _require_same_slip(content, slip_toml, file)
-        with np.load(folder / DRAWS) as drawn:
-            arrays = {name: drawn[name] for name in ("values", "case", "weight", "best")}
+        names = ("values", "case", "weight", "best")
+        arrays = read_arrays(folder / DRAWS, names, advice=remedy)
         return StoredWalks(
             _posterior(content, arrays),
             content["legs"],

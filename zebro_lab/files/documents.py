@@ -30,7 +30,7 @@ def read_toml_document(
             `DataError`, as `fault` says).
     """
     data = read_bytes(path, most=MOST_BYTES, advice=advice, fault=fault)
-    with parsing(path, "be read as TOML", advice=remedy, fault=fault):
+    with parsing(path, "cannot be read as TOML", advice=remedy, fault=fault):
         return parse_toml(data)
 
 
@@ -42,7 +42,7 @@ def read_json_document(path: Path, *, advice: str = "") -> Any:
         DataError: It is no regular file, too large, no JSON, or nested too deeply.
     """
     text = read_text(path, most=MOST_JSON, advice=advice)
-    with parsing(path, "be read as JSON", advice="make it again"):
+    with parsing(path, "cannot be read as JSON", advice="make it again"):
         content = json.loads(text)
         require_bounded(content)
         return content

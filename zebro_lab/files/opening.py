@@ -61,7 +61,7 @@ def read_bytes(path: Path, *, most: int, advice: str = "", fault: Fault = DataEr
     """Read a whole file; the arguments and errors are those of `open_file`."""
     with (
         open_file(path, most=most, advice=advice, fault=fault) as file,
-        parsing(path, "be read", fault=fault),
+        parsing(path, "cannot be read", fault=fault),
     ):
         return file.read(most)
 
@@ -82,7 +82,9 @@ def read_text(
 
 
 @contextmanager
-def parsing(path: Path, done: str, *, advice: str = "", fault: Fault = DataError) -> Iterator[None]:
+def parsing(
+    path: Path, problem: str, *, advice: str = "", fault: Fault = DataError
+) -> Iterator[None]:
     """Turn whatever a parser raises into one line that names the file.
 
     Parsers of other projects answer malformed input with whatever went wrong inside them, so that
@@ -90,7 +92,7 @@ def parsing(path: Path, done: str, *, advice: str = "", fault: Fault = DataError
 
     Args:
         path: The file.
-        done: What cannot be done with it, as "be read as TOML".
+        problem: What is wrong with it, as "cannot be read as TOML".
         advice: What to try.
         fault: Error to raise.
 
@@ -105,7 +107,7 @@ def parsing(path: Path, done: str, *, advice: str = "", fault: Fault = DataError
         said = str(error) or "no reason given"
         named = "" if isinstance(error, (ValueError, OSError)) else f"{type(error).__name__}: "
         closing = f"; {advice}" if advice else ""
-        raise fault(f"cannot {done} ({named}{said}){closing}", file=path) from error
+        raise fault(f"{problem} ({named}{said}){closing}", file=path) from error
 
 
 def _descriptor(path: Path, advice: str, fault: Fault) -> int:

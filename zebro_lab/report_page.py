@@ -6,11 +6,12 @@ import hashlib
 from collections.abc import Iterator
 from dataclasses import dataclass
 from datetime import datetime
+from functools import cache
 from importlib.metadata import version
 from importlib.resources import files
 from typing import Any
 
-from jinja2 import Environment, PackageLoader, StrictUndefined
+from jinja2 import Environment, PackageLoader, StrictUndefined, Template
 from markupsafe import Markup
 
 from zebro_lab.files.opening import parsing
@@ -63,15 +64,8 @@ def render_report(sources: Sources, *, title: str, made: datetime) -> str:
     Returns:
         HTML that needs no other file.
     """
-    pages = Environment(
-        loader=PackageLoader("zebro_lab", PAGES),
-        autoescape=True,
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
     style = (files("zebro_lab") / PAGES / STYLE).read_text(encoding="utf-8")
-    template = pages.get_template(TEMPLATE)
+    template = _template()
     with parsing(
         sources.data, "cannot be reported on: a manifest or slip.toml lacks what is shown",
         advice="make the part again that is named there",
@@ -92,6 +86,18 @@ def render_report(sources: Sources, *, title: str, made: datetime) -> str:
         )
     # Jinja escapes markup; what else a text of a file may do is spelled out here, for all of them.
     return "\n".join(map(shown, page.split("\n")))
+
+
+@cache
+def _template() -> Template:
+    pages = Environment(
+        loader=PackageLoader("zebro_lab", PAGES),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    return pages.get_template(TEMPLATE)
 
 
 def _policy(style: str) -> str:

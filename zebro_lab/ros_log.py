@@ -2,7 +2,8 @@
 """Messages of one type in a ROS 2 log, up to where it is damaged."""
 
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, redirect_stdout
+from io import StringIO
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -52,7 +53,8 @@ def read_messages(path: Path, *, schema: str) -> tuple[list[LoggedMessage], str 
         elif isinstance(record, Channel):
             found = schemas.get(record.schema_id)
             if found is not None and found.name == schema:
-                with _damage_of(f"the log's description of {schema}"):
+                # The decoder prints what it does not understand of it.
+                with _damage_of(f"the log's description of {schema}"), redirect_stdout(StringIO()):
                     decode = factory.decoder_for(record.message_encoding, found)
                 if decode is not None:
                     decoders[record.id] = (record.topic, decode)

@@ -53,8 +53,7 @@ def read_messages(path: Path, *, schema: str) -> tuple[list[LoggedMessage], str 
         elif isinstance(record, Channel):
             found = schemas.get(record.schema_id)
             if found is not None and found.name == schema:
-                # The decoder prints what it does not understand of it.
-                with _damage_of(f"the log's description of {schema}"), redirect_stdout(StringIO()):
+                with _damage_of(f"the log's description of {schema}"):
                     decode = factory.decoder_for(record.message_encoding, found)
                 if decode is not None:
                     decoders[record.id] = (record.topic, decode)
@@ -76,6 +75,7 @@ def _damage_of(what: str) -> Iterator[None]:
         ValueError: The decoder failed.
     """
     try:
-        yield
+        with redirect_stdout(StringIO()):  # it prints what it does not understand
+            yield
     except Exception as error:
         raise ValueError(f"{what} cannot be read: {type(error).__name__}: {error}") from error

@@ -9,8 +9,8 @@ from rig.toml_text import MOST_BYTES, parse_toml, require_bounded
 from zebro_lab.errors import DataError, SettingsError
 from zebro_lab.files.opening import Fault, parsing, read_bytes, read_text
 
-MOST_JSON: Final = 16 << 20
-"""Largest JSON file that is read: the manifest of a hundred thousand photographs."""
+MOST_JSON: Final = 8 << 20
+"""Largest JSON file that is read: the manifest of fifty thousand photographs."""
 
 
 def read_toml_document(

@@ -73,8 +73,7 @@ def _draws(group: "h5py.Group", name: str, path: Path) -> NDArray[np.float64]:
         raise DataError(f"'{name}' holds no numbers", file=path)
     if found.external or found.is_virtual:
         raise DataError(f"has the draws of '{name}' in another file", file=path)
-    if not 0 < found.size <= MOST_DRAWS:
-        raise DataError(
-            f"claims {found.size} draws of '{name}'; 1 to {MOST_DRAWS} are read", file=path
-        )
+    size = found.size or 0  # None of one that is stated to be empty
+    if not 0 < size <= MOST_DRAWS:
+        raise DataError(f"claims {size} draws of '{name}'; 1 to {MOST_DRAWS} are read", file=path)
     return np.ravel(found[()]).astype(float)

@@ -15,6 +15,8 @@ from zebro_lab.errors import DataError
 from zebro_lab.files.opening import parsing
 from zebro_lab.files.unpacking import open_unpacked
 
+_BLOCK = 1 << 16  # cells that are turned into numbers before the next are looked at
+
 if TYPE_CHECKING:
     import pandas as pd
 
@@ -120,10 +122,22 @@ class RawTable:
 
 
 def _as_numbers(cells: "pd.Series") -> NDArray[np.float64]:
-    """Convert cells to numbers, NaN where one is empty or holds no number."""
+    """Convert cells to numbers, NaN where one is empty or holds no number, and after such.
+
+    A cell that holds none takes pandas some microseconds: a column of names would take minutes.
+    """
     import pandas as pd
 
-    return np.asarray(pd.to_numeric(cells, errors="coerce"), dtype=float)
+    if pd.api.types.is_numeric_dtype(cells):
+        return np.asarray(cells, dtype=float)
+    values = np.full(len(cells), np.nan)
+    for start in range(0, len(cells), _BLOCK):
+        block = cells.iloc[start : start + _BLOCK]
+        found = np.asarray(pd.to_numeric(block, errors="coerce"), dtype=float)
+        values[start : start + _BLOCK] = found
+        if np.any(np.isnan(found) & ~block.isna().to_numpy(dtype=bool)):
+            break
+    return values
 
 
 def _has_points(cells: "pd.Series") -> bool:

@@ -51,7 +51,7 @@ def odd_value(rng: np.random.Generator, depth: int = 0) -> Any:
             str(pick(rng, TEXTS)): odd_value(rng, depth + 1) for _ in range(int(rng.integers(4)))
         }
     deep: Any = 1
-    for _ in range(int(pick(rng, (3, 40, 200)))):
+    for _ in range(int(pick(rng, (3, 20, 60)))):
         deep = [deep] if rng.random() < 0.5 else {"a": deep}
     return deep
 

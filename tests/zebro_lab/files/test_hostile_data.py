@@ -4,6 +4,8 @@
 import gzip
 import io
 import os
+import subprocess
+import sys
 import threading
 import zipfile
 from collections.abc import Callable
@@ -274,3 +276,17 @@ def test_a_fifo_named_as_data_does_not_hang(reader, tmp_path):
         os.close(os.open(fifo, os.O_RDWR | os.O_NONBLOCK))
         pytest.fail("still waiting after 2 s")
     assert isinstance(said[0], ZebroLabError)
+
+
+def test_wrong_statistics_of_a_parquet_column_are_an_error_and_no_end_of_the_process(tmp_path):
+    """A histogram of levels that is too long ends pyarrow where a column is asked for."""
+    code = (
+        "import sys; from pathlib import Path; from zebro_lab.errors import DataError\n"
+        "from zebro_lab.table_files import read_table_file\n"
+        "try: read_table_file(Path(sys.argv[1]))\n"
+        "except DataError as error: print(error)"
+    )
+    file = Path(__file__).with_name("wrong_histogram.parquet")
+    done = subprocess.run([sys.executable, "-c", code, str(file)], capture_output=True, text=True)
+    assert (done.returncode, done.stdout.count("\n")) == (0, 1), done.stderr
+    assert "is not a whole Parquet file" in done.stdout

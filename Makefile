@@ -3,8 +3,12 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 STAMP := $(VENV)/.installed
+# The lowest versions that pyproject.toml allows, in an environment of their own.
+LOWEST_PYTHON ?= python3.11
+LOWEST := .venv-lowest
+LOWEST_STAMP := $(LOWEST)/.installed
 
-.PHONY: demo test test-long check lint types floors bench clean clean-cache help
+.PHONY: demo test test-lowest test-long check lint types floors bench clean clean-cache help
 
 help: ## list the targets
 	@grep -E '^[a-z-]+:.*##' Makefile | sed -E 's/:.*## /\t/' | expand -t 14
@@ -45,6 +49,17 @@ demo: $(STAMP) ## the whole loop on bundled, simulated data: rig and photographs
 test: $(STAMP) ## the tests, under ten minutes on two cores
 	$(BIN)/python -m pytest -n 2 --dist worksteal -m "not long"
 
+$(LOWEST_STAMP): pyproject.toml
+	rm -rf $(LOWEST)
+	$(LOWEST_PYTHON) -m venv $(LOWEST)
+	$(LOWEST)/bin/python -m pip install --quiet --disable-pip-version-check "uv>=0.5"
+	$(LOWEST)/bin/uv pip install --quiet --python $(LOWEST)/bin/python --compile-bytecode \
+	  --resolution lowest-direct --editable . --group dev
+	touch $(LOWEST_STAMP)
+
+test-lowest: $(LOWEST_STAMP) ## the tests with the lowest versions allowed, on Python 3.11
+	$(LOWEST)/bin/python -m pytest -n 2 --dist worksteal -m "not long"
+
 test-long: $(STAMP) ## coverage and other statistical claims; minutes each, tables printed
 	$(BIN)/python -m pytest -m long -s --timeout 5400 tests
 
@@ -70,4 +85,4 @@ clean-cache: ## remove compiled loops that numba cached
 	find model rig tracking zebro_lab -name '*.nb[ic]' -delete
 
 clean: ## remove the environment and what the tools cached
-	rm -rf $(VENV) .pytest_cache .ruff_cache .import_linter_cache .hypothesis $(DEMO)
+	rm -rf $(VENV) $(LOWEST) .pytest_cache .ruff_cache .import_linter_cache .hypothesis $(DEMO)

@@ -1,22 +1,17 @@
 # SPDX-License-Identifier: MIT
-"""Generated inputs for every parser of drivers and recorded runs; prints the table of drivers.md.
+"""Generated inputs for every parser of what devices send; prints the table of drivers.md.
 
 python docs/drivers_fuzz.py [INPUTS [PART OF A PARSER'S NAME]]
 
 Of every five inputs one is random, one valid, and the others are valid ones with bytes changed, cut
-short, or spliced from two. A million take a few minutes a parser, two hours in all; those of files
-write every input, so that a TMPDIR in memory (/dev/shm) saves more than that.
+short, or spliced from two. A million take a few minutes a parser, an hour in all.
 """
 
-import io
-import json
 import logging
 import struct
 import sys
-import tempfile
 from collections import Counter
 from dataclasses import dataclass, field
-from pathlib import Path
 
 import can
 import numpy as np
@@ -31,7 +26,6 @@ from rig.imu.stream import ImuStream
 from rig.links.can import CanLink
 from rig.links.packet import Kind, Packet, encode_packet
 from rig.links.slcan import SlcanAdapter, decode_frame, encode_frame
-from rig.profile import shipped_file
 from rig.slip_rig.board import RigBoard, board_body, speed_body
 from rig.slip_rig.can_simple import ESTIMATES, HEARTBEAT, Command, can_id
 from rig.slip_rig.drives import DriveBus
@@ -44,13 +38,8 @@ from rig.zebro.registers import SYNC, DumpLegs, PolledLegs
 from rig.zebro.serial import PacketLegs, leg_body
 from rig.zebro.simulated import CanRobot, PacketRobot, PolledRobot
 from rig.zebro.simulated_legs import SimulatedLegs
-from zebro_lab.errors import ZebroLabError
-from zebro_lab.log_writer import LogWriter
-from zebro_lab.raw_log import decode_raw, encode_raw, read_raw_log
-from zebro_lab.ros_log import read_messages
-from zebro_lab.run_folder import read_manifest
-from zebro_lab.slip_rig_log import SlipRigTable, decode_block, encode_block, read_log, write_log
-from zebro_lab.stream_views import LegsView
+from zebro_lab.raw_log import decode_raw, encode_raw
+from zebro_lab.slip_rig_log import decode_block, encode_block
 
 LEGS = load_leg_profile("zebro-100-serial")
 CAN_LEGS = load_leg_profile("zebro-100-can")
@@ -61,7 +50,6 @@ RIG = load_rig_profile("rig-odrive-netft")
 BOARD = load_rig_profile("rig-board-serial").board
 LIMITS = Limits(speed=40.0, normal_force=30.0, traction_force=20.0)
 GAIT = SampledReference(np.array([0.0, 1e6]), np.array([np.zeros(6), np.full(6, 1e6)]))
-FOLDER = tempfile.TemporaryDirectory()
 
 
 @dataclass
@@ -278,22 +266,6 @@ def slcan_host():
     return take
 
 
-def text_file(load, suffix, name="input"):
-    """Make what loads a file."""
-    file = Path(FOLDER.name) / f"{name}{suffix}"
-
-    def take(data):
-        file.write_bytes(data)
-        load(file)
-        return True
-
-    return lambda: take
-
-
-def manifest_file():
-    return text_file(lambda file: read_manifest(file.parent), ".json", name="run")
-
-
 def whole(function):
     """Make what calls a function that returns or raises."""
 
@@ -310,46 +282,6 @@ def packets(kind, body, values):
 
 def samples(count, width):
     return [Sample(0.01 * n, 0.01 * n, n, tuple(range(n, n + width))) for n in range(count)]
-
-
-def recorded_log():
-    """Write a small log as a recorder does."""
-    out = io.BytesIO()
-    log = LogWriter(
-        out,
-        views={"legs": LegsView("legs", profile=LEGS)},
-        attachments={"profiles/legs.toml": "x = 1"},
-        start=0.0,
-        start_ns=10**18,
-    )
-    log.event(0.0, "began")
-    for first in range(0, 60, 20):
-        log.write("legs", samples(60, 6)[first : first + 20])
-        log.flush()
-    log.finish()
-    return out.getvalue()
-
-
-def rig_log():
-    t = np.arange(200) / 100
-    out = io.BytesIO()
-    write_log(out, SlipRigTable(t, t, t, t, t), start_ns=10**18)
-    return out.getvalue()
-
-
-def manifest_text():
-    keys = {
-        "schema_version": 1, "kind": "walk", "label": "x", "material": "x", "operator": "x",
-        "source": "real", "start": "2026-01-01T00:00:00+00:00", "exit_status": "completed",
-        "software": {"version": "1"}, "constants": {"radius_leg": 0.035}, "streams": {"/a/raw": 3},
-        "stop": "2026-01-01T00:00:01+00:00", "log_sha256": "0" * 64, "robot": "x", "profiles": {},
-        "sources": {}, "counters": {}, "clocks": {}, "truth": {}, "inputs": {},
-    }  # fmt: skip
-    return json.dumps(keys).encode()
-
-
-def toml_of(*names):
-    return [shipped_file(f"{name}.toml").read_bytes() for name in names]
 
 
 def leg_counts():
@@ -449,37 +381,14 @@ def at_twins():
     }
 
 
-def of_files():
-    """Return the parsers of profiles and of what a run folder holds, by name."""
-    recorded, events = [recorded_log()], "rcl_interfaces/msg/Log"
+def of_messages():
+    """Return the parsers of a log's messages; of whole files see benchmarks/readers_fuzz.py."""
     blocks = [encode_block(np.ones((n + 1, 5))) for n in range(20)]
-    profiles = {
-        "profile of legs": (
-            load_leg_profile,
-            toml_of("zebro-100-serial", "zebro-100-can", "vregs-dump", "zebrobus-uart"),
-        ),
-        "profile of an IMU": (load_imu_profile, toml_of("imu-quaternion-serial")),
-        "profile of a rig": (load_rig_profile, toml_of("rig-odrive-netft", "rig-board-serial")),
-    }
-    logs = {
-        "log.mcap, recorded": (read_raw_log, recorded),
-        "log.mcap, at once": (read_log, [rig_log()]),
-        "log.mcap, events": (lambda file: read_messages(file, schema=events), recorded),
-    }
     return {
-        **{
-            name: Parser(text_file(lambda f, load=load: load(str(f)), ".toml"), valid, (RigError,))
-            for name, (load, valid) in profiles.items()
-        },
-        "run.json": Parser(manifest_file(), [manifest_text()], (ZebroLabError,)),
         "raw messages": Parser(
             whole(lambda data: decode_raw(data, dtype="<i4")), raw_messages(), (ValueError,)
         ),
         "rig messages": Parser(whole(decode_block), blocks, (ValueError,)),
-        **{
-            name: Parser(text_file(load, ".mcap"), valid, (ZebroLabError,))
-            for name, (load, valid) in logs.items()
-        },
     }
 
 
@@ -489,7 +398,7 @@ def raw_messages():
 
 def parsers():
     """Return every parser by name."""
-    return of_streams() | on_can() | at_twins() | of_files()
+    return of_streams() | on_can() | at_twins() | of_messages()
 
 
 def generate(valid, count, rng):

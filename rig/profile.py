@@ -3,13 +3,13 @@
 
 import difflib
 import math
-import tomllib
 from importlib import resources
 from importlib.resources.abc import Traversable
 from pathlib import Path
 from typing import Any, Final, TypeVar
 
 from rig.errors import ProfileError
+from rig.toml_text import MOST_BYTES, parse_toml
 
 SCHEMA: Final = 1
 Choice = TypeVar("Choice", bound=str)
@@ -158,8 +158,9 @@ def open_profile(name: str, *, device: str) -> Table:
     """
     source = _find(name)
     try:
-        entries = tomllib.loads(source.read_text(encoding="utf-8"))
-    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as problem:
+        with source.open("rb") as file:
+            entries = parse_toml(file.read(MOST_BYTES + 1))
+    except (OSError, ValueError) as problem:
         raise ProfileError(f"cannot be read as TOML: {problem}", file=str(source)) from problem
     table = Table(entries, file=source.name)
     table.whole("schema", least=SCHEMA, most=SCHEMA)

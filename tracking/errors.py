@@ -3,7 +3,11 @@
 
 
 class TrackingError(Exception):
-    """Root of every error that `tracking` raises on purpose."""
+    """Root of every error that `tracking` raises on purpose; its message is one line."""
+
+    def __str__(self) -> str:
+        """Return the message on one line, whatever names of files and cells it quotes."""
+        return " ".join(super().__str__().split())
 
 
 class PhotoError(TrackingError, ValueError):

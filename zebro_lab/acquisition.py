@@ -92,6 +92,7 @@ class Acquisition:
         self._counters = Counters()
         self._silent = False
         self._done = threading.Event()
+        self._until = float("inf")
         self._thread = threading.Thread(target=self._run, daemon=True, name=device.name)
 
     @property
@@ -113,6 +114,10 @@ class Acquisition:
         with needing_threads():
             self._thread.start()
 
+    def end_at(self, until: float) -> None:
+        """Read until then by itself, however late whoever would say so is [host time, s]."""
+        self._until = until
+
     def ask_to_stop(self) -> None:
         """Read once more what has arrived, then end; does not wait for that."""
         self._done.set()
@@ -129,12 +134,12 @@ class Acquisition:
         device = self._device
         try:
             guard = SilenceGuard(self.name, limit=SILENCE, now=self._clock.now())
-            while not self._done.is_set():
+            while self._clock.now() < self._until and not self._done.is_set():
                 if device.command is not None:
                     device.command(self._clock.now())
                 self._read(guard, READ_WAIT)
                 if device.pause > 0:
-                    self._done.wait(device.pause)
+                    self._done.wait(min(device.pause, self._until - self._clock.now()))
             if device.pause > 0:
                 self._read(guard, 0.0)  # what came during the pause
         except BaseException as failure:  # noqa: BLE001, RUF100 - kept for the owner, who ends the run

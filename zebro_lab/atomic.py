@@ -4,7 +4,7 @@
 import os
 import secrets
 import shutil
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -22,13 +22,14 @@ def atomic_write_bytes(path: str | os.PathLike[str], data: bytes) -> Path:
         The path written.
     """
     target = Path(path)
-    draft = target.with_name(_draft_name(target))
+    draft = target.with_name(draft_name(target))
     try:
         with draft.open("xb") as file:
             file.write(data)
             file.flush()
             os.fsync(file.fileno())
         draft.replace(target)
+        sync_folder(target.parent)
     finally:
         draft.unlink(missing_ok=True)
     return target
@@ -40,66 +41,73 @@ def atomic_write_text(path: str | os.PathLike[str], text: str) -> Path:
 
 
 @contextmanager
-def atomic_folder(
-    target: str | os.PathLike[str], *, replaces: Sequence[str] = (), marker: str | None = None
-) -> Iterator[Path]:
-    """Fill a folder so that it appears finished or, after any exception, not at all.
+def atomic_folder(target: str | os.PathLike[str]) -> Iterator[Path]:
+    """Fill a new folder so that it appears finished or, after any exception, not at all.
 
-    The body writes into a hidden folder beside the target. A target that does not exist yet
-    appears in one step. Into one that exists the files are moved one by one: those of an earlier
-    run that the body did not write again are removed, foreign files are left alone, and what
-    was there stays as it was when the body fails.
+    The body writes into a hidden folder beside the target. What may replace an earlier result is
+    written with `zebro_lab.files.result_folder`.
 
     Args:
-        target: Folder to make or to renew; missing parents are made.
-        replaces: Glob patterns, relative to the folder, of what an earlier run may have left.
-        marker: File whose presence tells readers that the folder is whole; taken away before
-            the first and put in place after the last of the others.
+        target: Folder to make, or an empty one; missing parents are made.
 
     Yields:
         Folder to write into, empty.
 
     Raises:
-        AlreadyExists: The target is a file.
+        AlreadyExists: The target is a file, or a folder that holds something.
     """
     folder = Path(target).absolute()
-    if folder.exists() and not folder.is_dir():
-        raise AlreadyExists(f"{target} is a file where a folder is to be written; name another")
-    # Drafts lie in the nearest folder that exists: same file system, and no parent to clean up.
-    ground = next(parent for parent in folder.parents if parent.is_dir())
-    draft = ground / _draft_name(folder)
+    _require_empty(folder, target)
+    draft = nearest_folder(folder) / draft_name(folder)
     draft.mkdir()
     try:
         yield draft
-        _sync(draft)
-        if folder.exists():
-            _renew(folder, draft, replaces, marker)
-        else:
-            folder.parent.mkdir(parents=True, exist_ok=True)
-            draft.replace(folder)
+        sync_files(draft)
+        _require_empty(folder, target)
+        folder.parent.mkdir(parents=True, exist_ok=True)
+        draft.replace(folder)
+        sync_folder(folder.parent)
     finally:
         shutil.rmtree(draft, ignore_errors=True)
 
 
-def _draft_name(path: Path) -> str:
+def nearest_folder(path: Path) -> Path:
+    """Return the nearest folder above a path that exists: drafts lie there.
+
+    It is on the same file system, and there is no parent to clean up.
+    """
+    return next(parent for parent in path.parents if parent.is_dir())
+
+
+def draft_name(path: Path) -> str:
+    """Name a hidden draft beside a path, anew at each call."""
     return f".{path.name}.{secrets.token_hex(4)}.part"
 
 
-def _sync(folder: Path) -> None:
+def sync_files(folder: Path) -> None:
+    """Bring every file below a folder to the disk."""
     for path in folder.rglob("*"):
         if path.is_file():
             with path.open("rb") as file:
                 os.fsync(file.fileno())
 
 
-def _renew(folder: Path, draft: Path, replaces: Sequence[str], marker: str | None) -> None:
-    written = sorted(path.relative_to(draft) for path in draft.rglob("*") if path.is_file())
-    if marker is not None:
-        (folder / marker).unlink(missing_ok=True)
-        written.sort(key=lambda name: name == Path(marker))
-    stale = {path for pattern in replaces for path in folder.glob(pattern) if path.is_file()}
-    for path in stale - {folder / name for name in written}:
-        path.unlink()
-    for name in written:
-        (folder / name).parent.mkdir(parents=True, exist_ok=True)
-        (draft / name).replace(folder / name)
+def sync_folder(folder: Path) -> None:
+    """Bring the names in a folder to the disk, where the file system can."""
+    try:
+        handle = os.open(folder, os.O_RDONLY)
+    except OSError:  # a folder that may be written to but not listed
+        return
+    try:
+        os.fsync(handle)
+    except OSError:  # some network file systems refuse to do so with a folder
+        return
+    finally:
+        os.close(handle)
+
+
+def _require_empty(folder: Path, target: object) -> None:
+    if folder.exists() and not folder.is_dir():
+        raise AlreadyExists(f"{target} is a file where a folder is to be written; name another")
+    if folder.is_dir() and any(folder.iterdir()):
+        raise AlreadyExists(f"{target} exists already and holds something; name another")

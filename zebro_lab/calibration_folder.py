@@ -3,8 +3,6 @@
 
 import csv
 import io
-import json
-import tomllib
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
@@ -12,12 +10,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from model.errors import ModelError
 from model.slip.curve import SlipCurve
 from model.slip.definition import SlipDefinition
 from model.slip.laws import slip_law
-from zebro_lab.errors import DataError
-from zebro_lab.provenance import file_hash, software
+from zebro_lab.errors import DataError, NotFound
+from zebro_lab.files.documents import read_toml_document
+from zebro_lab.files.opening import parsing
+from zebro_lab.files.replacement import settle
+from zebro_lab.files.result_folder import ResultKind
 
 if TYPE_CHECKING:  # the fit's own parts take seconds to import, and a law is read in most commands
     from model.bayes.convergence import Convergence
@@ -30,16 +30,16 @@ if TYPE_CHECKING:  # the fit's own parts take seconds to import, and a law is re
 SCHEMA = 1
 SLIP_TOML = "slip.toml"
 PICTURES = ("curves", "surface", "corner", "traces", "residuals")
-OWNED = (
-    "slip.toml", "summary.csv", "posterior.nc", "manifest.json", *(f"{n}.png" for n in PICTURES),
-    "walks/*",
-)  # fmt: skip
-"""What a calibration writes; an earlier run's files of these names are replaced.
+CALIBRATION = ResultKind(
+    "calibration",
+    "calibrate-slip",
+    (SLIP_TOML, "summary.csv", "posterior.nc", *(f"{name}.png" for name in PICTURES)),
+    schema=SCHEMA,
+    inside={"walks": "walks"},
+)
+"""What walks said lies inside: it was fitted with the earlier law, and goes with it."""
 
-What walks said was fitted with the earlier run's law, and goes.
-"""
-
-
+_ADVICE = "name a slip.toml or the folder that calibrate-slip wrote"
 SUMMARY_COLUMNS = (
     "parameter", "symbol", "unit", "mean", "sd", "q05", "median", "q95", "prior", "contraction",
     "r_hat", "ess_bulk", "ess_tail", "autocorrelation_time", "mcse_over_sd",
@@ -93,6 +93,23 @@ class Calibration:
         return "sim:" in self.source
 
 
+@dataclass(frozen=True)
+class SlipFile:
+    """What a `slip.toml` says.
+
+    Attributes:
+        curve: The slip curve.
+        file: The file.
+        source: Where the data come from.
+        doubt: Headline of a verdict that does not trust the fit; None where it does.
+    """
+
+    curve: SlipCurve
+    file: Path
+    source: str
+    doubt: str | None
+
+
 def write_tables(folder: Path, calibration: Calibration, *, inputs: Mapping[str, str]) -> None:
     """Write everything but the pictures and the manifest.
 
@@ -106,30 +123,6 @@ def write_tables(folder: Path, calibration: Calibration, *, inputs: Mapping[str,
     _write_posterior(folder / "posterior.nc", calibration)
 
 
-def write_manifest(
-    folder: Path, *, inputs: Mapping[str, str], settings: Mapping[str, object], source: str
-) -> None:
-    """Write `manifest.json`: hashes of what was read and of what was written, versions, settings.
-
-    Args:
-        folder: Folder with everything else in it already.
-        inputs: SHA-256 of each file that was read.
-        settings: What the fit was asked to do.
-        source: Where the data come from.
-    """
-    outputs = {path.name: file_hash(path) for path in sorted(folder.iterdir()) if path.is_file()}
-    content = {
-        "schema": SCHEMA,
-        "kind": "calibration",
-        "source": source,
-        "settings": settings,
-        "inputs": inputs,
-        "outputs": outputs,
-        "software": software(),
-    }
-    (folder / "manifest.json").write_text(json.dumps(content, indent=2) + "\n")
-
-
 def read_slip(path: Path) -> SlipCurve:
     """Read the slip curve of a calibration.
 
@@ -139,23 +132,37 @@ def read_slip(path: Path) -> SlipCurve:
     Raises:
         DataError: It is missing, damaged, or of a later schema.
     """
+    return read_slip_file(path).curve
+
+
+def read_slip_file(path: Path) -> SlipFile:
+    """Read a `slip.toml`, once, with what it says of the fit; as `read_slip`."""
+    settle(path)
     file = path / SLIP_TOML if path.is_dir() else path
     try:
-        content = tomllib.loads(file.read_text())
+        content = read_toml_document(file, remedy=_ADVICE, fault=DataError)
+    except NotFound as error:
+        raise DataError(f"is no slip calibration (no such file); {_ADVICE}", file=file) from error
+    with parsing(file, "cannot be read as a slip calibration", advice=_ADVICE):
         if content["schema"] != SCHEMA:
             raise DataError(
                 f"has schema {content['schema']}, this version reads {SCHEMA}; update zebro-lab",
                 file=file,
             )
-        return _curve(content)
-    except (OSError, AttributeError, KeyError, TypeError, ValueError, ModelError) as error:
-        if isinstance(error, DataError):
-            raise
-        raise DataError(
-            f"is no slip calibration ({type(error).__name__}: {error}); "
-            "name a slip.toml or the folder that calibrate-slip wrote",
-            file=file,
-        ) from error
+        return SlipFile(_curve(content), file, _text(content, "source", "unknown"),
+                        _doubt(content.get("verdict", {})))  # fmt: skip
+
+
+def _doubt(verdict: Mapping[str, Any]) -> str | None:
+    headline = _text(verdict, "headline", "not trustworthy")
+    return None if verdict.get("trustworthy", True) else headline
+
+
+def _text(content: Mapping[str, Any], key: str, default: str) -> str:
+    found = content.get(key, default)
+    if not isinstance(found, str):
+        raise TypeError(f"'{key}' is {found!r}; expected a text")
+    return found
 
 
 def _curve(content: Mapping[str, Any]) -> SlipCurve:

@@ -80,8 +80,11 @@ def render_camera_file(fit: Calibration, *, photos: Mapping[str, str]) -> str:
     )
 
 
-_TEMPLATE = """\
-# The camera's lens, in pixels. The centre of the first pixel is (0, 0), as in OpenCV.
+HEADING = "# The camera's lens, in pixels."
+"""What the file begins with: by this it is known for what `camera calibrate` wrote."""
+_TEMPLATE = (
+    HEADING
+    + """ The centre of the first pixel is (0, 0), as in OpenCV.
 # Photographs of another size are used scaled, if they are not cropped.
 
 size = {size}  # width, height
@@ -99,3 +102,4 @@ distortion_sd = {distortion_sd}
 
 [calibration.photos]  # SHA-256
 {photos}"""
+)

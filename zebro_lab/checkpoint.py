@@ -3,17 +3,21 @@
 
 import io
 from pathlib import Path
-from zipfile import BadZipFile
 
 import numpy as np
 
 from model.bayes.sampler import Chains
 from zebro_lab.atomic import atomic_write_bytes
 from zebro_lab.errors import DataError
+from zebro_lab.files.arrays import read_arrays
+from zebro_lab.files.opening import parsing
 
 FILE = "checkpoint.npz"
-_DAMAGE = (OSError, EOFError, LookupError, RuntimeError, TypeError, ValueError, BadZipFile)
-"""What numpy and zipfile raise on archives with a byte or their end changed."""
+_ARRAYS = (
+    "fingerprint", "z", "log_density", "accepted", "thin", "random_keys", "random_positions",
+)  # fmt: skip
+_MOST_BYTES = 1 << 30
+_NONE, _ADVICE = "is no checkpoint of this program", "remove it and start anew"
 
 
 def save_checkpoint(folder: Path, chains: Chains, *, fingerprint: str) -> Path:
@@ -53,15 +57,13 @@ def load_checkpoint(folder: Path, *, fingerprint: str) -> Chains:
     if not path.is_file():
         raise DataError("no stopped fit to resume; run without --resume", file=path)
     try:
-        # A file of our own: numpy leaves the one it opens open when the archive is damaged.
-        with path.open("rb") as file, np.load(file, allow_pickle=False) as stored:
-            arrays = {name: stored[name] for name in stored.files}
+        stored = read_arrays(path, _ARRAYS, advice="start anew", most=_MOST_BYTES)
+    except DataError as error:
+        raise DataError(f"{_NONE} ({error.problem}); {_ADVICE}", file=path) from error
+    with parsing(path, _NONE, advice=_ADVICE):
+        arrays = {name: array.copy() for name, array in stored.items()}
         found = str(arrays.pop("fingerprint"))
         chains = Chains(**{**arrays, "thin": int(arrays["thin"])})
-    except _DAMAGE as error:
-        raise DataError(
-            f"is no checkpoint of this program ({error}); remove it and start anew", file=path
-        ) from error
     if found != fingerprint:
         raise DataError(
             "belongs to other data or settings; give the same ones, or run without --resume",

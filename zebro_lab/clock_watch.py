@@ -35,8 +35,6 @@ class ClockWatch:
         if latest is None or latest.device_time is None:
             return
         device, host = latest.device_time, latest.host_time - self._start
-        if self._device and abs(host - device - self._host[-1] + self._device[-1]) > RESTARTED:
-            self._device, self._host = [], []  # of two clocks, the one that runs now
         if self._host and host // BUCKET == self._host[-1] // BUCKET:
             if host - device >= self._host[-1] - self._device[-1]:
                 return
@@ -48,12 +46,33 @@ class ClockWatch:
     def result(self) -> Mapping[str, float] | None:
         """Return offset [s] and drift [-] against the time of the run, and the delay [s].
 
-        None where the device tells no time, or too little of it was seen.
+        Where the device began anew, its last clock that was seen for long enough. None where the
+        device tells no time, or too little of it was seen.
         """
-        if len(self._device) < FEWEST:
+        device, host = _last_clock(np.array(self._device), np.array(self._host))
+        if len(device) < FEWEST:
             return None
-        fit = fit_clock(np.array(self._device), np.array(self._host))
+        fit = fit_clock(device, host)
         return {"offset": fit.offset, "drift": fit.drift, "delay": fit.delay}
+
+
+def _last_clock(device: Array, host: Array) -> tuple[Array, Array]:
+    """Choose the comparisons of the last clock of which there are enough, shape (n,) [s].
+
+    A sample may be read late, after which others are read in time again, but never early: where all
+    that follow lie more than `RESTARTED` later, another clock began.
+    """
+    while len(device) >= FEWEST:
+        lag = host - device
+        least_after = np.minimum.accumulate(lag[::-1])[::-1]
+        began = np.flatnonzero(np.diff(least_after) > RESTARTED)
+        first = began[-1] + 1 if len(began) else 0
+        in_time = np.flatnonzero(lag - least_after <= RESTARTED)
+        kept = in_time[in_time >= first]
+        if len(kept) >= FEWEST:
+            return device[kept], host[kept]
+        device, host = device[:first], host[:first]
+    return device, host
 
 
 def sample_times(stream: SampleColumns) -> Array:

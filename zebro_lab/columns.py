@@ -5,7 +5,6 @@ The keys are described in docs/formats.md; `zebro-lab init FILE` writes a commen
 """
 
 import difflib
-import tomllib
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -13,7 +12,8 @@ from types import MappingProxyType
 from typing import Any
 
 from model.slip.definition import SlipDefinition
-from zebro_lab.errors import NotFound, SettingsError, UnitError
+from zebro_lab.errors import SettingsError, UnitError
+from zebro_lab.files.documents import read_toml_document
 from zebro_lab.row_conditions import RowCondition, parse_row_condition
 from zebro_lab.units import factor_to_si, quantity_to_si
 
@@ -123,12 +123,7 @@ def read_columns(file: Path) -> Columns:
         NotFound: There is no such file.
         SettingsError: It is no TOML, or holds an unknown key, unit or value.
     """
-    try:
-        document = tomllib.loads(file.read_text(encoding="utf-8-sig"))
-    except FileNotFoundError as error:
-        raise NotFound(f"{file}: no such file; expected a {COLUMNS_FILE}") from error
-    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
-        raise SettingsError(f"cannot be read as TOML: {error}", file=file) from error
+    document = read_toml_document(file, advice=f"expected a {COLUMNS_FILE}")
     return parse_columns(document, file=file)
 
 

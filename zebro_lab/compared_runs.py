@@ -12,6 +12,7 @@ from model.slip.law import Array
 from model.walk.ensemble import PathEnsemble
 from zebro_lab.comparison import Comparison, Quantity, Walked
 from zebro_lab.errors import DataError, NotFound
+from zebro_lab.files.replacement import settle
 from zebro_lab.path_band import read_draws
 from zebro_lab.track_file import TrackFile, read_track
 from zebro_lab.track_folder import TRACK_CSV
@@ -25,7 +26,8 @@ _SUMMARY = (("speed", "mm/s", 1e3), ("yaw rate", "deg/s", 180 / np.pi), ("curvat
 
 def is_walked(folder: Path) -> bool:
     """Tell whether a folder holds a track or a prediction with draws."""
-    return (folder / TRACK / TRACK_CSV).is_file() or (folder / PREDICTION / DRAWS).is_file()
+    track, prediction = settle(folder / TRACK), settle(folder / PREDICTION)
+    return (track / TRACK_CSV).is_file() or (prediction / DRAWS).is_file()
 
 
 def compare_runs(
@@ -68,6 +70,8 @@ class _Run:
     """A run's track and prediction, as far as it has them."""
 
     def __init__(self, folder: Path) -> None:
+        settle(folder / TRACK)
+        settle(folder / PREDICTION)
         self.track: TrackFile | None = None
         self.band: PathEnsemble | None = None
         self.files: list[Path] = []

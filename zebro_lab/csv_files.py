@@ -3,10 +3,8 @@
 
 import codecs
 import csv
-import gzip
 import re
 import warnings
-import zlib
 from collections import Counter
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
@@ -14,11 +12,14 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from zebro_lab.errors import DataError
-from zebro_lab.raw_table import RawTable, open_unpacked
+from zebro_lab.files.opening import parsing
+from zebro_lab.files.unpacking import open_unpacked
+from zebro_lab.raw_table import RawTable
 
 _SEPARATORS: Mapping[str, str] = {",": "commas", ";": "semicolons", "\t": "tabs"}
 _HEAD_BYTES = 1 << 16  # enough to see separators, little enough to decode twice
 _HEAD_LINES = 50
+MOST_COLUMNS = 2000
 _MAGIC = {
     b"PAR1": "a Parquet file; name it .parquet",
     b"PK": "a zip or spreadsheet file; export it as CSV",
@@ -47,9 +48,9 @@ def read_csv_file(path: Path) -> RawTable:
 
     layout = _csv_layout(path)
     unique = _unique_names(layout.names)
-    with _csv_errors(path), open_unpacked(path) as file:
+    with _csv_errors(path), open_unpacked(path, width=len(unique)) as file:
         frame = pd.read_csv(
-            file,
+            file,  # pyright: ignore[reportArgumentType] - a raw stream does
             sep=layout.separator,
             header=None,
             names=unique,
@@ -75,27 +76,31 @@ def read_csv_file(path: Path) -> RawTable:
 def _csv_errors(path: Path) -> Iterator[None]:
     import pandas as pd
 
-    try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("error", pd.errors.ParserWarning)
+    with (
+        parsing(path, "cannot be read as CSV", advice="export it again"),
+        warnings.catch_warnings(),
+    ):
+        warnings.simplefilter("error", pd.errors.ParserWarning)
+        try:
             yield
-    except (EOFError, zlib.error, gzip.BadGzipFile) as error:
-        raise DataError(
-            f"is not a whole gzip file ({error}); it may have been cut short: copy it again",
-            file=path,
-        ) from error
-    except pd.errors.EmptyDataError as error:
-        raise DataError("has a header but no rows", file=path) from error
-    except UnicodeDecodeError as error:
-        raise DataError(f"is not UTF-8 text ({error}); save it as UTF-8", file=path) from error
-    except (pd.errors.ParserError, pd.errors.ParserWarning) as error:
-        raise DataError(f"is no regular table: {error}", file=path) from error
+        except pd.errors.EmptyDataError as error:
+            raise DataError("has a header but no rows", file=path) from error
+        except UnicodeDecodeError as error:
+            raise DataError(f"is not UTF-8 text ({error}); save it as UTF-8", file=path) from error
+        except (pd.errors.ParserError, pd.errors.ParserWarning) as error:
+            raise DataError(f"is no regular table: {error}", file=path) from error
 
 
 def _csv_layout(path: Path) -> _CsvLayout:
     with _csv_errors(path), open_unpacked(path) as file:
         head = file.read(_HEAD_BYTES)
     lines = re.split(r"\r\n|\n|\r", _decode_head(path, head))
+    if len(head) == _HEAD_BYTES and len(lines) == 1:
+        raise DataError(
+            f"its first line has more than {_HEAD_BYTES >> 10} kB; at most {MOST_COLUMNS} columns "
+            "are read",
+            file=path,
+        )
     if len(head) == _HEAD_BYTES:
         lines = lines[:-1]  # cut in the middle
     numbered = [(i, line) for i, line in enumerate(lines, start=1) if line.strip()]
@@ -105,6 +110,8 @@ def _csv_layout(path: Path) -> _CsvLayout:
     separator = _separator(path, numbered)
     header_line, header = numbered[0]
     names = [name.strip() for name in next(csv.reader([header], delimiter=separator))]
+    if len(names) > MOST_COLUMNS:
+        raise DataError(f"has {len(names)} columns; at most {MOST_COLUMNS} are read", file=path)
     names = [name or f"column {i}" for i, name in enumerate(names, start=1)]
     if all(_is_number(name) for name in names):
         raise DataError(
@@ -163,13 +170,14 @@ def _separator(path: Path, lines: list[tuple[int, str]]) -> str:
 
 
 def _unique_names(names: list[str]) -> list[str]:
-    unique: list[str] = []
+    unique: dict[str, None] = {}
+    again: Counter[str] = Counter()
     for name in names:
-        again = 1
-        while (candidate := name if again == 1 else f"{name} ({again})") in unique:
-            again += 1
-        unique.append(candidate)
-    return unique
+        again[name] += 1
+        while (candidate := name if again[name] == 1 else f"{name} ({again[name]})") in unique:
+            again[name] += 1
+        unique[candidate] = None
+    return list(unique)
 
 
 def _is_number(text: str) -> bool:

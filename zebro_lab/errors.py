@@ -3,6 +3,8 @@
 
 from os import PathLike
 
+from zebro_lab.files.shown_text import shortened, shown
+
 
 class ZebroLabError(Exception):
     """Root of every error that `zebro_lab` raises on purpose."""
@@ -94,10 +96,14 @@ class AlreadyExists(ZebroLabError, FileExistsError):
     """Writing would destroy what is already there."""
 
 
+class NotWritten(ZebroLabError, OSError):
+    """A result cannot be written: the file system refuses."""
+
+
 class RecordingError(ZebroLabError, OSError):
     """A run cannot be recorded, or could not be recorded to its end."""
 
 
 def _one_line(place: str, problem: str) -> str:
     # Messages of foreign libraries, quoted in ours, often run over several lines.
-    return " ".join(f"{place}: {problem}".split() if place else problem.split())
+    return shortened(shown(" ".join(f"{place}: {problem}".split() if place else problem.split())))

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: MIT
 """Manifests of the folders that commands write: read, and refused where they are others."""
 
-import json
 from collections.abc import Collection, Mapping
 from pathlib import Path
 from typing import Any
 
 from zebro_lab.errors import DataError, NotFound
+from zebro_lab.files.documents import read_json_document, require_object
 
 
 def read_json_object(file: Path, *, of: str) -> dict[str, Any]:
@@ -21,14 +21,9 @@ def read_json_object(file: Path, *, of: str) -> dict[str, Any]:
         DataError: It is damaged, or no JSON object.
     """
     try:
-        content = json.loads(file.read_text(encoding="utf-8"))
-    except FileNotFoundError as error:
+        return require_object(read_json_document(file), file)
+    except NotFound as error:
         raise NotFound(f"{file.parent} is no {of}: it has no {file.name}") from error
-    except (OSError, ValueError) as error:
-        raise DataError(f"cannot be read as JSON: {error}", file=file) from error
-    if not isinstance(content, dict):
-        raise DataError("is not a JSON object", file=file)
-    return content
 
 
 def read_folder_manifest(
@@ -47,7 +42,7 @@ def read_folder_manifest(
         DataError: It is damaged, of another schema, or that of another command.
     """
     content = read_json_object(file, of=f"{of} folder")
-    if content.get("kind") not in kinds:
+    if content.get("kind") not in tuple(kinds):
         raise DataError(f"is not of a {of}; expected kind {' or '.join(kinds)}", file=file)
     if content.get("schema") != schema:
         raise DataError(

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """A path that somebody else tracked: a table or a TUM file, as `track` would have written it."""
 
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -9,7 +10,8 @@ from typing import Final
 import numpy as np
 
 from model.slip.law import Array
-from zebro_lab.errors import DataError, NotFound
+from zebro_lab.errors import DataError
+from zebro_lab.files.opening import read_text
 from zebro_lab.mapped_columns import MappedColumns
 from zebro_lab.raw_table import RawTable
 from zebro_lab.track_file import TrackFile, track_of_table, tum_lines
@@ -109,12 +111,8 @@ def read_tum(path: Path) -> RawTable:
     """
     import pandas as pd
 
-    try:
-        lines = path.read_text(encoding="utf-8-sig").splitlines()
-    except FileNotFoundError as error:
-        raise NotFound(f"{path}: no such file") from error
-    except (OSError, UnicodeDecodeError) as error:
-        raise DataError(f"cannot be read as text: {error}", file=path) from error
+    # Not splitlines: it also cuts at characters that no editor counts as the end of a line.
+    lines = re.split(r"\r\n|\n|\r", read_text(path))
     numbered = [(i, line) for i, line in enumerate(lines, start=1)
                 if line.strip() and not line.startswith("#")]  # fmt: skip
     if not numbered:

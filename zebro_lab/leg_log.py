@@ -12,6 +12,7 @@ from model.robot import N_LEGS
 from model.slip.law import Array
 from zebro_lab.columns import COLUMNS_FILE
 from zebro_lab.errors import DataError
+from zebro_lab.files.replacement import settle
 from zebro_lab.mapped_columns import (
     MappedColumns,
     canonical_columns,
@@ -110,6 +111,7 @@ def legs_of_table(
 
 
 def _table_of(path: Path) -> Path:
+    settle(path)
     if not path.is_dir():
         return path
     if (path / PATH_CSV).is_file():

@@ -21,7 +21,9 @@ from model.predict import (
 from model.robot import GRAVITY, Robot
 from model.walk.ensemble import PathEnsemble
 from model.walk.traction import ToeLaw
-from zebro_lab.errors import DataError, NotFound, SettingsError
+from zebro_lab.errors import DataError, SettingsError
+from zebro_lab.files.arrays import read_arrays
+from zebro_lab.files.opening import parsing
 from zebro_lab.informed_legs import InformedLegs
 from zebro_lab.slip_argument import Slip
 from zebro_lab.slip_draws import slip_tables
@@ -175,13 +177,15 @@ def read_draws(folder: Path) -> PathEnsemble:
         DataError: They are damaged.
     """
     file = folder / DRAWS
-    try:
-        with np.load(file) as content:
-            t, poses = content["t"], content["poses"].astype(float)
-    except FileNotFoundError as error:
-        raise NotFound(f"{file}: no such file; predict with --draws 500 writes it") from error
-    except (OSError, ValueError, KeyError) as error:
-        raise DataError(f"cannot be read ({error}); predict again", file=file) from error
-    if poses.ndim != 3 or poses.shape[1:] != (len(t), 3):
-        raise DataError(f"holds poses of shape {poses.shape}; predict again", file=file)
+    arrays = read_arrays(file, ("t", "poses"), advice="predict with --draws 500 writes it")
+    t, poses = arrays["t"], arrays["poses"]
+    if t.ndim != 1 or poses.ndim != 3 or poses.shape[1:] != (len(t), 3) or 0 in poses.shape:
+        raise DataError(
+            f"holds poses of shape {poses.shape} at times of shape {t.shape}; predict again",
+            file=file,
+        )
+    with parsing(file, "cannot be read as poses", advice="predict again"):
+        t, poses = t.astype(float), poses.astype(float)
+    if not np.all(np.diff(t) > 0):
+        raise DataError("holds times that do not increase; predict again", file=file)
     return PathEnsemble(t, poses[..., :2], poses[..., 2])

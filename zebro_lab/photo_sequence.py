@@ -13,6 +13,7 @@ import cv2
 import numpy as np
 
 from tracking.camera.lens import Array, Camera
+from tracking.errors import PhotoError
 from tracking.images import (
     PhotoTimes,
     clock_offset,
@@ -138,7 +139,7 @@ def upright_size(path: Path) -> tuple[int, int] | None:
         with open_picture(path) as picture:
             width, height = picture.size
             lying = picture.getexif().get(_ORIENTATION) in _LYING
-    except (OSError, SyntaxError, ValueError):
+    except PhotoError:
         return None
     return (height, width) if lying else (width, height)
 
@@ -261,7 +262,7 @@ def _simulated(path: Path) -> str | None:
     try:
         with open_picture(path) as picture:
             make = str(picture.getexif().get(0x010F, "")).strip("\0 ")
-    except (OSError, SyntaxError, ValueError):
+    except PhotoError:
         return None
     return "sim:photographs" if make.lower() == "simulated" else None
 

@@ -5,19 +5,18 @@ Counts are kept, not angles or forces: those follow from them with the profile, 
 was corrected years later.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import IO, TYPE_CHECKING
+from typing import TYPE_CHECKING
 
 from rig.device import Sample
 from rig.sample_columns import SampleColumns, as_columns
 from zebro_lab.cdr import CdrReader, CdrWriter
-from zebro_lab.errors import DataError
-from zebro_lab.log_damage import DAMAGES_HINT, log_damages
+from zebro_lab.files.log_records import read_records
 
 if TYPE_CHECKING:
-    from mcap.records import Message
+    from mcap.records import McapRecord
 
 _TEXT = """\
 # Consecutive samples of one device. The metadata of the channel name the counts and their units.
@@ -102,30 +101,13 @@ def read_raw_log(path: Path) -> SalvagedStreams:
     Raises:
         DataError: The file is no MCAP.
     """
-    from mcap.exceptions import InvalidMagic
+    from mcap.records import Channel, Message, Schema
 
     parts: dict[str, list[SampleColumns]] = {}
-    damage = None
-    try:
-        with path.open("rb") as file:
-            for topic, dtype, message in _messages(file):
-                parts.setdefault(topic, []).append(decode_raw(message.data, dtype=dtype))
-    except InvalidMagic as error:
-        raise DataError("is no MCAP file", file=path) from error
-    except log_damages() as error:
-        damage = str(error) or DAMAGES_HINT
-    streams = {topic: SampleColumns.joined(found) for topic, found in parts.items()}
-    return SalvagedStreams(streams, damage)
-
-
-def _messages(file: IO[bytes]) -> "Iterator[tuple[str, str, Message]]":
-    # Streaming: the seeking reader needs the index at the end, which a cut file has lost.
-    from mcap.records import Channel, Message, Schema
-    from mcap.stream_reader import StreamReader
-
     ours: dict[int, tuple[str, str]] = {}
     schemas: dict[int, str] = {}
-    for record in StreamReader(file, validate_crcs=True).records:
+
+    def take(record: "McapRecord") -> None:
         if isinstance(record, Schema):
             schemas[record.id] = record.name
         elif isinstance(record, Channel):
@@ -133,4 +115,13 @@ def _messages(file: IO[bytes]) -> "Iterator[tuple[str, str, Message]]":
             if name in RAW_SCHEMAS:
                 ours[record.id] = (record.topic, RAW_SCHEMAS[name][0])
         elif isinstance(record, Message) and record.channel_id in ours:
-            yield *ours[record.channel_id], record
+            topic, dtype = ours[record.channel_id]
+            samples = decode_raw(record.data, dtype=dtype)
+            earlier = parts.setdefault(topic, [])
+            if earlier and earlier[0].counts.shape[1] != samples.counts.shape[1]:
+                raise ValueError(f"samples of {topic} change their width")
+            earlier.append(samples)
+
+    damage = read_records(path, take)
+    streams = {topic: SampleColumns.joined(found) for topic, found in parts.items()}
+    return SalvagedStreams(streams, damage)

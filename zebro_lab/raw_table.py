@@ -1,19 +1,21 @@
 # SPDX-License-Identifier: MIT
 """A table as its file has it: names and numbers, without meaning."""
 
-import gzip
 import re
-from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from pathlib import Path
-from typing import IO, TYPE_CHECKING
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from zebro_lab.columns import nearest
 from zebro_lab.errors import DataError
+from zebro_lab.files.opening import parsing
+from zebro_lab.files.unpacking import open_unpacked
+
+_BLOCK = 1 << 16  # cells that are turned into numbers before the next are looked at
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -31,6 +33,7 @@ class RawTable:
         decimal_comma: Numbers may be written 0,5.
         notes: What a person should know about how the file was read.
         header_line: Line of the header in a text file, 1 for the first; None for others.
+        unreadable: Type of the cells of columns that hold neither numbers nor texts, by name.
     """
 
     path: Path
@@ -40,6 +43,7 @@ class RawTable:
     decimal_comma: bool = False
     notes: tuple[str, ...] = ()
     header_line: int | None = None
+    unreadable: Mapping[str, str] = field(default_factory=dict)
 
     def __len__(self) -> int:
         """Count the data rows."""
@@ -60,6 +64,11 @@ class RawTable:
             raise DataError(
                 f"missing; {nearest(name, list(self.columns))}", file=self.path, column=name
             )
+        if name in self.unreadable:
+            raise DataError(
+                f"holds cells of type {self.unreadable[name]}; expected numbers or texts",
+                file=self.path, column=name,
+            )  # fmt: skip
         return self.columns[name]
 
     def numbers(self, name: str) -> NDArray[np.float64]:
@@ -73,12 +82,13 @@ class RawTable:
         cells = self.column(name)
         if pd.api.types.is_datetime64_any_dtype(cells) or pd.api.types.is_timedelta64_dtype(cells):
             raise DataError("holds dates, expected numbers", file=self.path, column=name)
-        empty = cells.isna().to_numpy()
-        values = _as_numbers(cells)
-        bad = np.isnan(values) & ~empty
-        if bad.any() and self.decimal_comma and not _has_points(cells):
-            values = _as_numbers(cells.str.replace(",", ".", regex=False))
+        with parsing(self.path, f"cannot take column '{name}' for numbers"):
+            empty = cells.isna().to_numpy(dtype=bool)
+            values = _as_numbers(cells)
             bad = np.isnan(values) & ~empty
+            if bad.any() and self.decimal_comma and not _has_points(cells):
+                values = _as_numbers(cells.astype(str).str.replace(",", ".", regex=False))
+                bad = np.isnan(values) & ~empty
         if bad.any():
             raise self._not_a_number(name, int(np.argmax(bad)))
         return values
@@ -111,24 +121,25 @@ class RawTable:
         )  # fmt: skip
 
 
-@contextmanager
-def open_unpacked(path: Path) -> Iterator[IO[bytes]]:
-    """Open a file for reading, unpacking it where its name ends in .gz."""
-    with path.open("rb") as file:
-        if path.name.lower().endswith(".gz"):
-            with gzip.open(file) as unpacked:
-                yield unpacked  # pyright: ignore[reportReturnType]
-        else:
-            yield file
-
-
 def _as_numbers(cells: "pd.Series") -> NDArray[np.float64]:
-    """Convert cells to numbers, NaN where one is empty or holds no number."""
+    """Convert cells to numbers, NaN where one is empty or holds no number, and after such.
+
+    A cell that holds none takes pandas some microseconds: a column of names would take minutes.
+    """
     import pandas as pd
 
-    return np.asarray(pd.to_numeric(cells, errors="coerce"), dtype=float)
+    if pd.api.types.is_numeric_dtype(cells):
+        return np.asarray(cells, dtype=float)
+    values = np.full(len(cells), np.nan)
+    for start in range(0, len(cells), _BLOCK):
+        block = cells.iloc[start : start + _BLOCK]
+        found = np.asarray(pd.to_numeric(block, errors="coerce"), dtype=float)
+        values[start : start + _BLOCK] = found
+        if np.any(np.isnan(found) & ~block.isna().to_numpy(dtype=bool)):
+            break
+    return values
 
 
 def _has_points(cells: "pd.Series") -> bool:
     # 1,234.5 and 1.234,5 are both possible: where points occur, a comma is not the decimal sign.
-    return bool(cells.str.contains(".", regex=False, na=False).any())
+    return bool(cells.astype(str).str.contains(".", regex=False, na=False).any())

@@ -2,7 +2,8 @@
 """Writes a run folder while the run happens; whoever hands samples over never waits.
 
 A thread of its own writes; another one lets the disk catch up, so that a slow disk delays neither
-the log nor the devices. After SIGKILL the log lacks what came within about `FLUSH_EVERY`.
+the log nor the devices; a third one sees whether the folder is still there. After SIGKILL the log
+lacks what came within about `FLUSH_EVERY`.
 """
 
 import contextlib
@@ -230,7 +231,7 @@ class RunRecorder:
         try:
             self.require_space()
             self._begin(began)
-            for target in (self._write_on, self._sync_on):
+            for target in (self._write_on, self._sync_on, self._look_on):
                 self._start_thread(target)
         except (RecordingError, OSError) as error:
             self._leave_nothing()
@@ -324,22 +325,29 @@ class RunRecorder:
         draft.replace(self.folder / MANIFEST_FILE)
 
     def _write_on(self) -> None:
-        seen = self._clock.now()
         try:
             while not self._ending.wait(FLUSH_EVERY):
                 self._drain()
                 self._flush()
+            self._drain()
+            self._flush()
+        except BaseException as error:  # noqa: BLE001, RUF100 - kept for the owner, who ends the run
+            self._fail(f"{self.folder / LOG_FILE}: {_one_line(error)}")
+
+    def _look_on(self) -> None:
+        """Look for the folder and for room; apart from the writer, which a slow disk holds up."""
+        seen = self._clock.now()
+        try:
+            while not self._ending.wait(FLUSH_EVERY):
                 self._require_place()
                 if self._clock.now() - seen >= SYNC_EVERY:
                     seen = self._clock.now()
                     self.require_space()
-            self._drain()
-            self._flush()
             self._require_place()
         except RecordingError as error:
             self._fail(str(error))
         except BaseException as error:  # noqa: BLE001, RUF100 - kept for the owner, who ends the run
-            self._fail(f"{self.folder / LOG_FILE}: {_one_line(error)}")
+            self._fail(f"{self.folder}: {_one_line(error)}")
 
     def _require_place(self) -> None:
         problem = None if self._place is None else self._place.problem()

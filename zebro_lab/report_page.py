@@ -1,16 +1,21 @@
 # SPDX-License-Identifier: MIT
 """A report as one page: a template of `zebro_lab/pages`, filled and escaped by Jinja."""
 
+import base64
+import hashlib
 from collections.abc import Iterator
 from dataclasses import dataclass
 from datetime import datetime
+from functools import cache
 from importlib.metadata import version
 from importlib.resources import files
 from typing import Any
 
-from jinja2 import Environment, PackageLoader, StrictUndefined
+from jinja2 import Environment, PackageLoader, StrictUndefined, Template
 from markupsafe import Markup
 
+from zebro_lab.files.opening import parsing
+from zebro_lab.files.shown_text import shown
 from zebro_lab.report_numbers import number
 from zebro_lab.report_pictures import Picture, embed
 from zebro_lab.report_sources import Part, Run, Sources
@@ -59,6 +64,32 @@ def render_report(sources: Sources, *, title: str, made: datetime) -> str:
     Returns:
         HTML that needs no other file.
     """
+    style = (files("zebro_lab") / PAGES / STYLE).read_text(encoding="utf-8")
+    template = _template()
+    with parsing(
+        sources.data, "cannot be reported on: a manifest or slip.toml lacks what is shown",
+        advice="make the part again that is named there",
+    ):  # fmt: skip
+        page = template.render(
+            sources=sources,
+            title=title,
+            made=made.isoformat(timespec="seconds"),
+            version=version("zebro-lab"),
+            simulated=sources.simulated,
+            css=Markup(style),  # noqa: S704 - our own file
+            policy=_policy(style),
+            judged=list(_judged(sources)),
+            error_columns=ERROR_COLUMNS,
+            number=_number,
+            count=_count,
+            pictures=_pictures,
+        )
+    # Jinja escapes markup; what else a text of a file may do is spelled out here, for all of them.
+    return "\n".join(map(shown, page.split("\n")))
+
+
+@cache
+def _template() -> Template:
     pages = Environment(
         loader=PackageLoader("zebro_lab", PAGES),
         autoescape=True,
@@ -66,19 +97,15 @@ def render_report(sources: Sources, *, title: str, made: datetime) -> str:
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    style = (files("zebro_lab") / PAGES / STYLE).read_text(encoding="utf-8")
-    return pages.get_template(TEMPLATE).render(
-        sources=sources,
-        title=title,
-        made=made.isoformat(timespec="seconds"),
-        version=version("zebro-lab"),
-        simulated=sources.simulated,
-        css=Markup(style),  # noqa: S704 - our own file
-        judged=list(_judged(sources)),
-        error_columns=ERROR_COLUMNS,
-        number=_number,
-        count=_count,
-        pictures=_pictures,
+    return pages.get_template(TEMPLATE)
+
+
+def _policy(style: str) -> str:
+    """Return what the page may load: its own style and pictures in itself, and nothing else."""
+    digest = base64.b64encode(hashlib.sha256(style.encode()).digest()).decode("ascii")
+    return (
+        f"default-src 'none'; img-src data:; style-src 'sha256-{digest}'; base-uri 'none'; "
+        "form-action 'none'"
     )
 
 

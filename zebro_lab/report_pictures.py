@@ -6,6 +6,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
+from zebro_lab.errors import DataError
+from zebro_lab.files.opening import read_bytes
+
+MOST_PICTURE = 32 << 20
+_PNG = b"\x89PNG\r\n\x1a\n"
 VALIDATION, ERRORS = "validation", ".errors"
 CAPTIONS: Mapping[str, str] = {
     "curves": "Block means of the rig's traction over load, and the fitted slip curve at each load",
@@ -56,14 +61,30 @@ def embed(file: Path, *, stage: str, simulated: bool) -> Picture:
         file: A PNG.
         stage: Stage that drew it.
         simulated: Say so in the caption.
+
+    Raises:
+        DataError: It is no PNG, or larger than `MOST_PICTURE`.
     """
-    encoded = base64.b64encode(file.read_bytes()).decode("ascii")
+    data = read_bytes(file, most=MOST_PICTURE)
+    if not data.startswith(_PNG):
+        raise DataError("is no PNG; make it again", file=file)
+    encoded = base64.b64encode(data).decode("ascii")
     caption = caption_of(file.stem, stage=stage)
     return Picture(
         f"data:image/png;base64,{encoded}",
         f"{caption} (simulated)" if simulated else caption,
         file.name,
     )
+
+
+def lies_in(folder: Path, name: str) -> bool:
+    """Tell whether a file that a manifest names lies in its folder, links followed.
+
+    A manifest is somebody's text: `../secret.png`, an absolute path or a link may name any file.
+    """
+    if Path(name).name != name or "\0" in name:
+        return False
+    return (folder / name).resolve().parent == folder.resolve()
 
 
 def place_of(name: str) -> tuple[int, str]:

@@ -2,8 +2,6 @@
 """What a report is made of: the finished folders of every stage, or what would make them."""
 
 import csv
-import json
-import tomllib
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -11,7 +9,10 @@ from typing import Any
 
 from zebro_lab.calibration_folder import SLIP_TOML
 from zebro_lab.errors import DataError, NotFound
-from zebro_lab.report_pictures import VALIDATION, place_of
+from zebro_lab.files.documents import read_json_document, read_toml_document
+from zebro_lab.files.opening import parsing, read_text
+from zebro_lab.files.replacement import settle
+from zebro_lab.report_pictures import VALIDATION, lies_in, place_of
 from zebro_lab.run_folder import MANIFEST_FILE, find_runs
 from zebro_lab.walk_folder import PREDICTION
 from zebro_lab.walks_folder import FOLDER as WALKS
@@ -21,6 +22,7 @@ MANIFEST, SUMMARY = "manifest.json", "summary.csv"
 TRACK, CALIBRATION = "track", "calibration"
 BESIDE: Mapping[str, tuple[str, ...]] = {CALIBRATION: (SLIP_TOML, SUMMARY), WALKS: (WALKS_TOML,)}
 """What else of a stage's result is read, beside its manifest."""
+_MOST_TABLE = 4 << 20  # bytes of summary.csv, a line a parameter
 WALK_PARTS = (TRACK, PREDICTION, VALIDATION)
 MAKERS: Mapping[str, str] = {
     CALIBRATION: "zebro-lab calibrate {data} --out {folder}",
@@ -42,6 +44,7 @@ class Part:
         documents: Content of its JSON, TOML and CSV files, by file name; empty where it is missing.
         pictures: Its pictures, in the order in which they are read.
         maker: Command that makes it.
+        not_shown: Pictures that its manifest lists and that do not lie in its folder.
     """
 
     name: str
@@ -49,6 +52,7 @@ class Part:
     documents: Mapping[str, Mapping[str, Any]]
     pictures: Sequence[Path]
     maker: str
+    not_shown: Sequence[str] = ()
 
     @property
     def missing(self) -> bool:
@@ -131,8 +135,11 @@ def find_sources(data: Path, *, calibration: Path) -> Sources:
         NotFound: There is no such folder, or nothing in it to report on.
         DataError: A manifest is damaged.
     """
+    for name in WALK_PARTS:
+        settle(data / name)
     found = find_runs(data)
     own = [name for name in WALK_PARTS if (data / name / MANIFEST).is_file()]
+    settle(calibration)
     slip = _part(CALIBRATION, calibration, data)
     walks = _part(WALKS, calibration / WALKS, data)
     walks = None if walks.missing else walks
@@ -155,26 +162,37 @@ def _run(folder: Path) -> Run:
 
 
 def _part(name: str, folder: Path, data: Path) -> Part:
+    settle(folder)
     maker = MAKERS[name].format(run=data, data=data, folder=folder)
     if not (folder / MANIFEST).is_file():
         return Part(name, folder, {}, (), maker)
     documents = {each: _read(folder / each) for each in (MANIFEST, *BESIDE.get(name, ()))}
     kind = documents[MANIFEST].get("kind")
-    expected = {"predict", "walk"} if name == PREDICTION else {name}
+    expected = ("predict", "walk") if name == PREDICTION else (name,)
     if kind not in expected:
         raise DataError(
             f"is the result of another command ({kind}); expected a {name}",
             file=folder / MANIFEST,
         )
     listed = documents[MANIFEST].get("outputs", {})
-    pictures = [folder / each for each in sorted(listed, key=place_of) if each.endswith(".png")]
-    return Part(name, folder, documents, [each for each in pictures if each.is_file()], maker)
+    if not isinstance(listed, dict):
+        raise DataError(f"'outputs' is {listed!r}; expected a table", file=folder / MANIFEST)
+    named = [each for each in sorted(listed, key=place_of) if each.endswith(".png")]
+    inside = {each: folder / each for each in named if lies_in(folder, each)}
+    return Part(
+        name, folder, documents, [each for each in inside.values() if each.is_file()], maker,
+        tuple(each for each in named if each not in inside),
+    )  # fmt: skip
 
 
-def _rows(text: str) -> dict[str, dict[str, Any]]:
+def _rows(file: Path) -> dict[str, dict[str, Any]]:
     """Read a table by the names in its first column, numbers as numbers."""
-    rows = list(csv.DictReader(text.splitlines()))
-    return {next(iter(row.values())): {k: _value(v) for k, v in row.items()} for row in rows}
+    text = read_text(file, most=_MOST_TABLE)
+    with parsing(file, "cannot be read as CSV", advice="make it again"):
+        rows = [row for row in csv.DictReader(text.splitlines()) if None not in row]
+        return {
+            next(iter(row.values())): {k: _value(v or "") for k, v in row.items()} for row in rows
+        }
 
 
 def _value(cell: str) -> float | str:
@@ -184,17 +202,18 @@ def _value(cell: str) -> float | str:
         return cell
 
 
-_PARSERS: Mapping[str, Callable[[str], Any]] = {
-    ".json": json.loads, ".toml": tomllib.loads, ".csv": _rows
-}  # fmt: skip
+_READERS: Mapping[str, Callable[[Path], Any]] = {
+    ".json": read_json_document,
+    ".toml": lambda file: read_toml_document(file, remedy="make it again", fault=DataError),
+    ".csv": _rows,
+}
 
 
 def _read(file: Path) -> Mapping[str, Any]:
     try:
-        text = file.read_text(encoding="utf-8")
-        content = _PARSERS[file.suffix](text)
-    except (OSError, ValueError) as error:
-        raise DataError(f"cannot be read ({error}); make it again", file=file) from error
+        content = _READERS[file.suffix](file)
+    except NotFound as error:
+        raise DataError("is missing; make it again", file=file) from error
     if not isinstance(content, dict):
         raise DataError("holds no table; make it again", file=file)
     return content

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: MIT
 """`robot.toml`: the robot that walks, what its leg log's signs mean, and the marker it carries."""
 
-import tomllib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -12,7 +11,8 @@ import numpy as np
 from model.errors import DomainError
 from model.robot import N_LEGS, Robot
 from zebro_lab.columns import require_known
-from zebro_lab.errors import NotFound, SettingsError, UnitError
+from zebro_lab.errors import SettingsError, UnitError
+from zebro_lab.files.documents import read_toml_document
 from zebro_lab.marker_print import KIT_PRINT, MarkerPrint
 from zebro_lab.toml_table import quoted
 from zebro_lab.units import quantity_to_si
@@ -67,15 +67,8 @@ def read_robot_file(file: Path) -> RobotFile:
         NotFound: There is no such file.
         SettingsError: It is no TOML, or holds an unknown key, an impossible value or a wrong unit.
     """
-    try:
-        document = tomllib.loads(file.read_text(encoding="utf-8-sig"))
-    except FileNotFoundError as error:
-        raise NotFound(
-            f"{file}: no such file; expected a {ROBOT_FILE} (walk --write-robot {file} starts one)"
-        ) from error
-    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
-        raise SettingsError(f"cannot be read as TOML: {error}", file=file) from error
-    return _Reader(file).robot_file(document)
+    advice = f"expected a {ROBOT_FILE} (walk --write-robot {file} starts one)"
+    return _Reader(file).robot_file(read_toml_document(file, advice=advice))
 
 
 def render_robot_file(described: RobotFile) -> str:

@@ -2,12 +2,12 @@
 """Messages of one type in a ROS 2 log, up to where it is damaged."""
 
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, redirect_stdout
+from io import StringIO
 from pathlib import Path
-from typing import IO, Any, NamedTuple
+from typing import Any, NamedTuple
 
-from zebro_lab.errors import DataError, NotFound
-from zebro_lab.log_damage import DAMAGES_HINT, log_damages
+from zebro_lab.files.log_records import read_records
 
 
 class LoggedMessage(NamedTuple):
@@ -39,44 +39,32 @@ def read_messages(path: Path, *, schema: str) -> tuple[list[LoggedMessage], str 
         NotFound: There is no such file.
         DataError: It is no MCAP.
     """
-    from mcap.exceptions import InvalidMagic
-
-    messages: list[LoggedMessage] = []
-    try:
-        with path.open("rb") as file:
-            messages.extend(_messages(file, schema))
-    except FileNotFoundError as error:
-        raise NotFound(f"{path}: no such file") from error
-    except InvalidMagic as error:
-        raise DataError("is no MCAP file", file=path) from error
-    except log_damages() as error:
-        return messages, str(error) or DAMAGES_HINT
-    return messages, None
-
-
-def _messages(file: IO[bytes], name: str) -> Iterator[LoggedMessage]:
-    from mcap.records import Channel, Message, Schema
-    from mcap.stream_reader import StreamReader
+    from mcap.records import Channel, McapRecord, Message, Schema
     from mcap_ros2.decoder import DecoderFactory
 
     factory = DecoderFactory()
     schemas: dict[int, Schema] = {}
     decoders: dict[int, tuple[str, Any]] = {}
-    for record in StreamReader(file, validate_crcs=True).records:
+    messages: list[LoggedMessage] = []
+
+    def take(record: McapRecord) -> None:
         if isinstance(record, Schema):
             schemas[record.id] = record
         elif isinstance(record, Channel):
-            schema = schemas.get(record.schema_id)
-            if schema is not None and schema.name == name:
-                with _damage_of(f"the log's description of {name}"):
-                    decode = factory.decoder_for(record.message_encoding, schema)
+            found = schemas.get(record.schema_id)
+            if found is not None and found.name == schema:
+                with _damage_of(f"the log's description of {schema}"):
+                    decode = factory.decoder_for(record.message_encoding, found)
                 if decode is not None:
                     decoders[record.id] = (record.topic, decode)
         elif isinstance(record, Message) and record.channel_id in decoders:
             topic, decode = decoders[record.channel_id]
             with _damage_of(f"a message of {topic}"):
                 content = decode(record.data)
-            yield LoggedMessage(topic, record.log_time, content)
+            messages.append(LoggedMessage(topic, record.log_time, content))
+
+    damage = read_records(path, take)
+    return messages, damage
 
 
 @contextmanager
@@ -87,6 +75,7 @@ def _damage_of(what: str) -> Iterator[None]:
         ValueError: The decoder failed.
     """
     try:
-        yield
+        with redirect_stdout(StringIO()):  # it prints what it does not understand
+            yield
     except Exception as error:
         raise ValueError(f"{what} cannot be read: {type(error).__name__}: {error}") from error

@@ -8,7 +8,7 @@ import re
 import time
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
 from typing import Final
@@ -19,6 +19,7 @@ from zebro_lab.atomic import atomic_folder
 from zebro_lab.errors import AlreadyExists, DataError, NotFound, RecordingError
 from zebro_lab.provenance import file_hash
 from zebro_lab.raw_log import read_raw_log
+from zebro_lab.run_exclusion import exclude_run
 from zebro_lab.run_manifest import (
     IMPORTED,
     KINDS,
@@ -255,24 +256,6 @@ def run_state(folder: Path, manifest: RunManifest) -> str:
     log = folder / LOG_FILE
     growing = log.is_file() and time.time() - log.stat().st_mtime < STILL_GROWING
     return RECORDING if growing else "recovered"
-
-
-def exclude_run(folder: Path, *, why: str) -> RunManifest:
-    """Leave a run out of every calibration from now on, and keep it.
-
-    Args:
-        folder: The run folder.
-        why: Reason, for whoever reads it later.
-
-    Raises:
-        NotFound: It is no run folder.
-        DataError: Its manifest is damaged, or no reason is given.
-    """
-    if not why.strip():
-        raise DataError("no reason given; say why the run is left out", file=folder)
-    manifest = replace(read_manifest(folder), excluded={"why": why.strip()})
-    write_manifest(folder, manifest)
-    return manifest
 
 
 def _slip_rig_table(

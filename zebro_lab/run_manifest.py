@@ -2,8 +2,9 @@
 """What `run.json` of a run folder says: read, checked and written here alone."""
 
 import json
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field
+from datetime import UTC, datetime
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any
@@ -42,6 +43,8 @@ class RunManifest:
         streams: Samples recorded, by topic.
         log_sha256: SHA-256 of `log.mcap`; None where the recorder could not close it.
         excluded: {"why": reason} where the run is to be left out of every calibration.
+        exclusions: What was excluded and undone, in order: {"did": "excluded" or "undone", "why":
+            reason, "at": time}.
         profiles: Name of each device's profile, by stream; the profile itself lies in the folder.
         sources: Source of each stream.
         counters: What happened to each stream: received, lost, damaged and so on, and how many the
@@ -71,6 +74,7 @@ class RunManifest:
     streams: Mapping[str, int]
     log_sha256: str | None = None
     excluded: Mapping[str, str] | None = None
+    exclusions: Sequence[Mapping[str, str]] = ()
     profiles: Mapping[str, str] = field(default_factory=dict)
     sources: Mapping[str, str] = field(default_factory=dict)
     counters: Mapping[str, Mapping[str, int]] = field(default_factory=dict)
@@ -125,9 +129,17 @@ _FIELD_TYPES: Mapping[str, type] = {
     "stop": str, "exit_status": str, "software": dict, "constants": dict, "streams": dict,
     "log_sha256": str, "excluded": dict, "profiles": dict, "sources": dict, "counters": dict,
     "clocks": dict, "duration": dict, "robot": str, "truth": dict, "inputs": dict, "point": dict,
+    "exclusions": list,
 }  # fmt: skip
+_ENTRY_TYPES: Mapping[str, tuple[type, ...]] = {
+    "software": (str,), "constants": (int, float), "streams": (int,), "excluded": (str,),
+    "profiles": (str,), "sources": (str,), "counters": (dict,), "clocks": (dict,),
+    "duration": (int, float), "inputs": (str,),
+}  # fmt: skip
+_NUMBERS = ("counters", "clocks")  # tables of tables of numbers
 _ADDED = (
-    "profiles", "sources", "counters", "clocks", "duration", "robot", "truth", "inputs", "point",
+    "exclusions", "profiles", "sources", "counters", "clocks", "duration", "robot", "truth",
+    "inputs", "point",
 )  # fmt: skip
 _OPTIONAL = {"stop", "log_sha256", "excluded", *_ADDED}
 
@@ -147,9 +159,48 @@ def _checked(document: Mapping[str, Any], file: Path) -> RunManifest:
             raise DataError(
                 f"'{name}' is {document.get(name)!r}, expected {expected.__name__}", file=file
             )
+    for each in document.get("exclusions") or ():
+        if not (isinstance(each, dict) and {"did", "why"} <= each.keys()):
+            raise DataError(f"'exclusions' holds {each!r}, expected did and why", file=file)
     if document["kind"] not in KINDS:
         raise DataError(f"unknown kind '{document['kind']}'; {nearest(document['kind'], KINDS)}",
                         file=file)  # fmt: skip
+    _require_entries(document, file)
+    for name in ("start", "stop"):
+        if document.get(name) is not None:
+            _require_moment(name, document[name], file)
     known: dict[str, Any] = {"stop": None}
     known |= {name: document[name] for name in _FIELD_TYPES if document.get(name) is not None}
     return RunManifest(**known)
+
+
+def _require_entries(document: Mapping[str, Any], file: Path) -> None:
+    for name, kinds in _ENTRY_TYPES.items():
+        for key, value in (document.get(name) or {}).items():
+            _require_entry(name, key, value, kinds, file)
+            if name in _NUMBERS:
+                for inner, number in value.items():
+                    _require_entry(name, f"{key}.{inner}", number, (int, float), file)
+
+
+def _require_entry(name: str, key: str, value: object, kinds: tuple[type, ...], file: Path) -> None:
+    # An angle or a count that could not be told is null in JSON.
+    if value is None and kinds != (str,) and kinds != (dict,):
+        return
+    if not isinstance(value, kinds) or isinstance(value, bool):
+        expected = " or ".join(kind.__name__ for kind in kinds)
+        raise DataError(f"'{name}' has {key!r}: {value!r}, expected {expected}", file=file)
+
+
+def _require_moment(name: str, text: str, file: Path) -> None:
+    try:
+        moment = datetime.fromisoformat(text)
+        known = moment.tzinfo is not None and moment.astimezone(UTC)
+    except (ValueError, OverflowError):
+        known = None
+    if not known:
+        raise DataError(
+            f"'{name}' is {text!r}, expected a moment with its time zone, such as "
+            "2026-01-01T12:00:00+00:00",
+            file=file,
+        )

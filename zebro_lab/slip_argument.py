@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: MIT
 """What `--slip` means: a calibration, Coulomb friction, or the source's own curve."""
 
-import tomllib
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -11,8 +10,9 @@ import numpy as np
 from model.slip.curve import SlipCurve
 from model.slip.definition import SlipDefinition
 from model.walk.traction import ToeLaw, TractionTable, VelocityCoulomb, curve_table
-from zebro_lab.calibration_folder import SLIP_TOML, read_slip
+from zebro_lab.calibration_folder import SLIP_TOML, read_slip_file
 from zebro_lab.errors import NotFound, SettingsError
+from zebro_lab.files.replacement import settle
 from zebro_lab.walks_folder import StoredWalks, read_walks_beside
 
 if TYPE_CHECKING:
@@ -114,7 +114,7 @@ def parse_slip(text: str, *, with_walks: bool = True) -> Slip:
     name, *numbers = text.split(":")
     if name == COULOMB:
         return Slip(text, _coulomb(text, numbers), source="assumed")
-    path = Path(text)
+    path = settle(Path(text))
     if not path.exists():
         raise NotFound(f"--slip: '{text}' is no file or folder; expected {EXPECTED_SLIP}")
     return _calibrated(text, path, with_walks=with_walks)
@@ -151,16 +151,12 @@ def _coulomb(text: str, numbers: list[str]) -> VelocityCoulomb:
 
 
 def _calibrated(text: str, path: Path, *, with_walks: bool) -> Slip:
-    curve = read_slip(path)
-    file = path / SLIP_TOML if path.is_dir() else path
-    content = tomllib.loads(file.read_text())
-    notes = []
-    verdict = content.get("verdict", {})
-    if not verdict.get("trustworthy", True):
-        headline = verdict.get("headline", "not trustworthy")
-        notes.append(f"slip: the calibration is not trustworthy: {headline}")
+    said = read_slip_file(path)
+    curve, file, notes = said.curve, said.file, []
+    if said.doubt is not None:
+        notes.append(f"slip: the calibration is not trustworthy: {said.doubt}")
     if curve.definition is not SlipDefinition.MATERIAL:
         notes.append(f"slip: fitted to '{curve.definition}' slip, converted where it is evaluated")
     walks = read_walks_beside(file) if with_walks else None
     files = (file, *(walks.files if walks is not None else ()))
-    return Slip(text, curve, str(content.get("source", "unknown")), files, tuple(notes), walks)
+    return Slip(text, curve, said.source, files, tuple(notes), walks)

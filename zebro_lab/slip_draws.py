@@ -10,9 +10,11 @@ from model.slip.curve import SlipCurve
 from model.slip.law import Array
 from model.walk.traction import ToeLaw, TractionTable, VelocityCoulomb, law_table
 from zebro_lab.errors import DataError
+from zebro_lab.files.draws import read_draws_of
 from zebro_lab.slip_argument import Slip
 
 POSTERIOR = "posterior.nc"
+_ADVICE = "calibrate again, or name a slip.toml that lies alone"
 MOST_TABLES = 200  # a table costs as much as walking a second, and paths hardly differ between them
 
 
@@ -71,22 +73,12 @@ def law_draws(slip: Slip, curve: SlipCurve, n: int, *, rng: np.random.Generator)
 
 def _posterior(file: Path, curve: SlipCurve) -> Array:
     """Read the draws of every parameter, those that were fixed at their value, shape (m, k)."""
-    import xarray as xr
-
-    try:
-        with xr.open_dataset(file, group="posterior", engine="h5netcdf") as data:
-            columns = {str(name): np.ravel(data[name].to_numpy()) for name in data.data_vars}
-    except (OSError, ValueError, KeyError) as error:
-        raise DataError(
-            f"cannot be read as posterior draws ({error}); calibrate again, or name a slip.toml "
-            "that lies alone",
-            file=file,
-        ) from error
     names = [parameter.name for parameter in curve.law.parameters]
-    drawn = [name for name in names if name in columns]
+    columns, others = read_draws_of(file, "posterior", names, advice=_ADVICE)
+    drawn = list(columns)
     if not drawn:
         raise DataError(
-            f"holds draws of {', '.join(columns) or 'nothing'}, but the slip.toml beside it is of "
+            f"holds draws of {', '.join(others) or 'nothing'}, but the slip.toml beside it is of "
             f"the law '{curve.law.name}' with {', '.join(names)}; calibrate again",
             file=file,
         )

@@ -7,7 +7,6 @@ of mcap-ros2-support, against which the tests hold them.
 """
 
 import struct
-from collections.abc import Iterator
 from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import IO, TYPE_CHECKING
@@ -16,10 +15,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from zebro_lab.errors import DataError
-from zebro_lab.log_damage import DAMAGES_HINT, log_damages
+from zebro_lab.files.log_records import read_records
 
 if TYPE_CHECKING:
-    from mcap.records import Message
+    from mcap.records import McapRecord
 
 TOPIC = "/slip_rig/samples"
 SCHEMA_NAME = "zebro_lab/msg/SlipRigBlock"
@@ -134,34 +133,13 @@ def read_log(path: Path) -> SalvagedLog:
     Raises:
         DataError: The file is no MCAP, or not one sample of it can be read.
     """
-    from mcap.exceptions import InvalidMagic
+    from mcap.records import Channel, Message, Schema
 
     blocks: list[NDArray[np.float64]] = []
-    damage = None
-    try:
-        with path.open("rb") as file:
-            for message in _messages(file):
-                blocks.append(decode_block(message.data))  # noqa: PERF401 (keeps what came before)
-    except InvalidMagic as error:
-        raise DataError("is no MCAP file", file=path) from error
-    except log_damages() as error:
-        damage = str(error) or DAMAGES_HINT
-    if not blocks:
-        raise DataError(
-            f"holds no samples on {TOPIC}" + (f" that can be read ({damage})" if damage else ""),
-            file=path,
-        )
-    return SalvagedLog(SlipRigTable(*np.concatenate(blocks).T.copy()), damage)
-
-
-def _messages(file: IO[bytes]) -> "Iterator[Message]":
-    # Streaming: the seeking reader needs the index at the end, which a cut file has lost.
-    from mcap.records import Channel, Message, Schema
-    from mcap.stream_reader import StreamReader
-
     ours: set[int] = set()
     schemas: dict[int, str] = {}
-    for record in StreamReader(file, validate_crcs=True).records:
+
+    def take(record: "McapRecord") -> None:
         if isinstance(record, Schema):
             schemas[record.id] = record.name
         elif isinstance(record, Channel) and record.topic == TOPIC:
@@ -169,4 +147,12 @@ def _messages(file: IO[bytes]) -> "Iterator[Message]":
                 raise ValueError(f"{TOPIC} is not of type {SCHEMA_NAME}")
             ours.add(record.id)
         elif isinstance(record, Message) and record.channel_id in ours:
-            yield record
+            blocks.append(decode_block(record.data))
+
+    damage = read_records(path, take)
+    if not blocks:
+        raise DataError(
+            f"holds no samples on {TOPIC}" + (f" that can be read ({damage})" if damage else ""),
+            file=path,
+        )
+    return SalvagedLog(SlipRigTable(*np.concatenate(blocks).T.copy()), damage)

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: MIT
 """CSV and Parquet files, read as raw tables."""
 
-from collections import Counter
 from pathlib import Path
 
 from zebro_lab.csv_files import read_csv_file
 from zebro_lab.errors import DataError, NotFound
+from zebro_lab.parquet_files import read_parquet_file
 from zebro_lab.raw_table import RawTable
 
 TABLE_SUFFIXES = (".csv", ".csv.gz", ".parquet")
@@ -30,7 +30,7 @@ def read_table_file(path: Path) -> RawTable:
             f"is no table file; expected one that ends in {', '.join(TABLE_SUFFIXES)}", file=path
         )
     is_parquet = path.name.lower().endswith(".parquet")
-    table = _read_parquet(path) if is_parquet else read_csv_file(path)
+    table = read_parquet_file(path) if is_parquet else read_csv_file(path)
     if len(table) == 0:
         raise DataError("has a header but no rows", file=path)
     return table
@@ -44,25 +44,3 @@ def table_stem(path: Path) -> str:
     """
     suffix = next((s for s in TABLE_SUFFIXES if path.name.lower().endswith(s)), "")
     return path.name[: len(path.name) - len(suffix)]
-
-
-def _read_parquet(path: Path) -> RawTable:
-    import pyarrow as pa
-    import pyarrow.parquet as pq
-
-    try:
-        with path.open("rb") as file:
-            table = pq.read_table(file)
-    except (pa.ArrowException, OSError) as error:
-        raise DataError(
-            f"is not a whole Parquet file ({error}); it may have been cut short: export it again",
-            file=path,
-        ) from error
-    source = (table.schema.metadata or {}).get(b"source")
-    names = Counter(table.column_names)
-    return RawTable(
-        path,
-        {n: c.to_pandas() for n, c in zip(table.column_names, table.columns, strict=True)},
-        frozenset(name for name, count in names.items() if count > 1),
-        source=source.decode(errors="replace") if source else None,
-    )

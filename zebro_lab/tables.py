@@ -2,14 +2,16 @@
 """Rig data of any accepted form, turned into samples for the calibration."""
 
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
 from model.bayes.blocks import slip_noise_variance
 from model.bayes.samples import SlipSamples
+from model.errors import ModelError
 from model.slip.definition import SlipDefinition
 from model.slip.law import Array
 from zebro_lab.columns import (
@@ -19,12 +21,13 @@ from zebro_lab.columns import (
     parse_definition,
     read_columns,
 )
+from zebro_lab.counted_once import content_hash, first_of_each, run_keys, told_once
 from zebro_lab.data_paths import DataSource, find_sources
-from zebro_lab.errors import DataError, SettingsError
+from zebro_lab.errors import DataError, SettingsError, ZebroLabError
 from zebro_lab.raw_table import RawTable
 from zebro_lab.recorded_sweeps import SWEEP, recorded_sweeps
 from zebro_lab.rig_table import RigTable, kept_rows, normal_force
-from zebro_lab.run_folder import read_manifest, read_slip_rig_run
+from zebro_lab.run_folder import LOG_FILE, read_manifest, read_slip_rig_run
 from zebro_lab.run_separation import Runs, run_times, separate_runs
 from zebro_lab.slip_source import SlipColumn, converted, slip
 from zebro_lab.table_files import read_table_file, table_stem
@@ -47,6 +50,7 @@ class RigData:
         notes: For a person, one line each: how slip was obtained, rows left out and why, how
             runs were separated, units converted.
         load_cell: Standard deviations from [load_cell] by name, SI; only those given.
+        repeated: Of the notes, those on data that were named twice and count once.
     """
 
     samples: SlipSamples
@@ -54,6 +58,7 @@ class RigData:
     source: str
     notes: tuple[str, ...]
     load_cell: Mapping[str, float]
+    repeated: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -92,24 +97,29 @@ def read_rig_data(
         if slip_definition is None
         else parse_definition(slip_definition, file=None, key="slip definition")
     )
-    sources = find_sources(paths)
-    maps = _column_maps(sources, columns)
-    skipped: list[str] = []
-    parts = []
-    for source, label in zip(sources, _labels(sources), strict=True):
-        part = _read_part(source, maps[source], label, wanted, skipped)
-        if part is not None:
-            parts.append(part)
+    named = find_sources(paths)
+    labels = dict(zip(named, _labels(named), strict=True))
+    excluded = {source: why for source in named if (why := _exclusion(source)) is not None}
+    counted = [source for source in named if source not in excluded]
+    sources, repeated = first_of_each(counted, key=_bytes_of) if len(counted) > 1 else (counted, [])
+    skipped = [f"{labels[source]}: left out, {why}" for source, why in excluded.items()]
+    maps = _column_maps(named, columns)
+    parts = [_read_part(source, maps[source], labels[source], wanted) for source in sources]
+    known = _known(excluded, maps, labels) if parts else {}
+    parts, repeated_runs = _once(parts, known)
+    files = [(labels[one], labels[other]) for one, other in repeated]
+    twice = told_once("runs and tables", [*files, *repeated_runs])
     if not parts:
-        raise DataError(f"every run is left out: {'; '.join(skipped)}")
+        raise DataError(f"every run is left out: {'; '.join((*skipped, *twice))}")
     samples = _joined(parts)
     _require_informative(samples, parts)
     return RigData(
         samples=samples,
         files=tuple(dict.fromkeys(file for part in parts for file in part.files)),
         source=_joined_source(parts),
-        notes=(*_notes(parts), *skipped),
+        notes=(*_notes(parts), *skipped, *twice),
         load_cell=_joined_load_cell(parts),
+        repeated=twice,
     )
 
 
@@ -131,18 +141,77 @@ def _labels(sources: Sequence[DataSource]) -> list[str]:
     return next((names for names in schemes if len(set(names)) == len(names)), schemes[-1])
 
 
+def _exclusion(source: DataSource) -> str | None:
+    """Return why a run is left out; None where it counts."""
+    if not source.is_run_folder:
+        return None
+    excluded = read_manifest(source.path).excluded
+    return None if excluded is None else excluded.get("why", "excluded")
+
+
+def _bytes_of(source: DataSource) -> str:
+    """Return what a table or a log is known by under another name."""
+    file = source.path / LOG_FILE if source.is_run_folder else source.path
+    return content_hash(file) if file.is_file() else str(source.path)
+
+
+def _keys(part: _Part) -> tuple[str, ...]:
+    forces = (part.normal_force, part.traction_force)
+    return run_keys(forces, part.runs.index, len(part.runs.names))
+
+
+def _known(
+    excluded: Collection[DataSource],
+    maps: Mapping[DataSource, Columns],
+    labels: Mapping[DataSource, str],
+) -> dict[str, str]:
+    """Return the runs that are left out, by what they are known by under another name."""
+    known: dict[str, str] = {}
+    for source in excluded:
+        try:
+            part = _read_part(source, maps[source], labels[source], None)
+        except (ZebroLabError, ModelError):  # it may well be left out for what is wrong with it
+            continue
+        known |= dict.fromkeys(_keys(part), f"{labels[source]}, which is left out")
+    return known
+
+
+def _once(
+    parts: Sequence[_Part], known: Mapping[str, str]
+) -> tuple[list[_Part], list[tuple[str, str]]]:
+    """Leave out runs that are there already, or are left out under another name; pair both."""
+    seen, repeated, kept = dict(known), [], []
+    for part in parts:
+        keys = _keys(part)
+        fresh = np.array([key not in seen for key in keys], dtype=bool)
+        named = dict(zip(keys, part.runs.names, strict=True))
+        repeated += [(name, seen[key]) for key, name in named.items() if key in seen]
+        seen = {**named, **seen}
+        if fresh.any():
+            kept.append(part if fresh.all() else _with_runs(part, fresh))
+    return kept, repeated
+
+
+def _with_runs(part: _Part, chosen: NDArray[np.bool_]) -> _Part:
+    """Return a part with some of its runs."""
+    rows = chosen[part.runs.index]
+    index = (np.cumsum(chosen) - 1)[part.runs.index[rows]]
+    names = tuple(name for name, keep in zip(part.runs.names, chosen, strict=True) if keep)
+    return replace(
+        part,
+        rows_read=part.rows_read - int((~rows).sum()),
+        slip=replace(part.slip, ratio=part.slip.ratio[rows]),
+        normal_force=part.normal_force[rows],
+        traction_force=part.traction_force[rows],
+        runs=replace(part.runs, index=index, names=names),
+        time=None if part.time is None else part.time[rows],
+    )
+
+
 def _read_part(
-    source: DataSource,
-    columns: Columns,
-    label: str,
-    wanted: SlipDefinition | None,
-    skipped: list[str],
-) -> _Part | None:
+    source: DataSource, columns: Columns, label: str, wanted: SlipDefinition | None
+) -> _Part:
     if source.is_run_folder:
-        manifest = read_manifest(source.path)
-        if manifest.excluded is not None:
-            skipped.append(f"{label}: left out, {manifest.excluded.get('why', 'excluded')}")
-            return None
         raw, columns, files = _run_folder_table(source.path, columns)
     else:
         raw, files = read_table_file(source.path), (source.path,)

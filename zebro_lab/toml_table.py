@@ -3,14 +3,14 @@
 
 import json
 import math
-import tomllib
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from zebro_lab.columns import require_known
-from zebro_lab.errors import NotFound, SettingsError, UnitError
+from zebro_lab.errors import SettingsError, UnitError
+from zebro_lab.files.documents import read_toml_document
 from zebro_lab.units import quantity_to_si
 
 
@@ -128,12 +128,7 @@ def read_toml(file: Path, *, advice: str) -> TomlTable:
         NotFound: There is no such file.
         SettingsError: It cannot be read as TOML.
     """
-    try:
-        return TomlTable(file, tomllib.loads(file.read_text(encoding="utf-8-sig")))
-    except FileNotFoundError as error:
-        raise NotFound(f"{file}: no such file; {advice}") from error
-    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
-        raise SettingsError(f"cannot be read as TOML: {error}", file=file) from error
+    return TomlTable(file, read_toml_document(file, advice=advice))
 
 
 def quoted(text: str) -> str:

@@ -11,6 +11,7 @@ from model.errors import DomainError
 from model.metrics.poses import Poses
 from model.slip.law import Array
 from zebro_lab.errors import DataError
+from zebro_lab.files.replacement import settle
 from zebro_lab.raw_table import RawTable
 from zebro_lab.table_files import read_table_file
 from zebro_lab.track_folder import MANIFEST, TRACK_CSV, read_track_manifest
@@ -53,6 +54,7 @@ def read_track(path: Path) -> TrackFile:
         DataError: A column is missing, a cell holds no number, time does not increase, or there
             are too few poses; names file, row and column.
     """
+    settle(path)
     file = path / TRACK_CSV if path.is_dir() else path
     return track_of_table(read_table_file(file))
 

@@ -1,27 +1,26 @@
 # SPDX-License-Identifier: MIT
 """The sole owner of the format of a track folder: `track.csv`, `track.tum` and `manifest.json`."""
 
-import json
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, Protocol
 
 from zebro_lab.annotations import ANNOTATIONS_FILE
-from zebro_lab.atomic import atomic_folder
-from zebro_lab.errors import AlreadyExists, DataError
+from zebro_lab.files.replacement import settle
+from zebro_lab.files.result_folder import MANIFEST, ResultKind, result_folder
 from zebro_lab.floor_file import FLOOR_FILE
 from zebro_lab.folder_manifest import read_folder_manifest
-from zebro_lab.provenance import file_hash, software
 
 SCHEMA = 1
 KIND = "track"
 TRACK_CSV = "track.csv"
 TRACK_TUM = "track.tum"
-MANIFEST = "manifest.json"
 PICTURES = ("overlay.png", "map.png", "residuals.png")
-OWNED = (TRACK_CSV, TRACK_TUM, FLOOR_FILE, ANNOTATIONS_FILE, MANIFEST, *PICTURES)
-"""What `track` writes; an earlier track's files of these names are replaced."""
+TRACKED = ResultKind(
+    KIND, "track", (TRACK_CSV, TRACK_TUM, FLOOR_FILE, ANNOTATIONS_FILE, *PICTURES), SCHEMA
+)
+"""What `track` writes; an earlier track's files are replaced."""
 
 _DIGITS = "%.10g"
 
@@ -68,21 +67,10 @@ def track_folder(
     Raises:
         AlreadyExists: `out` is a file, or the result of another command.
     """
-    _require_ours(out)
-    with atomic_folder(out, replaces=OWNED, marker=MANIFEST) as draft:
+    content = {"source": source, "settings": settings, **report, "inputs": inputs}
+    with result_folder(out, TRACKED, content=content) as draft:
         _write_track(draft, track)
         yield draft
-        content = {
-            "schema": SCHEMA,
-            "kind": KIND,
-            "source": source,
-            "settings": settings,
-            **report,
-            "inputs": inputs,
-            "outputs": {p.name: file_hash(p) for p in sorted(draft.iterdir()) if p.is_file()},
-            "software": software(),
-        }
-        (draft / MANIFEST).write_text(json.dumps(content, indent=2) + "\n")
 
 
 def _write_track(folder: Path, track: WrittenTrack) -> None:
@@ -100,20 +88,10 @@ def read_track_manifest(folder: Path) -> Mapping[str, Any]:
         NotFound: There is none.
         DataError: It is damaged, of a later schema, or that of another command.
     """
+    settle(folder)
     return read_folder_manifest(folder / MANIFEST, of="track", kinds=(KIND,), schema=SCHEMA)
 
 
 def written(folder: Path) -> Sequence[Path]:
     """List what a track folder holds of ours."""
-    return [folder / name for name in OWNED if (folder / name).is_file()]
-
-
-def _require_ours(out: Path) -> None:
-    if not (out / MANIFEST).exists():
-        return
-    try:
-        read_track_manifest(out)
-    except DataError as error:
-        raise AlreadyExists(
-            f"{out} holds the result of another command ({error.problem}); name another --out"
-        ) from error
+    return [folder / name for name in (*TRACKED.names, MANIFEST) if (folder / name).is_file()]

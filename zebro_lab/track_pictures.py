@@ -3,7 +3,7 @@
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import IO, TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -70,15 +70,16 @@ def draw_track(
 
 
 def draw_preview(
-    file: Path, pixels: NDArray[np.uint8], *, camera: Camera, view: CameraPose, floor: FloorMap,
-    detection: Detection, title: str, simulated: bool,
+    file: IO[bytes], pixels: NDArray[np.uint8], *, camera: Camera, view: CameraPose,
+    floor: FloorMap, detection: Detection, title: str, simulated: bool, command: str,
 ) -> None:  # fmt: skip
     """Draw what was found in one photograph, with the map's marks where they should appear."""
     from zebro_lab.plots import save
     from zebro_lab.plots import track as draw
 
     marks = seen_marks(camera, view, floor, detection)
-    save(draw.over_photo(pixels, title=title, simulated=simulated, marks=marks), file)
+    figure = draw.over_photo(pixels, title=title, simulated=simulated, marks=marks)
+    save(figure, file, command=command)
 
 
 def seen_marks(

@@ -11,7 +11,9 @@ from model.bayes.walk_misfit import FEWEST_POSES, TrackedWalk
 from model.bayes.walk_tilt import FEWEST, TIME, TiltSeen
 from model.gait.quantised import QuantisedLog
 from model.gait.reference import SampledReference
+from zebro_lab.counted_once import array_hash, first_of_each, told_once
 from zebro_lab.errors import DataError, NotFound, SettingsError
+from zebro_lab.files.replacement import settle
 from zebro_lab.leg_angles import angles_from
 from zebro_lab.leg_log import read_leg_log
 from zebro_lab.recorded_legs import is_recorded
@@ -76,14 +78,17 @@ def read_walks(
     Raises:
         ZebroLabError: As in `read_walk_on_file`; or the walks are of two robots.
     """
-    walks = [read_walk_on_file(folder, robot=robot, clock=clock) for folder in folders]
-    for walk in walks[1:]:
-        if describe_legs(walk.robot) != describe_legs(walks[0].robot):
+    read = [read_walk_on_file(folder, robot=robot, clock=clock) for folder in folders]
+    for walk in read[1:]:
+        if describe_legs(walk.robot) != describe_legs(read[0].robot):
             raise SettingsError(
-                f"{walk.name} was walked by another robot than {walks[0].name}; calibrate with the "
+                f"{walk.name} was walked by another robot than {read[0].name}; calibrate with the "
                 "walks of one robot at a time, or name a --robot for all",
                 file=walk.robot.file,
             )
+    walks, repeated = first_of_each(read, key=_content)
+    told = told_once("walks", [(one.name, other.name) for one, other in repeated])
+    walks[:1] = [replace(walk, notes=(*walk.notes, *told)) for walk in walks[:1]]
     names = [walk.name for walk in walks]
     return [
         walk
@@ -91,6 +96,12 @@ def read_walks(
         else replace(walk, name=f"{walk.name}-{names[: i + 1].count(walk.name)}")
         for i, walk in enumerate(walks)
     ]
+
+
+def _content(walk: WalkOnFile) -> str:
+    """Return what a walk is known by under another name: its leg angles and its track."""
+    poses = walk.track.poses
+    return array_hash(walk.legs.theta, poses.position, poses.yaw)
 
 
 def read_walk_on_file(
@@ -110,7 +121,7 @@ def read_walk_on_file(
             little of it lies within the log's time.
     """
     log_file = _legs_of(folder)
-    track_file = folder / TRACK / TRACK_CSV
+    track_file = settle(folder / TRACK) / TRACK_CSV
     if not track_file.is_file():
         raise NotFound(
             f"{folder}: a walk without a track; zebro-lab track --out {folder / TRACK} makes one"

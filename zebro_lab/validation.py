@@ -22,6 +22,7 @@ from model.slip.law import Array
 from model.walk.ensemble import PathEnsemble
 from model.walk.path import WalkPath
 from zebro_lab.errors import DataError, SettingsError
+from zebro_lab.files.replacement import settle
 from zebro_lab.path_band import read_draws
 from zebro_lab.recorded_tilt import Tilt
 from zebro_lab.slip_argument import parse_slip
@@ -135,6 +136,7 @@ def read_prediction(path: Path) -> Prediction:
     Raises:
         ZebroLabError: It is missing, or no path.
     """
+    settle(path)
     file = path / PATH_CSV if path.is_dir() else path
     poses = read_poses(file)
     folder = file.parent

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: MIT
 """The sole owner of the format of a validation folder."""
 
-import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -12,9 +11,7 @@ import numpy as np
 from model.errors import InsufficientData
 from model.metrics.bootstrap import Interval, bootstrap_mean
 from model.metrics.path_errors import pose_errors
-from zebro_lab.atomic import atomic_folder
-from zebro_lab.errors import AlreadyExists
-from zebro_lab.provenance import file_hash, software
+from zebro_lab.files.result_folder import ResultKind, result_folder
 from zebro_lab.track_file import tum_lines
 from zebro_lab.validation import Judged, RunJudged, TiltJudged
 from zebro_lab.validation_pictures import Judgement, draw_validation
@@ -23,9 +20,8 @@ if TYPE_CHECKING:
     import pandas as pd
 
 SCHEMA = 1
-KIND = "validation"
-METRICS, ERRORS, MANIFEST = "metrics.csv", "errors.csv", "manifest.json"
-OWNED = (METRICS, ERRORS, MANIFEST, "*.tum", "*.png")
+METRICS, ERRORS = "metrics.csv", "errors.csv"
+VALIDATION = ResultKind("validation", "validate", (METRICS, ERRORS, "*.tum", "*.png"), SCHEMA)
 MEANS = ("ate_m", "ate_of_length", "ate_aligned_m", "yaw_rms_deg", "energy_m", "crps_yaw_deg")
 """Metrics of which a mean over runs is told."""
 
@@ -144,30 +140,24 @@ def write_validation(
     Raises:
         AlreadyExists: `out` is a file, or holds the result of another command.
     """
-    _require_ours(out)
     runs = [each.run for each in judgements]
-    with atomic_folder(out, replaces=OWNED, marker=MANIFEST) as draft:
+    notes = [f"{run.name}: {note}" for run in runs for note in run.notes]
+    content = {
+        "source": source,
+        "settings": settings,
+        "runs": {run.name: {row.name: metrics(row) for row in run.rows} for run in runs},
+        "imu": {run.name: tilt_metrics(run.tilt) for run in runs if run.tilt is not None},
+        "notes": notes,
+        "over_runs": [
+            {"model": s.model, "metric": s.metric, **s.interval._asdict()} for s in summary
+        ],
+        "inputs": inputs,
+    }
+    with result_folder(out, VALIDATION, content=content) as draft:
         _write_tables(draft, runs)
-        notes = [f"{run.name}: {note}" for run in runs for note in run.notes]
         for each in judgements:
             undrawn = draw_validation(draft, each, simulated="sim:" in source)
             notes += [f"{each.run.name}: {why}" for why in undrawn]
-        content = {
-            "schema": SCHEMA,
-            "kind": KIND,
-            "source": source,
-            "settings": settings,
-            "runs": {run.name: {row.name: metrics(row) for row in run.rows} for run in runs},
-            "imu": {run.name: tilt_metrics(run.tilt) for run in runs if run.tilt is not None},
-            "notes": notes,
-            "over_runs": [
-                {"model": s.model, "metric": s.metric, **s.interval._asdict()} for s in summary
-            ],
-            "inputs": inputs,
-            "outputs": {p.name: file_hash(p) for p in sorted(draft.iterdir()) if p.is_file()},
-            "software": software(),
-        }
-        (draft / MANIFEST).write_text(json.dumps(plain_json(content), indent=2) + "\n")
 
 
 def _write_tables(draft: Path, runs: Sequence[RunJudged]) -> None:
@@ -192,22 +182,3 @@ def _write_tables(draft: Path, runs: Sequence[RunJudged]) -> None:
 
 def _to_csv(table: "pd.DataFrame", file: Path) -> None:
     table.to_csv(file, index=False, float_format="%.8g", lineterminator="\n")
-
-
-def plain_json(value: object) -> object:
-    """Replace what JSON cannot hold: numbers that are none or infinite."""
-    if isinstance(value, Mapping):
-        return {key: plain_json(each) for key, each in value.items()}
-    if isinstance(value, list | tuple):
-        return [plain_json(each) for each in value]
-    return None if isinstance(value, float) and not np.isfinite(value) else value
-
-
-def _require_ours(out: Path) -> None:
-    """Refuse to renew what another command wrote."""
-    try:
-        kind = json.loads((out / MANIFEST).read_text()).get("kind")
-    except (OSError, ValueError, AttributeError):
-        return
-    if kind != KIND:
-        raise AlreadyExists(f"{out} holds the result of another command ({kind}); name another")

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: MIT
 """The sole owner of the format of a walk folder: `path.csv` and `manifest.json`."""
 
-import json
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -13,17 +12,16 @@ import numpy as np
 from model.robot import N_LEGS
 from model.slip.law import Array
 from model.walk.path import WalkPath
-from zebro_lab.atomic import atomic_folder
-from zebro_lab.errors import AlreadyExists, DataError, NotFound
+from zebro_lab.errors import DataError, NotFound
+from zebro_lab.files.replacement import settle
+from zebro_lab.files.result_folder import MANIFEST, ResultKind, result_folder
 from zebro_lab.folder_manifest import read_folder_manifest
-from zebro_lab.provenance import file_hash, software
 from zebro_lab.raw_table import RawTable
 from zebro_lab.table_files import read_table_file
 
 SCHEMA = 1
 PREDICTION = "prediction"  # of a run
 PATH_CSV = "path.csv"
-MANIFEST = "manifest.json"
 KINDS = ("walk", "predict")
 PICTURES = (
     "path", "motion", "orientation", "slip_ratio", "normal_force", "traction_force",
@@ -32,8 +30,9 @@ PICTURES = (
 ANIMATIONS = ("animation.mp4", "animation.gif")
 DRAWS, BAND_CSV, BAND_PICTURE = "draws.npz", "band.csv", "band.png"
 BAND = (DRAWS, BAND_CSV, BAND_PICTURE)
-OWNED = (PATH_CSV, MANIFEST, *(f"{name}.png" for name in PICTURES), *ANIMATIONS, *BAND)
-"""What a walk writes; an earlier walk's files of these names are replaced."""
+FILES = (PATH_CSV, *(f"{name}.png" for name in PICTURES), *ANIMATIONS, *BAND)
+WALKED = {kind: ResultKind(kind, kind, FILES, SCHEMA) for kind in KINDS}
+"""What `walk` and `predict` write; an earlier result of the same command is replaced."""
 
 _DIGITS = "%.10g"  # far below what any model means, far above what a float loses
 
@@ -113,20 +112,10 @@ def walk_folder(
     Raises:
         AlreadyExists: `out` is a file, or the result of another command.
     """
-    _require_ours(out)
-    with atomic_folder(out, replaces=OWNED, marker=MANIFEST) as draft:
+    content = {"source": source, "settings": settings, "inputs": inputs}
+    with result_folder(out, WALKED[kind], content=content) as draft:
         write_path(draft / PATH_CSV, path)
         yield draft
-        content = {
-            "schema": SCHEMA,
-            "kind": kind,
-            "source": source,
-            "settings": settings,
-            "inputs": inputs,
-            "outputs": {p.name: file_hash(p) for p in sorted(draft.iterdir()) if p.is_file()},
-            "software": software(),
-        }
-        (draft / MANIFEST).write_text(json.dumps(content, indent=2) + "\n")
 
 
 def read_walk(path: Path) -> WalkPath:
@@ -140,6 +129,7 @@ def read_walk(path: Path) -> WalkPath:
         DataError: A column is missing or unknown, a cell holds no number, or time does not
             increase; the message names file, row and column.
     """
+    settle(path)
     file = path / PATH_CSV if path.is_dir() else path
     if not file.exists():
         raise NotFound(f"{file}: no such file; name a folder that walk or predict wrote")
@@ -160,6 +150,7 @@ def read_walk_manifest(folder: Path) -> Mapping[str, Any]:
         NotFound: There is none.
         DataError: It is damaged, of a later schema, or that of another command.
     """
+    settle(folder)
     return read_folder_manifest(folder / MANIFEST, of="walk", kinds=KINDS, schema=SCHEMA)
 
 
@@ -222,15 +213,3 @@ def _path_from(numbers: Array) -> WalkPath:
         normal_force=parts["normal1"],
         traction_force=np.stack([parts["force_x1"], parts["force_y1"]], axis=-1),
     )
-
-
-def _require_ours(out: Path) -> None:
-    """Refuse to renew what another command wrote: its manifest would be replaced by ours."""
-    if not (out / MANIFEST).exists():
-        return
-    try:
-        read_walk_manifest(out)
-    except DataError as error:
-        raise AlreadyExists(
-            f"{out} holds the result of another command ({error.problem}); name another --out"
-        ) from error

@@ -68,6 +68,12 @@ class ModelRequest:
     figures: bool = False
     animate: bool = False
 
+    @property
+    def inputs(self) -> tuple[Path, ...]:
+        """Files and folders that are read, as they were named."""
+        slip = () if self.slip is None else (Path(self.slip),)
+        return (*slip, *((self.robot,) if self.robot is not None else ()))
+
 
 @dataclass(frozen=True)
 class Walked:

@@ -1,9 +1,6 @@
 # SPDX-License-Identifier: MIT
 """The sole owner of the format of `walks/` in a calibration: what tracked walks said."""
 
-import json
-import tomllib
-import zipfile
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
@@ -13,21 +10,26 @@ import numpy as np
 
 from model.bayes.walk_posterior import WalkPosterior
 from model.bayes.walk_prior import UNITS, WRONG, WalkPrior, WrongLeg, all_cases
-from model.errors import ModelError
 from model.predict import ModelSpread
-from zebro_lab.atomic import atomic_folder
 from zebro_lab.errors import DataError
-from zebro_lab.provenance import file_hash, file_hashes, software
+from zebro_lab.files.arrays import read_arrays
+from zebro_lab.files.documents import read_toml_document
+from zebro_lab.files.opening import parsing
+from zebro_lab.files.replacement import settle
+from zebro_lab.files.result_folder import MANIFEST, ResultKind, result_folder
+from zebro_lab.provenance import file_hash, file_hashes
 from zebro_lab.robot_file import RobotFile
 
 if TYPE_CHECKING:
     from zebro_lab.validation import RunJudged
 
 SCHEMA = 2  # 1 counted the fall from another place
-KIND = "walks"
 FOLDER = "walks"
-WALKS_TOML, DRAWS, LEFT_OUT, MANIFEST = "walks.toml", "draws.npz", "left_out.csv", "manifest.json"
-OWNED = (WALKS_TOML, DRAWS, LEFT_OUT, MANIFEST, "*.png")
+WALKS_TOML, DRAWS, LEFT_OUT = "walks.toml", "draws.npz", "left_out.csv"
+_ANEW = "fit the walks again with calibrate-slip --walks"
+WALKS = ResultKind(
+    "walks", "calibrate-slip --walks", (WALKS_TOML, DRAWS, LEFT_OUT, "*.png"), SCHEMA
+)
 
 
 @dataclass(frozen=True)
@@ -101,12 +103,21 @@ def write_walks(calibration: Path, fitted: WalksToWrite) -> Path:
     Returns:
         The folder.
     """
-    from zebro_lab.validation_folder import metrics, plain_json
+    from zebro_lab.validation_folder import metrics
     from zebro_lab.walks_pictures import draw_walks
 
     folder = calibration / FOLDER
-    with atomic_folder(folder, replaces=OWNED, marker=MANIFEST) as draft:
-        inputs = file_hashes(dict.fromkeys(fitted.inputs))
+    inputs = file_hashes(dict.fromkeys(fitted.inputs))
+    content = {
+        "source": fitted.source,
+        "settings": fitted.settings,
+        "left_out": {
+            run.name: {row.name: metrics(row) for row in run.rows} for run in fitted.left_out
+        },
+        "notes": list(fitted.notes),
+        "inputs": inputs,
+    }
+    with result_folder(folder, WALKS, content=content) as draft:
         (draft / WALKS_TOML).write_text(_walks_toml(fitted, inputs), encoding="utf-8")
         posterior = fitted.posterior
         np.savez_compressed(
@@ -116,20 +127,6 @@ def write_walks(calibration: Path, fitted: WalksToWrite) -> Path:
         )  # fmt: skip
         _write_left_out(draft / LEFT_OUT, fitted.left_out)
         draw_walks(draft, fitted.posterior, fitted.left_out, simulated="sim:" in fitted.source)
-        content = {
-            "schema": SCHEMA,
-            "kind": KIND,
-            "source": fitted.source,
-            "settings": fitted.settings,
-            "left_out": {
-                run.name: {row.name: metrics(row) for row in run.rows} for run in fitted.left_out
-            },
-            "notes": list(fitted.notes),
-            "inputs": inputs,
-            "outputs": {p.name: file_hash(p) for p in sorted(draft.iterdir()) if p.is_file()},
-            "software": software(),
-        }
-        (draft / MANIFEST).write_text(json.dumps(plain_json(content), indent=2) + "\n")
     return folder
 
 
@@ -139,37 +136,28 @@ def read_walks_beside(slip_toml: Path) -> StoredWalks | None:
     Raises:
         DataError: It is damaged, of a later schema, or was fitted with another slip law.
     """
-    folder = slip_toml.parent / FOLDER
+    folder = settle(slip_toml.parent / FOLDER)
     file = folder / WALKS_TOML
     if not (folder / MANIFEST).is_file() or not file.is_file():
         return None
-    try:
-        content = tomllib.loads(file.read_text(encoding="utf-8"))
+    remedy = f"{_ANEW}, or delete {folder}"
+    content = read_toml_document(file, remedy=remedy, fault=DataError)
+    with parsing(file, "cannot be read", advice=remedy):
         if content["schema"] != SCHEMA:
             raise DataError(
-                f"has schema {content['schema']}, this version reads {SCHEMA}; fit the walks again "
-                "with calibrate-slip --walks, or update zebro-lab where it is the older",
+                f"has schema {content['schema']}, this version reads {SCHEMA}; {_ANEW}, or update "
+                "zebro-lab where it is the older",
                 file=file,
             )
         _require_same_slip(content, slip_toml, file)
-        with np.load(folder / DRAWS) as drawn:
-            arrays = {name: drawn[name] for name in ("values", "case", "weight", "best")}
+        names = ("values", "case", "weight", "best")
+        arrays = read_arrays(folder / DRAWS, names, advice=remedy)
         return StoredWalks(
             _posterior(content, arrays),
             content["legs"],
             tuple(each["leg_log"] for each in content["walk"]),
             folder,
         )
-    except (
-        OSError, KeyError, TypeError, ValueError, IndexError, zipfile.BadZipFile, ModelError,
-    ) as error:  # fmt: skip
-        if isinstance(error, DataError):
-            raise
-        raise DataError(
-            f"cannot be read ({type(error).__name__}: {error}); fit the walks again with "
-            f"calibrate-slip --walks, or delete {folder}",
-            file=file,
-        ) from error
 
 
 def _require_same_slip(content: Mapping[str, Any], slip_toml: Path, file: Path) -> None:

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: MIT
 """From samples to a posterior ready to sample: choose blocks, law and starting point."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,10 +13,11 @@ from model.bayes.laplace import Laplace, LaplaceMixture, find_modes
 from model.bayes.posterior import LoadCell, SlipPosterior, default_priors
 from model.bayes.preliminary import BlockChoice, choose_block_length, least_squares_values
 from model.bayes.samples import SlipSamples
-from model.errors import DomainError, InsufficientData
+from model.errors import DomainError, FitError, InsufficientData
 from model.slip.law import SlipLaw
 
 FEW_BLOCKS = 500
+MOST_FORCE = 1e9  # beyond every rig, and far from where squares of forces overflow [N]
 PRIOR_DRAWS = 400
 PRIOR_STARTS = 12  # of the draws, from the best to the worst, where to climb from as well
 CLEAR_WIN = 2.0  # standard errors by which a law must predict better to be preferred
@@ -84,10 +86,54 @@ def prepare_fit(
         threads: Folds of the cross-validation fitted at once.
 
     Raises:
-        InsufficientData: There are no more samples than parameters of the law.
+        InsufficientData: There are no more samples than parameters of the law, or forces that say
+            nothing.
+        DomainError: Forces are beyond every rig.
         FitError: No mode was found.
     """
     _require_enough(samples, law)
+    _require_forces(samples, load_cell)
+    with breakdown_told(samples, law):
+        return _prepared(samples, law, load_cell, rng, block_choice, validate, threads)
+
+
+@contextmanager
+def breakdown_told(samples: SlipSamples, law: SlipLaw) -> Iterator[None]:
+    """Turn a breakdown of the linear algebra into an error that shows the data.
+
+    Args:
+        samples: What is fitted.
+        law: The slip law.
+
+    Raises:
+        FitError: A matrix was singular, or a number beyond what floating point holds.
+    """
+    try:
+        yield
+    except (np.linalg.LinAlgError, ArithmeticError) as error:
+        ranges = (
+            f"{name} from {values.min():.3g} to {values.max():.3g}{unit}"
+            for name, values, unit in (
+                ("slip", samples.slip, ""),
+                ("normal force", samples.normal_force, " N"),
+                ("traction force", samples.traction_force, " N"),
+            )
+        )
+        raise FitError(
+            f"the data do not determine '{law.name}' ({error}): {', '.join(ranges)}; check units "
+            "and signs, or add other set-points"
+        ) from error
+
+
+def _prepared(
+    samples: SlipSamples,
+    law: SlipLaw,
+    load_cell: LoadCell,
+    rng: np.random.Generator,
+    block_choice: BlockChoice | None,
+    validate: bool,
+    threads: int,
+) -> PreparedFit:
     everything = block_means(samples, 1 if len(samples) < 1000 else len(samples) // 1000)
     priors = default_priors(law, everything, load_cell)
     choice = block_choice or choose_block_length(samples, law, priors=priors, rng=rng)
@@ -110,6 +156,29 @@ def _require_enough(samples: SlipSamples, law: SlipLaw) -> None:
         raise InsufficientData(
             f"{len(samples)} samples cannot determine the {len(law.parameters)} parameters of "
             f"'{law.name}' and its noise; at least {needed} are needed"
+        )
+
+
+def _require_forces(samples: SlipSamples, cell: LoadCell) -> None:
+    """Refuse forces from which no curve follows, whatever the law."""
+    loads, traction = samples.normal_force, samples.traction_force
+    for name, force in (("normal", loads), ("traction", traction)):
+        largest = float(np.abs(force).max())
+        if not largest < MOST_FORCE:
+            raise DomainError(
+                f"{name} force reaches {largest:.3g} N; expected less than {MOST_FORCE:g} N: check "
+                "its unit"
+            )
+    if np.ptp(traction) == 0:
+        raise InsufficientData(
+            f"traction force is {traction[0]:g} N in all {len(samples)} samples; a curve needs "
+            "forces that follow the slip: check the column and the load cell"
+        )
+    if loads.max() <= cell.zero_stability:
+        raise InsufficientData(
+            f"the largest normal force is {loads.max():.3g} N, no more than the load cell's own "
+            f"zero stability of {cell.zero_stability:.3g} N; are the forces in kN? Name their unit "
+            "in columns.toml, or give the cell's zero stability"
         )
 
 

@@ -59,7 +59,16 @@ def least_squares_values(
             f"no parameters that the priors of '{law.name}' allow give it its shape at loads of "
             f"{loads[0]:g} to {loads[-1]:g} N; check the unit of the load"
         )
-    climbs = [least_squares(misfit, z, loss="soft_l1", max_nfev=100).x for z in ranked[:N_CLIMBS]]
+    try:
+        climbs = [
+            least_squares(misfit, z, loss="soft_l1", max_nfev=100).x for z in ranked[:N_CLIMBS]
+        ]
+    except ValueError as error:  # scipy's, where a residual is beyond what floating point holds
+        raise FitError(
+            f"no curve of '{law.name}' comes near a traction force of up to "
+            f"{np.abs(blocks.traction_force).max():.3g} N at loads of {loads[0]:.3g} to "
+            f"{loads[-1]:.3g} N ({error}); check their units"
+        ) from error
     candidates = [*filter(valid, climbs), ranked[0]]
     return values(min(candidates, key=lambda z: float(np.abs(misfit(z)).sum())))
 

@@ -102,6 +102,7 @@ class Acquisition:
         self._sink: Sink | None = sink
         self._clock = clock
         self._period = period
+        self._look_at = clock.now() + period
         self._heeded: StopCategory | None = None
         allowed = rig_limits(limits, bench.profile.limits)
         self._largest_speed = allowed.speed
@@ -203,7 +204,8 @@ class Acquisition:
             RigError: A guard tripped; the drives are already told to de-energise.
             StopRequested: Somebody asked for a stop.
         """
-        self._clock.sleep(self._period)
+        self._clock.sleep(min(max(self._look_at - self._clock.now(), 0.0), self._period))
+        self._look_at = self._clock.now() + self._period  # what a look takes delays no other
         try:
             batch = self._bench.read()
             arrived = self._clock.now()
@@ -235,7 +237,10 @@ class Acquisition:
         self.aim(0.0, None)
         self.until(lambda _: not self.ramping, float("inf"))
         try:
-            prove_rest(self.look, self._limits.rest_speed, longest=longest, clock=self._clock)
+            prove_rest(
+                self.look, self._limits.rest_speed, longest=longest, clock=self._clock,
+                oldest=self._limits.reading_age,
+            )  # fmt: skip
         except NotAtRest:
             self._bench.disarm()
             raise

@@ -12,7 +12,7 @@ from rig.errors import NotAtRest
 from rig.experiment.bench import Batch
 
 WINDOW: Final = 0.25
-"""Time over which each disc's speed is averaged; no reading may be older [s]."""
+"""Time over which each disc's speed is averaged; by default no reading may be older [s]."""
 FEWEST: Final = 5
 """New readings of each disc that there must be in the window."""
 SCATTER: Final = 5.0
@@ -28,10 +28,12 @@ class RestProof:
 
     Args:
         limit: Largest mean speed of a disc that stands [rad/s].
+        oldest: Largest age of a reading that proves anything [s].
     """
 
-    def __init__(self, limit: float) -> None:
+    def __init__(self, limit: float, *, oldest: float = WINDOW) -> None:
         self._limit = limit
+        self._oldest = oldest
         self._began: float | None = None
         self._seen: dict[str, deque[tuple[float, float]]] = {disc: deque() for disc in DISCS}
 
@@ -42,8 +44,8 @@ class RestProof:
             batch: The look.
             now: Host time [s].
         """
-        oldest = min((float(t.min(initial=now)) for t in batch.taken.values()), default=now)
-        if self._began is None or now - oldest > WINDOW:
+        first = min((float(t.min(initial=now)) for t in batch.taken.values()), default=now)
+        if self._began is None or now - first > self._oldest:
             self._began = now
         for disc, seen in self._seen.items():
             seen.extend((now, speed) for speed in batch.speeds[disc].tolist())
@@ -65,7 +67,7 @@ class RestProof:
             if problem := self._problem(disc):
                 break
         else:
-            disc, problem = DISCS[0], f"its readings do not cover {WINDOW:g} s"
+            disc, problem = DISCS[0], f"its new readings do not cover {WINDOW:g} s"
         return NotAtRest(
             f"{disc} disc did not come to rest within {waited:.3g} s: {problem}", limit=self._limit
         )
@@ -74,7 +76,10 @@ class RestProof:
         """Say why a disc is not seen to stand; empty where it is."""
         speeds = np.array([speed for _, speed in self._seen[disc]])
         if len(speeds) < FEWEST:
-            return f"{len(speeds)} new readings of its speed in {WINDOW:g} s, expected {FEWEST}"
+            return (
+                f"{len(speeds)} readings of its speed in {WINDOW:g} s that are not older than "
+                f"{self._oldest:g} s, expected {FEWEST}"
+            )
         mean, scatter = float(speeds.mean()), float(np.sqrt(np.mean(speeds**2)))
         if not abs(mean) <= self._limit:
             return f"its mean speed over {WINDOW:g} s is {mean:.3g} rad/s"
@@ -83,7 +88,14 @@ class RestProof:
         return ""
 
 
-def prove_rest(look: Callable[[], Batch], limit: float, *, longest: float, clock: Clock) -> None:
+def prove_rest(
+    look: Callable[[], Batch],
+    limit: float,
+    *,
+    longest: float,
+    clock: Clock,
+    oldest: float = WINDOW,
+) -> None:
     """Look at a rig until both discs are proved to stand.
 
     Args:
@@ -91,11 +103,12 @@ def prove_rest(look: Callable[[], Batch], limit: float, *, longest: float, clock
         limit: Largest mean speed of a disc that stands [rad/s].
         longest: When to give up [s].
         clock: Host time.
+        oldest: Largest age of a reading that proves anything [s].
 
     Raises:
         NotAtRest: They are not seen to stand in time.
     """
-    proof, began = RestProof(limit), clock.now()
+    proof, began = RestProof(limit, oldest=oldest), clock.now()
     while not proof.holds(now=clock.now()):
         if clock.now() - began >= longest:
             raise proof.failure(waited=clock.now() - began)

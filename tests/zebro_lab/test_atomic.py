@@ -45,9 +45,9 @@ def test_new_folder_appears_with_all_its_files(tmp_path):
     assert names(tmp_path) == ["deep/out/pictures/fit.png", "deep/out/slip.toml"]
 
 
-def write_half(folder: Path, stop: type[BaseException], **how) -> None:
+def write_half(folder: Path, stop: type[BaseException]) -> None:
     """Begin to fill a folder, then stop."""
-    with atomic_folder(folder, **how) as draft:
+    with atomic_folder(folder) as draft:
         (draft / "slip.toml").write_text("second")
         raise stop
 
@@ -59,44 +59,12 @@ def test_exception_leaves_nothing_behind(tmp_path, stop):
     assert list(tmp_path.iterdir()) == []
 
 
-def test_exception_leaves_an_earlier_result_untouched(tmp_path):
-    with atomic_folder(tmp_path / "out") as draft:
-        (draft / "slip.toml").write_text("first")
-    with pytest.raises(Interrupted):
-        write_half(tmp_path / "out", Interrupted, replaces=["*"], marker="slip.toml")
-    assert (tmp_path / "out" / "slip.toml").read_text() == "first"
-    assert names(tmp_path) == ["out/slip.toml"]
-
-
-def test_renewed_folder_loses_stale_files_and_keeps_foreign_ones(tmp_path):
-    out = tmp_path / "out"
-    out.mkdir()
-    for name in ("slip.toml", "old.png", "notes.txt"):
-        (out / name).write_text("first")
-    with atomic_folder(out, replaces=["*.png", "slip.toml"], marker="slip.toml") as draft:
-        (draft / "new.png").write_text("second")
-        (draft / "slip.toml").write_text("second")
-    assert names(tmp_path) == ["out/new.png", "out/notes.txt", "out/slip.toml"]
-    assert (out / "slip.toml").read_text() == "second"
-    assert (out / "notes.txt").read_text() == "first"
-
-
-def test_marker_is_absent_while_the_folder_is_renewed(tmp_path, monkeypatch):
-    out = tmp_path / "out"
-    out.mkdir()
-    (out / "slip.toml").write_text("first")
-    seen = []
-    replace = Path.replace
-
-    def watched(self, target):
-        seen.append((Path(target).name, (out / "slip.toml").exists()))
-        return replace(self, target)
-
-    monkeypatch.setattr(Path, "replace", watched)
-    with atomic_folder(out, marker="slip.toml") as draft:
-        for name in ("a.png", "slip.toml", "z.png"):
-            (draft / name).write_text("second")
-    assert seen == [("a.png", False), ("z.png", False), ("slip.toml", False)]
+def test_a_folder_that_holds_something_is_refused(tmp_path):
+    (tmp_path / "out").mkdir()
+    (tmp_path / "out" / "notes.txt").write_text("mine")
+    with pytest.raises(AlreadyExists, match="holds something"), atomic_folder(tmp_path / "out"):
+        pass
+    assert names(tmp_path) == ["out/notes.txt"]
 
 
 def test_file_in_the_way_is_refused(tmp_path):

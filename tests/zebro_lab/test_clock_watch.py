@@ -85,3 +85,15 @@ def test_without_device_times_the_time_of_reading_stays():
     stream = as_stream(batches(0.0, 1.0)[0], sequence=False)
     stream.device_time[:] = np.nan
     np.testing.assert_array_equal(sample_times(stream), stream.host_time)
+
+
+@pytest.mark.parametrize("stalls", [(9.8,), (3.0, 9.7)])
+def test_reading_late_is_no_restart_and_keeps_the_clocks_compared(stalls):
+    watch = ClockWatch(start=0.0)
+    for number, t in enumerate(np.arange(0.0, 10.0, 0.06)):
+        late = any(stall <= t < stall + 0.1 for stall in stalls)
+        watch.add([Sample(t + 7.0 + (1.6 if late else 0.001), float(t), number, (0,))])
+    found = watch.result()
+    assert found is not None
+    assert found["offset"] == pytest.approx(7.001, abs=2e-3)
+    assert abs(found["drift"]) < 1e-3

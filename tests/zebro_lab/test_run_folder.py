@@ -8,6 +8,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from zebro_lab.cli.app import app
+from zebro_lab.cli.errors import run as run_app
 from zebro_lab.errors import AlreadyExists, DataError, NotFound
 from zebro_lab.run_folder import read_manifest, read_slip_rig_run, write_slip_rig_run
 from zebro_lab.slip_rig_log import TOPIC, SlipRigTable
@@ -164,8 +166,8 @@ def test_missing_and_foreign_files_are_named(tmp_path):
 
 
 def test_many_run_folders_are_as_many_runs_without_the_excluded(tmp_path):
-    for label in "abc":
-        make_run(tmp_path, label=label)
+    for n, label in enumerate("abc", 200):
+        make_run(tmp_path, n, label=label)
     bad = tmp_path / "20260304T050607Z_slip-rig_b"
     edit(bad, excluded={"why": "belt came off"})
     data = read_rig_data([tmp_path])
@@ -173,3 +175,33 @@ def test_many_run_folders_are_as_many_runs_without_the_excluded(tmp_path):
     assert f"{bad.name}: left out, belt came off" in data.notes
     with pytest.raises(DataError, match=r"every run is left out: .*belt came off"):
         read_rig_data([bad])
+
+
+def zebro_lab(monkeypatch, *arguments: object) -> int:
+    monkeypatch.setattr("sys.argv", ["zebro-lab", *map(str, arguments)])
+    with pytest.raises(SystemExit) as ended:
+        run_app(app)
+    return int(ended.value.code or 0)
+
+
+def test_a_second_exclusion_keeps_the_first_reason(tmp_path, monkeypatch, capsys):
+    folder = make_run(tmp_path)
+    for why in ("belt slipped", "wrong disc, too"):
+        assert zebro_lab(monkeypatch, "exclude", folder, "--why", why) == 0
+    assert zebro_lab(monkeypatch, "runs", tmp_path) == 0
+    listed = capsys.readouterr().out
+    assert "belt slipped" in (folder / "run.json").read_text()
+    assert "excluded (wrong disc, too; before: belt slipped)" in listed
+
+
+def test_an_exclusion_can_be_undone_and_stays_on_record(tmp_path, monkeypatch, capsys):
+    folder = make_run(tmp_path)
+    assert zebro_lab(monkeypatch, "exclude", folder, "--why", "belt slipped") == 0
+    assert zebro_lab(monkeypatch, "exclude", folder, "--undo", "--why", "it was the other") == 0
+    assert read_manifest(folder).excluded is None
+    assert len(read_rig_data([tmp_path]).samples) == 200
+    assert zebro_lab(monkeypatch, "runs", tmp_path) == 0
+    assert "completed (was excluded: belt slipped)" in capsys.readouterr().out
+    assert "it was the other" in (folder / "run.json").read_text()
+    assert zebro_lab(monkeypatch, "exclude", folder, "--undo") == 1
+    assert "is not left out" in capsys.readouterr().err

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Walks that are to inform a fit: what is read, and every way in which one cannot."""
 
+import shutil
 from pathlib import Path
 
 import numpy as np
@@ -158,7 +159,10 @@ def test_no_walks_are_refused_as_the_model_refuses_them():
 
 
 def test_walks_of_one_name_are_told_apart(tmp_path):
-    folders = [write_walk(tmp_path / day / "walk") for day in ("monday", "tuesday")]
+    folders = [
+        write_walk(tmp_path / day / "walk", every=every)
+        for day, every in (("monday", 2.0), ("tuesday", 1.5))
+    ]
     assert [walk.name for walk in read_walks(folders)] == ["walk-1", "walk-2"]
 
 
@@ -176,3 +180,12 @@ def test_the_command_needs_rig_data_or_walks(monkeypatch, capsys):
         run_app(app)
     assert ended.value.code == 2
     assert "needed: rig data" in capsys.readouterr().err
+
+
+def test_a_walk_under_two_names_counts_once_and_is_told(tmp_path):
+    one = write_walk(tmp_path / "one")
+    copy = shutil.copytree(one, tmp_path / "copy")
+    (copy / "notes.txt").write_text("from the other disk")
+    found = read_walks([one, copy, write_walk(tmp_path / "other", begin=7.0, every=1.5)])
+    assert [walk.name for walk in found] == ["one", "other"]
+    assert any("copy" in note and "once" in note for note in found[0].notes)

@@ -22,10 +22,11 @@ from zebro_lab.walk_folder import (
     write_path,
 )
 
+SETTINGS = {"kind": "walk", "source": "sim:made-up", "settings": {"dt": 0.01}, "inputs": {}}
+
 
 def write(out, path, **changes):
-    given = {"kind": "walk", "source": "sim:made-up", "settings": {"dt": 0.01}, "inputs": {}}
-    with walk_folder(out, path, **{**given, **changes}) as draft:
+    with walk_folder(out, path, **{**SETTINGS, **changes}) as draft:
         (draft / "gantt.png").write_bytes(b"a picture")
 
 
@@ -105,15 +106,17 @@ def test_failing_picture_leaves_nothing_behind(walked, tmp_path):
 
 def test_earlier_walks_pictures_go_and_foreign_files_stay(walked, tmp_path):
     out = tmp_path / "out"
-    write(out, walked)
-    (out / "motion.png").write_bytes(b"of the earlier walk")
+    with walk_folder(out, walked, **SETTINGS) as draft:
+        (draft / "motion.png").write_bytes(b"of the earlier walk")
     (out / "notes.txt").write_text("mine")
-    write(out, walked, kind="predict")
+    (out / "robot.png").write_bytes(b"mine")
+    write(out, walked)
     assert {p.name for p in out.iterdir()} == {
         "path.csv",
         "manifest.json",
         "gantt.png",
         "notes.txt",
+        "robot.png",
     }
 
 

@@ -15,10 +15,15 @@ from numpy.typing import NDArray
 
 from tracking.errors import PhotoError, TrackingError
 
-MOST_PIXELS = 120_000_000
-"""Largest picture that is read: three of them fit into a small computer's memory."""
+MOST_PIXELS = 80_000_000
+"""Largest picture that is read: decoding it and turning it takes less than a gigabyte."""
+MOST_FILE = 256 << 20
+"""Largest file of a picture [bytes]: that of an uncompressed one of `MOST_PIXELS`."""
+MOST_SCANS = 200
+"""Scans of a JPEG, each of which costs as much time as the whole picture; cameras write 1 to 12."""
 
 _READABLE = {".jpg", ".jpeg", ".png", ".tif", ".tiff", ".bmp", ".webp"}
+_FORMATS = ("JPEG", "PNG", "TIFF", "BMP", "WEBP")  # not those that start programs
 _KNOWN = _READABLE | {".heic", ".heif", ".avif"}
 _HEIF_BRANDS = {b"heic", b"heix", b"hevc", b"mif1", b"msf1", b"heim", b"heis"}
 
@@ -80,19 +85,30 @@ def open_picture(path: Path) -> Iterator[PIL.Image.Image]:
         Pillow's picture.
 
     Raises:
-        PhotoError: When it has more pixels than Pillow opens at all.
-        OSError: When it cannot be read; of what is no picture, Pillow's UnidentifiedImageError.
+        PhotoError: When it is missing, no regular file, of an unknown kind, damaged, or has too
+            many pixels.
     """
-    with warnings.catch_warnings():
-        # Pillow warns of large pictures; `read_pixels` measures them.
-        warnings.simplefilter("ignore", PIL.Image.DecompressionBombWarning)
-        try:
-            picture = PIL.Image.open(path)
-        except PIL.Image.DecompressionBombError as error:
-            most = 2 * (PIL.Image.MAX_IMAGE_PIXELS or MOST_PIXELS)
-            raise PhotoError(path.name, _too_large(f"more than {most / 1e6:.0f}")) from error
-    with picture:
-        yield picture
+    _refuse_unreadable(path)
+    try:
+        with warnings.catch_warnings():
+            # Pillow warns of large pictures, which are measured below, and of odd EXIF data.
+            warnings.simplefilter("ignore")
+            with PIL.Image.open(path, formats=_FORMATS) as picture:
+                _refuse_large(path, picture.size)
+                yield picture
+    except PhotoError:
+        raise
+    except PIL.UnidentifiedImageError as error:
+        raise PhotoError(path.name, "not a picture; expected JPEG, PNG or TIFF") from error
+    except PIL.Image.DecompressionBombError as error:
+        most = 2 * (PIL.Image.MAX_IMAGE_PIXELS or MOST_PIXELS)
+        raise PhotoError(path.name, _too_large(f"more than {most / 1e6:.0f}")) from error
+    except Exception as error:  # Pillow answers damage with whatever went wrong inside it
+        said = " ".join(str(error).split()) or type(error).__name__
+        raise PhotoError(
+            path.name,
+            f"cannot be decoded ({said[:200]}); the file is cut short or damaged: copy it again",
+        ) from error
 
 
 def read_pixels(path: Path, *, size: tuple[int, int] | None = None) -> NDArray[np.uint8]:
@@ -109,20 +125,7 @@ def read_pixels(path: Path, *, size: tuple[int, int] | None = None) -> NDArray[n
         PhotoError: When the file is missing, empty, cut short, of an unknown kind, too large or
             not of the size asked for.
     """
-    _refuse_unreadable(path)
-    try:
-        with open_picture(path) as picture:
-            _refuse_large(path, picture.size)
-            upright = PIL.ImageOps.exif_transpose(picture).convert("RGB")
-    except PhotoError:
-        raise
-    except PIL.UnidentifiedImageError as error:
-        raise PhotoError(path.name, "not a picture; expected JPEG, PNG or TIFF") from error
-    except (OSError, SyntaxError, ValueError) as error:
-        raise PhotoError(
-            path.name,
-            f"cannot be decoded ({error}); the file is cut short or damaged: copy it again",
-        ) from error
+    upright = _upright(path)
     if size is not None and upright.size != size:
         raise PhotoError(
             path.name,
@@ -132,9 +135,25 @@ def read_pixels(path: Path, *, size: tuple[int, int] | None = None) -> NDArray[n
     return np.ascontiguousarray(np.asarray(upright)[:, :, ::-1])
 
 
+def _upright(path: Path) -> PIL.Image.Image:
+    """Decode a picture; what it was before it was turned is freed on return."""
+    with open_picture(path) as picture:
+        _refuse_many_scans(path)
+        PIL.ImageOps.exif_transpose(picture, in_place=True)
+        if picture.mode != "RGB":
+            return picture.convert("RGB")
+        picture.load()
+        return picture
+
+
 def _refuse_unreadable(path: Path) -> None:
+    # Neither a FIFO, which would wait for a writer, nor a device.
     if not path.is_file():
-        raise PhotoError(path.name, f"no such file in {path.parent}")
+        found = "no regular file; move it elsewhere"
+        raise PhotoError(path.name, found if path.exists() else f"no such file in {path.parent}")
+    if path.stat().st_size > MOST_FILE:
+        raise PhotoError(path.name, _too_large(f"a file of {path.stat().st_size / 1e6:.0f} MB: too "
+                                               "many"))  # fmt: skip
     with path.open("rb") as file:
         head = file.read(12)
     if not head:
@@ -146,6 +165,13 @@ def _refuse_unreadable(path: Path) -> None:
             f"photographs with their EXIF data: heif-convert -q 95 {path.name} {path.stem}.jpeg "
             "(Linux), sips -s format jpeg (macOS)",
         )
+
+
+def _refuse_many_scans(path: Path) -> None:
+    data = path.read_bytes()
+    scans = data.count(b"\xff\xda") if data.startswith(b"\xff\xd8") else 0
+    if scans > MOST_SCANS:
+        raise PhotoError(path.name, f"a JPEG of {scans} scans; at most {MOST_SCANS} are read")
 
 
 def _refuse_large(path: Path, size: tuple[int, int]) -> None:

@@ -11,10 +11,13 @@ from pathlib import Path
 import numpy as np
 
 from tracking.camera.lens import Array
-from tracking.errors import TimesError
+from tracking.errors import PhotoError, TimesError
 from tracking.images.read import open_picture
 from tracking.images.stamps import fit_interval
 
+MOST_TABLE = 16 << 20
+"""Largest table of times [bytes]: of some hundred thousand photographs."""
+_MOST_DIGITS = 9  # of a fraction of a second
 _EXIF_FOLDER, _TAKEN, _FRACTION, _CHANGED = 0x8769, 0x9003, 0x9291, 0x0132
 
 
@@ -47,7 +50,7 @@ def exif_time(path: Path) -> tuple[float, float] | None:
         with open_picture(path) as picture:
             exif = picture.getexif()
             details = exif.get_ifd(_EXIF_FOLDER)
-    except (OSError, SyntaxError, ValueError):
+    except PhotoError:
         return None
     text = details.get(_TAKEN) or exif.get(_CHANGED)
     if not text:
@@ -57,7 +60,7 @@ def exif_time(path: Path) -> tuple[float, float] | None:
     except ValueError:
         return None
     digits = str(details.get(_FRACTION, "")).strip("\0 ")
-    if not digits.isdigit():
+    if not digits.isdecimal() or len(digits) > _MOST_DIGITS:
         return taken.timestamp(), 1.0
     step = 10.0 ** -len(digits)
     return taken.timestamp() + int(digits) * step, step
@@ -124,11 +127,19 @@ def times_from_table(table: Path, paths: Sequence[Path]) -> PhotoTimes:
     Raises:
         TimesError: When the file, a column or a photograph is missing, or a number is none.
     """
+    if table.exists() and not table.is_file():  # a FIFO would wait for a writer
+        raise TimesError(f"{table} is no file; expected a table of times")
     try:
+        if table.stat().st_size > MOST_TABLE:
+            raise TimesError(f"{table} has more than {MOST_TABLE >> 20} MB; is it times?")
         with table.open(newline="", encoding="utf-8-sig") as file:
             rows = list(csv.DictReader(file))
     except OSError as error:
         raise TimesError(f"{table} cannot be read: {error.strerror}") from error
+    except (csv.Error, ValueError) as error:
+        raise TimesError(f"{table} cannot be read as CSV in UTF-8: {error}") from error
+    if any(None in row for row in rows):
+        raise TimesError(f"{table} has a row of more cells than its header; correct or delete it")
     if not rows or not {"photo", "t_s"} <= set(rows[0]):
         found = ", ".join(rows[0]) if rows else "nothing"
         raise TimesError(f"{table} has {found}; expected columns photo, t_s and maybe t_sigma")

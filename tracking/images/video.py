@@ -9,10 +9,15 @@ import cv2
 import numpy as np
 
 from tracking.errors import PhotoError
-from tracking.images.read import Image
+from tracking.images.read import MOST_PIXELS, Image
 
 FRAME_TIME_SD = 2e-3
 """Standard deviation of a frame's time stamp: phones store milliseconds [s]."""
+
+
+_EXPECTED = "expected a whole MP4, MOV, AVI, MKV or WebM"
+_ATOMS = (b"ftyp", b"moov", b"mdat", b"free", b"skip", b"wide", b"pnot")  # MP4 and QuickTime
+_MARKS = (b"RIFF", b"\x1a\x45\xdf\xa3")  # AVI; Matroska and WebM
 
 
 def video_frames(path: Path, *, every: float = 0.0) -> Iterator[Image]:
@@ -32,18 +37,38 @@ def video_frames(path: Path, *, every: float = 0.0) -> Iterator[Image]:
     """
     if not path.is_file() or path.stat().st_size == 0:
         raise PhotoError(path.name, "no such file, or an empty one; expected a video")
+    _refuse_playlist(path)
     # What is wrong is said below; FFmpeg would write to the terminal by itself.
     os.environ.setdefault("OPENCV_FFMPEG_LOGLEVEL", "-8")
     capture = cv2.VideoCapture(str(path))
     try:
         if not capture.isOpened():
-            raise PhotoError(
-                path.name, "not a video that can be read; expected a whole MP4, MOV or AVI"
-            )
+            raise PhotoError(path.name, f"not a video that can be read; {_EXPECTED}")
+        _refuse_large(capture, path.name)
         capture.set(cv2.CAP_PROP_ORIENTATION_AUTO, 1)
         yield from _frames(capture, path.name, every)
     finally:
         capture.release()
+
+
+def _refuse_playlist(path: Path) -> None:
+    """Refuse what is no container: FFmpeg also plays lists, which name other files and servers."""
+    with path.open("rb") as file:
+        head = file.read(12)
+    if not (head[4:8] in _ATOMS or head.startswith(_MARKS)):
+        raise PhotoError(path.name, f"not a video that can be read; {_EXPECTED}")
+
+
+def _refuse_large(capture: cv2.VideoCapture, name: str) -> None:
+    width, height = (
+        capture.get(key) for key in (cv2.CAP_PROP_FRAME_WIDTH, cv2.CAP_PROP_FRAME_HEIGHT)
+    )
+    if width * height > MOST_PIXELS:
+        raise PhotoError(
+            name,
+            f"frames of {width:.0f}x{height:.0f} px; at most {MOST_PIXELS / 1e6:.0f} megapixels "
+            "are read: scale the video down",
+        )
 
 
 def _frames(capture: cv2.VideoCapture, name: str, every: float) -> Iterator[Image]:

@@ -6,6 +6,8 @@ from typing import Annotated
 
 import typer
 
+from zebro_lab.terminal.messages import say
+
 EPILOG = """
 It opens no window. Pixels are read in a picture that --grid writes, with any viewer:
 
@@ -106,7 +108,7 @@ def annotate(
 
     if grid is not None and photo is not None:
         draw_grid(photos, photo, grid, around=around, reach=reach)
-        typer.echo(f"wrote {grid}")
+        say(f"wrote {grid}")
         return
     request = AnnotateRequest(
         photos, out, photo, corners, plate, quantity_to_si(margin, "m"), robot,
@@ -116,5 +118,5 @@ def annotate(
     written = run(request)
     template = "" if written.template is None else f"robot marked in {written.template.photo}, "
     clicks = sum(len(points) for points in written.clicks.values())
-    typer.echo(f"{template}{clicks} points of the floor, {len(written.corrections)} corrections")
-    typer.echo(f"wrote {out}; give it to track as --annotations {out}")
+    say(f"{template}{clicks} points of the floor, {len(written.corrections)} corrections")
+    say(f"wrote {out}; give it to track as --annotations {out}")

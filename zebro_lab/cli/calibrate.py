@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from zebro_lab.cli.errors import run
+from zebro_lab.terminal.messages import say
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -158,7 +159,7 @@ def _fit_and_report(request: "CalibrationRequest") -> bool:
         with progress_bar(Console(stderr=True)) as watcher:
             calibration, read = fit(request, watcher)
     except Stopped as stopped:
-        typer.echo(str(stopped), err=True)
+        say(str(stopped), err=True)
         raise typer.Exit(INTERRUPTED) from None
     print_calibration(_console(), calibration, read, request.out)
     return calibration.verdict.converged

@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from zebro_lab.terminal.messages import say
+
 if TYPE_CHECKING:
     from zebro_lab.stages.camera import CameraResult
 
@@ -52,8 +54,8 @@ def kit(
     from zebro_lab.stages.camera import write_kit
 
     for file in write_kit(out, paper=paper.value):
-        typer.echo(f"wrote {file}")
-    typer.echo("print at 100 % and measure the 100 mm bar of every page")
+        say(f"wrote {file}")
+    say("print at 100 % and measure the 100 mm bar of every page")
 
 
 @app.command(epilog=CALIBRATE_EPILOG)
@@ -83,7 +85,7 @@ def calibrate(
     with progress_bar(Console(stderr=True)) as watcher:
         result = calibrate_camera(request, watcher)
     for line in calibration_lines(result):
-        typer.echo(line)
+        say(line)
 
 
 def calibration_lines(result: "CameraResult") -> list[str]:

@@ -6,6 +6,8 @@ from typing import Annotated
 
 import typer
 
+from zebro_lab.terminal.messages import say
+
 EPILOG = """
 Examples:
 
@@ -26,7 +28,7 @@ def doctor(data: Data = Path()) -> None:
     broken = 0
     for finding in examine(data):
         broken += finding.state is State.BROKEN
-        typer.echo(f"{finding.state:<6}  {finding.what}: {finding.text}")
-    typer.echo(f"{broken} broken" if broken else "everything needed is there")
+        say(f"{finding.state:<6}  {finding.what}: {finding.text}")
+    say(f"{broken} broken" if broken else "everything needed is there")
     if broken:
         raise typer.Exit(1)

@@ -21,9 +21,10 @@ def _guard(command: Callable[[], object]) -> None:
     except Exception as error:
         if not _is_known(error):
             raise
-        from zebro_lab.terminal.messages import leave_at_once, say
+        from zebro_lab.files.shown_text import shortened, shown
+        from zebro_lab.terminal.last_words import leave_at_once, say_in_time
 
-        if not say(f"error: {error}", err=True):
+        if not say_in_time(f"error: {shortened(shown(str(error)))}", err=True):
             leave_at_once(1)
         raise SystemExit(1) from None
 

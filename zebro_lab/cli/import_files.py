@@ -7,6 +7,8 @@ from typing import Annotated
 
 import typer
 
+from zebro_lab.terminal.messages import say
+
 EPILOG = """
 Examples:
 
@@ -87,12 +89,12 @@ def import_files(
     with progress_bar(Console(stderr=True)) as watcher:
         imported = import_run(request, watcher)
     for note in imported.notes:
-        typer.echo(note)
+        say(note)
     for folder in imported.folders:
         manifest = read_manifest(folder)
         simulated = "SIMULATED " if manifest.source.startswith("sim:") else ""
         counts = ", ".join(f"{count} {topic}" for topic, count in manifest.streams.items())
-        typer.echo(f"{simulated}{manifest.source}: {counts}: {folder}")
+        say(f"{simulated}{manifest.source}: {counts}: {folder}")
 
 
 def _moment(text: str | None) -> datetime | None:

@@ -6,6 +6,8 @@ from typing import Annotated
 
 import typer
 
+from zebro_lab.terminal.messages import say
+
 
 def init(
     file: Annotated[Path, typer.Argument(help="CSV or Parquet file to read the header of.")],
@@ -19,13 +21,13 @@ def init(
 
     target = write_columns_template(file, force=force)
     columns = read_columns(target)
-    typer.echo(f"wrote {target}")
+    say(f"wrote {target}")
     for name, mapped in columns.columns.items():
         sign = " times -1" if mapped.factor < 0 else ""
         unit = f" in {mapped.unit}" if CANONICAL[name].unit not in (None, "dimensionless") else ""
-        typer.echo(f"  {name:<15} from '{mapped.name}'{unit}{sign}")
+        say(f"  {name:<15} from '{mapped.name}'{unit}{sign}")
     for advice in _to_check(set(columns.columns)):
-        typer.echo(f"check: {advice}")
+        say(f"check: {advice}")
 
 
 def _to_check(found: set[str]) -> list[str]:

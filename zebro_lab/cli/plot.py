@@ -6,6 +6,8 @@ from typing import Annotated
 
 import typer
 
+from zebro_lab.terminal.messages import say
+
 EPILOG = """
 Examples:
 
@@ -31,9 +33,9 @@ def plot(run: Run, out: Out = None) -> None:
         watcher.step("drawing", None)
         drawn = plot_run(run, out=out)
     for note in drawn.signals.notes:
-        typer.echo(note)
+        say(note)
     for panel in drawn.signals.panels:
         simulated = "SIMULATED " if panel.simulated else ""
         gaps = f", {len(panel.gaps)} gaps" if len(panel.gaps) else ""
-        typer.echo(f"{simulated}{panel.title}: {len(panel.t)} samples{gaps}")
-    typer.echo(f"wrote {drawn.file}")
+        say(f"{simulated}{panel.title}: {len(panel.t)} samples{gaps}")
+    say(f"wrote {drawn.file}")

@@ -3,7 +3,7 @@
 
 import signal
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from types import FrameType
 
 from rich.console import Console
@@ -61,7 +61,10 @@ def progress_bar(console: Console) -> Iterator[ProgressBar]:
         TextColumn("left"),
         TimeLeftColumn(),
     )
-    with Progress(*columns, console=console, disable=not console.is_terminal) as progress:
+    progress = Progress(*columns, console=console, disable=not console.is_terminal)
+    with ExitStack() as stack:
+        if console.is_terminal:  # rich before 14.3 ends a disabled display with an empty line
+            stack.enter_context(progress)
         bar = ProgressBar(progress)
         earlier = {s: signal.signal(s, bar.request_stop) for s in (signal.SIGINT, signal.SIGTERM)}
         try:

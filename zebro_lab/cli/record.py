@@ -67,7 +67,7 @@ def record(
     from zebro_lab.cli.record_screen import record_screen
     from zebro_lab.stages.record import RecordRequest
     from zebro_lab.stages.record import record as run
-    from zebro_lab.terminal.messages import leave_at_once, say
+    from zebro_lab.terminal.last_words import leave_at_once, say_in_time
 
     request = RecordRequest(
         data=data,
@@ -85,7 +85,7 @@ def record(
     with record_screen(Console(stderr=True)) as screen:
         recorded = run(request, screen)
         code = STOPPED if screen.signalled else 0
-        if not (screen.close() and say(_report(recorded))):
+        if not (screen.close() and say_in_time(_report(recorded))):
             leave_at_once(code)
     raise typer.Exit(code)
 

@@ -19,7 +19,7 @@ from rich.progress_bar import ProgressBar
 from rich.table import Table
 from rich.text import Text
 
-from zebro_lab.terminal.messages import in_time
+from zebro_lab.terminal.last_words import in_time
 
 if TYPE_CHECKING:
     from zebro_lab.stages.record import RecordStatus

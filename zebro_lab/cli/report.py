@@ -6,6 +6,8 @@ from typing import Annotated
 
 import typer
 
+from zebro_lab.terminal.messages import say
+
 EPILOG = """
 Examples:
 
@@ -39,5 +41,5 @@ def report(
     sources = run(ReportRequest(data, calibration, out, title), made=datetime.now(UTC))
     for part in sources.parts:
         if part.missing:
-            typer.echo(f"missing: {part.name}; {part.maker} makes it")
-    typer.echo(f"wrote {out} ({out.stat().st_size / 1e6:.1f} MB)")
+            say(f"missing: {part.name}; {part.maker} makes it")
+    say(f"wrote {out} ({out.stat().st_size / 1e6:.1f} MB)")

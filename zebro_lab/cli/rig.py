@@ -66,7 +66,7 @@ def run(
     from rig.experiment.control import Control
     from zebro_lab.cli.rig_screen import experiment_screen
     from zebro_lab.stages.rig_run import RigRunRequest, run_experiment
-    from zebro_lab.terminal import messages
+    from zebro_lab.terminal.last_words import leave_at_once, say_in_time
 
     request = RigRunRequest(
         plan=file, rig=rig, data=data, resume=resume, reset_emergency=reset_emergency,
@@ -78,7 +78,7 @@ def run(
             outcome = run_experiment(request, screen, control)
     finally:
         if control.stop.latched:
-            messages.say(
+            say_in_time(
                 f"an emergency stop is latched in {data}; look after the rig, then go on with "
                 "--resume --reset-emergency",
                 err=True,
@@ -91,8 +91,8 @@ def run(
         words += "\ngo on with --resume"
     refused = REFUSED if outcome.refused else 0
     code = refused if outcome.completed else STOPPED
-    if not messages.say(words):
-        messages.leave_at_once(code)
+    if not say_in_time(words):
+        leave_at_once(code)
     raise typer.Exit(code)
 
 

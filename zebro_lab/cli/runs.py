@@ -7,6 +7,8 @@ from typing import Annotated
 
 import typer
 
+from zebro_lab.terminal.messages import say
+
 
 class ExportFormat(StrEnum):
     """Forms of exported runs."""
@@ -18,7 +20,8 @@ class ExportFormat(StrEnum):
 
 DataDir = Annotated[Path, typer.Argument(metavar="DATA", help="Folder of run folders.")]
 RunFolder = Annotated[Path, typer.Argument(metavar="RUN", help="Run folder.")]
-Why = Annotated[str, typer.Option(help="Reason, kept with the run.")]
+Why = Annotated[str | None, typer.Option(help="Reason, kept with the run and those of before.")]
+Undo = Annotated[bool, typer.Option("--undo", help="Take the run in again.")]
 
 To = Annotated[
     ExportFormat,
@@ -35,19 +38,25 @@ def runs(data: DataDir) -> None:
 
     listed = list_runs(data)
     for run in listed:
-        typer.echo(
+        say(
             f"{run.name}  {run.state}  {run.duration}  {run.samples}  "
             f"{'SIMULATED ' if run.source.startswith('sim:') else ''}{run.source}"
         )
-    typer.echo(f"{len(listed)} run{'s' * (len(listed) != 1)} in {data}")
+    say(f"{len(listed)} run{'s' * (len(listed) != 1)} in {data}")
 
 
-def exclude(run: RunFolder, why: Why) -> None:
-    """Leave a run out of every calibration, and keep it."""
-    from zebro_lab.run_folder import exclude_run
+def exclude(run: RunFolder, why: Why = None, undo: Undo = False) -> None:
+    """Leave a run out of every calibration, and keep it; or take it in again."""
+    from zebro_lab.run_exclusion import exclude_run, take_in_again
 
+    if undo:
+        take_in_again(run, why=why)
+        typer.echo(f"{run.name} counts again from now on")
+        return
+    if why is None:
+        raise typer.BadParameter("needed: the reason, kept with the run", param_hint="'--why'")
     manifest = exclude_run(run, why=why)
-    typer.echo(f"{run.name} is left out from now on: {(manifest.excluded or {})['why']}")
+    say(f"{run.name} is left out from now on: {(manifest.excluded or {})['why']}")
 
 
 def export(run: RunFolder, out: Out, to: To = ExportFormat.CSV) -> None:
@@ -57,11 +66,11 @@ def export(run: RunFolder, out: Out, to: To = ExportFormat.CSV) -> None:
 
         exported = export_mcap(run, out=out)
         for topic, count in exported.topics.items():
-            typer.echo(f"{topic}: {count}")
+            say(f"{topic}: {count}")
         for line in (*exported.notes, f"wrote {exported.file}"):
-            typer.echo(line)
+            say(line)
         return
     from zebro_lab.stages.export import export_run
 
     for file in export_run(run, to=to.value, out=out):
-        typer.echo(f"wrote {file}")
+        say(f"wrote {file}")

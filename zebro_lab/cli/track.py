@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from zebro_lab.terminal.messages import say
+
 if TYPE_CHECKING:
     from zebro_lab.stages.track import TrackRequest, TrackResult
     from zebro_lab.stages.track_preview import Preview
@@ -173,10 +175,10 @@ def _track(request: "TrackRequest") -> None:
         with progress_bar(Console(stderr=True)) as watcher:
             result = run_stage(request, watcher)
     except TrackStopped as stopped:
-        typer.echo(str(stopped), err=True)
+        say(str(stopped), err=True)
         raise typer.Exit(INTERRUPTED) from None
     for line in track_lines(result):
-        typer.echo(line)
+        say(line)
 
 
 def track_lines(result: "TrackResult") -> list[str]:
@@ -214,7 +216,7 @@ def _preview(request: "TrackRequest", file: Path) -> None:
 
     seen = preview(request, file)
     for line in preview_lines(seen):
-        typer.echo(line)
+        say(line)
     if any(check.is_off for check in seen.tape):
         sys.stderr.write("tape and photograph disagree; measure the floor again\n")
 

@@ -27,6 +27,7 @@ from zebro_lab.cli.walk_options import (
     ToeName,
     require_slip,
 )
+from zebro_lab.terminal.messages import say
 
 if TYPE_CHECKING:
     from zebro_lab.walking import ModelRequest
@@ -157,4 +158,4 @@ def walk(
 def _write_robot(file: Path, asked: "ModelRequest") -> None:
     from zebro_lab.stages.walk import write_robot
 
-    typer.echo(f"wrote {write_robot(file, asked)}")
+    say(f"wrote {write_robot(file, asked)}")

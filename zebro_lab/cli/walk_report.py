@@ -13,7 +13,9 @@ from rich.text import Text
 
 from model.gait import CyclicReference
 from zebro_lab.cli.progress import progress_bar
-from zebro_lab.walk_folder import OWNED
+from zebro_lab.files.result_folder import MANIFEST
+from zebro_lab.terminal.messages import say
+from zebro_lab.walk_folder import FILES
 from zebro_lab.walk_summary import WalkSummary, summarise
 from zebro_lab.walking import ModelRequest, Walked, WalkStopped, Watcher
 
@@ -35,7 +37,7 @@ def run_and_report(run: Callable[[Watcher], Walked], request: ModelRequest) -> N
         with progress_bar(Console(stderr=True)) as watcher:
             walked = run(watcher)
     except WalkStopped as stopped:
-        typer.echo(str(stopped), err=True)
+        say(str(stopped), err=True)
         raise typer.Exit(INTERRUPTED) from None
     console = Console(highlight=False)
     if not console.is_terminal:
@@ -59,7 +61,7 @@ def print_walk(console: Console, walked: Walked, out: Path) -> None:
         console.print(Text(line))
     console.print(Text(f"\nwritten to {out}:"))
     for path in sorted(out.iterdir()):
-        if path.name in OWNED:
+        if path.name in (*FILES, MANIFEST):
             console.print(Text(f"  {path}"))
 
 

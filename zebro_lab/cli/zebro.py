@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from zebro_lab.terminal.messages import say
+
 if TYPE_CHECKING:
     from rig.zebro.check import Observation
 
@@ -37,11 +39,11 @@ def check(
     request = CheckRequest(address, save, lift_off_for)
     checked = check_zebro(request, _Terminal())
     if checked.lift_off is not None:
-        typer.echo(
+        say(
             f"lift-off at {checked.lift_off.theta_deg:.1f} degrees, hip "
             f"{1e3 * checked.lift_off.mismatch:+.1f} mm from its height at touchdown"
         )
-    typer.echo(f"wrote {checked.file}; name it as --zebro {checked.file}@PORT")
+    say(f"wrote {checked.file}; name it as --zebro {checked.file}@PORT")
 
 
 class _Terminal:

@@ -3,6 +3,7 @@
 
 from collections.abc import Sequence
 from os import PathLike
+from typing import IO
 
 from matplotlib.backends.backend_pdf import PdfPages
 from matplotlib.figure import Figure
@@ -15,14 +16,14 @@ _INCH = 25.4  # mm
 
 
 @styled
-def save_pages(pages: Sequence[KitPage], path: str | PathLike[str]) -> None:
+def save_pages(pages: Sequence[KitPage], path: str | PathLike[str] | IO[bytes]) -> None:
     """Write pages as PDF; a millimetre of a page is a millimetre on paper.
 
     The bytes depend on the pages alone: no time stamp goes in.
 
     Args:
         pages: The pages.
-        path: Where to; its folder exists.
+        path: Where to; its folder exists. Or a file that is open.
     """
     metadata = {"Creator": "zebro-lab", "Title": "Tracking kit", "CreationDate": None}
     with PdfPages(path, metadata=metadata) as file:

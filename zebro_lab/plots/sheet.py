@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from pint import Unit
 
 from model.slip.law import Array, Parameter
+from zebro_lab.files.own_file import COMMENT, SOFTWARE
 
 BLUE, RED = "#0072B2", "#D55E00"
 CYCLE = (BLUE, "#E69F00", "#009E73", RED, "#CC79A7", "#56B4E9", "#000000", "#999999")
@@ -84,7 +85,9 @@ def new_figure(title: str, simulated: bool, *, width: float, height: float) -> F
 
 
 @styled
-def save(figure: Figure, path: str | PathLike[str] | IO[bytes]) -> None:
+def save(
+    figure: Figure, path: str | PathLike[str] | IO[bytes], *, command: str | None = None
+) -> None:
     """Write a figure as PNG at its own resolution, whatever the path's suffix.
 
     The bytes depend on the figure alone: no time stamp and no library version goes in.
@@ -92,8 +95,10 @@ def save(figure: Figure, path: str | PathLike[str] | IO[bytes]) -> None:
     Args:
         figure: What to write.
         path: Where to; its folder exists. Or a file that is open.
+        command: Command that draws it, where it stands alone: it is known by that again.
     """
-    figure.savefig(path, format="png", dpi="figure", metadata={"Software": "zebro-lab"})
+    metadata = {"Software": SOFTWARE, **({} if command is None else {COMMENT: command})}
+    figure.savefig(path, format="png", dpi="figure", metadata=metadata)
 
 
 def legend_below(figure: Figure, *, columns: int) -> None:

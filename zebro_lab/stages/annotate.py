@@ -8,6 +8,7 @@ in a picture with a grid, which any viewer shows, on any machine.
 import difflib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from io import BytesIO
 from math import radians
 from pathlib import Path
 
@@ -21,11 +22,13 @@ from zebro_lab.annotations import (
     read_annotations,
     render_annotations,
 )
-from zebro_lab.atomic import atomic_write_text
-from zebro_lab.errors import NotFound, SettingsError
+from zebro_lab.atomic import atomic_write_bytes, atomic_write_text
+from zebro_lab.errors import AlreadyExists, NotFound, SettingsError
+from zebro_lab.files.own_file import picture, require_own
 from zebro_lab.robot_file import RobotFile, read_robot_file
 from zebro_lab.units import quantity_to_si
 
+GRID = picture("annotate --grid")
 _EXPOSURE = "#"
 
 
@@ -80,6 +83,8 @@ def annotate(request: AnnotateRequest) -> Annotations:
         ZebroLabError: A photograph does not exist, or something is said that cannot be understood.
         TrackingError: There are no photographs.
     """
+    if request.said is not None and request.out.exists() and request.out.samefile(request.said):
+        raise AlreadyExists(f"{request.out} is read as --from; name another --out")
     names = photo_names(request.photos)
     new = Annotations(_template(request, names), _clicks(request, names), _corrections(request))
     if request.said is not None:
@@ -117,7 +122,7 @@ def draw_grid(origin: Path, photo: str, file: Path, *, around: str | None = None
         reach: How far from there [px].
 
     Raises:
-        ZebroLabError: There is no such photograph.
+        ZebroLabError: There is no such photograph, or the file is not a grid to replace.
         PhotoError: It cannot be read.
     """
     from zebro_lab.plots import save
@@ -125,8 +130,17 @@ def draw_grid(origin: Path, photo: str, file: Path, *, around: str | None = None
 
     _known(photo, photo_names(origin))
     path = origin / photo if origin.is_dir() else origin
+    target = require_own(file, GRID, inputs=(path,))
+    if origin.is_dir() and target.parent.samefile(origin):
+        raise AlreadyExists(
+            f"{file} would lie among the photographs and be tracked as one of them; name another "
+            "--grid"
+        )
     middle = None if around is None else _pair(around, "--around")
-    save(pixel_grid(read_pixels(path), title=photo, around=middle, reach=reach), file)
+    drawn = BytesIO()
+    figure = pixel_grid(read_pixels(path), title=photo, around=middle, reach=reach)
+    save(figure, drawn, command=GRID.command)
+    atomic_write_bytes(target, drawn.getvalue())
 
 
 def _template(request: AnnotateRequest, names: Sequence[str]) -> TemplateClicks | None:

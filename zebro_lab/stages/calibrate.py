@@ -20,7 +20,14 @@ from model.bayes.estimate import (
     estimate,
     thin_draws,
 )
-from model.bayes.fit import Comparison, PreparedFit, compare, prepare_fit, scaled_load_cell
+from model.bayes.fit import (
+    Comparison,
+    PreparedFit,
+    breakdown_told,
+    compare,
+    prepare_fit,
+    scaled_load_cell,
+)
 from model.bayes.laplace import importance_draws
 from model.bayes.posterior import LoadCell
 from model.bayes.preliminary import BlockChoice
@@ -31,18 +38,12 @@ from model.bayes.verdict import judge
 from model.slip.law import SlipLaw
 from model.slip.laws import slip_law
 from model.slip.magic_formula import MagicFormula
-from zebro_lab.atomic import atomic_folder
-from zebro_lab.calibration_folder import (
-    OWNED,
-    SLIP_TOML,
-    Calibration,
-    write_manifest,
-    write_tables,
-)
+from zebro_lab.calibration_folder import CALIBRATION, Calibration, write_tables
 from zebro_lab.calibration_pictures import draw_calibration
 from zebro_lab.checkpoint import FILE as CHECKPOINT
 from zebro_lab.checkpoint import load_checkpoint, save_checkpoint
-from zebro_lab.errors import AlreadyExists, SettingsError, ZebroLabError
+from zebro_lab.errors import SettingsError, ZebroLabError
+from zebro_lab.files.result_folder import require_replaceable, result_folder
 from zebro_lab.provenance import file_hashes, fingerprint
 from zebro_lab.tables import RigData, read_rig_data
 
@@ -119,6 +120,11 @@ class CalibrationRequest:
     threads: int = 2
     resume: bool = False
 
+    @property
+    def inputs(self) -> tuple[Path, ...]:
+        """What is read, as it was named."""
+        return (*self.data, *((self.columns,) if self.columns is not None else ()))
+
     def decisive(self) -> dict[str, object]:
         """Return what decides the numbers, as JSON can hold it."""
         return {
@@ -148,10 +154,7 @@ def calibrate(request: CalibrationRequest, watcher: Watcher) -> tuple[Calibratio
         ModelError: The fit failed; nothing was written.
         Stopped: The watcher asked to stop; once sampling had begun a checkpoint was written.
     """
-    if request.out.exists() and not request.out.is_dir():
-        raise AlreadyExists(
-            f"{request.out} is a file where the calibration is to be written; name another --out"
-        )
+    require_replaceable(request.out, CALIBRATION, inputs=request.inputs)
     watcher.step("reading", None)
     data = read_rig_data(
         request.data, columns=request.columns, slip_definition=request.slip_definition
@@ -164,10 +167,11 @@ def calibrate(request: CalibrationRequest, watcher: Watcher) -> tuple[Calibratio
     fit, comparison = _choose_law(request, data.samples, cell, rng, watcher)
     began = time.monotonic()
     judging = rng.spawn(1)[0]  # its draws are the same whether or not the fit was resumed
-    chains, convergence = _sample(request, fit, earlier, mark, rng, watcher)
-    seconds = time.monotonic() - began
-    watcher.step("judging", None)
-    calibration = _conclude(fit, comparison, chains, convergence, data, seconds, judging)
+    with breakdown_told(data.samples, fit.posterior.law):
+        chains, convergence = _sample(request, fit, earlier, mark, rng, watcher)
+        seconds = time.monotonic() - began
+        watcher.step("judging", None)
+        calibration = _conclude(fit, comparison, chains, convergence, data, seconds, judging)
     watcher.step("drawing", None)
     _write(request, calibration, inputs)
     if convergence.converged:
@@ -340,8 +344,8 @@ def _conclude(
 
 
 def _write(request: CalibrationRequest, calibration: Calibration, inputs: dict[str, str]) -> None:
-    with atomic_folder(request.out, replaces=OWNED, marker=SLIP_TOML) as folder:
+    settings = {**request.decisive(), "load_cell": asdict(calibration.fit.load_cell)}
+    content = {"source": calibration.source, "settings": settings, "inputs": inputs}
+    with result_folder(request.out, CALIBRATION, content=content) as folder:
         write_tables(folder, calibration, inputs=inputs)
         draw_calibration(folder, calibration)
-        settings = {**request.decisive(), "load_cell": asdict(calibration.fit.load_cell)}
-        write_manifest(folder, inputs=inputs, settings=settings, source=calibration.source)

@@ -9,12 +9,14 @@ import numpy as np
 from model.bayes.walk_prior import WalkPrior
 from zebro_lab.calibration_folder import SLIP_TOML
 from zebro_lab.errors import NotFound, SettingsError
+from zebro_lab.files.replacement import settle
+from zebro_lab.files.result_folder import require_replaceable
 from zebro_lab.slip_argument import parse_slip
 from zebro_lab.tracked_walks import read_walks
 from zebro_lab.walk_clocks import checked_clock, estimated_clock_of
 from zebro_lab.walk_prediction import WalksFitted, fit_and_leave_out
 from zebro_lab.walking import Watcher
-from zebro_lab.walks_folder import WalksToWrite, write_walks
+from zebro_lab.walks_folder import FOLDER, WALKS, WalksToWrite, write_walks
 
 
 @dataclass(frozen=True)
@@ -69,6 +71,7 @@ def calibrate_walks(request: WalksRequest, watcher: Watcher) -> WalksCalibrated:
         ModelError: A walk diverged; nothing was written.
     """
     slip_toml = _slip_of(request)
+    require_replaceable(request.calibration / FOLDER, WALKS, inputs=request.walks)
     slip = parse_slip(str(slip_toml), with_walks=False)
     watcher.step("reading walks", None)
     clock = estimated_clock_of(slip) if request.estimate_offset else checked_clock(slip)
@@ -103,7 +106,7 @@ def calibrate_walks(request: WalksRequest, watcher: Watcher) -> WalksCalibrated:
 def _slip_of(request: WalksRequest) -> Path:
     if not request.walks:
         raise SettingsError("missing: no walk to fit", key="--walks")
-    slip_toml = request.calibration / SLIP_TOML
+    slip_toml = settle(request.calibration) / SLIP_TOML
     if not slip_toml.is_file():
         raise NotFound(
             f"{slip_toml}: no such file; name rig data to calibrate from, or the --out of a "

@@ -1,17 +1,20 @@
 # SPDX-License-Identifier: MIT
 """Photographs of a board in, `camera.toml` out; the kit to print; the clock to photograph."""
 
+import os
 from collections import Counter
 from dataclasses import dataclass
+from io import BytesIO
 from pathlib import Path
 
 from tracking.camera import Board, BoardView, Calibration, calibrate, find_board
 from tracking.errors import CalibrationError, PhotoError
 from tracking.images import find_photos, read_pixels
-from zebro_lab.atomic import atomic_folder, atomic_write_text
+from zebro_lab.atomic import atomic_folder, atomic_write_bytes, atomic_write_text
 from zebro_lab.board_argument import parse_board
-from zebro_lab.camera_file import render_camera_file
+from zebro_lab.camera_file import HEADING, render_camera_file
 from zebro_lab.errors import AlreadyExists
+from zebro_lab.files.own_file import require_own, text_file
 from zebro_lab.floor_file import FLOOR_FILE, render_floor_file
 from zebro_lab.photo_search import WORTH_WORKERS, Watcher, run_batches
 from zebro_lab.photo_sequence import upright_size
@@ -19,6 +22,7 @@ from zebro_lab.provenance import file_hash
 from zebro_lab.tracking_kit import kit_pages, starter_floor
 
 KIT_FILE = "kit.pdf"
+LENS = text_file("camera calibrate", HEADING)
 
 
 @dataclass(frozen=True)
@@ -63,6 +67,7 @@ def calibrate_camera(request: CameraRequest, watcher: Watcher) -> CameraResult:
         TrackingError: The photographs do not determine the lens.
         TrackStopped: Somebody asked to stop.
     """
+    target = require_own(request.out, LENS, inputs=(request.photos,))
     board = parse_board(request.board)
     paths = find_photos(request.photos)
     sizes = Counter(size for path in paths if (size := upright_size(path)) is not None)
@@ -81,7 +86,7 @@ def calibrate_camera(request: CameraRequest, watcher: Watcher) -> CameraResult:
     watcher.step("lens", None)
     fit = calibrate(views, size, lens_model=request.lens_model)
     used = {path.name: file_hash(path) for path in paths if path.name not in left_out}
-    atomic_write_text(request.out, render_camera_file(fit, photos=used))
+    atomic_write_text(target, render_camera_file(fit, photos=used))
     return CameraResult(request.out, fit, left_out)
 
 
@@ -113,7 +118,7 @@ def write_kit(out: Path, *, paper: str = "a4") -> tuple[Path, ...]:
         The files.
 
     Raises:
-        AlreadyExists: There is a `floor.toml`, which may hold what a tape said.
+        AlreadyExists: There is a `floor.toml`, which may hold what a tape said, or another kit.
         SettingsError: The paper is unknown.
     """
     from zebro_lab.plots.kit import save_pages  # matplotlib takes most of a second
@@ -123,10 +128,23 @@ def write_kit(out: Path, *, paper: str = "a4") -> tuple[Path, ...]:
         raise AlreadyExists(
             f"{out / FLOOR_FILE} exists already and may hold what a tape said; name another --out"
         )
-    with atomic_folder(out) as draft:
-        save_pages(pages, draft / KIT_FILE)
-        (draft / FLOOR_FILE).write_text(render_floor_file(starter_floor(), heading=_HEADING))
+    drawn = BytesIO()
+    save_pages(pages, drawn)
+    floor = render_floor_file(starter_floor(), heading=_HEADING)
+    if not out.is_dir():
+        with atomic_folder(out) as draft:
+            (draft / KIT_FILE).write_bytes(drawn.getvalue())
+            (draft / FLOOR_FILE).write_text(floor)
+    else:
+        _require_same(out / KIT_FILE, drawn.getvalue())
+        atomic_write_bytes(out / KIT_FILE, drawn.getvalue())
+        atomic_write_text(out / FLOOR_FILE, floor)
     return out / KIT_FILE, out / FLOOR_FILE
+
+
+def _require_same(file: Path, content: bytes) -> None:
+    if os.path.lexists(file) and (not file.is_file() or file.read_bytes() != content):
+        raise AlreadyExists(f"{file} exists already and is another one; name another --out")
 
 
 _HEADING = """\

@@ -1,25 +1,24 @@
 # SPDX-License-Identifier: MIT
 """Two calibrations or two runs in, what differs out."""
 
-import json
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
 import numpy as np
 
 from model.metrics.difference import Difference
-from zebro_lab.atomic import atomic_folder
 from zebro_lab.calibration_folder import SLIP_TOML
 from zebro_lab.compared_calibrations import compare_calibrations
 from zebro_lab.compared_runs import compare_runs, is_walked
 from zebro_lab.comparison import Comparison
-from zebro_lab.errors import AlreadyExists, NotFound, SettingsError
-from zebro_lab.provenance import file_hash, file_hashes, software
+from zebro_lab.errors import NotFound, SettingsError
+from zebro_lab.files.replacement import settle
+from zebro_lab.files.result_folder import ResultKind, require_replaceable, result_folder
+from zebro_lab.provenance import file_hashes
 
 SCHEMA = 1
-KIND = "comparison"
-TABLE, PICTURE, MANIFEST = "comparison.csv", "comparison.png", "manifest.json"
-OWNED = (TABLE, PICTURE, MANIFEST)
+TABLE, PICTURE = "comparison.csv", "comparison.png"
+COMPARISON = ResultKind("comparison", "compare", (TABLE, PICTURE), SCHEMA)
 
 
 @dataclass(frozen=True)
@@ -58,7 +57,7 @@ def compare(request: CompareRequest) -> Compared:
     Raises:
         ZebroLabError: The two are not of one kind, cannot be read, or have nothing in common.
     """
-    _require_ours(request.out)
+    require_replaceable(request.out, COMPARISON, inputs=(request.first, request.second))
     rng = np.random.default_rng(request.seed)
     names = _names(request.first, request.second)
     kinds = [_kind(path) for path in (request.first, request.second)]
@@ -75,6 +74,7 @@ def compare(request: CompareRequest) -> Compared:
 
 
 def _kind(path: Path) -> str:
+    settle(path)
     if path.is_file() or (path / SLIP_TOML).is_file():
         return "calibration"
     if is_walked(path):
@@ -102,25 +102,20 @@ def _write(request: CompareRequest, done: Compared) -> None:
     from zebro_lab.plots.comparison import overlay
 
     compared = done.comparison
-    with atomic_folder(request.out, replaces=OWNED, marker=MANIFEST) as draft:
+    content = {
+        "of": compared.kind,
+        "source": compared.source,
+        "settings": {"seed": request.seed, "names": list(compared.names)},
+        "quantities": [_row(done, i) for i in range(len(done.differences))],
+        "notes": list(compared.notes),
+        "inputs": file_hashes(compared.files),
+    }
+    with result_folder(request.out, COMPARISON, content=content) as draft:
         pd.DataFrame([_row(done, i) for i in range(len(done.differences))]).to_csv(
             draft / TABLE, index=False, float_format="%.6g", lineterminator="\n"
         )
         figure = overlay(compared, done.differences, simulated="sim:" in compared.source)
         save(figure, draft / PICTURE)
-        content = {
-            "schema": SCHEMA,
-            "kind": KIND,
-            "of": compared.kind,
-            "source": compared.source,
-            "settings": {"seed": request.seed, "names": list(compared.names)},
-            "quantities": [_row(done, i) for i in range(len(done.differences))],
-            "notes": list(compared.notes),
-            "inputs": file_hashes(compared.files),
-            "outputs": {p.name: file_hash(p) for p in sorted(draft.iterdir()) if p.is_file()},
-            "software": software(),
-        }
-        (draft / MANIFEST).write_text(json.dumps(content, indent=2) + "\n")
 
 
 def _row(done: Compared, i: int) -> dict[str, object]:
@@ -131,13 +126,3 @@ def _row(done: Compared, i: int) -> dict[str, object]:
         row |= {name: median, f"{name}_q05": low, f"{name}_q95": high}
     told = {f"difference_{key}": value for key, value in asdict(apart).items()}
     return row | told
-
-
-def _require_ours(out: Path) -> None:
-    """Refuse to renew what another command wrote."""
-    try:
-        kind = json.loads((out / MANIFEST).read_text()).get("kind")
-    except (OSError, ValueError, AttributeError):
-        return
-    if kind != KIND:
-        raise AlreadyExists(f"{out} holds the result of another command ({kind}); name another")

@@ -29,6 +29,7 @@ from model.walk.ensemble import PathEnsemble
 from model.walk.path import WalkPath
 from zebro_lab.atomic import atomic_write_bytes
 from zebro_lab.errors import AlreadyExists, NotFound
+from zebro_lab.files.replacement import settle
 from zebro_lab.leg_log import ANGLES
 from zebro_lab.message_log import MessageLog
 from zebro_lab.path_band import read_draws
@@ -115,6 +116,8 @@ def export_mcap(run: Path, *, out: Path) -> Exported:
     """
     if out.exists():
         raise AlreadyExists(f"{out} exists already; name another --out")
+    for part in (TRACK, PREDICTION):
+        settle(run / part)
     track = read_track(run / TRACK) if (run / TRACK / TRACK_CSV).is_file() else None
     predicted = _read_predicted(run / PREDICTION, track)
     recorded = read_manifest(run) if is_recorded(run) else None

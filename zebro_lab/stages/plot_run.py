@@ -6,10 +6,13 @@ from io import BytesIO
 from pathlib import Path
 
 from zebro_lab.atomic import atomic_write_bytes
-from zebro_lab.errors import NotFound, SettingsError
+from zebro_lab.errors import SettingsError
+from zebro_lab.files.own_file import picture, require_own
+from zebro_lab.run_folder import LOG_FILE, MANIFEST_FILE
 from zebro_lab.run_signals import RunSignals, read_signals
 
 SUFFIX = ".png"
+PLOT = picture("plot")
 
 
 @dataclass(frozen=True)
@@ -34,6 +37,7 @@ def plot_run(folder: Path, *, out: Path | None = None) -> Drawn:
 
     Raises:
         SettingsError: `out` is no name of a PNG file.
+        AlreadyExists: `out` is no picture of this command.
         NotFound: It is no run folder, its log is missing, or the picture's folder is.
         DataError: It cannot be read, or holds no samples.
     """
@@ -41,12 +45,12 @@ def plot_run(folder: Path, *, out: Path | None = None) -> Drawn:
     file = out or place.with_name(place.name + SUFFIX)
     if file.suffix.lower() != SUFFIX or file.is_dir():
         raise SettingsError(f"'{file}' is no name of a picture; expected FILE{SUFFIX}", key="--out")
-    if not file.parent.is_dir():
-        raise NotFound(f"{file.parent}: no such folder; make it, or name another --out")
+    target = require_own(file, PLOT, inputs=(folder / LOG_FILE, folder / MANIFEST_FILE))
     signals = read_signals(folder)
     from zebro_lab.plots.raw_streams import raw_streams  # matplotlib: only where all is read
     from zebro_lab.plots.sheet import save
 
     drawn = BytesIO()
-    save(raw_streams(signals), drawn)
-    return Drawn(atomic_write_bytes(file, drawn.getvalue()), signals)
+    save(raw_streams(signals), drawn, command=PLOT.command)
+    atomic_write_bytes(target, drawn.getvalue())
+    return Drawn(file, signals)

@@ -10,12 +10,14 @@ import numpy as np
 from model.gait.quantised import QuantisedLog
 from model.robot import N_LEGS
 from model.walk.ensemble import PathEnsemble
+from zebro_lab.files.replacement import settle
+from zebro_lab.files.result_folder import require_replaceable
 from zebro_lab.leg_angles import angles_from
 from zebro_lab.leg_log import LegLog, read_leg_log
 from zebro_lab.path_band import BandRequest, write_band
 from zebro_lab.recorded_legs import is_recorded
 from zebro_lab.robot_file import ROBOT_FILE, RobotFile
-from zebro_lab.walk_folder import PATH_CSV
+from zebro_lab.walk_folder import PATH_CSV, WALKED
 from zebro_lab.walk_models import Direction
 from zebro_lab.walked_band import band_of
 from zebro_lab.walking import ModelRequest, Walked, Watcher, robot_of, walk_with, write_walk
@@ -39,6 +41,12 @@ class PredictRequest:
     direction: Direction = "left"
     band: BandRequest | None = None
 
+    @property
+    def inputs(self) -> tuple[Path, ...]:
+        """What is read, as it was named."""
+        columns = () if self.columns is None else (self.columns,)
+        return (self.log, *columns, *self.model.inputs)
+
 
 def predict(request: PredictRequest, watcher: Watcher) -> Walked:
     """Predict where measured leg angles lead and write the walk folder.
@@ -50,7 +58,9 @@ def predict(request: PredictRequest, watcher: Watcher) -> Walked:
         ZebroLabError: A file is missing or holds what cannot be followed.
         ModelError: The walk cannot be computed.
     """
+    settle(request.log)
     request = _with_own_robot(request)
+    require_replaceable(request.model.out, WALKED["predict"], inputs=request.inputs)
     described = robot_of(request.model)
     walked_before = request.log.is_dir() or request.log.name == PATH_CSV
     walked_before = walked_before and not is_recorded(request.log)

@@ -267,6 +267,8 @@ class _Board:
             self._began = max(known)
             if self._duration is not None:
                 self._recorder.count_duration(self._duration, since=self._began)
+                for reader in self._readers.values():
+                    reader.end_at(self._began + self._duration)
         return self._began
 
     def count(self) -> None:

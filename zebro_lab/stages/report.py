@@ -6,9 +6,11 @@ from datetime import datetime
 from pathlib import Path
 
 from zebro_lab.atomic import atomic_write_text
-from zebro_lab.errors import AlreadyExists, NotFound
+from zebro_lab.files.own_file import html_page, require_own
 from zebro_lab.report_page import render_report
 from zebro_lab.report_sources import Sources, find_sources
+
+REPORT = html_page("report")
 
 
 @dataclass(frozen=True)
@@ -32,13 +34,11 @@ def report(request: ReportRequest, *, made: datetime) -> Sources:
     """Write the page, whole or not at all, and return what it shows.
 
     Raises:
-        ZebroLabError: There is nothing to report on, a manifest is damaged, or `out` is a folder.
+        ZebroLabError: There is nothing to report on, a manifest is damaged, or `out` is a folder or
+            no report.
     """
-    if request.out.is_dir():
-        raise AlreadyExists(f"{request.out} is a folder; name a file, such as report.html")
-    if not request.out.absolute().parent.is_dir():
-        raise NotFound(f"{request.out.parent}: no such folder; make it, or name another --out")
+    out = require_own(request.out, REPORT, inputs=(request.data, request.calibration))
     sources = find_sources(request.data, calibration=request.calibration)
     title = request.title or f"Report on {request.data.absolute().name}"
-    atomic_write_text(request.out, render_report(sources, title=title, made=made))
+    atomic_write_text(out, render_report(sources, title=title, made=made))
     return sources

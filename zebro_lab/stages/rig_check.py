@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Fresh check points and a calibration in, the drift of the rig out."""
 
+import logging
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -14,6 +15,7 @@ from model.slip.law import Array
 from zebro_lab.calibration_folder import read_slip
 from zebro_lab.tables import read_rig_data
 
+_LOG = logging.getLogger(__name__)
 STEP: Final = 1e-4
 BATCHES: Final = 8
 SUSPICIOUS: Final = 3.0
@@ -68,7 +70,10 @@ def check_runs(
         ZebroLabError: Data or calibration cannot be read.
     """
     curve = read_slip(calibration)
-    samples = read_rig_data(data, slip_definition=str(curve.definition)).samples
+    read = read_rig_data(data, slip_definition=str(curve.definition))
+    for note in read.repeated:
+        _LOG.warning("%s", note)
+    samples = read.samples
     return tuple(
         _checked(samples, curve, index, zero_sd) for index in range(len(samples.run_names))
     )

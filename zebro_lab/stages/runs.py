@@ -7,6 +7,7 @@ from pathlib import Path
 
 from zebro_lab.errors import ZebroLabError
 from zebro_lab.raw_log import read_raw_log
+from zebro_lab.run_exclusion import UNSAID, past_reasons
 from zebro_lab.run_folder import LOG_FILE, find_runs, read_manifest, run_state
 from zebro_lab.run_manifest import RunManifest
 
@@ -51,10 +52,18 @@ def _listed(folder: Path) -> ListedRun:
             streams = {topic: len(stream) for topic, stream in found.items()}
     except (ZebroLabError, OSError) as error:
         return ListedRun(folder.name, f"unreadable: {error}")
-    if manifest.excluded is not None:
-        state = f"excluded ({manifest.excluded.get('why', 'no reason given')})"
+    state = _with_exclusions(state, manifest)
     samples = ", ".join(f"{count} {topic}" for topic, count in streams.items())
     return ListedRun(folder.name, state, _lasted(manifest), samples or "-", manifest.source)
+
+
+def _with_exclusions(state: str, manifest: RunManifest) -> str:
+    """Say why a run is left out now, and why it was before."""
+    before = "; ".join(past_reasons(manifest))
+    if manifest.excluded is None:
+        return f"{state} (was excluded: {before})" if before else state
+    why = manifest.excluded.get("why", UNSAID)
+    return f"excluded ({why}; before: {before})" if before else f"excluded ({why})"
 
 
 def _lasted(manifest: RunManifest) -> str:

@@ -15,6 +15,7 @@ from zebro_lab.annotations import (
 )
 from zebro_lab.camera_file import read_camera_file
 from zebro_lab.errors import SettingsError
+from zebro_lab.files.result_folder import require_replaceable
 from zebro_lab.floor_file import FLOOR_FILE, read_floor_file, render_floor_file
 from zebro_lab.marker_numbers import require_apart
 from zebro_lab.marker_print import MarkerPrint
@@ -31,7 +32,7 @@ from zebro_lab.provenance import file_hashes
 from zebro_lab.robot_file import RobotFile, read_robot_file
 from zebro_lab.run_manifest import RunManifest, read_manifest
 from zebro_lab.track_clock import LATER, counted_from, untied
-from zebro_lab.track_folder import KIND, track_folder
+from zebro_lab.track_folder import KIND, TRACKED, track_folder
 from zebro_lab.track_pictures import draw_track
 from zebro_lab.tracked_robot import WALKING_HEIGHT_SD, body_prior, tracked_robot
 from zebro_lab.tracker import Scene, Tracked, track_marker
@@ -93,6 +94,18 @@ class TrackRequest:
             raise SettingsError("needed: --run RUN, to write RUN/track, or --out FOLDER")
         return self.run / KIND
 
+    @property
+    def named(self) -> tuple[Path, ...]:
+        """Files that were named, beside the photographs."""
+        files = (self.camera, self.floor, self.robot, self.annotations,
+                 self.times.table, self.times.clock)  # fmt: skip
+        return tuple(file for file in files if file is not None)
+
+    @property
+    def inputs(self) -> tuple[Path, ...]:
+        """What is read, as it was named."""
+        return (self.photos, *self.named, *((self.run,) if self.run is not None else ()))
+
 
 @dataclass(frozen=True)
 class TrackResult:
@@ -124,6 +137,7 @@ def track(request: TrackRequest, watcher: Watcher) -> TrackResult:
         TrackStopped: Somebody asked to stop.
     """
     folder = request.folder
+    require_replaceable(folder, TRACKED, inputs=request.inputs)
     manifest = None if request.run is None else read_manifest(request.run)
     described = described_robot(request)
     with open_photos(request.photos, request.times, watcher=watcher) as sequence:
@@ -212,15 +226,13 @@ def _write(
     request: TrackRequest, result: TrackResult, scene: Scene, sequence: PhotoSequence
 ) -> None:
     seen = result.tracked.floor
-    named = [request.camera, request.floor, request.robot, request.annotations,
-             request.times.table, request.times.clock]  # fmt: skip
     videos = [sequence.origin] if sequence.origin.is_file() else list(sequence.paths)
     with track_folder(
         result.folder,
         result.tracked.track,
         source=result.source,
         settings=_settings(request, scene),
-        inputs=file_hashes([*(file for file in named if file is not None), *videos]),
+        inputs=file_hashes([*request.named, *videos]),
         report=_report(result),
     ) as draft:
         heading = f"The floor of {request.floor.name}, refined with the photographs."

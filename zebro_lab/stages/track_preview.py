@@ -2,6 +2,7 @@
 """The first photograph alone, before the long run: what is found, its scale, and a tape check."""
 
 from dataclasses import dataclass
+from io import BytesIO
 from itertools import combinations
 from pathlib import Path
 
@@ -12,7 +13,9 @@ from tracking.detect import Detection
 from tracking.floor import FloorFit, FloorView, refine_floor
 from tracking.images import read_pixels
 from tracking.pose import fit_pose
+from zebro_lab.atomic import atomic_write_bytes
 from zebro_lab.errors import DataError
+from zebro_lab.files.own_file import picture, require_own
 from zebro_lab.photo_search import Photo, Wanted, look_at
 from zebro_lab.photo_sequence import open_photos
 from zebro_lab.run_manifest import read_manifest
@@ -20,6 +23,7 @@ from zebro_lab.stages.track import TrackRequest, described_robot, scene_of, sour
 from zebro_lab.track_pictures import draw_preview
 from zebro_lab.tracker import Scene, with_clicks
 
+PREVIEW = picture("track --preview")
 _FAR = 4e-3  # disagreement of tape and picture worth a warning [m]
 
 
@@ -83,6 +87,7 @@ def preview(request: TrackRequest, file: Path) -> Preview:
         ZebroLabError: A file or an option says what cannot be followed.
         TrackingError: The floor's map does not fit.
     """
+    target = require_own(file, PREVIEW, inputs=request.inputs)
     manifest = None if request.run is None else read_manifest(request.run)
     with open_photos(request.photos, request.times, frames=1) as sequence:
         scene = scene_of(request, described_robot(request), sequence)
@@ -94,11 +99,13 @@ def preview(request: TrackRequest, file: Path) -> Preview:
         view = with_clicks(look.seen.floor, scene)
         fit = refine_floor(scene.camera, scene.floor, [view])
         source = source_of(request, manifest, sequence)
+        drawn = BytesIO()
         draw_preview(
-            file, read_pixels(photo.path), camera=scene.camera, view=fit.stands[0].pose,
+            drawn, read_pixels(photo.path), camera=scene.camera, view=fit.stands[0].pose,
             floor=scene.floor, detection=look.seen, title=f"Preview: {photo.name}",
-            simulated=source.startswith("sim:"),
+            simulated=source.startswith("sim:"), command=PREVIEW.command,
         )  # fmt: skip
+        atomic_write_bytes(target, drawn.getvalue())
         return _preview(file, scene, look.seen, view, fit)
 
 

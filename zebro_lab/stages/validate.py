@@ -8,7 +8,10 @@ from pathlib import Path
 import numpy as np
 
 from model.errors import InsufficientData
+from zebro_lab.counted_once import content_hash, first_of_each, told_once
 from zebro_lab.errors import DataError, NotFound, SettingsError
+from zebro_lab.files.replacement import settle
+from zebro_lab.files.result_folder import require_replaceable
 from zebro_lab.provenance import file_hashes
 from zebro_lab.recorded_legs import is_recorded
 from zebro_lab.recorded_tilt import read_recorded_tilt
@@ -23,7 +26,7 @@ from zebro_lab.validation import (
     judge_tilt,
     read_prediction,
 )
-from zebro_lab.validation_folder import Summary, summarise_runs, write_validation
+from zebro_lab.validation_folder import VALIDATION, Summary, summarise_runs, write_validation
 from zebro_lab.validation_pictures import Judgement
 from zebro_lab.walk_folder import PATH_CSV, PREDICTION
 from zebro_lab.walking import Watcher
@@ -71,7 +74,7 @@ def pairs_of_run(run: Path) -> tuple[Path, Path]:
     Raises:
         NotFound: One of them is missing.
     """
-    prediction, track = run / PREDICTION, run / TRACK
+    prediction, track = settle(run / PREDICTION), settle(run / TRACK)
     if not (prediction / PATH_CSV).is_file():
         raise NotFound(f"{prediction}: no prediction; predict {run} --out {prediction} makes it")
     if not (track / TRACK_CSV).is_file():
@@ -88,10 +91,14 @@ def validate(request: ValidateRequest, watcher: Watcher) -> Validated:
     """
     if not request.pairs:
         raise SettingsError("missing: nothing to validate", key="--predicted, --track")
+    inputs = [path for pair in request.pairs for path in pair]
+    require_replaceable(request.out, VALIDATION, inputs=inputs)
+    pairs, repeated = first_of_each(request.pairs, key=_content)
+    told = told_once("walks", [(one[0], other[0]) for one, other in repeated])
     rng = np.random.default_rng(request.seed)
     judgements, files, sources = [], [], []
-    names = _names([predicted for predicted, _ in request.pairs])
-    for i, (name, (predicted, tracked)) in enumerate(zip(names, request.pairs, strict=True)):
+    names = _names([predicted for predicted, _ in pairs])
+    for i, (name, (predicted, tracked)) in enumerate(zip(names, pairs, strict=True)):
         watcher.step("judging", i / len(names))
         prediction, track = read_prediction(predicted), read_track(tracked)
         clock = (
@@ -101,7 +108,7 @@ def validate(request: ValidateRequest, watcher: Watcher) -> Validated:
         )
         judged = judge_run(name, prediction, clock.track, anchor=request.anchor, rng=rng)
         judgement, read = _with_surroundings(judged, prediction, tracked, clock.offset)
-        judgements.append(judgement)
+        judgements.append(judgement if i else _noted(judgement, told))
         files += [*prediction.files, track.file, *read]
         sources += [prediction.source, track.source]
     runs = [each.run for each in judgements]
@@ -121,6 +128,20 @@ def validate(request: ValidateRequest, watcher: Watcher) -> Validated:
         source=source,
     )  # fmt: skip
     return Validated(tuple(runs), summary, source)
+
+
+def _content(pair: tuple[Path, Path]) -> tuple[str, ...]:
+    """Return what a walk is known by under another name: its predicted and its tracked path."""
+    return tuple(
+        content_hash(file) if file.is_file() else str(file)
+        for path, name in zip(pair, (PATH_CSV, TRACK_CSV), strict=True)
+        for file in [settle(path) / name if path.is_dir() else path]
+    )
+
+
+def _noted(judgement: Judgement, told: Sequence[str]) -> Judgement:
+    run = judgement.run
+    return replace(judgement, run=replace(run, notes=(*told, *run.notes)))
 
 
 def _with_surroundings(

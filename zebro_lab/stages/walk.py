@@ -7,9 +7,11 @@ from pathlib import Path
 
 from zebro_lab.atomic import atomic_write_text
 from zebro_lab.errors import AlreadyExists
+from zebro_lab.files.result_folder import require_replaceable
 from zebro_lab.gait_argument import GaitRequest, make_gait
 from zebro_lab.path_band import BandRequest, write_band
 from zebro_lab.robot_file import render_robot_file
+from zebro_lab.walk_folder import WALKED
 from zebro_lab.walked_band import band_of
 from zebro_lab.walking import ModelRequest, Walked, Watcher, robot_of, walk_with, write_walk
 
@@ -38,6 +40,7 @@ def walk(request: WalkRequest, watcher: Watcher) -> Walked:
         ZebroLabError: A file or an option says what cannot be followed.
         ModelError: No legs can walk so, or the walk cannot be computed.
     """
+    require_replaceable(request.model.out, WALKED["walk"], inputs=request.model.inputs)
     described = robot_of(request.model)
     gait = make_gait(request.gait, leg_arc=described.robot.leg_arc)
     watcher.step("walking", None)

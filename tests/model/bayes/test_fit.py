@@ -10,7 +10,7 @@ from model.bayes.fit import CLEAR_WIN, compare, prepare_fit, scaled_load_cell
 from model.bayes.laplace import find_mode
 from model.bayes.posterior import LoadCell, SlipPosterior
 from model.bayes.preliminary import BlockChoice
-from model.errors import InsufficientData
+from model.errors import DomainError, InsufficientData
 from model.slip import MagicFormula
 from rig.slip_rig.imperfections import TYPICAL_RIG, RigImperfections
 from rig.slip_rig.sweep import SOURCE_LAW, SOURCE_VALUES, SweepPlan, simulate_sweep
@@ -283,3 +283,29 @@ def test_the_comparison_adds_up_over_runs(peak_law_data):
 def test_where_no_run_can_be_left_out_the_first_law_is_kept(peak_law_data):
     unvalidated = [replace(fit, cross_validation=None) for fit in peak_law_data]
     assert compare("ab", unvalidated).chosen == 0
+
+
+def scaled(samples, *, normal=1.0, traction=1.0):
+    return replace(
+        samples,
+        normal_force=normal * samples.normal_force,
+        traction_force=traction * samples.traction_force,
+    )
+
+
+@pytest.mark.parametrize("traction", [0.0, 1.5])
+def test_traction_that_stands_still_is_refused(traction):
+    samples = simulated()
+    still = replace(samples, traction_force=np.full(len(samples), traction))
+    with pytest.raises(InsufficientData, match=f"traction force is {traction:g} N in all"):
+        prepared(still)
+
+
+def test_kilonewtons_taken_for_newtons_are_refused():
+    with pytest.raises(InsufficientData, match="kN"):
+        prepared(scaled(simulated(), normal=1e-3, traction=1e-3), load_cell=LoadCell())
+
+
+def test_forces_beyond_every_rig_are_refused():
+    with pytest.raises(DomainError, match="unit"):
+        prepared(scaled(simulated(), normal=1e200, traction=1e200))

@@ -36,6 +36,7 @@ def test_the_order_of_corners_does_not_matter(point, triangle, order):
     assume(area(triangle) > 1e-3)
     shuffled = triangle[list(order)]
     assert depth_in_triangle(point, shuffled) == pytest.approx(depth_in_triangle(point, triangle))
+    assume(np.abs(barycentric(point, triangle)).min() > 1e-9)  # on an edge rounding decides
     corner, other = lifting_corner(point, triangle), lifting_corner(point, shuffled)
     assert (corner is None) == (other is None)
 

@@ -9,7 +9,7 @@ import pytest
 
 from rig.clock import SYSTEM_CLOCK
 from rig.device import Sample
-from rig.errors import DeviceFault, LimitExceeded, RigTimeout
+from rig.errors import DeviceFault, LimitExceeded, RigTimeout, StaleReading, UnreliableRecords
 from rig.experiment.acquire import Acquisition
 from rig.experiment.bench import HostTime, make_bench
 from rig.experiment.control import Control
@@ -101,6 +101,28 @@ def test_a_silent_load_cell_stops_the_discs(lab, monkeypatch):
     with turning(lab, monkeypatch) as (acquire, _, drives, cell):
         monkeypatch.setattr(cell, "_emit", lambda record: None)
         with pytest.raises(RigTimeout, match="stream 'load cell' sent nothing within"):
+            acquire.until(lambda _: False, 3.0)
+        assert stands(drives)
+
+
+def test_records_of_a_load_cell_numbered_at_random_stop_the_discs(lab, monkeypatch):
+    with turning(lab, monkeypatch) as (acquire, _, drives, cell):
+        send, rng = cell._send, np.random.default_rng(0)
+
+        def anyhow(reading, values):
+            cell._number = int(rng.integers(1 << 32))
+            send(reading, values)
+
+        monkeypatch.setattr(cell, "_send", anyhow)
+        with pytest.raises(UnreliableRecords, match="'load_cell' restarted its numbering"):
+            acquire.until(lambda _: False, 3.0)
+        assert stands(drives)
+
+
+def test_readings_that_waited_while_the_host_was_held_up_stop_the_discs(lab, monkeypatch):
+    with turning(lab, monkeypatch, reading_age=0.3) as (acquire, _, drives, _):
+        time.sleep(0.4)
+        with pytest.raises(StaleReading, match=r"age of a reading of stream .* limit is 0\.3 s"):
             acquire.until(lambda _: False, 3.0)
         assert stands(drives)
 

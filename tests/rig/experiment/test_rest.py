@@ -19,7 +19,7 @@ def batch(leg, ground, *, taken):
     )  # fmt: skip
 
 
-def prove(speed_at, *, age=0.0, longest=1.0, limit=0.1):
+def prove(speed_at, *, age=0.0, longest=1.0, limit=0.1, oldest=0.25):
     """Prove rest of a leg disc of such speed; return how long it took [s]."""
     clock = ManualClock()
 
@@ -28,7 +28,7 @@ def prove(speed_at, *, age=0.0, longest=1.0, limit=0.1):
         speeds = speed_at(clock.now())
         return batch(speeds, np.zeros(len(speeds)), taken=clock.now() - age)
 
-    prove_rest(look, limit, longest=longest, clock=clock)
+    prove_rest(look, limit, longest=longest, clock=clock, oldest=oldest)
     return clock.now()
 
 
@@ -48,8 +48,8 @@ def test_an_encoder_may_be_noisier_than_the_limit():
         (lambda t: [0.15], "its mean speed over 0.25 s is 0.15 rad/s; its limit is 0.1 rad/s"),
         (lambda t: [np.nan], "its mean speed over 0.25 s is nan rad/s"),
         (lambda t: [3.0, -3.0], "its speed swings about zero by 3 rad/s"),
-        (lambda t: [], "0 new readings of its speed in 0.25 s, expected 5"),
-        (lambda t: [0.0] if t % 0.1 < 0.01 else [], "[23] new readings of its speed"),
+        (lambda t: [], "0 readings of its speed in 0.25 s that are not older than 0.25 s, exp"),
+        (lambda t: [0.0] if t % 0.1 < 0.01 else [], "[23] readings of its speed"),
     ],
     ids=["creeping", "no number", "swinging", "silent", "seldom"],
 )
@@ -61,6 +61,7 @@ def test_what_does_not_stand_is_no_rest(speed_at, said):
 def test_readings_that_waited_are_no_proof():
     with pytest.raises(NotAtRest):
         prove(lambda t: [0.0], age=0.3)
+    assert prove(lambda t: [0.0], age=0.3, oldest=0.4) < 0.3
 
 
 def test_a_disc_that_has_just_come_to_rest_is_waited_for():

@@ -57,6 +57,12 @@ def test_the_sources_plan_is_foreseen():
     assert "every set-point lies within the limits" in result.output
 
 
+def test_guards_that_are_off_are_named(plan):
+    said = "guards that are off, as the plan wants: silence (3 s), reading_age (3 s), speed_error_t"
+    assert said in zebro_lab("plan", plan).output
+    assert "guards that are off" not in zebro_lab("plan", SOURCE_PLAN).output
+
+
 def test_every_step_is_listed_where_asked(plan):
     lines = zebro_lab("plan", plan, "--steps").output.splitlines()
     assert lines[-3:] == [

@@ -116,8 +116,8 @@ BAD = {
     "p5.jpg": ("cut short", "the file is cut short or damaged"),
     "p6.HEIC": ("heic", "HEIC is not read; set the phone's camera to 'most compatible'"),
     "p7.jpg": ("heic", "heif-convert -q 95 p7.jpg p7.jpeg"),
-    "p8.jpg": ("200 MP", "more than 179 megapixels; at most 120 are read"),
-    "p9.jpg": ("126 MP", "14000x9000 px are 126 megapixels; at most 120 are read"),
+    "p8.jpg": ("200 MP", "more than 179 megapixels; at most 80 are read"),
+    "p9.jpg": ("126 MP", "14000x9000 px are 126 megapixels; at most 80 are read"),
     "q1.jpg": ("empty", "the file is empty (0 bytes)"),
     "q2.png": ("text", "not a picture; expected JPEG, PNG or TIFF"),
 }

@@ -198,11 +198,13 @@ def test_second_fit_replaces_its_forerunner_and_leaves_foreign_files(
     request_for, tmp_path, no_pictures
 ):
     out = tmp_path / "out"
-    out.mkdir()
     foreign = {"my-photo.png", "notes.txt"}
-    for name in ("slip.toml", "curves.png", *foreign):  # nothing draws a curves.png here
+    calibrate(request_for(out, max_steps=1, seed=2), Watcher())
+    before = (out / "slip.toml").read_text()
+    for name in foreign:
         (out / name).write_text("not this fit's")
     calibrate(request_for(out, max_steps=1), Watcher())
+    assert (out / "slip.toml").read_text() != before
     assert {path.name for path in out.iterdir()} == TABLES | {"checkpoint.npz"} | foreign
     assert {(out / name).read_text() for name in foreign} == {"not this fit's"}
     assert read_slip(out).law.name == "magic-formula"
@@ -295,3 +297,31 @@ def test_file_in_the_place_of_the_folder_is_refused_before_the_data_is_read(requ
     with pytest.raises(AlreadyExists, match="name another --out"):
         calibrate(request_for(tmp_path / "out", data=(tmp_path / "absent",)), Watcher())
     assert (tmp_path / "out").read_text() == "a file"
+
+
+def test_another_commands_result_is_kept(request_for, tmp_path, no_pictures):
+    out = tmp_path / "out"
+    out.mkdir()
+    (out / "manifest.json").write_text('{"schema": 1, "kind": "track", "outputs": {}}')
+    with pytest.raises(AlreadyExists, match="another command"):
+        calibrate(request_for(out, max_steps=1), Watcher())
+    assert [path.name for path in out.iterdir()] == ["manifest.json"]
+
+
+def test_a_slip_toml_that_a_person_wrote_is_kept(request_for, tmp_path, no_pictures):
+    out = tmp_path / "out"
+    out.mkdir()
+    (out / "slip.toml").write_text("# measured by hand\n")
+    with pytest.raises(AlreadyExists, match=r"slip\.toml"):
+        calibrate(request_for(out, max_steps=1), Watcher())
+    assert (out / "slip.toml").read_text() == "# measured by hand\n"
+
+
+def test_data_are_not_calibrated_into_their_own_folder(request_for, sweep, tmp_path, no_pictures):
+    data = tmp_path / "data"
+    data.mkdir()
+    for file in sweep.iterdir():
+        (data / file.name).write_bytes(file.read_bytes())
+    with pytest.raises(AlreadyExists, match="--out"):
+        calibrate(request_for(data, data=(data,), max_steps=1), Watcher())
+    assert {path.name for path in data.iterdir()} == {path.name for path in sweep.iterdir()}

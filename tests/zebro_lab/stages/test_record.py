@@ -427,6 +427,7 @@ def test_a_display_that_hangs_holds_up_nothing(tmp_path):
 def test_a_thread_that_cannot_be_started_ends_the_run_with_its_record(
     tmp_path, given, monkeypatch, which
 ):
+    before = set(threading.enumerate())
     first, second = Legs("first"), Legs("second")
     stopped = []
     given(first, second, at_end=lambda: stopped.append(True))
@@ -444,8 +445,7 @@ def test_a_thread_that_cannot_be_started_ends_the_run_with_its_record(
     assert stopped == [True, True]
     (listed,) = list_runs(tmp_path)
     assert listed.state.startswith("failed: ")
-    names = {thread.name for thread in threading.enumerate()}
-    assert not names & {"first", "second", "recorder", "display"}
+    assert set(threading.enumerate()) <= before
 
 
 @pytest.mark.parametrize("error", [SystemExit("over"), GeneratorExit("over")])
@@ -498,3 +498,13 @@ def test_a_display_that_cannot_be_started_ends_no_run(tmp_path, given, monkeypat
     found = record(RecordRequest(tmp_path, "x", zebro="sim", duration=0.2), Watcher())
     assert found.manifest.exit_status == "completed"
     assert any("display cannot be started" in text for text in events(found.folder))
+
+
+@pytest.mark.parametrize("pause", [0.0, 0.05])
+def test_a_loop_that_is_held_up_ends_no_recording_late(tmp_path, given, pause):
+    given(Legs(), pause=pause)
+    watcher = Watcher()
+    looks = iter([0.0] * 4)
+    watcher.stop_reason = lambda: time.sleep(next(looks, 0.7))
+    found = record(RecordRequest(tmp_path, "x", zebro="sim", duration=0.5), watcher)
+    assert 0.48 < spans(found.folder)["legs"] < 0.65

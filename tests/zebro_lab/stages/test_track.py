@@ -18,12 +18,13 @@ from tracking.path import TRACK_COLUMNS
 from tracking.pose import BodyPose
 from zebro_lab import photo_search
 from zebro_lab.errors import AlreadyExists, DataError, SettingsError
+from zebro_lab.files.result_folder import MANIFEST
 from zebro_lab.photo_search import TrackStopped
 from zebro_lab.photo_sequence import TimeRequest
 from zebro_lab.stages.annotate import AnnotateRequest, annotate
 from zebro_lab.stages.track import TrackRequest, track
 from zebro_lab.stages.track_preview import preview
-from zebro_lab.track_folder import OWNED
+from zebro_lab.track_folder import TRACKED
 
 WALK = Path(__file__).parents[3] / "datasets/walk-sim"
 SOME = ("00", "02", "03", "04", "05", "06")
@@ -95,7 +96,9 @@ def test_a_track_is_the_walk_within_its_own_error_and_says_it_is_simulated(reque
     np.testing.assert_allclose(np.diff(table["t_s"]), np.diff(true["t"]), atol=2e-3)
     manifest = json.loads((result.folder / "manifest.json").read_text())
     assert (manifest["kind"], manifest["source"]) == ("track", "sim:photographs")
-    assert {path.name for path in result.folder.iterdir()} == set(OWNED) - {"annotations.toml"}
+    assert {path.name for path in result.folder.iterdir()} == {*TRACKED.names, MANIFEST} - {
+        "annotations.toml"
+    }
     assert len((result.folder / "track.tum").read_text().splitlines()) == len(SOME)
 
 

@@ -2,6 +2,7 @@
 """Prediction with a band and its validation, on walks simulated with other numbers."""
 
 import json
+import shutil
 
 import numpy as np
 import pandas as pd
@@ -290,3 +291,12 @@ def test_a_track_of_two_poses_is_refused(walk, tmp_path):
     pair = ((prediction, tmp_path / "two.csv"),)
     with pytest.raises(DataError, match="has 2 poses; expected 3 or more"):
         validate(ValidateRequest(pair, tmp_path / "out"), Nobody())
+
+
+def test_a_run_under_two_names_is_averaged_once_and_told(walk, tmp_path):
+    copy = shutil.copytree(walk, tmp_path / "copy")
+    pairs = tuple(pairs_of_run(folder) for folder in (walk, copy))
+    done = validate(ValidateRequest(pairs, tmp_path / "out"), Nobody())
+    assert len(done.runs) == 1
+    assert not done.summary
+    assert any("copy" in note and "once" in note for note in done.runs[0].notes)

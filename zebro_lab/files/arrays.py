@@ -1,0 +1,92 @@
+# SPDX-License-Identifier: MIT
+"""Read arrays of numbers out of an .npz archive within bounds; never a pickle."""
+
+import math
+import zipfile
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+from typing import IO, Final
+
+import numpy as np
+from numpy.lib import format as npy
+from numpy.typing import NDArray
+
+from zebro_lab.errors import DataError
+from zebro_lab.files.opening import open_file, parsing
+
+MOST_BYTES: Final = 256 << 20
+"""Most that the wanted arrays of an archive may unpack to: a band of 10,000 paths of a minute."""
+_HEADERS: Final = {(1, 0): npy.read_array_header_1_0, (2, 0): npy.read_array_header_2_0}
+_NUMBERS: Final = "biufU"  # truth, whole numbers, floats and texts of a fixed length
+
+
+def read_arrays(
+    path: Path, names: Iterable[str], *, advice: str, most: int = MOST_BYTES
+) -> Mapping[str, NDArray]:
+    """Read arrays of an archive.
+
+    Args:
+        path: The archive.
+        names: Arrays that are wanted.
+        advice: What to do where there is none, or where it cannot be read.
+        most: Bytes that they may unpack to in all.
+
+    Returns:
+        Them, by name; not to be written to.
+
+    Raises:
+        NotFound: There is no such file.
+        DataError: It is no archive, lacks an array, holds something else than numbers, or unpacks
+            to more than `most`.
+    """
+    with (
+        open_file(path, advice=advice) as file,
+        parsing(path, "cannot be read as arrays", advice=advice),
+        zipfile.ZipFile(file) as archive,
+    ):
+        wanted = {name: _member(archive, name, path) for name in names}
+        unpacked = sum(member.file_size for member in wanted.values())
+        if unpacked > most:
+            raise DataError(
+                f"would unpack to {unpacked / 1e6:.0f} MB; at most {most / 1e6:.0f} are read",
+                file=path,
+            )
+        return {name: _array(archive, member, path) for name, member in wanted.items()}
+
+
+def _member(archive: zipfile.ZipFile, name: str, path: Path) -> zipfile.ZipInfo:
+    try:
+        return archive.getinfo(f"{name}.npy")
+    except KeyError as error:
+        raise DataError(f"has no member '{name}'; make it again", file=path) from error
+
+
+def _array(archive: zipfile.ZipFile, member: zipfile.ZipInfo, path: Path) -> NDArray:
+    """Read one array; zipfile reads no more of it than the size it states."""
+    with archive.open(member) as file:
+        shape, fortran, dtype = _header(file, member, path)
+        data = file.read()
+    count = _product(shape)
+    if dtype.kind not in _NUMBERS or dtype.hasobject or count * dtype.itemsize != len(data):
+        raise DataError(
+            f"member '{member.filename.removesuffix('.npy')}' holds {len(data)} bytes, not the "
+            f"{count} numbers of type {dtype} that it claims; make it again",
+            file=path,
+        )
+    return np.frombuffer(data, dtype).reshape(shape, order="F" if fortran else "C")
+
+
+def _header(
+    file: IO[bytes], member: zipfile.ZipInfo, path: Path
+) -> tuple[tuple[int, ...], bool, np.dtype]:
+    name = member.filename.removesuffix(".npy")
+    with parsing(
+        path, f"cannot be read: member '{name}' is no array of numbers", advice="make it again"
+    ):
+        return _HEADERS[npy.read_magic(file)](file)
+
+
+def _product(shape: tuple[int, ...]) -> int:
+    if min(shape, default=0) < 0:
+        return -1
+    return math.prod(shape)

@@ -1,0 +1,59 @@
+# SPDX-License-Identifier: MIT
+"""Read TOML and JSON files of users within bounds of size, depth and numbers."""
+
+import json
+from pathlib import Path
+from typing import Any, Final
+
+from rig.toml_text import MOST_BYTES, parse_toml, require_bounded
+from zebro_lab.errors import DataError, SettingsError
+from zebro_lab.files.opening import Fault, parsing, read_bytes, read_text
+
+MOST_JSON: Final = 8 << 20
+"""Largest JSON file that is read: the manifest of fifty thousand photographs."""
+
+
+def read_toml_document(
+    path: Path, *, advice: str = "", remedy: str = "", fault: Fault = SettingsError
+) -> dict[str, Any]:
+    """Read a TOML file.
+
+    Args:
+        path: The file.
+        advice: What to do where there is none.
+        remedy: What to do where it cannot be read.
+        fault: Error to raise where it cannot be read.
+
+    Raises:
+        NotFound: There is no such file.
+        SettingsError: It is no regular file, too large, no TOML, or nested too deeply (or
+            `DataError`, as `fault` says).
+    """
+    data = read_bytes(path, most=MOST_BYTES, advice=advice, fault=fault)
+    with parsing(path, "cannot be read as TOML", advice=remedy, fault=fault):
+        return parse_toml(data)
+
+
+def read_json_document(path: Path, *, advice: str = "") -> Any:
+    """Read a JSON file.
+
+    Raises:
+        NotFound: There is no such file; `advice` says what to do.
+        DataError: It is no regular file, too large, no JSON, or nested too deeply.
+    """
+    text = read_text(path, most=MOST_JSON, advice=advice)
+    with parsing(path, "cannot be read as JSON", advice="make it again"):
+        content = json.loads(text)
+        require_bounded(content)
+        return content
+
+
+def require_object(content: object, path: Path) -> dict[str, Any]:
+    """Return what a JSON file holds where it is an object.
+
+    Raises:
+        DataError: It is a list, a number or a text.
+    """
+    if not isinstance(content, dict):
+        raise DataError("is not a JSON object", file=path)
+    return content

@@ -1,0 +1,79 @@
+# SPDX-License-Identifier: MIT
+"""Read draws of a posterior out of a netCDF (HDF5) file within bounds, and from no other file."""
+
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from zebro_lab.errors import DataError
+from zebro_lab.files.opening import open_file, parsing
+
+if TYPE_CHECKING:
+    import h5py
+
+MOST_DRAWS: Final = 4_000_000
+"""Draws of a parameter that are read; a calibration writes some ten thousand."""
+
+
+def read_draws_of(
+    path: Path, group: str, names: Iterable[str], *, advice: str
+) -> tuple[Mapping[str, NDArray[np.float64]], tuple[str, ...]]:
+    """Read draws of parameters.
+
+    HDF5 may say that numbers, or whole groups, lie in another file, and would read that one.
+
+    Args:
+        path: The file.
+        group: Group that holds them.
+        names: Parameters; those that the file lacks are left out.
+        advice: What to do where it cannot be read.
+
+    Returns:
+        The draws by parameter, equally many of each, and the names of all that the group holds.
+
+    Raises:
+        NotFound: There is no such file.
+        DataError: It is no such file, or a parameter's draws are no numbers, too many or
+            elsewhere.
+    """
+    import h5py
+
+    with (
+        open_file(path) as file,
+        parsing(path, "cannot be read as posterior draws", advice=advice),
+        h5py.File(file, "r") as data,
+    ):
+        found = _own(data, group, path)
+        if not isinstance(found, h5py.Group):
+            raise DataError(f"'{group}' is no group of draws; {advice}", file=path)
+        held = tuple(found)
+        draws = {name: _draws(found, name, path) for name in names if name in held}
+    if len({len(values) for values in draws.values()}) > 1:
+        raise DataError(f"holds more draws of one parameter than of another; {advice}", file=path)
+    return draws, held
+
+
+def _own(group: "h5py.Group", name: str, path: Path) -> object:
+    """Return what a group itself holds under a name."""
+    import h5py
+
+    if not isinstance(group.get(name, getlink=True), h5py.HardLink):
+        raise DataError(f"has '{name}' not in itself but in another place or file", file=path)
+    return group[name]
+
+
+def _draws(group: "h5py.Group", name: str, path: Path) -> NDArray[np.float64]:
+    import h5py
+
+    found = _own(group, name, path)
+    if not isinstance(found, h5py.Dataset) or found.dtype.kind not in "fiu":
+        raise DataError(f"'{name}' holds no numbers", file=path)
+    if found.external or found.is_virtual:
+        raise DataError(f"has the draws of '{name}' in another file", file=path)
+    size = found.size or 0  # None of one that is stated to be empty
+    if not 0 < size <= MOST_DRAWS:
+        raise DataError(f"claims {size} draws of '{name}'; 1 to {MOST_DRAWS} are read", file=path)
+    return np.ravel(found[()]).astype(float)

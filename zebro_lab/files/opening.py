@@ -1,0 +1,133 @@
+# SPDX-License-Identifier: MIT
+"""Open files that users bring: regular ones alone, bounded in size, every fault as one line.
+
+Every reader of a user's file opens it here, and calls foreign parsers inside `parsing`. Documents
+(TOML, JSON), archives of arrays and compressed tables have bounds of their own beside this file.
+"""
+
+import os
+import stat
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import BinaryIO, Final
+
+from zebro_lab.errors import DataError, NotFound, SettingsError, ZebroLabError
+
+Fault = type[DataError] | type[SettingsError]
+
+MOST_TEXT: Final = 64 << 20
+"""Largest text file that is read at once: a trajectory of half a million poses."""
+_KINDS: Final = (
+    (stat.S_ISDIR, "a folder"), (stat.S_ISFIFO, "a FIFO"), (stat.S_ISSOCK, "a socket"),
+    (stat.S_ISCHR, "a device"), (stat.S_ISBLK, "a device"),
+)  # fmt: skip
+
+
+@contextmanager
+def open_file(
+    path: Path, *, most: int | None = None, advice: str = "", fault: Fault = DataError
+) -> Iterator[BinaryIO]:
+    """Open a regular file for reading.
+
+    A FIFO or device is never opened: that would wait for a writer, or move the device.
+
+    Args:
+        path: The file.
+        most: Bytes it may have; None where its reader bounds itself.
+        advice: What to do where there is no such file.
+        fault: Error to raise where it is not one that is read.
+
+    Yields:
+        The file.
+
+    Raises:
+        NotFound: There is no such file.
+        DataError: It is no regular file, too large, or cannot be opened (or `SettingsError`, as
+            `fault` says).
+    """
+    with os.fdopen(_descriptor(path, advice, fault), "rb") as file:
+        size = os.fstat(file.fileno()).st_size
+        if most is not None and size > most:
+            raise fault(
+                f"has {size / 1e6:.1f} MB; at most {most / 1e6:.1f} are read, of a file of this "
+                "kind: is it the right one?",
+                file=path,
+            )
+        yield file
+
+
+def read_bytes(path: Path, *, most: int, advice: str = "", fault: Fault = DataError) -> bytes:
+    """Read a whole file; the arguments and errors are those of `open_file`."""
+    with (
+        open_file(path, most=most, advice=advice, fault=fault) as file,
+        parsing(path, "cannot be read", fault=fault),
+    ):
+        return file.read(most)
+
+
+def read_text(
+    path: Path, *, most: int = MOST_TEXT, advice: str = "", fault: Fault = DataError
+) -> str:
+    """Read a whole text file in UTF-8, with or without a byte order mark; see `open_file`."""
+    data = read_bytes(path, most=most, advice=advice, fault=fault)
+    try:
+        return data.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        raise fault(
+            f"is not UTF-8 text (byte 0x{data[error.start]:02x} at {error.start}); save it as "
+            "UTF-8",
+            file=path,
+        ) from error
+
+
+@contextmanager
+def parsing(
+    path: Path, problem: str, *, advice: str = "", fault: Fault = DataError
+) -> Iterator[None]:
+    """Turn whatever a parser raises into one line that names the file.
+
+    Parsers of other projects answer malformed input with whatever went wrong inside them, so that
+    no list of exceptions is ever complete.
+
+    Args:
+        path: The file.
+        problem: What is wrong with it, as "cannot be read as TOML".
+        advice: What to try.
+        fault: Error to raise.
+
+    Raises:
+        DataError: The body raised an error that is not ours (or `SettingsError`, as `fault` says).
+    """
+    try:
+        yield
+    except ZebroLabError:
+        raise
+    except Exception as error:
+        said = str(error) or "no reason given"
+        named = "" if isinstance(error, (ValueError, OSError)) else f"{type(error).__name__}: "
+        closing = f"; {advice}" if advice else ""
+        raise fault(f"{problem} ({named}{said}){closing}", file=path) from error
+
+
+def _descriptor(path: Path, advice: str, fault: Fault) -> int:
+    try:
+        _require_regular(path.stat().st_mode, path, fault)  # before it is opened: see above
+        descriptor = os.open(path, os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC)
+    except (FileNotFoundError, NotADirectoryError) as error:
+        raise NotFound(f"{path}: no such file" + (f"; {advice}" if advice else "")) from error
+    except (OSError, ValueError) as error:
+        said = error.strerror if isinstance(error, OSError) else str(error)
+        raise fault(f"cannot be opened: {said}", file=path) from error
+    try:
+        _require_regular(os.fstat(descriptor).st_mode, path, fault)  # it may have been replaced
+    except ZebroLabError:
+        os.close(descriptor)
+        raise
+    return descriptor
+
+
+def _require_regular(mode: int, path: Path, fault: Fault) -> None:
+    if not stat.S_ISREG(mode):
+        kind = next((name for test, name in _KINDS if test(mode)), "something else")
+        raise fault(f"is {kind}; expected a file", file=path)

@@ -1,0 +1,302 @@
+# SPDX-License-Identifier: MIT
+"""Replace a folder so that a process killed at any moment leaves the old one or the new one whole.
+
+| step | on disk | killed after it |
+|---|---|---|
+| files of others are linked into the draft | NAME old | NAME is old |
+| `.NAME.replacing` says what will go | NAME old | NAME is old |
+| NAME becomes `NAME.previous` | only the old one | the next reader or writer restores it |
+| the draft becomes NAME | both | NAME is new; the next one removes the old |
+| what could not be linked is moved, the old one and the note are removed | NAME new | NAME is new |
+
+The note is locked while its writer lives, so that nobody restores what is just being replaced.
+"""
+
+import fcntl
+import json
+import logging
+import os
+import shutil
+import time
+from collections.abc import Callable, Collection, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import IO, Final
+
+from zebro_lab.atomic import sync_folder
+from zebro_lab.errors import AlreadyExists, DataError
+
+PREVIOUS: Final = ".previous"
+PATIENCE: Final = 10.0
+"""How long to wait for another process that replaces the same folder [s]."""
+_LOG = logging.getLogger(__name__)
+
+
+@dataclass(frozen=True)
+class _Note:
+    """What a replacement writes down before it moves anything.
+
+    Attributes:
+        inode: Number of the old folder, by which NAME.previous is known for it.
+        owned: What of the old folder is replaced: paths relative to it, with `/`.
+    """
+
+    inode: int
+    owned: frozenset[str]
+
+
+def previous_of(folder: Path) -> Path:
+    """Return where the old folder lies while a new one takes its place."""
+    return folder.with_name(folder.name + PREVIOUS)
+
+
+def replace_folder(folder: Path, draft: Path, *, owned: Callable[[], Collection[str]]) -> None:
+    """Put a draft in a folder's place; what is not owned there is carried over.
+
+    Args:
+        folder: Folder to make or to replace; no symbolic link.
+        draft: The new folder, on the same file system.
+        owned: Says what of the old folder is to go, as paths relative to it; it may refuse. It is
+            asked under the lock, so that nothing changes between the answer and the replacement.
+
+    Raises:
+        AlreadyExists: Another process replaces it, or NAME.previous is somebody's own.
+        OSError: The folder cannot be moved or written; the old one is there as before.
+    """
+    folder.parent.mkdir(parents=True, exist_ok=True)
+    with _locked(folder) as note:
+        _settle_locked(folder, _read_note(note))
+        names = frozenset(owned())
+        if folder.exists():
+            require_free_previous(folder)
+            _carry(folder, draft, names)
+            _write_note(note, _Note(folder.stat().st_ino, names))
+            _swap(folder, draft)
+            _settle_locked(folder, _read_note(note))
+        else:
+            _sync(draft)
+            draft.rename(folder)
+            sync_folder(folder.parent)
+
+
+def settle(path: Path, *, writing: bool = False) -> Path:
+    """Restore a result of which an interrupted replacement left NAME.previous alone.
+
+    Every reader of a result calls it first, every writer too. A result that is whole loses what
+    the interrupted replacement left beside it.
+
+    Args:
+        path: Folder of a result, or a file in it.
+        writing: NAME is about to be replaced: NAME.previous is restored only where a replacement
+            noted that it made it, else it may be somebody's own copy and stays as it is.
+
+    Returns:
+        The path.
+
+    Raises:
+        DataError: There is only NAME.previous and it cannot be renamed.
+        AlreadyExists: Another process is still replacing it after `PATIENCE`.
+    """
+    absolute = Path(os.path.realpath(path))
+    for folder in (absolute, absolute.parent):
+        if not folder.name or not previous_of(folder).is_dir():
+            continue
+        if _note_of(folder).exists() or not (writing or folder.exists()):
+            _settle(folder, writing=writing)
+    return path
+
+
+def require_free_previous(folder: Path) -> None:
+    """Refuse to use NAME.previous where somebody keeps a folder of his own under that name.
+
+    Raises:
+        AlreadyExists: It is there; an interrupted replacement is settled before this is asked.
+    """
+    if os.path.lexists(previous_of(folder)):
+        raise AlreadyExists(
+            f"{previous_of(folder)} is in the way: the old result is kept under that name while it "
+            "is replaced; rename it, or name another --out"
+        )
+
+
+def _settle(folder: Path, *, writing: bool) -> None:
+    try:
+        with _locked(folder) as note:
+            _settle_locked(folder, _read_note(note))
+            if not (writing or folder.exists()) and previous_of(folder).is_dir():
+                _restore(folder)
+    except AlreadyExists:
+        raise
+    except OSError as error:
+        if folder.exists():
+            return  # it is whole; that the old one beside it cannot be removed harms no reader
+        raise DataError(
+            f"is missing, and {previous_of(folder).name} beside it cannot be renamed "
+            f"({error.strerror}); rename it to {folder.name} by hand",
+            file=folder,
+        ) from error
+
+
+def _settle_locked(folder: Path, note: _Note | None) -> None:
+    """Finish or undo what a killed process began; what it did not leave is not touched."""
+    if note is None or not _is_left(folder, note):
+        return
+    if not folder.exists():
+        _restore(folder)
+        return
+    _sweep(previous_of(folder), folder, note.owned)
+    shutil.rmtree(previous_of(folder), ignore_errors=True)  # else the next one tries again
+
+
+def _is_left(folder: Path, note: _Note | None) -> bool:
+    """Tell whether NAME.previous is the folder that a note speaks of."""
+    previous = previous_of(folder)
+    return note is not None and previous.is_dir() and previous.stat().st_ino == note.inode
+
+
+def _restore(folder: Path) -> None:
+    previous_of(folder).rename(folder)
+    sync_folder(folder.parent)
+    _LOG.warning(
+        "%s was restored from %s, which an interrupted replacement had left",
+        folder, previous_of(folder).name,
+    )  # fmt: skip
+
+
+def _swap(folder: Path, draft: Path) -> None:
+    draft.chmod(folder.stat().st_mode & 0o7777)
+    _sync(draft)
+    folder.rename(previous_of(folder))
+    try:
+        draft.rename(folder)
+    except OSError:
+        previous_of(folder).rename(folder)
+        raise
+    sync_folder(folder.parent)
+
+
+def _carry(old: Path, new: Path, owned: Collection[str], below: str = "") -> None:
+    """Link what is not owned into the draft; what cannot be linked is moved after the swap."""
+    for path in sorted(old.iterdir()):
+        name, target = below + path.name, new / path.name
+        if name in owned:
+            continue
+        if not _is_folder(path):
+            _link(path, target)
+            continue
+        target.mkdir(exist_ok=True)
+        target.chmod(path.stat().st_mode & 0o7777)
+        _carry(path, target, owned, f"{name}/")
+        _drop_emptied(target, name, owned)
+
+
+def _is_folder(path: Path) -> bool:
+    return path.is_dir() and not path.is_symlink()
+
+
+def _link(file: Path, target: Path) -> None:
+    try:
+        os.link(file, target, follow_symlinks=False)
+    except OSError:  # no hard links here, or not to files of others: `_sweep` moves it
+        return
+
+
+def _drop_emptied(folder: Path, name: str, owned: Collection[str]) -> None:
+    """Remove a folder of which everything was owned."""
+    if any(each.startswith(f"{name}/") for each in owned) and not any(folder.iterdir()):
+        folder.rmdir()
+
+
+def _sweep(old: Path, new: Path, owned: Collection[str], below: str = "") -> None:
+    """Move what is not owned and did not come into the new folder by a link."""
+    for path in sorted(old.iterdir()):
+        name, target = below + path.name, new / path.name
+        if name in owned:
+            continue
+        if _is_folder(path):
+            target.mkdir(exist_ok=True)
+            _sweep(path, target, owned, f"{name}/")
+            _drop_emptied(target, name, owned)
+        elif _is_newer(path, target):
+            path.replace(target)
+
+
+def _is_newer(file: Path, target: Path) -> bool:
+    """Tell whether a file was saved after its link was made, or could not be linked."""
+    if not os.path.lexists(target):
+        return True
+    one, other = file.lstat(), target.lstat()
+    return one.st_ino != other.st_ino and one.st_mtime_ns > other.st_mtime_ns
+
+
+def _note_of(folder: Path) -> Path:
+    return folder.with_name(f".{folder.name}.replacing")
+
+
+@contextmanager
+def _locked(folder: Path) -> Iterator[IO[bytes]]:
+    """Hold the note of a folder's replacement; it goes at the end, unless it is still needed."""
+    with _open_locked(folder) as note:
+        try:
+            yield note
+        finally:
+            if not _is_left(folder, _read_note(note)):
+                _note_of(folder).unlink(missing_ok=True)
+
+
+def _open_locked(folder: Path) -> IO[bytes]:
+    path, deadline = _note_of(folder), time.monotonic() + PATIENCE
+    while True:
+        note = path.open("a+b")
+        if _try_lock(note) and _is_at(note, path):
+            return note
+        note.close()
+        if time.monotonic() > deadline:
+            raise AlreadyExists(
+                f"{folder} is being replaced by another process; try again when that has ended"
+            )
+        time.sleep(0.02)
+
+
+def _try_lock(note: IO[bytes]) -> bool:
+    try:
+        fcntl.flock(note, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        return False
+    except OSError:  # a file system without locks: one writer at a time has to do
+        return True
+    return True
+
+
+def _is_at(note: IO[bytes], path: Path) -> bool:
+    """Tell whether a note that was waited for has not been removed in the meantime."""
+    try:
+        return os.fstat(note.fileno()).st_ino == path.stat().st_ino
+    except FileNotFoundError:
+        return False
+
+
+def _write_note(note: IO[bytes], content: _Note) -> None:
+    note.truncate(0)
+    note.write(json.dumps({"inode": content.inode, "owned": sorted(content.owned)}).encode())
+    note.flush()
+    os.fsync(note.fileno())
+
+
+def _read_note(note: IO[bytes]) -> _Note | None:
+    """Read a note; None where nothing, or nothing whole, was written down yet."""
+    note.seek(0)
+    try:
+        content = json.loads(note.read())
+        return _Note(int(content["inode"]), frozenset(map(str, content["owned"])))
+    except (ValueError, TypeError, KeyError):
+        return None
+
+
+def _sync(folder: Path) -> None:
+    """Bring every file and folder of a draft to the disk."""
+    for path in folder.rglob("*"):
+        if _is_folder(path):
+            sync_folder(path)
+    sync_folder(folder)

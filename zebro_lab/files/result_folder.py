@@ -1,0 +1,264 @@
+# SPDX-License-Identifier: MIT
+"""Result folders: written whole with a manifest, and replaced by the same command alone.
+
+What a command wrote is known by `manifest.json`: its kind, and the hash of each file. Everything
+else in the folder is somebody's own: it is carried over when the result is replaced, and a result
+that would take its place is refused.
+"""
+
+import fcntl
+import glob
+import json
+import os
+import shutil
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, Final
+
+import numpy as np
+
+from zebro_lab.atomic import draft_name, nearest_folder, sync_files
+from zebro_lab.errors import AlreadyExists, NotWritten, ZebroLabError
+from zebro_lab.files.replacement import replace_folder, require_free_previous, settle
+from zebro_lab.folder_manifest import read_json_object
+from zebro_lab.provenance import file_hash, software
+
+MANIFEST: Final = "manifest.json"
+_GLOB: Final = "*"
+
+
+@dataclass(frozen=True)
+class ResultKind:
+    """What one command writes.
+
+    Attributes:
+        kind: What the manifest calls it.
+        command: Command that writes it, for a person.
+        names: Files that it may hold, as patterns; the manifest is one more.
+        schema: Version of its form.
+        inside: Kinds of the results in folders below it that a new one makes void, by the name of
+            the folder.
+    """
+
+    kind: str
+    command: str
+    names: tuple[str, ...]
+    schema: int = 1
+    inside: Mapping[str, str] = field(default_factory=dict)
+
+
+def require_replaceable(out: Path, kind: ResultKind, *, inputs: Sequence[Path] = ()) -> None:
+    """Refuse a folder that cannot be made or replaced, before anything is computed.
+
+    Args:
+        out: Folder that is to be written.
+        kind: What is to be written.
+        inputs: Files and folders that are read.
+
+    Raises:
+        AlreadyExists: It is a file, an input, the result of another command, or holds a file of
+            somebody else, or one that was changed, where a file is to be written.
+        NotWritten: The folder in which it lies cannot be written to.
+    """
+    folder = _place(out)
+    settle(folder, writing=True)
+    if os.path.lexists(folder) and not folder.is_dir():
+        raise AlreadyExists(f"{out} is a file where a folder is to be written; name another --out")
+    _require_not_inside(out, folder)
+    if folder.exists():
+        require_free_previous(folder)
+    for each in kind.inside:
+        settle(folder / each, writing=True)
+    owned = _owned(folder, kind)
+    fixed = [name for name in (*kind.names, MANIFEST) if _GLOB not in name]
+    _require_free(folder, fixed, kind, owned)
+    for path in inputs:
+        _require_kept(out, folder, path, {*fixed, *owned})
+    ground = folder.parent if folder.parent.is_dir() else nearest_folder(folder)
+    if not os.access(ground, os.W_OK | os.X_OK):
+        raise NotWritten(f"{ground} cannot be written to; name another --out")
+
+
+@contextmanager
+def result_folder(out: Path, kind: ResultKind, *, content: Mapping[str, object]) -> Iterator[Path]:
+    """Write a result so that it appears whole, or the earlier one stays.
+
+    The manifest comes last: schema, kind, content, hashes of the files written, and software.
+
+    Args:
+        out: Folder to make or to replace; missing parents are made.
+        kind: What is written.
+        content: What the manifest says beside; taken when the body has ended.
+
+    Yields:
+        The draft to write into.
+
+    Raises:
+        AlreadyExists: As in `require_replaceable`.
+        NotWritten: The folder cannot be made or moved.
+    """
+    require_replaceable(out, kind)
+    folder = _place(out)
+    with _draft_of(folder) as draft:
+        yield draft
+        document = {
+            "schema": kind.schema,
+            "kind": kind.kind,
+            **content,
+            "outputs": {p.name: file_hash(p) for p in sorted(draft.iterdir()) if p.is_file()},
+            "software": software(),
+        }
+        (draft / MANIFEST).write_text(json.dumps(plain_json(document), indent=2) + "\n")
+        sync_files(draft)
+        written = [path.name for path in draft.iterdir()]
+
+        def owned() -> Collection[str]:
+            names = _owned(folder, kind)
+            _require_free(folder, written, kind, names)
+            return names
+
+        try:
+            replace_folder(folder, draft, owned=owned)
+        except OSError as error:
+            if isinstance(error, ZebroLabError):
+                raise
+            raise NotWritten(
+                f"{out} cannot be written ({error.strerror or error}); name another --out"
+            ) from error
+
+
+def plain_json(value: object) -> object:
+    """Replace what JSON cannot hold: numbers that are none or infinite."""
+    if isinstance(value, Mapping):
+        return {key: plain_json(each) for key, each in value.items()}
+    if isinstance(value, list | tuple):
+        return [plain_json(each) for each in value]
+    return None if isinstance(value, float) and not np.isfinite(value) else value
+
+
+def _place(out: Path) -> Path:
+    """Return the folder itself, not a link to it: a link is followed, never replaced."""
+    return Path(os.path.realpath(out))
+
+
+def _require_not_inside(out: Path, folder: Path) -> None:
+    """Refuse to replace the folder that the process, and mostly its shell, works in."""
+    try:
+        here = Path.cwd()
+    except OSError:  # it was removed
+        return
+    if folder == here or folder in here.parents:
+        raise AlreadyExists(
+            f"{out} is the folder you are in, which cannot be replaced as a whole; name a new "
+            "folder in it as --out"
+        )
+
+
+def _owned(folder: Path, kind: ResultKind) -> frozenset[str]:
+    """List what of a folder an earlier run of the same command wrote, by paths relative to it.
+
+    Raises:
+        AlreadyExists: It is the result of another command, or was changed since.
+    """
+    if not os.path.lexists(folder / MANIFEST):
+        return frozenset()
+    manifest = _manifest_of(folder)
+    if manifest.get("kind") != kind.kind:
+        raise AlreadyExists(
+            f"{folder} holds the result of another command ({manifest.get('kind')}), not of "
+            f"{kind.command}; name another --out"
+        )
+    names = {MANIFEST}
+    for name, digest in _outputs(manifest).items():
+        if not (folder / name).is_file():
+            continue
+        if file_hash(folder / name) != digest:
+            raise AlreadyExists(
+                f"{folder / name} was changed since {kind.command} wrote it; move it away, or name "
+                "another --out"
+            )
+        names.add(name)
+    inner = (f"{sub}/{n}" for sub, each in kind.inside.items() for n in _void(folder / sub, each))
+    return frozenset((*names, *inner))
+
+
+def _void(folder: Path, kind: str) -> frozenset[str]:
+    """List what of a result below another becomes void with it; what was changed is kept."""
+    try:
+        return _owned(folder, ResultKind(kind, kind, ()))
+    except AlreadyExists:
+        return frozenset()
+
+
+def _manifest_of(folder: Path) -> Mapping[str, Any]:
+    try:
+        return read_json_object(folder / MANIFEST, of="result folder")
+    except ZebroLabError as error:
+        raise AlreadyExists(
+            f"{folder / MANIFEST} does not say what wrote {folder} ({error}); move the folder away "
+            "or name another --out"
+        ) from error
+
+
+def _outputs(manifest: Mapping[str, Any]) -> Mapping[str, object]:
+    """Return the files that a manifest lists; nothing outside its own folder."""
+    listed = manifest.get("outputs")
+    if not isinstance(listed, Mapping):
+        return {}
+    return {n: digest for n, digest in listed.items() if n == Path(n).name and n != MANIFEST}
+
+
+def _require_free(
+    folder: Path, names: Collection[str], kind: ResultKind, owned: Collection[str]
+) -> None:
+    for name in names:
+        if name not in owned and os.path.lexists(folder / name):
+            raise AlreadyExists(
+                f"{folder / name} is in the way, and no {MANIFEST} says that {kind.command} wrote "
+                "it; move it away, or name another --out"
+            )
+
+
+def _require_kept(out: Path, folder: Path, path: Path, replaced: Collection[str]) -> None:
+    """Refuse a folder whose replacement would take an input away."""
+    place = _place(path)
+    inside = place.is_relative_to(folder) and place.relative_to(folder).parts[:1]
+    if place == folder or (inside and inside[0] in replaced):
+        raise AlreadyExists(
+            f"{out} as --out would replace {path}, which is read; name another --out"
+        )
+
+
+@contextmanager
+def _draft_of(folder: Path) -> Iterator[Path]:
+    """Make a hidden draft beside a folder, and remove those that killed processes left there."""
+    ground = nearest_folder(folder)
+    for stale in ground.glob(f".{glob.escape(folder.name)}.????????.part"):
+        with _lock_of(stale) as is_stale:
+            if is_stale:
+                shutil.rmtree(stale, ignore_errors=True)
+    draft = ground / draft_name(folder)
+    draft.mkdir()
+    try:
+        with _lock_of(draft):
+            yield draft
+    finally:
+        shutil.rmtree(draft, ignore_errors=True)
+
+
+@contextmanager
+def _lock_of(draft: Path) -> Iterator[bool]:
+    """Lock a draft for as long as it is written; tell whether nobody else holds it."""
+    handle = -1
+    is_free = False
+    with suppress(OSError):
+        handle = os.open(draft, os.O_RDONLY)
+        fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        is_free = True
+    try:
+        yield is_free
+    finally:
+        if handle >= 0:
+            os.close(handle)

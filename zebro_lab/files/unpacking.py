@@ -1,0 +1,96 @@
+# SPDX-License-Identifier: MIT
+"""Read text tables, also gzipped, while counting what they unpack to."""
+
+import gzip
+import io
+import os
+import zlib
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import IO, Final
+
+from zebro_lab.errors import DataError
+from zebro_lab.files.opening import open_file
+
+FREELY: Final = 64 << 20
+MOST_RATIO: Final = 100
+"""How much larger than on disk a file may unpack to, beyond `FREELY`: logs of sensors reach 20."""
+MOST_CELLS: Final = 32_000_000
+"""Cells of a table that are read; each takes some 25 bytes while numbers are parsed."""
+LONGEST_LINE: Final = 1 << 20
+
+
+@contextmanager
+def open_unpacked(path: Path, *, width: int = 1) -> Iterator[IO[bytes]]:
+    """Open a file for reading, unpacking it where its name ends in .gz.
+
+    Args:
+        path: The file.
+        width: Cells of each line, which its reader keeps.
+
+    Yields:
+        The unpacked file; reading beyond a bound raises.
+
+    Raises:
+        NotFound: There is no such file.
+        DataError: It is no regular file, no whole gzip file, unpacks to too much, or has too many
+            cells.
+    """
+    with open_file(path) as file:
+        most = FREELY + MOST_RATIO * os.fstat(file.fileno()).st_size
+        source = gzip.GzipFile(fileobj=file) if path.name.lower().endswith(".gz") else file
+        counted = _Counted(source, path, most, width)
+        try:
+            yield counted  # pyright: ignore[reportReturnType]
+        except Exception as error:
+            # pandas calls every error of the file it reads from by a name of its own.
+            raise counted.refusal or error from error
+
+
+class _Counted(io.BufferedIOBase):
+    """A file that counts what is read from it, and refuses to go on beyond bounds."""
+
+    def __init__(
+        self, source: IO[bytes] | gzip.GzipFile, path: Path, most: int, width: int
+    ) -> None:
+        self._source, self._path, self._left, self._width = source, path, most, width
+        self._lines = self._line = 0
+        self.refusal: DataError | None = None
+
+    def readable(self) -> bool:
+        return True
+
+    def read(self, size: int | None = -1, /) -> bytes:
+        try:
+            data = self._source.read(-1 if size is None else size)
+        except (EOFError, zlib.error, gzip.BadGzipFile) as error:
+            raise self._refuse(
+                f"is not a whole gzip file ({error}); it may have been cut short: copy it again"
+            ) from error
+        self._left -= len(data)
+        if self._left < 0:
+            raise self._refuse(
+                f"unpacks to more than {MOST_RATIO} times its size; is it a table of measurements?"
+            )
+        self._count(data)
+        return data
+
+    def read1(self, size: int = -1, /) -> bytes:
+        return self.read(size)
+
+    def _count(self, data: bytes) -> None:
+        self._lines += max(data.count(b"\n"), data.count(b"\r"))
+        last = max(data.rfind(b"\n"), data.rfind(b"\r"))
+        self._line = len(data) - last if last >= 0 else self._line + len(data)
+        if self._line > LONGEST_LINE:
+            raise self._refuse(f"has a line of more than {LONGEST_LINE >> 20} MB; is it a table?")
+        if self._lines * self._width > MOST_CELLS:
+            raise self._refuse(
+                f"has more than {MOST_CELLS / 1e6:.0f} million cells; split it, or leave out "
+                "columns that nothing reads"
+            )
+
+    def _refuse(self, problem: str) -> DataError:
+        self.refusal = DataError(problem, file=self._path)
+        return self.refusal

@@ -325,11 +325,16 @@ def measure(row: Row, trials: int, rng: np.random.Generator) -> list[str]:
     return wrong + late
 
 
+def is_named(row: Row, word: str) -> bool:
+    """Tell whether a word names a row: a part of its name that is no other row's whole name."""
+    return word == row.name if word in {other.name for other in ROWS} else word in row.name
+
+
 def main() -> None:
     """Measure the rows that are named, or all."""
     words = sys.argv[1:]
     trials = int(words.pop(0)) if words and words[0].isdigit() else 20
-    rows = [row for row in ROWS if not words or any(word in row.name for word in words)]
+    rows = [row for row in ROWS if not words or any(is_named(row, word) for word in words)]
     if not rows:
         sys.exit(f"no row is named {' or '.join(words)}; see {__file__}")
     rng = np.random.default_rng(1)

@@ -80,7 +80,6 @@ def folder_without_writer(data, monkeypatch, *, in_step):
         yield folder
 
 
-@pytest.mark.xfail(strict=True, raises=FileNotFoundError)
 def test_the_journal_says_how_it_ended_although_the_writer_is_dead(tmp_path, monkeypatch):
     with (
         contextlib.suppress(SinkFailed),
@@ -90,9 +89,11 @@ def test_the_journal_says_how_it_ended_although_the_writer_is_dead(tmp_path, mon
     assert ends(tmp_path) == ["writer failed"]
 
 
-@pytest.mark.xfail(strict=True, raises=WaitsOn)
 def test_nobody_waits_for_a_writer_that_is_dead(tmp_path, monkeypatch):
-    with folder_without_writer(tmp_path, monkeypatch, in_step=True) as folder:
+    with (
+        contextlib.suppress(SinkFailed),  # which leaving the folder raises too
+        folder_without_writer(tmp_path, monkeypatch, in_step=True) as folder,
+    ):
         require_well, looks = folder._require_well, iter(range(20))
 
         def look():

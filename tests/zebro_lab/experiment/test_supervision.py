@@ -55,6 +55,25 @@ def test_whatever_ends_the_writer_stops_the_experiment(lab, plan, tmp_path, monk
     assert all(read_manifest(run).exit_status != "recording" for run in find_runs(data))
 
 
+@pytest.mark.timeout(PATIENCE, method="signal")
+@pytest.mark.xfail(strict=True, raises=AssertionError)
+def test_a_run_whose_opening_met_a_failure_is_ended(lab, plan, tmp_path, monkeypatch):
+    enter = ExperimentFolder._enter
+
+    def fail_then(self, description):
+        recorder = enter(self, description)
+        self._fail(RuntimeError("planted"))
+        return recorder
+
+    monkeypatch.setattr(ExperimentFolder, "_enter", fail_then)
+    data = tmp_path / "data"
+    with pytest.raises(SinkFailed, match="RuntimeError: planted"):
+        lab.run(plan, data)
+    assert "RuntimeError: planted" in ends(data)[-1]
+    (run,) = find_runs(data)
+    assert read_manifest(run).exit_status != "recording"
+
+
 class WaitsOn(Exception):
     """Nothing has come of a wait for far too long."""
 

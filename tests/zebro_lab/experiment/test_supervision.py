@@ -56,7 +56,6 @@ def test_whatever_ends_the_writer_stops_the_experiment(lab, plan, tmp_path, monk
 
 
 @pytest.mark.timeout(PATIENCE, method="signal")
-@pytest.mark.xfail(strict=True, raises=AssertionError)
 def test_a_run_whose_opening_met_a_failure_is_ended(lab, plan, tmp_path, monkeypatch):
     enter = ExperimentFolder._enter
 

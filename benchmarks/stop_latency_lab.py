@@ -18,7 +18,6 @@ import threading
 import time
 import traceback
 from collections.abc import Callable
-from pathlib import Path
 from typing import Any, Final, NoReturn
 
 from rig.links import can, serial, slcan, udp  # noqa: F401 - forked with it
@@ -121,7 +120,8 @@ def _be_the_lab(arguments: list[str], planted: str) -> NoReturn:
     """Be the command, in the forked process."""
     code: Any = 99
     try:
-        sys.stdin, sys.stdout, sys.stderr = open(0), open(1, "w", buffering=1), open(2, "w")
+        sys.stdin = os.fdopen(0)
+        sys.stdout, sys.stderr = os.fdopen(1, "w", buffering=1), os.fdopen(2, "w")
         os.environ |= {"TERM": "xterm", "COLUMNS": "200", "LINES": "50"}
         sys.argv = ["zebro-lab", *arguments]
         _plant(planted)

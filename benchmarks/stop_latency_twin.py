@@ -159,9 +159,12 @@ class PlantedBoard(SimulatedBoard):
         elif fault == "random numbers":
             number = int(self._random.integers(1 << 32))
         elif fault == "departure":
-            if abs(leg / self._profile.counts_per_speed - TOP_SPEED) > SPEED_ERROR:
-                self._log.beyond((self._rig._switched_on or 0.0) + number / self._profile.rate)
+            self._look_at_departure(number, leg / self._profile.counts_per_speed)
         return number, (normal, traction, leg, ground, status)
+
+    def _look_at_departure(self, number: int, leg: float) -> None:
+        if abs(leg - TOP_SPEED) > SPEED_ERROR:
+            self._log.beyond((self._rig._switched_on or 0.0) + number / self._profile.rate)
 
     def _obey(self, packet: Packet, now: float) -> None:
         at = time.monotonic()

@@ -123,6 +123,9 @@ def _be_the_lab(arguments: list[str], planted: str) -> NoReturn:
         sys.stdin = os.fdopen(0)
         sys.stdout, sys.stderr = os.fdopen(1, "w", buffering=1), os.fdopen(2, "w")
         os.environ |= {"TERM": "xterm", "COLUMNS": "200", "LINES": "50"}
+        for number in (signal.SIGHUP, signal.SIGQUIT, signal.SIGTERM):
+            signal.signal(number, signal.SIG_DFL)  # whatever started this program ignores
+        signal.signal(signal.SIGINT, signal.default_int_handler)
         sys.argv = ["zebro-lab", *arguments]
         _plant(planted)
         main()

@@ -13,7 +13,6 @@ from collections import deque
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass, field, replace
-from multiprocessing.connection import Connection
 from typing import Any, Final
 
 import can
@@ -247,7 +246,7 @@ class Twin:
         place: Port of its devices; a load cell's port beside it.
     """
 
-    def __init__(self, process: Any, pipe: Connection) -> None:
+    def __init__(self, process: Any, pipe: Any) -> None:
         self._process = process
         self._pipe = pipe
         self.place: dict[str, Any] = self._ask("place")
@@ -289,7 +288,7 @@ def twin_process(rig: str) -> Iterator[Twin]:
         process.join()
 
 
-def _serve(kind: str, pipe: Connection) -> None:
+def _serve(kind: str, pipe: Any) -> None:
     # It stands for hardware that waits for no processor: first in turn, where that is allowed.
     with contextlib.suppress(PermissionError):
         os.sched_setscheduler(0, os.SCHED_RR, os.sched_param(1))

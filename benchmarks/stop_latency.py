@@ -219,8 +219,9 @@ def cause(row: Row, lab: Lab, twin: Twin, data: Path) -> float:
     elif row.way == "remove":
         shutil.rmtree(data, ignore_errors=True)
     elif row.way == "fill":
-        with (data / "filler").open("wb") as file:
-            os.posix_fallocate(file.fileno(), 0, shutil.disk_usage(data).free)
+        with contextlib.suppress(OSError), (data / "filler").open("wb", buffering=0) as file:
+            while True:
+                file.write(bytes(1 << 20))
     else:
         *before, last = row.what if "\x03" in row.what else [row.what]
         for key in before:

@@ -282,7 +282,7 @@ def _beside_walks(folder: Path) -> None:
         folder / "walks/draws.npz", values=np.zeros((n, WRONG + 1)), case=np.zeros(n, int),
         weight=np.full(n, 1 / n), best=np.zeros(WRONG + 1),
     )  # fmt: skip
-    assert file_hash(folder / "slip.toml") == walks_document()["slip"]  # noqa: S101
+    assert file_hash(folder / "slip.toml") == walks_document()["slip"]
 
 
 RUN = {

@@ -11,7 +11,7 @@ import io
 import json
 import math
 import zipfile
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -154,7 +154,7 @@ def pool(made: Sequence[bytes], share: float = 0.9) -> Make:
     return make
 
 
-def tables(columns: dict[str, Sequence[Any]], *, packed: bool = False) -> Make:
+def tables(columns: Mapping[str, Any], *, packed: bool = False) -> Make:
     """Make CSV files with odd cells, rows, headers, separators and quotes; perhaps gzipped."""
     names, rows = list(columns), list(zip(*columns.values(), strict=True))
 

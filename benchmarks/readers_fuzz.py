@@ -140,7 +140,7 @@ def run(reader: Reader, count: int, seed: int, *, bombs: bool = True) -> Outcome
 
 def main(arguments: list[str]) -> int:
     """Print a line a reader; return 1 where one did not keep its bounds."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument("--inputs", type=int, default=None, help="for each reader; its own without")
     parser.add_argument("--only", default="", help="readers whose name holds this")
     parser.add_argument("--leave-out", default=None, metavar="NAME")

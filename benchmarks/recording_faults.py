@@ -73,7 +73,7 @@ def recording(
     """Record simulated legs and IMU in a process of its own, which the end of the body kills."""
     command = [sys.executable, "-c", COMMAND, str(fsync), "record", "--zebro", "sim",
                "--imu", "sim", "--label", "x", "--data", str(data), *options]  # fmt: skip
-    process = subprocess.Popen(command, stdin=stdin, stdout=stdout, stderr=stderr)  # noqa: S603 our own command
+    process = subprocess.Popen(command, stdin=stdin, stdout=stdout, stderr=stderr)
     try:
         yield process
     finally:

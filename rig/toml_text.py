@@ -76,7 +76,7 @@ def _checked_parts(node: object) -> list[object]:
         values = list(node.values())
     else:
         values = node if isinstance(node, list) else [node]
-    parts = [value for value in values if isinstance(value, dict | list)]
+    parts: list[object] = [value for value in values if isinstance(value, dict | list)]
     if len(parts) < len(values):
         _require_plain(*values)
     return parts

@@ -19,6 +19,7 @@ DICTIONARY = KIT_PRINT.dictionary
 _TOP = ("dictionary", "side", "position_sd", "yaw_sd_deg", "side_sd", "markers", "points")
 _MARKER = ("x", "y", "yaw_deg", "z", "side", "position_sd", "yaw_sd_deg", "side_sd")
 _POINT = ("x", "y", "z", "position_sd")
+_MOST_DIGITS = 6  # of the number of a marker
 _POSITION_SD, _YAW_SD_DEG, _SIDE_SD = 1e-3, float(np.degrees(0.01)), 2e-4
 
 
@@ -48,7 +49,7 @@ def read_floor_file(file: Path) -> FloorMap:
 
 
 def _marker(top: TomlTable, markers: TomlTable, number: str) -> FloorMarker:
-    if not number.isdigit():
+    if not number.isdecimal() or len(number) > _MOST_DIGITS:
         raise markers.error(number, "expected the marker's number in its dictionary as the key")
     table = markers.table(number)
     table.require_known(_MARKER)

@@ -18,7 +18,7 @@ from zebro_lab.errors import SettingsError, ZebroLabError
 from zebro_lab.informed_legs import InformedLegs, informed_legs
 from zebro_lab.provenance import file_hashes
 from zebro_lab.robot_file import RobotFile, read_robot_file
-from zebro_lab.slip_argument import Slip, parse_slip
+from zebro_lab.slip_argument import THESIS, Slip, parse_slip
 from zebro_lab.walk_folder import walk_folder
 from zebro_lab.walk_models import MODELS, Direction, ModelRun
 from zebro_lab.walk_pictures import animate_walk, draw_walk
@@ -71,7 +71,7 @@ class ModelRequest:
     @property
     def inputs(self) -> tuple[Path, ...]:
         """Files and folders that are read, as they were named."""
-        slip = () if self.slip is None else (Path(self.slip),)
+        slip = () if self.slip in (None, THESIS) else (Path(str(self.slip)),)
         return (*slip, *((self.robot,) if self.robot is not None else ()))
 
 

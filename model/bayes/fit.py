@@ -92,7 +92,7 @@ def prepare_fit(
         FitError: No mode was found.
     """
     _require_enough(samples, law)
-    _require_forces(samples, load_cell)
+    require_forces(samples, load_cell)
     with breakdown_told(samples, law):
         return _prepared(samples, law, load_cell, rng, block_choice, validate, threads)
 
@@ -159,8 +159,17 @@ def _require_enough(samples: SlipSamples, law: SlipLaw) -> None:
         )
 
 
-def _require_forces(samples: SlipSamples, cell: LoadCell) -> None:
-    """Refuse forces from which no curve follows, whatever the law."""
+def require_forces(samples: SlipSamples, cell: LoadCell) -> None:
+    """Refuse forces from which no curve follows, whatever the law.
+
+    Args:
+        samples: The samples.
+        cell: What is known of the load cell.
+
+    Raises:
+        InsufficientData: Traction stands still, or no load is above the cell's own zero error.
+        DomainError: A force is beyond every rig.
+    """
     loads, traction = samples.normal_force, samples.traction_force
     for name, force in (("normal", loads), ("traction", traction)):
         largest = float(np.abs(force).max())

@@ -33,6 +33,11 @@ def speeds(n: int = N) -> pd.DataFrame:
     })  # fmt: skip
 
 
+def louder(table: pd.DataFrame, factor: float = 1.01) -> pd.DataFrame:
+    """Another recording: the same forces twice would count once."""
+    return table.assign(traction_force=factor * table["traction_force"])
+
+
 def given_slip(definition: str = "travel") -> pd.DataFrame:
     """The same with the slip ratio given."""
     table = speeds()
@@ -199,7 +204,7 @@ def test_measured_slip_may_pass_its_limit_by_noise(tmp_path):
 def test_each_file_is_a_run_by_default(tmp_path):
     columns(tmp_path, RADII)
     write(tmp_path / "b", speeds())
-    write(tmp_path / "a", speeds())
+    write(tmp_path / "a", louder(speeds()))
     data = read_rig_data([tmp_path])
     assert data.samples.n_runs == 2
     assert data.samples.run_names == (str(Path("a", "rig")), str(Path("b", "rig")))
@@ -262,7 +267,7 @@ def test_source_in_parquet_is_kept_and_mixing_is_visible(tmp_path):
     arrow = pa.Table.from_pandas(given_slip()).replace_schema_metadata({"source": "sim:disc"})
     pq.write_table(arrow, tmp_path / "a.parquet")
     assert read_rig_data([tmp_path]).source == "sim:disc"
-    write(tmp_path, given_slip(), "b.csv")
+    write(tmp_path, louder(given_slip()), "b.csv")
     assert read_rig_data([tmp_path]).source == "mixed:sim:disc,unknown"
 
 
@@ -281,7 +286,7 @@ def test_what_is_named_twice_counts_once(tmp_path):
 
 def test_load_cells_of_several_files_must_agree(tmp_path):
     for name, value in (("a", 0.1), ("b", 0.2)):
-        write(tmp_path / name, given_slip())
+        write(tmp_path / name, louder(given_slip(), 1 + value))
         columns(tmp_path / name, f"load_cell.zero_stability = {value}")
     assert read_rig_data([tmp_path / "a"]).load_cell == {"zero_stability": 0.1}
     with pytest.raises(SettingsError, match=r"b/columns\.toml, load_cell\.zero_stability: is 0\.2"):
@@ -290,7 +295,7 @@ def test_load_cells_of_several_files_must_agree(tmp_path):
 
 def test_missing_time_in_one_file_is_noted(tmp_path):
     write(tmp_path, given_slip(), "a.csv")
-    write(tmp_path, given_slip().drop(columns="t"), "b.csv")
+    write(tmp_path, louder(given_slip()).drop(columns="t"), "b.csv")
     data = read_rig_data([tmp_path])
     assert data.samples.time is None
     assert "1 of 2 files have no time: no times are used" in data.notes

@@ -11,6 +11,7 @@ from rich.text import Text
 from model.bayes.estimate import Estimate
 from zebro_lab.calibration_folder import Calibration
 from zebro_lab.tables import RigData
+from zebro_lab.terminal.messages import plain
 
 
 def print_calibration(console: Console, calibration: Calibration, data: RigData, out: Path) -> None:
@@ -29,7 +30,7 @@ def print_calibration(console: Console, calibration: Calibration, data: RigData,
     _print_verdict(console, calibration)
     console.print(Text(f"\nwritten to {out}:"))
     for path in sorted(out.iterdir()):
-        console.print(Text(f"  {path}"))
+        console.print(plain(f"  {path}"))
 
 
 def _print_data(console: Console, calibration: Calibration, data: RigData) -> None:
@@ -45,7 +46,7 @@ def _print_data(console: Console, calibration: Calibration, data: RigData) -> No
     if calibration.comparison is not None:
         lines += _comparison_lines(calibration)
     for line in lines:
-        console.print(Text(line))
+        console.print(plain(line))
 
 
 def _comparison_lines(calibration: Calibration) -> list[str]:
@@ -135,7 +136,7 @@ def _print_quality(console: Console, calibration: Calibration) -> None:
         )
     lines.append(f"sampled in {calibration.seconds:.0f} s")
     for line in lines:
-        console.print(Text(line))
+        console.print(plain(line))
 
 
 def _print_verdict(console: Console, calibration: Calibration) -> None:
@@ -146,7 +147,7 @@ def _print_verdict(console: Console, calibration: Calibration) -> None:
     )
     for check in (*verdict.convergence, *verdict.trust):
         mark = "ok  " if check.passed else "FAIL"
-        console.print(Text(f"  {mark} {check.name}: {check.evidence}"))
+        console.print(plain(f"  {mark} {check.name}: {check.evidence}"))
     if verdict.weak:
         for load, row in zip(calibration.levels, calibration.curves, strict=True):
             known = {e.parameter.symbol: e for e in row}
@@ -158,4 +159,4 @@ def _print_verdict(console: Console, calibration: Calibration) -> None:
                 )
             )
     for step in verdict.next_steps():
-        console.print(Text(f"  next: {step}"))
+        console.print(plain(f"  next: {step}"))

@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from zebro_lab.terminal.messages import plain
+
 if TYPE_CHECKING:
     from rich.table import Table
 
@@ -42,10 +44,10 @@ def compare(
     if not console.is_terminal:
         console = Console(highlight=False, width=120)
     if "sim:" in done.comparison.source:
-        console.print(Text(f"SIMULATED: {done.comparison.source}"))
+        console.print(plain(f"SIMULATED: {done.comparison.source}"))
     console.print(_table(done))
     for note in done.comparison.notes:
-        console.print(Text(note))
+        console.print(plain(note))
     console.print(Text(f"\nwritten to {out}"))
 
 

@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from zebro_lab.terminal.messages import plain
+
 if TYPE_CHECKING:
     from rich.console import Console
     from rich.table import Table
@@ -96,16 +98,16 @@ def print_validated(console: "Console", validated: "Validated", out: Path) -> No
     from rich.text import Text
 
     if "sim:" in validated.source:
-        console.print(Text(f"SIMULATED: {validated.source}"))
+        console.print(plain(f"SIMULATED: {validated.source}"))
     for run in validated.runs:
         console.print(_table(run))
         for line in (*_verdict(run), *_tilt(run), *run.notes):
-            console.print(Text(line))
+            console.print(plain(line))
     for each in validated.summary:
         mean, low, high = each.interval
-        console.print(Text(f"{each.model}: {each.metric} {mean:.4g} ({low:.4g} to {high:.4g})"))
+        console.print(plain(f"{each.model}: {each.metric} {mean:.4g} ({low:.4g} to {high:.4g})"))
     if validated.summary:
-        console.print(Text(f"means over {len(validated.runs)} walks, 90 % intervals over walks"))
+        console.print(plain(f"means over {len(validated.runs)} walks, 90 % intervals over walks"))
     console.print(Text(f"\nwritten to {out}"))
 
 

@@ -14,7 +14,7 @@ from rich.text import Text
 from model.gait import CyclicReference
 from zebro_lab.cli.progress import progress_bar
 from zebro_lab.files.result_folder import MANIFEST
-from zebro_lab.terminal.messages import say
+from zebro_lab.terminal.messages import plain, say
 from zebro_lab.walk_folder import FILES
 from zebro_lab.walk_summary import WalkSummary, summarise
 from zebro_lab.walking import ModelRequest, Walked, WalkStopped, Watcher
@@ -53,16 +53,16 @@ def print_walk(console: Console, walked: Walked, out: Path) -> None:
         walked: The finished walk.
         out: The walk folder.
     """
-    console.print(Text(f"SIMULATED walk: {walked.title}, dt {walked.dt:g} s"))
+    console.print(plain(f"SIMULATED walk: {walked.title}, dt {walked.dt:g} s"))
     if isinstance(walked.reference, CyclicReference):
         console.print(gait_table(walked.reference))
     summary = summarise(walked.path)
     for line in (*summary_lines(summary), *slip_lines(walked, summary), *walked.notes):
-        console.print(Text(line))
+        console.print(plain(line))
     console.print(Text(f"\nwritten to {out}:"))
     for path in sorted(out.iterdir()):
         if path.name in (*FILES, MANIFEST):
-            console.print(Text(f"  {path}"))
+            console.print(plain(f"  {path}"))
 
 
 def summary_lines(summary: WalkSummary) -> list[str]:

@@ -10,6 +10,7 @@ from rich.text import Text
 from model.bayes.walk_posterior import Contraction, WalkPosterior
 from model.bayes.walk_prior import FALL, UNITS
 from zebro_lab.stages.calibrate_walks import WalksCalibrated
+from zebro_lab.terminal.messages import plain
 from zebro_lab.validation import RunJudged
 
 _LIKELY = 0.01  # probability of a case that is worth a line
@@ -25,16 +26,16 @@ def print_walks(console: Console, done: WalksCalibrated) -> None:
     """
     posterior = done.fitted.posterior
     if "sim:" in done.source:
-        console.print(Text(f"SIMULATED: {done.source}"))
+        console.print(plain(f"SIMULATED: {done.source}"))
     for note in done.notes:
-        console.print(Text(note))
+        console.print(plain(note))
     console.print(_parameter_table(posterior))
     for line in (*_uninformed(posterior), *_cases(posterior), *_quality(posterior)):
-        console.print(Text(line))
+        console.print(plain(line))
     if done.fitted.left_out:
         console.print(_left_out_table(done.fitted.left_out))
     else:
-        console.print(Text("one walk alone: none is left to predict; add a second --walks"))
+        console.print(plain("one walk alone: none is left to predict; add a second --walks"))
     console.print(Text(f"\nwritten to {done.folder}"))
 
 

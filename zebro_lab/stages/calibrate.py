@@ -26,6 +26,7 @@ from model.bayes.fit import (
     breakdown_told,
     compare,
     prepare_fit,
+    require_forces,
     scaled_load_cell,
 )
 from model.bayes.laplace import importance_draws
@@ -164,6 +165,7 @@ def calibrate(request: CalibrationRequest, watcher: Watcher) -> tuple[Calibratio
     earlier = load_checkpoint(request.out, fingerprint=mark) if request.resume else None
     rng = np.random.default_rng(request.seed)
     cell = scaled_load_cell(data.samples, {**data.load_cell, **request.load_cell})
+    require_forces(data.samples, cell)
     fit, comparison = _choose_law(request, data.samples, cell, rng, watcher)
     began = time.monotonic()
     judging = rng.spawn(1)[0]  # its draws are the same whether or not the fit was resumed

@@ -1,9 +1,14 @@
 # SPDX-License-Identifier: MIT
 """Write lines to the terminal; text of files in them can do nothing but be read."""
 
+from typing import TYPE_CHECKING
+
 import typer
 
 from zebro_lab.files.shown_text import shown
+
+if TYPE_CHECKING:
+    from rich.text import Text
 
 
 def say(line: str, *, err: bool = False) -> None:
@@ -14,3 +19,10 @@ def say(line: str, *, err: bool = False) -> None:
         err: Write to the standard error.
     """
     typer.echo(shown(line), err=err)
+
+
+def plain(line: str) -> "Text":
+    """Return one line for a console of Rich, without markup, made harmless as by `say`."""
+    from rich.text import Text
+
+    return Text(shown(line))

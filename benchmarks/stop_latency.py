@@ -221,6 +221,7 @@ def cause(row: Row, lab: Lab, twin: Twin, data: Path) -> float:
     elif row.way == "fill":
         with contextlib.suppress(OSError), (data / "filler").open("wb", buffering=0) as file:
             while True:
+                at = time.monotonic()  # the last byte that finds room is in what follows
                 file.write(bytes(1 << 20))
     else:
         *before, last = row.what if "\x03" in row.what else [row.what]

@@ -169,6 +169,9 @@ class ExperimentFolder:
         self._thread.join(JOIN_LIMIT)
         if self._thread.is_alive():
             self._failure = f"the disk of {self._data} did not answer for {JOIN_LIMIT:g} s"
+        else:  # it may have ended by itself: what it left, the end above all, is written here
+            while not self._jobs.empty():
+                self._do(self._jobs.get_nowait())
         self._journal.__exit__(kind, error, trace)
         if error is None:
             self._require_well()
@@ -228,6 +231,9 @@ class ExperimentFolder:
             self._require_well()
 
     def _require_well(self) -> None:
+        started = self._thread.ident is not None
+        if started and not (self._ending.is_set() or self._thread.is_alive()):
+            self._failure = self._failure or "the writer has ended by itself"
         busy = self._busy_since
         if busy is not None and time.monotonic() - busy > LONGEST_JOB:
             self._failure = f"the disk of {self._data} has not answered for {LONGEST_JOB:g} s"
@@ -246,15 +252,18 @@ class ExperimentFolder:
                 job = self._jobs.get(timeout=DISK_PERIOD)
             except queue.Empty:
                 job = _Job(lambda: None)
-            self._busy_since = time.monotonic()
-            try:
-                job.write()
-                self._look_after_disk()
-            except BaseException as error:  # noqa: BLE001, RUF100 - whatever it is, the rig stops
-                self._fail(error)
-            finally:
-                self._busy_since = None
-                job.done.set()
+            self._do(job)
+
+    def _do(self, job: _Job) -> None:
+        self._busy_since = time.monotonic()
+        try:
+            job.write()
+            self._look_after_disk()
+        except BaseException as error:  # noqa: BLE001, RUF100 - whatever it is, the rig stops
+            self._fail(error)
+        finally:
+            self._busy_since = None
+            job.done.set()
 
     def _look_after_disk(self) -> None:
         """Raise SinkFailed where the folder is gone, or too little room is left."""

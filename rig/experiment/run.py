@@ -293,8 +293,8 @@ class _Run:
         self._attempts += 1
         settled = self._settle(point)
         zero = self._zero or UNLOADED
+        self._recording = True  # also where its opening fails: it may have begun all the same
         self._sink.open_run(RunStart(point, attempt, self._clock.now(), zero))
-        self._recording = True
         readings = self._record(point, zero)
         verdict = judge_point(
             readings, point, self._plan.accept, settled=settled,
@@ -400,10 +400,12 @@ class _Run:
         latched = stop is not None and stop.category is StopCategory.EMERGENCY
         if stop is not None and latched:
             self._sink.latch(stop.reason)  # it may have come beside a guard, or on the way to rest
-        try:
-            self._close(reason)
-            self._sink.event("end", reason)
-        except SinkFailed:
-            if reason == "completed":
-                raise
+        failed = None
+        for keep in (self._close, lambda why: self._sink.event("end", why)):
+            try:
+                keep(reason)
+            except SinkFailed as error:
+                failed = error
+        if failed is not None and reason == "completed":
+            raise failed
         self._show(State.LATCHED if latched else State.STOPPED, reason)

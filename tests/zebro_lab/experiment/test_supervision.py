@@ -1,15 +1,19 @@
 # SPDX-License-Identifier: MIT
 """Whatever part of an experiment fails, the discs stop, and the run does not count as completed."""
 
+import contextlib
 import json
+import queue
 import threading
 import time
+from contextlib import contextmanager
 
 import pytest
 
 from rig.errors import RigError
 from rig.experiment.control import Control
 from rig.experiment.sink import SinkFailed
+from rig.experiment.supervision import supervised
 from zebro_lab import experiment_folder
 from zebro_lab.experiment_folder import ExperimentFolder
 from zebro_lab.experiment_journal import JOURNAL_FILE, JournalWriter
@@ -49,6 +53,76 @@ def test_whatever_ends_the_writer_stops_the_experiment(lab, plan, tmp_path, monk
     assert "RuntimeError: planted" in ends(data)[-1]
     assert 2 <= len(find_runs(data)) < 6
     assert all(read_manifest(run).exit_status != "recording" for run in find_runs(data))
+
+
+@pytest.mark.timeout(PATIENCE, method="signal")
+def test_a_run_whose_opening_met_a_failure_is_ended(lab, plan, tmp_path, monkeypatch):
+    enter = ExperimentFolder._enter
+
+    def fail_then(self, description):
+        recorder = enter(self, description)
+        self._fail(RuntimeError("planted"))
+        return recorder
+
+    monkeypatch.setattr(ExperimentFolder, "_enter", fail_then)
+    data = tmp_path / "data"
+    with pytest.raises(SinkFailed, match="RuntimeError: planted"):
+        lab.run(plan, data)
+    assert "RuntimeError: planted" in ends(data)[-1]
+    (run,) = find_runs(data)
+    assert read_manifest(run).exit_status != "recording"
+
+
+class WaitsOn(Exception):
+    """Nothing has come of a wait for far too long."""
+
+
+@contextmanager
+def folder_without_writer(data, monkeypatch, *, in_step):
+    """Make an experiment's folder whose writing thread has ended by itself."""
+    get = queue.Queue.get
+
+    def fail(self, *args, **kwargs):
+        if threading.current_thread().name == "writer":
+            raise MemoryError("planted")
+        return get(self, *args, **kwargs)
+
+    monkeypatch.setattr(queue.Queue, "get", fail)
+    description = RunDescription("slip-rig", "test", "sim:rig")
+    with (
+        supervised(Control()),
+        ExperimentFolder(data, description=description, views=dict, in_step=in_step) as folder,
+    ):
+        folder._thread.join(PATIENCE)
+        assert not folder._thread.is_alive()
+        yield folder
+
+
+def test_the_journal_says_how_it_ended_although_the_writer_is_dead(tmp_path, monkeypatch):
+    with (
+        contextlib.suppress(SinkFailed),
+        folder_without_writer(tmp_path, monkeypatch, in_step=False) as folder,
+    ):
+        folder.event("end", "writer failed")
+    assert ends(tmp_path) == ["writer failed"]
+
+
+def test_nobody_waits_for_a_writer_that_is_dead(tmp_path, monkeypatch):
+    with (
+        contextlib.suppress(SinkFailed),  # which leaving the folder raises too
+        folder_without_writer(tmp_path, monkeypatch, in_step=True) as folder,
+    ):
+        require_well, looks = folder._require_well, iter(range(20))
+
+        def look():
+            if next(looks, None) is None:
+                raise WaitsOn
+            require_well()
+
+        monkeypatch.setattr(folder, "_require_well", look)
+        with pytest.raises(SinkFailed, match="the writer has ended"):
+            folder.close_run(None, reason="failed")
+        monkeypatch.undo()
 
 
 @pytest.mark.timeout(PATIENCE, method="signal")

@@ -67,7 +67,7 @@ def _require_bounded(metadata: Any, path: Path, size: int) -> None:
             "it, or leave out columns that nothing reads",
             file=path,
         )
-    # Not `group.column(i)`: pyarrow 26 ends the process there where a column's statistics are wrong.
+    # Not `group.column(i)`, where pyarrow 26 ends the process if a column's statistics are wrong.
     unpacked = sum(group.total_byte_size for group in groups)
     if unpacked > FREELY + MOST_RATIO * size:
         raise DataError(

@@ -105,6 +105,8 @@ def read_rig_data(
     skipped = [f"{labels[source]}: left out, {why}" for source, why in excluded.items()]
     maps = _column_maps(named, columns)
     parts = [_read_part(source, maps[source], labels[source], wanted) for source in sources]
+    if parts:
+        _one_definition(parts)  # the same forces under two definitions contradict each other
     known = _known(excluded, maps, labels) if parts else {}
     parts, repeated_runs = _once(parts, known)
     files = [(labels[one], labels[other]) for one, other in repeated]

@@ -203,6 +203,8 @@ def test_two_definitions_in_two_files_are_refused(tmp_path):
     message = message_of(tmp_path)
     assert message.startswith(str(tmp_path / "b.csv"))
     assert f"slip is 'travel' here and 'material' in {tmp_path / 'a.csv'}" in message
+    other = good().assign(slip_definition="travel").eval("normal_force = 1.01 * normal_force")
+    other.to_csv(tmp_path / "b.csv", index=False)
     assert len(read_rig_data([tmp_path], slip_definition="travel").samples) == 2 * N
 
 

@@ -249,9 +249,10 @@ def test_a_force_beyond_its_limit_ends_the_reading():
         check([Sample(0.0, 0.0, i, (0, 0, c, 0, 0, 0)) for i, c in enumerate(counts)])
 
     weighed(6.0, 31.0, 31.0)
-    weighed(6.0, 31.0, 6.0)
+    weighed(6.0, 6.0, 6.0)
+    weighed(31.0, 6.0, 31.0)
     with pytest.raises(LimitExceeded, match="normal force is 31 N; its limit is 30 N"):
-        weighed(31.0, 31.0, 31.0)
+        weighed(6.0, 31.0)  # three of five
 
 
 def wait_until(met, limit=20.0):

@@ -22,7 +22,7 @@ from rig.experiment.verdict import Verdict
 from zebro_lab.errors import AlreadyExists
 from zebro_lab.experiment.latch import EmergencyLatch
 from zebro_lab.experiment.points import UNJUDGED, point_record
-from zebro_lab.experiment_journal import JournalWriter
+from zebro_lab.experiment_journal import EMERGENCY, JournalWriter
 from zebro_lab.recorder import RunDescription, RunRecorder
 from zebro_lab.stream_views import View
 
@@ -146,7 +146,7 @@ class ExperimentFolder:
     def latch(self, reason: str) -> None:
         """Latch an emergency stop on disk, from this thread; see `Sink.latch`."""
         try:
-            self._latch.latch(reason)
+            self._latch.latch(f"{EMERGENCY}: {reason}")
         except OSError as error:
             self._fail(error)
 

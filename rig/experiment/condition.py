@@ -72,12 +72,19 @@ class Condition:
 
     @property
     def keys(self) -> str:
-        """Say which key does what next; each but Ctrl-C is followed by Enter."""
+        """Say which key does what next; each but Ctrl-C is followed by Enter.
+
+        >>> Condition(State.STOPPING, True, "", StopCategory.SAFE).keys
+        'Ctrl-C or e: emergency stop (de-energise at once, latched)'
+        """
         if self.state in (State.STOPPED, State.LATCHED):
             return "no key does anything any more: the run is over"
-        known = [f"Ctrl-C: {_STOP_NAMES[next_stop(self.pending)]}"]
-        known += [f"{_KEYS[category]}: {name}" for category, name in _STOP_NAMES.items()
-                  if category > (self.pending or 0)]  # fmt: skip
+        by_ctrl_c = next_stop(self.pending)
+        known = [
+            f"{'Ctrl-C or ' if category is by_ctrl_c else ''}{_KEYS[category]}: {name}"
+            for category, name in _STOP_NAMES.items()
+            if category > (self.pending or 0) or category is StopCategory.EMERGENCY
+        ]
         if self.state is State.HOLDING:
             known.insert(0, "r: go on")
             known.append(f"without a word a safe stop follows after {self.hold:g} s")

@@ -87,7 +87,7 @@ def run(
         f"{outcome.reason}: {outcome.finished} points finished, {len(outcome.refused)} refused, "
         f"{outcome.attempts} attempts; {data}"
     )
-    if not outcome.completed:
+    if not outcome.completed and not control.stop.latched:
         words += "\ngo on with --resume"
     refused = REFUSED if outcome.refused else 0
     code = refused if outcome.completed else STOPPED

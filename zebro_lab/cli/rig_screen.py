@@ -62,12 +62,14 @@ class Picture:
         parts: list[RenderableType] = []
         if self.condition is not None:
             style = _STYLES.get(self.condition.state, "")
-            parts = [Text(self.condition.headline, style=style), Text(self.condition.keys)]
+            keys = self.condition.keys.replace("; ", "\n")
+            parts = [Text(self.condition.headline, style=style), Text(keys)]
         # A run that holds or stops makes no progress: its figures would only mislead.
         if self.condition is None or self.condition.state is State.RUNNING:
             parts.append(Text(self.head))
         parts.append(ProgressBar(total=self.of, completed=self.done, width=WIDTH))
-        return Group(*parts, Text(slip_chart(list(self.points))), Text(self.prompt, style="bold"))
+        chart = Text("\n" + slip_chart(list(self.points)))  # a bar ends no line
+        return Group(*parts, chart, Text(self.prompt, style="bold"))
 
 
 class ExperimentScreen:

@@ -17,7 +17,7 @@ from rig.errors import DeviceFault, NotAtRest, RigError
 from rig.experiment.bench import Batch, Bench
 from rig.experiment.control import Control
 from rig.experiment.plan import RunLimits, ground_speed, rig_limits
-from rig.experiment.rest import prove_rest
+from rig.experiment.rest import DISCS, prove_rest
 from rig.experiment.sink import Sink
 from rig.safety import (
     FollowingGuard,
@@ -39,7 +39,6 @@ FURTHER_NAMES: Final = {
     "torque": "torque on the load cell",
     "temperature_celsius": "temperature of a drive or its motor",
 }
-DISCS: Final[tuple[str, ...]] = ("leg", "ground")
 ROOM_PERIOD: Final = 0.1
 """Between two questions whether data can still be kept [s]."""
 

@@ -17,7 +17,7 @@ FEWEST: Final = 5
 """New readings of each disc that there must be in the window."""
 SCATTER: Final = 5.0
 """Root mean square that noise of an encoder may have, over the limit of the mean [-]."""
-DISCS: Final = ("leg", "ground")
+DISCS: Final[tuple[str, ...]] = ("leg", "ground")
 
 
 class RestProof:

@@ -12,7 +12,6 @@ KEYS: Final = {"p": "pause", "r": "resume", "": "confirm", "s": "soft", "ss": "s
                "e": "emergency"}  # fmt: skip
 LONGEST_LINE: Final = 4096
 """What a line has beyond this is dropped: a terminal hands on no longer one [bytes]."""
-GONE: Final = select.POLLHUP | select.POLLERR | select.POLLNVAL
 WAIT: Final = 200
 """Between two looks whether the run is over [ms]."""
 
@@ -42,13 +41,16 @@ class Keyboard:
             LinkError: The terminal is gone: nobody can stop the run by its keys any more.
             OSError: It cannot be read.
         """
+        if not hasattr(select, "poll"):  # Windows, whose consoles cannot be waited for
+            while not self._over:
+                self.take(os.read(self._handle, LONGEST_LINE))
         terminal = select.poll()
         terminal.register(self._handle, select.POLLIN)
         while not self._over:
             for _, found in terminal.poll(WAIT):
                 # What was typed before the terminal went away is read first.
                 data = os.read(self._handle, LONGEST_LINE) if found & select.POLLIN else b""
-                if not data and found & GONE:
+                if not data and found & ~select.POLLIN:  # hung up, or no file any more
                     raise LinkError("the terminal is gone")
                 self.take(data)
 

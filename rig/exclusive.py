@@ -99,18 +99,33 @@ class Exclusive:
 
     def _lock(self) -> int:
         handle = _open(self._file)
-        try:
-            fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except BlockingIOError as error:
+        if not try_lock(handle):
             owner = _readable(os.pread(handle, 4 * LONGEST, 0))
             os.close(handle)
             raise InUse(
                 f"{self._what} is in use by {owner or 'another program'}; end that program first, "
                 "or name another"
-            ) from error
+            )
         os.ftruncate(handle, 0)
         os.pwrite(handle, _owner().encode(), 0)
         return handle
+
+
+def try_lock(handle: int) -> bool:
+    """Lock an open file without waiting; tell whether this process may use it alone.
+
+    Where the system or the file system has no locks, one user at a time has to do: that is told as
+    locked. Closing the file releases it.
+    """
+    if fcntl is None:
+        return True
+    try:
+        fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        return False
+    except OSError:  # a file system without locks
+        return True
+    return True
 
 
 def device_lock(name: str) -> Exclusive:

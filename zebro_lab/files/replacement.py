@@ -12,7 +12,6 @@
 The note is locked while its writer lives, so that nobody restores what is just being replaced.
 """
 
-import fcntl
 import json
 import logging
 import os
@@ -24,6 +23,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import IO, Final
 
+from rig.exclusive import try_lock
 from zebro_lab.atomic import sync_folder
 from zebro_lab.errors import AlreadyExists, DataError
 
@@ -249,7 +249,7 @@ def _open_locked(folder: Path) -> IO[bytes]:
     path, deadline = _note_of(folder), time.monotonic() + PATIENCE
     while True:
         note = path.open("a+b")
-        if _try_lock(note) and _is_at(note, path):
+        if try_lock(note.fileno()) and _is_at(note, path):
             return note
         note.close()
         if time.monotonic() > deadline:
@@ -257,16 +257,6 @@ def _open_locked(folder: Path) -> IO[bytes]:
                 f"{folder} is being replaced by another process; try again when that has ended"
             )
         time.sleep(0.02)
-
-
-def _try_lock(note: IO[bytes]) -> bool:
-    try:
-        fcntl.flock(note, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except BlockingIOError:
-        return False
-    except OSError:  # a file system without locks: one writer at a time has to do
-        return True
-    return True
 
 
 def _is_at(note: IO[bytes], path: Path) -> bool:

@@ -6,7 +6,6 @@ else in the folder is somebody's own: it is carried over when the result is repl
 that would take its place is refused.
 """
 
-import fcntl
 import glob
 import json
 import os
@@ -19,6 +18,7 @@ from typing import Any, Final
 
 import numpy as np
 
+from rig.exclusive import try_lock
 from zebro_lab.atomic import draft_name, nearest_folder, sync_files
 from zebro_lab.errors import AlreadyExists, NotWritten, ZebroLabError
 from zebro_lab.files.replacement import replace_folder, require_free_previous, settle
@@ -255,8 +255,7 @@ def _lock_of(draft: Path) -> Iterator[bool]:
     is_free = False
     with suppress(OSError):
         handle = os.open(draft, os.O_RDONLY)
-        fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        is_free = True
+        is_free = try_lock(handle)
     try:
         yield is_free
     finally:

@@ -5,7 +5,7 @@ import cv2
 import numpy as np
 import PIL.Image
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from tracking.errors import PhotoError, TimesError, TrackingError
@@ -108,6 +108,7 @@ def test_exif_time_has_its_fraction(tmp_path):
     start=st.floats(0, 10), interval=st.floats(2.2, 8.0), count=st.integers(12, 60),
     dropped=st.integers(2, 9),
 )  # fmt: skip
+@example(start=0.0067150, interval=2.9998184, count=48, dropped=7)  # 0.66 s off: a triangle
 def test_whole_seconds_and_a_regular_interval_never_lose_the_second(
     start, interval, count, dropped
 ):
@@ -116,7 +117,9 @@ def test_whole_seconds_and_a_regular_interval_never_lose_the_second(
     fit = fit_interval(np.floor(truth))
     assert fit is not None
     assert fit.interval == pytest.approx(interval, abs=1.5 / count)
-    assert np.abs(fit.t - truth).max() <= 0.51  # all a whole second allows, at its worst
+    # The stamps leave each time a second at most, and the centroid of a convex polygon lies within
+    # two thirds of its width from either edge.
+    assert np.abs(fit.t - truth).max() <= 2 / 3 + 1e-9
     assert fit.sd.max() < 0.3
 
 

@@ -24,7 +24,8 @@ class IntervalFit:
     """Times on a regular interval that agree with all stamps.
 
     Attributes:
-        t: Times, shape (n,) [s].
+        t: Times, shape (n,), each within two thirds of the stamps' resolution of the truth where
+            the timer is regular [s].
         sd: Standard deviation of each, shape (n,) [s].
         interval: The timer's interval [s].
         missing: Numbers of the exposures between first and last that have no photograph.

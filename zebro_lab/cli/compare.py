@@ -57,11 +57,13 @@ def _table(done: "Compared") -> "Table":
 
     one, other = done.comparison.names
     table = Table(
-        title=f"{other} minus {one}: medians, 90 % intervals", box=box.SIMPLE, title_justify="left"
+        title=plain(f"{other} minus {one}: medians, 90 % intervals"),
+        box=box.SIMPLE,
+        title_justify="left",
     )
     table.add_column("quantity")
     for name in (one, other, "difference", "unit", f"P({other} is larger)"):
-        table.add_column(name, justify="right")
+        table.add_column(plain(name), justify="right")
     for quantity, apart in zip(done.comparison.quantities, done.differences, strict=True):
         both = [_spelled(*quantity.quantiles(which)) for which in (0, 1)]
         table.add_row(

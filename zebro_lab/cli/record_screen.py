@@ -20,6 +20,7 @@ from rich.table import Table
 from rich.text import Text
 
 from zebro_lab.terminal.last_words import in_time
+from zebro_lab.terminal.messages import plain
 
 if TYPE_CHECKING:
     from zebro_lab.stages.record import RecordStatus
@@ -169,7 +170,7 @@ def _drawn(status: "RecordStatus") -> Group:
     for name, stream in status.streams.items():
         simulated = " SIMULATED" if stream.source.startswith("sim:") else ""
         table.add_row(
-            name + simulated, f"{stream.rate:.0f}", f"{stream.counters.received}",
+            plain(name + simulated), f"{stream.rate:.0f}", f"{stream.counters.received}",
             f"{stream.counters.lost}", f"{stream.counters.rejected}", f"{stream.dropped}",
         )  # fmt: skip
     return Group(table, _time(status))

@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from zebro_lab.terminal.messages import say
+
 if TYPE_CHECKING:
     from rig.experiment.control import Control
     from zebro_lab.stages.rig_plan import Foreseen
@@ -96,8 +98,8 @@ def run(
     raise typer.Exit(code)
 
 
-@app.command()
-def say(
+@app.command("say")
+def command(
     words: Annotated[list[str], typer.Argument(help="pause, resume, confirm, note TEXT, "
                                                "soft, safe, emergency or status.")],
     data: Data = Path("experiment"),
@@ -105,7 +107,7 @@ def say(
     """Give the experiment that runs into DIR a command."""
     from zebro_lab.stages.rig_run import command_run
 
-    typer.echo(command_run(data, " ".join(words)))
+    say(command_run(data, " ".join(words)))
 
 
 @app.command()
@@ -138,17 +140,20 @@ def weigh(
     for force, reading, error in zip(
         weighing.forces, weighing.readings, weighing.errors, strict=True
     ):
-        typer.echo(f"{force:8.3f} N reads {reading:8.4f} +/- {error:.4f} N")
-    typer.echo(
+        say(f"{force:8.3f} N reads {reading:8.4f} +/- {error:.4f} N")
+    say(
         f"slope {check.slope:.5f} +/- {check.slope_sd:.5f}, zero {check.zero:.4f} +/- "
         f"{check.zero_sd:.4f} N, largest misfit {check.misfit:.4f} N"
     )
     if abs(check.slope - 1) > 2 * check.slope_sd:
-        typer.echo(
+        say(
             f"the gain is off: multiply counts_per_force in the profile by {check.slope:.5f} and "
             "weigh again"
         )
-    typer.echo(render_load_cell(check).rstrip() if written is None else f"wrote {written}")
+    if written is None:
+        typer.echo(render_load_cell(check).rstrip())
+    else:
+        say(f"wrote {written}")
 
 
 @app.command()
@@ -164,13 +169,13 @@ def check(
 
     runs = check_runs(data, slip, zero_sd=zero_sd)
     for found in runs:
-        typer.echo(
+        say(
             f"{found.name}: slip {found.slip:.4f}, normal {found.load:.2f} N, traction "
             f"{found.traction:.3f} N, expected {found.expected:.3f} +/- {found.sd:.3f} N "
             f"({found.deviation:+.1f} sd){' DRIFTED' if found.drifted else ''}"
         )
     drifted = sum(found.drifted for found in runs)
-    typer.echo(f"{drifted} of {len(runs)} runs have drifted from the calibration")
+    say(f"{drifted} of {len(runs)} runs have drifted from the calibration")
     if drifted:
         raise typer.Exit(REFUSED)
 
@@ -195,21 +200,21 @@ def _print_plan(foreseen: "Foreseen", *, steps: bool) -> None:
 
     plan, points = foreseen.plan, foreseen.plan.points
     minutes, seconds = divmod(round(foreseen.estimate.seconds), 60)
-    typer.echo(f"{plan.name}, {plan.material}, on {foreseen.profile.name}")
-    typer.echo(
+    say(f"{plan.name}, {plan.material}, on {foreseen.profile.name}")
+    say(
         f"{foreseen.estimate.points} points: {len(points.loads)} loads x {len(points.slips)} slip "
         f"ratios, {points.repeats} time(s), {points.order}{', sweeping' if points.sweep else ''}, "
         "and check points"
     )
-    typer.echo(f"the normal force is set {foreseen.estimate.loads} times, by {plan.load.set_by}")
-    typer.echo(f"takes about {minutes} min {seconds} s where no point is repeated")
-    typer.echo("every set-point lies within the limits:")
+    say(f"the normal force is set {foreseen.estimate.loads} times, by {plan.load.set_by}")
+    say(f"takes about {minutes} min {seconds} s where no point is repeated")
+    say("every set-point lies within the limits:")
     for name, unit in LIMIT_UNITS.items():
         value = getattr(plan.limits, name)
         said = "not limited" if value is None else f"{value:g}"
-        typer.echo(f"  {name:<20}{said:>12} {unit}")
+        say(f"  {name:<20}{said:>12} {unit}")
     if plan.limits.guards_off:
-        typer.echo(f"guards that are off, as the plan wants: {plan.limits.off_said}")
+        say(f"guards that are off, as the plan wants: {plan.limits.off_said}")
     if steps:
         for step in foreseen.steps:
-            typer.echo(step.label if isinstance(step, Point) else f"zero-{step.number:04d}")
+            say(step.label if isinstance(step, Point) else f"zero-{step.number:04d}")

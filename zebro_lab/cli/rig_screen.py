@@ -24,6 +24,8 @@ from rig.experiment.steps import Point
 from rig.experiment.supervision import start_thread
 from rig.experiment.verdict import Verdict
 from zebro_lab.experiment.keyboard import Keyboard
+from zebro_lab.files.shown_text import shown
+from zebro_lab.terminal.messages import plain
 
 WIDTH, HEIGHT = 64, 14
 MARKS = "ox+*#@%&"
@@ -63,13 +65,13 @@ class Picture:
         if self.condition is not None:
             style = _STYLES.get(self.condition.state, "")
             keys = self.condition.keys.replace("; ", "\n")
-            parts = [Text(self.condition.headline, style=style), Text(keys)]
+            parts = [Text(shown(self.condition.headline), style=style), Text(keys)]
         # A run that holds or stops makes no progress: its figures would only mislead.
         if self.condition is None or self.condition.state is State.RUNNING:
-            parts.append(Text(self.head))
+            parts.append(plain(self.head))
         parts.append(ProgressBar(total=self.of, completed=self.done, width=WIDTH))
         chart = Text("\n" + slip_chart(list(self.points)))  # a bar ends no line
-        return Group(*parts, chart, Text(self.prompt, style="bold"))
+        return Group(*parts, chart, Text(shown(self.prompt), style="bold"))
 
 
 class ExperimentScreen:
@@ -133,7 +135,7 @@ class ExperimentScreen:
     def draw(self) -> None:
         """Draw what has changed since the last time."""
         while self._lines:
-            self._console.print(self._lines.popleft(), markup=False)
+            self._console.print(plain(self._lines.popleft()))
         if self._live is not None and self._picture is not self._shown:
             self._shown = self._picture
             self._live.update(self._shown.render(), refresh=True)

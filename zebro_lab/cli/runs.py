@@ -51,7 +51,7 @@ def exclude(run: RunFolder, why: Why = None, undo: Undo = False) -> None:
 
     if undo:
         take_in_again(run, why=why)
-        typer.echo(f"{run.name} counts again from now on")
+        say(f"{run.name} counts again from now on")
         return
     if why is None:
         raise typer.BadParameter("needed: the reason, kept with the run", param_hint="'--why'")

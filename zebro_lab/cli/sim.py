@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from zebro_lab.terminal.messages import say
+
 if TYPE_CHECKING:
     from zebro_lab.stages.simulate import Served, TwinRequest
 
@@ -119,6 +121,6 @@ def _serve(
 
     with progress_bar(Console(stderr=True)) as watcher, serving as served:
         for what, place in served.places.items():
-            typer.echo(f"SIMULATED {what} ({served.source}), profile {request.profile}: {place}")
-        typer.echo(f"record it as {served.address}")
+            say(f"SIMULATED {what} ({served.source}), profile {request.profile}: {place}")
+        say(f"record it as {served.address}")
         wait_until(watcher.stop_requested, duration=duration)

@@ -41,7 +41,7 @@ def print_walks(console: Console, done: WalksCalibrated) -> None:
 
 def _parameter_table(posterior: WalkPosterior) -> Table:
     title = f"legs and floor after {len(posterior.walks)} walk(s): {', '.join(posterior.walks)}"
-    table = Table(title=title, box=box.SIMPLE, title_justify="left")
+    table = Table(title=plain(title), box=box.SIMPLE, title_justify="left")
     table.add_column("parameter", no_wrap=True)
     for name in ("before", "after", "unit", "informed"):
         table.add_column(name, justify="right", no_wrap=True)
@@ -112,8 +112,9 @@ def _left_out_table(left_out: tuple[RunJudged, ...]) -> Table:
         e, scores = prediction.errors, prediction.scores
         held = scores.coverage[list(scores.levels).index(0.9)]
         table.add_row(
-            run.name, f"{1000 * e.ate:.1f}", f"{e.ate_of_length:.2%}", f"{np.degrees(e.yaw):.2f}",
-            f"{e.radius[0]:.3f}", f"{e.radius[1]:.3f}", " ".join(f"{share:.0%}" for share in held),
+            plain(run.name), f"{1000 * e.ate:.1f}", f"{e.ate_of_length:.2%}",
+            f"{np.degrees(e.yaw):.2f}", f"{e.radius[0]:.3f}", f"{e.radius[1]:.3f}",
+            " ".join(f"{share:.0%}" for share in held),
             _two(scores.crps), _two([min(o.scores.crps[k] for o in others) for k in range(2)]),
         )  # fmt: skip
     return table

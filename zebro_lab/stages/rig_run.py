@@ -19,10 +19,11 @@ from rig.experiment.signal_stops import signal_stops
 from rig.experiment.steps import require_allowed
 from rig.experiment.supervision import supervised
 from rig.experiment.watcher import Watcher
-from zebro_lab.errors import NotFound, RecordingError, ZebroLabError
+from zebro_lab.errors import DataError, NotFound, RecordingError, ZebroLabError
 from zebro_lab.experiment.points import finished_points
 from zebro_lab.experiment_folder import ExperimentFolder
 from zebro_lab.experiment_journal import JOURNAL_FILE, begin_or_resume
+from zebro_lab.files.documents import read_json_document, require_object
 from zebro_lab.plan_file import read_plan
 from zebro_lab.recorder import RunDescription
 from zebro_lab.rig_at_hand import RigAtHand, rig_at_hand
@@ -152,24 +153,41 @@ def command_run(data: Path, command: str) -> str:
 
     Raises:
         NotFound: None runs there.
+        DataError: The file that says where to reach it is damaged.
         RigError: It does not answer, or refuses.
     """
-    try:
-        address = json.loads((data / CONTROL_FILE).read_text(encoding="utf-8"))
-    except FileNotFoundError as error:
-        raise NotFound(f"{data}: no experiment runs here") from error
-    return send_command(address["port"], address["token"], command)
+    file = data / CONTROL_FILE
+    if not file.exists():
+        raise NotFound(f"{data}: no experiment runs here")
+    port, token = _address(file)
+    return send_command(port, token, command)
+
+
+def _address(file: Path) -> tuple[int, str]:
+    """Return port and token of a running experiment's control socket.
+
+    Raises:
+        DataError: The file is damaged.
+    """
+    content = require_object(read_json_document(file, advice="no experiment runs here"), file)
+    port, token = content.get("port"), content.get("token")
+    if type(port) is not int or not 0 < port < 1 << 16 or not isinstance(token, str):
+        raise DataError(
+            "does not say where to reach the experiment; stop it at its own keyboard", file=file
+        )
+    return port, token
 
 
 @contextmanager
 def _commandable(data: Path, control: Control) -> Iterator[None]:
     """Serve the control socket, and say where in a file that only its owner may read."""
-    file = data / CONTROL_FILE
+    file, draft = data / CONTROL_FILE, data / f".{CONTROL_FILE}.new"
     with ControlServer(control) as server:
-        file.unlink(missing_ok=True)
-        handle = os.open(file, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600)
+        draft.unlink(missing_ok=True)
+        handle = os.open(draft, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600)
         with os.fdopen(handle, "w", encoding="utf-8") as out:
             json.dump({"port": server.port, "token": server.token}, out)
+        draft.replace(file)
         try:
             yield
         finally:

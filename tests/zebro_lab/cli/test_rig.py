@@ -148,6 +148,14 @@ def test_without_a_terminal_a_prompt_is_one_line():
     assert console.file.getvalue() == "set it\n"
 
 
+def test_text_of_a_plan_cannot_command_the_terminal():
+    console = Console(file=io.StringIO())
+    screen = ExperimentScreen(console, None)
+    screen.notice("a [red]label\x1b[2J\ncompleted")
+    screen.draw()
+    assert console.file.getvalue() == "a [red]label\\x1b[2J\\ncompleted\n"
+
+
 def test_a_hold_is_visible_and_says_which_key_goes_on(plan, tmp_path):
     control = Control()
 

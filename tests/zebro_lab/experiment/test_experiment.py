@@ -21,7 +21,7 @@ from rig.slip_rig.profile import load_rig_profile
 from rig.slip_rig.simulated import RigDynamics, simulated_rig
 from rig.slip_rig.simulated_board import SimulatedBoard
 from rig.slip_rig.sweep import SOURCE_LAW, SOURCE_VALUES, SweepPlan
-from zebro_lab.errors import AlreadyExists, NotFound, SettingsError
+from zebro_lab.errors import AlreadyExists, DataError, NotFound, SettingsError
 from zebro_lab.experiment_folder import ExperimentFolder
 from zebro_lab.experiment_journal import JOURNAL_FILE, JournalWriter, read_journal
 from zebro_lab.plan_file import read_plan
@@ -52,6 +52,22 @@ def test_each_point_is_a_run_that_a_calibration_reads(lab, plan, tmp_path):
         )
     assert lab.journal(data)[-1]["text"] == "completed"
     assert not (data / "control.json").exists()
+
+
+@pytest.mark.parametrize(
+    "content",
+    ["", "[]", "{", "\xff", '{"port": 1}', '{"port": 70000, "token": "t"}', "[" * 100_000],
+)
+def test_a_damaged_address_of_an_experiment_is_one_line(tmp_path, content):
+    (tmp_path / "control.json").write_bytes(content.encode("latin-1"))
+    with pytest.raises(DataError, match=r"control\.json") as caught:
+        command_run(tmp_path, "status")
+    assert "\n" not in str(caught.value)
+
+
+def test_no_address_means_that_no_experiment_runs(tmp_path):
+    with pytest.raises(NotFound, match="no experiment runs here"):
+        command_run(tmp_path, "status")
 
 
 def test_a_run_keeps_raw_counts_profile_and_zero(lab, plan, tmp_path):

@@ -158,3 +158,15 @@ def test_the_command_prints_probabilities_and_says_simulated(tmp_path, monkeypat
     assert "SIMULATED" in printed
     assert "P(other is larger)" in printed
     assert "100.0% *" in printed
+
+
+def test_a_name_that_looks_like_markup_is_shown_as_it_is(tmp_path, monkeypatch, capsys):
+    one, other = calibration(tmp_path / "[bold]one"), calibration(tmp_path / "[z]b", friction=0.5)
+    arguments = ["compare", str(one), str(other), "--out", str(tmp_path / "out")]
+    monkeypatch.setattr("sys.argv", ["zebro-lab", *arguments])
+    with pytest.raises(SystemExit) as ended:
+        run_app(app)
+    assert not ended.value.code
+    printed = capsys.readouterr().out
+    assert "P([z]b is larger)" in printed
+    assert "[bold]one" in printed

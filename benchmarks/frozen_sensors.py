@@ -33,7 +33,7 @@ from rig.slip_rig.profile import load_rig_profile
 from rig.slip_rig.simulated import RigDynamics, SimulatedRig, simulated_rig
 from rig.slip_rig.simulated_board import SimulatedBoard
 from rig.slip_rig.sweep import SweepPlan
-from zebro_lab.plan_file import read_plan
+from zebro_lab.experiment.plan_file import read_plan
 
 PERIOD = 0.02
 SOURCE_PLAN = Path(__file__).parents[1] / "examples" / "plan-source.toml"

@@ -42,39 +42,40 @@ from rig.profile import shipped_file
 from rig.slip_rig.profile import load_rig_profile
 from rig.zebro.profile import load_leg_profile
 from tracking.images import exif_time, read_pixels, times_from_table, video_frames
-from zebro_lab.annotations import read_annotations
-from zebro_lab.camera_file import read_camera_file
-from zebro_lab.checkpoint import load_checkpoint
-from zebro_lab.columns import read_columns
-from zebro_lab.errors import ZebroLabError
-from zebro_lab.experiment_journal import JOURNAL_FILE, read_journal
-from zebro_lab.floor_file import read_floor_file
-from zebro_lab.foreign_track import read_tum, track_of_foreign_table
-from zebro_lab.import_columns import ForeignColumns
-from zebro_lab.imu_log import imu_of_table
-from zebro_lab.leg_log import ANGLES, read_leg_log
-from zebro_lab.log_writer import LogWriter
-from zebro_lab.path_band import DRAWS, read_draws
-from zebro_lab.photo_sequence import upright_size
-from zebro_lab.plan_file import read_plan
-from zebro_lab.provenance import file_hash
-from zebro_lab.raw_log import read_raw_log
-from zebro_lab.report_page import render_report
-from zebro_lab.report_sources import find_sources
-from zebro_lab.robot_file import RobotFile, read_robot_file, render_robot_file
-from zebro_lab.ros_log import read_messages
-from zebro_lab.run_manifest import read_manifest
-from zebro_lab.slip_argument import Slip, parse_slip
-from zebro_lab.slip_draws import POSTERIOR, law_draws
-from zebro_lab.slip_rig_log import SlipRigTable, read_log, write_log
-from zebro_lab.stages.runs import list_runs
-from zebro_lab.stream_views import LegsView
-from zebro_lab.table_files import read_table_file
-from zebro_lab.tables import read_rig_data
-from zebro_lab.track_file import read_track
-from zebro_lab.track_folder import read_track_manifest
-from zebro_lab.walk_folder import read_walk_manifest
-from zebro_lab.walks_folder import SCHEMA, describe_legs, read_walks_beside
+from zebro_lab.calibration.checkpoint import load_checkpoint
+from zebro_lab.calibration.rig_data import read_rig_data
+from zebro_lab.calibration.slip_argument import Slip, parse_slip
+from zebro_lab.calibration.slip_draws import POSTERIOR, law_draws
+from zebro_lab.calibration.walks_folder import SCHEMA, describe_legs, read_walks_beside
+from zebro_lab.exchange.import_columns import ForeignColumns
+from zebro_lab.experiment.journal import JOURNAL_FILE, read_journal
+from zebro_lab.experiment.plan_file import read_plan
+from zebro_lab.files.errors import ZebroLabError
+from zebro_lab.files.provenance import file_hash
+from zebro_lab.mcap.log_writer import LogWriter
+from zebro_lab.mcap.raw_log import read_raw_log
+from zebro_lab.mcap.ros_log import read_messages
+from zebro_lab.mcap.slip_rig_log import SlipRigTable, read_log, write_log
+from zebro_lab.mcap.stream_views import LegsView
+from zebro_lab.report.page import render_report
+from zebro_lab.report.sources import find_sources
+from zebro_lab.robot.imu_log import imu_of_table
+from zebro_lab.robot.leg_log import ANGLES
+from zebro_lab.robot.robot_file import RobotFile, read_robot_file, render_robot_file
+from zebro_lab.runs.legs import read_leg_log
+from zebro_lab.runs.manifest import read_manifest
+from zebro_lab.runs.stage import list_runs
+from zebro_lab.tables.columns import read_columns
+from zebro_lab.tables.table_files import read_table_file
+from zebro_lab.track.annotations import read_annotations
+from zebro_lab.track.camera_file import read_camera_file
+from zebro_lab.track.file import read_track
+from zebro_lab.track.floor_file import read_floor_file
+from zebro_lab.track.folder import read_track_manifest
+from zebro_lab.track.foreign import read_tum, track_of_foreign_table
+from zebro_lab.track.photo_sequence import upright_size
+from zebro_lab.walk.folder import read_walk_manifest
+from zebro_lab.walk.path_band import DRAWS, read_draws
 
 Take = Callable[[Path], object]
 Check = Callable[[bytes], object]

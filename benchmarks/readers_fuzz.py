@@ -29,7 +29,7 @@ from benchmarks.fuzzed_readers import Reader, readers
 from model.errors import ModelError
 from rig.errors import RigError
 from tracking.errors import TrackingError
-from zebro_lab.errors import ZebroLabError
+from zebro_lab.files.errors import ZebroLabError
 
 DOCUMENTED = (ZebroLabError, RigError, TrackingError, ModelError)
 LONGEST = 10.0

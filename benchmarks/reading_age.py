@@ -54,7 +54,7 @@ from rig.slip_rig.simulated_board import SimulatedBoard
 from rig.slip_rig.simulated_drives import SimulatedDrives
 from rig.slip_rig.simulated_load_cell import SimulatedLoadCell
 from rig.slip_rig.sweep import SweepPlan
-from zebro_lab.plan_file import read_plan
+from zebro_lab.experiment.plan_file import read_plan
 
 PROJECT = Path(__file__).parents[1]
 TOP_SPEED = 12.0
@@ -158,7 +158,7 @@ def fitting(wanted: bool) -> Iterator[None]:
         yield
         return
     with tempfile.TemporaryDirectory() as folder:
-        fit = "from zebro_lab.cli.calibrate import main; main()"
+        fit = "from zebro_lab.main import calibrate_slip; calibrate_slip()"
         once = f"{sys.executable} -c '{fit}' datasets/rig-sim --out {folder}/c$((++i))"
         process = subprocess.Popen(
             ["bash", "-c", f"while true; do {once}; done"], cwd=PROJECT, process_group=0,

@@ -28,14 +28,14 @@ from typing import Final
 
 import numpy as np
 
-from zebro_lab.raw_log import read_raw_log
+from zebro_lab.mcap.raw_log import read_raw_log
 
 SLOW_FSYNC: Final = 3.0
 COMMAND: Final = """
 import os, sys, time
 real, slow = os.fsync, float(sys.argv.pop(1))
 os.fsync = lambda file: (time.sleep(slow), real(file))[1]
-from zebro_lab.cli.app import main
+from zebro_lab.main import main
 main()
 """
 

@@ -19,9 +19,9 @@ import time
 from collections import Counter
 from pathlib import Path
 
+from zebro_lab.files.provenance import file_hash
 from zebro_lab.files.replacement import previous_of, settle
 from zebro_lab.files.result_folder import MANIFEST, ResultKind, result_folder
-from zebro_lab.provenance import file_hash
 
 KIND = ResultKind("kill-trial", "result_kills", ("numbers.bin", "more.bin"))
 NOTES = "notes.txt"

@@ -24,10 +24,10 @@ import numpy as np
 
 from rig.experiment.control import Control
 from rig.experiment.watcher import NobodyWatches
-from zebro_lab.experiment_journal import JournalWriter
-from zebro_lab.run_folder import find_runs, read_slip_rig_run
-from zebro_lab.run_manifest import read_manifest
-from zebro_lab.stages.rig_run import RigRunRequest, run_experiment
+from zebro_lab.experiment.journal import JournalWriter
+from zebro_lab.experiment.stage import RigRunRequest, run_experiment
+from zebro_lab.runs.folder import find_runs, read_slip_rig_run
+from zebro_lab.runs.manifest import read_manifest
 
 PLAN: Final = """
 schema = 1

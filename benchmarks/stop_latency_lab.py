@@ -22,12 +22,12 @@ from typing import Any, Final, NoReturn
 
 from rig.links import can, serial, slcan, udp  # noqa: F401 - forked with it
 from rig.slip_rig import board, drives, load_cell  # noqa: F401
-from zebro_lab.cli.app import main
-from zebro_lab.cli.rig_screen import ExperimentScreen
+from zebro_lab.experiment import stage as rig_run  # noqa: F401
 from zebro_lab.experiment.keyboard import Keyboard
-from zebro_lab.log_writer import LogWriter
-from zebro_lab.recorder import RunRecorder
-from zebro_lab.stages import rig_run  # noqa: F401
+from zebro_lab.experiment.screen import ExperimentScreen
+from zebro_lab.main import main
+from zebro_lab.mcap.log_writer import LogWriter
+from zebro_lab.recording.recorder import RunRecorder
 
 DEADLY_KEY: Final = b"~"
 """What ends the keyboard's thread where that is planted."""

@@ -37,7 +37,7 @@ from rig.slip_rig.sweep import (
     draw_imperfections,
     simulate_sweep,
 )
-from zebro_lab.tables import read_rig_data
+from zebro_lab.calibration.rig_data import read_rig_data
 
 SEED = 2020
 LOAD_CELL = LoadCell(zero_stability=0.1, gain_sd=0.005, bias_sd=0.05, crosstalk_sd=0.005)

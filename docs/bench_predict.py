@@ -25,7 +25,7 @@ from bench import machine, table
 from model.gait import tripod_angles, tripod_reference
 from model.robot import GRAVITY, Robot
 from model.walk.ensemble import WalkDraw, planar_walk
-from zebro_lab.slip_argument import parse_slip
+from zebro_lab.calibration.slip_argument import parse_slip
 
 Side: TypeAlias = Literal["left", "right"]
 

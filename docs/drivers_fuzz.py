@@ -38,8 +38,8 @@ from rig.zebro.registers import SYNC, DumpLegs, PolledLegs
 from rig.zebro.serial import PacketLegs, leg_body
 from rig.zebro.simulated import CanRobot, PacketRobot, PolledRobot
 from rig.zebro.simulated_legs import SimulatedLegs
-from zebro_lab.raw_log import decode_raw, encode_raw
-from zebro_lab.slip_rig_log import decode_block, encode_block
+from zebro_lab.mcap.raw_log import decode_raw, encode_raw
+from zebro_lab.mcap.slip_rig_log import decode_block, encode_block
 
 LEGS = load_leg_profile("zebro-100-serial")
 CAN_LEGS = load_leg_profile("zebro-100-can")

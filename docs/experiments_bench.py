@@ -14,8 +14,8 @@ from rig.errors import LimitExceeded
 from rig.experiment.acquire import Acquisition
 from rig.experiment.control import Control
 from rig.experiment.sink import MemorySink
-from zebro_lab.plan_file import read_plan
-from zebro_lab.rig_at_hand import rig_at_hand
+from zebro_lab.experiment.plan_file import read_plan
+from zebro_lab.experiment.rig_at_hand import rig_at_hand
 
 TRIPS = 200
 PLAN = read_plan(Path(__file__).parents[1] / "examples" / "plan-source.toml")

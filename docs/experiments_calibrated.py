@@ -17,7 +17,7 @@ import numpy as np
 from scipy.stats import chi2
 
 from rig.slip_rig.sweep import SOURCE_LAW, SOURCE_VALUES
-from zebro_lab.calibration_folder import read_slip
+from zebro_lab.calibration.folder import read_slip
 
 PLAN = Path(__file__).parents[1] / "examples" / "plan-source.toml"
 BIN = Path(sys.executable).parent

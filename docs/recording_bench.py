@@ -28,11 +28,11 @@ from rig.slip_rig.rdt import MOST_IN_ONE, RECORD, REQUEST, Request
 from rig.twins import robot_twin
 from rig.zebro.profile import load_leg_profile
 from rig.zebro.serial import PacketLegs
-from zebro_lab.acquisition import Device, acquiring
-from zebro_lab.record_devices import PAUSE, ForceCheck, default_gait
-from zebro_lab.recorder import RunDescription, RunRecorder
-from zebro_lab.run_folder import read_manifest
-from zebro_lab.stream_views import ImuView, LegsView, LoadCellView
+from zebro_lab.mcap.stream_views import ImuView, LegsView, LoadCellView
+from zebro_lab.recording.acquisition import Device, acquiring
+from zebro_lab.recording.devices import PAUSE, ForceCheck, default_gait
+from zebro_lab.recording.recorder import RunDescription, RunRecorder
+from zebro_lab.runs.folder import read_manifest
 
 LEGS = load_leg_profile("zebro-100-serial")
 IMU = load_imu_profile("imu-quaternion-serial")

@@ -45,11 +45,11 @@ from model.gait.reference import SampledReference
 from model.robot import GRAVITY, N_LEGS, Robot
 from model.walk.dynamics import DynamicsOptions
 from model.walk.ensemble import WalkDraw, walk_ensemble
-from zebro_lab.robot_file import ROBOT_FILE, RobotFile, render_robot_file
-from zebro_lab.slip_argument import Slip, parse_slip
-from zebro_lab.tracked_walks import WalkOnFile, read_walk_on_file
-from zebro_lab.validation import RunJudged, judge_run
-from zebro_lab.walk_prediction import fit_walks_on_file, predict_from
+from zebro_lab.calibration.slip_argument import Slip, parse_slip
+from zebro_lab.robot.robot_file import ROBOT_FILE, RobotFile, render_robot_file
+from zebro_lab.validation.judgement import RunJudged, judge_run
+from zebro_lab.walk_fit.prediction import fit_walks_on_file, predict_from
+from zebro_lab.walk_fit.tracked_walks import WalkOnFile, read_walk_on_file
 
 ENGINE = Path(__file__).parents[1] / "datasets" / "walk-sim"
 KEPT = Path(os.environ.get("ZEBRO_LAB_SCRATCH", tempfile.gettempdir())) / "walks-with-a-leg-off"

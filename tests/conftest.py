@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 from hypothesis import settings
 
-import zebro_lab.cli  # noqa: F401 - one BLAS thread, as the commands have
+import zebro_lab.terminal  # noqa: F401 - one BLAS thread, as the commands have
 
 # FFmpeg takes its log level from the first video that any test reads or writes; see tracking's.
 os.environ.setdefault("OPENCV_FFMPEG_LOGLEVEL", "-8")

@@ -37,9 +37,9 @@ from tracking.synthetic import (
     take_photo,
     with_time_stamp,
 )
-from zebro_lab.camera_file import CAMERA_FILE
-from zebro_lab.cli.camera import calibrate
-from zebro_lab.floor_file import FLOOR_FILE, render_floor_file
+from zebro_lab.track.camera.command import calibrate
+from zebro_lab.track.camera_file import CAMERA_FILE
+from zebro_lab.track.floor_file import FLOOR_FILE, render_floor_file
 
 SEED = 2023
 SOURCE = "sim:mujoco-walk"

@@ -14,10 +14,10 @@ from PIL import Image
 from PIL.ExifTags import IFD, Base
 
 from tracking.synthetic import BodyPose, RobotMarker, RobotState, SyntheticCamera, marker_corners
-from zebro_lab.camera_file import read_camera_file
-from zebro_lab.floor_file import read_floor_file
-from zebro_lab.leg_log import read_leg_log
-from zebro_lab.robot_file import read_robot_file
+from zebro_lab.robot.robot_file import read_robot_file
+from zebro_lab.runs.legs import read_leg_log
+from zebro_lab.track.camera_file import read_camera_file
+from zebro_lab.track.floor_file import read_floor_file
 
 FOLDER = Path(__file__).parents[2] / "datasets" / "walk-sim"
 PHOTOS = sorted((FOLDER / "photos").iterdir())

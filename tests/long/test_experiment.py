@@ -23,8 +23,8 @@ from rig.experiment.sink import MemorySink
 from rig.experiment.verdict import measured_slip
 from rig.slip_rig.imperfections import draw_imperfections
 from rig.slip_rig.sweep import SOURCE_LAW, SOURCE_VALUES
-from zebro_lab.plan_file import read_plan
-from zebro_lab.rig_at_hand import rig_at_hand
+from zebro_lab.experiment.plan_file import read_plan
+from zebro_lab.experiment.rig_at_hand import rig_at_hand
 
 pytestmark = pytest.mark.long
 

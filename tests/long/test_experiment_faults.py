@@ -18,11 +18,11 @@ from rig.slip_rig.rdt import SATURATED
 from rig.slip_rig.simulated import SimulatedRig
 from rig.slip_rig.simulated_drives import SimulatedDrives
 from rig.slip_rig.simulated_load_cell import SimulatedLoadCell
-from zebro_lab.experiment_folder import ExperimentFolder
-from zebro_lab.experiment_journal import JOURNAL_FILE, read_journal
-from zebro_lab.run_folder import find_runs, read_manifest
-from zebro_lab.stages.rig_run import RigRunRequest, run_experiment
-from zebro_lab.tables import read_rig_data
+from zebro_lab.calibration.rig_data import read_rig_data
+from zebro_lab.experiment.folder import ExperimentFolder
+from zebro_lab.experiment.journal import JOURNAL_FILE, read_journal
+from zebro_lab.experiment.stage import RigRunRequest, run_experiment
+from zebro_lab.runs.folder import find_runs, read_manifest
 
 pytestmark = pytest.mark.long
 

@@ -18,9 +18,9 @@ from rig.backends import open_rig
 from rig.slip_rig.can_simple import describe_error
 from rig.slip_rig.decode import decode_board, decode_speeds
 from rig.slip_rig.sweep import SOURCE_LAW, SOURCE_VALUES
-from zebro_lab.raw_log import read_raw_log
-from zebro_lab.run_folder import read_slip_rig_run
-from zebro_lab.stages.runs import list_runs
+from zebro_lab.mcap.raw_log import read_raw_log
+from zebro_lab.runs.folder import read_slip_rig_run
+from zebro_lab.runs.stage import list_runs
 
 COMMAND = str(Path(sys.executable).with_name("zebro-lab"))
 KILLS = int(os.environ.get("ZEBRO_LAB_KILLS", "20"))

@@ -21,8 +21,8 @@ from tracking.camera import (
     to_floor,
     undistort,
 )
+from tracking.dictionaries import dictionary_named
 from tracking.errors import CalibrationError
-from tracking.markers.dictionaries import dictionary_named
 
 LENS = Camera(
     (1280, 960),

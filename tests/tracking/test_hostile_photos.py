@@ -15,7 +15,7 @@ import pytest
 
 from tracking.errors import PhotoError, TimesError, TrackingError
 from tracking.images import exif_time, read_pixels, times_from_table, video_frames
-from zebro_lab.photo_sequence import TimeRequest, open_photos, upright_size
+from zebro_lab.track.photo_sequence import TimeRequest, open_photos, upright_size
 
 
 def within_two_seconds(work):

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracking.camera.lens import Array
-from tracking.markers.dictionaries import dictionary_named
+from tracking.dictionaries import dictionary_named
 
 
 @dataclass(frozen=True)

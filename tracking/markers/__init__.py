@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Square markers: what they are and where a picture shows them, to a few hundredths of a pixel."""
 
-from tracking.markers.dictionaries import DICTIONARIES, dictionary_named, guess_dictionary
+from tracking.dictionaries import DICTIONARIES, dictionary_named, guess_dictionary
 from tracking.markers.find import Region, find_markers, neighbourhood
 from tracking.markers.refine import Sighting, refine_corners
 from tracking.markers.square import marker_corners, marker_picture, square_homography

@@ -11,10 +11,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
 
-from zebro_lab.errors import ZebroLabError
-from zebro_lab.experiment_journal import Journal
-from zebro_lab.run_folder import exclude_run, find_runs
-from zebro_lab.run_manifest import RECORDING, RunManifest, read_manifest
+from zebro_lab.experiment.journal import Journal
+from zebro_lab.files.errors import ZebroLabError
+from zebro_lab.runs.folder import exclude_run, find_runs
+from zebro_lab.runs.manifest import RECORDING, RunManifest, read_manifest
 
 UNJUDGED: Final = "it ended before it was judged; its point is measured again"
 """Why a run is left out until its end record says what it is worth."""

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.lib import format as npy
 from numpy.typing import NDArray
 
-from zebro_lab.errors import DataError
+from zebro_lab.files.errors import DataError
 from zebro_lab.files.opening import open_file, parsing
 
 MOST_BYTES: Final = 256 << 20

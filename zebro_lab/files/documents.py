@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from rig.toml_text import MOST_BYTES, parse_toml, require_bounded
-from zebro_lab.errors import DataError, SettingsError
+from zebro_lab.files.errors import DataError, SettingsError
 from zebro_lab.files.opening import Fault, parsing, read_bytes, read_text
 
 MOST_JSON: Final = 8 << 20

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from zebro_lab.errors import DataError
+from zebro_lab.files.errors import DataError
 from zebro_lab.files.opening import open_file, parsing
 
 if TYPE_CHECKING:

@@ -12,7 +12,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import BinaryIO, Final
 
-from zebro_lab.errors import DataError, NotFound, SettingsError, ZebroLabError
+from zebro_lab.files.errors import DataError, NotFound, SettingsError, ZebroLabError
 
 Fault = type[DataError] | type[SettingsError]
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
-from zebro_lab.errors import AlreadyExists, NotFound
+from zebro_lab.files.errors import AlreadyExists, NotFound
 from zebro_lab.files.result_folder import MANIFEST
 
 _HEAD: Final = 1 << 16

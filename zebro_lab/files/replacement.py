@@ -24,8 +24,8 @@ from pathlib import Path
 from typing import IO, Final
 
 from rig.exclusive import try_lock
-from zebro_lab.atomic import sync_folder
-from zebro_lab.errors import AlreadyExists, DataError
+from zebro_lab.files.atomic import sync_folder
+from zebro_lab.files.errors import AlreadyExists, DataError
 
 PREVIOUS: Final = ".previous"
 PATIENCE: Final = 10.0

@@ -19,11 +19,11 @@ from typing import Any, Final
 import numpy as np
 
 from rig.exclusive import try_lock
-from zebro_lab.atomic import draft_name, nearest_folder, sync_files
-from zebro_lab.errors import AlreadyExists, NotWritten, ZebroLabError
+from zebro_lab.files.atomic import draft_name, nearest_folder, sync_files
+from zebro_lab.files.errors import AlreadyExists, NotWritten, ZebroLabError
+from zebro_lab.files.folder_manifest import read_json_object
+from zebro_lab.files.provenance import file_hash, software
 from zebro_lab.files.replacement import replace_folder, require_free_previous, settle
-from zebro_lab.folder_manifest import read_json_object
-from zebro_lab.provenance import file_hash, software
 
 MANIFEST: Final = "manifest.json"
 _GLOB: Final = "*"

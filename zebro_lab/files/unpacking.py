@@ -10,7 +10,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import IO, Final
 
-from zebro_lab.errors import DataError
+from zebro_lab.files.errors import DataError
 from zebro_lab.files.opening import open_file
 
 FREELY: Final = 64 << 20

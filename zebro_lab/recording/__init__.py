@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: MIT
-"""What a recording is made of: its threads, its folder on the disk, its display."""
+"""Record devices into run folders: acquisition, recorder, simulated twins, checks of a machine."""

@@ -6,7 +6,7 @@ import time
 from collections.abc import Callable
 from typing import Final, Generic, TypeVar
 
-from zebro_lab.errors import RecordingError
+from zebro_lab.files.errors import RecordingError
 from zebro_lab.recording.threads import needing_threads
 
 PATIENCE: Final = 1.0

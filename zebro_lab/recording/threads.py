@@ -4,7 +4,7 @@
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-from zebro_lab.errors import RecordingError
+from zebro_lab.files.errors import RecordingError
 
 
 @contextmanager

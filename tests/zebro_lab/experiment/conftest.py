@@ -9,8 +9,8 @@ import pytest
 
 from rig.experiment.control import Control
 from rig.experiment.watcher import NobodyWatches
-from zebro_lab.experiment_journal import JOURNAL_FILE
-from zebro_lab.stages.rig_run import RigRunRequest, run_experiment
+from zebro_lab.experiment.journal import JOURNAL_FILE
+from zebro_lab.experiment.stage import RigRunRequest, run_experiment
 
 SOURCE_PLAN = Path(__file__).parents[3] / "examples" / "plan-source.toml"
 SMALL = {

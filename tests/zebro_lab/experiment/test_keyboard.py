@@ -11,7 +11,7 @@ import pytest
 from rich.console import Console
 
 from rig.experiment.control import Control
-from zebro_lab.cli.rig_screen import experiment_screen
+from zebro_lab.experiment.screen import experiment_screen
 
 
 @pytest.fixture(name="terminal")

@@ -7,8 +7,8 @@ from rig.errors import RigError
 from rig.experiment.acquire import Acquisition
 from rig.experiment.control import Control
 from rig.safety import StopCategory
-from zebro_lab.errors import SettingsError
-from zebro_lab.experiment_journal import JOURNAL_FILE, JournalWriter
+from zebro_lab.experiment.journal import JOURNAL_FILE, JournalWriter
+from zebro_lab.files.errors import SettingsError
 
 
 def stop_by_emergency(lab, plan, data, reason="planted", action=lambda: None):

@@ -7,12 +7,12 @@ from collections import Counter
 
 import pytest
 
-from zebro_lab.run_folder import find_runs, read_manifest
-from zebro_lab.run_manifest import MANIFEST_FILE
+from zebro_lab.runs.folder import find_runs, read_manifest
+from zebro_lab.runs.manifest import MANIFEST_FILE
 
 KILLED_BEFORE_A_POINTS_LINE = """
 import os, signal, sys
-from zebro_lab.experiment_journal import JournalWriter
+from zebro_lab.experiment.journal import JournalWriter
 append, left = JournalWriter.append, [int(sys.argv.pop(1))]
 
 def killed(self, kind, text, **more):
@@ -23,7 +23,7 @@ def killed(self, kind, text, **more):
     return append(self, kind, text, **more)
 
 JournalWriter.append = killed
-from zebro_lab.cli.app import main
+from zebro_lab.main import main
 main()
 """
 
@@ -65,7 +65,7 @@ def killed_run_at_exclusion(plan, data):
     """Run a plan in a process that is killed right after the first run's end record."""
     code = """
 import os, signal
-from zebro_lab import recorder
+from zebro_lab.recording import recorder
 write = recorder.write_manifest
 
 def killed(folder, manifest):
@@ -74,7 +74,7 @@ def killed(folder, manifest):
         os.kill(os.getpid(), signal.SIGKILL)
 
 recorder.write_manifest = killed
-from zebro_lab.cli.app import main
+from zebro_lab.main import main
 main()
 """
     arguments = ["rig", "run", str(plan), "--rig", "sim", "--fast", "--data", str(data)]

@@ -14,11 +14,11 @@ from rig.errors import RigError
 from rig.experiment.control import Control
 from rig.experiment.sink import SinkFailed
 from rig.experiment.supervision import supervised
-from zebro_lab import experiment_folder
-from zebro_lab.experiment_folder import ExperimentFolder
-from zebro_lab.experiment_journal import JOURNAL_FILE, JournalWriter
-from zebro_lab.recorder import RunDescription
-from zebro_lab.run_folder import find_runs, read_manifest
+from zebro_lab.experiment import folder as experiment_folder
+from zebro_lab.experiment.folder import ExperimentFolder
+from zebro_lab.experiment.journal import JOURNAL_FILE, JournalWriter
+from zebro_lab.recording.recorder import RunDescription
+from zebro_lab.runs.folder import find_runs, read_manifest
 
 PATIENCE = 30.0
 """Longest time that a run of the small plan may take on a busy machine [s]."""

@@ -22,15 +22,15 @@ from mcap.writer import CompressionType, Writer
 from model.slip.curve import SlipCurve
 from model.slip.definition import SlipDefinition
 from model.slip.laws import slip_law
-from zebro_lab.errors import DataError, ZebroLabError
-from zebro_lab.foreign_track import read_tum
-from zebro_lab.path_band import DRAWS, read_draws
-from zebro_lab.raw_log import COUNTS_NAME, read_raw_log
-from zebro_lab.slip_argument import Slip
-from zebro_lab.slip_draws import POSTERIOR, law_draws
-from zebro_lab.slip_rig_log import SCHEMA_NAME, TOPIC, read_log
-from zebro_lab.table_files import read_table_file
-from zebro_lab.tables import read_rig_data
+from zebro_lab.calibration.rig_data import read_rig_data
+from zebro_lab.calibration.slip_argument import Slip
+from zebro_lab.calibration.slip_draws import POSTERIOR, law_draws
+from zebro_lab.files.errors import DataError, ZebroLabError
+from zebro_lab.mcap.raw_log import COUNTS_NAME, read_raw_log
+from zebro_lab.mcap.slip_rig_log import SCHEMA_NAME, TOPIC, read_log
+from zebro_lab.tables.table_files import read_table_file
+from zebro_lab.track.foreign import read_tum
+from zebro_lab.walk.path_band import DRAWS, read_draws
 
 MEGABYTE = 1 << 20
 
@@ -281,8 +281,8 @@ def test_a_fifo_named_as_data_does_not_hang(reader, tmp_path):
 def test_wrong_statistics_of_a_parquet_column_are_an_error_and_no_end_of_the_process(tmp_path):
     """A histogram of levels that is too long ends pyarrow where a column is asked for."""
     code = (
-        "import sys; from pathlib import Path; from zebro_lab.errors import DataError\n"
-        "from zebro_lab.table_files import read_table_file\n"
+        "import sys; from pathlib import Path; from zebro_lab.files.errors import DataError\n"
+        "from zebro_lab.tables.table_files import read_table_file\n"
         "try: read_table_file(Path(sys.argv[1]))\n"
         "except DataError as error: print(error)"
     )

@@ -11,16 +11,16 @@ import pytest
 
 from rig.errors import ProfileError, RigError
 from rig.zebro.profile import load_leg_profile
-from zebro_lab.annotations import read_annotations
-from zebro_lab.calibration_folder import read_slip
-from zebro_lab.camera_file import read_camera_file
-from zebro_lab.columns import read_columns
-from zebro_lab.errors import ZebroLabError
-from zebro_lab.floor_file import read_floor_file
-from zebro_lab.plan_file import read_plan
-from zebro_lab.robot_file import read_robot_file
-from zebro_lab.run_manifest import read_manifest
-from zebro_lab.slip_argument import parse_slip
+from zebro_lab.calibration.folder import read_slip
+from zebro_lab.calibration.slip_argument import parse_slip
+from zebro_lab.experiment.plan_file import read_plan
+from zebro_lab.files.errors import ZebroLabError
+from zebro_lab.robot.robot_file import read_robot_file
+from zebro_lab.runs.manifest import read_manifest
+from zebro_lab.tables.columns import read_columns
+from zebro_lab.track.annotations import read_annotations
+from zebro_lab.track.camera_file import read_camera_file
+from zebro_lab.track.floor_file import read_floor_file
 
 SLIP = """
 schema = 1

@@ -15,16 +15,16 @@ import pytest
 from PIL import Image
 from PIL.PngImagePlugin import PngInfo
 
-from zebro_lab.errors import ZebroLabError
 from zebro_lab.files import replacement
+from zebro_lab.files.errors import ZebroLabError
 from zebro_lab.files.result_folder import require_replaceable
-from zebro_lab.run_folder import write_slip_rig_run
-from zebro_lab.slip_rig_log import SlipRigTable
-from zebro_lab.stages.annotate import draw_grid
-from zebro_lab.stages.compare import CompareRequest, compare
-from zebro_lab.stages.plot_run import plot_run
-from zebro_lab.stages.report import ReportRequest, report
-from zebro_lab.track_folder import TRACKED, read_track_manifest, track_folder
+from zebro_lab.mcap.slip_rig_log import SlipRigTable
+from zebro_lab.report.stage import ReportRequest, report
+from zebro_lab.runs.folder import write_slip_rig_run
+from zebro_lab.runs.plot_stage import plot_run
+from zebro_lab.track.annotate_stage import draw_grid
+from zebro_lab.track.folder import TRACKED, read_track_manifest, track_folder
+from zebro_lab.validation.compare.stage import CompareRequest, compare
 
 START = datetime(2026, 3, 4, 5, 6, 7, tzinfo=UTC)
 SLIP_TOML = """

@@ -22,8 +22,8 @@ from zebro_lab.plots.walk_legs import (
     traction_forces,
 )
 from zebro_lab.plots.walk_path import motion, orientation, path_with_snapshots
-from zebro_lab.walk_folder import PICTURES
-from zebro_lab.walk_pictures import draw_walk, last_cycles
+from zebro_lab.walk.folder import PICTURES
+from zebro_lab.walk.pictures import draw_walk, last_cycles
 
 FIGURES = {
     "path": partial(path_with_snapshots, robot=Robot()),

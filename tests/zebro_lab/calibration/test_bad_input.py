@@ -1,0 +1,302 @@
+# SPDX-License-Identifier: MIT
+"""Every fault of the input is one line that names the place and what to try."""
+
+import gzip
+import re
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from zebro_lab.calibration.rig_data import read_rig_data
+from zebro_lab.files.errors import DataError, ZebroLabError
+
+N = 30
+
+
+def good() -> pd.DataFrame:
+    """A table without fault."""
+    return pd.DataFrame({
+        "t": np.arange(N) * 0.01,
+        "slip_ratio": np.linspace(0, 0.3, N),
+        "normal_force": np.full(N, 5.0),
+        "traction_force": np.linspace(0, 2, N),
+        "slip_definition": "material",
+    })  # fmt: skip
+
+
+def with_speeds() -> pd.DataFrame:
+    return good().drop(columns=["slip_ratio", "slip_definition"]).assign(
+        omega_leg=12.0, omega_ground=np.linspace(3, 2, N), radius_leg=0.035, radius_ground=0.12
+    )  # fmt: skip
+
+
+def put(column: str, row: int, value: object) -> pd.DataFrame:
+    """Put a value into a data row, counted from 1."""
+    table = good().astype(object)
+    table.loc[row - 1, column] = value
+    return table
+
+
+CSV_FAULTS: dict[str, tuple[pd.DataFrame, str]] = {
+    "missing column": (
+        good().rename(columns={"normal_force": "Normal Force"}),
+        "column 'normal_force': missing; did you mean 'Normal Force'?",
+    ),
+    "missing slip": (
+        good().drop(columns=["slip_ratio", "slip_definition"]),
+        "no slip: expected 'slip_ratio' with its definition, or 'omega_leg' and 'omega_ground'",
+    ),
+    "one speed": (
+        with_speeds().drop(columns="omega_ground"),
+        "column 'omega_ground': missing; did you mean 'omega_leg'",
+    ),
+    "nan": (
+        put("traction_force", 7, None),
+        "column 'traction_force', row 7 (line 8): 1 of 30 rows are not finite numbers",
+    ),
+    "infinite": (put("normal_force", 3, "-inf"), '[rows] keep = ["`normal_force` > -1e9"]'),
+    "nan in time": (put("t", 4, None), "column 't', row 4 (line 5)"),
+    "text": (
+        put("normal_force", 5, "n/m"),
+        "column 'normal_force', row 5 (line 6): 'n/m' is not a number; correct or delete",
+    ),
+    "row of units": (put("normal_force", 1, "[N]"), "row 1 (line 2): '[N]' is not a number; del"),
+    "negative load": (
+        put("normal_force", 12, -0.3),
+        "column 'normal_force', row 12 (line 13): normal force is -0.3 N, expected more than 0",
+    ),
+    "zero load": (put("normal_force", 12, 0), "normal force is 0 N"),
+    "wrong sign": (good().assign(normal_force=-5.0), "sign = -1"),
+    "constant slip": (good().assign(slip_ratio=0.1), "slip ratio is 0.1 in all 30 rows"),
+    "constant slip seen by noisy sensors": (
+        pd.DataFrame(
+            {
+                "t": np.arange(2000) * 0.01,
+                "slip_ratio": np.random.default_rng(5).normal(0.1, 0.006, 2000),
+                "normal_force": 5.0,
+                "traction_force": 1.0,
+                "slip_definition": "material",
+            }
+        ),
+        "within its sensors' noise",
+    ),
+    "two definitions in a file": (
+        put("slip_definition", 9, "travel"),
+        "column 'slip_definition', row 9 (line 10): two slip definitions in one file",
+    ),
+    "unknown definition": (
+        good().assign(slip_definition="materiel"),
+        "unknown slip definition 'materiel'; did you mean 'material'",
+    ),
+    "no definition": (
+        good().drop(columns="slip_definition"),
+        "column 'slip_ratio': slip ratio without its definition",
+    ),
+    "slip in percent": (
+        good().assign(slip_ratio=np.linspace(0, 30, N)),
+        "row 3 (line 4): slip ratio is 2.06897, outside what 'material' slip can be",
+    ),
+    "repeated time": (
+        put("t", 6, 0.04),
+        "column 't', row 6 (line 7): time 0.04 s is given twice in one run",
+    ),
+    "time backwards": (put("t", 6, 0.0), "time runs backwards to 0 s; if a new run begins here"),
+    "zero radius": (
+        with_speeds().assign(radius_leg=0.0),
+        "column 'radius_leg', row 1 (line 2): radius is 0 m, expected more than 0",
+    ),
+    "no radius": (
+        with_speeds().drop(columns="radius_ground"),
+        "column 'radius_ground': missing, needed for slip from disc speeds",
+    ),
+    "standing disc": (
+        with_speeds().assign(omega_leg=0.0),
+        "column 'omega_leg', row 1 (line 2): leg disc stands still (0 rad/s)",
+    ),
+    "few samples": (good().head(3), "3 samples in all, expected at least 20"),
+    "header only": (good().head(0), "has a header but no rows"),
+}
+
+
+def message_of(path: Path, **options) -> str:
+    """Read, expect an error, and return its one line."""
+    with pytest.raises(ZebroLabError) as caught:
+        read_rig_data([path], **options)
+    assert "\n" not in str(caught.value)
+    return str(caught.value)
+
+
+@pytest.mark.parametrize("fault", CSV_FAULTS)
+def test_fault_in_a_table_is_named(tmp_path, fault):
+    table, expected = CSV_FAULTS[fault]
+    path = tmp_path / "rig.csv"
+    table.to_csv(path, index=False)
+    message = message_of(path)
+    assert expected in message
+    assert message.startswith(str(path))
+
+
+def test_error_carries_its_values(tmp_path):
+    put("normal_force", 12, -0.3).to_csv(tmp_path / "rig.csv", index=False)
+    with pytest.raises(DataError) as caught:
+        read_rig_data([tmp_path])
+    error = caught.value
+    assert (error.file, error.column, error.row) == (tmp_path / "rig.csv", "normal_force", 12)
+    assert (error.line, error.value, error.unit) == (13, -0.3, "N")
+
+
+def test_line_is_right_below_comments_and_blank_lines(tmp_path):
+    lines = put("normal_force", 5, "bad").to_csv(index=False).splitlines()
+    path = tmp_path / "rig.csv"
+    path.write_text("\n".join(["# a", "", *lines[:3], "", *lines[3:]]))
+    found = re.search(r"row 5 \(line (\d+)\)", message_of(path))
+    assert found
+    assert "bad" in path.read_text().splitlines()[int(found[1]) - 1]
+
+
+COLUMN_FAULTS = {
+    "unknown unit": ("[columns.normal_force]\nunit = 'Newtom'", "unknown unit 'Newtom'"),
+    "wrong dimension": (
+        "[columns.normal_force]\nunit = 'mm'",
+        "columns.normal_force.unit: unit 'mm' cannot be converted to N",
+    ),
+    "mapped column missing": (
+        "[columns.normal_force]\nname = 'FZ'",
+        "column 'FZ': missing; known: 't', 'slip_ratio'",
+    ),
+    "zero constant radius": (
+        "[constants]\nradius_leg = 0\nradius_ground = 0.12",
+        "column 'radius_leg': radius is 0 m, expected more than 0; correct it in [constants]",
+    ),
+    "rule column missing": ("runs.by = ['set']", "column 'set': missing"),
+    "condition column missing": ("rows.keep = ['beta == 0']", "column 'beta': missing"),
+}
+
+
+@pytest.mark.parametrize("fault", COLUMN_FAULTS)
+def test_fault_in_the_column_map_is_named(tmp_path, fault):
+    text, expected = COLUMN_FAULTS[fault]
+    (tmp_path / "columns.toml").write_text(text)
+    table = with_speeds().drop(columns=["radius_leg", "radius_ground"])
+    (table if "radius" in fault else good()).to_csv(tmp_path / "rig.csv", index=False)
+    assert expected in message_of(tmp_path)
+
+
+def test_radius_given_twice_is_refused(tmp_path):
+    (tmp_path / "columns.toml").write_text("constants.radius_leg = 0.035")
+    with_speeds().to_csv(tmp_path / "rig.csv", index=False)
+    assert "given twice" in message_of(tmp_path)
+
+
+def test_definition_stated_differently_in_map_and_file_is_refused(tmp_path):
+    (tmp_path / "columns.toml").write_text("columns.slip_ratio.definition = 'travel'")
+    good().to_csv(tmp_path / "rig.csv", index=False)
+    assert "slip definition is 'material' here and 'travel' in" in message_of(tmp_path)
+
+
+def test_two_definitions_in_two_files_are_refused(tmp_path):
+    good().to_csv(tmp_path / "a.csv", index=False)
+    good().assign(slip_definition="travel").to_csv(tmp_path / "b.csv", index=False)
+    message = message_of(tmp_path)
+    assert message.startswith(str(tmp_path / "b.csv"))
+    assert f"slip is 'travel' here and 'material' in {tmp_path / 'a.csv'}" in message
+    other = good().assign(slip_definition="travel").eval("normal_force = 1.01 * normal_force")
+    other.to_csv(tmp_path / "b.csv", index=False)
+    assert len(read_rig_data([tmp_path], slip_definition="travel").samples) == 2 * N
+
+
+def test_slip_outside_what_conversion_allows_names_file_and_row(tmp_path):
+    path = tmp_path / "rig.csv"
+    put("slip_ratio", 8, 1.05).to_csv(path, index=False)
+    message = message_of(path, slip_definition="travel")
+    assert message.startswith(f"{path}, column 'slip_ratio', row 8 (line 9): slip ratio 1.05 is")
+
+
+def test_slip_infinite_in_the_asked_definition_names_the_row(tmp_path):
+    path = tmp_path / "rig.csv"
+    put("slip_ratio", 8, 1.0).to_csv(path, index=False)
+    message = message_of(path, slip_definition="travel")
+    assert "row 8 (line 9): material slip 1 is infinite as 'travel'" in message
+
+
+def _truncated_gzip() -> bytes:
+    return gzip.compress(good().to_csv(index=False).encode())[:-40]
+
+
+RAW_FAULTS: dict[str, tuple[str, Callable[[], bytes], str]] = {
+    "empty": ("a.csv", lambda: b"", "is empty"),
+    "blank": ("a.csv", lambda: b"\n\n", "is empty"),
+    "binary": ("a.csv", lambda: bytes(range(256)) * 8, "binary file"),
+    "latin-1": ("a.csv", lambda: "t,Kraft µN\n1,2\n".encode("latin-1"), "is not UTF-8 text"),
+    "utf-16": ("a.csv", lambda: "t,F\n1,2\n".encode("utf-16"), "UTF-16"),
+    "parquet named csv": ("a.csv", lambda: b"PAR1....", "a Parquet file; name it .parquet"),
+    "spreadsheet named csv": ("a.csv", lambda: b"PK\x03\x04", "a zip or spreadsheet file"),
+    "gzip named csv": ("a.csv", _truncated_gzip, "a gzip file; name it .csv.gz"),
+    "csv named gzip": ("a.csv.gz", lambda: b"t,F\n1,2\n", "is not a whole gzip file"),
+    "truncated gzip": ("a.csv.gz", _truncated_gzip, "is not a whole gzip file"),
+    "csv named parquet": ("a.parquet", lambda: b"t,F\n1,2\n", "is not a whole Parquet file"),
+    "no header": ("a.csv", lambda: b"0.1,0.2\n0.3,0.4\n", "has no names"),
+    "decimal commas between commas": (
+        "a.csv",
+        lambda: b"t,normal_force\n0,1,5,2\n0,2,5,3\n",
+        "row 1 (line 2): 4 cells under a header of 2; do decimal commas separate cells?",
+    ),
+    "ambiguous separators": ("a.csv", lambda: b"a,b;c\n1,2;3\n", "commas or semicolons"),
+    "surplus cell far down": (
+        "a.csv",
+        lambda: b"t,F\n" + b"1,2\n" * 20_000 + b"1,2,3\n",
+        "is no regular table",
+    ),
+    "open quote": ("a.csv", lambda: b't,F\n1,"2\n3,4\n', "is no regular table"),
+}
+
+
+@pytest.mark.parametrize("fault", RAW_FAULTS)
+def test_file_that_is_no_table_is_named(tmp_path, fault):
+    name, content, expected = RAW_FAULTS[fault]
+    (tmp_path / name).write_bytes(content())
+    message = message_of(tmp_path / name)
+    assert expected in message
+    assert message.startswith(str(tmp_path / name))
+
+
+def test_truncated_parquet_is_named(tmp_path):
+    path = tmp_path / "rig.parquet"
+    good().to_parquet(path)
+    path.write_bytes(path.read_bytes()[:-100])
+    assert f"{path}: is not a whole Parquet file" in message_of(path)
+
+
+def test_dates_in_parquet_are_no_numbers(tmp_path):
+    path = tmp_path / "rig.parquet"
+    good().assign(t=pd.date_range("2026-01-01", periods=N)).to_parquet(path)
+    assert "column 't': holds dates, expected numbers" in message_of(path)
+
+
+def test_decimal_comma_mixed_with_points_names_the_cell(tmp_path):
+    path = tmp_path / "rig.csv"
+    put("normal_force", 4, "5,1").to_csv(path, index=False, sep=";")
+    assert "row 4 (line 5): '5,1' is not a number; write decimals" in message_of(path)
+
+
+def test_repeated_header_is_refused_only_where_it_is_needed(tmp_path):
+    path = tmp_path / "rig.csv"
+    text = good().assign(x=1, y=2).to_csv(index=False)
+    path.write_text(text.replace("x,y\n", "x,x\n"))
+    assert len(read_rig_data([path]).samples) == N
+    path.write_text(text.replace("x,y\n", "t,x\n"))
+    assert "column 't': heads more than one column" in message_of(path)
+
+
+def test_empty_folder_and_wrong_paths_are_named(tmp_path):
+    assert f"{tmp_path}: holds no data; expected files ending in .csv" in message_of(tmp_path)
+    assert "absent: no such file or folder" in message_of(tmp_path / "absent")
+    (tmp_path / "rig.xlsx").write_bytes(b"PK")
+    assert "is no table file; expected one that ends in" in message_of(tmp_path / "rig.xlsx")
+    (tmp_path / "slip.toml").write_text("")
+    assert "is a calibration's output" in message_of(tmp_path)
+    with pytest.raises(ZebroLabError, match="no data named"):
+        read_rig_data([])

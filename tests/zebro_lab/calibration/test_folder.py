@@ -1,0 +1,94 @@
+# SPDX-License-Identifier: MIT
+"""`slip.toml` read back, and every way in which it may not be one."""
+
+import numpy as np
+import pytest
+
+from model.slip import Brush, MagicFormula
+from zebro_lab.calibration.folder import _distinct_names, read_slip
+from zebro_lab.files.errors import DataError
+
+GOOD = """
+schema = 1
+slip_definition = "material"
+law = { name = "magic-formula", curvature = -0.5, load_sensitivity = false, reference_load = 1.0 }
+[parameters]
+slip_stiffness = { mean = 20.0 }
+shape = { mean = 1.5 }
+friction = { mean = 0.4 }
+[covariance]
+matrix = [[1.0, 0.0, 0.0], [0.0, 0.01, 0.0], [0.0, 0.0, 0.0001]]
+[tested]
+normal_force = [2.0, 13.0]
+slip_ratio = [0.0, 1.0]
+"""
+
+DAMAGE = {
+    "not TOML": ("schema = 1", "schema 1"),
+    "later schema": ("schema = 1", "schema = 2"),
+    "no schema": ("schema = 1", ""),
+    "unknown law": ("magic-formula", "tragic-formula"),
+    "law without fields": ("law = {", "law = 'brush' # {"),
+    "unknown option": ("reference_load", "reference_lode"),
+    "unknown definition": ('"material"', '"materiel"'),
+    "missing parameter": ("friction = { mean = 0.4 }", ""),
+    "parameter without a mean": ("{ mean = 0.4 }", "0.4"),
+    "text for a number": ("mean = 0.4", "mean = 'big'"),
+    "ragged covariance": ("[1.0, 0.0, 0.0]", "[1.0, 0.0]"),
+    "covariance of other parameters": (", [0.0, 0.0, 0.0001]", ""),
+    "one end of a range": ("[2.0, 13.0]", "[2.0]"),
+}
+
+
+def test_curve_is_read_from_the_file_or_its_folder(tmp_path):
+    (tmp_path / "slip.toml").write_text(GOOD)
+    for path in (tmp_path, tmp_path / "slip.toml"):
+        curve = read_slip(path)
+        assert curve.law == MagicFormula(-0.5)
+        np.testing.assert_array_equal(curve.values, [20.0, 1.5, 0.4])
+        np.testing.assert_array_equal(curve.covariance, np.diag([1.0, 0.01, 0.0001]))
+        assert curve.definition == "material"
+        assert (curve.load_range, curve.slip_range) == ((2.0, 13.0), (0.0, 1.0))
+
+
+def test_every_law_is_read_with_its_options(tmp_path):
+    begin, end = GOOD.index("law ="), GOOD.index("[covariance]")
+    kinetic = """law = { name = "brush", kinetic = true }
+parameters = { slip_stiffness.mean = 20.0, friction.mean = 0.4, kinetic_ratio.mean = 0.8 }
+"""
+    (tmp_path / "slip.toml").write_text(GOOD[:begin] + kinetic + GOOD[end:])
+    assert read_slip(tmp_path).law == Brush(kinetic=True)
+
+
+@pytest.mark.parametrize("damage", DAMAGE)
+def test_damaged_file_is_one_line_that_names_it(tmp_path, damage):
+    found, put = DAMAGE[damage]
+    assert found in GOOD
+    (tmp_path / "slip.toml").write_text(GOOD.replace(found, put, 1))
+    with pytest.raises(DataError) as caught:
+        read_slip(tmp_path)
+    message = str(caught.value)
+    assert message.startswith(str(tmp_path / "slip.toml"))
+    assert "\n" not in message
+
+
+def test_later_schema_asks_for_a_newer_program(tmp_path):
+    (tmp_path / "slip.toml").write_text(GOOD.replace("schema = 1", "schema = 2"))
+    with pytest.raises(DataError, match="schema 2, this version reads 1; update zebro-lab"):
+        read_slip(tmp_path)
+
+
+@pytest.mark.parametrize("content", [None, b"\xff\xfe\x00binary"])
+def test_what_is_no_calibration_says_what_to_name(tmp_path, content):
+    if content is not None:
+        (tmp_path / "slip.toml").write_bytes(content)
+    with pytest.raises(DataError, match=r"name a slip\.toml or the folder"):
+        read_slip(tmp_path)
+
+
+def test_files_of_one_name_are_told_apart_by_as_few_folders_as_needed():
+    assert _distinct_names(["data/a.csv", "data/b.csv"]) == ["a.csv", "b.csv"]
+    runs = ["data/run1/log.mcap", "data/run2/log.mcap"]
+    assert _distinct_names(runs) == ["run1/log.mcap", "run2/log.mcap"]
+    assert _distinct_names(["x/r/log.mcap", "y/r/log.mcap"]) == ["x/r/log.mcap", "y/r/log.mcap"]
+    assert _distinct_names([]) == []

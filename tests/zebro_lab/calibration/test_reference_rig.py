@@ -1,0 +1,146 @@
+# SPDX-License-Identifier: MIT
+"""Rigs of other laboratories, calibrated through column maps; draws come from the second engine."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from model.bayes.convergence import Convergence
+from model.bayes.cross_validation import r_squared
+from model.bayes.fit import PreparedFit, prepare_fit, scaled_load_cell
+from model.bayes.laplace import importance_draws
+from model.bayes.residuals import Residuals, analyse_residuals
+from model.bayes.verdict import Verdict, judge
+from model.slip.magic_formula import MagicFormula
+from zebro_lab.calibration.rig_data import RigData, read_rig_data
+
+pytestmark = pytest.mark.reference
+
+TYRE = """
+source = "real"
+columns.t = { name = "ET", unit = "s" }
+columns.normal_force = { name = "FZ", unit = "N", sign = -1 }
+columns.traction_force = { name = "FX", unit = "N" }
+columns.slip_ratio = { name = "SL", definition = "travel" }
+runs.gap = "1 s"
+"""
+SAND = """
+source = "real"
+columns.normal_force = { name = "avg_Fz", unit = "N", sign = -1 }
+columns.traction_force = { name = "avg_Fy", unit = "N", sign = -1 }
+columns.slip_ratio = { name = "slip", definition = "larger" }
+runs.each_row = true
+rows.keep = ["beta == 0", "slip > 0.05"]
+"""
+SIMULATED_RIG = """
+source = "sim:virtual-world"
+columns.normal_force = "Fn"
+columns.traction_force = "Ft"
+columns.omega_leg = "omega_l"
+columns.omega_ground = "omega_g"
+constants = { radius_leg = "35 mm", radius_ground = "120 mm" }
+runs.by = ["Fn_set", "kappa_set"]
+"""
+CONVERGED = Convergence(0, 1000, *([np.ones(1)] * 2), *([np.full(1, 5e3)] * 2), np.full(1, 0.01))
+
+
+@dataclass(frozen=True)
+class Judged:
+    """A fit with everything but the sampler behind it."""
+
+    data: RigData
+    fit: PreparedFit
+    values: dict[str, np.ndarray]
+    residuals: Residuals
+    verdict: Verdict
+
+    @property
+    def left_out_r_squared(self) -> float:
+        validation, samples = self.fit.cross_validation, self.data.samples
+        assert validation is not None
+        return r_squared(
+            samples.traction_force, validation.predict(samples, self.fit.posterior.law)
+        )
+
+
+def judged(data: RigData, law: MagicFormula) -> Judged:
+    rng = np.random.default_rng(1)
+    cell = scaled_load_cell(data.samples, data.load_cell)
+    fit = prepare_fit(data.samples, law, load_cell=cell, rng=rng)
+    posterior = fit.posterior
+    weighted = importance_draws(posterior.log_density, fit.approximation, n=1000, rng=rng)
+    z = weighted.resample(400, rng=rng)
+    values = posterior.values(z)
+    residuals = analyse_residuals(posterior.blocks, law, values)
+    names = [parameter.name for parameter in posterior.free]
+    verdict = judge(
+        blocks=posterior.blocks,
+        law=law,
+        values=values,
+        contraction=dict(zip(names, 1 - z.var(axis=0), strict=True)),
+        convergence=CONVERGED,
+        residuals=residuals,
+        offset_scale=cell.zero_stability,
+    )
+    by_name = {p.name: values[:, i] for i, p in enumerate(posterior.parameters)}
+    return Judged(data, fit, by_name, residuals, verdict)
+
+
+@pytest.fixture
+def read(tmp_path, shared) -> Callable[[str, str], RigData]:
+    """Return a reader of reference data, given its place and its column map."""
+
+    def read(place: str, columns: str) -> RigData:
+        file = tmp_path / "columns.toml"
+        file.write_text(columns)
+        return read_rig_data([Path(shared) / place], columns=file)
+
+    return read
+
+
+def test_tyre_in_its_own_slip_is_predicted_run_by_run_and_weak_in_shape(read):
+    data = read("realdata/tyre-bench/drivebrake_pure_slip.csv", TYRE)
+    found = judged(data, MagicFormula("constant"))
+    assert found.fit.cross_validation is not None
+    assert found.fit.cross_validation.scheme == "leave one run out, 14 runs"
+    assert found.left_out_r_squared >= 0.985
+    assert {"shape", "friction"} <= set(found.verdict.weak)
+    assert "cannot be told apart" in found.verdict.weak["shape"]
+    assert any("peak force and initial slope" in step for step in found.verdict.next_steps())
+
+
+def test_tyre_in_slip_of_the_loaded_radius_is_predicted_badly_and_called_a_bad_fit(read):
+    data = read("realdata/tyre-bench/drivebrake_pure_slip.csv", TYRE.replace("SL", "SR"))
+    found = judged(data, MagicFormula("constant"))
+    assert found.left_out_r_squared <= 0.95
+    assert any("a bad fit" in step for step in found.verdict.next_steps())
+
+
+def test_driving_wheel_in_sand_fits(read):
+    data = read("realdata/single-wheel-sand/smooth.csv", SAND)
+    found = judged(data, MagicFormula("constant"))
+    assert found.residuals.rmse_over_load <= 0.02
+    assert not any("a bad fit" in step for step in found.verdict.next_steps())
+
+
+def test_driving_and_braking_wheel_in_sand_is_called_a_bad_fit(read):
+    columns = SAND.replace(', "slip > 0.05"', "")
+    data = read("realdata/single-wheel-sand/smooth.csv", columns)
+    assert np.ptp(data.samples.slip) == pytest.approx(1.9, abs=0.01)
+    found = judged(data, MagicFormula("constant"))
+    assert not found.verdict.trustworthy
+    assert any("a bad fit" in step for step in found.verdict.next_steps())
+    assert any("driving and braking apart" in step for step in found.verdict.next_steps())
+
+
+@pytest.mark.parametrize("curvature", [0.0, "constant"])
+def test_virtual_rig_gives_back_its_law(read, curvature):
+    found = judged(read("virtual-world/rig", SIMULATED_RIG), MagicFormula(curvature))
+    K, C, mu = (found.values[name].mean() for name in ("slip_stiffness", "shape", "friction"))
+    assert pytest.approx(1.564, abs=0.02) == C
+    assert pytest.approx(0.38, rel=0.02) == mu
+    assert K / (C * mu) == pytest.approx(34.34, rel=0.15)
+    assert found.verdict.weak == {} or "shape" not in found.verdict.weak

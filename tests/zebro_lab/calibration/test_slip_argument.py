@@ -1,0 +1,118 @@
+# SPDX-License-Identifier: MIT
+"""`--slip`: everything it may name, and every way in which it may name nothing."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from model.slip import SlipDefinition
+from model.walk.path import WalkPath
+from model.walk.traction import VelocityCoulomb
+from zebro_lab.calibration.slip_argument import parse_slip
+from zebro_lab.files.errors import DataError, NotFound, SettingsError
+
+SLIP_TOML = """
+schema = 1
+source = "sim:rig-sweep"
+slip_definition = "material"
+verdict = {{ headline = "{headline}", trustworthy = {trustworthy} }}
+law = {{ name = "coulomb-stribeck", stribeck = false }}
+[parameters]
+slip_stiffness = {{ mean = 20.0 }}
+friction = {{ mean = 0.4 }}
+[covariance]
+matrix = [[1.0, 0.0], [0.0, 0.01]]
+[tested]
+normal_force = [2.0, 13.0]
+slip_ratio = [0.0, 1.0]
+"""
+
+
+@pytest.fixture
+def calibration(tmp_path):
+    """Return a folder with a slip.toml."""
+    text = SLIP_TOML.format(headline="converged, trustworthy", trustworthy="true")
+    (tmp_path / "slip.toml").write_text(text)
+    return tmp_path
+
+
+def test_file_and_its_folder_mean_the_same(calibration):
+    by_folder, by_file = (parse_slip(str(p)) for p in (calibration, calibration / "slip.toml"))
+    assert by_folder.files == by_file.files == (calibration / "slip.toml",)
+    assert by_folder.source == by_file.source == "sim:rig-sweep"
+    np.testing.assert_array_equal(by_folder.law.values, by_file.law.values)
+    assert by_folder.notes == ()
+
+
+def test_title_has_no_path(calibration):
+    for path in (calibration, calibration / "slip.toml"):
+        assert parse_slip(str(path)).title == calibration.name
+    assert parse_slip("coulomb:0.4").title == "coulomb:0.4"
+
+
+def test_untrustworthy_calibration_is_said_to_be(calibration):
+    text = SLIP_TOML.format(headline="NOT CONVERGED", trustworthy="false")
+    (calibration / "slip.toml").write_text(text)
+    assert "NOT CONVERGED" in parse_slip(str(calibration)).notes[0]
+
+
+@given(st.floats(1e-3, 10), st.floats(1e-6, 1))
+def test_coulomb_takes_friction_and_velocity(friction, velocity):
+    assert parse_slip(f"coulomb:{friction!r}:{velocity!r}").law == VelocityCoulomb(
+        friction, velocity
+    )
+
+
+def test_thesis_is_the_sources_curve():
+    curve = parse_slip("thesis").law
+    B, C, D, _ = curve.law.coefficients(10.0, curve.values)
+    np.testing.assert_allclose([B, C, D], [34.34, 1.564, 3.798])
+
+
+@pytest.mark.parametrize(
+    "text", ["coulomb", "coulomb:", "coulomb:x", "coulomb:-0.2", "coulomb:0", "coulomb:0.2:0",
+             "coulomb:0.2:0.1:3", "coulomb:nan", "coulomb:inf"]
+)  # fmt: skip
+def test_friction_that_is_none_says_what_is_expected(text):
+    with pytest.raises(SettingsError, match=r"coulomb:MU\[:V\]"):
+        parse_slip(text)
+
+
+def test_nothing_by_that_name_lists_what_there_is(tmp_path):
+    with pytest.raises(NotFound, match="coulomb:MU"):
+        parse_slip(str(tmp_path / "none"))
+
+
+def test_folder_without_a_calibration_is_refused(tmp_path):
+    with pytest.raises(DataError, match="is no slip calibration"):
+        parse_slip(str(tmp_path))
+
+
+def test_other_definition_is_converted_or_refused(calibration):
+    file = calibration / "slip.toml"
+    file.write_text(file.read_text().replace('"material"', '"travel"'))
+    slip = parse_slip(str(calibration))
+    assert slip.law.definition is SlipDefinition.TRAVEL
+    assert "converted" in slip.notes[0]
+    assert np.isfinite(slip.traction_table(weight=21.0).phi).all()
+    with pytest.raises(SettingsError, match="--slip-definition material"):
+        slip.thesis_traction(weight=21.0)
+
+
+def test_sources_model_takes_the_sources_curve_exactly_and_any_other_as_a_table(calibration):
+    assert parse_slip("thesis").thesis_traction(weight=21.0).exact
+    for text in ("coulomb:0.4", str(calibration)):
+        assert not parse_slip(text).thesis_traction(weight=21.0).exact
+
+
+def test_loads_below_the_tested_are_counted_in_contact_alone(calibration, walked):
+    load = np.full((len(walked.t), 6), 5.0)
+    load[:, 0] = 1.0
+    contact = np.zeros_like(load, dtype=bool)
+    contact[:, :2] = True
+    path: WalkPath = dataclasses.replace(walked, normal_force=load, contact=contact)
+    assert parse_slip(str(calibration)).loads_below_tested(path) == 0.5
+    assert parse_slip("coulomb:0.4").loads_below_tested(path) is None

@@ -1,0 +1,327 @@
+# SPDX-License-Identifier: MIT
+"""The stage without the command: the same numbers again, after a stop, beside foreign files."""
+
+import tomllib
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import arviz as az
+import numpy as np
+import pandas as pd
+import pytest
+
+from model.errors import DefinitionMismatch
+from zebro_lab.calibration import stage
+from zebro_lab.calibration.folder import read_slip
+from zebro_lab.calibration.stage import CalibrationRequest, Stopped, calibrate
+from zebro_lab.files.errors import AlreadyExists, SettingsError
+
+PICTURES = {f"{name}.png" for name in ("curves", "surface", "corner", "traces", "residuals")}
+TABLES = {"slip.toml", "summary.csv", "posterior.nc", "manifest.json"}
+
+
+@dataclass
+class Watcher:
+    """Counts the looks of a fit at its watcher, and may stop it at one of them.
+
+    Attributes:
+        stop_at: Look at which to ask for a stop.
+        die_at: Look at which to end without a word, as a killed process does.
+        looks: Looks so far.
+    """
+
+    stop_at: int | None = None
+    die_at: int | None = None
+    looks: int = 0
+
+    def step(self, what: str, fraction: float | None) -> None:
+        assert what
+        assert fraction is None or 0 <= fraction <= 1
+
+    def stop_requested(self) -> bool:
+        self.looks += 1
+        if self.looks == self.die_at:
+            raise Killed
+        return self.looks == self.stop_at
+
+
+class Killed(BaseException):
+    """Stands for a process that ends between two instructions."""
+
+
+@pytest.fixture(autouse=True, scope="module")
+def short_fits() -> Iterator[pytest.MonkeyPatch]:
+    """Judge from 40 kept steps on instead of 100: these claims need no converged fit."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(stage, "FIRST_LOOK", 40)
+        yield patch
+
+
+@pytest.fixture(scope="module")
+def request_for(sweep):
+    """Return a maker of requests for a fit that ends, unconverged, after 81 kept steps."""
+
+    def make(out: Path, **changes) -> CalibrationRequest:
+        asked = CalibrationRequest(
+            (sweep,), out, curvature="peak", block_length=30, max_steps=400, threads=1
+        )
+        return replace(asked, **changes)
+
+    return make
+
+
+@pytest.fixture(scope="module")
+def uninterrupted(tmp_path_factory, request_for) -> Path:
+    out = tmp_path_factory.mktemp("fit") / "calibration"
+    calibrate(request_for(out), Watcher())
+    return out
+
+
+def checkpoint_arrays(out: Path) -> dict[str, np.ndarray]:
+    with np.load(out / "checkpoint.npz", allow_pickle=False) as stored:
+        return dict(stored)
+
+
+def assert_same_fit(out: Path, other: Path) -> None:
+    assert (out / "slip.toml").read_text() == (other / "slip.toml").read_text()
+    assert (out / "summary.csv").read_text() == (other / "summary.csv").read_text()
+    mine, theirs = checkpoint_arrays(out), checkpoint_arrays(other)
+    assert mine.keys() == theirs.keys()
+    for name, values in mine.items():
+        np.testing.assert_array_equal(values, theirs[name], err_msg=name)
+
+
+@pytest.fixture
+def no_pictures(monkeypatch):
+    monkeypatch.setattr(stage, "draw_calibration", lambda *_: None)
+
+
+def test_fit_writes_its_files_and_a_checkpoint_while_it_has_not_converged(uninterrupted):
+    found = {path.name for path in uninterrupted.iterdir()}
+    assert found == TABLES | PICTURES | {"checkpoint.npz"}
+    assert checkpoint_arrays(uninterrupted)["z"].shape[1] == 81
+
+
+def test_fit_is_the_same_with_two_threads(uninterrupted, request_for, tmp_path, no_pictures):
+    calibrate(request_for(tmp_path / "out", threads=2), Watcher())
+    assert_same_fit(tmp_path / "out", uninterrupted)
+
+
+def test_another_seed_gives_other_draws(uninterrupted, request_for, tmp_path, no_pictures):
+    calibrate(request_for(tmp_path / "out", seed=2, max_steps=1), Watcher())
+    assert not np.array_equal(
+        checkpoint_arrays(tmp_path / "out")["z"][:, 0],
+        checkpoint_arrays(uninterrupted)["z"][:, 0],
+    )
+
+
+def test_resumed_fit_is_bitwise_the_uninterrupted_one(
+    uninterrupted, request_for, tmp_path, no_pictures
+):
+    out = tmp_path / "out"
+    for resume, looks in ((False, 2), (True, 3)):
+        with pytest.raises(Stopped) as stopped:
+            calibrate(request_for(out, resume=resume), Watcher(stop_at=looks))
+        assert stopped.value.checkpoint == out / "checkpoint.npz"
+        assert [path.name for path in out.iterdir()] == ["checkpoint.npz"]
+    calibrate(request_for(out, resume=True), Watcher())
+    assert_same_fit(out, uninterrupted)
+
+
+def test_killed_fit_goes_on_from_its_last_periodic_checkpoint(
+    uninterrupted, request_for, tmp_path, no_pictures, monkeypatch
+):
+    monkeypatch.setattr(stage, "CHECKPOINT_SECONDS", 0.0)
+    out = tmp_path / "out"
+    with pytest.raises(Killed):
+        calibrate(request_for(out), Watcher(die_at=5))
+    assert 1 < checkpoint_arrays(out)["z"].shape[1] < 81
+    calibrate(request_for(out, resume=True), Watcher())
+    assert_same_fit(out, uninterrupted)
+
+
+@pytest.mark.parametrize("n_steps", range(1, 400, 20))
+def test_resumed_fit_is_judged_where_the_uninterrupted_one_is(n_steps):
+    def judged(first: int) -> list[int]:
+        found, look = [], stage._look_from(first - stage.CHUNK + 1)
+        for n in range(first, 1000, stage.CHUNK):
+            if n >= look:
+                found.append(n)
+                look = stage._look_from(n + 1)
+        return found
+
+    assert judged(n_steps) == [n for n in judged(1) if n >= n_steps]
+
+
+def test_stop_before_sampling_writes_nothing(request_for, tmp_path):
+    with pytest.raises(Stopped, match="nothing was written") as stopped:
+        calibrate(request_for(tmp_path / "out"), Watcher(stop_at=1))
+    assert stopped.value.checkpoint is None
+    assert not (tmp_path / "out").exists()
+
+
+def test_checkpoint_of_other_settings_is_refused(uninterrupted, request_for):
+    with pytest.raises(ValueError, match="belongs to other data or settings"):
+        calibrate(request_for(uninterrupted, resume=True, seed=2), Watcher())
+
+
+def test_failure_while_drawing_leaves_the_earlier_calibration_untouched(
+    uninterrupted, request_for, monkeypatch
+):
+    before = {path.name: path.read_bytes() for path in uninterrupted.iterdir()}
+
+    def fail(folder: Path, _) -> None:
+        (folder / "curves.png").write_bytes(b"half a pict")
+        raise OSError("disk full")
+
+    monkeypatch.setattr(stage, "draw_calibration", fail)
+    monkeypatch.setattr(stage, "CHECKPOINT_SECONDS", 1e9)  # a slow machine would keep the fit
+    with pytest.raises(OSError, match="disk full"):
+        calibrate(request_for(uninterrupted, seed=2, max_steps=1), Watcher())
+    assert {path.name: path.read_bytes() for path in uninterrupted.iterdir()} == before
+    assert list(uninterrupted.parent.iterdir()) == [uninterrupted]
+
+
+def test_failure_while_drawing_leaves_no_folder(request_for, tmp_path, monkeypatch):
+    def fail(*_) -> None:
+        raise OSError("disk full")
+
+    monkeypatch.setattr(stage, "draw_calibration", fail)
+    monkeypatch.setattr(stage, "CHECKPOINT_SECONDS", 1e9)  # a slow machine would keep the fit
+    with pytest.raises(OSError, match="disk full"):
+        calibrate(request_for(tmp_path / "deep" / "out", max_steps=1), Watcher())
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_second_fit_replaces_its_forerunner_and_leaves_foreign_files(
+    request_for, tmp_path, no_pictures
+):
+    out = tmp_path / "out"
+    foreign = {"my-photo.png", "notes.txt"}
+    calibrate(request_for(out, max_steps=1, seed=2), Watcher())
+    before = (out / "slip.toml").read_text()
+    for name in foreign:
+        (out / name).write_text("not this fit's")
+    calibrate(request_for(out, max_steps=1), Watcher())
+    assert (out / "slip.toml").read_text() != before
+    assert {path.name for path in out.iterdir()} == TABLES | {"checkpoint.npz"} | foreign
+    assert {(out / name).read_text() for name in foreign} == {"not this fit's"}
+    assert read_slip(out).law.name == "magic-formula"
+
+
+def test_semicolons_decimal_commas_and_a_bom_change_no_number(
+    sweep, uninterrupted, request_for, tmp_path, no_pictures
+):
+    data = tmp_path / "data"
+    data.mkdir()
+    (data / "columns.toml").write_text((sweep / "columns.toml").read_text())
+    table = pd.read_csv(sweep / "sweep.csv")
+    table.to_csv(data / "excel.csv", index=False, sep=";", decimal=",", encoding="utf-8-sig")
+    calibrate(request_for(tmp_path / "out", data=(data,)), Watcher())
+    mine, theirs = (
+        tomllib.loads((out / "slip.toml").read_text()) for out in (tmp_path / "out", uninterrupted)
+    )
+    assert mine.pop("data").keys() == {"excel.csv", "columns.toml"}
+    assert theirs.pop("data").keys() == {"sweep.csv", "columns.toml"}
+    assert mine == theirs
+
+
+def test_slip_toml_gives_back_the_posterior(uninterrupted):
+    curve = read_slip(uninterrupted)
+    np.testing.assert_array_equal(read_slip(uninterrupted / "slip.toml").values, curve.values)
+    stored = az.from_netcdf(uninterrupted / "posterior.nc")["posterior"]
+    draws = np.stack([np.ravel(stored[p.name]) for p in curve.law.parameters])
+    np.testing.assert_allclose(curve.values, draws.mean(axis=1), rtol=1e-12)
+    np.testing.assert_allclose(curve.covariance, np.cov(draws), rtol=1e-9)
+    assert curve.definition == "material"
+
+
+def test_slip_toml_refuses_other_slip_and_flags_untested_loads(uninterrupted):
+    curve = read_slip(uninterrupted)
+    assert curve.force(0.05, 6.0, definition="material") > 0
+    with pytest.raises(DefinitionMismatch):
+        curve.force(0.05, 6.0, definition="travel")
+    assert curve.untested_loads([0.5, 6.0, 40.0]).tolist() == [True, False, True]
+
+
+def test_posterior_nc_has_an_ensemble_as_a_chain(uninterrupted):
+    stored = az.from_netcdf(uninterrupted / "posterior.nc")
+    assert stored["posterior"].sizes["chain"] == 4
+    assert stored["observed_data"]["traction_force"].sizes["block"] == 120
+    assert (stored.attrs["source"], stored.attrs["slip_definition"]) == (
+        "sim:rig-sweep",
+        "material",
+    )
+    assert "NOT CONVERGED" in stored.attrs["verdict"]
+
+
+def test_curve_without_a_peak_is_written_with_its_peak_at_infinity(
+    request_for, tmp_path, no_pictures
+):
+    asked = request_for(tmp_path, law="brush", curvature="auto", block_length=150, max_steps=1)
+    calibration, _ = calibrate(asked, Watcher())
+    assert set(calibration.posterior.fixed) == {"noise_correlation", "offset_spread"}
+    content = tomllib.loads((tmp_path / "slip.toml").read_text())
+    assert [row["peak_slip"] for row in content["curve"]] == [np.inf, np.inf]
+    assert read_slip(tmp_path).law == calibration.posterior.law
+
+
+def test_curvature_auto_compares_laws_on_left_out_runs(request_for, tmp_path, no_pictures):
+    asked = request_for(tmp_path, curvature="auto", max_steps=1)
+    calibration, _ = calibrate(asked, Watcher())
+    comparison = calibration.comparison
+    assert comparison is not None
+    assert comparison.names[comparison.chosen] == "peak slip grows with load"
+    assert min(comparison.difference) < 0 == max(comparison.difference)
+
+
+@pytest.mark.parametrize(
+    ("changes", "problem"),
+    [
+        ({"curvature": "sharp"}, "expected auto, peak, constant or a number below 1"),
+        ({"curvature": "nan"}, "expected auto, peak, constant or a number below 1"),
+        ({"curvature": "1.5"}, "expected auto, peak, constant or a number below 1"),
+        ({"law": "brush", "curvature": "peak"}, "belong to the Magic Formula"),
+        ({"law": "brush", "curvature": "auto", "load_sensitivity": True}, "belong to the Magic"),
+    ],
+)
+def test_options_that_do_not_fit_are_refused(request_for, tmp_path, changes, problem):
+    with pytest.raises(SettingsError, match=problem):
+        calibrate(request_for(tmp_path / "out", **changes), Watcher())
+    assert not (tmp_path / "out").exists()
+
+
+def test_file_in_the_place_of_the_folder_is_refused_before_the_data_is_read(request_for, tmp_path):
+    (tmp_path / "out").write_text("a file")
+    with pytest.raises(AlreadyExists, match="name another --out"):
+        calibrate(request_for(tmp_path / "out", data=(tmp_path / "absent",)), Watcher())
+    assert (tmp_path / "out").read_text() == "a file"
+
+
+def test_another_commands_result_is_kept(request_for, tmp_path, no_pictures):
+    out = tmp_path / "out"
+    out.mkdir()
+    (out / "manifest.json").write_text('{"schema": 1, "kind": "track", "outputs": {}}')
+    with pytest.raises(AlreadyExists, match="another command"):
+        calibrate(request_for(out, max_steps=1), Watcher())
+    assert [path.name for path in out.iterdir()] == ["manifest.json"]
+
+
+def test_a_slip_toml_that_a_person_wrote_is_kept(request_for, tmp_path, no_pictures):
+    out = tmp_path / "out"
+    out.mkdir()
+    (out / "slip.toml").write_text("# measured by hand\n")
+    with pytest.raises(AlreadyExists, match=r"slip\.toml"):
+        calibrate(request_for(out, max_steps=1), Watcher())
+    assert (out / "slip.toml").read_text() == "# measured by hand\n"
+
+
+def test_data_are_not_calibrated_into_their_own_folder(request_for, sweep, tmp_path, no_pictures):
+    data = tmp_path / "data"
+    data.mkdir()
+    for file in sweep.iterdir():
+        (data / file.name).write_bytes(file.read_bytes())
+    with pytest.raises(AlreadyExists, match="--out"):
+        calibrate(request_for(data, data=(data,), max_steps=1), Watcher())
+    assert {path.name for path in data.iterdir()} == {path.name for path in sweep.iterdir()}

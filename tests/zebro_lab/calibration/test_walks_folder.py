@@ -1,0 +1,264 @@
+# SPDX-License-Identifier: MIT
+"""What walks said, stored beside a calibration, and what predictions make of it."""
+
+import json
+from dataclasses import replace
+from datetime import UTC, datetime
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from model.bayes.walk_posterior import WalkPosterior
+from model.bayes.walk_prior import LINEAR, NAMES, WRONG, WalkPrior, WrongLeg, all_cases
+from model.gait import tripod_angles, tripod_reference
+from model.robot import Robot
+from zebro_lab.calibration.slip_argument import parse_slip
+from zebro_lab.calibration.walks_folder import FOLDER, WalksToWrite, read_walks_beside, write_walks
+from zebro_lab.files.errors import DataError, SettingsError
+from zebro_lab.report.stage import ReportRequest, report
+from zebro_lab.robot.robot_file import RobotFile
+from zebro_lab.validation.judgement import read_prediction
+from zebro_lab.walk.folder import read_walk, read_walk_manifest
+from zebro_lab.walk.informed_legs import informed_legs
+from zebro_lab.walk.path_band import BandRequest, read_draws
+from zebro_lab.walk.predict_stage import PredictRequest, predict
+from zebro_lab.walk.walking import ModelRequest
+
+SLIP_TOML = """
+schema = 1
+source = "sim:rig-sweep"
+slip_definition = "material"
+law = { name = "coulomb-stribeck", stribeck = false }
+[parameters]
+slip_stiffness = { mean = 20.0 }
+friction = { mean = 0.4 }
+[covariance]
+matrix = [[1.0, 0.0], [0.0, 0.0001]]
+[tested]
+normal_force = [2.0, 13.0]
+slip_ratio = [0.0, 1.0]
+"""
+STEERING, STRIDE = LINEAR
+GRIP = NAMES.index("grip")
+KNOCKED = WrongLeg(2, walk=1)
+OFF = np.radians(5.0)
+
+
+class Nobody:
+    """A watcher that does not look."""
+
+    def step(self, what: str, fraction: float | None) -> None:
+        pass
+
+    def stop_requested(self) -> bool:
+        return False
+
+
+def posterior_of(case, *, steering=0.0):
+    """Return a posterior that is sure: leg 3 off by 5 degrees in `case`, all else as described."""
+    cases = all_cases(2)
+    values = np.zeros((40, WRONG + 1))
+    values[:, WRONG], values[:, STEERING] = OFF, steering
+    values[:, GRIP] = WalkPrior().grip_sd * np.linspace(-1.7, 1.7, len(values))  # not informed
+    n = len(values)
+    return WalkPosterior(
+        prior=WalkPrior(),
+        walks=("one", "two"),
+        cases=cases,
+        values=values,
+        case=np.full(n, cases.index(case)),
+        weight=np.full(n, 1 / n),
+        best=values[20],
+        best_case=case,
+        misfit=(0.9, 1.1),
+    )
+
+
+@pytest.fixture
+def legs(tmp_path):
+    """Return two leg logs."""
+    files = []
+    for i, steering in enumerate((1.0, 1.2)):
+        gait = tripod_reference(tripod_angles(np.radians(50.0), steering), 2.0)
+        t = np.arange(0.0, 6.0, 0.01)
+        table = pd.DataFrame(
+            {"t": t} | {f"theta{k + 1}": a for k, a in enumerate(gait.angles(t).T)}
+        )
+        files.append(tmp_path / f"legs{i}.csv")
+        table.to_csv(files[-1], index=False)
+    return files
+
+
+@pytest.fixture
+def calibration(tmp_path):
+    """Return a calibration without walks."""
+    folder = tmp_path / "calibration"
+    folder.mkdir()
+    (folder / "slip.toml").write_text(SLIP_TOML)
+    return folder
+
+
+def stored(calibration, legs, posterior):
+    slip = calibration / "slip.toml"
+    write_walks(
+        calibration,
+        WalksToWrite(
+            posterior=posterior, left_out={}, robot=RobotFile(), logs=tuple(legs),
+            inputs=(slip, *legs), settings={"seed": 1}, source="sim:test", notes=("a note",),
+        ),
+        draw=lambda _: None,
+    )  # fmt: skip
+    return read_walks_beside(slip)
+
+
+def predicted(tmp_path, log, slip, *, name="prediction", robot=None, draws=0, model="dynamics"):
+    request = PredictRequest(
+        log=log,
+        model=ModelRequest(out=tmp_path / name, slip=slip, robot=robot, model=model),
+        band=BandRequest(draws) if draws else None,
+    )
+    return predict(request, Nobody())
+
+
+def test_a_posterior_comes_back_as_it_was(calibration, legs):
+    posterior = posterior_of(KNOCKED, steering=0.02)
+    found = stored(calibration, legs, posterior).posterior
+    for name in ("values", "case", "weight", "best"):
+        np.testing.assert_array_equal(getattr(found, name), getattr(posterior, name))
+    assert (found.best_case, found.walks, found.cases) == (KNOCKED, ("one", "two"), all_cases(2))
+    assert found.prior == posterior.prior
+    assert found.misfit == posterior.misfit
+    assert found.contractions() == posterior.contractions()
+
+
+def test_the_folder_tells_a_person_and_a_program_the_same(calibration, legs):
+    import tomllib
+
+    stored(calibration, legs, posterior_of(WrongLeg(2)))
+    folder = calibration / FOLDER
+    told = tomllib.loads((folder / "walks.toml").read_text())
+    assert [each["name"] for each in told["parameter"]] == list(NAMES)
+    assert told["case"][0]["leg"] == 3
+    assert told["case"][0]["offset"] == pytest.approx(OFF)
+    manifest = json.loads((folder / "manifest.json").read_text())
+    assert manifest["source"] == "sim:test"
+    assert set(manifest["outputs"]) == {p.name for p in folder.iterdir()} - {"manifest.json"}
+    assert str(calibration / "slip.toml") in manifest["inputs"]
+
+
+def test_a_calibration_made_anew_does_not_keep_what_walks_said_of_the_old_one(calibration, legs):
+    stored(calibration, legs, posterior_of(None))
+    slip = calibration / "slip.toml"
+    slip.write_text(SLIP_TOML.replace("20.0", "21.0"))
+    with pytest.raises(DataError, match="another slip law"):
+        parse_slip(str(calibration))
+    assert parse_slip(str(calibration), with_walks=False).walks is None
+
+
+@pytest.mark.parametrize("file", ["walks.toml", "draws.npz"])
+def test_damaged_files_are_named(calibration, legs, file):
+    stored(calibration, legs, posterior_of(None))
+    (calibration / FOLDER / file).write_bytes(b"no such thing")
+    with pytest.raises(DataError, match="fit the walks again"):
+        parse_slip(str(calibration))
+
+
+def test_a_calibration_without_walks_has_none(calibration):
+    assert parse_slip(str(calibration)).walks is None
+
+
+def test_steering_that_walks_found_turns_the_predicted_path(calibration, legs, tmp_path):
+    plain = predicted(tmp_path, legs[0], str(calibration), name="plain")
+    stored(calibration, legs, posterior_of(None, steering=0.1))
+    # Another log than those that were fitted, of the same gait.
+    other = tmp_path / "other.csv"
+    pd.read_csv(legs[0]).iloc[:-1].to_csv(other, index=False)
+    informed = predicted(tmp_path, other, str(calibration))
+    turned = informed.path.yaw[-1] - plain.path.yaw[-1]
+    assert turned == pytest.approx(0.1 * plain.path.length, rel=0.03)
+    assert "legs and floor as one, two have them" in " ".join(informed.notes)
+
+
+def test_a_leg_knocked_off_in_one_walk_is_off_where_that_walk_is_predicted(
+    calibration, legs, tmp_path
+):
+    walks = stored(calibration, legs, posterior_of(KNOCKED))
+    own, other = (informed_legs(walks, RobotFile(), logs=[log]) for log in legs[::-1])
+    assert (own.index, other.index) == (1, 0)
+    assert own.middle.offset[0, 2] == pytest.approx(OFF)
+    assert not other.middle.offset.any()
+    assert "can confirm but not test" in own.notes[1]
+    to_come = informed_legs(walks, RobotFile())
+    assert to_come.index is None
+    assert not to_come.middle.offset.any()
+
+
+def test_another_robot_shares_the_floor_alone(calibration, legs):
+    walks = stored(calibration, legs, posterior_of(WrongLeg(2)))
+    other = replace(RobotFile(), robot=Robot(leg_arc=np.radians(200.0)))
+    informed = informed_legs(walks, other)
+    assert not informed.middle.offset.any()
+    assert "another robot" in informed.notes[0]
+    marked = RobotFile(file=legs[0])  # the same robot, from another file
+    assert informed_legs(walks, marked).middle.offset[0, 2] == pytest.approx(OFF)
+
+
+def test_a_band_is_drawn_from_what_walks_said(calibration, legs, tmp_path):
+    stored(calibration, legs, posterior_of(WrongLeg(2)))
+    predicted(tmp_path, legs[0], str(calibration), draws=12)
+    draws = read_draws(tmp_path / "prediction")
+    settings = read_walk_manifest(tmp_path / "prediction")["settings"]
+    assert settings["walks"]["leg_offset"][2] == pytest.approx(OFF)
+    single = read_walk(tmp_path / "prediction")
+    ahead = np.quantile(draws.position[:, -1, 0], [0.0, 1.0])
+    assert ahead[0] - 0.01 < single.position[-1, 0] < ahead[1] + 0.01
+
+
+def test_baselines_know_the_legs_as_described_not_as_fitted(calibration, legs, tmp_path):
+    predicted(tmp_path, legs[0], str(calibration), name="plain")
+    stored(calibration, legs, posterior_of(WrongLeg(2)))
+    predicted(tmp_path, legs[0], str(calibration), name="fitted")
+    plain, fitted = (read_prediction(tmp_path / name).baselines for name in ("plain", "fitted"))
+    for name in ("no-slip", "no-slip-simple"):
+        np.testing.assert_allclose(plain[name].position, fitted[name].position, atol=1e-6)
+
+
+def test_offsets_that_walks_told_are_not_asked_for_again(calibration, legs, tmp_path):
+    stored(calibration, legs, posterior_of(None))
+    request = PredictRequest(
+        legs[0], ModelRequest(tmp_path / "out", slip=str(calibration)),
+        band=BandRequest(5, offset_sd_deg=1.0),
+    )  # fmt: skip
+    with pytest.raises(SettingsError, match="offset-sd-deg"):
+        predict(request, Nobody())
+
+
+def test_a_model_without_slip_takes_nothing_from_walks(calibration, legs, tmp_path):
+    stored(calibration, legs, posterior_of(None, steering=0.1))
+    done = predicted(tmp_path, legs[0], str(calibration), model="no-slip")
+    assert done.informed is None
+
+
+def test_a_walked_path_is_not_given_offsets_twice(calibration, legs, tmp_path):
+    stored(calibration, legs, posterior_of(WrongLeg(2)))
+    predicted(tmp_path, legs[0], str(calibration))
+    again = predicted(tmp_path, tmp_path / "prediction", str(calibration), name="again")
+    assert not again.informed.middle.offset.any()
+
+
+def test_a_report_tells_what_walks_said_and_what_they_did_not(calibration, legs, tmp_path):
+    stored(calibration, legs, posterior_of(WrongLeg(2)))
+    run = tmp_path / "run"
+    run.mkdir()
+    predicted(run, legs[0], str(calibration))
+    page = tmp_path / "report.html"
+    report(ReportRequest(run, calibration, page), made=datetime(2026, 1, 2, tzinfo=UTC))
+    text = page.read_text()
+    assert "What walks said of legs and floor" in text
+    assert "Mounted wrong: leg 3" in text
+    assert "SIMULATED: sim:dynamics, sim:test" in text
+    assert text.count("data:image/png") >= 1
+    told = read_walks_beside(calibration / "slip.toml").posterior.contractions()
+    silent = next(each.name for each in told if not each.informed)
+    assert silent.replace("_", " ") in text

@@ -1,0 +1,57 @@
+# SPDX-License-Identifier: MIT
+"""An exported run is what its readers read, and says where it comes from."""
+
+import numpy as np
+import pytest
+
+from zebro_lab.exchange.export_stage import FORMATS, export_run
+from zebro_lab.files.errors import AlreadyExists
+from zebro_lab.recording.stage import RecordRequest, record
+from zebro_lab.runs.folder import read_slip_rig_run
+from zebro_lab.runs.legs import read_leg_log
+from zebro_lab.tables.table_files import read_table_file
+
+
+class Silent:
+    """Looks on and says nothing."""
+
+    def show(self, status):
+        pass
+
+    def stop_reason(self):
+        return None
+
+
+@pytest.fixture(scope="module")
+def recorded(tmp_path_factory):
+    """Return a run folder of a simulated robot and rig."""
+    data = tmp_path_factory.mktemp("data")
+    return record(RecordRequest(data, "x", zebro="sim", rig="sim", duration=2.0), Silent()).folder
+
+
+@pytest.mark.parametrize("form", FORMATS)
+def test_tables_hold_what_stages_read(recorded, tmp_path, form):
+    files = export_run(recorded, to=form, out=tmp_path / "out")
+    names = {file.name.partition(".")[0] for file in files}
+    assert names == {"legs", "slip_rig", "legs_raw", "drives_raw", "load_cell_raw"}
+    rig = read_table_file(tmp_path / "out" / f"slip_rig.{form}")
+    table = read_slip_rig_run(recorded).table
+    for name, values in vars(table).items():
+        np.testing.assert_allclose(rig.numbers(name), values, rtol=1e-12)
+    assert set(rig.numbers("radius_leg")) == {0.035}
+    legs = read_leg_log(tmp_path / "out" / f"legs.{form}").reference
+    np.testing.assert_allclose(legs.theta, read_leg_log(recorded).reference.theta, atol=1e-9)
+
+
+def test_a_table_says_that_it_is_simulated(recorded, tmp_path):
+    export_run(recorded, to="csv", out=tmp_path / "csv")
+    first, header, *_ = (tmp_path / "csv" / "legs_raw.csv").read_text().splitlines()
+    assert first == "# source: sim:zebro+rig"
+    assert header.startswith("host_time,device_time,sequence,status,channel,count1,")
+    export_run(recorded, to="parquet", out=tmp_path / "parquet")
+    assert read_table_file(tmp_path / "parquet" / "legs.parquet").source == "sim:zebro+rig"
+
+
+def test_what_is_there_is_not_written_over(recorded, tmp_path):
+    with pytest.raises(AlreadyExists, match="another --out"):
+        export_run(recorded, to="csv", out=tmp_path)

@@ -1,0 +1,35 @@
+# SPDX-License-Identifier: MIT
+"""`zebro-lab init FILE`."""
+
+import subprocess
+import sys
+
+import typer
+from typer.testing import CliRunner
+
+from zebro_lab.exchange.init_command import init
+
+app = typer.Typer()
+app.command()(init)
+
+
+def test_init_says_what_it_guessed_and_what_to_check(tmp_path):
+    file = tmp_path / "rig.csv"
+    file.write_text("t,FZ,FX,omega_l,omega_g\n0,-5,1,12,3\n0.1,-5,1,12,3\n")
+    result = CliRunner().invoke(app, [str(file)])
+    assert result.exit_code == 0, result.output
+    assert f"wrote {tmp_path / 'columns.toml'}" in result.output
+    assert "normal_force    from 'FZ' in N times -1" in result.output
+    assert "check: [constants] radius_leg and radius_ground" in result.output
+
+
+def test_init_names_what_it_could_not_find(tmp_path):
+    (tmp_path / "rig.csv").write_text("a,b\n1,2\n")
+    result = CliRunner().invoke(app, [str(tmp_path / "rig.csv")])
+    assert "no column found for normal_force, traction_force, slip_ratio" in result.output
+
+
+def test_init_is_imported_without_its_heavy_dependencies():
+    code = "import sys, zebro_lab.exchange.init_command; print(*sys.modules)"
+    run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert not {"pandas", "pyarrow", "pint", "numpy", "scipy"} & set(run.stdout.split())

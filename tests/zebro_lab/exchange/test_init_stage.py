@@ -1,0 +1,124 @@
+# SPDX-License-Identifier: MIT
+"""The column map that is guessed from a header."""
+
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from zebro_lab.calibration.rig_data import read_rig_data
+from zebro_lab.exchange.column_guesses import guess_columns, guess_set_points
+from zebro_lab.exchange.init_stage import render_template, write_columns_template
+from zebro_lab.files.errors import AlreadyExists, DataError, NotFound
+from zebro_lab.tables.columns import Columns, read_columns
+from zebro_lab.tables.raw_table import RawTable
+
+N = 40
+
+
+def tyre() -> pd.DataFrame:
+    return pd.DataFrame({
+        "ET": np.arange(N) * 0.01, "V": 40.0, "FX": np.linspace(-2, 2, N), "FY": 0.1,
+        "FZ": np.full(N, -5.0), "SL": np.linspace(-0.1, 0.1, N), "SR": np.linspace(-0.12, 0.1, N),
+    })  # fmt: skip
+
+
+def rig() -> pd.DataFrame:
+    return pd.DataFrame({
+        "t [ms]": np.tile(np.arange(N / 2) * 4, 2), "kappa_set": np.repeat([0.1, 0.2], N // 2),
+        "Fn (N)": 6.0, "Ft (kN)": 1e-3, "omega_l": 12.0, "omega_g": np.repeat([3.15, 2.8], N // 2),
+        "kappa_inst": 0.1, "operator": "a",
+    })  # fmt: skip
+
+
+def template(folder: Path, table: pd.DataFrame) -> tuple[str, Columns]:
+    table.to_csv(folder / "rig.csv", index=False)
+    path = write_columns_template(folder / "rig.csv")
+    return path.read_text(), read_columns(path)
+
+
+def test_tyre_bench_header_is_recognised(tmp_path):
+    text, columns = template(tmp_path, tyre())
+    names = {canonical: mapped.name for canonical, mapped in columns.columns.items()}
+    assert names == {"t": "ET", "slip_ratio": "SL", "normal_force": "FZ", "traction_force": "FX"}
+    assert columns.columns["normal_force"].factor == -1
+    assert 'name = "SL"  # first -0.1, from -0.1 to 0.1; or is it "SR"?' in text
+    assert '#   "V": first 40, from 40 to 40' in text
+
+
+def test_rig_header_gives_units_and_prefers_speeds(tmp_path):
+    text, columns = template(tmp_path, rig())
+    factors = {canonical: mapped.factor for canonical, mapped in columns.columns.items()}
+    assert factors == {
+        "t": 1e-3, "omega_leg": 1, "omega_ground": 1, "normal_force": 1, "traction_force": 1e3,
+    }  # fmt: skip
+    assert '# name = "kappa_inst"' in text
+    assert '#   "operator": first "a"' in text
+
+
+def test_restarting_time_activates_the_set_points_as_runs(tmp_path):
+    text, columns = template(tmp_path, rig())
+    assert columns.runs.by == ("kappa_set", "omega_g")
+    assert "CHECK: time restarts" in text
+
+
+def test_template_reads_its_data_once_the_gaps_are_filled(tmp_path):
+    template(tmp_path, rig())
+    file = tmp_path / "columns.toml"
+    text = file.read_text()
+    for comment in ('# radius_leg = "35 mm" ', '# radius_ground = "120 mm"', '# source = "real"'):
+        assert comment in text
+        text = text.replace(comment, comment[2:])
+    file.write_text(text)
+    data = read_rig_data([tmp_path])
+    assert (len(data.samples), data.samples.n_runs, data.source) == (N, 2, "real")
+
+
+def test_canonical_header_is_recognised_whole():
+    names = ["t", "omega_leg", "omega_ground", "radius_leg", "radius_ground", "normal_force",
+             "traction_force", "run"]  # fmt: skip
+    table = RawTable(Path("a.csv"), {name: pd.Series([1.0, 2.0]) for name in names})
+    assert {canonical: guess.name for canonical, guess in guess_columns(table).items()} == {
+        name: name for name in names
+    }
+
+
+def test_set_point_is_what_changes_seldom():
+    steps, slope = np.repeat([1.0, 2.0, 3.0], 50), np.arange(150.0)
+    table = RawTable(
+        Path("a.csv"),
+        {"set": pd.Series(steps), "slope": pd.Series(slope), "one": pd.Series(np.ones(150))},
+    )
+    assert guess_set_points(table) == ["set"]
+
+
+@given(st.lists(st.text(min_size=1), min_size=1, max_size=6, unique=True))
+def test_any_header_gives_a_template_that_parses(tmp_path_factory, names):
+    table = RawTable(Path("a.csv"), {name: pd.Series([1.0, 2.0]) for name in names})
+    file = tmp_path_factory.mktemp("t") / "columns.toml"
+    file.write_text(render_template(table), encoding="utf-8")
+    assert {mapped.name for mapped in read_columns(file).columns.values()} <= set(names)
+
+
+def test_existing_file_is_kept_unless_forced(tmp_path):
+    tyre().to_csv(tmp_path / "rig.csv", index=False)
+    (tmp_path / "columns.toml").write_text("# mine")
+    with pytest.raises(AlreadyExists, match="replace it with --force"):
+        write_columns_template(tmp_path / "rig.csv")
+    assert (tmp_path / "columns.toml").read_text() == "# mine"
+    write_columns_template(tmp_path / "rig.csv", force=True)
+    assert "FZ" in (tmp_path / "columns.toml").read_text()
+
+
+def test_what_is_no_table_leaves_no_template(tmp_path):
+    with pytest.raises(NotFound):
+        write_columns_template(tmp_path / "absent.csv")
+    with pytest.raises(DataError, match="is no table file"):
+        write_columns_template(tmp_path)
+    (tmp_path / "a.csv").write_bytes(b"")
+    with pytest.raises(DataError, match="is empty"):
+        write_columns_template(tmp_path / "a.csv")
+    assert not (tmp_path / "columns.toml").exists()

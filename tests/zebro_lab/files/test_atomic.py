@@ -1,0 +1,74 @@
+# SPDX-License-Identifier: MIT
+"""Files and folders that appear whole or not at all."""
+
+from pathlib import Path
+
+import pytest
+
+from zebro_lab.files.atomic import atomic_folder, atomic_write_bytes, atomic_write_text
+from zebro_lab.files.errors import AlreadyExists
+
+
+class Interrupted(Exception):
+    """Stands for whatever stops a stage."""
+
+
+def names(folder: Path) -> list[str]:
+    return sorted(str(path.relative_to(folder)) for path in folder.rglob("*") if path.is_file())
+
+
+def test_file_is_written_whole_and_alone(tmp_path):
+    path = atomic_write_text(tmp_path / "slip.toml", "mu = 0.38\n")
+    assert path.read_bytes() == b"mu = 0.38\n"
+    assert names(tmp_path) == ["slip.toml"]
+
+
+def test_failed_write_keeps_the_old_file_and_no_draft(tmp_path, monkeypatch):
+    path = atomic_write_bytes(tmp_path / "a", b"old")
+
+    def fail(_):
+        raise Interrupted
+
+    monkeypatch.setattr("os.fsync", fail)
+    with pytest.raises(Interrupted):
+        atomic_write_bytes(path, b"new")
+    assert path.read_bytes() == b"old"
+    assert names(tmp_path) == ["a"]
+
+
+def test_new_folder_appears_with_all_its_files(tmp_path):
+    with atomic_folder(tmp_path / "deep" / "out") as draft:
+        (draft / "pictures").mkdir()
+        (draft / "pictures" / "fit.png").write_text("1")
+        (draft / "slip.toml").write_text("2")
+        assert not (tmp_path / "deep").exists()
+    assert names(tmp_path) == ["deep/out/pictures/fit.png", "deep/out/slip.toml"]
+
+
+def write_half(folder: Path, stop: type[BaseException]) -> None:
+    """Begin to fill a folder, then stop."""
+    with atomic_folder(folder) as draft:
+        (draft / "slip.toml").write_text("second")
+        raise stop
+
+
+@pytest.mark.parametrize("stop", [Interrupted, KeyboardInterrupt])
+def test_exception_leaves_nothing_behind(tmp_path, stop):
+    with pytest.raises(stop):
+        write_half(tmp_path / "deep" / "out", stop)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_folder_that_holds_something_is_refused(tmp_path):
+    (tmp_path / "out").mkdir()
+    (tmp_path / "out" / "notes.txt").write_text("mine")
+    with pytest.raises(AlreadyExists, match="holds something"), atomic_folder(tmp_path / "out"):
+        pass
+    assert names(tmp_path) == ["out/notes.txt"]
+
+
+def test_file_in_the_way_is_refused(tmp_path):
+    (tmp_path / "out").write_text("a file")
+    with pytest.raises(AlreadyExists, match="is a file"), atomic_folder(tmp_path / "out"):
+        pass
+    assert (tmp_path / "out").read_text() == "a file"

@@ -1,0 +1,237 @@
+# SPDX-License-Identifier: MIT
+"""`zebro-lab record`, `sim`, `runs`, `exclude` and `zebro check` as their user meets them."""
+
+import contextlib
+import json
+import os
+import re
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from rig.zebro.profile import load_leg_profile
+from zebro_lab.main import app
+from zebro_lab.mcap.raw_log import read_raw_log
+from zebro_lab.terminal.ending import run as run_app
+from zebro_lab.walk.folder import read_walk
+
+COMMAND = str(Path(sys.executable).with_name("zebro-lab"))
+HEAVY = {"numpy", "scipy", "pandas", "can", "serial", "mcap", "matplotlib", "numba", "rig.device"}
+
+
+@pytest.fixture
+def run(monkeypatch, capsys):
+    """Return a runner of the command in this process: exit code, stdout, stderr."""
+
+    def runner(*arguments: object) -> tuple[int, str, str]:
+        monkeypatch.setattr(sys, "argv", [COMMAND, *map(str, arguments)])
+        try:
+            with pytest.raises(SystemExit) as ended:
+                run_app(app)
+            code = ended.value.code
+        finally:
+            streams = capsys.readouterr()
+        return int(code or 0), streams.out, streams.err
+
+    return runner
+
+
+@contextlib.contextmanager
+def started(*arguments, **options):
+    """Run the command beside this process; it is killed at the latest when the body ends."""
+    process = subprocess.Popen(
+        [COMMAND, *map(str, arguments)], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+        **options,
+    )  # fmt: skip
+    try:
+        yield process
+    finally:
+        process.kill()
+        process.communicate()
+
+
+def growing(data: Path) -> Path:
+    """Wait for a run that holds samples, and return its folder."""
+    end = time.monotonic() + 20
+    while time.monotonic() < end:
+        for log in data.glob("*/log.mcap"):
+            if (log.parent / "run.json").is_file() and read_raw_log(log).streams:
+                return log.parent
+        time.sleep(0.05)
+    raise AssertionError("nothing was recorded")
+
+
+@pytest.mark.parametrize(
+    "command", ["record", "import", "runs", "plot", "exclude", "doctor", "sim zebro", "zebro check"]
+)
+def test_help_loads_nothing_heavy(command):
+    process = subprocess.run(
+        [sys.executable, "-X", "importtime", COMMAND, *command.split(), "--help"],
+        capture_output=True, text=True, check=True,
+    )  # fmt: skip
+    assert f"zebro-lab {command}" in process.stdout
+    loaded = {line.rsplit("|", 1)[-1].strip() for line in process.stderr.splitlines()}
+    assert not loaded & HEAVY
+
+
+def test_a_recording_prints_counts_clocks_and_folder_and_is_listed(run, tmp_path):
+    options = ("--zebro", "sim", "--duration", 1.0, "--label", "first")
+    code, out, err = run("record", "--data", tmp_path, *options)
+    assert (code, err) == (0, "")
+    assert re.search(r"SIMULATED legs: \d+ samples, 0 lost, 0 rejected, 0 dropped", out)
+    assert "clock of legs: offset" in out
+    (folder,) = tmp_path.iterdir()
+    assert f"completed: {folder}" in out
+    code, out, _ = run("runs", tmp_path)
+    assert code == 0
+    assert re.search(r"_walk_first  completed  \d\.\d s  \d+ /legs/raw  SIMULATED sim:zebro", out)
+    assert "1 run in" in out
+
+
+def test_an_excluded_run_is_kept_and_listed_with_the_reason(run, tmp_path):
+    run("record", "--imu", "sim", "--duration", 0.2, "--label", "x", "--data", tmp_path)
+    (folder,) = tmp_path.iterdir()
+    assert run("exclude", folder, "--why", "belt came off")[0] == 0
+    assert "excluded (belt came off)" in run("runs", tmp_path)[1]
+    code, _, err = run("exclude", folder, "--why", " ")
+    assert (code, err.count("\n")) == (1, 1)
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_a_signal_ends_a_recording_with_a_complete_record(number, tmp_path):
+    with started("record", "--zebro", "sim", "--label", "x", "--data", tmp_path) as process:
+        folder = growing(tmp_path)
+        process.send_signal(number)
+        _, err = process.communicate(timeout=20)
+    assert (process.returncode, err) == (130, "")
+    manifest = json.loads((folder / "run.json").read_text())
+    assert manifest["exit_status"] == f"stopped: {number.name}"
+    assert manifest["log_sha256"]
+    assert manifest["counters"]["legs"]["received"] == manifest["streams"]["/legs/raw"]
+    assert read_raw_log(folder / "log.mcap").damage is None
+
+
+def test_a_killed_recording_is_recovered(run, tmp_path):
+    with started("record", "--zebro", "sim", "--label", "x", "--data", tmp_path) as process:
+        folder = growing(tmp_path)
+        process.kill()
+        process.wait(20)
+    assert read_raw_log(folder / "log.mcap").streams["/legs/raw"]
+    os.utime(folder / "log.mcap", (0, 0))
+    assert "  recovered  " in run("runs", tmp_path)[1]
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="limits of a process")
+def test_a_disk_that_takes_no_more_ends_a_recording_with_its_record(run, tmp_path):
+    import resource
+
+    def limited():
+        resource.setrlimit(resource.RLIMIT_FSIZE, (100_000, 100_000))
+
+    with started(
+        "record", "--rig", "sim", "--label", "x", "--data", tmp_path, preexec_fn=limited
+    ) as process:
+        _, err = process.communicate(timeout=60)
+    assert process.returncode == 1
+    assert "recording ended early" in err
+    assert err.count("\n") == 1
+    (folder,) = tmp_path.iterdir()
+    manifest = json.loads((folder / "run.json").read_text())
+    assert manifest["exit_status"].startswith("failed: ")
+    assert "log_sha256" not in manifest
+    assert len(read_raw_log(folder / "log.mcap").streams["/load_cell/raw"]) > 100
+
+
+def test_a_twin_prints_its_port_and_any_program_can_record_it(run, tmp_path):
+    with started("sim", "zebro", "--socket", "--drop", "0.1", "--seed", "3") as twin:
+        line = twin.stdout.readline()
+        assert line.startswith("SIMULATED robot (sim:zebro), profile zebro-100-serial: socket://")
+        port = line.split()[-1]
+        code, out, _ = run("record", "--zebro", f"zebro-100-serial@{port}", "--duration", 1.0,
+                           "--label", "x", "--data", tmp_path)  # fmt: skip
+        twin.send_signal(signal.SIGTERM)
+        assert twin.wait(20) == 0
+    assert code == 0
+    received, lost = map(int, re.search(r"legs: (\d+) samples, (\d+) lost", out).groups())
+    assert received > 50
+    assert 0 < lost < 0.3 * received
+
+
+def test_zebro_check_fixes_order_and_writes_a_profile(tmp_path):
+    file = tmp_path / "mine.toml"
+    answers = ["1", "y", "2", "y", "9", "3", "n", "5", "y", "4", "y", "6", "y", ""]
+    command = [COMMAND, "zebro", "check", "sim", "--save", file]
+    checked = subprocess.run(
+        command, input="\n".join(answers) + "\n", capture_output=True, text=True, check=False
+    )
+    assert checked.returncode == 0, checked.stderr
+    assert f"wrote {file}" in checked.stdout
+    profile = load_leg_profile(str(file))
+    assert profile.legs == (1, 2, 3, 5, 4, 6)
+    assert profile.sign == (1, 1, -1, 1, 1, 1)
+    again = subprocess.run(command, input="", capture_output=True, text=True, check=False)
+    assert (again.returncode, again.stderr.count("\n")) == (1, 1)
+
+
+def test_a_run_is_exported_as_tables(run, tmp_path):
+    run("record", "--zebro", "sim", "--duration", 0.3, "--label", "x", "--data", tmp_path / "data")
+    (folder,) = (tmp_path / "data").iterdir()
+    code, out, _ = run("export", folder, "--out", tmp_path / "out", "--to", "parquet")
+    assert code == 0
+    assert f"wrote {tmp_path / 'out' / 'legs.parquet'}" in out
+
+
+ERRORS = {
+    "no device": (("--label", "x"), "no device to record"),
+    "no such port": (("--label", "x", "--zebro", "zebro-100-serial@/dev/no"), "cannot open port"),
+    "no such profile": (("--label", "x", "--imu", "mine@sim"), "no profile 'mine' is shipped"),
+    "nobody to play to": (("--label", "x", "--imu", "sim", "--play", "legs.csv"), "legs.csv"),
+}
+
+
+@pytest.mark.parametrize(("options", "message"), ERRORS.values(), ids=ERRORS)
+def test_an_error_is_one_line_and_nothing_is_written(options, message, run, tmp_path):
+    code, out, err = run("record", "--data", tmp_path / "data", *options)
+    assert (code, out) == (1, "")
+    assert message in err
+    assert err.count("\n") == 1
+    assert not (tmp_path / "data").exists()
+
+
+def test_a_run_needs_a_label_and_a_place(run):
+    assert run("record", "--zebro", "sim")[0] == 2
+
+
+def test_a_recorded_walk_is_predicted_with_the_robots_leg_offsets(run, tmp_path):
+    data, robot = tmp_path / "data", tmp_path / "robot.toml"
+    run("record", "--zebro", "sim", "--duration", 1.5, "--label", "walk", "--data", data)
+    (folder,) = data.iterdir()
+    run("walk", "--write-robot", robot)
+    plain = robot.read_text()
+    predicted = []
+    for offset in ("0.0", "4.0"):
+        text = plain.replace("offset_deg = [0.0, 0.0,", f"offset_deg = [0.0, {offset},")
+        robot.write_text(text)
+        out = tmp_path / f"predicted-{offset}"
+        asked = ["--slip", "coulomb:0.38", "--robot", robot, "--out", out]
+        assert run("predict", folder, *asked)[0] == 0
+        predicted.append(read_walk(out).theta)
+    apart = np.degrees(predicted[1] - predicted[0])
+    np.testing.assert_allclose(apart, np.tile([0, 4.0, 0, 0, 0, 0], (len(apart), 1)), atol=1e-6)
+
+
+def test_others_files_are_imported_and_say_that_they_are_simulated(run, tmp_path):
+    walk = Path(__file__).parents[3] / "datasets" / "walk-sim"
+    start = ("--start", "2026-03-04T05:06:07Z", "--data", tmp_path)
+    code, out, err = run("import", "--legs", walk / "legs.csv", "--label", "bought", *start)
+    assert (code, err) == (0, "")
+    assert re.search(r"SIMULATED sim:mujoco-walk: 1500 /legs/raw: .*_walk_bought", out)
+    for options in (("--legs", walk / "legs.csv", "--start", "tomorrow"), ()):
+        code, _, err = run("import", "--data", tmp_path, *options)
+        assert code in (1, 2)
+        assert "--start" in err or "nothing to import" in err

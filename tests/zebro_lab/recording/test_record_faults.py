@@ -1,0 +1,164 @@
+# SPDX-License-Identifier: MIT
+"""`zebro-lab record` in a process of its own, where folders, disks, viewers and terminals fail."""
+
+import contextlib
+import json
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import termios
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from zebro_lab.mcap.raw_log import read_raw_log
+
+COMMAND = str(Path(sys.executable).with_name("zebro-lab"))
+
+
+@contextlib.contextmanager
+def recording(data, *options, **given):
+    """Record the simulated robot in a process of its own, which the end of the body kills."""
+    given = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, **given}
+    process = subprocess.Popen(
+        [COMMAND, "record", "--zebro", "sim", "--label", "x", "--data", str(data), *options],
+        **given,
+    )
+    try:
+        yield process
+    finally:
+        process.kill()
+        process.communicate()
+
+
+def growing(data):
+    """Wait for a run that holds samples, and return its folder."""
+    end = time.monotonic() + 20
+    while time.monotonic() < end:
+        for log in data.glob("*/log.mcap"):
+            if (log.parent / "run.json").is_file() and read_raw_log(log).streams:
+                return log.parent
+        time.sleep(0.05)
+    raise AssertionError("nothing was recorded")
+
+
+def end_record(folder):
+    return json.loads((folder / "run.json").read_text())
+
+
+def require_whole(folder):
+    """Check that a run ended with its record, its whole log, and nothing lost."""
+    record = end_record(folder)
+    assert record["log_sha256"]
+    assert record["counters"]["legs"]["lost"] == 0
+    assert record["counters"]["legs"]["dropped"] == 0
+    assert record["counters"]["legs"]["received"] == record["streams"]["/legs/raw"]
+    assert read_raw_log(folder / "log.mcap").damage is None
+    return record
+
+
+def lasted(folder):
+    return np.ptp(read_raw_log(folder / "log.mcap").streams["/legs/raw"].host_time)
+
+
+@contextlib.contextmanager
+def terminal():
+    """Open a terminal: the side of the person, and the side of programs."""
+    master, slave = os.openpty()
+    termios.tcsetwinsize(slave, (24, 100))
+    sides = {master, slave}
+    try:
+        yield master, slave, sides
+    finally:
+        for side in sides:
+            os.close(side)
+
+
+def test_a_folder_removed_while_recording_ends_it_with_one_line(tmp_path):
+    data = tmp_path / "data"
+    with recording(data) as process:
+        folder = growing(data)
+        shutil.rmtree(folder)
+        removed = time.monotonic()
+        _, err = process.communicate(timeout=10)
+        assert time.monotonic() - removed < 5.0
+    assert process.returncode == 1
+    assert err.count(b"\n") == 1
+    assert b"removed or renamed" in err
+    assert not folder.exists()
+
+
+@pytest.mark.parametrize("when", ["before", "while"])
+def test_a_stopped_terminal_holds_up_no_recording(tmp_path, when):
+    with terminal() as (_, slave, _sides):
+        if when == "before":
+            termios.tcflow(slave, termios.TCOOFF)
+        given = {"stdin": slave, "stdout": slave, "stderr": slave}
+        with recording(tmp_path, "--duration", "1", **given) as process:
+            folder = growing(tmp_path)
+            termios.tcflow(slave, termios.TCOOFF)
+            process.wait(15)
+        assert process.returncode == 0
+        termios.tcflow(slave, termios.TCOON)
+    assert 0.98 < lasted(folder) < 2.0
+    record = require_whole(folder)
+    assert record["exit_status"] == "completed"
+
+
+def test_a_pipe_that_nobody_reads_holds_up_no_recording(tmp_path):
+    reading, writing = os.pipe()
+    with os.fdopen(reading), os.fdopen(writing, "wb", buffering=0) as full:
+        os.set_blocking(writing, False)
+        with contextlib.suppress(BlockingIOError):
+            while full.write(bytes(65536)):
+                pass
+        os.set_blocking(writing, True)
+        given = {"stdout": full, "stderr": full}
+        with recording(tmp_path, "--duration", "1", **given) as process:
+            process.wait(15)
+    assert process.returncode == 0
+    (folder,) = tmp_path.iterdir()
+    require_whole(folder)
+
+
+def test_a_hangup_ends_a_recording_with_a_complete_record(tmp_path):
+    with recording(tmp_path) as process:
+        folder = growing(tmp_path)
+        process.send_signal(signal.SIGHUP)
+        _, err = process.communicate(timeout=20)
+    assert (process.returncode, err) == (130, b"")
+    assert require_whole(folder)["exit_status"] == "stopped: SIGHUP"
+
+
+@pytest.mark.parametrize("session", [True, False])
+def test_a_closed_terminal_ends_a_recording_with_a_complete_record(tmp_path, session):
+    """With a session of its own the terminal sends SIGHUP; without, only reads and writes fail."""
+    with terminal() as (master, slave, sides):
+        given = {"stdin": slave, "stdout": slave, "stderr": slave, "start_new_session": session}
+        if session:
+            import fcntl
+
+            given["preexec_fn"] = lambda: fcntl.ioctl(0, termios.TIOCSCTTY, 0)
+        with recording(tmp_path, **given) as process:
+            folder = growing(tmp_path)
+            for side in (slave, master):
+                os.close(side)
+                sides.discard(side)
+            process.wait(20)
+    assert process.returncode == 130
+    assert require_whole(folder)["exit_status"] in ("stopped: SIGHUP", "stopped: terminal closed")
+
+
+def test_last_words_to_a_dead_pipe_change_no_exit_code(tmp_path):
+    with recording(tmp_path) as process:
+        folder = growing(tmp_path)
+        process.stdout.close()
+        process.stdout = None
+        process.send_signal(signal.SIGTERM)
+        _, err = process.communicate(timeout=20)
+    assert (process.returncode, err) == (130, b"")
+    require_whole(folder)

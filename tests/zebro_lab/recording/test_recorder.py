@@ -1,0 +1,322 @@
+# SPDX-License-Identifier: MIT
+"""A run folder is readable at every instant and always ends with its reason."""
+
+import errno
+import json
+import os
+import shutil
+import threading
+import time
+from datetime import datetime
+
+import pytest
+
+from rig.device import Counters, Sample
+from rig.zebro.profile import load_leg_profile
+from zebro_lab.files.errors import AlreadyExists, RecordingError
+from zebro_lab.mcap.raw_log import read_raw_log
+from zebro_lab.mcap.stream_views import LegsView
+from zebro_lab.recording import recorder as module
+from zebro_lab.recording.devices import profile_text
+from zebro_lab.recording.recorder import RunDescription, RunRecorder
+from zebro_lab.runs.folder import read_manifest, run_state
+from zebro_lab.runs.manifest import profile_file
+from zebro_lab.runs.stage import list_runs
+
+PROFILE = "zebro-100-serial"
+
+
+def recorder(data, *, label="test", **changes):
+    description = RunDescription(
+        kind="walk", label=label, source="sim:test",
+        profiles={"legs": (PROFILE, profile_text(PROFILE))}, sources={"legs": "sim:test"},
+    )  # fmt: skip
+    view = LegsView("legs", profile=load_leg_profile(PROFILE))
+    return RunRecorder(data, description=description, views={"legs": view}, **changes)
+
+
+def some(first, count):
+    now = time.monotonic()
+    return [Sample(now, n / 100, n, (n % 100,) * 6) for n in range(first, first + count)]
+
+
+def until(holds, limit=5.0):
+    end = time.monotonic() + limit
+    while not holds() and time.monotonic() < end:
+        time.sleep(0.01)
+    assert holds()
+
+
+def count_in(run):
+    found = read_raw_log(run.folder / "log.mcap").streams
+    return len(found["/legs/raw"]) if found else 0
+
+
+def test_a_run_ends_with_a_complete_record(tmp_path):
+    with recorder(tmp_path) as run:
+        run.write("legs", some(0, 50))
+        run.count("legs", Counters(received=50, lost=2))
+        run.compare_clocks({"legs": {"offset": 1.0, "drift": 0.0, "delay": 0.0}})
+        run.end("stopped: key")
+        run.end("too late")
+    manifest = read_manifest(run.folder)
+    assert manifest.exit_status == "stopped: key"
+    assert manifest.streams == {"/legs/raw": 50}
+    assert manifest.counters["legs"]["lost"] == 2
+    assert manifest.counters["legs"]["dropped"] == 0
+    assert manifest.clocks["legs"]["offset"] == 1.0
+    assert manifest.profiles == {"legs": PROFILE}
+    assert datetime.fromisoformat(manifest.stop) >= datetime.fromisoformat(manifest.start)
+    assert profile_file(run.folder, "legs").read_text() == profile_text(PROFILE)
+    assert sorted(p.name for p in run.folder.iterdir()) == ["log.mcap", "profiles", "run.json"]
+    assert read_raw_log(run.folder / "log.mcap").damage is None
+
+
+def test_a_run_can_be_read_while_it_grows(tmp_path):
+    with recorder(tmp_path) as run:
+        for first in range(0, 30, 10):
+            run.write("legs", some(first, 10))
+            until(lambda wanted=first + 10: count_in(run) == wanted, limit=2.0)
+        assert run_state(run.folder, read_manifest(run.folder)) == "recording"
+    assert run_state(run.folder, read_manifest(run.folder)) == "completed"
+
+
+def test_a_run_without_an_end_is_recovered_and_says_what_it_holds(tmp_path):
+    with recorder(tmp_path) as run:
+        run.write("legs", some(0, 10))
+        until(lambda: count_in(run) == 10)
+        copy = tmp_path / "killed" / run.folder.name
+        copy.mkdir(parents=True)
+        for name in ("run.json", "log.mcap"):
+            (copy / name).write_bytes((run.folder / name).read_bytes())
+    os.utime(copy / "log.mcap", (0, 0))
+    (listed,) = list_runs(copy)
+    assert (listed.state, listed.samples) == ("recovered", "10 /legs/raw")
+
+
+def test_an_exception_is_the_reason_and_goes_on(tmp_path):
+    run = recorder(tmp_path)
+
+    def watched():
+        with run:
+            run.write("legs", some(0, 5))
+            raise RuntimeError("the viewer fell over")
+
+    with pytest.raises(RuntimeError, match="viewer"):
+        watched()
+    assert read_manifest(run.folder).exit_status == "failed: RuntimeError: the viewer fell over"
+    assert count_in(run) == 5
+
+
+class FullDisk:
+    """A log file on a disk that is full after a while."""
+
+    def __init__(self, file, room):
+        self._file, self._room = file, room
+
+    def write(self, data):
+        if self._file.tell() + len(data) > self._room:
+            raise OSError(errno.ENOSPC, "No space left on device")
+        return self._file.write(data)
+
+    def __getattr__(self, name):
+        return getattr(self._file, name)
+
+
+def test_a_full_disk_ends_the_writing_and_leaves_what_was_written(tmp_path, monkeypatch):
+    original = module.LogWriter
+    monkeypatch.setattr(
+        module, "LogWriter", lambda file, **given: original(FullDisk(file, 30_000), **given)
+    )
+    with recorder(tmp_path) as run:
+        for first in range(0, 100_000, 20):
+            run.write("legs", some(first, 20))
+            time.sleep(0.005)
+            if run.failure is not None:
+                break
+        until(lambda: run.failure is not None)
+        assert "No space left on device" in run.failure
+    manifest = read_manifest(run.folder)
+    assert manifest.exit_status.startswith("failed: ")
+    assert "No space left" in manifest.exit_status
+    assert manifest.log_sha256 is None
+    assert 0 < count_in(run) < 100_000
+
+
+def test_a_full_queue_is_a_failure_that_says_so_and_what_is_dropped_is_counted(
+    tmp_path, monkeypatch
+):
+    monkeypatch.setattr(module, "FLUSH_EVERY", 10.0)
+    with recorder(tmp_path, limit=100) as run:
+        assert run.write("legs", some(0, 60))
+        assert not run.write("legs", some(60, 60))
+        assert "too slow" in run.failure
+        assert run.dropped("legs") == 60
+    manifest = read_manifest(run.folder)
+    assert "too slow" in manifest.exit_status
+    assert manifest.counters["legs"]["dropped"] == 60
+
+
+def test_a_disk_with_too_little_room_is_refused_before_it_begins(tmp_path):
+    with pytest.raises(RecordingError, match="MB free; expected at least"):
+        recorder(tmp_path, least_free=1 << 62).__enter__()
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_place_that_takes_no_folder_is_named(tmp_path):
+    (tmp_path / "data").write_text("a file")
+    with pytest.raises(RecordingError, match="folder as --data"):
+        recorder(tmp_path / "data").__enter__()
+    with pytest.raises(RecordingError, match="cannot write to"):
+        recorder(tmp_path / "data" / "below").__enter__()
+
+
+@pytest.mark.skipif(not os.path.isdir("/proc/1"), reason="a folder nobody can write to")  # noqa: PTH112
+def test_a_read_only_folder_is_named(tmp_path):
+    with pytest.raises(RecordingError, match="cannot write to /proc"):
+        recorder("/proc/data").__enter__()
+
+
+def test_a_run_is_never_overwritten(tmp_path, monkeypatch):
+    class Stopped(datetime):
+        @classmethod
+        def now(cls, tz=None):
+            return datetime(2026, 1, 2, 3, 4, 5, tzinfo=tz)
+
+    monkeypatch.setattr(module, "datetime", Stopped)
+    with recorder(tmp_path) as run:
+        pass
+    before = (run.folder / "run.json").read_text()
+    with pytest.raises(AlreadyExists, match="another label"):
+        recorder(tmp_path).__enter__()
+    assert (run.folder / "run.json").read_text() == before
+    assert json.loads(before)["exit_status"] == "completed"
+
+
+def test_no_step_of_the_wall_clock_shows_in_the_log(tmp_path, monkeypatch):
+    with recorder(tmp_path) as run:
+        run.write("legs", some(0, 1))
+        monkeypatch.setattr(time, "time", lambda: 0.0)
+        run.write("legs", some(1, 1))
+    monkeypatch.undo()
+    host = read_raw_log(run.folder / "log.mcap").streams["/legs/raw"].host_time
+    assert 0 <= host[0] <= host[1] < 1.0
+
+
+REMOVALS = {
+    "the run folder removed": lambda folder: shutil.rmtree(folder),
+    "the data folder removed": lambda folder: shutil.rmtree(folder.parent),
+    "the run folder renamed": lambda folder: folder.rename(folder.with_name("renamed")),
+    "the data folder renamed": lambda folder: folder.parent.rename(
+        folder.parent.with_name("renamed")
+    ),
+    "another log in its place": lambda folder: (
+        (folder / "copy").write_bytes(b"") or (folder / "copy").replace(folder / "log.mcap")
+    ),
+}
+
+
+@pytest.mark.parametrize("remove", REMOVALS.values(), ids=REMOVALS)
+def test_a_folder_that_goes_while_recording_is_a_failure_within_a_second(tmp_path, remove):
+    before = set(threading.enumerate())
+    with recorder(tmp_path / "data") as run:
+        run.write("legs", some(0, 10))
+        until(lambda: count_in(run) == 10)
+        remove(run.folder)
+        until(lambda: run.failure is not None, limit=1.0)
+    assert "log.mcap" in run.failure
+    assert "removed or renamed" in run.failure
+    assert set(threading.enumerate()) <= before
+
+
+def test_a_run_folder_renamed_while_recording_gets_its_end_record(tmp_path):
+    with recorder(tmp_path) as run:
+        run.write("legs", some(0, 10))
+        until(lambda: count_in(run) == 10)
+        there = run.folder.rename(tmp_path / "renamed")
+        until(lambda: run.failure is not None, limit=1.0)
+    assert "removed or renamed" in read_manifest(there).exit_status
+    assert len(read_raw_log(there / "log.mcap").streams["/legs/raw"]) == 10
+
+
+@pytest.mark.parametrize("error", [OSError(errno.EIO, "Input/output error"), MemoryError("full")])
+def test_a_disk_that_cannot_be_synchronised_ends_the_run(tmp_path, monkeypatch, error):
+    monkeypatch.setattr(module, "SYNC_EVERY", 0.05)
+
+    def fail(_file):
+        raise error
+
+    with recorder(tmp_path) as run:
+        monkeypatch.setattr(os, "fsync", fail)
+        end = time.monotonic() + 2.0
+        while run.failure is None and time.monotonic() < end:
+            time.sleep(0.01)
+        monkeypatch.undo()
+    assert str(error) in str(run.failure)
+    assert read_manifest(run.folder).exit_status == f"failed: {run.failure}"
+
+
+@pytest.mark.parametrize("error", [ValueError("no such chunk"), SystemExit("over")])
+def test_whatever_closing_the_log_raises_is_the_reason_in_the_end_record(
+    tmp_path, monkeypatch, error
+):
+    def fail(_log):
+        raise error
+
+    with recorder(tmp_path) as run:
+        run.write("legs", some(0, 10))
+        monkeypatch.setattr(module.LogWriter, "finish", fail)
+    assert str(error) in run.failure
+    assert read_manifest(run.folder).exit_status == f"failed: {run.failure}"
+
+
+def test_whatever_ends_the_writer_is_the_reason(tmp_path, monkeypatch):
+    def fail(_log):
+        raise SystemExit("over")
+
+    with recorder(tmp_path) as run:
+        monkeypatch.setattr(module.LogWriter, "flush", fail)
+        until(lambda: run.failure is not None, limit=2.0)
+    assert "SystemExit: over" in read_manifest(run.folder).exit_status
+
+
+def test_an_end_record_that_cannot_be_written_is_a_failure_that_says_so(tmp_path, monkeypatch):
+    def fail(_folder, _manifest):
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    with recorder(tmp_path) as run:
+        monkeypatch.setattr(module, "write_manifest", fail)
+    assert "end record" in run.failure
+    assert "No space left on device" in run.failure
+
+
+@pytest.mark.parametrize("starts", [0, 1, 2])
+def test_a_writer_that_cannot_be_started_leaves_nothing(tmp_path, monkeypatch, starts):
+    left, before = [starts], set(threading.enumerate())
+    start = threading.Thread.start
+
+    def few(thread):
+        if not left[0]:
+            raise RuntimeError("can't start new thread")
+        left[0] -= 1
+        start(thread)
+
+    monkeypatch.setattr(threading.Thread, "start", few)
+    with pytest.raises(RecordingError, match="can't start new thread"):
+        recorder(tmp_path).__enter__()
+    assert list(tmp_path.iterdir()) == []
+    assert set(threading.enumerate()) <= before
+
+
+def test_the_beginning_of_a_run_waits_for_no_disk(tmp_path, monkeypatch):
+    real = os.fsync
+    monkeypatch.setattr(os, "fsync", lambda file: (time.sleep(0.5), real(file))[1])
+    began = time.monotonic()
+    with recorder(tmp_path) as run:
+        assert time.monotonic() - began < 0.5
+        assert read_manifest(run.folder).exit_status == "recording"
+        time.sleep(0.1)
+        ended = time.monotonic()
+    manifest = read_manifest(run.folder)
+    start, stop = map(datetime.fromisoformat, (manifest.start, manifest.stop))
+    assert (stop - start).total_seconds() < ended - began + 0.1

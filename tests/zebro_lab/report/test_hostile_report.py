@@ -1,0 +1,244 @@
+# SPDX-License-Identifier: MIT
+"""A report of a folder that somebody wrote to do harm: no script, no other file, one line of fault.
+
+The page is also loaded in Chromium where there is one: nothing else knows for sure what runs.
+"""
+
+import base64
+import html
+import json
+import shutil
+import subprocess
+import sys
+from datetime import UTC, datetime
+from pathlib import Path
+
+import pytest
+from PIL import Image
+
+from zebro_lab.files.errors import DataError
+from zebro_lab.report.stage import ReportRequest, report
+from zebro_lab.runs.stage import list_runs
+
+MADE = datetime(2026, 1, 2, 3, 4, 5, tzinfo=UTC)
+MARK = "document.title='OWNED'"
+HARM = (
+    f"<script>{MARK}</script>",
+    f'"onerror={MARK}//',
+    f"'><img src=x onerror={MARK}>",
+    f"javascript:{MARK}",
+    f"</style><script>{MARK}</script>",
+    f"</title><script>{MARK}</script>",
+    "{{ 7*7 }}{% raw %}{{ config }}",
+    f"<svg/onload={MARK}>",
+    "\u202egnp.exe \u2066x\u2069 \x1b[2J\x1b[31m\x00\x07",
+    "a\nb\rc\u2028d",
+)
+ALL = " ".join(HARM)
+SLIP = """
+schema = 1
+slip_definition = {harm}
+source = {harm}
+[verdict]
+headline = {harm}
+next_steps = [{harm}]
+[law]
+name = {harm}
+[tested]
+samples = 620
+runs = 24
+normal_force = [2.1, 12.7]
+slip_ratio = [-0.01, 0.9]
+[parameters.{harm}]
+symbol = {harm}
+unit = {harm}
+median = 1.5
+q05 = 1.4
+q95 = 1.6
+"""
+COMMAND = Path(sys.executable).with_name("zebro-lab")
+CHROMIUM = next(filter(None, map(shutil.which, ("chromium", "chromium-browser"))), None)
+
+
+def write_json(file: Path, content: object) -> None:
+    file.parent.mkdir(parents=True, exist_ok=True)
+    file.write_text(json.dumps(content))
+
+
+def part(folder: Path, kind: str, pictures: list[str] = [], **content: object) -> None:  # noqa: B006
+    write_json(folder / "manifest.json", {
+        "schema": 1, "kind": kind, "source": ALL, "settings": {}, "inputs": {ALL: ALL},
+        "outputs": dict.fromkeys(pictures, ALL), "software": {ALL: ALL}, "notes": [ALL], **content,
+    })  # fmt: skip
+
+
+@pytest.fixture
+def secret(tmp_path) -> bytes:
+    """Return the bytes of a picture outside the run."""
+    Image.new("RGB", (7, 7), (1, 2, 3)).save(tmp_path / "secret.png")
+    return (tmp_path / "secret.png").read_bytes()
+
+
+@pytest.fixture
+def run(tmp_path, secret) -> Path:
+    """Return a folder of a run with harm in every text, and a calibration beside it."""
+    folder = tmp_path / "run <b>&amp; ${HOME}"
+    terms = ("label", "material", "operator", "exit_status", "source", "robot", "stop", "start")
+    write_json(folder / "run.json", {
+        "kind": "walk", **dict.fromkeys(terms, ALL), "streams": {ALL: 3}, "excluded": {"why": ALL},
+    })  # fmt: skip
+    row = {"ate_m": 0.01, "coverage90_x": 0.9, "nees": 1.0}
+    hostile_name = "<img src=x onerror=document.title='OWNED'>.png"
+    part(folder / "validation", "validation", [], runs={ALL: {ALL: row, "prediction": row}})
+    part(folder / "track", "track",
+         ["../../secret.png", str(tmp_path / "secret.png"), "link.png", "x/../../../secret.png",
+          hostile_name],
+         photos=3, tracked=2, times=ALL, left_out={ALL: ALL})  # fmt: skip
+    (folder / "track/x").mkdir()
+    (folder / "track/link.png").symlink_to(tmp_path / "secret.png")
+    Image.new("RGB", (5, 5)).save(folder / "track" / hostile_name)
+    part(folder / "prediction", "predict",
+         settings={"model": ALL, "slip": {"named": ALL, "source": ALL},
+                   "leg_angles": ALL})  # fmt: skip
+    calibration = tmp_path / "calibration"
+    part(calibration, "calibration")
+    (calibration / "slip.toml").write_text(SLIP.format(harm=json.dumps(ALL)))
+    (calibration / "summary.csv").write_text("parameter,prior\n" + json.dumps(HARM[0]) + ",x\n")
+    return folder
+
+
+def page_of(run: Path) -> str:
+    out = run.parent / "report.html"
+    calibration = run.parent / "calibration"
+    report(ReportRequest(run, calibration=calibration, out=out, title=ALL), made=MADE)
+    return out.read_text()
+
+
+def test_the_page_forbids_scripts_and_other_addresses_by_a_policy(run):
+    head = html.unescape(page_of(run).partition("<title>")[0])
+    assert 'http-equiv="Content-Security-Policy"' in head
+    assert "default-src 'none'" in head
+    assert "unsafe" not in head
+
+
+def test_pictures_outside_the_folder_are_left_out_and_named(run, secret):
+    page = page_of(run)
+    assert base64.b64encode(secret).decode() not in page
+    assert page.count("data:image/png") == 1
+    assert "Not shown" in page
+
+
+def test_marks_of_direction_and_controls_are_spelled_out(run):
+    page = page_of(run)
+    assert not set("\u202e\u2066\u2069\x1b\x00\x07\u2028") & set(page)
+    assert "\\u202egnp.exe" in page
+
+
+SWAPPED = {
+    "runs": {"validation/manifest.json": {"runs": 5}},
+    "row": {"validation/manifest.json": {"runs": {"a": 3}}},
+    "no row": {"validation/manifest.json": {"runs": {"a": {}}}},
+    "settings": {"prediction/manifest.json": {"settings": [1]}},
+    "no settings": {"prediction/manifest.json": {"settings": {}}},
+    "slip": {"prediction/manifest.json": {"settings": {"model": "x", "slip": 3}}},
+    "left out": {"track/manifest.json": {"left_out": [1]}},
+    "outputs": {"track/manifest.json": {"outputs": 3}},
+    "output": {"track/manifest.json": {"outputs": {"a.png": 1}, "inputs": [2]}},
+    "software": {"track/manifest.json": {"software": "numpy"}},
+    "kind": {"track/manifest.json": {"kind": ["track"]}},
+    "recorded": {"run.json": {"streams": 3}},
+    "excluded": {"run.json": {"excluded": "yes"}},
+}
+
+
+@pytest.mark.parametrize("name", SWAPPED)
+def test_values_of_another_type_are_named_in_one_line(name, run):
+    if name == "left out":
+        run.joinpath("track/manifest.json").unlink()
+    for file, change in SWAPPED[name].items():
+        content = json.loads((run / file).read_text()) if (run / file).is_file() else {}
+        write_json(run / file, {"kind": "track", **content, **change})
+    with pytest.raises(DataError) as raised:
+        page_of(run)
+    assert "\n" not in str(raised.value)
+
+
+@pytest.mark.parametrize(
+    ("file", "text"),
+    [
+        ("summary.csv", "parameter\n" + "x" * 200_000 + "\n"),
+        ("slip.toml", "verdict = 3\n"),
+        ("slip.toml", "parameters = [1]\n"),
+        ("slip.toml", ""),
+    ],
+    ids=["long", "verdict", "parameters", "empty"],
+)
+def test_a_calibration_that_lacks_what_is_shown_is_named_in_one_line(file, text, run):
+    (run.parent / "calibration" / file).write_text(text)
+    with pytest.raises(DataError) as raised:
+        page_of(run)
+    assert "\n" not in str(raised.value)
+
+
+def test_a_newline_in_a_manifest_does_not_fake_a_line_of_the_list(tmp_path):
+    write_json(tmp_path / "a" / "run.json", {
+        "schema_version": 1, "kind": "walk", "label": "x", "material": "x", "operator": "x",
+        "source": "sim:x\x1b[8m", "start": "2026-01-01T00:00:00+00:00",
+        "exit_status": "completed\nb  completed  9.0 s  900 /x  real\u202e", "software": {},
+        "constants": {}, "streams": {"/a\nb": 3},
+    })  # fmt: skip
+    assert len(list_runs(tmp_path)) == 1
+    listed = subprocess.run(
+        [COMMAND, "runs", tmp_path],
+        capture_output=True, text=True, check=True,
+    ).stdout  # fmt: skip
+    assert len(listed.splitlines()) == 2
+    assert not set("\x1b\u202e") & set(listed)
+    assert "completed\\nb" in listed
+
+
+def test_an_error_shows_no_escape_sequence_of_a_file(tmp_path):
+    named = tmp_path / "a\x1b[31m\nerror: b"
+    said = subprocess.run(
+        [COMMAND, "runs", named],
+        capture_output=True, text=True, check=False,
+    )  # fmt: skip
+    assert said.returncode == 1
+    assert len(said.stderr.splitlines()) == 1
+    assert "\x1b" not in said.stderr
+
+
+@pytest.mark.browser
+@pytest.mark.skipif(CHROMIUM is None, reason="no Chromium is at hand")
+def test_nothing_of_a_hostile_run_runs_in_a_browser(run, secret, tmp_path):
+    out = tmp_path / "report.html"
+    subprocess.run(
+        [COMMAND, "report", run, "--calibration",
+         run.parent / "calibration", "--out", out, "--title", HARM[0] + HARM[5]],
+        check=True, capture_output=True,
+    )  # fmt: skip
+    loaded = in_chromium(out, tmp_path / "profile")
+    assert "OWNED" not in loaded.partition("<title>")[2].partition("</title>")[0].replace(
+        "document.title='OWNED'", ""
+    )
+    assert base64.b64encode(secret).decode() not in loaded
+    assert "<script" not in loaded
+    # The same page with a script of ours in it: the policy stops it, and the browser runs scripts.
+    script = "<script>document.documentElement.dataset.ran='yes'</script>"
+    with_script = tmp_path / "with.html"
+    with_script.write_text(out.read_text().replace("<body>", f"<body>{script}"))
+    assert 'data-ran="yes"' not in in_chromium(with_script, tmp_path / "profile")
+    bare = tmp_path / "bare.html"
+    bare.write_text(f"<!DOCTYPE html><html><body>{script}</body></html>")
+    assert 'data-ran="yes"' in in_chromium(bare, tmp_path / "profile")
+
+
+def in_chromium(file: Path, profile: Path) -> str:
+    """Load a page, let it run for three seconds, and return its document as it is then."""
+    return subprocess.run(
+        [CHROMIUM, "--headless", "--no-sandbox", "--disable-gpu", "--disable-quic",
+         "--no-first-run", "--disable-background-networking", "--disable-component-update",
+         "--disable-sync", f"--user-data-dir={profile}", "--virtual-time-budget=3000",
+         "--dump-dom", file.as_uri()],
+        check=True, capture_output=True, text=True, timeout=60,
+    ).stdout  # fmt: skip

@@ -1,0 +1,99 @@
+# SPDX-License-Identifier: MIT
+"""Offset and drift are found while recording, times after it, whatever the device's clock does."""
+
+import numpy as np
+import pytest
+
+from rig.device import Sample
+from rig.sample_columns import SampleColumns
+from zebro_lab.runs.clock_watch import ClockWatch, sample_times
+
+DRIFT = 5e-5
+
+
+def batches(start, seconds, rate=1000.0, offset=7.0, rng=None):
+    """Return what reads of 4 ms give of a device that runs slow, its samples some time late."""
+    rng = rng or np.random.default_rng(0)
+    device = np.arange(0, seconds, 1 / rate)
+    taken = start + offset + (1 + DRIFT) * device
+    found = []
+    for first in range(0, len(device), 4):
+        read = taken[min(first + 3, len(taken) - 1)] + rng.exponential(3e-4)
+        found.append([Sample(read, d, i, (0,)) for i, d in enumerate(device[first : first + 4],
+                                                                     first)])  # fmt: skip
+    return found, taken
+
+
+def as_stream(found, *, sequence=True):
+    samples = [sample for batch in found for sample in batch]
+    n = len(samples)
+    return SampleColumns(
+        np.array([s.host_time for s in samples]),
+        np.array([np.nan if s.device_time is None else s.device_time for s in samples]),
+        np.arange(n) if sequence else np.full(n, -1),
+        np.zeros(n, dtype="u4"), np.zeros(n, dtype="u4"), np.zeros((n, 1), dtype="i4"),
+    )  # fmt: skip
+
+
+def test_offset_and_drift_are_found_from_least_late_samples():
+    found, _ = batches(100.0, 30.0)
+    watch = ClockWatch(start=100.0)
+    for batch in found:
+        watch.add(batch)
+    result = watch.result()
+    assert result["offset"] == pytest.approx(7.0, abs=2e-4)
+    assert result["drift"] == pytest.approx(DRIFT, abs=1e-5)
+
+
+def test_after_a_restart_the_clock_that_runs_now_counts():
+    watch = ClockWatch(start=0.0)
+    for offset, start in ((7.0, 0.0), (90.0, 10.0)):
+        for batch in batches(start, 10.0, offset=offset)[0]:
+            watch.add(batch)
+    assert watch.result()["offset"] == pytest.approx(100.0, abs=1e-3)
+
+
+def test_a_device_without_a_clock_has_no_result():
+    watch = ClockWatch(start=0.0)
+    watch.add([Sample(1.0, None, None, (0,))])
+    watch.add([])
+    assert watch.result() is None
+
+
+def test_times_undo_the_batches_of_reading():
+    found, taken = batches(0.0, 10.0)
+    stream = as_stream(found)
+    assert np.abs(stream.host_time - taken).max() > 2e-3
+    np.testing.assert_allclose(sample_times(stream), taken, atol=3e-4)
+
+
+def test_each_stretch_between_restarts_is_fitted_for_itself():
+    first, taken_first = batches(0.0, 5.0)
+    second, taken_second = batches(60.0, 5.0)
+    times = sample_times(as_stream(first + second))
+    np.testing.assert_allclose(times, np.r_[taken_first, taken_second], atol=3e-4)
+
+
+def test_a_lost_device_time_is_bridged_by_number():
+    found, taken = batches(0.0, 5.0)
+    stream = as_stream(found)
+    stream.device_time[100:103] = np.nan
+    np.testing.assert_allclose(sample_times(stream), taken, atol=3e-4)
+
+
+def test_without_device_times_the_time_of_reading_stays():
+    stream = as_stream(batches(0.0, 1.0)[0], sequence=False)
+    stream.device_time[:] = np.nan
+    np.testing.assert_array_equal(sample_times(stream), stream.host_time)
+
+
+@pytest.mark.parametrize("stalls", [(9.8,), (3.0, 9.7)])
+def test_reading_late_is_no_restart_and_keeps_the_clocks_compared(stalls):
+    watch = ClockWatch(start=0.0)
+    for number, t in enumerate(np.arange(0.0, 10.0, 0.06)):
+        late = any(stall <= t < stall + 0.1 for stall in stalls)
+        watch.add([Sample(t + 7.0 + (1.6 if late else 0.001), float(t), number, (0,))])
+    found = watch.result()
+    assert found is not None
+    assert found["offset"] == pytest.approx(7.001, abs=2e-3)
+    assert abs(found["drift"]) < 1e-3

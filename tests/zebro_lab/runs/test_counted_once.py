@@ -1,0 +1,141 @@
+# SPDX-License-Identifier: MIT
+"""The same data under two names count once, and a note says so."""
+
+import gzip
+import shutil
+from datetime import UTC, datetime
+from pathlib import Path
+
+import pandas as pd
+import pytest
+
+from zebro_lab.calibration.rig_data import RigData, read_rig_data
+from zebro_lab.exchange.import_stage import ImportRequest, import_run
+from zebro_lab.experiment.check_stage import check_runs
+from zebro_lab.runs.counted_once import content_hash
+from zebro_lab.runs.folder import exclude_run
+
+START = datetime(2026, 3, 4, 5, 6, 7, tzinfo=UTC)
+
+
+class Nobody:
+    """Follows nothing."""
+
+    def step(self, what: str, fraction: float | None) -> None:
+        pass
+
+    def stop_requested(self) -> bool:
+        return False
+
+
+@pytest.fixture
+def data(sweep, tmp_path) -> Path:
+    """Return a folder with the sweep's table and its columns.toml."""
+    shutil.copytree(sweep, tmp_path / "data")
+    return tmp_path / "data"
+
+
+def imported(data: Path, folder: Path, **change) -> list[Path]:
+    request = {"data": folder, "rig": data / "sweep.csv", "start": START} | change
+    return list(import_run(ImportRequest(**request), Nobody()).folders)
+
+
+def assert_once(found: RigData, sweep: Path, *names: str) -> None:
+    alone = read_rig_data([sweep])
+    assert len(found.samples.run_names) == len(alone.samples.run_names)
+    assert len(found.samples) == len(alone.samples)
+    told = [note for note in found.notes if "once" in note]
+    assert len(told) == 1
+    assert all(name in told[0] for name in names)
+
+
+def as_copy(file: Path) -> Path:
+    return shutil.copy(file, file.with_name("copy.csv"))
+
+
+def as_gzip(file: Path) -> Path:
+    packed = file.with_name("packed.csv.gz")
+    packed.write_bytes(gzip.compress(file.read_bytes()))
+    return packed
+
+
+def as_parquet(file: Path) -> Path:
+    table = file.with_name("table.parquet")
+    pd.read_csv(file).to_parquet(table)
+    return table
+
+
+@pytest.mark.parametrize("again", [as_copy, as_gzip, as_parquet])
+def test_a_table_under_two_names_counts_once(data, sweep, again):
+    again(data / "sweep.csv")
+    assert_once(read_rig_data([data]), sweep, "sweep")
+
+
+def test_a_file_imported_twice_counts_once(data, sweep, tmp_path):
+    imported(data, tmp_path / "runs", label="first")
+    imported(data, tmp_path / "runs", label="second")
+    later = START.replace(year=2027)
+    imported(data, tmp_path / "runs", label="third", start=later)
+    assert_once(read_rig_data([tmp_path / "runs"]), sweep, "second")
+
+
+def test_a_table_beside_the_runs_imported_from_it_counts_once(data, sweep):
+    imported(data, data / "runs")
+    assert_once(read_rig_data([data]), sweep, "sweep")
+
+
+def test_a_copied_run_folder_counts_once(data, sweep, tmp_path):
+    folder = imported(data, tmp_path / "runs")[0]
+    shutil.copytree(folder, tmp_path / "runs" / "backup")
+    assert_once(read_rig_data([tmp_path / "runs"]), sweep, "backup")
+
+
+def test_what_is_excluded_does_not_come_back_under_another_name(data, sweep):
+    folder = imported(data, data / "runs")[3]
+    exclude_run(folder, why="belt slipped")
+    found = read_rig_data([data])
+    alone = read_rig_data([sweep])
+    assert len(found.samples.run_names) == len(alone.samples.run_names) - 1
+
+
+def test_one_imported_run_beside_its_table_leaves_the_table_its_other_runs(data, sweep):
+    folders = imported(data, data / "runs")
+    for folder in folders[1:]:
+        shutil.rmtree(folder)
+    found, alone = read_rig_data([data]), read_rig_data([sweep])
+    assert len(alone.samples) <= len(found.samples)
+
+
+def test_repeated_rows_within_one_table_are_its_own(tmp_path):
+    trials = "slip_ratio,normal_force,traction_force\n" + "".join(
+        f"{0.01 * i},5,{min(1.0, 0.1 * i)}\n" * 2 for i in range(1, 11)
+    )
+    (tmp_path / "trials.csv").write_text(trials)
+    (tmp_path / "columns.toml").write_text(
+        "[columns.slip_ratio]\nname = 'slip_ratio'\ndefinition = 'material'\n"
+        "[runs]\neach_row = true\n"
+    )
+    assert len(read_rig_data([tmp_path]).samples) == 20
+
+
+def test_a_check_of_the_rig_says_what_is_there_twice(data, tmp_path, caplog):
+    as_copy(data / "sweep.csv")
+    (tmp_path / "slip.toml").write_text("""
+schema = 1
+slip_definition = "material"
+law = { name = "coulomb-stribeck", stribeck = false }
+parameters = { slip_stiffness = { mean = 20.0 }, friction = { mean = 0.4 } }
+covariance = { matrix = [[1.0, 0.0], [0.0, 1e-4]] }
+tested = { normal_force = [2.0, 13.0], slip_ratio = [0.0, 1.0] }
+""")
+    assert len(check_runs([data], tmp_path)) == 24
+    assert "counts once: sweep is copy" in caplog.text
+
+
+def test_a_damaged_gzip_file_is_told_apart_by_its_bytes(tmp_path):
+    packed = gzip.compress(b"t,x\n" * 1000)
+    whole, cut = tmp_path / "a.csv.gz", tmp_path / "b.csv.gz"
+    whole.write_bytes(packed)
+    cut.write_bytes(packed[:-9])
+    (tmp_path / "c.csv").write_bytes(b"t,x\n" * 1000)
+    assert content_hash(whole) == content_hash(tmp_path / "c.csv") != content_hash(cut)

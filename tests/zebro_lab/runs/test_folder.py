@@ -1,0 +1,207 @@
+# SPDX-License-Identifier: MIT
+"""Run folders: what is written is read back, and damage is told."""
+
+import json
+from datetime import UTC, datetime, timedelta, timezone
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from zebro_lab.calibration.rig_data import read_rig_data
+from zebro_lab.files.errors import AlreadyExists, DataError, NotFound
+from zebro_lab.main import app
+from zebro_lab.mcap.slip_rig_log import TOPIC, SlipRigTable
+from zebro_lab.runs.folder import read_manifest, read_slip_rig_run, write_slip_rig_run
+from zebro_lab.terminal.ending import run as run_app
+
+START = datetime(2026, 3, 4, 5, 6, 7, tzinfo=UTC)
+FIELDS = ("t", "omega_leg", "omega_ground", "normal_force", "traction_force")
+
+
+def make_table(n: int) -> SlipRigTable:
+    rng = np.random.default_rng(n)
+    return SlipRigTable(
+        np.arange(n) * 1e-3, 12 + rng.normal(size=n) / 10,
+        np.linspace(3.5, 1.5, n) + rng.normal(size=n) / 10,
+        6 + rng.normal(size=n) / 10, rng.normal(size=n),
+    )  # fmt: skip
+
+
+def make_run(data_dir: Path, n: int = 200, **change) -> Path:
+    settings = {
+        "label": "Delrin, steel", "material": "POM on steel", "operator": "a",
+        "source": "sim:noise", "start": START, "radius_leg": 0.035, "radius_ground": 0.12,
+    }  # fmt: skip
+    return write_slip_rig_run(data_dir, make_table(n), **(settings | change))
+
+
+def edit(folder: Path, **change) -> None:
+    file = folder / "run.json"
+    document = json.loads(file.read_text()) | change
+    file.write_text(json.dumps({k: v for k, v in document.items() if v is not ...}))
+
+
+@pytest.mark.parametrize("n", [1, 63, 64, 65, 1000])
+def test_run_round_trips_to_the_last_bit(tmp_path, n):
+    run = read_slip_rig_run(make_run(tmp_path, n))
+    for name in FIELDS:
+        np.testing.assert_array_equal(getattr(run.table, name), getattr(make_table(n), name))
+    assert run.notes == ()
+
+
+def test_manifest_tells_what_was_recorded(tmp_path):
+    folder = make_run(tmp_path, 200, commit="abc")
+    manifest = read_manifest(folder)
+    assert folder.name == "20260304T050607Z_slip-rig_Delrin-steel"
+    assert sorted(path.name for path in folder.iterdir()) == ["log.mcap", "run.json"]
+    assert (manifest.kind, manifest.label, manifest.source) == (
+        "slip-rig", "Delrin, steel", "sim:noise",
+    )  # fmt: skip
+    assert manifest.constants == {"radius_leg": 0.035, "radius_ground": 0.12}
+    assert manifest.streams == {TOPIC: 200}
+    assert manifest.software["commit"] == "abc"
+    assert datetime.fromisoformat(manifest.stop) - START == timedelta(seconds=0.199)
+
+
+def test_start_in_any_zone_names_the_folder_in_utc(tmp_path):
+    local = START.astimezone(timezone(timedelta(hours=2)))
+    assert make_run(tmp_path, start=local).name.startswith("20260304T050607Z")
+
+
+def test_run_is_never_overwritten(tmp_path):
+    make_run(tmp_path)
+    with pytest.raises(AlreadyExists, match="give the run another label"):
+        make_run(tmp_path)
+
+
+def test_empty_run_is_refused(tmp_path):
+    with pytest.raises(DataError, match="has no samples"):
+        make_run(tmp_path, 0)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_log_cut_short_is_salvaged_to_a_whole_chunk_with_a_note(tmp_path):
+    folder = make_run(tmp_path, 20_000)
+    log = folder / "log.mcap"
+    log.write_bytes(log.read_bytes()[: log.stat().st_size // 2])
+    run = read_slip_rig_run(folder)
+    assert 6_000 < len(run.table) < 10_000
+    np.testing.assert_array_equal(run.table.t, make_table(20_000).t[: len(run.table)])
+    assert "log.mcap is cut short (the file ends early)" in run.notes[0]
+    assert f"; {len(run.table)} of 20000 samples read" in run.notes[0]
+    assert run.notes[0] in read_rig_data([folder]).notes
+
+
+@pytest.mark.parametrize("kept", [0.4, 0.7, 0.99])
+def test_log_cut_anywhere_gives_a_prefix(tmp_path, kept):
+    folder = make_run(tmp_path, 5_000)
+    log = folder / "log.mcap"
+    log.write_bytes(log.read_bytes()[: int(log.stat().st_size * kept)])
+    found = read_slip_rig_run(folder).table
+    np.testing.assert_array_equal(found.t, make_table(5_000).t[: len(found)])
+
+
+@pytest.mark.parametrize("kept", [20, 200, 2000])
+def test_log_cut_before_its_first_whole_chunk_is_an_error(tmp_path, kept):
+    folder = make_run(tmp_path, 5_000)
+    (folder / "log.mcap").write_bytes((folder / "log.mcap").read_bytes()[:kept])
+    with pytest.raises(DataError, match="holds no samples on /slip_rig/samples") as caught:
+        read_slip_rig_run(folder)
+    assert "\n" not in str(caught.value)
+
+
+def test_flipped_byte_is_found(tmp_path):
+    folder = make_run(tmp_path, 20_000)
+    log = folder / "log.mcap"
+    data = bytearray(log.read_bytes())
+    data[len(data) // 2] ^= 0xFF
+    log.write_bytes(data)
+    run = read_slip_rig_run(folder)
+    assert 0 < len(run.table) < 20_000
+    assert "is cut short" in run.notes[0]
+
+
+def test_log_of_another_run_is_refused(tmp_path):
+    first, second = make_run(tmp_path, label="a"), make_run(tmp_path, 300, label="b")
+    (first / "log.mcap").write_bytes((second / "log.mcap").read_bytes())
+    with pytest.raises(DataError, match="is not the log that was recorded"):
+        read_slip_rig_run(first)
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"schema_version": 2}, "schema_version is 2, expected 1"),
+        ({"schema_version": ...}, "schema_version is None"),
+        ({"kind": "walk"}, "is a run of kind 'walk', expected 'slip-rig'"),
+        ({"kind": "slip_rig"}, "unknown kind 'slip_rig'; did you mean 'slip-rig'"),
+        ({"constants": {}}, "constants.radius_leg is None, expected a radius in m"),
+        ({"constants": {"radius_leg": 0.0}}, "column 'radius_leg': is 0 m, expected more than 0"),
+        ({"operator": 3}, "'operator' is 3, expected str"),
+    ],
+)
+def test_wrong_manifest_is_named(tmp_path, change, message):
+    folder = make_run(tmp_path)
+    edit(folder, **change)
+    with pytest.raises(DataError, match=message) as caught:
+        read_slip_rig_run(folder)
+    assert str(caught.value).startswith(str(folder / "run.json"))
+
+
+def test_missing_and_foreign_files_are_named(tmp_path):
+    folder = make_run(tmp_path)
+    (folder / "log.mcap").write_bytes(b"no mcap at all")
+    with pytest.raises(DataError, match="is no MCAP file"):
+        read_slip_rig_run(folder)
+    (folder / "log.mcap").unlink()
+    with pytest.raises(NotFound, match=r"log\.mcap: missing"):
+        read_slip_rig_run(folder)
+    (folder / "run.json").write_text("{")
+    with pytest.raises(DataError, match="cannot be read as JSON"):
+        read_slip_rig_run(folder)
+    (folder / "run.json").unlink()
+    with pytest.raises(NotFound, match="is no run folder"):
+        read_slip_rig_run(folder)
+
+
+def test_many_run_folders_are_as_many_runs_without_the_excluded(tmp_path):
+    for n, label in enumerate("abc", 200):
+        make_run(tmp_path, n, label=label)
+    bad = tmp_path / "20260304T050607Z_slip-rig_b"
+    edit(bad, excluded={"why": "belt came off"})
+    data = read_rig_data([tmp_path])
+    assert [name[-1] for name in data.samples.run_names] == ["a", "c"]
+    assert f"{bad.name}: left out, belt came off" in data.notes
+    with pytest.raises(DataError, match=r"every run is left out: .*belt came off"):
+        read_rig_data([bad])
+
+
+def zebro_lab(monkeypatch, *arguments: object) -> int:
+    monkeypatch.setattr("sys.argv", ["zebro-lab", *map(str, arguments)])
+    with pytest.raises(SystemExit) as ended:
+        run_app(app)
+    return int(ended.value.code or 0)
+
+
+def test_a_second_exclusion_keeps_the_first_reason(tmp_path, monkeypatch, capsys):
+    folder = make_run(tmp_path)
+    for why in ("belt slipped", "wrong disc, too"):
+        assert zebro_lab(monkeypatch, "exclude", folder, "--why", why) == 0
+    assert zebro_lab(monkeypatch, "runs", tmp_path) == 0
+    listed = capsys.readouterr().out
+    assert "belt slipped" in (folder / "run.json").read_text()
+    assert "excluded (wrong disc, too; before: belt slipped)" in listed
+
+
+def test_an_exclusion_can_be_undone_and_stays_on_record(tmp_path, monkeypatch, capsys):
+    folder = make_run(tmp_path)
+    assert zebro_lab(monkeypatch, "exclude", folder, "--why", "belt slipped") == 0
+    assert zebro_lab(monkeypatch, "exclude", folder, "--undo", "--why", "it was the other") == 0
+    assert read_manifest(folder).excluded is None
+    assert len(read_rig_data([tmp_path]).samples) == 200
+    assert zebro_lab(monkeypatch, "runs", tmp_path) == 0
+    assert "completed (was excluded: belt slipped)" in capsys.readouterr().out
+    assert "it was the other" in (folder / "run.json").read_text()
+    assert zebro_lab(monkeypatch, "exclude", folder, "--undo") == 1
+    assert "is not left out" in capsys.readouterr().err

@@ -1,0 +1,109 @@
+# SPDX-License-Identifier: MIT
+"""`columns.toml`, parsed once into frozen values."""
+
+from pathlib import Path
+
+import pytest
+
+from model.slip.definition import SlipDefinition
+from zebro_lab.files.errors import NotFound, SettingsError
+from zebro_lab.tables.columns import Columns, MappedColumn, RunRule, read_columns
+from zebro_lab.tables.row_conditions import RowCondition
+
+WHOLE = """
+source = "sim:sweep"
+[columns.t]
+name = "ET"
+unit = "ms"
+[columns.normal_force]
+name = "FZ"
+unit = "kN"
+sign = -1
+[columns.slip_ratio]
+name = "SL"
+definition = "travel"
+[columns.run]
+name = "trial"
+[constants]
+radius_leg = "35 mm"
+radius_ground = 0.12
+[runs]
+gap = "500 ms"
+[rows]
+keep = ["beta == 0", "`slip ratio` > 0.05"]
+[load_cell]
+zero_stability = "150 mN"
+gain_sd = "0.5 %"
+"""
+
+
+def read(tmp_path: Path, text: str) -> Columns:
+    file = tmp_path / "columns.toml"
+    file.write_text(text, encoding="utf-8")
+    return read_columns(file)
+
+
+def test_every_key_is_read_in_si(tmp_path):
+    assert read(tmp_path, WHOLE) == Columns(
+        file=tmp_path / "columns.toml",
+        source="sim:sweep",
+        columns={
+            "t": MappedColumn("ET", "ms", 1e-3),
+            "normal_force": MappedColumn("FZ", "kN", -1e3),
+            "slip_ratio": MappedColumn("SL", "dimensionless", 1.0, SlipDefinition.TRAVEL),
+            "run": MappedColumn("trial"),
+        },
+        constants={"radius_leg": 0.035, "radius_ground": 0.12},
+        runs=RunRule(gap=0.5),
+        keep=(RowCondition("beta", "==", 0), RowCondition("slip ratio", ">", 0.05)),
+        load_cell={"zero_stability": 0.15, "gain_sd": 0.005},
+    )
+
+
+def test_empty_file_changes_nothing(tmp_path):
+    assert read(tmp_path, "") == Columns(file=tmp_path / "columns.toml")
+
+
+def test_byte_order_mark_is_accepted(tmp_path):
+    assert read(tmp_path, '\ufeffsource = "real"').source == "real"
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ('sorce = "real"', "sorce: unknown key; did you mean 'source'"),
+        ('source = "simulated"', "'simulated' is none of 'real', 'sim:WHAT'"),
+        ("source = 3", "source: expected a text, found 3"),
+        ("columns = 3", "columns: expected a table, found 3"),
+        ("[columns.normal_froce]", "did you mean 'normal_force'"),
+        ("[columns.t]\nunits = 's'", "columns.t.units: unknown key; did you mean 'unit'"),
+        ("[columns.t]\nunit = 'frobs'", "columns.t.unit: unknown unit 'frobs'"),
+        ("[columns.normal_force]\nunit = 'mm'", "unit 'mm' cannot be converted to N"),
+        ("[columns.t]\nsign = 2", "columns.t.sign: 2 is neither 1 nor -1"),
+        ("[columns.t]\nsign = true", "columns.t.sign: True is neither 1 nor -1"),
+        ("[columns.t]\nname = 3", "columns.t.name: expected a text, found 3"),
+        ("[columns.t]\ndefinition = 'travel'", "columns.t.definition: unknown key"),
+        ("[columns.slip_ratio]\ndefinition = 'travels'", "did you mean 'travel'"),
+        ("[constants]\nradius = 0.1", "constants.radius: unknown key; did you mean 'radius_leg'"),
+        ("[constants]\nradius_leg = '35 N'", "constants.radius_leg: unit 'N' cannot"),
+        ("[constants]\nradius_leg = true", "expected a number in m"),
+        ("[runs]\nby = ['a']\ngap = 1", "runs: by and gap at once"),
+        ("[runs]\nby = [1]", r"runs.by: expected a list of texts, found \[1\]"),
+        ("[runs]\ngap = 0", "runs.gap: 0 s is not a pause"),
+        ("[runs]\neach_row = 1", "runs.each_row: expected true or false, found 1"),
+        ("[rows]\nkeep = ['slip']", "rows.keep: 'slip' is not a condition"),
+        ("[load_cell]\ngain = 0.1", "load_cell.gain: unknown key; did you mean 'gain_sd'"),
+        ("[load_cell]\ngain_sd = -0.1", "load_cell.gain_sd: -0.1 is no standard deviation"),
+        ("[columns", "cannot be read as TOML"),
+    ],
+)
+def test_fault_is_one_line_that_names_file_and_key(tmp_path, text, message):
+    with pytest.raises(SettingsError, match=message) as caught:
+        read(tmp_path, text)
+    assert str(caught.value).startswith(str(tmp_path / "columns.toml"))
+    assert "\n" not in str(caught.value)
+
+
+def test_missing_file_is_named(tmp_path):
+    with pytest.raises(NotFound, match=r"absent\.toml: no such file"):
+        read_columns(tmp_path / "absent.toml")

@@ -1,0 +1,126 @@
+# SPDX-License-Identifier: MIT
+"""A millimetre of the kit is a millimetre on paper, and what is printed is found again."""
+
+import re
+import zlib
+
+import cv2
+import numpy as np
+import pytest
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+
+from tracking.camera import find_board
+from tracking.markers import find_markers
+from zebro_lab.files.errors import SettingsError
+from zebro_lab.robot.marker_print import KIT_PRINT
+from zebro_lab.track.camera.kit import (
+    BOARD,
+    FLOOR_MARKERS,
+    FLOOR_SIDE,
+    PAPERS,
+    kit_pages,
+    starter_floor,
+)
+from zebro_lab.track.camera.pictures import draw_page, save_pages
+
+POINT = 25.4 / 72  # mm
+ROBOT_PAGE, BOARD_PAGE = 1, -1
+
+
+def outlines(stream: bytes) -> np.ndarray:
+    """Return lowest and highest x, y of each filled path of a page, shape (n, 4) [mm]."""
+    boxes, points = [], []
+    for line in stream.decode("latin-1").splitlines():
+        if match := re.fullmatch(r"(-?[\d.]+) (-?[\d.]+) [ml]", line):
+            points.append((float(match[1]), float(match[2])))
+        elif line in ("f", "n", "S", "b", "B") and points:
+            if line == "f":
+                boxes.append((*np.min(points, axis=0), *np.max(points, axis=0)))
+            points = []
+    return np.array(boxes) * POINT
+
+
+@pytest.fixture(scope="module")
+def pdf(tmp_path_factory) -> bytes:
+    file = tmp_path_factory.mktemp("kit") / "kit.pdf"
+    save_pages(kit_pages("a4"), file)
+    return file.read_bytes()
+
+
+def streams(pdf: bytes) -> list[bytes]:
+    packed = re.findall(rb"/FlateDecode.*?stream\r?\n(.*?)\r?\nendstream", pdf, re.DOTALL)
+    return [text for text in map(zlib.decompress, packed) if b" m\n" in text and b"\nf\n" in text]
+
+
+def test_the_sheets_have_the_size_of_their_paper(pdf):
+    boxes = re.findall(rb"/MediaBox \[ 0 0 ([\d.]+) ([\d.]+) \]", pdf)
+    sizes = {(round(float(w) * POINT, 1), round(float(h) * POINT, 1)) for w, h in boxes}
+    assert sizes == {(210.0, 297.0), (297.0, 210.0)}
+
+
+def test_markers_and_bars_have_their_size_in_the_file_itself(pdf):
+    pages = [outlines(stream) for stream in streams(pdf)]
+    wide = [page[(page[:, 2] - page[:, 0] > 90) & (page[:, 3] - page[:, 1] < 1)] for page in pages]
+    bars = [bar for page in wide for bar in page if abs(bar[2] - bar[0] - 100) < 1]
+    assert len(bars) >= len(kit_pages())
+    np.testing.assert_allclose([bar[2] - bar[0] for bar in bars], 100.0, atol=1e-3)
+    widths = np.concatenate([page[:, 2] - page[:, 0] for page in pages])
+    for side in (
+        1e3 * KIT_PRINT.side,
+        FLOOR_SIDE,
+    ):  # the uppermost row of a marker is black throughout
+        assert np.abs(widths - side).min() < 1e-3
+
+
+@pytest.mark.parametrize("paper", PAPERS)
+def test_everything_lies_on_the_paper_with_a_margin_to_print(paper):
+    for page in kit_pages(paper):
+        for black in page.rectangles:
+            assert black.x > 4
+            assert black.x + black.width < page.width - 4
+            assert black.y > 4
+            assert black.y + black.height < page.height - 4
+
+
+def picture(page, dpi: int) -> np.ndarray:
+    figure = draw_page(page)
+    figure.set_dpi(dpi)
+    canvas = FigureCanvasAgg(figure)
+    canvas.draw()
+    return np.ascontiguousarray(np.asarray(canvas.buffer_rgba())[:, :, 2::-1])
+
+
+def test_printed_markers_are_found_upright_with_their_side():
+    pages = kit_pages("a4")[ROBOT_PAGE:BOARD_PAGE]
+    sides = (1e3 * KIT_PRINT.side, *(FLOOR_SIDE for _ in FLOOR_MARKERS))
+    for page, number, side in zip(pages, (0, *FLOOR_MARKERS), sides, strict=True):
+        sheet = picture(page, 60)
+        (found,) = find_markers(sheet, "4x4_50", wanted=[number], effort=0)
+        top_left, top_right, _, bottom_left = found.corners_px
+        assert top_left[0] < top_right[0]
+        assert top_left[1] < bottom_left[1]
+        border = 1 - sheet[round(top_left[1]) + 5, :, 0] / 255
+        assert border.sum() / 60 * 25.4 == pytest.approx(side, abs=0.3)
+
+
+def test_the_printed_board_is_the_one_that_calibrates():
+    view = find_board(picture(kit_pages("a4")[BOARD_PAGE], 100), BOARD)
+    assert view is not None
+    assert len(view.points) == (BOARD.columns - 1) * (BOARD.rows - 1)
+    scale = cv2.estimateAffine2D(1e3 * view.points[:, :2], view.corners_px)[0][0, 0]
+    assert scale == pytest.approx(100 / 25.4, rel=1e-3)
+
+
+def test_the_starting_floor_has_the_markers_that_are_printed():
+    assert starter_floor().marker_ids == FLOOR_MARKERS
+    assert {marker.side for marker in starter_floor().markers} == {FLOOR_SIDE / 1e3}
+
+
+def test_the_same_kit_is_the_same_file(pdf, tmp_path):
+    save_pages(kit_pages("a4"), tmp_path / "again.pdf")
+    assert (tmp_path / "again.pdf").read_bytes() == pdf
+
+
+def test_unknown_paper_is_refused():
+    with pytest.raises(SettingsError, match="a4 or letter"):
+        kit_pages("a3")

@@ -1,0 +1,163 @@
+# SPDX-License-Identifier: MIT
+"""Photographs come in order of time, from wherever their times are; frames of a video too."""
+
+from dataclasses import replace
+from datetime import UTC, datetime, timedelta
+from pathlib import Path
+
+import cv2
+import numpy as np
+import PIL.Image
+import pytest
+
+from tracking.camera import Camera
+from tracking.errors import TimesError
+from tracking.images import PhotoTimes, clock_picture
+from tracking.synthetic.stamp import with_time_stamp
+from zebro_lab.files.errors import DataError, NotFound, SettingsError
+from zebro_lab.runs.manifest import RunManifest
+from zebro_lab.track.clock import counted_from
+from zebro_lab.track.photo_sequence import TimeRequest, calibrated_for, exposure_times, open_photos
+
+START = datetime(2020, 6, 1, 12, 0, 0, tzinfo=UTC)
+STARTED = START.timestamp()
+
+
+def photo(path: Path, seconds: float | None, pixels=None) -> None:
+    grey = np.full((60, 80), 128, np.uint8) if pixels is None else pixels
+    jpeg = cv2.imencode(".jpg", grey)[1].tobytes()
+    taken = None if seconds is None else START + timedelta(seconds=seconds)
+    path.write_bytes(jpeg if taken is None else with_time_stamp(jpeg, taken))
+
+
+def test_photographs_are_ordered_by_their_own_clock(tmp_path):
+    for name, seconds in (("a.jpg", 4.25), ("b.jpg", 0.5), ("c.jpg", 2.0)):
+        photo(tmp_path / name, seconds)
+    with open_photos(tmp_path, TimeRequest()) as sequence:
+        assert sequence.names == ("b.jpg", "c.jpg", "a.jpg")
+        assert sequence.source == "sim:photographs"
+        np.testing.assert_allclose(sequence.times.t - STARTED, [0.5, 2.0, 4.25], atol=1e-3)
+
+
+def test_a_file_that_is_no_picture_does_not_keep_the_others_from_their_times(tmp_path):
+    for number in range(3):
+        photo(tmp_path / f"p{number}.jpg", 2.0 * number + 0.25)
+    (tmp_path / "p1a.jpg").write_bytes(b"")
+    with open_photos(tmp_path, TimeRequest()) as sequence:
+        assert len(sequence.names) == 4
+
+
+def test_an_interval_counts_in_the_order_a_person_counts(tmp_path):
+    for number in (1, 2, 10):
+        photo(tmp_path / f"p{number}.jpg", None)
+    with open_photos(tmp_path, TimeRequest(interval=2.0)) as sequence:
+        assert sequence.names == ("p1.jpg", "p2.jpg", "p10.jpg")
+        np.testing.assert_allclose(sequence.times.t, [0, 2, 4])
+
+
+def test_a_table_may_reorder(tmp_path):
+    for name in ("a.jpg", "b.jpg"):
+        photo(tmp_path / name, None)
+    table = tmp_path / "times.csv"
+    table.write_text("photo,t_s,t_sigma\na.jpg,7,0.1\nb.jpg,3,0.1\n")
+    with open_photos(tmp_path, TimeRequest(table=table)) as sequence:
+        assert sequence.names == ("b.jpg", "a.jpg")
+
+
+def test_no_times_at_all_says_what_to_give(tmp_path):
+    photo(tmp_path / "a.jpg", None)
+    with pytest.raises(TimesError, match="--interval"), open_photos(tmp_path, TimeRequest()):
+        pass
+
+
+def test_a_photographed_code_ties_the_cameras_clock_to_the_computers(tmp_path):
+    shown = STARTED - 3600.0 + 1.0
+    photo(tmp_path / "clock.jpg", 1.0, clock_picture(shown, module_px=8))
+    for number in range(2):
+        photo(tmp_path / f"p{number}.jpg", 10.5 + 2.0 * number)
+    with open_photos(tmp_path, TimeRequest(clock=tmp_path / "clock.jpg")) as sequence:
+        assert sequence.names == ("p0.jpg", "p1.jpg")
+        assert "camera's clock +3599.9" in sequence.times.source
+        np.testing.assert_allclose(sequence.times.t - STARTED, [-3589.5, -3587.5], atol=0.1)
+
+
+def test_frames_of_a_video_keep_their_own_times_and_leave_no_files(tmp_path):
+    video = tmp_path / "walk.avi"
+    writer = cv2.VideoWriter(str(video), cv2.VideoWriter.fourcc(*"MJPG"), 10.0, (80, 60))
+    for level in range(20):
+        writer.write(np.full((60, 80, 3), 10 * level, np.uint8))
+    writer.release()
+    with open_photos(video, TimeRequest(every=0.5)) as sequence:
+        np.testing.assert_allclose(np.diff(sequence.times.t), 0.5, atol=5e-3)
+        assert sequence.names[1] == "walk.avi#5"
+        kept = sequence.paths
+        assert all(path.is_file() for path in kept)
+    assert not any(path.exists() for path in kept)
+
+
+def test_a_video_takes_no_times_of_others(tmp_path):
+    (tmp_path / "walk.mp4").touch()
+    with (
+        pytest.raises(SettingsError, match="--interval: not with a video"),
+        open_photos(tmp_path / "walk.mp4", TimeRequest(interval=2.0)),
+    ):
+        pass
+
+
+def test_exposures_need_an_interval():
+    np.testing.assert_allclose(exposure_times(("a#1", "a#2"), TimeRequest(interval=3.0)).t, [0, 3])
+    with pytest.raises(SettingsError, match="2 exposures"):
+        exposure_times(("a#1", "a#2"), TimeRequest())
+
+
+def test_a_lens_fits_photographs_of_its_shape_alone(tmp_path):
+    camera = Camera(
+        (160, 120), np.array([[200.0, 0, 79.5], [0, 200, 59.5], [0, 0, 1]]), np.zeros(5)
+    )
+    photo(tmp_path / "a.jpg", 0.0)
+    with open_photos(tmp_path, TimeRequest()) as sequence:
+        assert calibrated_for(camera, sequence).size == (80, 60)
+    PIL.Image.new("RGB", (80, 45)).save(tmp_path / "a.jpg")
+    with (
+        open_photos(tmp_path, TimeRequest(interval=1.0)) as sequence,
+        pytest.raises(DataError, match="80x45"),
+    ):
+        calibrated_for(camera, sequence)
+
+
+def test_nothing_of_the_name_is_said_so(tmp_path):
+    with pytest.raises(NotFound, match="nowhere"), open_photos(tmp_path / "nowhere", TimeRequest()):
+        pass
+
+
+def run_starting(start: str) -> RunManifest:
+    return RunManifest(
+        kind="walk", label="w", material="", operator="", source="real", start=start, stop=None,
+        exit_status="completed", software={}, constants={}, streams={}, log_sha256=None,
+    )  # fmt: skip
+
+
+def test_time_is_counted_from_the_run_only_where_the_clocks_are_tied():
+    times = PhotoTimes(STARTED + np.array([3.0, 5.0]), np.zeros(2), "EXIF")
+    manifest = run_starting(START.isoformat())
+
+    def counted(start=None, manifest=None, clock=None):
+        return counted_from(times, start=start, manifest=manifest, asked=TimeRequest(clock=clock))
+
+    tied = counted(manifest=manifest, clock=Path("clock.jpg"))
+    np.testing.assert_allclose(tied.times.t, [3, 5])
+    assert "the run's start" in tied.said
+    assert tied.notes == ()
+    loose = counted(manifest=manifest)
+    np.testing.assert_allclose(loose.times.t, [0, 2])
+    assert "nothing tells when" in loose.notes[0]
+    np.testing.assert_allclose(counted(START - timedelta(seconds=1)).times.t, [4, 6])
+    with pytest.raises(TimesError, match=r"7203\.0 to 7205\.0 s after the run's start"):
+        counted(START - timedelta(hours=2), replace(manifest, stop=START.isoformat()))
+
+
+def test_times_as_given_are_left_as_given_and_have_no_moment():
+    times, asked = PhotoTimes(np.array([3.0, 5.0]), np.zeros(2), "interval"), TimeRequest(2.0)
+    assert counted_from(times, start=None, manifest=None, asked=asked).times is times
+    with pytest.raises(SettingsError, match="--start"):
+        counted_from(times, start=START, manifest=None, asked=asked)

@@ -1,0 +1,67 @@
+# SPDX-License-Identifier: MIT
+"""The marker of robot.toml lies on the robot as its file says."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from tracking.pose import BodyPrior
+from zebro_lab.files.errors import SettingsError
+from zebro_lab.robot.marker_print import MarkerPrint
+from zebro_lab.robot.robot_file import Marker, RobotFile
+from zebro_lab.track.robot import body_prior, tracked_robot
+
+PRIOR = BodyPrior(0.06)
+
+
+def test_a_print_without_yaw_has_its_top_ahead():
+    robot = tracked_robot(RobotFile(marker=Marker((0.01, 0, 0.04))), prior=PRIOR)
+    top_left, top_right, _, bottom_left = robot.marker.points_body
+    np.testing.assert_allclose(top_left, [0.07, 0.06, 0.04], atol=1e-12)
+    np.testing.assert_allclose(top_right, [0.07, -0.06, 0.04], atol=1e-12)
+    np.testing.assert_allclose(bottom_left, [-0.05, 0.06, 0.04], atol=1e-12)
+
+
+def test_a_print_turned_to_the_left_has_its_top_to_the_left():
+    turned = Marker((0, 0, 0.04), (0, 0, np.pi / 2))
+    robot = tracked_robot(RobotFile(marker=turned), prior=PRIOR)
+    np.testing.assert_allclose(robot.marker.points_body[:2].mean(axis=0), [0, 0.06, 0.04])
+
+
+def test_the_body_is_as_high_as_its_marker_less_its_place_on_it():
+    described = RobotFile(marker=Marker((0, 0, 0.04), height=0.105))
+    assert body_prior(described).height == pytest.approx(0.065)
+    assert body_prior(described, height=0.07, height_sd=0.001) == BodyPrior(0.07, 0.001)
+
+
+def test_the_files_own_marker_is_sought_unless_another_is_named():
+    own = RobotFile(marker=Marker((0, 0, 0.04), printed=MarkerPrint("apriltag_36h11", 7, 0.1)))
+    marker = tracked_robot(own, prior=PRIOR).marker
+    assert (marker.dictionary, marker.marker_id, marker.side) == ("apriltag_36h11", 7, 0.1)
+    named = tracked_robot(own, "5x5_50:3:80mm", prior=PRIOR).marker
+    assert (named.dictionary, named.marker_id, named.side) == ("5x5_50", 3, 0.08)
+
+
+def test_a_number_beyond_its_dictionary_says_how_far_it_goes():
+    with pytest.raises(SettingsError, match=r"--marker: number 50 .* 0 to 49"):
+        tracked_robot(RobotFile(marker=Marker((0, 0, 0.04))), "4x4_50:50:1cm", prior=PRIOR)
+    own = RobotFile(
+        marker=Marker((0, 0, 0.04), printed=MarkerPrint(number=99)), file=Path("robot.toml")
+    )
+    with pytest.raises(SettingsError, match=r"robot\.toml, marker: number 99"):
+        tracked_robot(own, prior=PRIOR)
+
+
+def test_what_is_missing_or_impossible_is_named():
+    with pytest.raises(SettingsError, match="marker"):
+        tracked_robot(RobotFile(), prior=PRIOR)
+    with pytest.raises(SettingsError, match=r"marker\.height"):
+        body_prior(RobotFile(marker=Marker((0, 0, 0.04))))
+    with pytest.raises(SettingsError, match="--height-sd"):
+        body_prior(RobotFile(), height=0.06, height_sd=0.0)
+    tilted = RobotFile(marker=Marker((0, 0, 0.04), (0.3, 0, 0)))
+    with pytest.raises(SettingsError, match="level"):
+        tracked_robot(tilted, prior=PRIOR)
+    with pytest.raises(SettingsError, match="side"):
+        tracked_robot(RobotFile(marker=Marker((0, 0, 0.04))), "4x4_50:0:0mm", prior=PRIOR)

@@ -1,0 +1,258 @@
+# SPDX-License-Identifier: MIT
+"""The bundled simulated photographs become the track they were taken of, whatever goes wrong."""
+
+import json
+import shutil
+import tomllib
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from tracking.body import Alignment
+from tracking.composite import Exposure
+from tracking.errors import TrackingError
+from tracking.path import TRACK_COLUMNS
+from tracking.pose import BodyPose
+from zebro_lab.files.errors import AlreadyExists, DataError, SettingsError
+from zebro_lab.files.result_folder import MANIFEST
+from zebro_lab.track import photo_search
+from zebro_lab.track.annotate_stage import AnnotateRequest, annotate
+from zebro_lab.track.folder import TRACKED
+from zebro_lab.track.photo_search import TrackStopped
+from zebro_lab.track.photo_sequence import TimeRequest
+from zebro_lab.track.preview_stage import preview
+from zebro_lab.track.stage import TrackRequest, track
+
+WALK = Path(__file__).parents[3] / "datasets/walk-sim"
+SOME = ("00", "02", "03", "04", "05", "06")
+
+
+class Nobody:
+    """Follows without a word, and asks to stop where told to."""
+
+    def __init__(self, stops: bool = False) -> None:
+        self.stops = stops
+
+    def step(self, what: str, fraction: float | None) -> None:
+        """Hear nothing."""
+
+    def stop_requested(self) -> bool:
+        """Ask to stop."""
+        return self.stops
+
+
+@pytest.fixture(scope="module")
+def bench(tmp_path_factory) -> Path:
+    """Return a folder with camera.toml and floor.toml of the true camera, and some photographs."""
+    folder = tmp_path_factory.mktemp("bench")
+    truth = tomllib.loads((WALK / "truth.toml").read_text())
+    camera = truth["camera"]
+    (folder / "camera.toml").write_text(
+        "".join(f"{key} = {camera[key]}\n" for key in ("size", "focal", "centre", "distortion"))
+    )
+    lines = ["side = 0.15", "[markers]"]
+    for marker in truth["floor_markers"]:
+        x, y, _ = np.mean(marker["corners"], axis=0)
+        lines.append(f"{marker['id']} = {{ x = {x}, y = {y} }}")
+    (folder / "floor.toml").write_text("\n".join(lines))
+    (folder / "photos").mkdir()
+    for number in SOME:
+        shutil.copy(WALK / f"photos/simulated_{number}.jpg", folder / "photos")
+    return folder
+
+
+@pytest.fixture
+def request_(bench, tmp_path) -> TrackRequest:
+    """Return what is asked of the bundled photographs, with an empty folder to write."""
+    return TrackRequest(
+        bench / "photos", bench / "camera.toml", bench / "floor.toml",
+        robot=WALK / "robot.toml", out=tmp_path / "track",
+    )  # fmt: skip
+
+
+@pytest.fixture
+def undrawn(monkeypatch):
+    """Leave out the pictures, which take longer than the tracking of so few photographs."""
+    monkeypatch.setattr("zebro_lab.track.stage.draw_track", lambda *_, **__: None)
+
+
+def truth(photos) -> pd.DataFrame:
+    return pd.read_csv(WALK / "photos.csv").set_index("photo").loc[list(photos)]
+
+
+def test_a_track_is_the_walk_within_its_own_error_and_says_it_is_simulated(request_):
+    result = track(request_, Nobody())
+    table = pd.read_csv(result.folder / "track.csv")
+    true = truth(table["photo"])
+    assert tuple(table.columns) == TRACK_COLUMNS
+    error = table[["x_m", "y_m", "yaw_rad"]].to_numpy() - true[["x", "y", "yaw"]]
+    sd = np.sqrt(table[["cov_xx", "cov_yy", "cov_yawyaw"]].to_numpy())
+    assert np.abs(error[["x", "y"]]).max(axis=None) < 8e-3
+    assert np.degrees(np.abs(error["yaw"]).max()) < 0.1
+    assert (np.abs(error) / sd).max(axis=None) < 3
+    np.testing.assert_allclose(np.diff(table["t_s"]), np.diff(true["t"]), atol=2e-3)
+    manifest = json.loads((result.folder / "manifest.json").read_text())
+    assert (manifest["kind"], manifest["source"]) == ("track", "sim:photographs")
+    assert {path.name for path in result.folder.iterdir()} == {*TRACKED.names, MANIFEST} - {
+        "annotations.toml"
+    }
+    assert len((result.folder / "track.tum").read_text().splitlines()) == len(SOME)
+
+
+def test_a_second_track_replaces_the_first_and_another_commands_result_is_safe(request_, undrawn):
+    track(request_, Nobody())
+    (request_.folder / "notes.txt").write_text("mine")
+    track(request_, Nobody())
+    assert (request_.folder / "notes.txt").read_text() == "mine"
+    (request_.folder / "manifest.json").write_text('{"kind": "walk", "schema": 1}')
+    with pytest.raises(AlreadyExists, match="another command"):
+        track(request_, Nobody())
+
+
+def test_several_processes_find_what_one_finds(request_, monkeypatch, tmp_path, undrawn):
+    monkeypatch.setattr(photo_search, "WORTH_WORKERS", 0.0)
+    one = track(request_, Nobody())
+    two = track(replace(request_, workers=2, out=tmp_path / "two"), Nobody())
+    # Not to the last digit: a stretch begins by looking at the whole photograph.
+    difference = one.tracked.track.poses - two.tracked.track.poses
+    assert np.abs(difference).max() < 1e-4
+
+
+def test_bad_photographs_are_named_and_lose_no_other(request_, tmp_path, undrawn):
+    photos = tmp_path / "photos"
+    shutil.copytree(request_.photos, photos)
+    whole = (photos / "simulated_03.jpg").read_bytes()
+    (photos / "simulated_03.jpg").write_bytes(whole[: len(whole) // 3])
+    (photos / "simulated_04.jpg").write_bytes(b"")
+    (photos / "simulated_90.heic").write_bytes(b"\0\0\0\x18ftypheic\0\0\0\0")
+    result = track(replace(request_, photos=photos), Nobody())
+    assert set(result.tracked.lost) == {
+        "simulated_03.jpg", "simulated_04.jpg", "simulated_90.heic",
+    }  # fmt: skip
+    assert "0 bytes" in result.tracked.lost["simulated_04.jpg"]
+    assert "HEIC" in result.tracked.lost["simulated_90.heic"]
+    assert len(result.tracked.track.observations) == len(SOME) - 2
+
+
+def test_corrections_are_replayed_and_kept(request_, tmp_path, undrawn):
+    file = tmp_path / "said.toml"
+    said = AnnotateRequest(
+        request_.photos, file, moves=("simulated_03.jpg:1.0,1.0,45",), deletes=("simulated_05.jpg",)
+    )
+    annotate(said)
+    result = track(replace(request_, annotations=file), Nobody())
+    by_photo = {seen.photo: seen for seen in result.tracked.track.observations}
+    moved = by_photo["simulated_03.jpg"]
+    assert moved.source == "hand"
+    np.testing.assert_allclose(moved.planar, [1.0, 1.0, np.pi / 4])
+    assert result.tracked.lost == {"simulated_05.jpg": "deleted by a correction"}
+    assert 'kind = "move"' in (result.folder / "annotations.toml").read_text()
+
+
+COMPOSITE = WALK / "composite/simulated_pasted.jpg"
+
+
+def walk_of_the_composite() -> pd.DataFrame:
+    return truth(f"simulated_{number:02d}.jpg" for number in range(1, 14, 2))
+
+
+@pytest.mark.long
+def test_exposures_of_a_composite_picture_are_found(request_, undrawn):
+    asked = replace(request_, photos=COMPOSITE, times=TimeRequest(interval=4.0))
+    result = track(asked, Nobody())
+    assert result.source == "sim:photographs"
+    true = walk_of_the_composite()
+    poses = result.tracked.track.poses
+    assert len(poses) == len(true)
+    assert np.abs(poses[:, :2] - true[["x", "y"]]).max(axis=None) < 0.012
+    assert np.degrees(np.abs(poses[:, 2] - true["yaw"]).max()) < 0.5
+
+
+@pytest.fixture
+def exposures(monkeypatch, request) -> pd.DataFrame:
+    """Let the composite's exposures be found where they are, in no order; return the walk."""
+    score = getattr(request, "param", 0.9)
+    true = walk_of_the_composite()
+    poses = [
+        BodyPose(np.array([x, y, 0.06, 0, 0, yaw]), 1e-6 * np.eye(6), 0 * np.eye(6), 0.0, 0.0)
+        for x, y, yaw in true[["x", "y", "yaw"]].to_numpy()
+    ]
+    shuffled = np.random.default_rng(0).permutation(len(poses))
+    found = tuple(Exposure(Alignment(poses[k], score, 0.0), 1.0) for k in shuffled)
+    monkeypatch.setattr("zebro_lab.track.tracker_body.find_exposures", lambda *_, **__: found)
+    return true
+
+
+def test_exposures_of_a_composite_picture_come_in_order(request_, undrawn, exposures):
+    asked = replace(request_, photos=COMPOSITE, times=TimeRequest(interval=4.0))
+    result = track(asked, Nobody())
+    observations = result.tracked.track.observations
+    assert [seen.photo for seen in observations] == [
+        f"simulated_pasted.jpg#{number}" for number in range(1, len(exposures) + 1)
+    ]
+    planar = [seen.planar for seen in observations]
+    np.testing.assert_allclose(planar, exposures[["x", "y", "yaw"]], atol=1e-9)
+    np.testing.assert_allclose(np.diff([seen.t for seen in observations]), 4.0)
+
+
+@pytest.mark.parametrize(
+    ("exposures", "warned"), [(0.9, False), (0.0, True)], indirect=["exposures"]
+)
+def test_exposures_that_could_not_be_aligned_are_told_of(request_, undrawn, exposures, warned):
+    asked = replace(request_, photos=COMPOSITE, times=TimeRequest(interval=4.0))
+    notes = track(asked, Nobody()).tracked.notes
+    assert any("only roughly" in note for note in notes) == warned
+
+
+def test_a_composite_picture_without_times_asks_for_the_interval(request_, undrawn, exposures):
+    with pytest.raises(SettingsError, match="--interval"):
+        track(replace(request_, photos=COMPOSITE), Nobody())
+
+
+def test_the_preview_compares_tape_and_photograph(request_, tmp_path):
+    file = tmp_path / "preview.png"
+    seen = preview(request_, file)
+    assert file.read_bytes()[:4] == b"\x89PNG"
+    assert seen.marks == ("10", "11", "12", "13")
+    assert len(seen.tape) == 6
+    assert not any(check.is_off for check in seen.tape)
+    assert seen.robot == pytest.approx((0, 0, 0), abs=3e-3)
+    assert 1e-3 < seen.scale < 4e-3
+
+
+def test_a_marker_of_another_side_is_noticed(request_, undrawn):
+    result = track(replace(request_, marker="4x4_50:0:150mm"), Nobody())
+    assert any("--marker" in note for note in result.tracked.notes)
+
+
+def edited(request: TrackRequest, tmp_path: Path, name: str, old: str, new: str) -> TrackRequest:
+    file = tmp_path / name
+    file.write_text(getattr(request, file.stem).read_text().replace(old, new))
+    return replace(request, **{file.stem: file})
+
+
+def test_a_floor_of_another_dictionary_says_which_is_seen(request_, tmp_path):
+    asked = edited(request_, tmp_path, "floor.toml", "side", 'dictionary = "5x5_50"\nside')
+    with pytest.raises(DataError, match="markers of '4x4_50'"):
+        track(asked, Nobody())
+
+
+def test_a_mirrored_floor_is_called_so(request_, tmp_path):
+    asked = edited(request_, tmp_path, "floor.toml", "y = ", "y = 0.0 #")
+    lines = (request_.floor).read_text().splitlines()
+    mirrored = [
+        line if "{" not in line else line.replace("y = ", "y = -").replace("--", "")
+        for line in lines
+    ]
+    asked.floor.write_text("\n".join(mirrored))
+    with pytest.raises(TrackingError, match="mirrored"):
+        track(asked, Nobody())
+
+
+def test_a_stop_leaves_nothing(request_):
+    with pytest.raises(TrackStopped):
+        track(request_, Nobody(stops=True))
+    assert not request_.folder.exists()

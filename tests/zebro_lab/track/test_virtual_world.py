@@ -1,0 +1,115 @@
+# SPDX-License-Identifier: MIT
+"""The virtual world's photographs through the commands, against the truth they were drawn from."""
+
+import csv
+import json
+import sys
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from tracking.camera import Camera, CameraPose, project
+from tracking.pose import rotation_with_derivatives
+from zebro_lab.main import app
+from zebro_lab.terminal.ending import run as run_app
+
+pytestmark = pytest.mark.reference
+
+
+@pytest.fixture
+def world(shared) -> dict:
+    return json.loads((shared / "virtual-world/photos/camera.json").read_text())
+
+
+@pytest.fixture
+def lab(world, tmp_path, monkeypatch) -> Path:
+    """Return a folder to work in, with the world's camera.json as the files that `track` takes."""
+    K = world["K"]
+    (tmp_path / "camera.toml").write_text(
+        f"size = {world['image_size']}\nfocal = [{K[0][0]}, {K[1][1]}]\n"
+        f"centre = [{K[0][2]}, {K[1][2]}]\n"
+    )
+    lines = ["[markers]"]
+    for key, marker in world["floor_markers"].items():
+        corners = np.array(marker["corners_world"])
+        (x, y, z), (ax, ay, _) = corners.mean(axis=0), corners[1] - corners[0]
+        yaw = np.degrees(np.arctan2(ay, ax))
+        lines.append(
+            f"{key} = {{ x = {x}, y = {y}, z = {z}, yaw_deg = {yaw}, side = {marker['side']} }}"
+        )
+    (tmp_path / "floor.toml").write_text("\n".join(lines))
+    top = world["top_marker"]
+    x, y, z = np.mean(top["corners_body"], axis=0)
+    (tmp_path / "robot.toml").write_text(
+        f'[marker]\ndictionary = "{top["dict"]}"\nid = {top["id"]}\nside = {top["side"]}\n'
+        f"position = [{x}, {y}, {z}]\nheight = 0.1\n"
+    )
+    monkeypatch.setattr("zebro_lab.track.stage.draw_track", lambda *_, **__: None)
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def run(monkeypatch, *arguments: object) -> None:
+    monkeypatch.setattr(sys, "argv", ["zebro-lab", *map(str, arguments)])
+    with pytest.raises(SystemExit) as ended:
+        run_app(app)
+    assert not ended.value.code
+
+
+def track(monkeypatch, photos: Path, *options: object) -> np.ndarray:
+    """Track and return x, y [m] and yaw [rad] of every photograph."""
+    run(monkeypatch, "track", photos, "--camera", "camera.toml", "--floor", "floor.toml",
+        "--robot", "robot.toml", "--interval", 2, "--source", "sim:virtual-world", "--out", "out",
+        *options)  # fmt: skip
+    table = pd.read_csv("out/track.csv")
+    assert len(table) == len(list(photos.glob("*.jpg")))
+    return table[["x_m", "y_m", "yaw_rad"]].to_numpy()
+
+
+def read_truth(photos: Path) -> np.ndarray:
+    with (photos / "truth.csv").open(encoding="utf-8") as file:
+        names = ("x", "y", "z", "roll", "pitch", "yaw")
+        return np.array([[float(row[name]) for name in names] for row in csv.DictReader(file)])
+
+
+def assert_within(poses: np.ndarray, truth: np.ndarray, metres: float, degrees: float) -> None:
+    error = np.abs(poses - truth[:, [0, 1, 5]])
+    distance, turn = np.hypot(*error[:, :2].T), np.degrees(error[:, 2])
+    rms, worst = (1e3 * how(distance) for how in (_rms, np.max))
+    print(  # noqa: T201 docs/tracking.md quotes it
+        f"distance rms {rms:.2f} mm, largest {worst:.2f} mm; yaw rms {_rms(turn):.3f} deg, "
+        f"largest {turn.max():.3f} deg"
+    )
+    assert distance.max() < metres
+    assert turn.max() < degrees
+
+
+def _rms(values: np.ndarray) -> float:
+    return float(np.sqrt(np.mean(values**2)))
+
+
+def test_the_marked_walk_is_within_three_millimetres(lab, shared, monkeypatch):
+    photos = shared / "virtual-world/photos/s1.10_A"
+    assert_within(track(monkeypatch, photos), read_truth(photos), 3e-3, 0.3)
+
+
+def test_the_unmarked_walk_is_within_five_millimetres(lab, world, shared, monkeypatch):
+    photos = shared / "virtual-world/photos/s1.10_B"
+    truth = read_truth(photos)
+    photo = sorted(path.name for path in photos.glob("*.jpg"))[7]
+    run(monkeypatch, "annotate", photos, "--photo", photo, "--corners",
+        clicked(world, truth[7]), "--plate", "150mmx150mm@38.5mm")  # fmt: skip
+    poses = track(monkeypatch, photos, "--without-marker", "--annotations", "annotations.toml")
+    assert_within(poses, truth, 5e-3, 2.0)
+
+
+def clicked(world: dict, pose: np.ndarray) -> str:
+    """Click on the corners of the robot's top as a person would, to a third of a pixel."""
+    R, _ = rotation_with_derivatives(*pose[3:])
+    top = np.array([[75, 75, 38.5], [75, -75, 38.5], [-75, -75, 38.5], [-75, 75, 38.5]]) / 1e3
+    lens = Camera(tuple(world["image_size"]), np.array(world["K"]), np.zeros(5))
+    clicks = project(lens, CameraPose.from_matrix(world["R"], world["t"]), top @ R.T + pose[:3])
+    clicks += np.random.default_rng(0).normal(0, 0.3, clicks.shape)
+    return " ".join(f"{u:.1f},{v:.1f}" for u, v in clicks)

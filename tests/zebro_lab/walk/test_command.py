@@ -1,0 +1,136 @@
+# SPDX-License-Identifier: MIT
+"""`zebro-lab walk` and `predict` as their user meets them."""
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from zebro_lab.main import app
+from zebro_lab.robot.gait_argument import GAITS
+from zebro_lab.terminal.ending import run as run_app
+from zebro_lab.walk import options as walk_options
+from zebro_lab.walk.command import GaitName
+from zebro_lab.walk.models import MODELS
+
+COMMAND = str(Path(sys.executable).with_name("zebro-lab"))
+
+
+@pytest.fixture
+def run(monkeypatch, capsys):
+    """Return a runner of the command in this process: exit code, stdout, stderr."""
+
+    def runner(*arguments: object) -> tuple[int, str, str]:
+        monkeypatch.setattr(sys, "argv", [COMMAND, *map(str, arguments)])
+        try:
+            with pytest.raises(SystemExit) as ended:
+                run_app(app)
+            code = ended.value.code
+        finally:
+            streams = capsys.readouterr()
+        return int(code or 0), streams.out, streams.err
+
+    return runner
+
+
+@pytest.mark.parametrize("command", ["walk", "predict"])
+def test_help_has_examples_and_loads_nothing_heavy(command):
+    process = subprocess.run(
+        [sys.executable, "-X", "importtime", COMMAND, command, "--help"],
+        capture_output=True, text=True, check=True,
+    )  # fmt: skip
+    assert "Examples:" in process.stdout
+    assert f"zebro-lab {command}" in process.stdout
+    loaded = {line.rsplit("|", 1)[-1].strip() for line in process.stderr.splitlines()}
+    assert not loaded & {"numpy", "numba", "scipy", "pandas", "matplotlib", "cv2"}
+
+
+def test_walk_in_a_pipe_prints_gait_and_end_and_writes_its_folder(tmp_path):
+    out = tmp_path / "out"
+    process = subprocess.run(
+        [COMMAND, "walk", "--steering", "1.3", "--slip", "thesis", "--duration", "6",
+         "--out", str(out)],
+        capture_output=True, text=True, check=False,
+    )  # fmt: skip
+    assert process.returncode == 0, process.stderr
+    assert process.stderr == ""
+    assert "\x1b" not in process.stdout
+    for part in (
+        "SIMULATED walk: tripod, s = 1.3, left, model 'dynamics', slip thesis",
+        "117.9909", "126.2247", "after 6 s at x ", "turning left, radius 1.1", "WARNING: ",
+        "less than 2.13 N", str(out / "path.csv"),
+    ):  # fmt: skip
+        assert part in process.stdout
+    assert json.loads((out / "manifest.json").read_text())["kind"] == "walk"
+
+
+def test_predict_takes_what_walk_wrote(run, tmp_path):
+    walk = tmp_path / "walk"
+    assert run("walk", "--slip", "coulomb:0.4", "--duration", 3, "--out", walk)[0] == 0
+    code, out, _ = run("predict", walk, "--model", "no-slip", "--out", tmp_path / "predicted")
+    assert code == 0
+    assert "logged leg angles, model 'no-slip'" in out
+    assert "straight ahead" in out
+
+
+def test_robot_file_is_started(run, tmp_path):
+    code, out, _ = run("walk", "--write-robot", tmp_path / "robot.toml", "--arc-deg", 200)
+    assert (code, out) == (0, f"wrote {tmp_path / 'robot.toml'}\n")
+    assert "arc_deg = 200.0" in (tmp_path / "robot.toml").read_text()
+
+
+ERRORS = {
+    "steering without solution": (("--steering", 9), "steering factor 9 has no solution"),
+    "lift-off before touchdown": (("--liftoff-deg", 40), "lift off at 40 degrees"),
+    "option of another gait": (("--tau-turn", 0.1), "--tau-turn: means nothing to the gait 'trip"),
+    "no such robot": (("--robot", "none.toml"), "none.toml: no such file"),
+    "no slip law": (("--slip", "ice"), "--slip: 'ice' is no file or folder"),
+    "no friction": (("--slip", "coulomb:0"), "'coulomb:0' is no friction"),
+    "no time": (("--duration", 0), "is no walk"),
+    "no arc": (("--arc-deg", 10), "leg_arc is 10 degrees"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(("options", "message"), ERRORS.values(), ids=ERRORS)
+def test_error_is_one_line_and_exit_1_and_nothing_is_written(options, message, run, tmp_path):
+    out = tmp_path / "out"
+    given = ["walk", "--slip", "coulomb:0.4", "--duration", 2, "--out", out, *options]
+    code, stdout, stderr = run(*given)
+    assert (code, stdout) == (1, "")
+    assert stderr.startswith("error: ")
+    assert message in stderr
+    assert stderr.count("\n") == 1
+    assert not out.exists()
+
+
+def test_leg_log_with_a_gap_is_one_line_with_its_place(run, tmp_path):
+    log = tmp_path / "legs.csv"
+    rows = [f"{t / 100},{','.join([str(t / 50)] * 6)}" for t in (*range(30), *range(60, 90))]
+    log.write_text("\n".join(["t,theta1,theta2,theta3,theta4,theta5,theta6", *rows]) + "\n")
+    code, _, stderr = run("predict", log, "--slip", "thesis", "--out", tmp_path / "out")
+    assert code == 1
+    assert stderr.startswith(f"error: {log}, column 't', row 31 (line 32): time jumps from 0.29")
+
+
+USAGE = {
+    "no duration": ("walk", "--slip", "thesis"),
+    "no slip law": ("walk", "--duration", "3"),
+    "no such gait": ("walk", "--gait", "trot", "--duration", "3"),
+    "no such model": ("predict", "legs.csv", "--model", "ours"),
+    "no log": ("predict", "--slip", "thesis"),
+    "negative step": ("walk", "--duration", "3", "--slip", "thesis", "--dt", "-1"),
+}
+
+
+@pytest.mark.parametrize("arguments", USAGE.values(), ids=USAGE)
+def test_wrong_usage_is_exit_2(arguments, run):
+    code, stdout, stderr = run(*arguments)
+    assert (code, stdout) == (2, "")
+    assert "Usage: " in stderr
+
+
+def test_options_offer_what_there_is():
+    assert {name.value for name in walk_options.Model} == set(MODELS)
+    assert {name.value for name in GaitName} == set(GAITS)

@@ -1,0 +1,2 @@
+# SPDX-License-Identifier: MIT
+"""Calibrate a slip law from rig data; the calibration folder and what reads it."""

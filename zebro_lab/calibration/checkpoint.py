@@ -1,0 +1,72 @@
+# SPDX-License-Identifier: MIT
+"""A stopped fit on disk: plain arrays, no pickle, tied to its data and settings."""
+
+import io
+from pathlib import Path
+
+import numpy as np
+
+from model.bayes.sampler import Chains
+from zebro_lab.files.arrays import read_arrays
+from zebro_lab.files.atomic import atomic_write_bytes
+from zebro_lab.files.errors import DataError
+from zebro_lab.files.opening import parsing
+
+FILE = "checkpoint.npz"
+_ARRAYS = (
+    "fingerprint", "z", "log_density", "accepted", "thin", "random_keys", "random_positions",
+)  # fmt: skip
+_MOST_BYTES = 1 << 30
+_NONE, _ADVICE = "is no checkpoint of this program", "remove it and start anew"
+
+
+def save_checkpoint(folder: Path, chains: Chains, *, fingerprint: str) -> Path:
+    """Write the chains so that a fit can go on, replacing an earlier checkpoint in one step.
+
+    Args:
+        folder: Folder of the calibration; made when missing.
+        chains: Where the sampler stands.
+        fingerprint: Hash of the data and settings the chains belong to.
+    """
+    folder.mkdir(parents=True, exist_ok=True)
+    buffer = io.BytesIO()
+    np.savez(
+        buffer,
+        fingerprint=np.array(fingerprint),
+        z=chains.z,
+        log_density=chains.log_density,
+        accepted=chains.accepted,
+        thin=np.array(chains.thin),
+        random_keys=chains.random_keys,
+        random_positions=chains.random_positions,
+    )
+    return atomic_write_bytes(folder / FILE, buffer.getvalue())
+
+
+def load_checkpoint(folder: Path, *, fingerprint: str) -> Chains:
+    """Read the chains of a stopped fit.
+
+    Args:
+        folder: Folder of the calibration.
+        fingerprint: Hash of the data and settings at hand.
+
+    Raises:
+        DataError: There is none, it is damaged, or it belongs to other data or settings.
+    """
+    path = folder / FILE
+    if not path.is_file():
+        raise DataError("no stopped fit to resume; run without --resume", file=path)
+    try:
+        stored = read_arrays(path, _ARRAYS, advice="start anew", most=_MOST_BYTES)
+    except DataError as error:
+        raise DataError(f"{_NONE} ({error.problem}); {_ADVICE}", file=path) from error
+    with parsing(path, _NONE, advice=_ADVICE):
+        arrays = {name: array.copy() for name, array in stored.items()}
+        found = str(arrays.pop("fingerprint"))
+        chains = Chains(**{**arrays, "thin": int(arrays["thin"])})
+    if found != fingerprint:
+        raise DataError(
+            "belongs to other data or settings; give the same ones, or run without --resume",
+            file=path,
+        )
+    return chains

@@ -1,0 +1,302 @@
+# SPDX-License-Identifier: MIT
+"""The sole owner of the format of a calibration folder: `slip.toml`, tables, draws, manifest."""
+
+import csv
+import io
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from model.slip.curve import SlipCurve
+from model.slip.definition import SlipDefinition
+from model.slip.laws import slip_law
+from zebro_lab.files.documents import read_toml_document
+from zebro_lab.files.errors import DataError, NotFound
+from zebro_lab.files.opening import parsing
+from zebro_lab.files.replacement import settle
+from zebro_lab.files.result_folder import ResultKind
+
+if TYPE_CHECKING:  # the fit's own parts take seconds to import, and a law is read in most commands
+    from model.bayes.convergence import Convergence
+    from model.bayes.estimate import Agreement, Draws, Estimate
+    from model.bayes.fit import Comparison, PreparedFit
+    from model.bayes.posterior import SlipPosterior
+    from model.bayes.residuals import Residuals
+    from model.bayes.verdict import Verdict
+
+SCHEMA = 1
+SLIP_TOML = "slip.toml"
+PICTURES = ("curves", "surface", "corner", "traces", "residuals")
+CALIBRATION = ResultKind(
+    "calibration",
+    "calibrate-slip",
+    (SLIP_TOML, "summary.csv", "posterior.nc", *(f"{name}.png" for name in PICTURES)),
+    schema=SCHEMA,
+    inside={"walks": "walks"},
+)
+"""What walks said lies inside: it was fitted with the earlier law, and goes with it."""
+
+_ADVICE = "name a slip.toml or the folder that calibrate-slip wrote"
+SUMMARY_COLUMNS = (
+    "parameter", "symbol", "unit", "mean", "sd", "q05", "median", "q95", "prior", "contraction",
+    "r_hat", "ess_bulk", "ess_tail", "autocorrelation_time", "mcse_over_sd",
+)  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Calibration:
+    """A finished fit.
+
+    Attributes:
+        fit: Posterior, mode, cross-validation and block length.
+        comparison: The laws that were compared; None where one was asked for.
+        draws: Posterior draws.
+        parameters: Posterior of every parameter.
+        levels: Loads that were set, shape (m,) [N].
+        curves: Posterior of the curve's features at each load level.
+        convergence: Evidence on the sampler.
+        residuals: What the fit leaves over.
+        agreement: How the second engine's answer compares.
+        verdict: What the fit is worth.
+        contraction: 1 - posterior over prior variance of each sampled parameter, by name.
+        r_squared: Variance of left-out samples explained; None for a single run [-].
+        source: Where the data come from: "real", "sim:...", "unknown".
+        seconds: Time the sampler took [s].
+    """
+
+    fit: "PreparedFit"
+    comparison: "Comparison | None"
+    draws: "Draws"
+    parameters: Sequence["Estimate"]
+    levels: np.ndarray
+    curves: Sequence[Sequence["Estimate"]]
+    convergence: "Convergence"
+    residuals: "Residuals"
+    agreement: "Agreement"
+    verdict: "Verdict"
+    contraction: Mapping[str, float]
+    r_squared: float | None
+    source: str
+    seconds: float
+
+    @property
+    def posterior(self) -> "SlipPosterior":
+        """The posterior that was sampled."""
+        return self.fit.posterior
+
+    @property
+    def simulated(self) -> bool:
+        """Tell whether any of the data is simulated."""
+        return "sim:" in self.source
+
+
+@dataclass(frozen=True)
+class SlipFile:
+    """What a `slip.toml` says.
+
+    Attributes:
+        curve: The slip curve.
+        file: The file.
+        source: Where the data come from.
+        doubt: Headline of a verdict that does not trust the fit; None where it does.
+    """
+
+    curve: SlipCurve
+    file: Path
+    source: str
+    doubt: str | None
+
+
+def write_tables(folder: Path, calibration: Calibration, *, inputs: Mapping[str, str]) -> None:
+    """Write everything but the pictures and the manifest.
+
+    Args:
+        folder: Folder to write into.
+        calibration: The finished fit.
+        inputs: SHA-256 of each file that was read.
+    """
+    (folder / SLIP_TOML).write_text(_slip_toml(calibration, inputs))
+    (folder / "summary.csv").write_text(_summary_csv(calibration))
+    _write_posterior(folder / "posterior.nc", calibration)
+
+
+def read_slip(path: Path) -> SlipCurve:
+    """Read the slip curve of a calibration.
+
+    Args:
+        path: A `slip.toml`, or the folder that holds it.
+
+    Raises:
+        DataError: It is missing, damaged, or of a later schema.
+    """
+    return read_slip_file(path).curve
+
+
+def read_slip_file(path: Path) -> SlipFile:
+    """Read a `slip.toml`, once, with what it says of the fit; as `read_slip`."""
+    settle(path)
+    file = path / SLIP_TOML if path.is_dir() else path
+    try:
+        content = read_toml_document(file, remedy=_ADVICE, fault=DataError)
+    except NotFound as error:
+        raise DataError(f"is no slip calibration (no such file); {_ADVICE}", file=file) from error
+    with parsing(file, "cannot be read as a slip calibration", advice=_ADVICE):
+        if content["schema"] != SCHEMA:
+            raise DataError(
+                f"has schema {content['schema']}, this version reads {SCHEMA}; update zebro-lab",
+                file=file,
+            )
+        return SlipFile(_curve(content), file, _text(content, "source", "unknown"),
+                        _doubt(content.get("verdict", {})))  # fmt: skip
+
+
+def _doubt(verdict: Mapping[str, Any]) -> str | None:
+    headline = _text(verdict, "headline", "not trustworthy")
+    return None if verdict.get("trustworthy", True) else headline
+
+
+def _text(content: Mapping[str, Any], key: str, default: str) -> str:
+    found = content.get(key, default)
+    if not isinstance(found, str):
+        raise TypeError(f"'{key}' is {found!r}; expected a text")
+    return found
+
+
+def _curve(content: Mapping[str, Any]) -> SlipCurve:
+    options = {k: v for k, v in content["law"].items() if k != "name"}
+    law = slip_law(content["law"]["name"], **options)
+    k, tested = len(law.parameters), content["tested"]
+    means = [content["parameters"][p.name]["mean"] for p in law.parameters]
+    load_low, load_high = _numbers(tested["normal_force"], (2,)).tolist()
+    slip_low, slip_high = _numbers(tested["slip_ratio"], (2,)).tolist()
+    return SlipCurve(
+        law=law,
+        values=_numbers(means, (k,)),
+        covariance=_numbers(content["covariance"]["matrix"], (k, k)),
+        definition=SlipDefinition(content["slip_definition"]),
+        load_range=(load_low, load_high),
+        slip_range=(slip_low, slip_high),
+    )
+
+
+def _numbers(found: object, shape: tuple[int, ...]) -> np.ndarray:
+    numbers = np.array(found, dtype=float)
+    if numbers.shape != shape:
+        raise ValueError(f"expected numbers of shape {shape}, found {numbers.shape}")
+    return numbers
+
+
+def _slip_toml(calibration: Calibration, inputs: Mapping[str, str]) -> str:
+    import tomlkit
+
+    blocks, law = calibration.posterior.blocks, calibration.posterior.law
+    k = len(law.parameters)
+    document = tomlkit.document()
+    document.add(tomlkit.comment("Slip curve fitted by calibrate-slip. SI units."))
+    if calibration.simulated:
+        document.add(tomlkit.comment("SIMULATED data: nothing here was measured."))
+    verdict = calibration.verdict
+    content: dict[str, Any] = {
+        "schema": SCHEMA,
+        "source": calibration.source,
+        "slip_definition": str(blocks.definition),
+        "verdict": {
+            "headline": verdict.headline(),
+            "converged": verdict.converged,
+            "trustworthy": verdict.trustworthy,
+            "weakly_identified": list(verdict.weak),
+            "next_steps": list(verdict.next_steps()),
+        },
+        "law": {"name": law.name, **asdict(law)},  # pyright: ignore[reportArgumentType]
+        "parameters": {
+            e.parameter.name: {
+                "symbol": e.parameter.symbol, "unit": e.parameter.unit, "mean": e.mean,
+                "sd": e.sd, "q05": e.low, "median": e.median, "q95": e.high,
+            }
+            for e in calibration.parameters
+        },
+        "covariance": {
+            "order": [p.name for p in law.parameters],
+            "matrix": np.atleast_2d(np.cov(calibration.draws.flat[:, :k].T)).tolist(),
+        },
+        "curve": [
+            {"normal_force": float(load), **{e.parameter.name: e.median for e in row}}
+            for load, row in zip(calibration.levels, calibration.curves, strict=True)
+        ],
+        "tested": {
+            "normal_force": [float(blocks.normal_force.min()), float(blocks.normal_force.max())],
+            "slip_ratio": [float(blocks.slip.min()), float(blocks.slip.max())],
+            "samples": int(blocks.count.sum()),
+            "runs": blocks.n_runs,
+            "block_length": calibration.fit.block_choice.length,
+        },
+        "data": dict(zip(_distinct_names(list(inputs)), inputs.values(), strict=True)),
+    }  # fmt: skip
+    document.update(content)
+    return tomlkit.dumps(document)
+
+
+def _distinct_names(paths: Sequence[str]) -> list[str]:
+    """Shorten paths to their last parts, as few as tell them apart: every run has a log.mcap."""
+    depths = range(1, max((len(Path(path).parts) for path in paths), default=1) + 1)
+    shortened = ([str(Path(*Path(path).parts[-depth:])) for path in paths] for depth in depths)
+    return next((names for names in shortened if len(set(names)) == len(names)), list(paths))
+
+
+def _summary_csv(calibration: Calibration) -> str:
+    convergence = calibration.convergence
+    free = {p.name: i for i, p in enumerate(calibration.posterior.free)}
+    text = io.StringIO()
+    table = csv.writer(text, lineterminator="\n")
+    table.writerow(SUMMARY_COLUMNS)
+    for e in calibration.parameters:
+        name, i = e.parameter.name, free.get(e.parameter.name)
+        numbers = [e.mean, e.sd, e.low, e.median, e.high]
+        diagnostics = ["fixed"] + [""] * 6 if i is None else [
+            calibration.posterior.priors[name].describe(), f"{calibration.contraction[name]:.4f}",
+            f"{convergence.r_hat[i]:.4f}", f"{convergence.ess_bulk[i]:.0f}",
+            f"{convergence.ess_tail[i]:.0f}", f"{convergence.autocorrelation_time[i]:.1f}",
+            f"{convergence.mcse[i]:.4f}",
+        ]  # fmt: skip
+        values = [f"{x:.8g}" for x in numbers]
+        table.writerow([name, e.parameter.symbol, e.parameter.unit, *values, *diagnostics])
+    return text.getvalue()
+
+
+def _write_posterior(path: Path, calibration: Calibration) -> None:
+    """Write the draws as ArviZ InferenceData; a chain is an ensemble."""
+    import arviz as az
+
+    posterior, draws = calibration.posterior, calibration.draws
+    blocks = posterior.blocks
+    attributes = {
+        "source": calibration.source,
+        "slip_definition": str(blocks.definition),
+        "law": posterior.law.name,
+        "verdict": calibration.verdict.headline(),
+    }
+    data = az.from_dict(
+        posterior={
+            p.name: draws.values[..., i]
+            for i, p in enumerate(posterior.parameters)
+            if p.name not in posterior.fixed
+        },
+        sample_stats={"lp": draws.log_density},
+        observed_data={"traction_force": blocks.traction_force},
+        constant_data={
+            "slip_ratio": blocks.slip,
+            "normal_force": blocks.normal_force,
+            "run": blocks.run,
+            "samples": blocks.count,
+        },
+        coords={"block": np.arange(len(blocks))},
+        dims={
+            name: ["block"]
+            for name in ("traction_force", "slip_ratio", "normal_force", "run", "samples")
+        },
+        attrs=attributes,
+    )
+    data.to_netcdf(str(path), engine="h5netcdf")

@@ -1,0 +1,56 @@
+# SPDX-License-Identifier: MIT
+"""The pictures of a calibration folder."""
+
+from pathlib import Path
+
+from zebro_lab.calibration.folder import Calibration
+
+CURVE_DRAWS = 400
+
+
+def draw_calibration(folder: Path, calibration: Calibration) -> None:
+    """Draw curves, surface, corner plot, traces and residuals of a finished fit.
+
+    Args:
+        folder: Folder to write the PNG files into.
+        calibration: The finished fit.
+    """
+    from zebro_lab import plots  # matplotlib takes most of a second to import
+
+    blocks, law = calibration.posterior.blocks, calibration.posterior.law
+    k = len(law.parameters)
+    draws = calibration.draws.flat[:, :k]
+    some = draws[:: max(1, len(draws) // CURVE_DRAWS)]
+    labels = plots.parameter_labels(law.parameters)
+    simulated = calibration.simulated
+    figures = {
+        "curves": plots.slip_curves(
+            blocks,
+            law,
+            draws=some,
+            load_levels=calibration.levels,
+            title="Slip curve by load",
+            simulated=simulated,
+        ),
+        "surface": plots.slip_surface(
+            blocks, law, values=draws.mean(axis=0), title="Slip surface", simulated=simulated
+        ),
+        "corner": plots.corner(
+            draws, labels=labels, title="Posterior of the slip law", simulated=simulated
+        ),
+        "traces": plots.traces(
+            calibration.draws.values[..., :k],
+            labels=labels,
+            title="Traces by ensemble",
+            simulated=simulated,
+        ),
+        "residuals": plots.residuals(
+            blocks,
+            whitened=calibration.residuals.whitened,
+            run_score=calibration.residuals.run_score,
+            title="Residuals",
+            simulated=simulated,
+        ),
+    }
+    for name, figure in figures.items():
+        plots.save(figure, folder / f"{name}.png")

@@ -1,0 +1,372 @@
+# SPDX-License-Identifier: MIT
+"""Rig data of any accepted form, turned into samples for the calibration."""
+
+from collections import Counter
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from model.bayes.blocks import slip_noise_variance
+from model.bayes.samples import SlipSamples
+from model.errors import ModelError
+from model.slip.definition import SlipDefinition
+from model.slip.law import Array
+from zebro_lab.files.errors import DataError, SettingsError, ZebroLabError
+from zebro_lab.runs.counted_once import content_hash, first_of_each, run_keys, told_once
+from zebro_lab.runs.data_paths import DataSource, find_sources
+from zebro_lab.runs.folder import LOG_FILE, read_manifest, read_slip_rig_run
+from zebro_lab.runs.recorded_sweeps import SWEEP, recorded_sweeps
+from zebro_lab.tables.columns import (
+    Columns,
+    MappedColumn,
+    RunRule,
+    parse_definition,
+    read_columns,
+)
+from zebro_lab.tables.raw_table import RawTable
+from zebro_lab.tables.rig_table import RigTable, kept_rows, normal_force
+from zebro_lab.tables.run_separation import Runs, run_times, separate_runs
+from zebro_lab.tables.slip_source import SlipColumn, converted, slip
+from zebro_lab.tables.table_files import read_table_file, table_stem
+
+_LEAST_SAMPLES = 20  # of a recording: fewer say nothing about its noise
+_LEAST_TRIALS = 8  # averages over trials: more than any law has parameters
+_CONSTANT_SLIP = 1e-6  # range of slip ratio below which there is no curve to see
+_NOISE_ALONE = 1.1  # a spread of slip that sensor noise explains up to a tenth
+
+
+@dataclass(frozen=True)
+class RigData:
+    """Samples of a rig experiment and where they came from.
+
+    Attributes:
+        samples: The samples.
+        files: Every file read, in order: data, column maps, manifests.
+        source: "real", "sim:what", "replay:what"; "unknown" where nobody said; "mixed:a,b" for
+            several.
+        notes: For a person, one line each: how slip was obtained, rows left out and why, how
+            runs were separated, units converted.
+        load_cell: Standard deviations from [load_cell] by name, SI; only those given.
+        repeated: Of the notes, those on data that were named twice and count once.
+    """
+
+    samples: SlipSamples
+    files: tuple[Path, ...]
+    source: str
+    notes: tuple[str, ...]
+    load_cell: Mapping[str, float]
+    repeated: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class _Part:
+    """What one table contributes."""
+
+    path: Path
+    columns: Columns
+    sources: tuple[str, ...]
+    rows_read: int
+    slip: SlipColumn
+    normal_force: Array
+    traction_force: Array
+    runs: Runs
+    time: Array | None
+    notes: tuple[str, ...]
+    files: tuple[Path, ...]
+
+
+def read_rig_data(
+    paths: Sequence[Path], *, columns: Path | None = None, slip_definition: str | None = None
+) -> RigData:
+    """Read rig data: tables in CSV or Parquet and run folders.
+
+    Args:
+        paths: Files, folders of files, run folders, folders of run folders; several.
+        columns: A `columns.toml` for all of them, in place of those beside the data.
+        slip_definition: Definition to convert all slip ratios to; None keeps theirs.
+
+    Raises:
+        ZebroLabError: A path, a column map or the data is at fault; the one-line message names
+            file, column and row.
+    """
+    wanted = (
+        None
+        if slip_definition is None
+        else parse_definition(slip_definition, file=None, key="slip definition")
+    )
+    named = find_sources(paths)
+    labels = dict(zip(named, _labels(named), strict=True))
+    excluded = {source: why for source in named if (why := _exclusion(source)) is not None}
+    counted = [source for source in named if source not in excluded]
+    sources, repeated = first_of_each(counted, key=_bytes_of) if len(counted) > 1 else (counted, [])
+    skipped = [f"{labels[source]}: left out, {why}" for source, why in excluded.items()]
+    maps = _column_maps(named, columns)
+    parts = [_read_part(source, maps[source], labels[source], wanted) for source in sources]
+    if parts:
+        _one_definition(parts)  # the same forces under two definitions contradict each other
+    known = _known(excluded, maps, labels) if parts else {}
+    parts, repeated_runs = _once(parts, known)
+    files = [(labels[one], labels[other]) for one, other in repeated]
+    twice = told_once("runs and tables", [*files, *repeated_runs])
+    if not parts:
+        raise DataError(f"every run is left out: {'; '.join((*skipped, *twice))}")
+    samples = _joined(parts)
+    _require_informative(samples, parts)
+    return RigData(
+        samples=samples,
+        files=tuple(dict.fromkeys(file for part in parts for file in part.files)),
+        source=_joined_source(parts),
+        notes=(*_notes(parts), *skipped, *twice),
+        load_cell=_joined_load_cell(parts),
+        repeated=twice,
+    )
+
+
+def _column_maps(sources: Sequence[DataSource], override: Path | None) -> dict[DataSource, Columns]:
+    files = {source: override or source.columns_file() for source in sources}
+    read = {file: read_columns(file) for file in dict.fromkeys(files.values()) if file is not None}
+    return {source: read[file] if file else Columns() for source, file in files.items()}
+
+
+def _labels(sources: Sequence[DataSource]) -> list[str]:
+    """Name every table, all in the briefest way that keeps the names apart."""
+    below = [source.path.relative_to(source.root).parent for source in sources]
+    stems = [table_stem(source.path) for source in sources]
+    schemes = (
+        stems,
+        [str(folder / stem) for folder, stem in zip(below, stems, strict=True)],
+        [str(source.path) for source in sources],
+    )
+    return next((names for names in schemes if len(set(names)) == len(names)), schemes[-1])
+
+
+def _exclusion(source: DataSource) -> str | None:
+    """Return why a run is left out; None where it counts."""
+    if not source.is_run_folder:
+        return None
+    excluded = read_manifest(source.path).excluded
+    return None if excluded is None else excluded.get("why", "excluded")
+
+
+def _bytes_of(source: DataSource) -> str:
+    """Return what a table or a log is known by under another name."""
+    file = source.path / LOG_FILE if source.is_run_folder else source.path
+    return content_hash(file) if file.is_file() else str(source.path)
+
+
+def _keys(part: _Part) -> tuple[str, ...]:
+    forces = (part.normal_force, part.traction_force)
+    return run_keys(forces, part.runs.index, len(part.runs.names))
+
+
+def _known(
+    excluded: Collection[DataSource],
+    maps: Mapping[DataSource, Columns],
+    labels: Mapping[DataSource, str],
+) -> dict[str, str]:
+    """Return the runs that are left out, by what they are known by under another name."""
+    known: dict[str, str] = {}
+    for source in excluded:
+        try:
+            part = _read_part(source, maps[source], labels[source], None)
+        except (ZebroLabError, ModelError):  # it may well be left out for what is wrong with it
+            continue
+        known |= dict.fromkeys(_keys(part), f"{labels[source]}, which is left out")
+    return known
+
+
+def _once(
+    parts: Sequence[_Part], known: Mapping[str, str]
+) -> tuple[list[_Part], list[tuple[str, str]]]:
+    """Leave out runs that are there already, or are left out under another name; pair both."""
+    seen, repeated, kept = dict(known), [], []
+    for part in parts:
+        keys = _keys(part)
+        fresh = np.array([key not in seen for key in keys], dtype=bool)
+        named = dict(zip(keys, part.runs.names, strict=True))
+        repeated += [(name, seen[key]) for key, name in named.items() if key in seen]
+        seen = {**named, **seen}
+        if fresh.any():
+            kept.append(part if fresh.all() else _with_runs(part, fresh))
+    return kept, repeated
+
+
+def _with_runs(part: _Part, chosen: NDArray[np.bool_]) -> _Part:
+    """Return a part with some of its runs."""
+    rows = chosen[part.runs.index]
+    index = (np.cumsum(chosen) - 1)[part.runs.index[rows]]
+    names = tuple(name for name, keep in zip(part.runs.names, chosen, strict=True) if keep)
+    return replace(
+        part,
+        rows_read=part.rows_read - int((~rows).sum()),
+        slip=replace(part.slip, ratio=part.slip.ratio[rows]),
+        normal_force=part.normal_force[rows],
+        traction_force=part.traction_force[rows],
+        runs=replace(part.runs, index=index, names=names),
+        time=None if part.time is None else part.time[rows],
+    )
+
+
+def _read_part(
+    source: DataSource, columns: Columns, label: str, wanted: SlipDefinition | None
+) -> _Part:
+    if source.is_run_folder:
+        raw, columns, files = _run_folder_table(source.path, columns)
+    else:
+        raw, files = read_table_file(source.path), (source.path,)
+    table = RigTable(raw, columns, kept_rows(raw, columns))
+    slip_column = slip(table)
+    if wanted is not None:
+        slip_column = converted(table, slip_column, wanted)
+    runs = separate_runs(table, label)
+    return _Part(
+        path=source.path,
+        columns=columns,
+        sources=tuple(s for s in (columns.source, raw.source) if s),
+        rows_read=len(raw),
+        slip=slip_column,
+        normal_force=normal_force(table),
+        traction_force=table.si("traction_force"),
+        runs=runs,
+        time=run_times(table, runs),
+        notes=(*raw.notes, *_conversions(table)),
+        files=files if columns.file is None else (*files, columns.file),
+    )
+
+
+def _run_folder_table(folder: Path, columns: Columns) -> tuple[RawTable, Columns, tuple[Path, ...]]:
+    """Read a run folder as a table.
+
+    Its columns are canonical, and it is one run, or one for each sweep: of a `columns.toml` only
+    the row conditions and the load cell apply to it.
+    """
+    import pandas as pd
+
+    run, notes, rule = read_slip_rig_run(folder), (), RunRule()
+    columns_read = dict(vars(run.table))
+    if run.manifest.profiles:  # as devices sent it: nobody has cut it yet
+        number, notes = recorded_sweeps(run)
+        rule = RunRule(by=(SWEEP,)) if number.max() > 1 else rule
+        columns_read = {
+            name: values[number > 0] for name, values in {**columns_read, SWEEP: number}.items()
+        }
+    series = {name: pd.Series(values) for name, values in columns_read.items()}
+    raw = RawTable(folder, series, source=run.manifest.source, notes=(*run.notes, *notes))
+    own = replace(columns, source=None, columns={}, constants=run.manifest.constants, runs=rule)
+    return raw, own, run.files
+
+
+def _conversions(table: RigTable) -> tuple[str, ...]:
+    converted_columns: list[tuple[str, MappedColumn]] = [
+        (name, column) for name, column in table.columns.columns.items() if column.factor != 1.0
+    ]
+    return tuple(
+        f"{name}: '{column.name}' in {column.unit} times {column.factor:g}"
+        for name, column in converted_columns
+    )
+
+
+def _joined(parts: Sequence[_Part]) -> SlipSamples:
+    definition = _one_definition(parts)
+    first_run = np.cumsum([0, *(len(part.runs.names) for part in parts)])
+    timed = [part.time for part in parts if part.time is not None]
+    return SlipSamples(
+        slip=np.concatenate([part.slip.ratio for part in parts]),
+        normal_force=np.concatenate([part.normal_force for part in parts]),
+        traction_force=np.concatenate([part.traction_force for part in parts]),
+        run=np.concatenate(
+            [part.runs.index + first for part, first in zip(parts, first_run, strict=False)]
+        ),
+        run_names=tuple(name for part in parts for name in part.runs.names),
+        definition=definition,
+        time=np.concatenate(timed) if len(timed) == len(parts) else None,
+    )
+
+
+def _one_definition(parts: Sequence[_Part]) -> SlipDefinition:
+    first = parts[0]
+    for part in parts:
+        if part.slip.definition is not first.slip.definition:
+            raise DataError(
+                f"slip is '{part.slip.definition}' here and '{first.slip.definition}' in "
+                f"{first.path}; calibrate them apart or ask for one slip definition",
+                file=part.path,
+            )
+    return first.slip.definition
+
+
+def _require_informative(samples: SlipSamples, parts: Sequence[_Part]) -> None:
+    where = parts[0].path if len(parts) == 1 else None
+    trials = all(part.columns.runs.each_row for part in parts)
+    least = _LEAST_TRIALS if trials else _LEAST_SAMPLES
+    if len(samples) < least:
+        raise DataError(
+            f"{len(samples)} samples in all, expected at least {least}; record more"
+            + ("" if trials else ", or say [runs] each_row = true if rows are averaged trials"),
+            file=where,
+        )
+    if np.ptp(samples.slip) <= _CONSTANT_SLIP:
+        raise DataError(
+            f"slip ratio is {samples.slip[0]:g} in all {len(samples)} rows; "
+            f"a curve needs several set-points, check the column or add other runs",
+            file=where,
+        )
+    noise = float(np.sqrt(np.mean(slip_noise_variance(samples))))
+    if np.std(samples.slip) <= _NOISE_ALONE * noise:
+        raise DataError(
+            f"slip ratio stays at {samples.slip.mean():.4g} within its sensors' noise of "
+            f"{noise:.2g}; a curve needs several set-points, add other runs"
+            + ("" if trials else ", or say [runs] each_row = true if every row is a trial"),
+            file=where,
+        )
+
+
+def _joined_source(parts: Sequence[_Part]) -> str:
+    stated = dict.fromkeys(s for part in parts for s in part.sources or ("unknown",))
+    return next(iter(stated)) if len(stated) == 1 else f"mixed:{','.join(stated)}"
+
+
+def _joined_load_cell(parts: Sequence[_Part]) -> dict[str, float]:
+    joined: dict[str, float] = {}
+    origin: dict[str, Path | None] = {}
+    for part in parts:
+        for name, value in part.columns.load_cell.items():
+            if joined.setdefault(name, value) != value:
+                raise SettingsError(
+                    f"is {value:g} here and {joined[name]:g} in {origin[name]}; "
+                    f"calibrate data of two load cells apart",
+                    file=part.columns.file, key=f"load_cell.{name}",
+                )  # fmt: skip
+            origin.setdefault(name, part.columns.file)
+    return joined
+
+
+def _notes(parts: Sequence[_Part]) -> list[str]:
+    origins = dict.fromkeys(f"slip {part.slip.origin}" for part in parts)
+    rules: Counter[str] = Counter()
+    for part in parts:
+        rules[part.runs.rule] += len(part.runs.names)
+    runs = [f"{count} run{'s' * (count != 1)}, {rule}" for rule, count in rules.items()]
+    others = dict.fromkeys(note for part in parts for note in part.notes)
+    return [*origins, *runs, *_rows_left_out(parts), *_time_note(parts), *others]
+
+
+def _rows_left_out(parts: Sequence[_Part]) -> list[str]:
+    read: Counter[str] = Counter()
+    kept: Counter[str] = Counter()
+    for part in parts:
+        if part.columns.keep:
+            conditions = " and ".join(map(str, part.columns.keep))
+            read[conditions] += part.rows_read
+            kept[conditions] += len(part.normal_force)
+    return [f"{read[c] - kept[c]} of {read[c]} rows left out; kept where {c}" for c in read]
+
+
+def _time_note(parts: Sequence[_Part]) -> list[str]:
+    timed = sum(part.time is not None for part in parts)
+    if timed in (0, len(parts)):
+        return []
+    return [f"{len(parts) - timed} of {len(parts)} files have no time: no times are used"]

@@ -1,0 +1,162 @@
+# SPDX-License-Identifier: MIT
+"""What `calibrate-slip` prints: data, parameters, the plain curve at each load, the verdict."""
+
+from pathlib import Path
+
+from rich import box
+from rich.console import Console
+from rich.table import Table
+from rich.text import Text
+
+from model.bayes.estimate import Estimate
+from zebro_lab.calibration.folder import Calibration
+from zebro_lab.calibration.rig_data import RigData
+from zebro_lab.terminal.messages import plain
+
+
+def print_calibration(console: Console, calibration: Calibration, data: RigData, out: Path) -> None:
+    """Print a finished fit.
+
+    Args:
+        console: Where to print.
+        calibration: The finished fit.
+        data: What it was made from.
+        out: The calibration folder.
+    """
+    _print_data(console, calibration, data)
+    console.print(_parameter_table(calibration))
+    console.print(_curve_table(calibration))
+    _print_quality(console, calibration)
+    _print_verdict(console, calibration)
+    console.print(Text(f"\nwritten to {out}:"))
+    for path in sorted(out.iterdir()):
+        console.print(plain(f"  {path}"))
+
+
+def _print_data(console: Console, calibration: Calibration, data: RigData) -> None:
+    blocks, choice = calibration.posterior.blocks, calibration.fit.block_choice
+    kind = "SIMULATED data" if calibration.simulated else "data"
+    lines = [
+        f"{kind}, source '{data.source}': {len(data.samples)} samples in {blocks.n_runs} runs",
+        *data.notes,
+        f"slip definition: {blocks.definition}",
+        f"{len(blocks)} block means of about {choice.length} samples, set by {choice.reason}"
+        + ("" if choice.correlation is None else f" (correlated over {choice.correlation:.0f})"),
+    ]
+    if calibration.comparison is not None:
+        lines += _comparison_lines(calibration)
+    for line in lines:
+        console.print(plain(line))
+
+
+def _comparison_lines(calibration: Calibration) -> list[str]:
+    comparison = calibration.comparison
+    if comparison is None:
+        return []
+    chosen = comparison.names[comparison.chosen]
+    others = [
+        f"'{name}' predicts left-out runs {'worse' if difference < 0 else 'better, not clearly,'} "
+        f"by {abs(difference):.0f} ± {error:.0f} log units"
+        for i, (name, difference, error) in enumerate(
+            zip(comparison.names, comparison.difference, comparison.standard_error, strict=True)
+        )
+        if i != comparison.chosen
+    ]
+    return [f"law: {chosen} ({'; '.join(others)})"]
+
+
+def _parameter_table(calibration: Calibration) -> Table:
+    title = f"parameters of '{calibration.posterior.law.name}' and of the measurement"
+    if calibration.simulated:
+        title += " (simulated)"
+    table = Table(title=title, box=box.SIMPLE, title_justify="left")
+    for name in ("parameter", "symbol"):
+        table.add_column(name, no_wrap=True)
+    for name in ("median", "90 % interval", "unit", "informed", "R-hat", "ESS"):
+        table.add_column(name, justify="right", no_wrap=True)
+    free = {p.name: i for i, p in enumerate(calibration.posterior.free)}
+    for e in calibration.parameters:
+        i = free.get(e.parameter.name)
+        if i is None:
+            table.add_row(e.parameter.name, e.parameter.symbol, f"{e.median:.4g}", "fixed")
+            continue
+        table.add_row(
+            e.parameter.name,
+            e.parameter.symbol,
+            f"{e.median:.4g}",
+            _interval(e),
+            "" if e.parameter.unit == "dimensionless" else e.parameter.unit,
+            f"{max(0.0, calibration.contraction[e.parameter.name]):.0%}",
+            f"{calibration.convergence.r_hat[i]:.3f}",
+            f"{calibration.convergence.ess_bulk[i]:.0f}",
+        )
+    return table
+
+
+def _interval(e: Estimate) -> str:
+    return f"{e.low:.4g} … {e.high:.4g}"
+
+
+def _curve_table(calibration: Calibration) -> Table:
+    table = Table(
+        title="the curve at each tested load: median, 90 % interval below",
+        box=box.SIMPLE,
+        title_justify="left",
+    )
+    table.add_column("Fn [N]", justify="right")
+    units = {"dimensionless": "", "newton": " [N]"}
+    for e in calibration.curves[0]:
+        unit = units.get(e.parameter.unit, f" [{e.parameter.unit}]")
+        table.add_column(f"{e.parameter.symbol}{unit}", justify="right")
+    for load, row in zip(calibration.levels, calibration.curves, strict=True):
+        table.add_row(f"{load:.4g}", *(f"{e.median:.4g}\n{e.low:.3g}…{e.high:.3g}" for e in row))
+    return table
+
+
+def _print_quality(console: Console, calibration: Calibration) -> None:
+    residuals, agreement = calibration.residuals, calibration.agreement
+    lines = [
+        f"in sample: R² {residuals.r_squared:.4f}, RMSE {residuals.rmse:.3g} N, RMSE of F/Fn "
+        f"{residuals.rmse_over_load:.3g}, of block means",
+    ]
+    if calibration.fit.cross_validation is not None and calibration.r_squared is not None:
+        lines.append(
+            f"cross-validated: R² {calibration.r_squared:.4f} of samples "
+            f"({calibration.fit.cross_validation.scheme})"
+        )
+    if agreement.comparable:
+        lines.append(
+            f"second engine (Laplace + PSIS, k = {agreement.pareto_k:.2f}): means agree to "
+            f"{agreement.mean:.2f} sd, spreads to {agreement.spread:.0%}"
+        )
+    else:
+        lines.append(
+            f"second engine (Laplace + PSIS): no comparison, Pareto k = {agreement.pareto_k:.2f} "
+            "is above 0.7"
+        )
+    lines.append(f"sampled in {calibration.seconds:.0f} s")
+    for line in lines:
+        console.print(plain(line))
+
+
+def _print_verdict(console: Console, calibration: Calibration) -> None:
+    verdict = calibration.verdict
+    good = verdict.trustworthy
+    console.print(
+        Text("\nverdict: " + verdict.headline(), style="bold green" if good else "bold red")
+    )
+    for check in (*verdict.convergence, *verdict.trust):
+        mark = "ok  " if check.passed else "FAIL"
+        console.print(plain(f"  {mark} {check.name}: {check.evidence}"))
+    if verdict.weak:
+        for load, row in zip(calibration.levels, calibration.curves, strict=True):
+            known = {e.parameter.symbol: e for e in row}
+            force, slope = known["F_max"], known["BCD"]
+            console.print(
+                Text(
+                    f"  at {load:.4g} N: peak force within tested slip {force.median:.4g} N "
+                    f"({_interval(force)}), initial slope {slope.median:.4g} N ({_interval(slope)})"
+                )
+            )
+    for step in verdict.next_steps():
+        console.print(plain(f"  next: {step}"))

@@ -1,0 +1,87 @@
+# SPDX-License-Identifier: MIT
+"""Draws of a slip law: of a calibration's posterior, or the one law that was assumed."""
+
+from pathlib import Path
+
+import numpy as np
+
+from model.errors import DomainError
+from model.slip.curve import SlipCurve
+from model.slip.law import Array
+from model.walk.traction import ToeLaw, TractionTable, VelocityCoulomb, law_table
+from zebro_lab.calibration.slip_argument import Slip
+from zebro_lab.files.draws import read_draws_of
+from zebro_lab.files.errors import DataError
+
+POSTERIOR = "posterior.nc"
+_ADVICE = "calibrate again, or name a slip.toml that lies alone"
+MOST_TABLES = 200  # a table costs as much as walking a second, and paths hardly differ between them
+
+
+def slip_tables(
+    slip: Slip, n: int, *, weight: float, toe: ToeLaw = "saturated", rng: np.random.Generator
+) -> list[TractionTable]:
+    """Tabulate draws of the law, up to `MOST_TABLES`.
+
+    Args:
+        slip: What `--slip` named.
+        n: Draws wanted; an assumed law has one.
+        weight: Weight of the robot [N].
+        toe: Traction of a leg on its toe.
+        rng: Source of randomness.
+
+    Raises:
+        DataError: The posterior beside the slip.toml is damaged or of another law.
+    """
+    law = slip.law
+    if isinstance(law, VelocityCoulomb):
+        return [law.table(weight=weight, toe=toe)]
+    tables = []
+    for values in law_draws(slip, law, min(n, MOST_TABLES), rng=rng):
+        try:
+            tables.append(
+                law_table(law.law, values, weight=weight, definition=law.definition, toe=toe)
+            )
+        except DomainError:  # a draw in the tail that this robot's loads take out of its shape
+            continue
+    return tables or [slip.traction_table(weight=weight, toe=toe)]
+
+
+def law_draws(slip: Slip, curve: SlipCurve, n: int, *, rng: np.random.Generator) -> Array:
+    """Draw values of a law's parameters: from the posterior's draws, or from their Gaussian.
+
+    Args:
+        slip: What `--slip` named.
+        curve: Its curve.
+        n: Draws wanted; a law that was assumed has one.
+        rng: Source of randomness.
+
+    Returns:
+        Values, shape (n, k).
+
+    Raises:
+        DataError: The posterior beside the slip.toml is damaged or of another law.
+    """
+    if not np.any(curve.covariance):
+        return curve.values[None]
+    beside = [file.parent / POSTERIOR for file in slip.files]
+    if beside and beside[0].is_file():
+        drawn = _posterior(beside[0], curve)
+        return drawn[rng.choice(len(drawn), size=n, replace=n > len(drawn))]
+    return rng.multivariate_normal(curve.values, curve.covariance, size=n, method="eigh")
+
+
+def _posterior(file: Path, curve: SlipCurve) -> Array:
+    """Read the draws of every parameter, those that were fixed at their value, shape (m, k)."""
+    names = [parameter.name for parameter in curve.law.parameters]
+    columns, others = read_draws_of(file, "posterior", names, advice=_ADVICE)
+    drawn = list(columns)
+    if not drawn:
+        raise DataError(
+            f"holds draws of {', '.join(others) or 'nothing'}, but the slip.toml beside it is of "
+            f"the law '{curve.law.name}' with {', '.join(names)}; calibrate again",
+            file=file,
+        )
+    m = len(columns[drawn[0]])
+    fixed = dict(zip(names, curve.values, strict=True))
+    return np.column_stack([columns.get(name, np.full(m, fixed[name])) for name in names])

@@ -1,0 +1,254 @@
+# SPDX-License-Identifier: MIT
+"""The sole owner of the format of `walks/` in a calibration: what tracked walks said."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any, TypeAlias
+
+import numpy as np
+
+from model.bayes.walk_posterior import WalkPosterior
+from model.bayes.walk_prior import UNITS, WRONG, WalkPrior, WrongLeg, all_cases
+from model.predict import ModelSpread
+from zebro_lab.files.arrays import read_arrays
+from zebro_lab.files.documents import read_toml_document
+from zebro_lab.files.errors import DataError
+from zebro_lab.files.opening import parsing
+from zebro_lab.files.provenance import file_hash, file_hashes
+from zebro_lab.files.replacement import settle
+from zebro_lab.files.result_folder import MANIFEST, ResultKind, result_folder
+from zebro_lab.robot.robot_file import RobotFile
+
+Metrics: TypeAlias = Mapping[str, float]
+"""Metrics of one model's path, by the names of columns in `left_out.csv`."""
+
+SCHEMA = 2  # 1 counted the fall from another place
+FOLDER = "walks"
+WALKS_TOML, DRAWS, LEFT_OUT = "walks.toml", "draws.npz", "left_out.csv"
+_ANEW = "fit the walks again with calibrate-slip --walks"
+WALKS = ResultKind(
+    "walks", "calibrate-slip --walks", (WALKS_TOML, DRAWS, LEFT_OUT, "*.png"), SCHEMA
+)
+
+
+@dataclass(frozen=True)
+class StoredWalks:
+    """A posterior after walks, as it was read.
+
+    Attributes:
+        posterior: The posterior.
+        legs: What describes the legs that were fitted; see `describe_legs`.
+        logs: SHA-256 of the leg log of each walk, in the posterior's order.
+        folder: Its folder.
+    """
+
+    posterior: WalkPosterior
+    legs: Mapping[str, Any]
+    logs: tuple[str, ...]
+    folder: Path
+
+    @property
+    def files(self) -> tuple[Path, ...]:
+        """What it was read from."""
+        return self.folder / WALKS_TOML, self.folder / DRAWS
+
+
+@dataclass(frozen=True)
+class WalksToWrite:
+    """A finished fit of walks.
+
+    Attributes:
+        posterior: The posterior.
+        left_out: Metrics of each walk, by walk and model, predicted by a fit of the others;
+            empty for one walk.
+        robot: The robot that walked.
+        logs: The leg log of each walk.
+        inputs: Every file read, the calibration's first.
+        settings: What was asked, as JSON can hold it.
+        source: Where the walks come from.
+        notes: For a person, one line each.
+    """
+
+    posterior: WalkPosterior
+    left_out: Mapping[str, Mapping[str, Metrics]]
+    robot: RobotFile
+    logs: tuple[Path, ...]
+    inputs: tuple[Path, ...]
+    settings: Mapping[str, object]
+    source: str
+    notes: tuple[str, ...]
+
+
+def describe_legs(described: RobotFile) -> dict[str, Any]:
+    """Return what makes legs those of one robot, whatever marker it carries."""
+    robot = described.robot
+    return {
+        "hips": robot.hips.tolist(),
+        "leg_offset": robot.leg_offset.tolist(),
+        "leg_radius": float(robot.leg_radius),
+        "leg_arc": float(robot.leg_arc),
+        "mass": float(robot.mass),
+        "inertia": robot.principal_inertia.tolist(),
+        "leg_sign": list(described.leg_sign),
+    }
+
+
+def write_walks(calibration: Path, fitted: WalksToWrite, *, draw: Callable[[Path], object]) -> Path:
+    """Write `walks/` into a calibration folder, whole or not at all.
+
+    Args:
+        calibration: The calibration folder.
+        fitted: The finished fit.
+        draw: Draws its pictures into a folder.
+
+    Returns:
+        The folder.
+    """
+    folder = calibration / FOLDER
+    inputs = file_hashes(dict.fromkeys(fitted.inputs))
+    content = {
+        "source": fitted.source,
+        "settings": fitted.settings,
+        "left_out": fitted.left_out,
+        "notes": list(fitted.notes),
+        "inputs": inputs,
+    }
+    with result_folder(folder, WALKS, content=content) as draft:
+        (draft / WALKS_TOML).write_text(_walks_toml(fitted, inputs), encoding="utf-8")
+        posterior = fitted.posterior
+        np.savez_compressed(
+            draft / DRAWS,
+            values=posterior.values, case=posterior.case, weight=posterior.weight,
+            best=posterior.best,
+        )  # fmt: skip
+        _write_left_out(draft / LEFT_OUT, fitted.left_out)
+        draw(draft)
+    return folder
+
+
+def read_walks_beside(slip_toml: Path) -> StoredWalks | None:
+    """Read what walks said beside a `slip.toml`; None where no walk informed it.
+
+    Raises:
+        DataError: It is damaged, of a later schema, or was fitted with another slip law.
+    """
+    folder = settle(slip_toml.parent / FOLDER)
+    file = folder / WALKS_TOML
+    if not (folder / MANIFEST).is_file() or not file.is_file():
+        return None
+    remedy = f"{_ANEW}, or delete {folder}"
+    content = read_toml_document(file, remedy=remedy, fault=DataError)
+    with parsing(file, "cannot be read", advice=remedy):
+        if content["schema"] != SCHEMA:
+            raise DataError(
+                f"has schema {content['schema']}, this version reads {SCHEMA}; {_ANEW}, or update "
+                "zebro-lab where it is the older",
+                file=file,
+            )
+        _require_same_slip(content, slip_toml, file)
+        names = ("values", "case", "weight", "best")
+        arrays = read_arrays(folder / DRAWS, names, advice=remedy)
+        return StoredWalks(
+            _posterior(content, arrays),
+            content["legs"],
+            tuple(each["leg_log"] for each in content["walk"]),
+            folder,
+        )
+
+
+def _require_same_slip(content: Mapping[str, Any], slip_toml: Path, file: Path) -> None:
+    if content["slip"] != file_hash(slip_toml):
+        raise DataError(
+            f"was fitted with another slip law than the {slip_toml.name} beside it; fit the walks "
+            f"again with calibrate-slip --walks, or delete {file.parent}",
+            file=file,
+        )
+
+
+def _posterior(content: Mapping[str, Any], arrays: Mapping[str, np.ndarray]) -> WalkPosterior:
+    prior = dict(content["prior"])
+    names = tuple(each["name"] for each in content["walk"])
+    values, case, weight, best = (arrays[key] for key in ("values", "case", "weight", "best"))
+    n = len(weight)
+    cases = all_cases(len(names))
+    if values.shape != (n, WRONG + 1) or case.shape != (n,) or best.shape != (WRONG + 1,):
+        raise ValueError(f"draws of shape {values.shape}; expected ({n}, {WRONG + 1})")
+    return WalkPosterior(
+        prior=WalkPrior(**{**prior, "spread": ModelSpread(**prior["spread"])}),
+        walks=names,
+        cases=cases,
+        values=values,
+        case=case,
+        weight=weight / weight.sum(),
+        best=best,
+        best_case=cases[int(content["likeliest_case"])],
+        misfit=tuple(float(each["misfit"]) for each in content["walk"]),
+    )
+
+
+def _walks_toml(fitted: WalksToWrite, inputs: Mapping[str, str]) -> str:
+    import tomlkit
+
+    posterior = fitted.posterior
+    told = posterior.contractions()
+    document = tomlkit.document()
+    document.add(
+        tomlkit.comment("What tracked walks said of legs and floor. SI units and radians.")
+    )
+    if "sim:" in fitted.source:
+        document.add(tomlkit.comment("SIMULATED walks: nothing here was measured."))
+    document.update({
+        "schema": SCHEMA,
+        "source": fitted.source,
+        "slip": next(iter(inputs.values())),
+        "effective_draws": posterior.effective,
+        "reliable": posterior.reliable,
+        "likeliest_case": posterior.cases.index(posterior.best_case),
+        "not_informed": [each.name for each in told if not each.informed],
+        "prior": asdict(posterior.prior),
+        "legs": describe_legs(fitted.robot),
+        "walk": [
+            {"name": name, "misfit": misfit, "leg_log": file_hash(log)}
+            for name, misfit, log in zip(
+                posterior.walks, posterior.misfit, fitted.logs, strict=True
+            )
+        ],
+        "parameter": [
+            {
+                "name": each.name, "unit": unit, "prior_sd": each.prior_sd, "mean": each.mean,
+                "sd": each.sd, "informed": each.contraction,
+            }
+            for each, unit in zip(told, UNITS, strict=True)
+        ],
+        "case": [_case(found, posterior) for found in posterior.found()],
+    })  # fmt: skip
+    return tomlkit.dumps(document)
+
+
+def _case(found: Any, posterior: WalkPosterior) -> dict[str, Any]:
+    row = {"name": found.name, "probability": found.probability}
+    if isinstance(found.case, WrongLeg):
+        row |= {
+            "leg": found.case.leg + 1,
+            "offset": found.offset,
+            "offset_sd": found.sd,
+            "offset_deg": float(np.degrees(found.offset)),
+            "offset_sd_deg": float(np.degrees(found.sd)),
+        }
+        if found.case.walk is not None:
+            row["walk"] = posterior.walks[found.case.walk]
+    return row
+
+
+def _write_left_out(file: Path, left_out: Mapping[str, Mapping[str, Metrics]]) -> None:
+    import pandas as pd
+
+    rows = [
+        {"walk": walk, "model": model, **metrics}
+        for walk, models in left_out.items()
+        for model, metrics in models.items()
+    ]
+    pd.DataFrame(rows, columns=None if rows else ["walk", "model"]).to_csv(
+        file, index=False, float_format="%.8g", lineterminator="\n"
+    )

@@ -1,9 +1,0 @@
-# SPDX-License-Identifier: MIT
-"""The commands: each file parses, calls one stage and prints."""
-
-import os
-
-# One BLAS thread: decision 13. Two names, since builds differ; whoever sets them is obeyed. Before
-# NumPy is loaded, or in vain.
-for _name in ("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
-    os.environ.setdefault(_name, "1")

@@ -1,0 +1,117 @@
+# SPDX-License-Identifier: MIT
+"""Guesses, from its header and numbers, at what the columns of a table are."""
+
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
+
+import numpy as np
+
+from model.slip.law import Array
+from zebro_lab.files.errors import DataError
+from zebro_lab.files.units import is_unit_of
+from zebro_lab.tables.columns import CANONICAL
+from zebro_lab.tables.raw_table import RawTable
+
+_NAMES: Mapping[str, str] = MappingProxyType({
+    "t": r"t|et|time|elapsed_time|timestamp|zeit|seconds",
+    "omega_leg": r"(omega|w|speed|rate)_?(l|leg|leg_disc|wheel)",
+    "omega_ground": r"(omega|w|speed|rate)_?(g|ground|ground_disc|table)",
+    "radius_leg": r"(radius|r)_(l|leg)",
+    "radius_ground": r"(radius|r)_(g|ground)",
+    "slip_ratio": r"(kappa|slip)(_?(ratio|inst|long|x))?|sl|sr|longitudinal_slip",
+    "normal_force": r"(avg_|mean_)?(fn|fz|f_n|f_z|load|normal|(normal|vertical)_?(force|load))",
+    "traction_force":
+        r"(avg_|mean_)?(ft|fx|f_t|f_x|(traction|tangential|longitudinal|friction)(_?force)?)",
+    "run": r"run(_?(id|nr|no|number))?",
+    "slip_definition": r"slip_definition",
+})  # fmt: skip
+_BRACKETED = re.compile(r"(?P<name>.*?)[\s_]*[\[(](?P<unit>[^\])]*)[\])]\s*")
+_SUFFIXES = {"_rad_s": "rad/s", "_rpm": "rpm", "_ms": "ms", "_s": "s", "_kn": "kN", "_n": "N",
+             "_mm": "mm", "_m": "m"}  # fmt: skip
+_MOST_SET_POINTS = 200
+
+
+@dataclass(frozen=True)
+class ColumnGuess:
+    """Where a canonical column probably comes from.
+
+    Attributes:
+        name: Header in the file.
+        unit: Unit read off the header; None where it shows none.
+        negative: The median is negative.
+        others: Other headers that would fit.
+    """
+
+    name: str
+    unit: str | None
+    negative: bool
+    others: tuple[str, ...]
+
+
+def guess_columns(table: RawTable) -> dict[str, ColumnGuess]:
+    """Guess the header of every canonical column that a table seems to have.
+
+    Only names decide; numbers tell the sign alone.
+    """
+    guesses: dict[str, ColumnGuess] = {}
+    taken: set[str] = set()
+    for canonical in CANONICAL:
+        fitting = [n for n in table.columns if n not in taken and _fits(n, canonical)]
+        fitting.sort(key=lambda name: name != canonical)
+        if fitting:
+            name, *others = fitting
+            taken.add(name)
+            numbers = numbers_or_none(table, name)
+            negative = numbers is not None and bool(np.nanmedian(numbers) < 0)
+            guesses[canonical] = ColumnGuess(name, _unit(name, canonical), negative, tuple(others))
+    return guesses
+
+
+def guess_set_points(table: RawTable) -> list[str]:
+    """Find the columns that hold a set-point: few values, each kept for a while."""
+    found = []
+    for name in table.columns:
+        numbers = numbers_or_none(table, name)
+        if numbers is None or np.isnan(numbers).any():
+            continue
+        changes = int(np.count_nonzero(np.diff(numbers)))
+        if 0 < changes < min(_MOST_SET_POINTS, len(numbers) // 10):
+            found.append(name)
+    return found
+
+
+def numbers_or_none(table: RawTable, name: str) -> Array | None:
+    """Return a column as numbers, shape (n,); None where it holds none."""
+    try:
+        numbers = table.numbers(name)
+    except DataError:
+        return None
+    return numbers if np.isfinite(numbers).any() else None
+
+
+def _fits(header: str, canonical: str) -> bool:
+    bare, _ = _without_unit(header)
+    return bare == canonical or re.fullmatch(_NAMES[canonical], bare) is not None
+
+
+def _unit(header: str, canonical: str) -> str | None:
+    _, unit = _without_unit(header)
+    si_unit = CANONICAL[canonical].unit
+    return unit if unit and si_unit and is_unit_of(unit, si_unit) else None
+
+
+def _without_unit(header: str) -> tuple[str, str | None]:
+    """Split `FZ [N]` or `t_ms` into a plain lower-case name and the unit."""
+    if match := _BRACKETED.fullmatch(header):
+        return _plain(match["name"]), match["unit"].strip()
+    plain = _plain(header)
+    for suffix, unit in _SUFFIXES.items():
+        if plain.endswith(suffix) and plain not in CANONICAL:
+            return plain.removesuffix(suffix), unit
+    return plain, None
+
+
+def _plain(name: str) -> str:
+    return re.sub(r"[\s.\-]+", "_", name.strip().casefold())

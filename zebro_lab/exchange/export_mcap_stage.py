@@ -1,0 +1,271 @@
+# SPDX-License-Identifier: MIT
+"""A run with its track and prediction in, one MCAP file for Foxglove out.
+
+| topic | schema | what |
+|---|---|---|
+| `/legs/joint_states` | sensor_msgs/JointState | leg angles, as recorded or as walked |
+| `/tf` | tf2_msgs/TFMessage | `floor` to `tracked`; to `body`, predicted, and its `leg_1` … |
+| `/track/path` | nav_msgs/Path | the track |
+| `/track/pose` | geometry_msgs/PoseWithCovarianceStamped | its poses with their covariance |
+| `/prediction/path` | nav_msgs/Path | the predicted path |
+| `/prediction/pose` | geometry_msgs/PoseWithCovarianceStamped | mean and spread of the band |
+| `/prediction/draws/1` … | nav_msgs/Path | some of the band's draws |
+"""
+
+import io
+from collections.abc import Sequence
+from dataclasses import dataclass
+from datetime import datetime
+from pathlib import Path
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from model.metrics.poses import Poses
+from model.predict import anchored, mean_path, states_at
+from model.robot import N_LEGS, Robot
+from model.slip.law import Array
+from model.walk.ensemble import PathEnsemble
+from model.walk.path import WalkPath
+from zebro_lab.files.atomic import atomic_write_bytes
+from zebro_lab.files.errors import AlreadyExists, NotFound
+from zebro_lab.files.names import PATH_CSV
+from zebro_lab.files.replacement import settle
+from zebro_lab.mcap.message_log import MessageLog
+from zebro_lab.mcap.ros_messages import JOINT_STATE, Schema, joint_state
+from zebro_lab.mcap.ros_poses import (
+    PATH,
+    POSE,
+    TRANSFORMS,
+    Transform,
+    path,
+    pose_with_covariance,
+    transforms,
+)
+from zebro_lab.mcap.stream_views import FASTEST
+from zebro_lab.robot.leg_log import ANGLES
+from zebro_lab.runs.folder import epoch_ns, read_manifest
+from zebro_lab.runs.recorded_legs import is_recorded, read_recorded_legs
+from zebro_lab.track.file import TrackFile, read_track
+from zebro_lab.track.folder import TRACK_CSV
+from zebro_lab.validation.judgement import robot_of_walk, shared_time
+from zebro_lab.validation.stage import TRACK
+from zebro_lab.walk.folder import DRAWS, PREDICTION, read_walk, read_walk_manifest
+from zebro_lab.walk.path_band import read_draws
+
+FLOOR, BODY, TRACKED = "floor", "body", "tracked"
+SHOWN_DRAWS = 20
+FRAMES = 50.0  # frames of the walking robot in a second [Hz]
+
+
+@dataclass(frozen=True)
+class Exported:
+    """What an exported file holds.
+
+    Attributes:
+        file: The file.
+        topics: Messages by topic.
+        notes: What is missing, for a person.
+    """
+
+    file: Path
+    topics: dict[str, int]
+    notes: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class _Predicted:
+    """A prediction in the track's frame."""
+
+    walk: WalkPath
+    robot: Robot
+    path: Poses
+    draws: PathEnsemble | None
+
+
+class _Stamped:
+    """A log whose messages are stamped by the time of the run."""
+
+    def __init__(self, log: MessageLog, start_ns: int) -> None:
+        self._log, self._start = log, start_ns
+        self.counts: dict[str, int] = {}
+
+    def stamps(self, t: Array) -> list[int]:
+        return (self._start + np.rint(1e9 * t).astype(np.int64)).tolist()
+
+    def add(self, topic: str, schema: Schema, stamp: int, message: bytes) -> None:
+        if topic not in self.counts:
+            self._log.register(topic, schema)
+        self.counts[topic] = self.counts.get(topic, 0) + 1
+        self._log.add(topic, stamp, message)
+
+
+def export_mcap(run: Path, *, out: Path) -> Exported:
+    """Write legs, frames, track and predicted band as one MCAP file of ROS 2 messages.
+
+    The prediction is put where validation puts it: it starts from the first tracked pose. Without
+    a track it starts at the origin.
+
+    Args:
+        run: Run folder, or a folder with track/ or prediction/.
+        out: File to write.
+
+    Raises:
+        AlreadyExists: `out` is there already.
+        NotFound: There is nothing to export.
+        DataError: Something is damaged, or track and prediction share no time.
+    """
+    if out.exists():
+        raise AlreadyExists(f"{out} exists already; name another --out")
+    for part in (TRACK, PREDICTION):
+        settle(run / part)
+    track = read_track(run / TRACK) if (run / TRACK / TRACK_CSV).is_file() else None
+    predicted = _read_predicted(run / PREDICTION, track)
+    recorded = read_manifest(run) if is_recorded(run) else None
+    if track is None and predicted is None:
+        raise NotFound(f"{run} holds neither {TRACK}/ nor {PREDICTION}/; track or predict first")
+    start = 0 if recorded is None else epoch_ns(datetime.fromisoformat(recorded.start))
+    content = io.BytesIO()
+    log = MessageLog(content)
+    sources = {
+        "run": recorded.source if recorded else "nothing was recorded here",
+        TRACK: track.source if track else "none",
+        PREDICTION: _source(run / PREDICTION) if predicted else "none",
+    }
+    log.describe("source", sources)
+    stamped = _Stamped(log, start)
+    _write_legs(stamped, run if recorded else None, predicted)
+    if track is not None:
+        _write_track(stamped, track)
+    if predicted is not None:
+        _write_prediction(stamped, predicted)
+    log.finish()
+    atomic_write_bytes(out, content.getvalue())
+    return Exported(out, stamped.counts, tuple(_notes(run, track, predicted)))
+
+
+def _read_predicted(folder: Path, track: TrackFile | None) -> _Predicted | None:
+    if not (folder / PATH_CSV).is_file():
+        return None
+    walk = read_walk(folder)
+    single = PathEnsemble(walk.t, walk.position[None, :, :2], walk.yaw[None])
+    draws = read_draws(folder) if (folder / DRAWS).is_file() else None
+    if track is not None and track.poses.has_yaw:
+        path_walked = Poses(walk.t, walk.position[:, :2], walk.yaw)
+        first = int(np.argmax(shared_time(track.poses, path_walked, file=track.file)))
+        at, seen = float(track.poses.t[first]), track.poses
+        pose, rng = np.append(seen.position[first], seen.yaw[first]), np.random.default_rng(1)
+        single = anchored(single, pose, at=at, rng=rng)
+        if draws is not None:
+            spread = track.covariance[first]
+            draws = anchored(draws, pose, at=at, covariance=spread, rng=rng)
+    path_of = Poses(walk.t, single.position[0], single.yaw[0])
+    return _Predicted(walk, robot_of_walk(read_walk_manifest(folder)), path_of, draws)
+
+
+def _write_legs(log: _Stamped, run: Path | None, predicted: _Predicted | None) -> None:
+    names = [f"leg_{leg}" for leg in range(1, N_LEGS + 1)]
+    if run is not None:
+        table, _ = read_recorded_legs(run)
+        t = table.columns["t"].to_numpy()
+        theta = np.column_stack([table.columns[name].to_numpy() for name in ANGLES])
+    elif predicted is not None:
+        t, theta = predicted.walk.t, predicted.walk.theta
+    else:
+        return
+    rows = _thinned(t, FASTEST)
+    for stamp, angles in zip(log.stamps(t[rows]), theta[rows], strict=True):
+        log.add(
+            "/legs/joint_states",
+            JOINT_STATE,
+            stamp,
+            joint_state(stamp, names, position=angles.tolist()),
+        )
+
+
+def _write_track(log: _Stamped, track: TrackFile) -> None:
+    poses = track.poses
+    positions = np.column_stack([poses.position, np.zeros(len(poses))])
+    quaternions = _level(np.nan_to_num(poses.yaw))
+    stamps = log.stamps(poses.t)
+    log.add("/track/path", PATH, stamps[0], path(stamps, FLOOR, positions, quaternions))
+    for stamp, position, quaternion, covariance in zip(
+        stamps, positions, quaternions, track.covariance, strict=True
+    ):
+        log.add(
+            "/tf",
+            TRANSFORMS,
+            stamp,
+            transforms(stamp, [Transform(FLOOR, TRACKED, position, quaternion)]),
+        )
+        message = pose_with_covariance(
+            stamp, FLOOR, position=position, quaternion=quaternion, covariance=covariance
+        )
+        log.add("/track/pose", POSE, stamp, message)
+
+
+def _write_prediction(log: _Stamped, predicted: _Predicted) -> None:
+    walk = predicted.walk
+    rows = _thinned(walk.t, FRAMES)
+    positions = np.column_stack([predicted.path.position[rows], walk.position[rows, 2]])
+    turns = np.column_stack([walk.orientation[rows, :2], predicted.path.yaw[rows]])
+    quaternions = Rotation.from_euler("ZYX", turns[:, ::-1]).as_quat()
+    stamps = log.stamps(walk.t[rows])
+    log.add("/prediction/path", PATH, stamps[0], path(stamps, FLOOR, positions, quaternions))
+    for row, stamp, position, quaternion in zip(rows, stamps, positions, quaternions, strict=True):
+        frames = [Transform(FLOOR, BODY, position, quaternion)]
+        frames += _legs(predicted.robot, walk.theta[row])
+        log.add("/tf", TRANSFORMS, stamp, transforms(stamp, frames))
+    if predicted.draws is not None:
+        _write_band(log, predicted.draws, height=float(positions[0, 2]))
+
+
+def _write_band(log: _Stamped, draws: PathEnsemble, *, height: float) -> None:
+    mean, stamps = mean_path(draws), log.stamps(draws.t)
+    states = states_at(draws, draws.t)
+    positions = np.column_stack([mean.position, np.full(len(mean), height)])
+    quaternions = _level(mean.yaw)
+    for i, stamp in enumerate(stamps):
+        message = pose_with_covariance(
+            stamp, FLOOR, position=positions[i], quaternion=quaternions[i],
+            covariance=np.cov(states[:, i].T),
+        )  # fmt: skip
+        log.add("/prediction/pose", POSE, stamp, message)
+    for i, state in enumerate(states[:SHOWN_DRAWS], 1):
+        drawn = np.column_stack([state[:, :2], np.full(len(state), height)])
+        message = path(stamps, FLOOR, drawn, _level(state[:, 2]))
+        log.add(f"/prediction/draws/{i}", PATH, stamps[0], message)
+
+
+def _legs(robot: Robot, theta: Array) -> list[Transform]:
+    """Return the hip frames: turned by the leg's angle about the body's y axis."""
+    turned = Rotation.from_euler("y", theta[:, None]).as_quat()
+    return [
+        Transform(BODY, f"leg_{leg}", hip, quaternion)
+        for leg, (hip, quaternion) in enumerate(zip(robot.hips, turned, strict=True), 1)
+    ]
+
+
+def _level(yaw: Array) -> Array:
+    return Rotation.from_euler("z", yaw[:, None]).as_quat()
+
+
+def _thinned(t: Array, rate: float) -> Sequence[int]:
+    """Return rows no closer than a rate allows, the last one included."""
+    usual = float(np.median(np.diff(t)))
+    rows = list(range(0, len(t), max(int(np.ceil(1 / (rate * usual) - 1e-6)), 1)))
+    return rows if rows[-1] == len(t) - 1 else [*rows, len(t) - 1]
+
+
+def _source(folder: Path) -> str:
+    return str(read_walk_manifest(folder).get("source", "unknown"))
+
+
+def _notes(run: Path, track: TrackFile | None, predicted: _Predicted | None) -> list[str]:
+    if track is None:
+        return [f"no track: track the run's photographs into {run / TRACK} first"]
+    if predicted is None:
+        return [f"no prediction: predict {run} --out {run / PREDICTION} first"]
+    if predicted.draws is None:
+        return ["no band: predict with --draws 500"]
+    return []

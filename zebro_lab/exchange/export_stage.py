@@ -1,0 +1,89 @@
+# SPDX-License-Identifier: MIT
+"""A recorded run in, tables that any program reads out."""
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final, Literal
+
+from rig.sample_columns import SampleColumns
+from zebro_lab.files.atomic import atomic_folder
+from zebro_lab.files.errors import AlreadyExists, DataError
+from zebro_lab.mcap.raw_log import raw_topic, read_raw_log
+from zebro_lab.runs.folder import LOG_FILE, read_manifest, read_slip_rig_run
+from zebro_lab.runs.recorded_legs import LEGS, read_recorded_legs
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+Format = Literal["csv", "parquet"]
+FORMATS: Final[tuple[Format, ...]] = ("csv", "parquet")
+Columns = Mapping[str, Any]
+
+
+def export_run(folder: Path, *, to: Format, out: Path) -> tuple[Path, ...]:
+    """Write a run as tables: raw samples of each stream, and what follows from them in SI.
+
+    `legs` holds `t` and `theta1` to `theta6`, `slip_rig` the columns of a calibration,
+    `NAME_raw` what a device sent. A Parquet table carries the source in its metadata, a CSV table
+    in its first line.
+
+    Args:
+        folder: The run folder.
+        to: "csv" or "parquet".
+        out: Folder to make.
+
+    Returns:
+        The files written.
+
+    Raises:
+        NotFound: It is no run folder, or its log is missing.
+        DataError: It cannot be read, or holds no samples.
+        AlreadyExists: `out` is there already.
+    """
+    if out.exists():
+        raise AlreadyExists(f"{out} exists already; name another --out")
+    manifest = read_manifest(folder)
+    streams = read_raw_log(folder / LOG_FILE).streams if manifest.profiles else {}
+    tables: dict[str, Columns] = {
+        topic.strip("/").replace("/", "_"): _raw_columns(stream)
+        for topic, stream in streams.items()
+    }
+    if raw_topic(LEGS) in streams:
+        legs, _ = read_recorded_legs(folder)
+        tables[LEGS] = {name: column.to_numpy() for name, column in legs.columns.items()}
+    if manifest.kind == "slip-rig":
+        tables["slip_rig"] = vars(read_slip_rig_run(folder).table) | {
+            name: radius for name, radius in manifest.constants.items()
+            if name.startswith("radius_")
+        }  # fmt: skip
+    if not tables:
+        raise DataError("holds no samples to export", file=folder)
+    with atomic_folder(out) as draft:
+        for name, columns in tables.items():
+            _write(draft / f"{name}.{to}", columns, to=to, source=manifest.source)
+    return tuple(out / f"{name}.{to}" for name in tables)
+
+
+def _raw_columns(stream: SampleColumns) -> Columns:
+    counts = {f"count{i + 1}": column for i, column in enumerate(stream.counts.T)}
+    return {name: column for name, column in vars(stream).items() if name != "counts"} | counts
+
+
+def _write(file: Path, columns: Columns, *, to: Format, source: str) -> None:
+    import pandas as pd
+
+    table = pd.DataFrame(dict(columns))
+    if to == "parquet":
+        _write_parquet(file, table, source)
+        return
+    with file.open("w", encoding="utf-8", newline="") as text:
+        text.write(f"# source: {source}\n")
+        table.to_csv(text, index=False, lineterminator="\n")
+
+
+def _write_parquet(file: Path, table: "pd.DataFrame", source: str) -> None:
+    import pyarrow as pa
+    import pyarrow.parquet as pq
+
+    arrow = pa.Table.from_pandas(table, preserve_index=False)
+    pq.write_table(arrow.replace_schema_metadata({"source": source}), file)

@@ -1,0 +1,104 @@
+# SPDX-License-Identifier: MIT
+"""Which map of names and units counts for each file that is imported."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any, Final
+
+from zebro_lab.files.errors import SettingsError
+from zebro_lab.files.known_keys import require_known
+from zebro_lab.files.toml_table import read_toml
+from zebro_lab.robot.imu_log import IMU_UNITS
+from zebro_lab.robot.leg_log import LEG_UNITS
+from zebro_lab.tables.columns import COLUMNS_FILE, Columns, parse_columns
+from zebro_lab.tables.mapped_columns import MappedColumns, canonical_columns, parse_mapped_columns
+from zebro_lab.track.foreign import TRACK_UNITS
+
+LEGS, IMU, TRACK, RIG = "legs", "imu", "track", "rig"
+SERIES: Final[Mapping[str, Mapping[str, str]]] = {
+    LEGS: LEG_UNITS, IMU: IMU_UNITS, TRACK: TRACK_UNITS,
+}  # fmt: skip
+"""Names and units of each time series."""
+_SECTIONS: Final = (*SERIES, RIG)
+_PLAIN: Final = (LEGS, RIG)
+"""Whose own columns.toml, without sections, `predict` and `calibrate-slip` read too."""
+
+
+@dataclass(frozen=True)
+class ForeignColumns:
+    """What a `columns.toml` says of one file.
+
+    Attributes:
+        entries: Its entries for this file; None where there are none.
+        file: The `columns.toml`; None without one.
+        where: Place of the entries in it, with a final dot; "" for all of it.
+    """
+
+    entries: Mapping[str, Any] | None = None
+    file: Path | None = None
+    where: str = ""
+
+    @property
+    def topic(self) -> str | None:
+        """Topic of an MCAP log; None where nobody said.
+
+        Raises:
+            SettingsError: It is no text.
+        """
+        topic = None if self.entries is None else self.entries.get("topic")
+        if topic is not None and not isinstance(topic, str):
+            raise SettingsError(f"expected a text, found {topic!r}", file=self.file,
+                                key=f"{self.where}topic")  # fmt: skip
+        return topic
+
+    def series(self, what: str) -> MappedColumns:
+        """Return the map of a time series.
+
+        Args:
+            what: One of `SERIES`.
+
+        Raises:
+            SettingsError: A key, a unit or a sign cannot be followed.
+        """
+        if self.entries is None or self.file is None:
+            return replace(canonical_columns(SERIES[what]), where=f"{what}.")
+        entries = {key: value for key, value in self.entries.items() if key != "topic"}
+        return parse_mapped_columns(entries, SERIES[what], file=self.file, where=self.where)
+
+    def rig(self) -> Columns:
+        """Return the map of a rig's table.
+
+        Raises:
+            SettingsError: A key, a unit or a value cannot be followed.
+        """
+        if self.entries is None or self.file is None:
+            return Columns()
+        return parse_columns(self.entries, file=self.file, where=self.where)
+
+
+def foreign_columns(what: str, table: Path, named: Path | None) -> ForeignColumns:
+    """Find what a `columns.toml` says of a file that is imported.
+
+    Args:
+        what: `legs`, `imu`, `track` or `rig`.
+        table: The file.
+        named: A `columns.toml` in place of that beside the file.
+
+    Raises:
+        NotFound: The one that was named is not there.
+        SettingsError: It cannot be read, or mixes sections with the form that has none.
+    """
+    beside = table.parent / COLUMNS_FILE
+    file = named or (beside if beside.is_file() else None)
+    if file is None:
+        return ForeignColumns()
+    document = read_toml(file, advice=f"expected a {COLUMNS_FILE}").values
+    source = {"source": document["source"]} if "source" in document else {}
+    if not set(document) & set(_SECTIONS):
+        return ForeignColumns(document if what in _PLAIN else source, file)
+    require_known(document, ("source", *_SECTIONS), file=file, where="")
+    entries = document.get(what, {})
+    if not isinstance(entries, dict):
+        raise SettingsError("expected a table", file=file, key=what)
+    return ForeignColumns(source | entries, file, f"{what}.")

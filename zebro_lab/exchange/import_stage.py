@@ -1,0 +1,218 @@
+# SPDX-License-Identifier: MIT
+"""Somebody else's files in, run folders out."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from datetime import UTC, datetime, timedelta
+from pathlib import Path
+from typing import Final
+
+import numpy as np
+
+from model.slip.law import Array
+from zebro_lab.exchange.import_columns import IMU, LEGS, RIG, TRACK, foreign_columns
+from zebro_lab.exchange.imported_rig import RigRun, rig_runs, write_rig_run
+from zebro_lab.exchange.imported_walk import ImportedWalk, write_imported_walk
+from zebro_lab.exchange.joint_log import read_joint_log
+from zebro_lab.files.errors import AlreadyExists, DataError, SettingsError
+from zebro_lab.files.source_names import joined_source, stated_source
+from zebro_lab.robot.imu_log import ImuLog, imu_of_table
+from zebro_lab.robot.leg_log import LegLog, legs_of_table
+from zebro_lab.robot.robot_file import RobotFile, read_robot_file
+from zebro_lab.runs.folder import run_path
+from zebro_lab.tables.mapped_columns import canonical_columns
+from zebro_lab.tables.table_files import read_table_file, table_stem
+from zebro_lab.track.foreign import (
+    TRACK_UNITS,
+    ForeignTrack,
+    is_tum,
+    read_tum,
+    track_of_foreign_table,
+)
+from zebro_lab.walk.walking import Watcher
+
+_UNIX: Final = 1e9
+"""Times from here on are seconds since 1970: no run lasts for 30 years [s]."""
+
+
+@dataclass(frozen=True)
+class ImportRequest:
+    """What is to be imported.
+
+    Attributes:
+        data: Folder of run folders.
+        legs: Leg angles: CSV, Parquet or a ROS 2 log in MCAP; None for none.
+        track: The robot's path: CSV, Parquet or TUM.
+        imu: Orientation of the body: CSV or Parquet.
+        rig: Table of a slip rig: CSV or Parquet.
+        robot: A `robot.toml`, kept with the run.
+        columns: A `columns.toml` in place of those beside the files.
+        label: Name of the run; the stem of the legs' or the rig's file when None.
+        start: When the files' time was 0, with its time zone; None where nobody says.
+        material: Leg and ground material.
+        operator: Who recorded them.
+    """
+
+    data: Path
+    legs: Path | None = None
+    track: Path | None = None
+    imu: Path | None = None
+    rig: Path | None = None
+    robot: Path | None = None
+    columns: Path | None = None
+    label: str | None = None
+    start: datetime | None = None
+    material: str = "unknown"
+    operator: str = "unknown"
+
+
+@dataclass(frozen=True)
+class Imported:
+    """What has been imported.
+
+    Attributes:
+        folders: The run folders.
+        notes: For a person, one line each.
+    """
+
+    folders: tuple[Path, ...]
+    notes: tuple[str, ...]
+
+
+def import_run(request: ImportRequest, watcher: Watcher) -> Imported:
+    """Make run folders of somebody else's files: one of a walk, one for each run of a rig.
+
+    Everything is read and checked before anything is written.
+
+    Raises:
+        SettingsError: What is asked cannot be, or a `columns.toml` cannot be followed.
+        NotFound: A file is missing.
+        DataError: A file holds what cannot be taken; names file, column and row.
+        AlreadyExists: One of the runs is there already.
+    """
+    _require_something(request)
+    watcher.step("reading", None)
+    walk, walk_notes = _walk(request) if request.legs is not None else (None, ())
+    rig, rig_notes = _rig(request) if request.rig is not None else ((), ())
+    _require_new(request.data, walk, rig)
+    folders = [] if walk is None else [write_imported_walk(request.data, walk)]
+    for i, run in enumerate(rig):
+        watcher.step("writing", i / len(rig))
+        folders.append(write_rig_run(request.data, run))
+    return Imported(tuple(folders), (*walk_notes, *rig_notes))
+
+
+def _require_something(request: ImportRequest) -> None:
+    if request.legs is None and request.rig is None:
+        raise SettingsError("nothing to import; name leg angles or a rig's table",
+                            key="--legs, --rig")  # fmt: skip
+    if request.legs is None:
+        for name in (TRACK, IMU, "robot"):
+            if getattr(request, name) is not None:
+                raise SettingsError("belongs to a walk; name its leg angles with --legs",
+                                    key=f"--{name}")  # fmt: skip
+    if request.start is not None and request.start.tzinfo is None:
+        raise SettingsError(
+            f"{request.start.isoformat()} has no time zone; write it as "
+            f"{request.start.isoformat()}+00:00",
+            key="--start",
+        )
+
+
+def _walk(request: ImportRequest) -> tuple[ImportedWalk, tuple[str, ...]]:
+    robot = RobotFile() if request.robot is None else read_robot_file(request.robot)
+    legs = _legs(request)
+    t = legs.reference.t
+    start, zero, note = _start(request.start, float(t[0]))
+    imu = None if request.imu is None else _imu(request.imu, request.columns)
+    track = None if request.track is None else _track(request.track, request.columns, zero)
+    first = legs.files[0]
+    sources = [stated_source(legs.source, first)]
+    if imu is not None:
+        sources.append(stated_source(imu.source, imu.files[0]))
+    walk = ImportedWalk(
+        label=request.label or table_stem(first) or first.stem,
+        source=joined_source(sources),
+        start=start,
+        zero=zero,
+        legs=legs,
+        imu=imu,
+        track=track,
+        robot=robot,
+        material=request.material,
+        operator=request.operator,
+    )
+    parts = [legs.notes, imu.notes if imu else (), track.track.notes if track else ()]
+    notes = [*note, *(line for part in parts for line in part)]
+    return walk, (*notes, *_apart(t - zero, imu, track, zero))
+
+
+def _legs(request: ImportRequest) -> LegLog:
+    path = request.legs or Path()
+    columns = foreign_columns(LEGS, path, request.columns)
+    is_log = path.suffix.lower() == ".mcap"
+    table = read_joint_log(path, topic=columns.topic) if is_log else read_table_file(path)
+    return legs_of_table(table, columns.series(LEGS), files=(path,))
+
+
+def _imu(path: Path, named: Path | None) -> ImuLog:
+    columns = foreign_columns(IMU, path, named).series(IMU)
+    return imu_of_table(read_table_file(path), columns)
+
+
+def _track(path: Path, named: Path | None, zero: float) -> ForeignTrack:
+    columns = foreign_columns(TRACK, path, named).series(TRACK)
+    if not is_tum(path):
+        return track_of_foreign_table(read_table_file(path), columns, zero=zero)
+    own = replace(columns, mapped=canonical_columns(TRACK_UNITS).mapped)  # TUM has no headers
+    return track_of_foreign_table(read_tum(path), own, zero=zero)
+
+
+def _rig(request: ImportRequest) -> tuple[Sequence[RigRun], tuple[str, ...]]:
+    path = request.rig or Path()
+    label = request.label or table_stem(path)
+    columns = foreign_columns(RIG, path, request.columns).rig()
+    runs, notes = rig_runs(
+        path, columns, label=label, material=request.material, operator=request.operator
+    )
+    start, zero, note = _start(request.start, float(runs[0].table.t[0]))
+    return [run.begun(start, zero) for run in runs], (*note, *notes)
+
+
+def _start(given: datetime | None, first: float) -> tuple[datetime, float, tuple[str, ...]]:
+    """Say when a run began, which time of the files that is, and what a person should know."""
+    if given is not None:
+        return given.astimezone(UTC), 0.0, ()
+    if first >= _UNIX:
+        began = datetime(1970, 1, 1, tzinfo=UTC) + timedelta(seconds=first)
+        return began, first, (f"times are taken as seconds since 1970: begun {began.isoformat()}",)
+    now = datetime.now(UTC)
+    note = f"nobody said when it was recorded: {now.isoformat()}, now, stands as its start"
+    return now, 0.0, (f"{note} (--start)",)
+
+
+def _apart(
+    t: Array, imu: ImuLog | None, track: ForeignTrack | None, zero: float
+) -> tuple[str, ...]:
+    """Say which of the files share no time with the legs."""
+    others = {
+        IMU: None if imu is None else imu.t - zero,
+        TRACK: None if track is None else track.track.poses.t,
+    }
+    return tuple(
+        f"{name}: its times, {other[0]:g} to {other[-1]:g} s, share nothing with the legs', "
+        f"{t[0]:g} to {t[-1]:g} s; do they have one clock?"
+        for name, other in others.items()
+        if other is not None and not np.any((other >= t[0]) & (other <= t[-1]))
+    )
+
+
+def _require_new(data: Path, walk: ImportedWalk | None, rig: Sequence[RigRun]) -> None:
+    paths = [] if walk is None else [run_path(data, "walk", walk.label, walk.start)]
+    paths += [run_path(data, "slip-rig", run.label, run.start) for run in rig]
+    for path in paths:
+        if path.exists():
+            raise AlreadyExists(f"{path} exists already; give the run another label")
+    if len(set(paths)) < len(paths):
+        twice = next(path for path in paths if paths.count(path) > 1)
+        raise DataError(f"two runs would both be written to {twice}; give them different names")

@@ -1,0 +1,175 @@
+# SPDX-License-Identifier: MIT
+"""A slip rig's table that somebody else wrote, as run folders: one for each run in it."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from datetime import UTC, datetime, timedelta
+from pathlib import Path
+
+import numpy as np
+
+from model.slip.law import Array
+from zebro_lab.files.atomic import atomic_write_text
+from zebro_lab.files.errors import DataError
+from zebro_lab.files.provenance import file_hashes
+from zebro_lab.files.source_names import stated_source
+from zebro_lab.files.toml_table import spelled
+from zebro_lab.mcap.slip_rig_log import SlipRigTable
+from zebro_lab.runs.folder import IMPORTED, write_slip_rig_run
+from zebro_lab.tables.columns import COLUMNS_FILE, Columns
+from zebro_lab.tables.rig_table import RigTable, kept_rows
+from zebro_lab.tables.run_separation import run_times, separate_runs
+from zebro_lab.tables.table_files import read_table_file
+
+_NEEDED = ("t", "omega_leg", "omega_ground", "normal_force", "traction_force")
+_ELSE = "calibrate-slip reads this table as it is"
+
+
+@dataclass(frozen=True)
+class RigRun:
+    """One run of a table.
+
+    Attributes:
+        label: Its name.
+        table: Its samples, by the table's time until `begun`.
+        radius_leg: Radius of the leg disc [m].
+        radius_ground: Radius of the ground disc [m].
+        source: Where it comes from.
+        material: Leg and ground material.
+        operator: Who recorded it.
+        files: Every file read.
+        load_cell: Standard deviations from the load cell's certificate, SI.
+        start: When its time was 0.
+    """
+
+    label: str
+    table: SlipRigTable
+    radius_leg: float
+    radius_ground: float
+    source: str
+    material: str
+    operator: str
+    files: tuple[Path, ...]
+    load_cell: Mapping[str, float] = field(default_factory=dict)
+    start: datetime = datetime(1970, 1, 1, tzinfo=UTC)
+
+    def begun(self, start: datetime, zero: float) -> "RigRun":
+        """Return the run with its own time, which begins at 0.
+
+        Args:
+            start: When the table's time was `zero`.
+            zero: Time of the table then [s].
+        """
+        first = float(self.table.t[0])
+        table = replace(self.table, t=self.table.t - first)
+        return replace(self, table=table, start=start + timedelta(seconds=first - zero))
+
+
+def rig_runs(
+    path: Path, columns: Columns, *, label: str, material: str, operator: str
+) -> tuple[list[RigRun], tuple[str, ...]]:
+    """Read a table and cut it into runs.
+
+    Args:
+        path: CSV or Parquet.
+        columns: Names, units, signs, radii, and what separates runs.
+        label: Name with which every run's begins.
+        material: Leg and ground material.
+        operator: Who recorded it.
+
+    Returns:
+        The runs, and notes for a person.
+
+    Raises:
+        DataError: A column is missing, a radius changes, rows are averages of trials, or time does
+            not increase in a run.
+    """
+    raw = read_table_file(path)
+    table = RigTable(raw, columns, kept_rows(raw, columns))
+    if columns.runs.each_row:
+        raise DataError(f"has averages of trials for rows, which are no recording; {_ELSE}",
+                        file=path)  # fmt: skip
+    _require_columns(table)
+    runs = separate_runs(table, label)
+    run_times(table, runs)
+    samples = {name: table.si(name) for name in _NEEDED}
+    made = [
+        RigRun(
+            label=name,
+            table=SlipRigTable(**{key: part[runs.index == i] for key, part in samples.items()}),
+            radius_leg=_radius(table, "radius_leg"),
+            radius_ground=_radius(table, "radius_ground"),
+            source=stated_source(columns.source or raw.source, path),
+            material=material,
+            operator=operator,
+            files=(path, *([columns.file] if columns.file else [])),
+            load_cell=columns.load_cell,
+        )
+        for i, name in enumerate(runs.names)
+    ]
+    return made, (
+        *raw.notes,
+        *_left_out(table),
+        f"{len(made)} run{'s' * (len(made) != 1)}, {runs.rule}",
+    )
+
+
+def write_rig_run(data_dir: Path, run: RigRun) -> Path:
+    """Write a run folder; what the certificate says of the load cell goes into its columns.toml.
+
+    Raises:
+        AlreadyExists: A run of this start and label is there already.
+    """
+    return write_slip_rig_run(
+        data_dir,
+        run.table,
+        label=run.label,
+        material=run.material,
+        operator=run.operator,
+        source=run.source,
+        start=run.start,
+        radius_leg=run.radius_leg,
+        radius_ground=run.radius_ground,
+        exit_status=IMPORTED,
+        inputs=file_hashes(run.files),
+        extra=lambda draft: _write_load_cell(draft, run.load_cell),
+    )
+
+
+def _require_columns(table: RigTable) -> None:
+    for name in _NEEDED:
+        if table.source_of(name) is None:
+            if table.source_of("slip_ratio") is not None and name.startswith("omega_"):
+                raise DataError(
+                    f"gives slip and no {name}; a run folder holds the speeds of both discs: "
+                    f"{_ELSE}",
+                    file=table.raw.path,
+                )
+            raise table.missing(name)
+
+
+def _radius(table: RigTable, name: str) -> float:
+    radius = table.constant_or_column(name)
+    values: Array = np.atleast_1d(radius)
+    if np.ptp(values) > 0:
+        raise DataError(
+            f"{name} goes from {values.min():g} to {values.max():g} m; a run folder has one: "
+            f"{_ELSE}",
+            file=table.raw.path, column=name,
+        )  # fmt: skip
+    return float(values[0])
+
+
+def _left_out(table: RigTable) -> tuple[str, ...]:
+    left_out = len(table.raw) - len(table.rows)
+    conditions = " and ".join(map(str, table.columns.keep))
+    return (f"{left_out} of {len(table.raw)} rows left out; kept where {conditions}",) * bool(
+        table.columns.keep
+    )
+
+
+def _write_load_cell(draft: Path, load_cell: Mapping[str, float]) -> None:
+    if load_cell:
+        lines = [f"{name} = {spelled(value)}" for name, value in load_cell.items()]
+        text = "\n".join(["[load_cell]  # standard deviations, SI", *lines])
+        atomic_write_text(draft / COLUMNS_FILE, text + "\n")

@@ -1,0 +1,47 @@
+# SPDX-License-Identifier: MIT
+"""`zebro-lab init FILE`: start a `columns.toml` from a table's own header."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from zebro_lab.terminal.messages import say
+
+
+def init(
+    file: Annotated[Path, typer.Argument(help="CSV or Parquet file to read the header of.")],
+    force: Annotated[
+        bool, typer.Option("--force", help="Replace a columns.toml that is there already.")
+    ] = False,
+) -> None:
+    """Write a commented columns.toml beside FILE, guessed from its header."""
+    from zebro_lab.exchange.init_stage import write_columns_template
+    from zebro_lab.tables.columns import CANONICAL, read_columns
+
+    target = write_columns_template(file, force=force)
+    columns = read_columns(target)
+    say(f"wrote {target}")
+    for name, mapped in columns.columns.items():
+        sign = " times -1" if mapped.factor < 0 else ""
+        unit = f" in {mapped.unit}" if CANONICAL[name].unit not in (None, "dimensionless") else ""
+        say(f"  {name:<15} from '{mapped.name}'{unit}{sign}")
+    for advice in _to_check(set(columns.columns)):
+        say(f"check: {advice}")
+
+
+def _to_check(found: set[str]) -> list[str]:
+    """Say what no header can tell."""
+    advice = ["names, units and signs above; each is commented in the file"]
+    missing = [name for name in ("normal_force", "traction_force") if name not in found]
+    speeds = {"omega_leg", "omega_ground"} <= found
+    if not speeds and "slip_ratio" not in found:
+        missing.append("slip_ratio (or omega_leg and omega_ground)")
+    if missing:
+        advice.append(f"no column found for {', '.join(missing)}: name it in the file")
+    if "slip_ratio" in found:
+        advice.append("[columns.slip_ratio] definition: material, travel or larger")
+    if speeds and not {"radius_leg", "radius_ground"} <= found:
+        advice.append("[constants] radius_leg and radius_ground")
+    advice.append("[runs]: what separates runs, if not each file is one")
+    return advice

@@ -1,0 +1,78 @@
+# SPDX-License-Identifier: MIT
+"""Joint angles of a ROS 2 log in MCAP, as a table like any other."""
+
+from pathlib import Path
+from typing import Any, Final
+
+import numpy as np
+
+from zebro_lab.files.errors import DataError
+from zebro_lab.files.known_keys import nearest
+from zebro_lab.mcap.ros_log import read_messages
+from zebro_lab.mcap.ros_messages import JOINT_STATE
+from zebro_lab.tables.raw_table import RawTable
+
+NANOSECOND: Final = 1e-9
+
+
+def read_joint_log(path: Path, *, topic: str | None = None) -> RawTable:
+    """Read the joint states of an MCAP log, up to where it is damaged.
+
+    Args:
+        path: The log.
+        topic: Topic to read; None where the log has joint states on one topic alone.
+
+    Returns:
+        A table with `t`, the stamps (of the log, where the messages have none) [s], and a column
+        of positions for each joint [rad]. A joint `leg_N` is called `thetaN`.
+
+    Raises:
+        NotFound: There is no such file.
+        DataError: It is no MCAP, or holds no joint states on one topic.
+    """
+    messages, damage = read_messages(path, schema=JOINT_STATE.name)
+    rows: dict[str, list[tuple[float, dict[str, float]]]] = {}
+    for topic_found, log_time, state in messages:
+        stamp = state.header.stamp.sec + NANOSECOND * state.header.stamp.nanosec
+        joints = dict(zip(state.name, state.position, strict=False))  # it may tell speeds only
+        if joints:
+            rows.setdefault(topic_found, []).append((stamp or NANOSECOND * log_time, joints))
+    chosen = _chosen(rows, topic, path)
+    notes = () if damage is None else (f"{path.name}: is cut short ({damage})",)
+    return _table(path, rows[chosen], notes)
+
+
+def _chosen(rows: dict[str, Any], topic: str | None, path: Path) -> str:
+    if topic is not None and topic not in rows:
+        raise DataError(f"has no joint states on {topic}; {nearest(topic, rows)}", file=path)
+    if not rows:
+        raise DataError(
+            f"holds no positions in messages of type {JOINT_STATE.name}; expected leg angles in "
+            "such, as ROS 2 logs them",
+            file=path,
+        )
+    if topic is None and len(rows) > 1:
+        raise DataError(
+            f'has joint states on {", ".join(sorted(rows))}; name one as topic = "..." in [legs] '
+            "of a columns.toml",
+            file=path,
+        )
+    return topic or next(iter(rows))
+
+
+def _table(
+    path: Path, rows: list[tuple[float, dict[str, float]]], notes: tuple[str, ...]
+) -> RawTable:
+    import pandas as pd
+
+    names = dict.fromkeys(name for _, joints in rows for name in joints)
+    columns = {"t": pd.Series([stamp for stamp, _ in rows], dtype=float)}
+    for name in names:
+        positions = [joints.get(name, np.nan) for _, joints in rows]
+        columns[_called(name)] = pd.Series(positions, dtype=float)
+    return RawTable(path, columns, notes=notes)
+
+
+def _called(joint: str) -> str:
+    leg = joint.removeprefix("leg_")
+    return f"theta{leg}" if joint.startswith("leg_") and leg.isdigit() else joint

@@ -1,0 +1,112 @@
+# SPDX-License-Identifier: MIT
+"""Fresh check points and a calibration in, the drift of the rig out."""
+
+import logging
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Final
+
+import numpy as np
+
+from model.bayes.samples import SlipSamples
+from model.slip.curve import SlipCurve
+from model.slip.law import Array
+from zebro_lab.calibration.folder import read_slip
+from zebro_lab.calibration.rig_data import read_rig_data
+
+_LOG = logging.getLogger(__name__)
+STEP: Final = 1e-4
+BATCHES: Final = 8
+SUSPICIOUS: Final = 3.0
+"""So many standard deviations are a drift."""
+
+
+@dataclass(frozen=True)
+class CheckedRun:
+    """A run beside the calibration.
+
+    Attributes:
+        name: Name of the run.
+        slip: Mean slip ratio [-].
+        load: Mean normal force [N].
+        traction: Mean measured traction [N].
+        expected: Mean traction of the calibrated curve at the same slips and loads [N].
+        sd: Standard deviation of the difference, as far as it is known [N].
+    """
+
+    name: str
+    slip: float
+    load: float
+    traction: float
+    expected: float
+    sd: float
+
+    @property
+    def deviation(self) -> float:
+        """Difference over its standard deviation [-]."""
+        return (self.traction - self.expected) / self.sd
+
+    @property
+    def drifted(self) -> bool:
+        """Tell whether the rig is no longer the one that was calibrated."""
+        return abs(self.deviation) > SUSPICIOUS
+
+
+def check_runs(
+    data: Sequence[Path], calibration: Path, *, zero_sd: float = 0.1
+) -> tuple[CheckedRun, ...]:
+    """Compare runs with a calibration.
+
+    Args:
+        data: Run folders, or folders of them.
+        calibration: `slip.toml` or its folder.
+        zero_sd: Spread of the load cell's zero from run to run [N].
+
+    Returns:
+        Each run beside the curve.
+
+    Raises:
+        ZebroLabError: Data or calibration cannot be read.
+    """
+    curve = read_slip(calibration)
+    read = read_rig_data(data, slip_definition=str(curve.definition))
+    for note in read.repeated:
+        _LOG.warning("%s", note)
+    samples = read.samples
+    return tuple(
+        _checked(samples, curve, index, zero_sd) for index in range(len(samples.run_names))
+    )
+
+
+def _checked(samples: SlipSamples, curve: SlipCurve, index: int, zero_sd: float) -> CheckedRun:
+    chosen = samples.run == index
+    slip, load = samples.slip[chosen], samples.normal_force[chosen]
+    traction = samples.traction_force[chosen]
+    expected = curve.force(slip, load, definition=curve.definition)
+    gradient = _gradient(curve, slip, load)
+    batches = [part.mean() for part in np.array_split(traction - expected, BATCHES)]
+    noise = float(np.std(batches, ddof=1)) / np.sqrt(BATCHES)
+    fitted = float(gradient @ curve.covariance @ gradient)
+    return CheckedRun(
+        name=samples.run_names[index],
+        slip=float(slip.mean()),
+        load=float(load.mean()),
+        traction=float(traction.mean()),
+        expected=float(expected.mean()),
+        sd=float(np.sqrt(fitted + noise**2 + zero_sd**2)),
+    )
+
+
+def _gradient(curve: SlipCurve, slip: Array, load: Array) -> Array:
+    """Differentiate the mean force by each parameter, shape (k,)."""
+    gradient = np.empty(len(curve.values))
+    for k, value in enumerate(curve.values):
+        step = STEP * max(abs(float(value)), STEP)
+        ends = []
+        for sign in (1, -1):
+            values = curve.values.copy()
+            values[k] += sign * step
+            ends.append(float(np.mean(curve.law.force(slip, load, values))))
+        gradient[k] = (ends[0] - ends[1]) / (2 * step)
+    return gradient

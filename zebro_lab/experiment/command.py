@@ -1,0 +1,220 @@
+# SPDX-License-Identifier: MIT
+"""`zebro-lab rig plan|run|say|weigh|check`: experiments of the slip rig."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from zebro_lab.terminal.messages import say
+
+if TYPE_CHECKING:
+    from rig.experiment.control import Control
+    from zebro_lab.experiment.plan_stage import Foreseen
+
+STOPPED = 130
+REFUSED = 3
+
+app = typer.Typer(
+    help="Run experiments of the slip rig. Not a safety device: have an emergency stop at hand.",
+    no_args_is_help=True,
+    rich_markup_mode=None,
+)
+
+PlanFile = Annotated[Path, typer.Argument(metavar="PLAN", help="A plan.toml.")]
+Rig = Annotated[str, typer.Option(help="PROFILE@PORT, PROFILE@sim, or sim.")]
+Data = Annotated[Path, typer.Option(metavar="DIR", help="Folder of the experiment.")]
+Fast = Annotated[bool, typer.Option("--fast", help="Let a simulated rig's time pass at once.")]
+Seed = Annotated[int, typer.Option(help="Of a simulated rig: its load cell, noise and wander.")]
+
+EPILOG = """
+Ctrl-C: once a soft stop (holds, energised; resume goes on), twice a safe stop (ends at rest),
+three times an emergency stop (de-energised at once, latched). SIGTERM, a lost connection or closed
+terminal (SIGHUP, unless started with nohup), Ctrl-\\ and Ctrl-Z: a safe stop.
+
+Exit codes: 0 completed, 1 error, 2 usage, 3 completed but points were refused, 130 stopped.
+"""
+
+
+@app.command()
+def plan(
+    file: PlanFile,
+    rig: Annotated[str, typer.Option(help="Profile of the rig, or sim.")] = "sim",
+    steps: Annotated[bool, typer.Option("--steps", help="List every step.")] = False,
+) -> None:
+    """Say what a plan will do and how long it takes, and check it against the limits."""
+    from zebro_lab.experiment.plan_stage import foresee
+
+    _print_plan(foresee(file, rig), steps=steps)
+
+
+@app.command(epilog=EPILOG)
+def run(
+    file: PlanFile,
+    rig: Rig,
+    data: Data = Path("experiment"),
+    resume: Annotated[
+        bool, typer.Option("--resume", help="Go on from the last finished point.")
+    ] = False,
+    reset_emergency: Annotated[
+        bool, typer.Option("--reset-emergency", help="Reset a latched emergency stop.")
+    ] = False,
+    fast: Fast = False,
+    seed: Seed = 0,
+) -> None:
+    """Run a plan: a run folder for each point, ready for calibrate-slip."""
+    from rich.console import Console
+
+    from rig.experiment.control import Control
+    from zebro_lab.experiment.screen import experiment_screen
+    from zebro_lab.experiment.stage import RigRunRequest, run_experiment
+    from zebro_lab.terminal.last_words import leave_at_once, say_in_time
+
+    request = RigRunRequest(
+        plan=file, rig=rig, data=data, resume=resume, reset_emergency=reset_emergency,
+        fast=fast, seed=seed,
+    )  # fmt: skip
+    control = Control()
+    try:
+        with experiment_screen(Console(highlight=False, soft_wrap=True), control) as screen:
+            outcome = run_experiment(request, screen, control)
+    finally:
+        if control.stop.latched:
+            say_in_time(
+                f"an emergency stop is latched in {data}; look after the rig, then go on with "
+                "--resume --reset-emergency",
+                err=True,
+            )
+    words = (
+        f"{outcome.reason}: {outcome.finished} points finished, {len(outcome.refused)} refused, "
+        f"{outcome.attempts} attempts; {data}"
+    )
+    if not outcome.completed and not control.stop.latched:
+        words += "\ngo on with --resume"
+    refused = REFUSED if outcome.refused else 0
+    code = refused if outcome.completed else STOPPED
+    if not say_in_time(words):
+        leave_at_once(code)
+    raise typer.Exit(code)
+
+
+@app.command("say")
+def command(
+    words: Annotated[list[str], typer.Argument(help="pause, resume, confirm, note TEXT, "
+                                               "soft, safe, emergency or status.")],
+    data: Data = Path("experiment"),
+) -> None:  # fmt: skip
+    """Give the experiment that runs into DIR a command."""
+    from zebro_lab.experiment.stage import command_run
+
+    say(command_run(data, " ".join(words)))
+
+
+@app.command()
+def weigh(
+    rig: Rig,
+    masses: Annotated[str, typer.Option(metavar="KG,KG…", help="Known masses [kg].")],
+    data: Annotated[
+        Path | None, typer.Option(metavar="DIR", help="Write DIR/columns.toml for the fit.")
+    ] = None,
+    weight_sd: Annotated[
+        float, typer.Option(min=0.0, help="Relative error that the masses share.")
+    ] = 1e-3,
+    gravity: Annotated[float, typer.Option(help="Where the rig stands [m/s2].")] = 9.80665,
+    fast: Fast = False,
+    seed: Seed = 0,
+) -> None:
+    """Check the load cell with known weights: the gain's prior for the fit."""
+    from rig.experiment.control import Control
+    from zebro_lab.experiment.weigh_stage import WeighRequest, render_load_cell, weigh_masses
+
+    try:
+        known = [float(mass) for mass in masses.split(",")]
+    except ValueError as error:
+        raise typer.BadParameter(f"found '{masses}'; expected 0.2,0.5,1") from error
+    request = WeighRequest(
+        masses=known, rig=rig, data=data, weight_sd=weight_sd, gravity=gravity, fast=fast, seed=seed
+    )
+    control = Control()
+    weighing, check, written = weigh_masses(request, _Asker(control), control)
+    for force, reading, error in zip(
+        weighing.forces, weighing.readings, weighing.errors, strict=True
+    ):
+        say(f"{force:8.3f} N reads {reading:8.4f} +/- {error:.4f} N")
+    say(
+        f"slope {check.slope:.5f} +/- {check.slope_sd:.5f}, zero {check.zero:.4f} +/- "
+        f"{check.zero_sd:.4f} N, largest misfit {check.misfit:.4f} N"
+    )
+    if abs(check.slope - 1) > 2 * check.slope_sd:
+        say(
+            f"the gain is off: multiply counts_per_force in the profile by {check.slope:.5f} and "
+            "weigh again"
+        )
+    if written is None:
+        typer.echo(render_load_cell(check).rstrip())
+    else:
+        say(f"wrote {written}")
+
+
+@app.command()
+def check(
+    data: Annotated[list[Path], typer.Argument(help="Fresh runs, or folders of them.")],
+    slip: Annotated[
+        Path, typer.Option(help="The calibration: slip.toml or its folder.")
+    ] = Path("calibration"),
+    zero_sd: Annotated[float, typer.Option(min=0.0, help="Spread of the zero [N].")] = 0.1,
+) -> None:  # fmt: skip
+    """Compare fresh check points with a calibration: has the rig drifted?"""
+    from zebro_lab.experiment.check_stage import check_runs
+
+    runs = check_runs(data, slip, zero_sd=zero_sd)
+    for found in runs:
+        say(
+            f"{found.name}: slip {found.slip:.4f}, normal {found.load:.2f} N, traction "
+            f"{found.traction:.3f} N, expected {found.expected:.3f} +/- {found.sd:.3f} N "
+            f"({found.deviation:+.1f} sd){' DRIFTED' if found.drifted else ''}"
+        )
+    drifted = sum(found.drifted for found in runs)
+    say(f"{drifted} of {len(runs)} runs have drifted from the calibration")
+    if drifted:
+        raise typer.Exit(REFUSED)
+
+
+class _Asker:
+    """Asks on the terminal, once a prompt, and takes Enter for done."""
+
+    def __init__(self, control: "Control") -> None:
+        self._control = control
+        self._asked = ""
+
+    def __call__(self, text: str, normal: float) -> None:
+        if text and text != self._asked:
+            self._asked = text
+            typer.prompt(f"{text} (reads {normal:.3f} N) Enter", default="", show_default=False)
+            self._control.confirm()
+
+
+def _print_plan(foreseen: "Foreseen", *, steps: bool) -> None:
+    from rig.experiment.plan import LIMIT_UNITS
+    from rig.experiment.steps import Point
+
+    plan, points = foreseen.plan, foreseen.plan.points
+    minutes, seconds = divmod(round(foreseen.estimate.seconds), 60)
+    say(f"{plan.name}, {plan.material}, on {foreseen.profile.name}")
+    say(
+        f"{foreseen.estimate.points} points: {len(points.loads)} loads x {len(points.slips)} slip "
+        f"ratios, {points.repeats} time(s), {points.order}{', sweeping' if points.sweep else ''}, "
+        "and check points"
+    )
+    say(f"the normal force is set {foreseen.estimate.loads} times, by {plan.load.set_by}")
+    say(f"takes about {minutes} min {seconds} s where no point is repeated")
+    say("every set-point lies within the limits:")
+    for name, unit in LIMIT_UNITS.items():
+        value = getattr(plan.limits, name)
+        said = "not limited" if value is None else f"{value:g}"
+        say(f"  {name:<20}{said:>12} {unit}")
+    if plan.limits.guards_off:
+        say(f"guards that are off, as the plan wants: {plan.limits.off_said}")
+    if steps:
+        for step in foreseen.steps:
+            say(step.label if isinstance(step, Point) else f"zero-{step.number:04d}")

@@ -1,0 +1,299 @@
+# SPDX-License-Identifier: MIT
+"""Keeps an experiment: a run folder a point, and the journal.
+
+A thread of its own writes, so that no disk ever holds up the thread that feeds the watchdogs. It
+also looks after the disk: room, and that the folder is still there.
+"""
+
+import queue
+import shutil
+import threading
+import time
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from types import TracebackType
+from typing import Any, Final, Self
+
+from rig.clock import SYSTEM_CLOCK, Clock
+from rig.experiment.bench import Batch, Readings
+from rig.experiment.sink import RunStart, SinkFailed
+from rig.experiment.verdict import Verdict
+from zebro_lab.experiment.journal import EMERGENCY, JournalWriter
+from zebro_lab.experiment.latch import EmergencyLatch
+from zebro_lab.experiment.points import UNJUDGED, point_record
+from zebro_lab.files.errors import AlreadyExists
+from zebro_lab.mcap.stream_views import View
+from zebro_lab.recording.recorder import RunDescription, RunRecorder
+
+MOST_WAITING: Final = 20_000
+"""Jobs that may wait for the disk: more than a minute of an experiment."""
+JOIN_LIMIT: Final = 30.0
+DISK_PERIOD: Final = 0.1
+"""Between two looks at the disk, its room and the folder [s]."""
+LONGEST_JOB: Final = 10.0
+"""A disk that takes so long for one write has failed [s]."""
+
+
+@dataclass(frozen=True)
+class _Job:
+    """Something to be written."""
+
+    write: Callable[[], None]
+    done: threading.Event = field(default_factory=threading.Event)
+
+
+class ExperimentFolder:
+    """Satisfies `rig.experiment.sink.Sink`; a context manager.
+
+    Args:
+        data: Folder of the experiment.
+        plan: Fingerprint of the plan.
+        description: What all its runs have in common.
+        views: Makes new views of the streams for a run's log.
+        clock: Host time.
+        in_step: Wait for the disk at both ends of every run: for a twin whose time passes at once.
+    """
+
+    def __init__(
+        self,
+        data: Path,
+        *,
+        description: RunDescription,
+        views: Callable[[], Mapping[str, View]],
+        plan: str = "",
+        clock: Clock = SYSTEM_CLOCK,
+        in_step: bool = False,
+    ) -> None:
+        self._data = data
+        self._plan = plan
+        self._description = description
+        self._views = views
+        self._clock = clock
+        self._in_step = in_step
+        self._journal = JournalWriter(data)
+        self._latch = EmergencyLatch(data)
+        self._jobs: queue.Queue[_Job] = queue.Queue(MOST_WAITING)
+        self._ending = threading.Event()
+        self._failure: str | None = None
+        self._least_room = 0.0
+        self._looked = 0.0
+        self._busy_since: float | None = None
+        self._identity: tuple[int, int] | None = None
+        self._recorder: RunRecorder | None = None
+        self._start: RunStart | None = None
+        self._thread = threading.Thread(target=self._work, daemon=True, name="writer")
+
+    def open_run(self, start: RunStart) -> None:
+        """Begin a run folder; see `Sink.open_run`."""
+        label = start.point.label + (f" attempt {start.attempt}" if start.attempt > 1 else "")
+        zero = {"zero_normal": start.zero.normal, "zero_traction": start.zero.traction}
+        common = self._description
+        description = replace(
+            common, label=label, constants={**common.constants, **zero}, excluded=UNJUDGED,
+            point=self._point(start, accepted=False),
+        )  # fmt: skip
+
+        def open_now() -> None:
+            self._recorder = self._enter(description)
+            self._start = start
+
+        self._require_well()
+        self._put(open_now, wait=True)
+
+    def write(self, readings: Readings, batch: Batch) -> None:
+        """Keep the raw samples, out of which readings come again; see `Sink.write`."""
+        del readings
+        raw = batch.raw
+
+        def write_now() -> None:
+            if self._recorder is not None:
+                for stream, samples in raw.items():
+                    if samples:
+                        self._recorder.write(stream, samples)
+
+        self._require_well()
+        self._put(write_now)
+
+    def close_run(self, verdict: Verdict | None, *, reason: str) -> None:
+        """End the run folder; what is not good is excluded, and kept; see `Sink.close_run`.
+
+        This is tried after a failure as well: what can still be written is.
+        """
+        self._put(lambda: self._close_now(verdict, reason), wait=True)
+
+    def event(self, kind: str, text: str) -> None:
+        """Append to the journal, and to the run's log, after a failure too; see `Sink.event`."""
+
+        def note() -> None:
+            if self._recorder is not None:
+                self._recorder.event(f"{kind}: {text}")
+            self._journal.append(kind, text)
+
+        self._put(note)
+        if kind != "end":
+            self._require_well()
+
+    def require_room(self, least: float) -> None:
+        """Raise SinkFailed where the writer has failed; it looks at the disk itself.
+
+        Args:
+            least: Room that must be left [bytes].
+        """
+        self._least_room = least
+        self._require_well()
+
+    def latch(self, reason: str) -> None:
+        """Latch an emergency stop on disk, from this thread; see `Sink.latch`."""
+        try:
+            self._latch.latch(f"{EMERGENCY}: {reason}")
+        except OSError as error:
+            self._fail(error)
+
+    def __enter__(self) -> Self:
+        self._identity = _identity(self._data)
+        self._journal.__enter__()
+        try:
+            self._thread.start()
+        except RuntimeError as error:
+            raise SinkFailed(f"the writer cannot be started: {error}") from error
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self._ending.set()
+        self._thread.join(JOIN_LIMIT)
+        if self._thread.is_alive():
+            self._failure = f"the disk of {self._data} did not answer for {JOIN_LIMIT:g} s"
+        else:  # it may have ended by itself: what it left, the end above all, is written here
+            while not self._jobs.empty():
+                self._do(self._jobs.get_nowait())
+        self._journal.__exit__(kind, error, trace)
+        if error is None:
+            self._require_well()
+
+    def _point(self, start: RunStart, *, accepted: bool) -> dict[str, Any]:
+        return point_record(
+            self._plan, number=start.point.number, attempt=start.attempt, accepted=accepted
+        )
+
+    def _enter(self, description: RunDescription) -> RunRecorder:
+        """Begin a run folder under a name that is free: a point may come again within a second."""
+        again = 1
+        while True:
+            recorder = RunRecorder(
+                self._data, description=description, views=self._views(), clock=self._clock
+            )
+            try:
+                return recorder.__enter__()
+            except AlreadyExists:
+                again += 1
+                label = f"{description.label.partition(' again')[0]} again {again}"
+                description = replace(description, label=label)
+
+    def _close_now(self, verdict: Verdict | None, reason: str) -> None:
+        recorder, self._recorder = self._recorder, None
+        if recorder is None or self._start is None:
+            return
+        start, point = self._start, self._start.point
+        kept = recorder.failure is None
+        accepted = verdict is not None and verdict.accepted and kept
+        why = "" if accepted else _why_not(verdict, reason, recorder.failure)
+        # One step decides: the end record says both what the run is worth and that it counts.
+        recorder.judge(excluded=why, point=self._point(start, accepted=accepted))
+        recorder.end(reason)
+        recorder.__exit__(None, None, None)
+        if recorder.failure is not None:  # the end record says so, too, and leaves the run out
+            accepted, why = False, recorder.failure
+        judged: dict[str, Any] = {} if verdict is None else {
+            "slip": verdict.slip, "friction": verdict.friction, "normal": verdict.normal_force
+        }  # fmt: skip
+        self._journal.append(
+            "point", why or "accepted", number=point.number, accepted=accepted,
+            attempt=start.attempt, folder=recorder.folder.name, label=point.label, **judged,
+        )  # fmt: skip
+
+    def _put(self, write: Callable[[], None], *, wait: bool = False) -> None:
+        job = _Job(write)
+        try:
+            self._jobs.put_nowait(job)
+        except queue.Full:
+            raise SinkFailed(
+                f"the disk of {self._data} is too slow: {MOST_WAITING} writes wait"
+            ) from None
+        if wait and self._in_step:
+            while not job.done.wait(DISK_PERIOD):
+                self._require_well()
+            self._require_well()
+
+    def _require_well(self) -> None:
+        started = self._thread.ident is not None
+        if started and not (self._ending.is_set() or self._thread.is_alive()):
+            self._failure = self._failure or "the writer has ended by itself"
+        busy = self._busy_since
+        if busy is not None and time.monotonic() - busy > LONGEST_JOB:
+            self._failure = f"the disk of {self._data} has not answered for {LONGEST_JOB:g} s"
+        if self._failure is not None:
+            raise SinkFailed(f"data cannot be kept: {self._failure}")
+
+    def _fail(self, error: BaseException) -> None:
+        """Keep the first failure, for the acquiring thread, which then stops the rig."""
+        if self._failure is None:
+            self._failure = " ".join(f"{type(error).__name__}: {error}".split())
+
+    def _work(self) -> None:
+        """Write what comes. A job that fails ends no other: the end of a run is tried as well."""
+        while not (self._ending.is_set() and self._jobs.empty()):
+            try:
+                job = self._jobs.get(timeout=DISK_PERIOD)
+            except queue.Empty:
+                job = _Job(lambda: None)
+            self._do(job)
+
+    def _do(self, job: _Job) -> None:
+        self._busy_since = time.monotonic()
+        try:
+            job.write()
+            self._look_after_disk()
+        except BaseException as error:  # noqa: BLE001, RUF100 - whatever it is, the rig stops
+            self._fail(error)
+        finally:
+            self._busy_since = None
+            job.done.set()
+
+    def _look_after_disk(self) -> None:
+        """Raise SinkFailed where the folder is gone, or too little room is left."""
+        now = time.monotonic()
+        if now - self._looked < DISK_PERIOD:
+            return
+        self._looked = now
+        if _identity(self._data) != self._identity:
+            raise SinkFailed(f"the folder {self._data} was removed or replaced")
+        if self._recorder is not None and self._recorder.failure is not None:
+            raise SinkFailed(self._recorder.failure)
+        free = shutil.disk_usage(self._data).free
+        if free < self._least_room:
+            raise SinkFailed(
+                f"room for data in {self._data} is {free / 1e6:.0f} MB; its limit is "
+                f"{self._least_room / 1e6:.0f} MB"
+            )
+
+
+def _identity(folder: Path) -> tuple[int, int] | None:
+    """Return what tells a folder from another of the same name; None where there is none."""
+    try:
+        found = folder.stat()
+    except FileNotFoundError:
+        return None
+    return found.st_dev, found.st_ino
+
+
+def _why_not(verdict: Verdict | None, reason: str, failure: str | None) -> str:
+    """Say why a run does not count."""
+    if failure is not None:
+        return failure
+    return reason if verdict is None else "; ".join(verdict.problems)

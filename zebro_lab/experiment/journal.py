@@ -1,0 +1,237 @@
+# SPDX-License-Identifier: MIT
+"""`experiment.jsonl`: what an experiment did, a line an event.
+
+The journal is a record for people. Which points are finished is decided by the end records of the
+run folders (`zebro_lab.experiment.points`); an emergency stop is latched by a file of its own as
+well (`zebro_lab.experiment.latch`).
+"""
+
+import contextlib
+import errno
+import json
+import os
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import Any, Final
+
+from zebro_lab.experiment.latch import EmergencyLatch
+from zebro_lab.files.errors import AlreadyExists, DataError, NotFound, SettingsError
+from zebro_lab.files.provenance import fingerprint
+
+JOURNAL_FILE: Final = "experiment.jsonl"
+RESERVE_FILE: Final = ".experiment.reserve"
+RESERVE: Final = 1 << 16
+"""Space that is given back when the disk is full, for the end of a run [bytes]."""
+LARGEST: Final = 256 << 20
+"""A longer file is no journal [bytes]."""
+EMERGENCY: Final = "emergency stop"
+"""How the reason of an emergency stop begins."""
+
+
+@dataclass(frozen=True)
+class Journal:
+    """What a journal says.
+
+    Attributes:
+        plan: Fingerprint of the plan.
+        accepted: Names of the run folders whose point was accepted, each with the point's number.
+        folders: Names of the run folders that were closed.
+        latched: Reason of an emergency stop that nobody has reset; None where there is none.
+    """
+
+    plan: str
+    accepted: Mapping[str, int]
+    folders: frozenset[str]
+    latched: str | None
+
+
+def plan_fingerprint(text: str) -> str:
+    """Compute a fingerprint of a plan's text."""
+    return fingerprint({}, {"plan": text})
+
+
+class JournalWriter:
+    """Appends events; each is on the disk, whole, before the next is taken.
+
+    Args:
+        data: Folder of the experiment; made when missing.
+    """
+
+    def __init__(self, data: Path) -> None:
+        data.mkdir(parents=True, exist_ok=True)
+        self._file = data / JOURNAL_FILE
+        self._reserve = data / RESERVE_FILE
+
+    def __enter__(self) -> "JournalWriter":
+        with contextlib.suppress(OSError):  # who begins on a full disk is told by the guard of room
+            self._reserve.write_bytes(os.urandom(RESERVE))
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        with contextlib.suppress(OSError):
+            self._reserve.unlink(missing_ok=True)
+
+    def append(self, kind: str, text: str, **more: Any) -> None:
+        """Append an event; a full disk takes it from the space that is kept for that.
+
+        Args:
+            kind: What kind of event.
+            text: What happened.
+            more: Further entries of the line.
+
+        Raises:
+            OSError: The disk takes nothing; the journal is as it was.
+        """
+        entry = {"time": datetime.now(UTC).isoformat(), "kind": kind, "text": text, **more}
+        # Escapes alone: no character of a text ends a line, and none cannot be encoded.
+        line = json.dumps(entry).encode("ascii") + b"\n"
+        try:
+            self._write(line)
+        except OSError as error:
+            if error.errno not in (errno.ENOSPC, errno.EDQUOT):
+                raise
+            self._reserve.unlink(missing_ok=True)
+            self._write(line)
+
+    def repair(self) -> None:
+        """Take a last line that a crash cut short away, and write down what it held."""
+        content = self._file.read_bytes()
+        whole, _, cut = content.rpartition(b"\n")
+        if not cut:
+            return
+        with self._file.open("r+b") as file:
+            file.truncate(len(whole) + (1 if whole else 0))
+        self.append("cut short", cut.decode("utf-8", "backslashreplace"))
+
+    def _write(self, line: bytes) -> None:
+        handle = os.open(self._file, os.O_WRONLY | os.O_CREAT, 0o644)
+        try:
+            before = os.lseek(handle, 0, os.SEEK_END)
+            try:
+                _write_all(handle, line)
+            except OSError:
+                os.ftruncate(handle, before)
+                raise
+            os.fsync(handle)
+        finally:
+            os.close(handle)
+
+
+def _write_all(handle: int, data: bytes) -> None:
+    while data:
+        data = data[os.write(handle, data) :]
+
+
+def read_journal(data: Path) -> Journal:
+    """Read a journal; a last line that a crash cut short is passed over.
+
+    Another line that cannot be read may have told of an emergency stop, and counts as one.
+
+    Raises:
+        NotFound: There is none.
+        DataError: It cannot be read, or does not begin with a plan.
+    """
+    file = data / JOURNAL_FILE
+    entries = list(_entries(file))
+    plan = next((e.get("fingerprint") for e in entries if e.get("kind") == "plan"), None)
+    if not isinstance(plan, str):
+        raise DataError("does not say which plan it is of; name another --data", file=file)
+    points = [entry for entry in entries if entry.get("kind") == "point"]
+    latched = None
+    for entry in entries:
+        if entry.get("kind") == "reset":
+            latched = None
+        elif entry.get("kind") == "damaged" or (
+            entry.get("kind") == "end" and str(entry.get("text")).startswith(EMERGENCY)
+        ):
+            latched = str(entry["text"])
+    return Journal(
+        plan=plan,
+        accepted={
+            str(entry.get("folder")): entry["number"] for entry in points
+            if entry.get("accepted") is True and type(entry.get("number")) is int
+        },
+        folders=frozenset(str(entry.get("folder")) for entry in points),
+        latched=latched,
+    )  # fmt: skip
+
+
+def begin_or_resume(data: Path, plan_text: str, *, resume: bool, reset: bool) -> Journal:
+    """Begin a journal, or go on with one.
+
+    Args:
+        data: Folder of the experiment; its lock is held.
+        plan_text: Text of the plan.
+        resume: Go on with what is there.
+        reset: Reset an emergency stop that is latched.
+
+    Returns:
+        What the journal says.
+
+    Raises:
+        AlreadyExists: There is an experiment, and it is not to be gone on with.
+        SettingsError: It is of another plan, or an emergency stop is latched.
+    """
+    writer, latch = JournalWriter(data), EmergencyLatch(data)
+    if not resume:
+        if (data / JOURNAL_FILE).exists():
+            raise AlreadyExists(
+                f"{data} holds an experiment already; go on with it by --resume, or name another "
+                "--data"
+            )
+        latch.prepare()
+        writer.append("plan", plan_text, fingerprint=plan_fingerprint(plan_text))
+        return read_journal(data)
+    journal = read_journal(data)
+    if journal.plan != plan_fingerprint(plan_text):
+        raise SettingsError(
+            "is not the plan that was begun here; give that one, or another --data",
+            file=data / JOURNAL_FILE,
+        )
+    latched = latch.reason or journal.latched
+    if latched is not None and not reset:
+        raise SettingsError(
+            f"{latched} is latched; look after the rig, then go on with --reset-emergency",
+            file=data / JOURNAL_FILE,
+        )
+    writer.repair()
+    latch.prepare()
+    if latched is not None:
+        writer.append("reset", latched)
+        latch.reset()
+    return journal
+
+
+def _entries(file: Path) -> Iterator[dict[str, Any]]:
+    """Yield the entries of a journal; a whole line that is none is one of kind `damaged`."""
+    try:
+        if file.stat().st_size > LARGEST:
+            raise DataError(
+                f"has {file.stat().st_size / 1e6:.0f} MB; expected at most "
+                f"{LARGEST / 1e6:.0f} MB of a journal", file=file
+            )  # fmt: skip
+        content = file.read_bytes()
+    except FileNotFoundError as error:
+        raise NotFound(f"{file}: no experiment to resume; run without --resume") from error
+    except OSError as error:
+        raise DataError(f"cannot be read: {error.strerror}", file=file) from error
+    for number, line in enumerate(content.split(b"\n")[:-1], start=1):
+        entry = _entry(line)
+        if entry is None:
+            yield {
+                "kind": "damaged",
+                "text": f"line {number} of the journal cannot be read; it may have been an "
+                "emergency stop, which",
+            }
+        else:
+            yield entry
+
+
+def _entry(line: bytes) -> dict[str, Any] | None:
+    try:
+        entry = json.loads(line.decode("utf-8"))
+    except (ValueError, RecursionError):
+        return None
+    return entry if isinstance(entry, dict) else None

@@ -1,0 +1,48 @@
+# SPDX-License-Identifier: MIT
+"""A plan in, what will happen out; nothing moves."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from rig.experiment.plan import Plan
+from rig.experiment.steps import Estimate, Step, estimate, require_allowed, spell_out
+from rig.slip_rig.profile import RigProfile, load_rig_profile
+from zebro_lab.experiment.plan_file import read_plan
+from zebro_lab.experiment.rig_at_hand import TWIN_PROFILE
+from zebro_lab.recording.devices import resolve
+
+
+@dataclass(frozen=True)
+class Foreseen:
+    """What a plan will do.
+
+    Attributes:
+        plan: The plan.
+        profile: The rig.
+        steps: Its steps in order.
+        estimate: How long they take.
+    """
+
+    plan: Plan
+    profile: RigProfile
+    steps: tuple[Step, ...]
+    estimate: Estimate
+
+
+def foresee(file: Path, rig: str) -> Foreseen:
+    """Check a plan against its limits and a rig's.
+
+    Args:
+        file: The plan.
+        rig: Name of the rig's profile, with or without a port, or `sim`.
+
+    Raises:
+        ZebroLabError: The plan cannot be read.
+        LimitExceeded: It would break a limit.
+    """
+    plan = read_plan(file)
+    name = resolve(rig, default=TWIN_PROFILE)[0] if "@" in rig or rig == "sim" else rig
+    profile = load_rig_profile(name)
+    require_allowed(plan, profile)
+    steps = spell_out(plan)
+    return Foreseen(plan, profile, steps, estimate(plan, steps))

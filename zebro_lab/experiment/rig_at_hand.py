@@ -1,0 +1,157 @@
+# SPDX-License-Identifier: MIT
+"""The rig that a command line names, real or simulated, ready for an experiment."""
+
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from typing import Any, Final
+
+import numpy as np
+
+from rig.backends import RigDevices, open_rig
+from rig.clock import SYSTEM_CLOCK, Clock, ManualClock
+from rig.experiment.acquire import PERIOD
+from rig.experiment.bench import Bench, make_bench
+from rig.experiment.control import Control
+from rig.experiment.load import DrivenShaft, HandShaft, LoadSetter
+from rig.experiment.plan import LoadSetting
+from rig.experiment.simulated_load import SimulatedAxis, SimulatedOperator
+from rig.links.memory import MemoryLink
+from rig.slip_rig.board import RigBoard
+from rig.slip_rig.imperfections import RigImperfections, draw_imperfections
+from rig.slip_rig.profile import RigProfile, load_rig_profile
+from rig.slip_rig.simulated import RigDynamics, SimulatedRig, simulated_rig
+from rig.slip_rig.simulated_board import SimulatedBoard
+from rig.slip_rig.sweep import SweepPlan
+from rig.twins import simulated_rig_devices
+from zebro_lab.files.errors import SettingsError
+from zebro_lab.mcap.stream_views import BoardView, DrivesView, LoadCellView, View
+from zebro_lab.recording.devices import SIMULATED, profile_text, resolve
+from zebro_lab.runs.slip_rig_decoding import RIG
+
+TWIN_PROFILE: Final = "rig-board-serial"
+FAST_PERIOD: Final = 0.02
+"""Between two looks at a twin whose time passes at once: ten times within its watchdog [s]."""
+
+
+@dataclass(frozen=True)
+class RigAtHand:
+    """A rig, its bench not yet entered.
+
+    Attributes:
+        bench: The bench.
+        profiles: Name and text of its profile, by the name that a run keeps it under.
+        clock: Host time.
+        period: Between two looks [s].
+        twin: The simulated rig; None for a real one.
+        fast: Whether its time passes at once.
+    """
+
+    bench: Bench
+    profiles: Mapping[str, tuple[str, str]]
+    clock: Clock = SYSTEM_CLOCK
+    period: float = PERIOD
+    twin: SimulatedRig | None = None
+    fast: bool = False
+    truth: Mapping[str, Any] = field(default_factory=dict)
+
+    @property
+    def constants(self) -> dict[str, float]:
+        """Radii of the discs [m]."""
+        profile = self.bench.profile
+        return {"radius_leg": profile.radius_leg, "radius_ground": profile.radius_ground}
+
+    def views(self) -> dict[str, View]:
+        """Make new views of its streams for a log."""
+        profile = self.bench.profile
+        views: dict[str, View] = {}
+        if profile.board is not None:
+            views["board"] = BoardView("board", profile=profile.board)
+        if profile.drives is not None:
+            views["drives"] = DrivesView("drives", profile=profile.drives)
+        if profile.load_cell is not None:
+            views["load_cell"] = LoadCellView("load_cell", profile=profile.load_cell)
+        return views
+
+    def load_setter(self, setting: LoadSetting, control: Control) -> LoadSetter:
+        """Choose who sets the normal force.
+
+        Raises:
+            SettingsError: The plan wants an axis, and the rig has none.
+        """
+        if setting.set_by == "hand":
+            if self.twin is not None:
+                return SimulatedOperator(self.twin)
+            return HandShaft(control, tolerance=setting.tolerance)
+        if self.twin is None:
+            raise SettingsError(
+                "is 'axis', but no profile knows a driven axis yet; expected 'hand'",
+                key="load.set_by",
+            )
+        axis = SimulatedAxis(self.twin, clock=self.clock)
+        return DrivenShaft(axis, tolerance=setting.tolerance, patience=setting.patience)
+
+
+@contextmanager
+def rig_at_hand(
+    address: str,
+    *,
+    seed: int = 0,
+    fast: bool = False,
+    imperfections: RigImperfections | None = None,
+) -> Iterator[RigAtHand]:
+    """Make the rig that an address names; a twin is served for as long as the context lasts.
+
+    Args:
+        address: `PROFILE@PORT`, `PROFILE@sim` or `sim`.
+        seed: Of a twin's randomness.
+        fast: Let a twin's time pass at once; only for a board's.
+        imperfections: What a twin's sensors and bump add; a load cell's errors are drawn by
+            default, so that each seed is a rig of its own and one seed the same rig again.
+
+    Yields:
+        The rig.
+
+    Raises:
+        RigError: The address or the profile is not right.
+        SettingsError: It cannot be fast.
+    """
+    name, port = resolve(address, default=TWIN_PROFILE)
+    profile = load_rig_profile(name)
+    profiles = {RIG: (profile.name, profile_text(name))}
+    if port != SIMULATED:
+        if fast:
+            raise SettingsError("only a simulated rig's time can pass at once", key="--fast")
+        yield RigAtHand(make_bench(open_rig(address)), profiles)
+        return
+    rng = np.random.default_rng(seed)
+    rig = simulated_rig(
+        plan=SweepPlan(radius_leg=profile.radius_leg, radius_ground=profile.radius_ground),
+        imperfections=imperfections or draw_imperfections(np.random.default_rng([seed, 1])),
+        dynamics=RigDynamics(ripple=0.005), rng=rng,
+    )  # fmt: skip
+    rig.command("leg", 0.0)  # it is commanded from the first: it sweeps nothing by itself
+    truth = {"rig": rig.description()}
+    if fast:
+        clock = ManualClock()
+        yield RigAtHand(
+            _fast_bench(profile, rig, rng, clock), profiles, clock, FAST_PERIOD, rig, True, truth
+        )
+        return
+    with simulated_rig_devices(profile, rig, rng=rng) as devices:
+        yield RigAtHand(make_bench(devices), profiles, twin=rig, truth=truth)
+
+
+def _fast_bench(
+    profile: RigProfile, rig: SimulatedRig, rng: np.random.Generator, clock: ManualClock
+) -> Bench:
+    if profile.board is None:
+        raise SettingsError(
+            f"the twin of '{profile.name}' runs in real time only; take {TWIN_PROFILE}@sim",
+            key="--fast",
+        )
+    twin = SimulatedBoard(rig, profile=profile.board, rng=rng)
+    board = RigBoard(
+        MemoryLink(twin, clock=clock), profile=profile.board, limits=profile.limits, clock=clock
+    )
+    return make_bench(RigDevices(profile, board=board))

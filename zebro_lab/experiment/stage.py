@@ -1,0 +1,194 @@
+# SPDX-License-Identifier: MIT
+"""A plan in, run folders and a journal out."""
+
+import json
+import os
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Final
+
+from rig.errors import InUse
+from rig.exclusive import Exclusive
+from rig.experiment.control import Control
+from rig.experiment.control_server import ControlServer, send_command
+from rig.experiment.plan import Plan
+from rig.experiment.run import Outcome, run_plan
+from rig.experiment.signal_stops import signal_stops
+from rig.experiment.steps import require_allowed
+from rig.experiment.supervision import supervised
+from rig.experiment.watcher import Watcher
+from zebro_lab.experiment.folder import ExperimentFolder
+from zebro_lab.experiment.journal import JOURNAL_FILE, begin_or_resume
+from zebro_lab.experiment.plan_file import read_plan
+from zebro_lab.experiment.points import finished_points
+from zebro_lab.experiment.rig_at_hand import RigAtHand, rig_at_hand
+from zebro_lab.files.documents import read_json_document, require_object
+from zebro_lab.files.errors import DataError, NotFound, RecordingError, ZebroLabError
+from zebro_lab.recording.recorder import RunDescription
+
+CONTROL_FILE: Final = "control.json"
+LOCK_FILE: Final = ".experiment.lock"
+
+
+@dataclass(frozen=True)
+class RigRunRequest:
+    """What is asked of an experiment.
+
+    Attributes:
+        plan: The plan's file.
+        rig: `PROFILE@PORT`, `PROFILE@sim` or `sim`.
+        data: Folder of the experiment.
+        resume: Go on from the last finished point.
+        reset_emergency: Reset an emergency stop that is latched.
+        fast: Let a simulated rig's time pass at once.
+        seed: Of a simulated rig's randomness.
+    """
+
+    plan: Path
+    rig: str
+    data: Path
+    resume: bool = False
+    reset_emergency: bool = False
+    fast: bool = False
+    seed: int = 0
+
+
+def run_experiment(request: RigRunRequest, watcher: Watcher, control: Control) -> Outcome:
+    """Run a plan, each point into a run folder of its own.
+
+    Args:
+        request: What is asked.
+        watcher: Who follows.
+        control: Mailbox for pauses, notes and stops; signals and the control socket feed it.
+
+    Returns:
+        How it ended.
+
+    Raises:
+        ZebroLabError: The plan, the folder or the request is at fault; nothing moved.
+        InUse: Another program runs an experiment into this folder, or uses a device.
+        RigError: A limit, a guard or a device; the motors are at rest and the journal says why.
+    """
+    plan = read_plan(request.plan)
+    text = request.plan.read_text(encoding="utf-8")
+    with rig_at_hand(request.rig, seed=request.seed, fast=request.fast) as rig:
+        require_allowed(plan, rig.bench.profile)
+        load = rig.load_setter(plan.load, control)
+        with _owned(request.data):
+            journal = begin_or_resume(
+                request.data, text, resume=request.resume, reset=request.reset_emergency
+            )
+            finished = finished_points(request.data, journal)
+            for notice in finished.notices:
+                watcher.notice(notice)
+            folder = ExperimentFolder(
+                request.data, plan=journal.plan, description=_description(plan, rig),
+                views=rig.views, clock=rig.clock, in_step=rig.fast,
+            )  # fmt: skip
+            with (
+                signal_stops(control.stop),
+                supervised(control),
+                folder,
+                _commandable(request.data, control),
+            ):
+                for notice in finished.notices:
+                    folder.event("warning", notice)
+                try:
+                    return run_plan(
+                        plan, bench=rig.bench, load=load, sink=folder, control=control,
+                        watcher=watcher, clock=rig.clock, period=rig.period, done=finished.numbers,
+                    )  # fmt: skip
+                finally:
+                    stop = control.stop.pending
+                    if stop is not None and control.stop.latched:  # it may have come at the end
+                        folder.latch(stop.reason)
+
+
+def _description(plan: Plan, rig: RigAtHand) -> RunDescription:
+    """Describe what all runs of an experiment have in common."""
+    return RunDescription(
+        kind="slip-rig",
+        label=plan.name,
+        source=rig.bench.source,
+        material=plan.material,
+        operator=plan.operator or "unknown",
+        constants=rig.constants,
+        profiles=rig.profiles,
+        sources={stream.name: stream.source for stream in rig.bench.streams},
+        truth=rig.truth,
+    )
+
+
+@contextmanager
+def _owned(data: Path) -> Iterator[None]:
+    """Make the folder of an experiment this program's own; one that stays empty is taken away."""
+    new = not data.exists()
+    try:
+        data.mkdir(parents=True, exist_ok=True)
+        lock = Exclusive(data / LOCK_FILE, what=f"the experiment in {data}")
+        lock.take()
+    except InUse:
+        raise
+    except OSError as error:
+        raise RecordingError(
+            f"cannot write to {data}: {error.strerror}; name another --data"
+        ) from (error)
+    try:
+        yield
+    except ZebroLabError:
+        if not (data / JOURNAL_FILE).exists():
+            (data / LOCK_FILE).unlink(missing_ok=True)
+            with suppress(OSError):
+                if new:
+                    data.rmdir()
+        raise
+    finally:
+        lock.release()
+
+
+def command_run(data: Path, command: str) -> str:
+    """Give the experiment that runs into a folder a command; return its answer.
+
+    Raises:
+        NotFound: None runs there.
+        DataError: The file that says where to reach it is damaged.
+        RigError: It does not answer, or refuses.
+    """
+    file = data / CONTROL_FILE
+    if not file.exists():
+        raise NotFound(f"{data}: no experiment runs here")
+    port, token = _address(file)
+    return send_command(port, token, command)
+
+
+def _address(file: Path) -> tuple[int, str]:
+    """Return port and token of a running experiment's control socket.
+
+    Raises:
+        DataError: The file is damaged.
+    """
+    content = require_object(read_json_document(file, advice="no experiment runs here"), file)
+    port, token = content.get("port"), content.get("token")
+    if type(port) is not int or not 0 < port < 1 << 16 or not isinstance(token, str):
+        raise DataError(
+            "does not say where to reach the experiment; stop it at its own keyboard", file=file
+        )
+    return port, token
+
+
+@contextmanager
+def _commandable(data: Path, control: Control) -> Iterator[None]:
+    """Serve the control socket, and say where in a file that only its owner may read."""
+    file, draft = data / CONTROL_FILE, data / f".{CONTROL_FILE}.new"
+    with ControlServer(control) as server:
+        draft.unlink(missing_ok=True)
+        handle = os.open(draft, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600)
+        with os.fdopen(handle, "w", encoding="utf-8") as out:
+            json.dump({"port": server.port, "token": server.token}, out)
+        draft.replace(file)
+        try:
+            yield
+        finally:
+            file.unlink(missing_ok=True)

@@ -1,0 +1,101 @@
+# SPDX-License-Identifier: MIT
+"""Known weights in, the gain prior of a fit out."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Final
+
+from rig.experiment.control import Control
+from rig.experiment.load import HandShaft
+from rig.experiment.simulated_load import SimulatedOperator
+from rig.experiment.weigh import GainCheck, Weighing, check_gain, weigh
+from rig.safety import require_within
+from zebro_lab.experiment.rig_at_hand import rig_at_hand
+from zebro_lab.files.atomic import atomic_write_text
+from zebro_lab.files.errors import AlreadyExists, SettingsError
+from zebro_lab.tables.columns import COLUMNS_FILE
+
+STANDARD_GRAVITY: Final = 9.80665
+
+
+@dataclass(frozen=True)
+class WeighRequest:
+    """What is asked of a check with weights.
+
+    Attributes:
+        masses: Known masses [kg].
+        rig: `PROFILE@PORT`, `PROFILE@sim` or `sim`.
+        data: Folder whose `columns.toml` is to be written; None writes nothing.
+        weight_sd: Relative error that the masses share [-].
+        gravity: Where the rig stands [m/s^2].
+        fast: Let a simulated rig's time pass at once.
+        seed: Of a simulated rig's randomness.
+    """
+
+    masses: Sequence[float]
+    rig: str
+    data: Path | None = None
+    weight_sd: float = 1e-3
+    gravity: float = STANDARD_GRAVITY
+    fast: bool = False
+    seed: int = 0
+
+
+def weigh_masses(
+    request: WeighRequest, prompt: Callable[[str, float], None], control: Control
+) -> tuple[Weighing, GainCheck, Path | None]:
+    """Check the load cell; write what the fit is to take its gain for.
+
+    Args:
+        request: What is asked.
+        prompt: Told what the operator is to do, and the normal force now [N].
+        control: Where the operator confirms.
+
+    Returns:
+        The readings, the line through them, and the file that was written.
+
+    Raises:
+        SettingsError: A mass is not positive.
+        AlreadyExists: There is a `columns.toml` already; nothing was measured.
+        RigError: A weight is beyond the rig's limit, or a device failed.
+    """
+    if not request.masses or min(request.masses) <= 0:
+        raise SettingsError("expected masses above 0 kg, such as 0.2,0.5,1", key="--masses")
+    target = None if request.data is None else request.data / COLUMNS_FILE
+    if target is not None and target.exists():
+        raise AlreadyExists(f"{target} exists already; put the [load_cell] printed there by hand")
+    forces = [mass * request.gravity for mass in request.masses]
+    with rig_at_hand(request.rig, seed=request.seed, fast=request.fast) as rig:
+        for force in forces:
+            require_within(
+                force, rig.bench.profile.limits.normal_force, quantity="weight", unit="N"
+            )
+        # Any reading may be right: whether it is, is the question.
+        load = (
+            HandShaft(control, tolerance=float("inf"))
+            if rig.twin is None
+            else SimulatedOperator(rig.twin)
+        )
+        with rig.bench:
+            weighing = weigh(
+                rig.bench, forces, load=load, prompt=prompt, clock=rig.clock, period=rig.period
+            )
+    check = check_gain(weighing, weight_sd=request.weight_sd)
+    if target is not None:
+        target.parent.mkdir(parents=True, exist_ok=True)
+        atomic_write_text(target, render_load_cell(check))
+    return weighing, check, target
+
+
+def render_load_cell(check: GainCheck) -> str:
+    """Write the check as the `[load_cell]` of a `columns.toml`.
+
+    Each run is tared, so that only the zero's error stays; the gain is as uncertain as it is off.
+    """
+    return (
+        "# From a check of the load cell with known weights.\n"
+        "[load_cell]\n"
+        f"gain_sd = {check.gain_sd:.3g}\n"
+        f'bias_sd = "{max(check.zero_sd, check.misfit, 1e-3):.3g} N"\n'
+    )

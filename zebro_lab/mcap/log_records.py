@@ -1,0 +1,101 @@
+# SPDX-License-Identifier: MIT
+"""Read the records of an MCAP log one after another, its chunks unpacked within bounds.
+
+Streaming: the seeking reader needs the index at the end, which a cut file has lost.
+"""
+
+import os
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Final
+
+from zebro_lab.files.errors import DataError, ZebroLabError
+from zebro_lab.files.opening import open_file
+
+if TYPE_CHECKING:
+    from mcap.records import Chunk, McapRecord
+
+MOST_CHUNK: Final = 64 << 20
+"""Largest chunk that is unpacked; recorders end theirs at about one."""
+FREELY: Final = 64 << 20
+MOST_RATIO: Final = 100
+"""How much larger than on disk a log may unpack to, beyond `FREELY`: no sensor is so still."""
+_WIDEST_WINDOW: Final = 1 << 27  # memory that a zstd frame may ask for while it is unpacked
+
+
+def read_records(path: Path, take: "Callable[[McapRecord], object]") -> str | None:
+    """Hand over the records of a log, up to where it is damaged.
+
+    Args:
+        path: The log.
+        take: What to do with each record; what it raises is damage, too.
+
+    Returns:
+        Why reading stopped before the end; None for a whole log.
+
+    Raises:
+        NotFound: There is no such file.
+        DataError: It is no regular file, or no MCAP.
+    """
+    from mcap.exceptions import InvalidMagic
+    from mcap.records import Chunk
+    from mcap.stream_reader import StreamReader, breakup_chunk
+
+    with open_file(path) as file:
+        size = os.fstat(file.fileno()).st_size
+        left = FREELY + MOST_RATIO * size
+        reader = StreamReader(
+            file, emit_chunks=True, validate_crcs=True, record_size_limit=max(size, 1)
+        )
+        try:
+            for record in reader.records:
+                if isinstance(record, Chunk):
+                    unpacked = _unpacked(record, min(left, MOST_CHUNK))
+                    left -= len(unpacked.data)
+                    for inner in breakup_chunk(unpacked, validate_crc=True):
+                        take(inner)
+                else:
+                    take(record)
+        except InvalidMagic as error:
+            raise DataError("is no MCAP file", file=path) from error
+        except ZebroLabError:
+            raise
+        except Exception as error:  # libraries answer damage with whatever went wrong inside them
+            return str(error) or "the file ends early"  # as the reader's EndOfFile, without words
+    return None
+
+
+def _unpacked(chunk: "Chunk", most: int) -> "Chunk":
+    """Unpack a chunk, whatever size it claims.
+
+    Raises:
+        ValueError: It holds more than it says, or more than `most`.
+    """
+    if chunk.compression == "":
+        return chunk
+    if chunk.uncompressed_size > most:
+        raise ValueError(
+            f"a chunk would unpack to {chunk.uncompressed_size} bytes, {most} are read at most"
+        )
+    data = _UNPACK[chunk.compression](chunk.data, chunk.uncompressed_size + 1)
+    if len(data) > chunk.uncompressed_size:
+        raise ValueError("a chunk unpacks to more than it says")
+    return replace(chunk, compression="", data=data)
+
+
+def _zstd(data: bytes, most: int) -> bytes:
+    import zstandard
+
+    decompressor = zstandard.ZstdDecompressor(max_window_size=_WIDEST_WINDOW)
+    with decompressor.stream_reader(data) as reader:
+        return reader.read(most)
+
+
+def _lz4(data: bytes, most: int) -> bytes:
+    import lz4.frame
+
+    return lz4.frame.LZ4FrameDecompressor().decompress(data, max_length=most)
+
+
+_UNPACK: "Final[dict[str, Callable[[bytes, int], bytes]]]" = {"zstd": _zstd, "lz4": _lz4}

@@ -1,0 +1,104 @@
+# SPDX-License-Identifier: MIT
+"""A log that grows while a run is recorded, and can be read at every instant."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import fields
+from typing import IO, Final
+
+import numpy as np
+
+from rig.device import Counters, Sample
+from rig.sample_columns import as_columns
+from zebro_lab.mcap.cdr import CdrWriter
+from zebro_lab.mcap.message_log import MessageLog
+from zebro_lab.mcap.raw_log import RAW_SCHEMAS, encode_raw, raw_topic
+from zebro_lab.mcap.ros_messages import INFO, LOG, Schema, log_entry
+from zebro_lab.mcap.stream_views import View
+
+EVENTS: Final = "/events"
+COUNTERS: Final = Schema(
+    "zebro_lab/msg/Counters",
+    "# What happened to a stream so far.\n"
+    + "".join(f"uint64 {field.name}\n" for field in fields(Counters))
+    + "uint64 dropped  # by the recorder: nobody wrote them in time\n",
+)
+_CHUNK_BYTES: Final = 1 << 20  # flushing ends a chunk long before
+
+
+class LogWriter:
+    """Writes the messages of a run as MCAP; used by one thread.
+
+    Args:
+        file: Where to write.
+        views: How each stream shows, by its name.
+        attachments: Texts to keep in the log, by file name: the profiles.
+        start: Host time at which the run began [s].
+        start_ns: The same since the Unix epoch [ns].
+
+    Attributes:
+        written: Samples written, by topic.
+    """
+
+    def __init__(
+        self,
+        file: IO[bytes],
+        *,
+        views: Mapping[str, View],
+        attachments: Mapping[str, str],
+        start: float,
+        start_ns: int,
+    ) -> None:
+        self.written = {raw_topic(name): 0 for name in views}
+        self._views = views
+        self._start, self._start_ns = start, start_ns
+        self._log = MessageLog(file, chunk_size=_CHUNK_BYTES)
+        self._log.register(EVENTS, LOG)
+        for name, view in views.items():
+            self._register(name, view)
+        for name, text in attachments.items():
+            self._log.attach(start_ns, name, "application/toml", text)
+
+    def write(self, stream: str, samples: Sequence[Sample]) -> None:
+        """Write samples of a stream, at least one: raw, and as its view shows them."""
+        view = self._views[stream]
+        dtype, _ = RAW_SCHEMAS[view.raw_schema]
+        columns = as_columns(samples, dtype)
+        host_time = columns.host_time - self._start
+        stamps = (self._start_ns + np.rint(1e9 * host_time).astype(np.int64)).tolist()
+        topic = raw_topic(stream)
+        self._log.add(topic, stamps[-1], encode_raw(columns, dtype=dtype, start=self._start))
+        self.written[topic] += len(samples)
+        for shown, stamp, message in view.messages(columns, stamps):
+            self._log.add(shown, stamp, message)
+
+    def event(self, host_time: float, text: str, *, level: int = INFO) -> None:
+        """Write down something that happened."""
+        stamp = self.stamp(host_time)
+        self._log.add(EVENTS, stamp, log_entry(stamp, text, level=level))
+
+    def count(self, host_time: float, stream: str, counters: Counters, *, dropped: int) -> None:
+        """Write down what happened to a stream so far."""
+        message = CdrWriter()
+        for field in fields(Counters):
+            message.uint64(getattr(counters, field.name))
+        stamp = self.stamp(host_time)
+        self._log.add(f"/{stream}/counters", stamp, message.uint64(dropped).message())
+
+    def flush(self) -> None:
+        """Hand everything to the system, so that it outlives this process."""
+        self._log.flush()
+
+    def finish(self) -> None:
+        """Write the end of the log with its index."""
+        self._log.finish()
+
+    def stamp(self, host_time: float) -> int:
+        """Compute nanoseconds since the Unix epoch; no step of the wall clock shows in them."""
+        return self._start_ns + round((host_time - self._start) * 1e9)
+
+    def _register(self, name: str, view: View) -> None:
+        _, text = RAW_SCHEMAS[view.raw_schema]
+        raw = Schema(view.raw_schema, text)
+        self._log.register(raw_topic(name), raw, metadata=view.metadata)
+        for topic, schema in (*view.topics.items(), (f"/{name}/counters", COUNTERS)):
+            self._log.register(topic, schema)

@@ -1,0 +1,62 @@
+# SPDX-License-Identifier: MIT
+"""An MCAP file of ROS 2 messages: channels by topic, schemas once, numbers in sequence."""
+
+from collections.abc import Mapping
+from typing import IO
+
+from zebro_lab.mcap.ros_messages import Schema
+
+
+class MessageLog:
+    """Writes messages of registered topics; used by one thread.
+
+    Args:
+        file: Where to write.
+        chunk_size: Bytes after which a chunk ends by itself.
+    """
+
+    def __init__(self, file: IO[bytes], *, chunk_size: int = 1 << 20) -> None:
+        from mcap.writer import CompressionType, Writer
+
+        self._writer = Writer(file, chunk_size=chunk_size, compression=CompressionType.ZSTD)
+        self._writer.start(profile="ros2", library="zebro-lab")
+        self._schemas: dict[str, int] = {}
+        self._channels: dict[str, int] = {}
+        self._sequence: dict[int, int] = {}
+
+    def register(
+        self, topic: str, schema: Schema, *, metadata: Mapping[str, str] | None = None
+    ) -> None:
+        """Make the channel of a topic, which `add` then writes to."""
+        from mcap.well_known import MessageEncoding, SchemaEncoding
+
+        if schema.name not in self._schemas:
+            self._schemas[schema.name] = self._writer.register_schema(
+                schema.name, SchemaEncoding.ROS2, schema.text.encode()
+            )
+        self._channels[topic] = self._writer.register_channel(
+            topic, MessageEncoding.CDR, self._schemas[schema.name], dict(metadata or {})
+        )
+
+    def add(self, topic: str, stamp: int, message: bytes) -> None:
+        """Write a message of a registered topic, stamped since the Unix epoch [ns]."""
+        channel = self._channels[topic]
+        number = self._sequence.get(channel, 0)
+        self._sequence[channel] = number + 1
+        self._writer.add_message(channel, stamp, message, stamp, number)
+
+    def attach(self, stamp: int, name: str, media_type: str, content: str) -> None:
+        """Keep a text beside the messages."""
+        self._writer.add_attachment(stamp, stamp, name, media_type, content.encode())
+
+    def describe(self, name: str, content: Mapping[str, str]) -> None:
+        """Keep names and values about the whole file."""
+        self._writer.add_metadata(name, dict(content))
+
+    def flush(self) -> None:
+        """Hand everything to the system, so that it outlives this process."""
+        self._writer.flush()
+
+    def finish(self) -> None:
+        """Write the end of the file with its index."""
+        self._writer.finish()

@@ -1,0 +1,127 @@
+# SPDX-License-Identifier: MIT
+"""Raw samples of any device in a log, and back: what it sent, as it sent it.
+
+Counts are kept, not angles or forces: those follow from them with the profile, today's or one that
+was corrected years later.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from rig.device import Sample
+from rig.sample_columns import SampleColumns, as_columns
+from zebro_lab.mcap.cdr import CdrReader, CdrWriter
+from zebro_lab.mcap.log_records import read_records
+
+if TYPE_CHECKING:
+    from mcap.records import McapRecord
+
+_TEXT = """\
+# Consecutive samples of one device. The metadata of the channel name the counts and their units.
+float64[] host_time    # when each was read, since the start of the run [s]
+float64[] device_time  # when the device took it, by its own clock; NaN where it tells none [s]
+int64[] sequence       # number of each sample, strictly increasing; -1 where it has none
+uint32[] status        # status word of the device; 0 where all is well
+uint32[] channel       # which of several devices on one link
+uint32 width           # counts in each sample
+{counts}[] counts      # raw values, sample after sample
+"""
+COUNTS_NAME = "zebro_lab/msg/RawCounts"
+VALUES_NAME = "zebro_lab/msg/RawValues"
+RAW_SCHEMAS: dict[str, tuple[str, str]] = {
+    COUNTS_NAME: ("<i4", _TEXT.format(counts="int32")),
+    VALUES_NAME: ("<f8", _TEXT.format(counts="float64")),
+}
+"""Type of the counts and text of each schema, by name: whole numbers for almost all devices,
+doubles for those whose counts have a fraction."""
+
+
+@dataclass(frozen=True)
+class SalvagedStreams:
+    """What could be read of a log.
+
+    Attributes:
+        streams: What each device sent, by topic; host times since the start of the run.
+        damage: Why reading stopped before the end; None for a whole log.
+    """
+
+    streams: dict[str, SampleColumns]
+    damage: str | None
+
+
+def raw_topic(stream: str) -> str:
+    """Return the topic of a stream's raw samples."""
+    return f"/{stream}/raw"
+
+
+def encode_raw(samples: Sequence[Sample], *, dtype: str, start: float) -> bytes:
+    """Encode samples, at least one, as one message.
+
+    Args:
+        samples: Of one device, with equally many counts.
+        dtype: Type of the counts, of `RAW_SCHEMAS`.
+        start: Host time at which the run began [s].
+
+    Raises:
+        ValueError: The samples differ in width, or a count does not fit.
+        OverflowError: A count does not fit.
+    """
+    columns = as_columns(samples, dtype)
+    message = CdrWriter()
+    message.array((columns.host_time - start).astype("<f8"))
+    message.array(columns.device_time.astype("<f8")).array(columns.sequence.astype("<i8"))
+    message.array(columns.status.astype("<u4")).array(columns.channel.astype("<u4"))
+    counts = columns.counts.astype(dtype, casting="same_kind")
+    return message.uint32(counts.shape[1]).array(counts.ravel()).message()
+
+
+def decode_raw(data: bytes, *, dtype: str) -> SampleColumns:
+    """Decode a message of `encode_raw`.
+
+    Raises:
+        ValueError: The message is not of that form.
+    """
+    reader = CdrReader(data)
+    host, device = reader.array("<f8"), reader.array("<f8")
+    sequence, status, channel = reader.array("<i8"), reader.array("<u4"), reader.array("<u4")
+    width = reader.uint32()
+    counts = reader.array(dtype)
+    lengths = {len(part) for part in (host, device, sequence, status, channel)}
+    if len(lengths) != 1 or len(counts) != len(host) * width:
+        raise ValueError(f"a message of {len(data)} bytes does not hold {len(host)} whole samples")
+    shaped = counts.reshape(len(host), width)
+    return SampleColumns(host, device, sequence, status, channel, shaped)
+
+
+def read_raw_log(path: Path) -> SalvagedStreams:
+    """Read all raw streams of a log, up to the last whole chunk where it is damaged.
+
+    Raises:
+        DataError: The file is no MCAP.
+    """
+    from mcap.records import Channel, Message, Schema
+
+    parts: dict[str, list[SampleColumns]] = {}
+    ours: dict[int, tuple[str, str]] = {}
+    schemas: dict[int, str] = {}
+
+    def take(record: "McapRecord") -> None:
+        if isinstance(record, Schema):
+            schemas[record.id] = record.name
+        elif isinstance(record, Channel):
+            name = schemas.get(record.schema_id, "")
+            if name in RAW_SCHEMAS:
+                ours[record.id] = (record.topic, RAW_SCHEMAS[name][0])
+        elif isinstance(record, Message) and record.channel_id in ours:
+            topic, dtype = ours[record.channel_id]
+            samples = decode_raw(record.data, dtype=dtype)
+            earlier = parts.setdefault(topic, [])
+            if earlier and earlier[0].counts.shape[1] != samples.counts.shape[1]:
+                raise ValueError(f"samples of {topic} change their width")
+            earlier.append(samples)
+
+    damage = read_records(path, take)
+    streams = {topic: SampleColumns.joined(found) for topic, found in parts.items()}
+    return SalvagedStreams(streams, damage)

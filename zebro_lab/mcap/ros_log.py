@@ -1,0 +1,81 @@
+# SPDX-License-Identifier: MIT
+"""Messages of one type in a ROS 2 log, up to where it is damaged."""
+
+from collections.abc import Iterator
+from contextlib import contextmanager, redirect_stdout
+from io import StringIO
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from zebro_lab.mcap.log_records import read_records
+
+
+class LoggedMessage(NamedTuple):
+    """A message as it was logged.
+
+    Attributes:
+        topic: Its topic.
+        log_time: Since the Unix epoch [ns].
+        content: Its fields as attributes.
+    """
+
+    topic: str
+    log_time: int
+    content: Any
+
+
+def read_messages(path: Path, *, schema: str) -> tuple[list[LoggedMessage], str | None]:
+    """Read all messages of one type.
+
+    Args:
+        path: The log, in MCAP.
+        schema: Name of the type, such as `sensor_msgs/msg/JointState`.
+
+    Returns:
+        The messages in the order of the log, and why reading stopped before its end; None for a
+        whole log.
+
+    Raises:
+        NotFound: There is no such file.
+        DataError: It is no MCAP.
+    """
+    from mcap.records import Channel, McapRecord, Message, Schema
+    from mcap_ros2.decoder import DecoderFactory
+
+    factory = DecoderFactory()
+    schemas: dict[int, Schema] = {}
+    decoders: dict[int, tuple[str, Any]] = {}
+    messages: list[LoggedMessage] = []
+
+    def take(record: McapRecord) -> None:
+        if isinstance(record, Schema):
+            schemas[record.id] = record
+        elif isinstance(record, Channel):
+            found = schemas.get(record.schema_id)
+            if found is not None and found.name == schema:
+                with _damage_of(f"the log's description of {schema}"):
+                    decode = factory.decoder_for(record.message_encoding, found)
+                if decode is not None:
+                    decoders[record.id] = (record.topic, decode)
+        elif isinstance(record, Message) and record.channel_id in decoders:
+            topic, decode = decoders[record.channel_id]
+            with _damage_of(f"a message of {topic}"):
+                content = decode(record.data)
+            messages.append(LoggedMessage(topic, record.log_time, content))
+
+    damage = read_records(path, take)
+    return messages, damage
+
+
+@contextmanager
+def _damage_of(what: str) -> Iterator[None]:
+    """Call damage what the decoder raises: its parser of descriptions has no one error for it.
+
+    Raises:
+        ValueError: The decoder failed.
+    """
+    try:
+        with redirect_stdout(StringIO()):  # it prints what it does not understand
+            yield
+    except Exception as error:
+        raise ValueError(f"{what} cannot be read: {type(error).__name__}: {error}") from error

@@ -1,0 +1,150 @@
+# SPDX-License-Identifier: MIT
+"""ROS 2 messages that recorded runs carry beside raw counts, so that every viewer knows them.
+
+Stamps are nanoseconds since the Unix epoch; numbers are SI. What a device does not measure is NaN,
+as in ROS.
+"""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from zebro_lab.mcap.cdr import CdrWriter
+
+RULE = "=" * 80
+"""What stands between the definitions of a message's parts."""
+HEADER = f"""\
+{RULE}
+MSG: std_msgs/Header
+builtin_interfaces/Time stamp
+string frame_id
+{RULE}
+MSG: builtin_interfaces/Time
+int32 sec
+uint32 nanosec
+"""
+VECTOR = f"""\
+{RULE}
+MSG: geometry_msgs/Vector3
+float64 x
+float64 y
+float64 z
+"""
+QUATERNION = f"""\
+{RULE}
+MSG: geometry_msgs/Quaternion
+float64 x
+float64 y
+float64 z
+float64 w
+"""
+
+
+@dataclass(frozen=True)
+class Schema:
+    """A message type: its name, and its definition with all that it is made of."""
+
+    name: str
+    text: str
+
+
+JOINT_STATE = Schema(
+    "sensor_msgs/msg/JointState",
+    """\
+std_msgs/Header header
+string[] name
+float64[] position  # [rad]
+float64[] velocity  # [rad/s]
+float64[] effort    # [N m]
+"""
+    + HEADER,
+)
+WRENCH = Schema(
+    "geometry_msgs/msg/WrenchStamped",
+    f"""\
+std_msgs/Header header
+geometry_msgs/Wrench wrench
+{RULE}
+MSG: geometry_msgs/Wrench
+geometry_msgs/Vector3 force   # [N]
+geometry_msgs/Vector3 torque  # [N m]
+"""
+    + VECTOR
+    + HEADER,
+)
+IMU = Schema(
+    "sensor_msgs/msg/Imu",
+    """\
+std_msgs/Header header
+geometry_msgs/Quaternion orientation
+float64[9] orientation_covariance
+geometry_msgs/Vector3 angular_velocity  # [rad/s]
+float64[9] angular_velocity_covariance
+geometry_msgs/Vector3 linear_acceleration  # with gravity, as the unit measures it [m/s2]
+float64[9] linear_acceleration_covariance
+"""
+    + QUATERNION
+    + VECTOR
+    + HEADER,
+)
+LOG = Schema(
+    "rcl_interfaces/msg/Log",
+    f"""\
+builtin_interfaces/Time stamp
+uint8 level
+string name
+string msg
+string file
+string function
+uint32 line
+{RULE}
+MSG: builtin_interfaces/Time
+int32 sec
+uint32 nanosec
+""",
+)
+INFO, WARNING, ERROR = 20, 30, 40
+"""Levels of `LOG`."""
+
+_UNKNOWN = (0.0,) * 9  # ROS: a covariance of zeros is one that is not known
+
+
+def joint_state(
+    stamp: int,
+    names: Sequence[str],
+    *,
+    position: Sequence[float] = (),
+    velocity: Sequence[float] = (),
+) -> bytes:
+    """Encode angles [rad] and speeds [rad/s] of joints; a side that is empty is not known."""
+    message = CdrWriter().time(stamp).text("").texts(names)
+    for values in (position, velocity, ()):
+        message.array(np.asarray(values, dtype="<f8"))
+    return message.message()
+
+
+def wrench(stamp: int, *, normal: float, traction: float) -> bytes:
+    """Encode the force at a contact: x traction, z normal, in the frame `contact` [N]."""
+    message = CdrWriter().time(stamp).text("contact")
+    return message.float64(traction, math.nan, normal, *(math.nan,) * 3).message()
+
+
+def imu(
+    stamp: int,
+    *,
+    orientation: Sequence[float],
+    angular_rate: Sequence[float],
+    specific_force: Sequence[float],
+) -> bytes:
+    """Encode a quaternion x, y, z, w, a rate [rad/s] and a specific force [m/s2] of the body."""
+    message = CdrWriter().time(stamp).text("body")
+    message.float64(*orientation, *_UNKNOWN, *angular_rate, *_UNKNOWN, *specific_force, *_UNKNOWN)
+    return message.message()
+
+
+def log_entry(stamp: int, text: str, *, level: int = INFO) -> bytes:
+    """Encode something that happened."""
+    message = CdrWriter().time(stamp).uint8(level).text("zebro_lab")
+    return message.text(text).text("").text("").uint32(0).message()

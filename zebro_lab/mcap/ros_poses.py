@@ -1,0 +1,132 @@
+# SPDX-License-Identifier: MIT
+"""ROS 2 messages of poses: frames, paths, and poses with their covariance.
+
+Stamps are nanoseconds since the Unix epoch, lengths metres, quaternions x, y, z, w.
+"""
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from model.slip.law import Array
+from zebro_lab.mcap.cdr import CdrWriter
+from zebro_lab.mcap.ros_messages import HEADER, QUATERNION, RULE, VECTOR, Schema
+
+_POSE = f"""\
+{RULE}
+MSG: geometry_msgs/Pose
+geometry_msgs/Point position  # [m]
+geometry_msgs/Quaternion orientation
+{RULE}
+MSG: geometry_msgs/Point
+float64 x
+float64 y
+float64 z
+"""
+TRANSFORMS = Schema(
+    "tf2_msgs/msg/TFMessage",
+    f"""\
+geometry_msgs/TransformStamped[] transforms
+{RULE}
+MSG: geometry_msgs/TransformStamped
+std_msgs/Header header
+string child_frame_id
+geometry_msgs/Transform transform
+{RULE}
+MSG: geometry_msgs/Transform
+geometry_msgs/Vector3 translation  # [m]
+geometry_msgs/Quaternion rotation
+"""
+    + VECTOR
+    + QUATERNION
+    + HEADER,
+)
+PATH = Schema(
+    "nav_msgs/msg/Path",
+    f"""\
+std_msgs/Header header
+geometry_msgs/PoseStamped[] poses
+{RULE}
+MSG: geometry_msgs/PoseStamped
+std_msgs/Header header
+geometry_msgs/Pose pose
+"""
+    + _POSE
+    + QUATERNION
+    + HEADER,
+)
+POSE = Schema(
+    "geometry_msgs/msg/PoseWithCovarianceStamped",
+    f"""\
+std_msgs/Header header
+geometry_msgs/PoseWithCovariance pose
+{RULE}
+MSG: geometry_msgs/PoseWithCovariance
+geometry_msgs/Pose pose
+float64[36] covariance  # x, y, z [m], about x, y, z [rad], by rows
+"""
+    + _POSE
+    + QUATERNION
+    + HEADER,
+)
+
+
+@dataclass(frozen=True)
+class Transform:
+    """Where a frame lies in another.
+
+    Attributes:
+        parent: The other frame.
+        child: The frame.
+        position: Its origin, shape (3,) [m].
+        quaternion: Its orientation, x, y, z, w, shape (4,).
+    """
+
+    parent: str
+    child: str
+    position: Sequence[float]
+    quaternion: Sequence[float]
+
+
+def transforms(stamp: int, frames: Iterable[Transform]) -> bytes:
+    """Encode where frames lie at an instant."""
+    listed = list(frames)
+    message = CdrWriter().uint32(len(listed))
+    for each in listed:
+        message.time(stamp).text(each.parent).text(each.child)
+        message.float64(*each.position, *each.quaternion)
+    return message.message()
+
+
+def path(stamps: Sequence[int], frame: str, positions: Array, quaternions: Array) -> bytes:
+    """Encode a path, stamped with its first instant.
+
+    Args:
+        stamps: Of each pose, at least one.
+        frame: Frame that poses are in.
+        positions: Shape (n, 3) [m].
+        quaternions: Shape (n, 4).
+    """
+    message = CdrWriter().time(stamps[0]).text(frame).uint32(len(stamps))
+    for stamp, position, quaternion in zip(stamps, positions, quaternions, strict=True):
+        message.time(stamp).text(frame).float64(*position, *quaternion)
+    return message.message()
+
+
+def pose_with_covariance(
+    stamp: int, frame: str, *, position: Array, quaternion: Array, covariance: Array
+) -> bytes:
+    """Encode a planar pose with what is known of its error.
+
+    Args:
+        stamp: The instant.
+        frame: Frame that it is in.
+        position: Shape (3,) [m].
+        quaternion: Shape (4,).
+        covariance: Of x, y [m] and yaw [rad], shape (3, 3).
+    """
+    whole = np.zeros((6, 6))
+    whole[np.ix_((0, 1, 5), (0, 1, 5))] = covariance
+    message = CdrWriter().time(stamp).text(frame)
+    return message.float64(*position, *quaternion, *whole.ravel()).message()

@@ -1,0 +1,216 @@
+# SPDX-License-Identifier: MIT
+"""Reads devices, each from a thread of its own, and hands what they send to the recorder."""
+
+import threading
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import ExitStack, contextmanager
+from dataclasses import dataclass
+from typing import Final, Protocol
+
+from rig.clock import SYSTEM_CLOCK, Clock
+from rig.device import Counters, Sample, Stream
+from rig.errors import RigTimeout
+from rig.safety import SilenceGuard
+from zebro_lab.mcap.ros_messages import WARNING
+from zebro_lab.mcap.stream_views import View
+from zebro_lab.recording.sample_queue import LossyTap
+from zebro_lab.recording.threads import needing_threads
+from zebro_lab.runs.clock_watch import ClockWatch
+
+READ_WAIT: Final = 0.1
+"""Longest single wait of a read [s]."""
+SILENCE: Final = 1.0
+"""Silence that is worth an event [s]."""
+JOIN_LIMIT: Final = 5.0
+
+
+class Sink(Protocol):
+    """Who takes what devices send; never keeps them waiting."""
+
+    def write(self, stream: str, samples: Sequence[Sample]) -> bool:
+        """Take samples of a stream; tell whether there was room."""
+        ...
+
+    def event(self, text: str, *, level: int = ...) -> None:
+        """Take something that happened now."""
+        ...
+
+
+@dataclass(frozen=True)
+class Device:
+    """A device that is to be recorded.
+
+    Attributes:
+        stream: Its driver, not yet entered.
+        view: How it shows in the log.
+        check: Guards every read, in the thread that reads; raises where a limit is broken.
+        command: Called before every read, in the same thread: set-points of a gait.
+        at_end: Called once before the driver is left: stops what `command` moved.
+        pause: Between two reads, for a device that tells time: waking up for each few samples
+            costs more than reading them [s].
+    """
+
+    stream: Stream
+    view: View
+    check: Callable[[Sequence[Sample]], None] | None = None
+    command: Callable[[float], None] | None = None
+    at_end: Callable[[], object] | None = None
+    pause: float = 0.0
+
+    @property
+    def name(self) -> str:
+        """Name of the stream."""
+        return self.stream.name
+
+
+class Acquisition:
+    """One device being read, until it is told to stop.
+
+    Args:
+        device: The device; its driver has been entered.
+        sink: Who takes the samples.
+        start: Host time at which the run began [s].
+        clock: Host time.
+
+    Attributes:
+        tap: The newest samples, for viewers.
+        clock_watch: Its clock beside the host's.
+        first: Host time of the first sample; None before it [s].
+        failure: What ended the reading before it was told to stop, or that it did not end then.
+    """
+
+    def __init__(
+        self, device: Device, *, sink: Sink, start: float, clock: Clock = SYSTEM_CLOCK
+    ) -> None:
+        self.tap = LossyTap()
+        self.clock_watch = ClockWatch(start=start)
+        self.first: float | None = None
+        self.failure: BaseException | None = None
+        self._device = device
+        self._sink = sink
+        self._clock = clock
+        self._counters = Counters()
+        self._silent = False
+        self._done = threading.Event()
+        self._until = float("inf")
+        self._thread = threading.Thread(target=self._run, daemon=True, name=device.name)
+
+    @property
+    def name(self) -> str:
+        """Name of the stream."""
+        return self._device.name
+
+    @property
+    def counters(self) -> Counters:
+        """What happened to the stream, as of its last read."""
+        return self._counters
+
+    def start(self) -> None:
+        """Begin to read.
+
+        Raises:
+            RecordingError: The system allows no more threads.
+        """
+        with needing_threads():
+            self._thread.start()
+
+    def end_at(self, until: float) -> None:
+        """Read until then by itself, however late whoever would say so is [host time, s]."""
+        self._until = until
+
+    def ask_to_stop(self) -> None:
+        """Read once more what has arrived, then end; does not wait for that."""
+        self._done.set()
+
+    def stop(self) -> None:
+        """Read no more; waits for the read that is under way, which has a time limit."""
+        self._done.set()
+        if self._thread.is_alive():
+            self._thread.join(JOIN_LIMIT)
+            if self._thread.is_alive() and self.failure is None:
+                self.failure = RigTimeout("a read has not ended", waited=JOIN_LIMIT)
+
+    def _run(self) -> None:
+        device = self._device
+        try:
+            guard = SilenceGuard(self.name, limit=SILENCE, now=self._clock.now())
+            while self._clock.now() < self._until and not self._done.is_set():
+                if device.command is not None:
+                    device.command(self._clock.now())
+                self._read(guard, READ_WAIT)
+                if device.pause > 0:
+                    self._done.wait(min(device.pause, self._until - self._clock.now()))
+            if device.pause > 0:
+                self._read(guard, 0.0)  # what came during the pause
+        except BaseException as failure:  # noqa: BLE001, RUF100 - kept for the owner, who ends the run
+            self.failure = failure
+
+    def _read(self, guard: SilenceGuard, wait: float) -> None:
+        device = self._device
+        samples = device.stream.read(wait)
+        if samples:
+            if self.first is None:
+                self.first = samples[0].host_time
+            self._sink.write(self.name, samples)
+            self.tap.put(samples)
+            self.clock_watch.add(samples)
+            if device.check is not None:
+                device.check(samples)
+        self._watch(device.stream.counters)
+        self._listen(guard, samples)
+
+    def _watch(self, counters: Counters) -> None:
+        """Note what happened to the link."""
+        before, self._counters = self._counters, counters
+        for what in ("reconnected", "restarted"):
+            if getattr(counters, what) > getattr(before, what):
+                self._sink.event(f"{self.name}: {what}", level=WARNING)
+        if counters.lost > before.lost:
+            missing = counters.lost - before.lost
+            self._sink.event(f"{self.name}: {missing} samples lost", level=WARNING)
+
+    def _listen(self, guard: SilenceGuard, samples: Sequence[Sample]) -> None:
+        """Make one event of a silence, however long, and one of its end."""
+        try:
+            guard.check(samples, now=self._clock.now())
+        except RigTimeout as silence:
+            if not self._silent:
+                self._sink.event(f"{self.name}: silent ({silence})", level=WARNING)
+            self._silent = True
+        else:
+            if self._silent:
+                self._sink.event(f"{self.name}: sends again", level=WARNING)
+            self._silent = False
+
+
+@contextmanager
+def acquiring(
+    devices: Sequence[Device], *, sink: Sink, start: float, clock: Clock = SYSTEM_CLOCK
+) -> Iterator[Mapping[str, Acquisition]]:
+    """Read devices, already entered, for as long as the body runs.
+
+    Args:
+        devices: The devices.
+        sink: Who takes the samples.
+        start: Host time at which the run began [s].
+        clock: Host time.
+
+    Yields:
+        What reads each, by its name.
+
+    Raises:
+        RecordingError: The system allows no more threads.
+    """
+    readers = {d.name: Acquisition(d, sink=sink, start=start, clock=clock) for d in devices}
+    with ExitStack() as stack:
+        for device in devices:
+            if device.at_end is not None:
+                stack.callback(device.at_end)
+        for reader in readers.values():
+            stack.callback(reader.stop)
+            reader.start()
+        try:
+            yield readers
+        finally:
+            for reader in readers.values():
+                reader.ask_to_stop()  # all at once, so that their streams end together

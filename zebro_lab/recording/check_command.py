@@ -1,0 +1,83 @@
+# SPDX-License-Identifier: MIT
+"""`zebro-lab zebro check`: which channel is which leg, which way it turns, where its zero is."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from zebro_lab.terminal.messages import say
+
+if TYPE_CHECKING:
+    from rig.zebro.check import Observation
+
+app = typer.Typer(no_args_is_help=True, help="Work on the robot itself.")
+
+Address = Annotated[
+    str, typer.Argument(metavar="PROFILE@PORT", help="Robot; PROFILE@sim or sim is a twin.")
+]
+Save = Annotated[Path, typer.Option(metavar="FILE", help="Profile to write.")]
+Touchdown = Annotated[
+    float | None,
+    typer.Option("--lift-off-for", metavar="DEG",
+                 help="Also find the lift-off angle whose hip height is this touchdown's [deg]."),
+]  # fmt: skip
+
+
+@app.callback()
+def zebro() -> None:
+    """Work on the robot itself."""
+
+
+@app.command()
+def check(
+    address: Address, save: Save = Path("zebro.toml"), lift_off_for: Touchdown = None
+) -> None:
+    """Fix leg order, signs and zeros; the robot stands on a block, its legs free to turn."""
+    from zebro_lab.recording.check_stage import CheckRequest, check_zebro
+
+    request = CheckRequest(address, save, lift_off_for)
+    checked = check_zebro(request, _Terminal())
+    if checked.lift_off is not None:
+        say(
+            f"lift-off at {checked.lift_off.theta_deg:.1f} degrees, hip "
+            f"{1e3 * checked.lift_off.mismatch:+.1f} mm from its height at touchdown"
+        )
+    say(f"wrote {checked.file}; name it as --zebro {checked.file}@PORT")
+
+
+class _Terminal:
+    """Asks the person at the terminal; satisfies `Person`."""
+
+    def watch(self, channel: int) -> "Observation":
+        """Ask what moved."""
+        from rig.zebro.check import Observation
+
+        leg = typer.prompt(
+            f"channel {channel + 1} moved; which leg was it (1 to 6)?", value_proc=_leg_number
+        )
+        return Observation(leg, typer.confirm("did it turn as in walking forward?"))
+
+    def hold_toes_ahead(self) -> None:
+        """Wait until every toe points straight ahead."""
+        typer.prompt(
+            "turn every toe straight ahead and hold it; Enter", default="", show_default=False
+        )
+
+    def measure_height(self, theta_deg: float) -> float:
+        """Ask for the height of the hip above the ground."""
+        asked = f"leg 1 stands at {theta_deg:.1f} degrees; hip height in mm?"
+        return typer.prompt(asked, value_proc=_number) / 1000
+
+
+def _leg_number(text: str) -> int:
+    if text not in {"1", "2", "3", "4", "5", "6"}:
+        raise typer.BadParameter(f"found '{text}'; expected 1 to 6")
+    return int(text)
+
+
+def _number(text: str) -> float:
+    try:
+        return float(text)
+    except ValueError as error:
+        raise typer.BadParameter(f"found '{text}'; expected a number") from error

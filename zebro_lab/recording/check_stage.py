@@ -1,0 +1,136 @@
+# SPDX-License-Identifier: MIT
+"""A robot and a person who watches it in, a profile out."""
+
+import math
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any, Final, Protocol
+
+import numpy as np
+
+from rig.backends import leg_driver, leg_link
+from rig.clock import SYSTEM_CLOCK, Clock
+from rig.twins import simulated_legs
+from rig.zebro.check import Observation, check_legs, find_lift_off, latest_counts, zero_legs
+from rig.zebro.profile import LegProfile, encode_counts, load_leg_profile, save_leg_profile
+from zebro_lab.files.errors import AlreadyExists
+from zebro_lab.recording.devices import LEGS_PROFILE, SIMULATED, default_gait, resolve
+
+MOVING: Final = 1.0
+"""How long a leg is given to turn to an angle [s]."""
+
+
+class Person(Protocol):
+    """Who watches the robot."""
+
+    def watch(self, channel: int) -> Observation:
+        """Say which leg moved with a channel, and which way."""
+        ...
+
+    def hold_toes_ahead(self) -> None:
+        """Return when every toe points straight ahead."""
+        ...
+
+    def measure_height(self, theta_deg: float) -> float:
+        """Measure the height of a hip whose leg stands at an angle [deg], above the ground [m]."""
+        ...
+
+
+@dataclass(frozen=True)
+class CheckRequest:
+    """What is asked of a check.
+
+    Attributes:
+        address: `PROFILE@PORT`, `PROFILE@sim` or `sim`.
+        save: Profile to write.
+        touchdown_deg: Touchdown angle to find the lift-off angle of; None to leave that [deg].
+    """
+
+    address: str
+    save: Path
+    touchdown_deg: float | None = None
+
+
+@dataclass(frozen=True)
+class LiftOffFound:
+    """Lift-off angle [deg] and how much higher the hip is than at touchdown [m]."""
+
+    theta_deg: float
+    mismatch: float
+
+
+@dataclass(frozen=True)
+class Checked:
+    """Result of a check.
+
+    Attributes:
+        file: Profile written.
+        profile: The same.
+        lift_off: Where it was asked for.
+    """
+
+    file: Path
+    profile: LegProfile
+    lift_off: LiftOffFound | None = None
+
+
+def check_zebro(request: CheckRequest, person: Person, *, clock: Clock = SYSTEM_CLOCK) -> Checked:
+    """Find order, signs and zeros of a robot's legs and write its profile.
+
+    Raises:
+        AlreadyExists: The file to write is there already.
+        RigError: The robot cannot be reached, sends nothing, or does not follow.
+    """
+    if request.save.exists():
+        raise AlreadyExists(f"{request.save} exists already; name another --save")
+    with _robot(request.address) as robot:
+        # The driver's own profile stays as it is: both steps speak of channels of the wire.
+        ordered = check_legs(robot, person.watch, clock=clock)
+        person.hold_toes_ahead()
+        zeros = zero_legs(robot, clock=clock).zero_counts
+        profile = replace(ordered, zero_counts=zeros, name=request.save.stem)
+        save_leg_profile(profile, request.save)
+        found = None
+        if request.touchdown_deg is not None:
+            found = _lift_off(robot, profile, request.touchdown_deg, person, clock)
+    return Checked(request.save, profile, found)
+
+
+@contextmanager
+def _robot(address: str) -> Iterator[Any]:
+    name, port = resolve(address, default=LEGS_PROFILE)
+    profile = load_leg_profile(name)
+    if port == SIMULATED:
+        rng = np.random.default_rng(0)
+        with simulated_legs(profile, default_gait(), rng=rng) as robot, robot:
+            robot.set_points(latest_counts_as_targets(robot), 0.0)
+            yield robot
+        return
+    with leg_driver(profile, leg_link(profile, port)) as robot:
+        yield robot
+
+
+def latest_counts_as_targets(robot: Any) -> tuple[int, ...]:
+    """Return where the legs are, as set-points: to make a robot that walks stand still."""
+    around = robot.profile.counts_per_revolution
+    return tuple(int(count) % around for count in latest_counts(robot))
+
+
+def _lift_off(
+    robot: Any, profile: LegProfile, touchdown_deg: float, person: Person, clock: Clock
+) -> LiftOffFound:
+    def height(theta: float) -> float:
+        robot.set_points(encode_counts(profile, [theta] * len(profile.legs)), MOVING)
+        end = clock.now() + MOVING
+        while clock.now() < end:
+            robot.read(min(0.05, max(end - clock.now(), 0.0)))
+        return person.measure_height(math.degrees(theta))
+
+    found = find_lift_off(
+        height,
+        math.radians(touchdown_deg),
+        counts_per_revolution=profile.counts_per_revolution,
+    )
+    return LiftOffFound(math.degrees(found.theta), found.mismatch)

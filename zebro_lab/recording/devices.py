@@ -1,0 +1,271 @@
+# SPDX-License-Identifier: MIT
+"""The devices a command line names, real or simulated, ready to be recorded."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import ExitStack, contextmanager
+from dataclasses import asdict, dataclass, field
+from pathlib import Path
+from typing import Any, Final
+
+import numpy as np
+
+from model.gait.reference import LegReference
+from rig.backends import RigDevices, leg_driver, leg_link, open_imu, open_rig
+from rig.device import Sample
+from rig.imu.profile import load_imu_profile
+from rig.profile import shipped_file, split_address
+from rig.safety import SampleGuard
+from rig.sample_columns import as_columns
+from rig.slip_rig.imperfections import TYPICAL_RIG
+from rig.slip_rig.profile import RigProfile, load_rig_profile
+from rig.slip_rig.simulated import RigDynamics, SimulatedRig, simulated_rig
+from rig.slip_rig.sweep import SweepPlan
+from rig.twins import simulated_imu, simulated_legs, simulated_rig_devices
+from rig.zebro.profile import load_leg_profile
+from zebro_lab.files.errors import SettingsError
+from zebro_lab.mcap.stream_views import BoardView, DrivesView, ImuView, LegsView, LoadCellView
+from zebro_lab.recording.acquisition import Device
+from zebro_lab.robot.gait_argument import GaitRequest, make_gait
+from zebro_lab.robot.gait_player import GaitPlayer
+from zebro_lab.runs.slip_rig_decoding import RIG
+
+SIMULATED: Final = "sim"
+"""In place of a port, or of PROFILE@PORT, this is a simulated twin."""
+LEGS_PROFILE: Final = "zebro-100-serial"
+IMU_PROFILE: Final = "imu-quaternion-serial"
+RIG_PROFILE: Final = "rig-odrive-netft"
+PAUSE: Final = 0.053
+"""Between two reads of a device that tells time: the system keeps what comes meanwhile, and with
+the wait of the recorder this stays well below the 200 ms that a killed run may lack. No multiple of
+a usual period, so that samples are read at every age: the least late tell the clocks apart [s]."""
+TWIN_SWEEP: Final = SweepPlan(slips=tuple(np.linspace(0.0, 0.9, 16) ** 1.5), duration=1.0)
+"""What a simulated rig sweeps: all slips in 16 s at each of four loads."""
+
+
+@dataclass(frozen=True)
+class DevicesRequest:
+    """Which devices are asked for; None and nothing where none is.
+
+    Attributes:
+        zebro: `PROFILE@PORT`, `PROFILE@sim` or `sim`.
+        imus: The same, each.
+        rig: The same.
+        play: Gait whose set-points the robot is sent.
+        seed: Of the randomness of simulated devices.
+    """
+
+    zebro: str | None = None
+    imus: Sequence[str] = ()
+    rig: str | None = None
+    play: LegReference | None = None
+    seed: int = 0
+
+
+@dataclass(frozen=True)
+class OpenDevices:
+    """Devices, entered.
+
+    Attributes:
+        devices: The devices.
+        profiles: Name and text of each profile, by the name a run keeps it under.
+        constants: Radii of the rig's discs [m].
+        truth: What simulated devices know to be true.
+    """
+
+    devices: tuple[Device, ...]
+    profiles: Mapping[str, tuple[str, str]]
+    constants: Mapping[str, float] = field(default_factory=dict)
+    truth: Mapping[str, Any] = field(default_factory=dict)
+
+
+@contextmanager
+def open_devices(request: DevicesRequest) -> Iterator[OpenDevices]:
+    """Open every device asked for, and leave each at the end: what it drives is de-energised.
+
+    Args:
+        request: Which devices.
+
+    Yields:
+        The devices, their drivers entered.
+
+    Raises:
+        SettingsError: None is asked for, or a gait is to be played to no robot.
+        RigError: An address, a profile or a port is not right.
+    """
+    _require_any(request)
+    rng = np.random.default_rng(request.seed)
+    opened = _Opened()
+    with ExitStack() as stack:
+        if request.zebro is not None:
+            _add_legs(opened, stack, request.zebro, request.play, rng)
+        names = ["imu"] if len(request.imus) == 1 else [f"imu{i + 1}" for i, _ in
+                                                        enumerate(request.imus)]  # fmt: skip
+        for name, address in zip(names, request.imus, strict=True):
+            _add_imu(opened, stack, name, address, rng)
+        if request.rig is not None:
+            _add_rig(opened, stack, request.rig, rng)
+        for device in opened.devices:
+            stack.enter_context(device.stream)
+        yield OpenDevices(tuple(opened.devices), opened.profiles, opened.constants, opened.truth)
+
+
+def default_gait() -> LegReference:
+    """Return the gait that a simulated robot walks unless it is told otherwise."""
+    return make_gait(GaitRequest(), leg_arc=np.pi).reference
+
+
+def twin_rig(rng: np.random.Generator) -> SimulatedRig:
+    """Make the simulated rig behind `sim`: it sweeps `TWIN_SWEEP` by itself."""
+    return simulated_rig(
+        plan=TWIN_SWEEP, imperfections=TYPICAL_RIG, dynamics=RigDynamics(ripple=0.005), rng=rng
+    )
+
+
+def resolve(address: str, *, default: str) -> tuple[str, str]:
+    """Split an address into profile and port; `sim` alone is the default profile's twin.
+
+    >>> resolve("sim", default="zebro-100-serial")
+    ('zebro-100-serial', 'sim')
+    """
+    return (default, SIMULATED) if address == SIMULATED else split_address(address)
+
+
+def profile_text(name: str) -> str:
+    """Read the TOML of a profile, shipped or a file."""
+    path = Path(name)
+    return (path if path.is_file() else shipped_file(f"{name}.toml")).read_text(encoding="utf-8")
+
+
+@dataclass
+class _Opened:
+    """What has been opened so far."""
+
+    devices: list[Device] = field(default_factory=list)
+    profiles: dict[str, tuple[str, str]] = field(default_factory=dict)
+    constants: dict[str, float] = field(default_factory=dict)
+    truth: dict[str, Any] = field(default_factory=dict)
+
+
+def _require_any(request: DevicesRequest) -> None:
+    if request.zebro is None and request.rig is None and not request.imus:
+        raise SettingsError("no device to record; name one with --zebro, --imu or --rig")
+    if request.play is not None and request.zebro is None:
+        raise SettingsError("there is no robot to play to; name one with --zebro", key="--play")
+
+
+def _add_legs(
+    opened: _Opened,
+    stack: ExitStack,
+    address: str,
+    play: LegReference | None,
+    rng: np.random.Generator,
+) -> None:
+    name, port = resolve(address, default=LEGS_PROFILE)
+    profile = load_leg_profile(name)
+    if port == SIMULATED:
+        gait = play or default_gait()
+        legs = stack.enter_context(simulated_legs(profile, gait, rng=rng))
+    else:
+        legs = leg_driver(profile, leg_link(profile, port))
+    player = None if play is None else GaitPlayer(legs, play, profile)
+    opened.devices.append(
+        Device(
+            legs,
+            LegsView("legs", profile=profile),
+            command=player,
+            at_end=None if player is None else legs.stop,
+            pause=PAUSE if player is None and profile.layout == "packet" else 0.0,
+        )
+    )
+    opened.profiles["legs"] = (profile.name, profile_text(name))
+
+
+def _add_imu(
+    opened: _Opened, stack: ExitStack, stream: str, address: str, rng: np.random.Generator
+) -> None:
+    name, port = resolve(address, default=IMU_PROFILE)
+    profile = load_imu_profile(name)
+    if port == SIMULATED:
+        unit = stack.enter_context(simulated_imu(profile, rng=rng, name=stream))
+    else:
+        unit = open_imu(address, name=stream)
+    opened.devices.append(Device(unit, ImuView(stream, profile=profile), pause=PAUSE))
+    opened.profiles[stream] = (profile.name, profile_text(name))
+
+
+def _add_rig(opened: _Opened, stack: ExitStack, address: str, rng: np.random.Generator) -> None:
+    name, port = resolve(address, default=RIG_PROFILE)
+    profile = load_rig_profile(name)
+    if port == SIMULATED:
+        rig = twin_rig(rng)
+        devices = stack.enter_context(simulated_rig_devices(profile, rig, buffered=True, rng=rng))
+        opened.truth["rig"] = rig.description() | {"sweep": asdict(TWIN_SWEEP)}
+    else:
+        devices = open_rig(address, buffered=True)  # nothing moves by what is recorded
+    opened.devices += _of_rig(profile, devices)
+    opened.profiles[RIG] = (profile.name, profile_text(name))
+    opened.constants |= {"radius_leg": profile.radius_leg, "radius_ground": profile.radius_ground}
+
+
+def _of_rig(profile: RigProfile, rig: RigDevices) -> Iterator[Device]:
+    check = ForceCheck(profile)
+    if rig.board is not None and profile.board is not None:
+        view = BoardView(rig.board.name, profile=profile.board)
+        yield Device(rig.board, view, check, pause=PAUSE)
+    if rig.drives is not None and profile.drives is not None:
+        yield Device(rig.drives, DrivesView(rig.drives.name, profile=profile.drives))
+    if rig.load_cell is not None and profile.load_cell is not None:
+        view = LoadCellView(rig.load_cell.name, profile=profile.load_cell)
+        yield Device(rig.load_cell, view, check, pause=PAUSE)
+
+
+class ForceCheck:
+    """Watches the forces of a rig in every sample; to be called with what a read gave.
+
+    Args:
+        profile: Profile of the rig: axes, scale and limits.
+    """
+
+    def __init__(self, profile: RigProfile) -> None:
+        limits = (profile.limits.normal_force, profile.limits.traction_force)
+        self._guards = [
+            SampleGuard(limit, quantity=f"{name} force", unit="N")
+            for name, limit in zip(("normal", "traction"), limits, strict=True)
+        ]
+        self._channels = _force_channels(profile)
+
+    def __call__(self, samples: Sequence[Sample]) -> None:
+        """Check samples.
+
+        Raises:
+            LimitExceeded: Several in a row are beyond a limit.
+        """
+        counts = as_columns(samples).counts
+        for guard, channel in zip(self._guards, self._channels, strict=True):
+            guard.check_all(counts[:, channel.index] / (channel.sign * channel.counts_per_newton))
+
+
+@dataclass(frozen=True)
+class _ForceChannel:
+    """Where a force is found among a device's counts."""
+
+    index: int
+    sign: int
+    counts_per_newton: float
+
+
+def _force_channels(profile: RigProfile) -> tuple[_ForceChannel, _ForceChannel]:
+    board, cell = profile.board, profile.load_cell
+    if board is not None:
+        scale = board.counts_per_force
+        return (
+            _ForceChannel(0, board.normal_sign, scale),
+            _ForceChannel(1, board.traction_sign, scale),
+        )
+    if cell is None:
+        raise SettingsError(f"profile '{profile.name}' has no load cell", key="--rig")
+    scale = cell.counts_per_force
+    return (
+        _ForceChannel(cell.normal.index, cell.normal.sign, scale),
+        _ForceChannel(cell.traction.index, cell.traction.sign, scale),
+    )

@@ -1,0 +1,288 @@
+# SPDX-License-Identifier: MIT
+"""What of this machine fits and what does not: versions, packages, ports, buses, disk."""
+
+import os
+import platform
+import shutil
+import sys
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from enum import StrEnum
+from importlib.machinery import PathFinder
+from importlib.metadata import PackageNotFoundError, distribution, packages_distributions, requires
+from pathlib import Path
+from typing import Final
+
+from packaging.requirements import Requirement
+
+from zebro_lab.recording.recorder import LEAST_FREE
+
+LEAST_PYTHON: Final = (3, 11)
+OURS: Final = ("zebro_lab", "rig", "tracking", "model")
+FOREIGN: Final = {"serial": "pyserial", "can": "python-can", "cv2": "opencv-python-headless"}
+"""Modules whose names others use too, and the package that each must come from."""
+OPTIONAL_PROGRAMS: Final = {
+    "ffmpeg": "films in mp4 (`--animate`); without it they are gif",
+    "heif-convert": "turning HEIC photographs into JPEG for `track`",
+}
+OPTIONAL_PACKAGES: Final = {
+    "evo": "judging track.tum by somebody else's metrics",
+    "mujoco": "making datasets/walk-sim anew, and `make bench`",
+    "numpyro": "`make bench`, which compares samplers",
+}
+COMFORTABLE: Final = 2 << 30
+"""Free space below which a person should know [bytes]: hours of recording."""
+UDP_BUFFER: Final = 4 << 20
+"""What `rig.links.udp` asks of the system [bytes]."""
+NET: Final = Path("/sys/class/net")
+CAN_TYPE: Final = "280"
+"""What Linux calls the hardware type of a CAN interface."""
+
+
+class State(StrEnum):
+    """How a finding is to be taken."""
+
+    OK = "ok"
+    NOTE = "note"
+    BROKEN = "BROKEN"
+
+
+@dataclass(frozen=True)
+class Finding:
+    """One thing that was looked at.
+
+    Attributes:
+        state: Whether it is as it should be.
+        what: What was looked at.
+        text: What was found, and what to do about it.
+    """
+
+    state: State
+    what: str
+    text: str
+
+
+def examine(data: Path) -> Iterator[Finding]:
+    """Look at everything, one finding after the other.
+
+    Args:
+        data: Folder that recordings are to go to, or would.
+    """
+    yield check_python(sys.version_info[:3])
+    yield from check_requirements(requires("zebro-lab") or ())
+    yield from check_shadows(Path.cwd(), sys.path)
+    yield from check_serial_ports()
+    yield from check_can(NET)
+    yield from check_udp(Path("/proc/sys/net/core/rmem_max"))
+    yield check_disk(data)
+    yield from check_optional()
+
+
+def check_python(version: tuple[int, ...]) -> Finding:
+    """Check the interpreter."""
+    found = f"{'.'.join(map(str, version))} on {platform.system()} {platform.machine()}"
+    if version[:2] < LEAST_PYTHON:
+        wanted = ".".join(map(str, LEAST_PYTHON))
+        return Finding(State.BROKEN, "python", f"{found}; needs {wanted} or later")
+    return Finding(State.OK, "python", found)
+
+
+def check_requirements(needed: Sequence[str]) -> Iterator[Finding]:
+    """Check that every package that is needed is there in a version that fits.
+
+    Args:
+        needed: Requirements as package metadata spells them.
+    """
+    fitting = []
+    for requirement in map(Requirement, needed):
+        if requirement.marker is not None and not requirement.marker.evaluate({"extra": ""}):
+            continue
+        found = _version(requirement.name)
+        if found is None:
+            yield Finding(State.BROKEN, requirement.name,
+                          f"missing: install it with `pip install '{requirement}'`")  # fmt: skip
+        elif not requirement.specifier.contains(found, prereleases=True):
+            yield Finding(State.BROKEN, requirement.name,
+                          f"found {found}; `pip install '{requirement}'`")  # fmt: skip
+        else:
+            fitting.append(f"{requirement.name} {found}")
+    yield Finding(State.OK, "packages", ", ".join(fitting))
+
+
+def check_shadows(folder: Path, search: Sequence[str]) -> Iterator[Finding]:
+    """Check that every module comes from the package it should come from.
+
+    Args:
+        folder: Working folder, which `python` puts in front of everything.
+        search: Where modules are searched for.
+    """
+    home = Path(__file__).parents[1]
+    for module in OURS:
+        yield _from(module, home / module, search)
+    providers = packages_distributions()
+    for module, package in FOREIGN.items():
+        if (installed := _version(package)) is not None:
+            place = Path(str(distribution(package).locate_file(module)))
+            yield _from(module, place, search, of=f"{package} {installed}")
+        others = sorted(set(providers.get(module, ())) - {package})
+        if others:
+            yield Finding(
+                State.BROKEN, f"module {module}",
+                f"comes from {package} and {', '.join(others)}: `pip uninstall {' '.join(others)}`,"
+                f" then `pip install --force-reinstall {package}`",
+            )  # fmt: skip
+    yield from _local_shadows(folder, home)
+
+
+def check_serial_ports() -> Iterator[Finding]:
+    """List serial ports and check the right to open them."""
+    from serial.tools import list_ports
+
+    ports = sorted(list_ports.comports())
+    if not ports:
+        yield Finding(State.NOTE, "serial ports", "none found; plug the device in, or use a twin "
+                      "(`zebro-lab sim zebro`)")  # fmt: skip
+    for port in ports:
+        yield check_port(Path(port.device), port.description)
+
+
+def check_port(
+    device: Path, description: str, *, may: Callable[[Path, int], bool] = os.access
+) -> Finding:
+    """Check the right to open one port.
+
+    Args:
+        device: The port.
+        description: What the system says of it.
+        may: Tells whether a file may be read and written.
+    """
+    what = f"serial port {device}"
+    if sys.platform == "win32" or may(device, os.R_OK | os.W_OK):
+        return Finding(State.OK, what, f"{description}, may be opened")
+    group = _group(device)
+    return Finding(
+        State.NOTE, what,
+        f"{description}, may not be opened; it is the group {group}'s: "
+        f"`sudo usermod -aG {group} $USER`, then log in again",
+    )  # fmt: skip
+
+
+def check_can(net: Path) -> Iterator[Finding]:
+    """List the CAN interfaces of Linux and tell whether they are up.
+
+    Args:
+        net: Folder of the system's network interfaces.
+    """
+    found = [place for place in sorted(net.glob("*")) if _read(place / "type") == CAN_TYPE]
+    if not found:
+        yield Finding(
+            State.NOTE, "CAN", "no interface found; an adapter on a serial line needs none "
+            "(PROFILE@slcan:/dev/ttyACM0), nor does a twin (`zebro-lab sim rig rig-odrive-netft`)",
+        )  # fmt: skip
+    for place in found:
+        up = int(_read(place / "flags") or "0", 16) & 1
+        name = place.name
+        text = f"up: PROFILE@socketcan:{name}" if up else (
+            f"down; `sudo ip link set {name} up type can bitrate 1000000`")  # fmt: skip
+        yield Finding(State.OK if up else State.NOTE, f"CAN {name}", text)
+
+
+def check_udp(limit: Path) -> Iterator[Finding]:
+    """Check how much of a fast load cell's data the system keeps while nobody reads.
+
+    Args:
+        limit: File in which Linux says so.
+    """
+    text = _read(limit)
+    if text is None:
+        return
+    granted = int(text)
+    if granted >= UDP_BUFFER:
+        yield Finding(State.OK, "UDP buffer", f"{granted >> 10} KiB")
+        return
+    yield Finding(
+        State.NOTE, "UDP buffer",
+        f"the system grants {granted >> 10} KiB; a load cell at 7 kHz may lose samples when the "
+        f"machine is busy: `sudo sysctl net.core.rmem_max={UDP_BUFFER}`",
+    )  # fmt: skip
+
+
+def check_disk(data: Path) -> Finding:
+    """Check the room for recordings, and the right to write them.
+
+    Args:
+        data: Folder that they go to; need not exist.
+    """
+    place = next(
+        folder for folder in (data.absolute(), *data.absolute().parents) if folder.is_dir()
+    )
+    free = shutil.disk_usage(place).free
+    text = f"{free / 1e9:.1f} GB free at {place}"
+    if not os.access(place, os.W_OK):
+        return Finding(State.BROKEN, "disk", f"{place} cannot be written; name another --data")
+    if free < LEAST_FREE:
+        return Finding(State.BROKEN, "disk", f"{text}; recording needs {LEAST_FREE / 1e6:.0f} MB")
+    if free < COMFORTABLE:
+        return Finding(State.NOTE, "disk", f"{text}; a load cell at 7 kHz fills 0.3 GB an hour")
+    return Finding(State.OK, "disk", text)
+
+
+def check_optional() -> Iterator[Finding]:
+    """Tell of what is not needed, and what for it would be."""
+    for program, purpose in OPTIONAL_PROGRAMS.items():
+        found = shutil.which(program)
+        yield Finding(State.OK if found else State.NOTE, program,
+                      found or f"not found; only needed for {purpose}")  # fmt: skip
+    for package, purpose in OPTIONAL_PACKAGES.items():
+        version = _version(package)
+        yield Finding(State.OK if version else State.NOTE, package,
+                      version or f"not installed; only needed for {purpose}")  # fmt: skip
+
+
+def _from(module: str, place: Path, search: Sequence[str], of: str = "ours") -> Finding:
+    spec = PathFinder.find_spec(module, list(search))
+    origin = None if spec is None or spec.origin is None else Path(spec.origin)
+    if origin is None and module in OURS:  # an editable installation is found by its own finder
+        loaded = sys.modules.get(module) or __import__(module)
+        origin = Path(str(loaded.__file__))
+    what = f"module {module}"
+    if origin is not None and origin.resolve().is_relative_to(place.resolve()):
+        return Finding(State.OK, what, of)
+    return Finding(
+        State.BROKEN, what,
+        f"comes from {origin}, expected {place}: something of the same name shadows it; remove or "
+        "rename it, or install zebro-lab into an environment of its own",
+    )  # fmt: skip
+
+
+def _local_shadows(folder: Path, home: Path) -> Iterator[Finding]:
+    for module in (*OURS, *FOREIGN):
+        for place in (folder / f"{module}.py", folder / module):
+            ours = module in OURS and place.resolve().is_relative_to(home.resolve())
+            shadows = place.is_file() or (place / "__init__.py").is_file()
+            if shadows and not ours:
+                yield Finding(
+                    State.NOTE, f"module {module}",
+                    f"{place} would be taken for it by any `python` started here; rename it",
+                )  # fmt: skip
+
+
+def _version(package: str) -> str | None:
+    try:
+        return distribution(package).version
+    except PackageNotFoundError:
+        return None
+
+
+def _group(device: Path) -> str:
+    try:
+        return device.group()
+    except (OSError, KeyError, NotImplementedError):
+        return "dialout"
+
+
+def _read(file: Path) -> str | None:
+    try:
+        return file.read_text(encoding="ascii").strip()
+    except (OSError, UnicodeDecodeError):
+        return None

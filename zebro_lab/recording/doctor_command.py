@@ -1,0 +1,34 @@
+# SPDX-License-Identifier: MIT
+"""`zebro-lab doctor`: what of this machine fits, and what to do about the rest."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from zebro_lab.terminal.messages import say
+
+EPILOG = """
+Examples:
+
+zebro-lab doctor
+
+zebro-lab doctor --data /mnt/recordings
+
+Exit code 1 where something that is needed is broken; notes are only for those whom they concern.
+"""
+
+Data = Annotated[Path, typer.Option(metavar="DIR", help="Folder that recordings go to.")]
+
+
+def doctor(data: Data = Path()) -> None:
+    """Look at versions, packages, serial ports, CAN interfaces, disk and optional programs."""
+    from zebro_lab.recording.doctor import State, examine
+
+    broken = 0
+    for finding in examine(data):
+        broken += finding.state is State.BROKEN
+        say(f"{finding.state:<6}  {finding.what}: {finding.text}")
+    say(f"{broken} broken" if broken else "everything needed is there")
+    if broken:
+        raise typer.Exit(1)

@@ -1,0 +1,186 @@
+# SPDX-License-Identifier: MIT
+"""What is seen of a recording: counters on a terminal, silence in a pipe; and how to end it."""
+
+import contextlib
+import errno
+import os
+import select
+import signal
+import sys
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from types import FrameType
+from typing import TYPE_CHECKING, Any, Final
+
+from rich.console import Console, Group
+from rich.live import Live
+from rich.progress_bar import ProgressBar
+from rich.table import Table
+from rich.text import Text
+
+from zebro_lab.terminal.last_words import in_time
+from zebro_lab.terminal.messages import plain
+
+if TYPE_CHECKING:
+    from zebro_lab.recording.stage import RecordStatus
+
+STOP_KEYS: Final = b"qQ\x1b"
+DRAW_EVERY: Final = 0.125
+_HANGUP: Final = getattr(signal, "SIGHUP", None)
+
+
+class RecordScreen:
+    """A watcher that draws, and hears signals and keys; satisfies `RecordWatcher`.
+
+    Args:
+        live: Where to draw; None draws nothing.
+        keys: Where keys are typed; None where nobody can.
+
+    Attributes:
+        signalled: A signal, or a terminal that was closed, ended the recording.
+    """
+
+    def __init__(self, live: Live | None, keys: Any = None) -> None:
+        self.signalled = False
+        self._live = live
+        self._keys = keys
+        self._reason: str | None = None
+        self._asked = False
+        self._drawn = float("-inf")
+        # `nohup` and its kin: whoever ignores hangups wants to outlive the terminal.
+        self._outlives = _HANGUP is not None and signal.getsignal(_HANGUP) == signal.SIG_IGN
+
+    def show(self, status: "RecordStatus") -> None:
+        """Draw how the recording is doing; in another thread than the rest."""
+        if self._live is None or time.monotonic() - self._drawn < DRAW_EVERY:
+            return
+        try:
+            if not self._live.is_started:
+                self._live.start()
+            self._live.update(_drawn(status), refresh=True)
+        except OSError as error:
+            if error.errno == errno.EIO:
+                self._hang_up()
+            raise
+        self._drawn = time.monotonic()
+
+    def stop_reason(self) -> str | None:
+        """Say which signal or key asked for the end; None where none did."""
+        typed = self._typed()
+        if any(key in STOP_KEYS for key in typed):
+            self._reason = self._reason or "key"
+        return self._reason
+
+    def request_stop(self, number: int, _frame: FrameType | None) -> None:
+        """Note a signal; a second one is obeyed at once, unless it is told of a lost connection.
+
+        That is told several times: by the terminal, the shell and the service.
+        """
+        if number != _HANGUP:
+            if self._asked:
+                raise KeyboardInterrupt
+            self._asked = True
+        self.signalled = True
+        self._reason = self._reason or signal.Signals(number).name
+
+    def close(self) -> bool:
+        """End the drawing; tell whether the terminal took that in time."""
+        live, self._live = self._live, None
+        return live is None or in_time(live.stop)
+
+    def _typed(self) -> bytes:
+        """Take the bytes that were typed, whatever they are; a keyboard that is gone is a stop."""
+        if self._keys is None:
+            return b""
+        try:
+            if not select.select([self._keys], [], [], 0)[0]:
+                return b""
+            typed = os.read(self._keys.fileno(), 4096)
+        except BlockingIOError:
+            return b""
+        except (OSError, ValueError):
+            typed = b""
+        if not typed:
+            self._keys = None
+            self._hang_up()
+        return typed
+
+    def _hang_up(self) -> None:
+        if not self._outlives:
+            self.signalled = True
+            self._reason = self._reason or "terminal closed"
+
+
+@contextmanager
+def record_screen(console: Console) -> Iterator[RecordScreen]:
+    """Watch a recording while the body runs; nothing here waits for the terminal.
+
+    Args:
+        console: Where to draw; nothing is drawn, and no key heard, unless it is a terminal.
+
+    Yields:
+        The watcher to hand to the stage.
+    """
+    with contextlib.ExitStack() as stack:
+        screen = RecordScreen(None)
+        if console.is_terminal:
+            # Drawn by who calls `show` alone: a thread of its own would hold the lock of a terminal
+            # that is stopped.
+            live = Live(
+                console=console, transient=True, auto_refresh=False, redirect_stdout=False,
+                redirect_stderr=False,
+            )  # fmt: skip
+            screen = RecordScreen(live, stack.enter_context(_single_keys()))
+            stack.callback(screen.close)
+        numbers = [signal.SIGINT, signal.SIGTERM]
+        if _HANGUP is not None and signal.getsignal(_HANGUP) != signal.SIG_IGN:
+            numbers.append(_HANGUP)
+        earlier = {number: signal.signal(number, screen.request_stop) for number in numbers}
+        try:
+            yield screen
+        finally:
+            for number, handler in earlier.items():
+                signal.signal(number, handler)
+
+
+@contextmanager
+def _single_keys() -> Iterator[Any]:
+    """Hear keys without Enter; yields None where stdin is no terminal, and on Windows."""
+    if sys.platform == "win32" or not sys.stdin.isatty():
+        yield None
+        return
+    import termios
+    import tty
+
+    before = termios.tcgetattr(sys.stdin)
+    try:
+        tty.setcbreak(sys.stdin, termios.TCSANOW)  # to wait for output to drain may be for ever
+        yield sys.stdin
+    finally:
+        with contextlib.suppress(termios.error):  # the terminal is gone
+            termios.tcsetattr(sys.stdin, termios.TCSANOW, before)
+
+
+def _drawn(status: "RecordStatus") -> Group:
+    table = Table(box=None, pad_edge=False)
+    table.add_column("stream")
+    for column in ("rate [Hz]", "received", "lost", "rejected", "dropped"):
+        table.add_column(column, justify="right")
+    for name, stream in status.streams.items():
+        simulated = " SIMULATED" if stream.source.startswith("sim:") else ""
+        table.add_row(
+            plain(name + simulated), f"{stream.rate:.0f}", f"{stream.counters.received}",
+            f"{stream.counters.lost}", f"{stream.counters.rejected}", f"{stream.dropped}",
+        )  # fmt: skip
+    return Group(table, _time(status))
+
+
+def _time(status: "RecordStatus") -> Group:
+    if status.duration is None:
+        return Group(Text(f"{status.elapsed:.0f} s; q ends the recording"))
+    left = max(status.duration - status.elapsed, 0.0)
+    return Group(
+        ProgressBar(total=status.duration, completed=status.elapsed, width=40),
+        Text(f"{status.elapsed:.0f} of {status.duration:g} s, {left:.0f} s left; q ends it now"),
+    )

@@ -1,0 +1,210 @@
+# SPDX-License-Identifier: MIT
+"""Simulated devices at ports that any program can open."""
+
+import tempfile
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack, contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import cast
+
+import can
+import numpy as np
+import tomlkit
+
+from model.gait.reference import LegReference
+from rig.clock import SYSTEM_CLOCK, Clock
+from rig.imu.profile import load_imu_profile
+from rig.imu.simulated import SimulatedImu
+from rig.links.byte_link import ByteTwin
+from rig.links.faults import Faults
+from rig.links.serve import PortServer, Ticker
+from rig.links.slcan import SlcanAdapter
+from rig.slip_rig.profile import load_rig_profile
+from rig.slip_rig.simulated_board import SimulatedBoard
+from rig.slip_rig.simulated_drives import SimulatedDrives
+from rig.slip_rig.simulated_load_cell import SimulatedLoadCell
+from rig.twins import robot_twin
+from rig.zebro.profile import load_leg_profile
+from rig.zebro.simulated import CanRobot
+from rig.zebro.simulated_legs import RobotImperfections, SimulatedLegs
+from zebro_lab.files.atomic import atomic_write_text
+from zebro_lab.files.errors import SettingsError
+from zebro_lab.recording.devices import default_gait, profile_text, twin_rig
+from zebro_lab.runs.legs import read_leg_log
+
+WATCHDOG = 0.2
+
+
+@dataclass(frozen=True)
+class TwinRequest:
+    """Which device is to be simulated, and what is to go wrong.
+
+    Attributes:
+        profile: Name or path of its profile.
+        play: Leg angles that the robot walks; None for a tripod.
+        can: Bus `INTERFACE:CHANNEL` for devices on CAN; None for a simulated adapter on a serial
+            line, which speaks SLCAN.
+        as_socket: Listen on `socket://` in place of a pseudo-terminal.
+        faults: What goes wrong on the line.
+        imperfections: How the robot departs from its gait.
+        seed: Of the randomness.
+    """
+
+    profile: str
+    play: Path | None = None
+    can: str | None = None
+    as_socket: bool = False
+    faults: Faults = Faults()  # noqa: RUF009 (frozen)
+    imperfections: RobotImperfections = RobotImperfections()  # noqa: RUF009 (frozen)
+    seed: int = 0
+
+
+@dataclass(frozen=True)
+class Served:
+    """A twin that is being served.
+
+    Attributes:
+        source: What it is: `sim:WHAT`.
+        places: Where it can be reached, by what speaks there.
+        address: `PROFILE@PORT` that a driver takes.
+    """
+
+    source: str
+    places: dict[str, str]
+    address: str
+
+
+@contextmanager
+def serve_zebro(request: TwinRequest) -> Iterator[Served]:
+    """Serve a robot for as long as the body runs.
+
+    Raises:
+        SettingsError: The bus that is named cannot be opened.
+        RigError: Profile or port is not right.
+    """
+    profile = load_leg_profile(request.profile)
+    rng = np.random.default_rng(request.seed)
+    gait = _gait(request.play)
+    if profile.layout == "can":
+        legs = SimulatedLegs(gait, profile=profile, imperfections=request.imperfections, rng=rng)
+        with _bus(request, "sim:zebro") as (bus, place):
+            robot = CanRobot(legs, bus, faults=request.faults, rng=rng)
+            with Ticker(robot.poll):
+                yield Served(robot.source, {"robot": place}, f"{request.profile}@{place}")
+        return
+    twin = robot_twin(
+        profile, gait, imperfections=request.imperfections, faults=request.faults, rng=rng
+    )
+    with _port(twin, request) as port:
+        yield Served(twin.source, {"robot": port}, f"{request.profile}@{port}")
+
+
+@contextmanager
+def serve_imu(request: TwinRequest) -> Iterator[Served]:
+    """Serve an inertial measurement unit for as long as the body runs.
+
+    Raises:
+        RigError: Profile or port is not right.
+    """
+    rng = np.random.default_rng(request.seed)
+    twin = SimulatedImu(profile=load_imu_profile(request.profile), faults=request.faults, rng=rng)
+    with _port(twin, request) as port:
+        yield Served(twin.source, {"imu": port}, f"{request.profile}@{port}")
+
+
+@contextmanager
+def serve_rig(request: TwinRequest) -> Iterator[Served]:
+    """Serve a slip rig for as long as the body runs.
+
+    Raises:
+        SettingsError: The profile has neither a board nor drives, or the bus that is named cannot
+            be opened.
+        RigError: Profile or port is not right.
+    """
+    profile = load_rig_profile(request.profile)
+    rng = np.random.default_rng(request.seed)
+    rig = twin_rig(rng)
+    if profile.board is not None:
+        board = SimulatedBoard(
+            rig, profile=profile.board, watchdog=WATCHDOG, faults=request.faults, rng=rng
+        )
+        with _port(board, request) as port:
+            yield Served(board.source, {"board": port}, f"{request.profile}@{port}")
+        return
+    if profile.drives is None or profile.load_cell is None:
+        raise SettingsError(f"profile '{profile.name}' has neither a board nor drives")
+    with ExitStack() as stack:
+        bus, place = stack.enter_context(_bus(request, "sim:rig"))
+        drives = SimulatedDrives(rig, bus, profile=profile.drives, watchdog=WATCHDOG)
+        cell = stack.enter_context(
+            SimulatedLoadCell(rig, profile=profile.load_cell, faults=request.faults, rng=rng)
+        )
+
+        def tick(now: float) -> None:
+            drives.poll(now)
+            cell.poll(now)
+
+        stack.enter_context(Ticker(tick))
+        file = stack.enter_context(_profile_of_cell(request.profile, cell))
+        places = {"drives": place, "load cell": f"udp://{cell.host}:{cell.port}"}
+        yield Served(drives.source, places, f"{file}@{place}")
+
+
+@contextmanager
+def _profile_of_cell(name: str, cell: SimulatedLoadCell) -> Iterator[Path]:
+    """Write the rig's profile with the place of its simulated cell, while the body runs."""
+    document = tomlkit.parse(profile_text(name))
+    load_cell = cast("dict[str, object]", document["load_cell"])
+    load_cell |= {"host": cell.host, "port": cell.port}
+    with tempfile.TemporaryDirectory(prefix="zebro-lab-twin-") as folder:
+        file = Path(folder) / f"{Path(name).stem}.toml"
+        atomic_write_text(file, tomlkit.dumps(document))
+        yield file
+
+
+@contextmanager
+def _port(twin: ByteTwin, request: TwinRequest) -> Iterator[str]:
+    with PortServer(twin, as_socket=request.as_socket) as server:
+        yield server.port
+
+
+@contextmanager
+def _bus(request: TwinRequest, source: str) -> Iterator[tuple[can.BusABC, str]]:
+    """Open the bus that was named, else one with a simulated adapter; yield it and its place."""
+    if request.can is None:
+        with (
+            can.Bus(
+                interface="virtual", channel=(channel := f"zebro-lab-adapter-{id(request)}")
+            ) as bus,
+            can.Bus(interface="virtual", channel=channel) as far,
+            _port(SlcanAdapter(far, source=source), request) as port,
+        ):
+            yield bus, f"slcan:{port}"
+        return
+    interface, _, channel = request.can.partition(":")
+    try:
+        bus = can.Bus(interface=interface, channel=channel)
+    except (can.CanError, OSError, ValueError, ImportError) as error:
+        raise SettingsError(f"cannot open {request.can}: {error}", key="--can") from error
+    with bus:
+        yield bus, request.can
+
+
+def _gait(play: Path | None) -> LegReference:
+    return default_gait() if play is None else read_leg_log(play).reference
+
+
+def wait_until(
+    stop_requested: Callable[[], bool], *, duration: float | None, clock: Clock = SYSTEM_CLOCK
+) -> None:
+    """Let a twin run until somebody asks to stop, or time is up.
+
+    Args:
+        stop_requested: Tells whether somebody asked.
+        duration: How long at most; None for ever [s].
+        clock: Host time.
+    """
+    end = clock.now() + (float("inf") if duration is None else duration)
+    while not stop_requested() and clock.now() < end:
+        clock.sleep(0.05)

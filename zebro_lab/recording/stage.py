@@ -1,0 +1,335 @@
+# SPDX-License-Identifier: MIT
+"""Devices in, run folder out."""
+
+from collections.abc import Mapping
+from contextlib import ExitStack, closing
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Final, Protocol
+
+from model.gait.reference import SampledReference
+from rig.clock import SYSTEM_CLOCK, Clock
+from rig.device import Counters
+from rig.errors import RigError
+from zebro_lab.files.errors import RecordingError, SettingsError
+from zebro_lab.files.source_names import joined_source
+from zebro_lab.mcap.ros_messages import WARNING
+from zebro_lab.recording.acquisition import Acquisition, acquiring
+from zebro_lab.recording.devices import DevicesRequest, OpenDevices, open_devices
+from zebro_lab.recording.display import Display
+from zebro_lab.recording.recorder import RunDescription, RunRecorder
+from zebro_lab.recording.threads import needing_threads
+from zebro_lab.robot.gait_player import LEAD_IN
+from zebro_lab.runs.legs import read_leg_log
+from zebro_lab.runs.manifest import RunManifest, read_manifest
+
+LOOK_EVERY: Final = 0.05
+COUNT_EVERY: Final = 1.0
+FIRST_SAMPLE: Final = 10.0
+"""Longest wait for the first sample of every stream, where a duration is to count from it [s]."""
+
+
+@dataclass(frozen=True)
+class RecordRequest:
+    """What is asked of a recording.
+
+    Attributes:
+        data: Folder of run folders.
+        label: Name of the run.
+        zebro: Robot: `PROFILE@PORT`, `PROFILE@sim` or `sim`; None for none.
+        imus: Inertial measurement units, the same.
+        rig: Slip rig, the same.
+        play: Table or walk folder with leg angles that the robot is to follow.
+        duration: How long to record, from the first sample of the stream that begins last; None
+            until it is stopped, or the played gait ends [s].
+        material: Leg and ground material.
+        operator: Who records.
+        robot: Name of the robot.
+        seed: Of the randomness of simulated devices.
+    """
+
+    data: Path
+    label: str
+    zebro: str | None = None
+    imus: tuple[str, ...] = ()
+    rig: str | None = None
+    play: Path | None = None
+    duration: float | None = None
+    material: str = "unknown"
+    operator: str = "unknown"
+    robot: str | None = None
+    seed: int = 0
+
+
+@dataclass(frozen=True)
+class StreamStatus:
+    """How a stream is doing.
+
+    Attributes:
+        source: Where it comes from.
+        rate: Samples in the last second or so [Hz].
+        counters: What happened so far.
+        dropped: Samples that the recorder dropped.
+    """
+
+    source: str
+    rate: float
+    counters: Counters
+    dropped: int
+
+
+@dataclass(frozen=True)
+class RecordStatus:
+    """How a recording is doing.
+
+    Attributes:
+        folder: The run folder.
+        elapsed: Time since every stream has sent its first sample [s].
+        duration: How long it is to be; None where nobody knows [s].
+        streams: Each stream, by its name.
+    """
+
+    folder: Path
+    elapsed: float
+    duration: float | None
+    streams: Mapping[str, StreamStatus] = field(default_factory=dict)
+
+
+class RecordWatcher(Protocol):
+    """Who looks on, and may end a recording."""
+
+    def show(self, status: RecordStatus) -> None:
+        """Take how it is doing, up to twenty times a second.
+
+        Called in a thread of its own; where it raises or hangs, the recording goes on without it.
+        """
+        ...
+
+    def stop_reason(self) -> str | None:
+        """Say why it is to end now; None where it is to go on."""
+        ...
+
+
+@dataclass(frozen=True)
+class Recorded:
+    """A run that has been recorded.
+
+    Attributes:
+        folder: The run folder.
+        manifest: Its end record.
+    """
+
+    folder: Path
+    manifest: RunManifest
+
+
+def record(
+    request: RecordRequest, watcher: RecordWatcher, *, clock: Clock = SYSTEM_CLOCK
+) -> Recorded:
+    """Record devices as a run folder.
+
+    Raises:
+        SettingsError: No device is named, or what is asked cannot be.
+        RigError: A profile, an address or a port is not right.
+        RecordingError: The run ended early; its folder holds what came before, and the reason.
+    """
+    play = None if request.play is None else _played(request.play)
+    duration = _duration(request, play)
+    wanted = DevicesRequest(request.zebro, request.imus, request.rig, play, request.seed)
+    with needing_threads(), ExitStack() as kept, open_devices(wanted) as opened:
+        views = {device.name: device.view for device in opened.devices}
+        recorder = RunRecorder(
+            request.data, description=_description(request, opened), views=views, clock=clock
+        )
+        kept.enter_context(recorder)  # left after the devices: they wait for no disk
+        problem = _run(recorder, opened, watcher, duration, clock)
+    if problem is not None or recorder.failure is not None:
+        what = recorder.failure or problem
+        where = f"what came before is in {recorder.folder}"
+        if not recorder.folder.is_dir():
+            where = "what came before is gone with it"
+        raise RecordingError(f"recording ended early: {what}; {where}")
+    return Recorded(recorder.folder, read_manifest(recorder.folder))
+
+
+def _run(
+    recorder: RunRecorder,
+    opened: OpenDevices,
+    watcher: RecordWatcher,
+    duration: float | None,
+    clock: Clock,
+) -> str | None:
+    """Record until something ends it; return what went wrong, if anything."""
+    readers: Mapping[str, Acquisition] = {}
+    display = Display[RecordStatus](
+        watcher.show, give_up=lambda why: recorder.event(why, level=WARNING)
+    )
+    try:
+        with (
+            closing(display),
+            acquiring(opened.devices, sink=recorder, start=recorder.start, clock=clock) as readers,
+        ):
+            board = _Board(recorder, readers, opened, duration)
+            try:
+                problem = _watch(board, display, watcher, clock)
+            finally:
+                recorder.end()
+                display.show(board.status(clock.now()))
+        problem = problem or _failed(readers)
+        if problem is not None:
+            recorder.end(f"failed: {problem}")
+        return problem
+    finally:
+        _summarise(recorder, readers)
+
+
+def _watch(
+    board: "_Board", display: Display[RecordStatus], watcher: RecordWatcher, clock: Clock
+) -> str | None:
+    """Look at everything that can end the recording until something does; return what failed."""
+    counted = clock.now()
+    while (left := board.left(now := clock.now())) > 0:
+        if now - counted >= COUNT_EVERY:
+            counted = now
+            board.count()
+        problem = board.problem(now)
+        reason = watcher.stop_reason()
+        if problem is not None or reason is not None:
+            board.end(f"failed: {problem}" if problem is not None else f"stopped: {reason}")
+            return problem
+        display.show(board.status(now))
+        clock.sleep(min(LOOK_EVERY, left))
+    return None
+
+
+def _summarise(recorder: RunRecorder, readers: Mapping[str, Acquisition]) -> None:
+    """Give the recorder the last counters and the clocks, for the end record."""
+    clocks = {}
+    for name, reader in readers.items():
+        recorder.count(name, reader.counters)
+        try:
+            fit = reader.clock_watch.result()
+        except RigError as error:
+            recorder.event(f"{name}: clocks cannot be compared: {error}", level=WARNING)
+            continue
+        if fit is not None:
+            clocks[name] = fit
+    recorder.compare_clocks(clocks)
+
+
+class _Board:
+    """Keeps time and the counters of all streams, for the log and for the watcher."""
+
+    def __init__(
+        self,
+        recorder: RunRecorder,
+        readers: Mapping[str, Acquisition],
+        opened: OpenDevices,
+        duration: float | None,
+    ) -> None:
+        self._recorder = recorder
+        self._readers = readers
+        self._sources = {device.name: device.stream.source for device in opened.devices}
+        self._duration = duration
+        self._rates = dict.fromkeys(readers, 0.0)
+        self._before = (recorder.start, dict.fromkeys(readers, 0))
+        self._began: float | None = None
+
+    def left(self, now: float) -> float:
+        """Say how long the recording still is to last, at least [s]."""
+        if self._duration is None:
+            return float("inf")
+        began = self._first_samples()
+        return self._duration if began is None else began + self._duration - now
+
+    def problem(self, now: float) -> str | None:
+        """Say what keeps the recording from going on; None where nothing does."""
+        problem = self._recorder.failure or _failed(self._readers)
+        waited = now - self._recorder.start
+        if problem is None and self._duration is not None and waited > FIRST_SAMPLE:
+            silent = [name for name, reader in self._readers.items() if reader.first is None]
+            if silent:
+                return (
+                    f"no sample of {', '.join(silent)} within {FIRST_SAMPLE:g} s, from which the "
+                    "duration would count; switch it on, or leave it out"
+                )
+        return problem
+
+    def end(self, reason: str) -> None:
+        """Write down why the recording ends."""
+        self._recorder.end(reason)
+
+    def _first_samples(self) -> float | None:
+        """Return when every stream had sent its first sample, None before, and note it."""
+        firsts = [reader.first for reader in self._readers.values()]
+        known = [first for first in firsts if first is not None]
+        if self._began is None and len(known) == len(firsts):
+            self._began = max(known)
+            if self._duration is not None:
+                self._recorder.count_duration(self._duration, since=self._began)
+                for reader in self._readers.values():
+                    reader.end_at(self._began + self._duration)
+        return self._began
+
+    def count(self) -> None:
+        """Write all counters to the log."""
+        for name, reader in self._readers.items():
+            self._recorder.count(name, reader.counters)
+
+    def status(self, now: float) -> RecordStatus:
+        """Say how the recording is doing."""
+        began, received = self._before
+        if now - began >= COUNT_EVERY:
+            current = {name: r.counters.received for name, r in self._readers.items()}
+            self._rates = {name: (current[name] - received[name]) / (now - began)
+                           for name in current}  # fmt: skip
+            self._before = (now, current)
+        streams = {
+            name: StreamStatus(
+                self._sources[name], self._rates[name], reader.counters,
+                self._recorder.dropped(name),
+            )
+            for name, reader in self._readers.items()
+        }  # fmt: skip
+        first = self._first_samples()
+        elapsed = 0.0 if first is None else now - first
+        return RecordStatus(self._recorder.folder, elapsed, self._duration, streams)
+
+
+def _failed(readers: Mapping[str, Acquisition]) -> str | None:
+    for name, reader in readers.items():
+        if reader.failure is not None:
+            return f"{name}: {type(reader.failure).__name__}: {reader.failure}"
+    return None
+
+
+def _played(path: Path) -> SampledReference:
+    reference = read_leg_log(path).reference
+    return SampledReference(reference.t - reference.t[0], reference.theta)
+
+
+def _duration(request: RecordRequest, play: SampledReference | None) -> float | None:
+    wanted = [] if play is None else [LEAD_IN + float(play.t[-1])]
+    if request.duration is not None:
+        if not request.duration > 0:
+            raise SettingsError(
+                f"{request.duration:g} s is no duration; expected more than 0", key="--duration"
+            )
+        wanted.append(request.duration)
+    return min(wanted, default=None)
+
+
+def _description(request: RecordRequest, opened: OpenDevices) -> RunDescription:
+    sources = {device.name: device.stream.source for device in opened.devices}
+    return RunDescription(
+        kind="walk" if request.rig is None else "slip-rig",
+        label=request.label,
+        source=joined_source(list(sources.values())),
+        material=request.material,
+        operator=request.operator,
+        constants=opened.constants,
+        profiles=opened.profiles,
+        sources=sources,
+        robot=request.robot,
+        truth=opened.truth,
+    )

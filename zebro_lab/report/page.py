@@ -1,0 +1,131 @@
+# SPDX-License-Identifier: MIT
+"""A report as one page: a template of `zebro_lab/report/pages`, filled and escaped by Jinja."""
+
+import base64
+import hashlib
+from collections.abc import Iterator
+from dataclasses import dataclass
+from datetime import datetime
+from functools import cache
+from importlib.metadata import version
+from importlib.resources import files
+from typing import Any
+
+from jinja2 import Environment, PackageLoader, StrictUndefined, Template
+from markupsafe import Markup
+
+from zebro_lab.files.opening import parsing
+from zebro_lab.files.shown_text import shown
+from zebro_lab.report.numbers import number
+from zebro_lab.report.pictures import Picture, embed
+from zebro_lab.report.sources import Part, Run, Sources
+from zebro_lab.runs.folder import MANIFEST_FILE
+
+PAGES = "pages"
+TEMPLATE, STYLE = "report.html.jinja", "report.css"
+
+
+@dataclass(frozen=True)
+class Column:
+    """A column of the table of errors: heading, key in the manifest, factor to the shown unit."""
+
+    title: str
+    key: str
+    scale: float = 1.0
+
+
+ERROR_COLUMNS = (
+    Column("error, rms [mm]", "ate_m", 1e3),
+    Column("of path [%]", "ate_of_length", 1e2),
+    Column("x [mm]", "x_rms_m", 1e3),
+    Column("y [mm]", "y_rms_m", 1e3),
+    Column("along [mm]", "along_rms_m", 1e3),
+    Column("across [mm]", "cross_rms_m", 1e3),
+    Column("yaw [deg]", "yaw_rms_deg"),
+    Column("end [mm]", "final_m", 1e3),
+    Column("aligned [mm]", "ate_aligned_m", 1e3),
+    Column("radius [m]", "radius_m"),
+    Column("tracked [m]", "radius_tracked_m"),
+    Column("yaw rate [deg/s]", "yaw_rate_deg_s"),
+    Column("CRPS x [mm]", "crps_x_m", 1e3),
+    Column("CRPS y [mm]", "crps_y_m", 1e3),
+    Column("energy score [mm]", "energy_m", 1e3),
+)
+
+
+def render_report(sources: Sources, *, title: str, made: datetime) -> str:
+    """Fill the page.
+
+    Args:
+        sources: What there is to show.
+        title: Title of the report.
+        made: When it is made.
+
+    Returns:
+        HTML that needs no other file.
+    """
+    style = (files("zebro_lab.report") / PAGES / STYLE).read_text(encoding="utf-8")
+    template = _template()
+    with parsing(
+        sources.data, "cannot be reported on: a manifest or slip.toml lacks what is shown",
+        advice="make the part again that is named there",
+    ):  # fmt: skip
+        page = template.render(
+            sources=sources,
+            title=title,
+            made=made.isoformat(timespec="seconds"),
+            version=version("zebro-lab"),
+            simulated=sources.simulated,
+            css=Markup(style),  # noqa: S704 - our own file
+            policy=_policy(style),
+            judged=list(_judged(sources)),
+            error_columns=ERROR_COLUMNS,
+            number=_number,
+            count=_count,
+            pictures=_pictures,
+        )
+    # Jinja escapes markup; what else a text of a file may do is spelled out here, for all of them.
+    return "\n".join(map(shown, page.split("\n")))
+
+
+@cache
+def _template() -> Template:
+    pages = Environment(
+        loader=PackageLoader("zebro_lab.report", PAGES),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    return pages.get_template(TEMPLATE)
+
+
+def _policy(style: str) -> str:
+    """Return what the page may load: its own style and pictures in itself, and nothing else."""
+    digest = base64.b64encode(hashlib.sha256(style.encode()).digest()).decode("ascii")
+    return (
+        f"default-src 'none'; img-src data:; style-src 'sha256-{digest}'; base-uri 'none'; "
+        "form-action 'none'"
+    )
+
+
+def _number(part: Part, file: str, *keys: str | int, **spelling: Any) -> str:
+    return number(part.documents[file], *keys, file=f"{part.folder}/{file}", **spelling)
+
+
+def _count(run: Run, topic: str) -> str:
+    return number(run.recorded, "streams", topic, file=f"{run.folder}/{MANIFEST_FILE}")
+
+
+def _pictures(part: Part) -> list[Picture]:
+    simulated = "sim:" in part.source
+    return [embed(file, stage=part.name, simulated=simulated) for file in part.pictures]
+
+
+def _judged(sources: Sources) -> Iterator[tuple[Run, Part, str]]:
+    """Yield every walk that has been validated, with its name in the validation."""
+    for run in sources.runs:
+        part = run.parts.get("validation")
+        if part is not None and not part.missing:
+            for name in part.manifest["runs"]:
+                yield run, part, name

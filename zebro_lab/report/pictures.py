@@ -1,0 +1,113 @@
+# SPDX-License-Identifier: MIT
+"""Pictures of a report: in the page itself, each with what it shows in words."""
+
+import base64
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+from zebro_lab.files.errors import DataError
+from zebro_lab.files.opening import read_bytes
+
+MOST_PICTURE = 32 << 20
+_PNG = b"\x89PNG\r\n\x1a\n"
+VALIDATION, ERRORS = "validation", ".errors"
+CAPTIONS: Mapping[str, str] = {
+    "curves": "Block means of the rig's traction over load, and the fitted slip curve at each load",
+    "surface": "Fitted traction over slip ratio and load",
+    "corner": "Posterior of the slip law's parameters, each alone and each pair",
+    "traces": "The sampler's walkers over its steps",
+    "residuals": "What is left of each observation after the fit",
+    "walk_parameters": "What was believed of legs and floor before walks, and after them",
+    "left_out.": "A walk predicted from what the other walks say, beside its track",
+    "overlay": "The tracked path over a photograph",
+    "map": "The tracked path over the floor as seen from above, with 90 % regions",
+    "path": "Predicted path from above, with the body at several times",
+    "band": "Predicted path from above and over time; bands hold 50 and 90 % of the draws",
+    "motion": "Predicted position, velocity and acceleration of the body",
+    "orientation": "Predicted roll, pitch and yaw with their rates",
+    "slip_ratio": "Predicted slip ratio of each leg in the last two cycles",
+    "normal_force": "Predicted normal force of each leg in the last two cycles",
+    "traction_force": "Predicted traction of each leg in the last two cycles",
+    "paired_traction": "Predicted traction of the legs of each pair",
+    "gantt": "Predicted stance of each leg in the last two cycles",
+    ".floor": "Predicted band and tracked path over the floor as seen from above",
+    ".photos": "Photographs from above beside the robot drawn at its predicted pose",
+    ".imu": "Roll and pitch of the predicted walk beside the IMU's",
+    ".errors": "Predicted paths beside the track, and their errors over time",
+}
+"""What each picture of a stage shows, by its name; validations begin theirs with the run's."""
+
+
+@dataclass(frozen=True)
+class Picture:
+    """A picture in a page.
+
+    Attributes:
+        data: The file as a `data:` address.
+        caption: What it shows.
+        name: Name of the file.
+    """
+
+    data: str
+    caption: str
+    name: str
+
+
+def embed(file: Path, *, stage: str, simulated: bool) -> Picture:
+    """Put a picture's bytes into an address, and say what it shows.
+
+    Args:
+        file: A PNG.
+        stage: Stage that drew it.
+        simulated: Say so in the caption.
+
+    Raises:
+        DataError: It is no PNG, or larger than `MOST_PICTURE`.
+    """
+    data = read_bytes(file, most=MOST_PICTURE)
+    if not data.startswith(_PNG):
+        raise DataError("is no PNG; make it again", file=file)
+    encoded = base64.b64encode(data).decode("ascii")
+    caption = caption_of(file.stem, stage=stage)
+    return Picture(
+        f"data:image/png;base64,{encoded}",
+        f"{caption} (simulated)" if simulated else caption,
+        file.name,
+    )
+
+
+def lies_in(folder: Path, name: str) -> bool:
+    """Tell whether a file that a manifest names lies in its folder, links followed.
+
+    A manifest is somebody's text: `../secret.png`, an absolute path or a link may name any file.
+    """
+    if Path(name).name != name or "\0" in name:
+        return False
+    return (folder / name).resolve().parent == folder.resolve()
+
+
+def place_of(name: str) -> tuple[int, str]:
+    """Return where a picture stands among those of its stage: as in `CAPTIONS`, others last.
+
+    >>> sorted(["corner.png", "curves.png", "b.imu.png", "b.png"], key=place_of)
+    ['curves.png', 'corner.png', 'b.imu.png', 'b.png']
+    """
+    stem = name.removesuffix(".png")
+    keys = list(CAPTIONS)
+    mine = (i for i, key in enumerate(keys) if stem == key or (key[0] == "." and key in stem))
+    return next(mine, len(keys)), name
+
+
+def caption_of(stem: str, *, stage: str) -> str:
+    """Say what a picture shows, by the name of its file and the stage that drew it.
+
+    >>> caption_of("walk-3.photos", stage="validation")
+    'Photographs from above beside the robot drawn at its predicted pose'
+    >>> caption_of("my-walk", stage="validation")
+    'Predicted paths beside the track, and their errors over time'
+    """
+    if stage == VALIDATION:
+        end = next((end for end in CAPTIONS if end[0] == "." and stem.endswith(end)), ERRORS)
+        return CAPTIONS[end]
+    return CAPTIONS.get(stem, stem.replace("_", " ").replace("-", " "))

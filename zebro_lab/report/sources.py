@@ -1,0 +1,219 @@
+# SPDX-License-Identifier: MIT
+"""What a report is made of: the finished folders of every stage, or what would make them."""
+
+import csv
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from zebro_lab.calibration.folder import SLIP_TOML
+from zebro_lab.calibration.walks_folder import FOLDER as WALKS
+from zebro_lab.calibration.walks_folder import WALKS_TOML
+from zebro_lab.files.documents import read_json_document, read_toml_document
+from zebro_lab.files.errors import DataError, NotFound
+from zebro_lab.files.opening import parsing, read_text
+from zebro_lab.files.replacement import settle
+from zebro_lab.report.pictures import VALIDATION, lies_in, place_of
+from zebro_lab.runs.folder import MANIFEST_FILE, find_runs
+from zebro_lab.walk.folder import PREDICTION
+
+MANIFEST, SUMMARY = "manifest.json", "summary.csv"
+TRACK, CALIBRATION = "track", "calibration"
+BESIDE: Mapping[str, tuple[str, ...]] = {CALIBRATION: (SLIP_TOML, SUMMARY), WALKS: (WALKS_TOML,)}
+"""What else of a stage's result is read, beside its manifest."""
+_MOST_TABLE = 4 << 20  # bytes of summary.csv, a line a parameter
+WALK_PARTS = (TRACK, PREDICTION, VALIDATION)
+MAKERS: Mapping[str, str] = {
+    CALIBRATION: "zebro-lab calibrate {data} --out {folder}",
+    WALKS: "zebro-lab calibrate --walks {run} --walks RUN --out {folder}",
+    TRACK: "zebro-lab track PHOTOS --camera camera.toml --floor floor.toml --run {run}",
+    PREDICTION: "zebro-lab predict {run} --slip calibration --draws 500 --out {folder}",
+    VALIDATION: "zebro-lab validate {run} --out {folder}",
+}
+"""Command that makes each part."""
+
+
+@dataclass(frozen=True)
+class Part:
+    """What a stage wrote, or the command that makes it.
+
+    Attributes:
+        name: Name of the stage's result.
+        folder: Where it is, or would be.
+        documents: Content of its JSON, TOML and CSV files, by file name; empty where it is missing.
+        pictures: Its pictures, in the order in which they are read.
+        maker: Command that makes it.
+        not_shown: Pictures that its manifest lists and that do not lie in its folder.
+    """
+
+    name: str
+    folder: Path
+    documents: Mapping[str, Mapping[str, Any]]
+    pictures: Sequence[Path]
+    maker: str
+    not_shown: Sequence[str] = ()
+
+    @property
+    def missing(self) -> bool:
+        """Tell whether the stage has not been run."""
+        return not self.documents
+
+    @property
+    def manifest(self) -> Mapping[str, Any]:
+        """The stage's manifest; empty where it is missing."""
+        return self.documents.get(MANIFEST, {})
+
+    @property
+    def source(self) -> str:
+        """Where its data come from."""
+        return str(self.manifest.get("source", "unknown"))
+
+
+@dataclass(frozen=True)
+class Run:
+    """One run and what was made of it.
+
+    Attributes:
+        folder: Its folder.
+        recorded: What its `run.json` says; empty where nothing was recorded here.
+        parts: Track, prediction and validation, by name; none for a run of the slip rig.
+    """
+
+    folder: Path
+    recorded: Mapping[str, Any]
+    parts: Mapping[str, Part]
+
+    @property
+    def name(self) -> str:
+        """Name of the folder."""
+        return self.folder.absolute().name
+
+
+@dataclass(frozen=True)
+class Sources:
+    """Everything that a report shows.
+
+    Attributes:
+        data: The folder that was named.
+        runs: Its runs, in the order of their names.
+        calibration: The calibration.
+        together: A validation of several runs together; None where the report is of one run.
+        walks: What walks said beside the calibration; None where none informed it.
+    """
+
+    data: Path
+    runs: Sequence[Run]
+    calibration: Part
+    together: Part | None = None
+    walks: Part | None = None
+
+    @property
+    def parts(self) -> Sequence[Part]:
+        """Every part, made or missing."""
+        walks = [part for run in self.runs for part in run.parts.values()]
+        more = [part for part in (self.walks, self.together) if part is not None]
+        return [self.calibration, *walks, *more]
+
+    @property
+    def simulated(self) -> Sequence[str]:
+        """Sources that are simulated."""
+        named = [part.source for part in self.parts if not part.missing]
+        named += [str(run.recorded.get("source", "")) for run in self.runs]
+        return sorted({each.strip() for one in named for each in one.split(",") if "sim:" in each})
+
+
+def find_sources(data: Path, *, calibration: Path) -> Sources:
+    """Find what there is to report on.
+
+    Args:
+        data: A run folder, a folder with track, prediction or validation, or a folder of run
+            folders.
+        calibration: The calibration folder; it need not exist.
+
+    Raises:
+        NotFound: There is no such folder, or nothing in it to report on.
+        DataError: A manifest is damaged.
+    """
+    for name in WALK_PARTS:
+        settle(data / name)
+    found = find_runs(data)
+    own = [name for name in WALK_PARTS if (data / name / MANIFEST).is_file()]
+    settle(calibration)
+    slip = _part(CALIBRATION, calibration, data)
+    walks = _part(WALKS, calibration / WALKS, data)
+    walks = None if walks.missing else walks
+    if not found and not own:
+        raise NotFound(
+            f"{data} holds no run ({MANIFEST_FILE}) and none of {', '.join(WALK_PARTS)}; name a "
+            "run folder, a folder of them, or a folder that track, predict and validate wrote into"
+        )
+    if data in found or not found:
+        return Sources(data, [_run(data)], slip, walks=walks)
+    together = _part(VALIDATION, data / VALIDATION, data / "*")
+    return Sources(data, [_run(folder) for folder in found], slip, together, walks)
+
+
+def _run(folder: Path) -> Run:
+    recorded = _read(folder / MANIFEST_FILE) if (folder / MANIFEST_FILE).is_file() else {}
+    if recorded.get("kind") == "slip-rig":
+        return Run(folder, recorded, {})
+    return Run(folder, recorded, {name: _part(name, folder / name, folder) for name in WALK_PARTS})
+
+
+def _part(name: str, folder: Path, data: Path) -> Part:
+    settle(folder)
+    maker = MAKERS[name].format(run=data, data=data, folder=folder)
+    if not (folder / MANIFEST).is_file():
+        return Part(name, folder, {}, (), maker)
+    documents = {each: _read(folder / each) for each in (MANIFEST, *BESIDE.get(name, ()))}
+    kind = documents[MANIFEST].get("kind")
+    expected = ("predict", "walk") if name == PREDICTION else (name,)
+    if kind not in expected:
+        raise DataError(
+            f"is the result of another command ({kind}); expected a {name}",
+            file=folder / MANIFEST,
+        )
+    listed = documents[MANIFEST].get("outputs", {})
+    if not isinstance(listed, dict):
+        raise DataError(f"'outputs' is {listed!r}; expected a table", file=folder / MANIFEST)
+    named = [each for each in sorted(listed, key=place_of) if each.endswith(".png")]
+    inside = {each: folder / each for each in named if lies_in(folder, each)}
+    return Part(
+        name, folder, documents, [each for each in inside.values() if each.is_file()], maker,
+        tuple(each for each in named if each not in inside),
+    )  # fmt: skip
+
+
+def _rows(file: Path) -> dict[str, dict[str, Any]]:
+    """Read a table by the names in its first column, numbers as numbers."""
+    text = read_text(file, most=_MOST_TABLE)
+    with parsing(file, "cannot be read as CSV", advice="make it again"):
+        rows = [row for row in csv.DictReader(text.splitlines()) if None not in row]
+        return {
+            next(iter(row.values())): {k: _value(v or "") for k, v in row.items()} for row in rows
+        }
+
+
+def _value(cell: str) -> float | str:
+    try:
+        return float(cell)
+    except ValueError:
+        return cell
+
+
+_READERS: Mapping[str, Callable[[Path], Any]] = {
+    ".json": read_json_document,
+    ".toml": lambda file: read_toml_document(file, remedy="make it again", fault=DataError),
+    ".csv": _rows,
+}
+
+
+def _read(file: Path) -> Mapping[str, Any]:
+    try:
+        content = _READERS[file.suffix](file)
+    except NotFound as error:
+        raise DataError("is missing; make it again", file=file) from error
+    if not isinstance(content, dict):
+        raise DataError("holds no table; make it again", file=file)
+    return content

@@ -1,0 +1,44 @@
+# SPDX-License-Identifier: MIT
+"""Finished folders in, one page out."""
+
+from dataclasses import dataclass
+from datetime import datetime
+from pathlib import Path
+
+from zebro_lab.files.atomic import atomic_write_text
+from zebro_lab.files.own_file import html_page, require_own
+from zebro_lab.report.page import render_report
+from zebro_lab.report.sources import Sources, find_sources
+
+REPORT = html_page("report")
+
+
+@dataclass(frozen=True)
+class ReportRequest:
+    """What is asked of a report.
+
+    Attributes:
+        data: A run folder, or a folder of them.
+        calibration: The calibration folder; it need not exist.
+        out: File to write.
+        title: Title of the page; the folder's name when None.
+    """
+
+    data: Path
+    calibration: Path
+    out: Path
+    title: str | None = None
+
+
+def report(request: ReportRequest, *, made: datetime) -> Sources:
+    """Write the page, whole or not at all, and return what it shows.
+
+    Raises:
+        ZebroLabError: There is nothing to report on, a manifest is damaged, or `out` is a folder or
+            no report.
+    """
+    out = require_own(request.out, REPORT, inputs=(request.data, request.calibration))
+    sources = find_sources(request.data, calibration=request.calibration)
+    title = request.title or f"Report on {request.data.absolute().name}"
+    atomic_write_text(out, render_report(sources, title=title, made=made))
+    return sources

@@ -1,0 +1,252 @@
+# SPDX-License-Identifier: MIT
+"""The gait a command line asks for."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import asdict, dataclass
+from types import MappingProxyType
+
+import numpy as np
+
+from model.gait import (
+    TRIPOD,
+    CyclicReference,
+    Direction,
+    TripodAngles,
+    buehler_reference,
+    inner_legs,
+    scheduled_reference,
+    suriana_reference,
+    tetrapod_reference,
+    tripod_angles,
+    tripod_reference,
+    turning_system,
+)
+from zebro_lab.files.errors import SettingsError
+from zebro_lab.files.known_keys import nearest
+
+
+@dataclass(frozen=True)
+class GaitRequest:
+    """What is asked of a gait; None where the gait's own default is to be taken.
+
+    Attributes:
+        name: Name of the gait, a key of `GAITS`.
+        steering: Steering factor of the tripod [-].
+        direction: Where to turn, "left" or "right".
+        touchdown_deg: Touchdown angle, "INNER" or "INNER,OUTER" [deg].
+        liftoff_deg: Lift-off angle, in the same way [deg].
+        cycle: Time of a cycle [s].
+        tau_ground: Time on the ground tau_g [s].
+        tau_flight: Time in flight tau_f [s].
+        tau_turn: Longer stance of inner legs tau_p [s].
+    """
+
+    name: str = "tripod"
+    steering: float | None = None
+    direction: str | None = None
+    touchdown_deg: str | None = None
+    liftoff_deg: str | None = None
+    cycle: float | None = None
+    tau_ground: float | None = None
+    tau_flight: float | None = None
+    tau_turn: float | None = None
+
+    def given(self) -> dict[str, object]:
+        """Return what was asked for, by option, the name apart."""
+        return {k: v for k, v in asdict(self).items() if v is not None and k != "name"}
+
+    @property
+    def side(self) -> Direction:
+        """Where to turn."""
+        return "right" if self.direction == "right" else "left"
+
+
+@dataclass(frozen=True)
+class Gait:
+    """A gait made as asked.
+
+    Attributes:
+        reference: Leg angles over time.
+        what: Its name with what sets it apart, for titles.
+        direction: Where it turns.
+    """
+
+    reference: CyclicReference
+    what: str
+    direction: Direction = "left"
+
+
+@dataclass(frozen=True)
+class _Kind:
+    """How a gait is made, and which options it has."""
+
+    options: tuple[str, ...]
+    make: Callable[[GaitRequest, float], Gait]
+
+
+def make_gait(request: GaitRequest, *, leg_arc: float) -> Gait:
+    """Make the gait asked for.
+
+    Args:
+        request: What is asked.
+        leg_arc: Angle of the legs' arc [rad].
+
+    Raises:
+        SettingsError: There is no such gait, it has no such option, or an angle cannot be read.
+        DomainError: No legs can walk so.
+
+    >>> gait = make_gait(GaitRequest(steering=1.1, touchdown_deg="50"), leg_arc=np.pi)
+    >>> gait.what, np.degrees(gait.reference.liftoff).round(1).tolist()[:2]
+    ('tripod, s = 1.1, left', [118.0, 120.7])
+    """
+    if request.name not in GAITS:
+        raise SettingsError(
+            f"there is no gait '{request.name}'; {nearest(request.name, list(GAITS))}",
+            key="--gait",
+        )
+    kind = GAITS[request.name]
+    for option in request.given():
+        if option not in kind.options:
+            known = ", ".join(map(_flag, kind.options))
+            raise SettingsError(
+                f"means nothing to the gait '{request.name}', which has {known}", key=_flag(option)
+            )
+    return kind.make(request, leg_arc)
+
+
+def _tripod(request: GaitRequest, leg_arc: float) -> Gait:
+    inner_down, outer_down = _angles(request.touchdown_deg, "touchdown_deg", default=50.0)
+    inner_up, outer_up = _angles(request.liftoff_deg, "liftoff_deg")
+    if inner_down is None:
+        raise _no_angle("touchdown_deg", request.touchdown_deg)
+    angles = tripod_angles(
+        inner_down,
+        _or(request.steering, 1.0),
+        leg_arc=leg_arc,
+        inner_liftoff=inner_up,
+        outer_touchdown=outer_down,
+        outer_liftoff=outer_up,
+    )
+    reference = tripod_reference(angles, _or(request.cycle, 2.0), direction=request.side)
+    return Gait(reference, _tripod_name(angles, request.side), request.side)
+
+
+def _tripod_name(angles: TripodAngles, side: Direction) -> str:
+    factor = angles.steering_factor
+    if np.isclose(factor, 1.0, atol=5e-4) and np.isclose(
+        angles.inner_touchdown, angles.outer_touchdown, atol=1e-3
+    ):
+        return "tripod, straight"
+    return f"tripod, s = {factor:.4g}, {side}"
+
+
+def _suriana(request: GaitRequest, _: float) -> Gait:
+    times = _turn_times(request)
+    reference = suriana_reference(*_stance(request, *_SOURCE_TURN), direction=request.side, **times)
+    return Gait(reference, _turn_name("suriana", request, times), request.side)
+
+
+def _maxplus(request: GaitRequest, _: float) -> Gait:
+    times, inner = _turn_times(request), inner_legs(request.side)
+    touchdown, liftoff = _stance(request, *_SOURCE_TURN)
+    system = turning_system(TRIPOD, inner=inner, **times)
+    reference = scheduled_reference(
+        system, touchdown, liftoff=liftoff, inner=inner if times["turn_time"] else ()
+    )
+    return Gait(reference, _turn_name("max-plus", request, times), request.side)
+
+
+def _turn_times(request: GaitRequest) -> dict[str, float]:
+    return {
+        "ground_time": _or(request.tau_ground, 0.8),
+        "flight_time": _or(request.tau_flight, 0.8),
+        "turn_time": _or(request.tau_turn, 0.0),
+    }
+
+
+def _turn_name(name: str, request: GaitRequest, times: Mapping[str, float]) -> str:
+    turn = times["turn_time"]
+    return f"{name}, tau_p = {turn:g} s, {request.side}" if turn else f"{name}, straight"
+
+
+def _tetrapod(request: GaitRequest, _: float) -> Gait:
+    touchdown, liftoff = _stance(request, 45.0, 135.0)  # 5-5-1 of the source
+    # Other angles than the source's put legs 2 and 5 out of rhythm if they start at 90 degrees.
+    reference = tetrapod_reference(
+        touchdown, liftoff, cycle_time=_or(request.cycle, 3.0), middle_start=None
+    )
+    return Gait(reference, "tetrapod")
+
+
+def _buehler(request: GaitRequest, _: float) -> Gait:
+    cycle = _or(request.cycle, 2.0)
+    reference = buehler_reference(
+        *_stance(request, 50.0, 118.0),
+        ground_time=_or(request.tau_ground, cycle / 2),
+        cycle_time=cycle,
+    )
+    return Gait(reference, "Buehler clock")
+
+
+_SOURCE_TURN = (35.0, 130.0)  # touchdown and lift-off of 5-2-4 [deg]
+_ANGLES = ("touchdown_deg", "liftoff_deg")
+_TIMES = ("tau_ground", "tau_flight", "tau_turn")
+GAITS: Mapping[str, _Kind] = MappingProxyType({
+    "tripod": _Kind(("steering", "direction", *_ANGLES, "cycle"), _tripod),
+    "suriana": _Kind(("direction", *_ANGLES, *_TIMES), _suriana),
+    "maxplus": _Kind(("direction", *_ANGLES, *_TIMES), _maxplus),
+    "tetrapod": _Kind((*_ANGLES, "cycle"), _tetrapod),
+    "buehler": _Kind((*_ANGLES, "cycle", "tau_ground"), _buehler),
+})  # fmt: skip
+"""The gaits by name."""
+
+
+def _or(value: float | None, default: float) -> float:
+    return default if value is None else value
+
+
+def _stance(request: GaitRequest, touchdown: float, liftoff: float) -> tuple[float, float]:
+    """Read touchdown and lift-off angle that are the same for all legs; defaults in degrees."""
+    return (
+        _angle(request.touchdown_deg, "touchdown_deg", touchdown),
+        _angle(request.liftoff_deg, "liftoff_deg", liftoff),
+    )
+
+
+def _angle(text: str | None, option: str, default: float) -> float:
+    """Read an angle that is the same for all legs [rad]."""
+    first, second = _angles(text, option, default=default)
+    if first is None:
+        raise _no_angle(option, text)
+    if second is not None and second != first:
+        raise SettingsError(
+            f"'{text}' has two angles, but this gait has one for all legs", key=_flag(option)
+        )
+    return first
+
+
+def _angles(
+    text: str | None, option: str, *, default: float | None = None
+) -> tuple[float | None, float | None]:
+    """Read INNER[,OUTER] in degrees; None for what is not given [rad]."""
+    if text is None:
+        return (None if default is None else float(np.radians(default))), None
+    try:
+        numbers = [float(part) for part in text.split(",")]
+    except ValueError as error:
+        raise _no_angle(option, text) from error
+    if len(numbers) > 2 or not np.isfinite(numbers).all():
+        raise _no_angle(option, text)
+    inner, outer = [*np.radians(numbers).tolist(), None][:2]
+    return inner, outer
+
+
+def _no_angle(option: str, text: str | None) -> SettingsError:
+    return SettingsError(
+        f"'{text}' is no angle; expected INNER or INNER,OUTER in degrees, such as 50 or 50,46",
+        key=_flag(option),
+    )
+
+
+def _flag(option: str) -> str:
+    return "--" + option.replace("_", "-")

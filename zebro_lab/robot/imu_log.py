@@ -1,0 +1,115 @@
+# SPDX-License-Identifier: MIT
+"""Orientation of the body from somebody else's table, in SI and the axes of the body."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Final
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from model.slip.law import Array
+from zebro_lab.files.errors import DataError
+from zebro_lab.tables.cells import cell_error, require_increasing
+from zebro_lab.tables.mapped_columns import MappedColumns
+from zebro_lab.tables.raw_table import RawTable
+
+_QUATERNION: Final = ("qw", "qx", "qy", "qz")
+_ANGLES: Final = ("roll", "pitch", "yaw")
+_RATE: Final = ("rate_x", "rate_y", "rate_z")
+_FORCE: Final = ("force_x", "force_y", "force_z")
+IMU_UNITS: Final[Mapping[str, str]] = {
+    "t": "s",
+    **dict.fromkeys(_QUATERNION, "dimensionless"),
+    **dict.fromkeys(_ANGLES, "rad"),
+    **dict.fromkeys(_RATE, "rad/s"),
+    **dict.fromkeys(_FORCE, "m/s^2"),
+}
+_NORM_TOLERANCE: Final = 0.05
+_ADVICE: Final = "delete such rows, or fill them"
+
+
+@dataclass(frozen=True)
+class ImuLog:
+    """Orientation over time.
+
+    Attributes:
+        t: Time, shape (n,) [s].
+        values: Quaternion w, x, y, z, angular rate x, y, z [rad/s], specific force x, y, z [m/s2],
+            NaN where the table has none, shape (n, 10).
+        source: "real", "sim:what", "replay:what"; None where nobody said.
+        files: Every file read.
+        notes: For a person, one line each.
+    """
+
+    t: Array
+    values: Array
+    source: str | None
+    files: tuple[Path, ...]
+    notes: tuple[str, ...] = ()
+
+
+def imu_of_table(table: RawTable, mapping: MappedColumns) -> ImuLog:
+    """Read orientation from a table: quaternions, or roll and pitch and perhaps yaw.
+
+    Args:
+        table: The table.
+        mapping: Where the columns come from, over `IMU_UNITS`.
+
+    Raises:
+        DataError: Time or orientation is missing, a cell holds no finite number, time does not
+            increase, or a quaternion has not length 1; names the cell.
+    """
+    t = mapping.numbers(table, "t", what="time", advice=_ADVICE)
+    require_increasing(table, mapping.mapped["t"].name, t)
+    quaternion, notes = _orientation(table, mapping)
+    rest = [_or_nan(table, mapping, name) for name in (*_RATE, *_FORCE)]
+    return ImuLog(
+        t,
+        np.column_stack([quaternion, *rest]),
+        mapping.source or table.source,
+        (table.path, *([mapping.file] if mapping.file else [])),
+        (*table.notes, *notes),
+    )
+
+
+def _orientation(table: RawTable, mapping: MappedColumns) -> tuple[Array, tuple[str, ...]]:
+    if mapping.has(table, "qw"):
+        columns = [_numbers(table, mapping, name) for name in _QUATERNION]
+        quaternion = np.column_stack(columns)
+        _require_unit(table, mapping, quaternion)
+        return quaternion, ()
+    if not mapping.has(table, "roll"):
+        raise DataError(
+            f"holds no orientation; expected {', '.join(_QUATERNION)}, or roll and pitch, among "
+            f"{', '.join(table.columns)}: map them in [imu.columns] of a columns.toml",
+            file=table.path,
+        )
+    roll, pitch = (_numbers(table, mapping, name) for name in ("roll", "pitch"))
+    known = mapping.has(table, "yaw")
+    yaw = _numbers(table, mapping, "yaw") if known else np.zeros(len(roll))
+    turned = Rotation.from_euler("ZYX", np.column_stack([yaw, pitch, roll]))
+    notes = () if known else (f"{table.path.name}: without yaw; its heading is kept as 0",)
+    return turned.as_quat(scalar_first=True), notes
+
+
+def _numbers(table: RawTable, mapping: MappedColumns, name: str) -> Array:
+    return mapping.numbers(table, name, what=f"{name} of the body", advice=_ADVICE)
+
+
+def _or_nan(table: RawTable, mapping: MappedColumns, name: str) -> Array:
+    if mapping.has(table, name):
+        return _numbers(table, mapping, name)
+    return np.full(len(table), np.nan)
+
+
+def _require_unit(table: RawTable, mapping: MappedColumns, quaternion: Array) -> None:
+    norm = np.linalg.norm(quaternion, axis=1)
+    good = np.abs(norm - 1) <= _NORM_TOLERANCE
+    if not good.all():
+        index = int(np.argmin(good))
+        raise cell_error(
+            table, mapping.mapped["qw"].name, index,
+            f"the quaternion has length {norm[index]:.3g}; expected 1",
+        )  # fmt: skip

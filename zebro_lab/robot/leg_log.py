@@ -1,0 +1,124 @@
+# SPDX-License-Identifier: MIT
+"""Measured leg angles: a table with a time and six angles, checked and unwrapped."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from model.gait.reference import SampledReference
+from model.robot import N_LEGS
+from model.slip.law import Array
+from zebro_lab.files.errors import DataError
+from zebro_lab.tables.cells import cell_error, require_increasing
+from zebro_lab.tables.mapped_columns import (
+    MappedColumns,
+)
+from zebro_lab.tables.raw_table import RawTable
+
+ANGLES = tuple(f"theta{leg}" for leg in range(1, N_LEGS + 1))
+LEG_UNITS: Mapping[str, str] = {"t": "s", **dict.fromkeys(ANGLES, "rad")}
+_WIDEST_GAP = 5.0  # median steps between samples; beyond, a leg may have done anything
+_LONGEST_TURN = 2.5  # rad between samples; from pi on, which way a leg turned is a guess
+
+
+@dataclass(frozen=True)
+class LegLog:
+    """Measured leg angles.
+
+    Attributes:
+        reference: Angles over time, unwrapped, with the canonical sign.
+        source: "real", "sim:what", "replay:what"; "unknown" where nobody said.
+        files: Every file read.
+        notes: For a person, one line each.
+    """
+
+    reference: SampledReference
+    source: str
+    files: tuple[Path, ...]
+    notes: tuple[str, ...] = ()
+
+
+def legs_of_table(
+    table: RawTable,
+    mapping: MappedColumns,
+    *,
+    files: Sequence[Path],
+    leg_sign: Sequence[int] = (1,) * N_LEGS,
+) -> LegLog:
+    """Check and unwrap the leg angles of a table.
+
+    Args:
+        table: The table.
+        mapping: Where time and angles come from, over `LEG_UNITS`.
+        files: What the table was read from.
+        leg_sign: 1 or -1 for each leg, shape (6,).
+
+    Raises:
+        DataError: A value is missing, time does not increase or leaves a gap, or a leg turns too
+            far between samples; names file, row and column.
+    """
+    t, *angles = (_numbers(table, name, mapping) for name in LEG_UNITS)
+    time_column = mapping.mapped["t"].name
+    if len(t) < 2:
+        raise DataError(f"has {len(t)} row; a leg log needs two or more", file=files[0])
+    require_increasing(table, time_column, t)
+    _require_no_gap(table, time_column, t)
+    raw = np.column_stack(angles) * np.asarray(leg_sign, dtype=float)
+    theta = np.unwrap(raw, axis=0)
+    _require_unwrapped(table, mapping, theta)
+    return LegLog(
+        SampledReference(t, theta),
+        source=mapping.source or table.source or "unknown",
+        files=(*files, *([mapping.file] if mapping.file else [])),
+        notes=(*table.notes, *_notes(t, raw, theta)),
+    )
+
+
+def _numbers(table: RawTable, name: str, columns: MappedColumns) -> Array:
+    return columns.numbers(
+        table,
+        name,
+        what="time" if name == "t" else f"angle of leg {name[-1]}",
+        advice="delete the rows before or after it, or fill it",
+    )
+
+
+def _require_no_gap(table: RawTable, column: str, t: Array) -> None:
+    steps = np.diff(t)
+    usual = float(np.median(steps))
+    wide = steps > _WIDEST_GAP * usual
+    if wide.any():
+        index = int(np.argmax(wide)) + 1
+        raise cell_error(
+            table, column, index,
+            f"time jumps from {t[index - 1]:g} to {t[index]:g} s, where samples are {usual:.4g} s "
+            "apart; split the log there and predict each part",
+        )  # fmt: skip
+
+
+def _require_unwrapped(table: RawTable, columns: MappedColumns, theta: Array) -> None:
+    turns = np.abs(np.diff(theta, axis=0))
+    if not (turns > _LONGEST_TURN).any():
+        return
+    row, leg = (int(i[0]) for i in np.nonzero(turns > _LONGEST_TURN))
+    raise cell_error(
+        table, columns.mapped[ANGLES[leg]].name, row + 1,
+        f"leg {leg + 1} turns by {turns[row, leg]:.3g} rad since the sample before; from half a "
+        "turn on nobody can tell which way: check its unit, or log faster",
+    )  # fmt: skip
+
+
+def _notes(t: Array, raw: Array, theta: Array) -> list[str]:
+    rate = (len(t) - 1) / (t[-1] - t[0])
+    notes = [f"leg log: {len(t)} samples over {t[-1] - t[0]:.4g} s, about {rate:.4g} Hz"]
+    if np.any(raw != theta):
+        notes.append("leg log: angles were wrapped to a turn, now unwrapped")
+    backward = [str(leg + 1) for leg in range(N_LEGS) if theta[-1, leg] < theta[0, leg] - np.pi]
+    if backward:
+        notes.append(
+            f"leg log: legs {', '.join(backward)} turn backwards; is their sign right? "
+            "(legs.sign in robot.toml, or sign in columns.toml)"
+        )
+    return notes

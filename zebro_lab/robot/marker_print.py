@@ -1,0 +1,54 @@
+# SPDX-License-Identifier: MIT
+"""What is printed on the robot: which marker of which dictionary, and how large."""
+
+from dataclasses import dataclass
+
+from zebro_lab.files.errors import SettingsError
+from zebro_lab.files.units import quantity_to_si
+
+
+@dataclass(frozen=True)
+class MarkerPrint:
+    """A printed marker; the kit's where nothing else is said.
+
+    Attributes:
+        dictionary: Name of its dictionary.
+        number: Its number in the dictionary.
+        side: Side of its black square [m].
+    """
+
+    dictionary: str = "4x4_50"
+    number: int = 0
+    side: float = 0.12
+
+    @property
+    def text(self) -> str:
+        """The form that `parse_marker` reads.
+
+        >>> MarkerPrint().text
+        '4x4_50:0:120mm'
+        """
+        return f"{self.dictionary}:{self.number}:{1e3 * self.side:.12g}mm"
+
+
+KIT_PRINT = MarkerPrint()
+"""The robot's marker that the kit prints."""
+
+
+def parse_marker(text: str) -> MarkerPrint:
+    """Take "DICTIONARY:NUMBER:SIDE" apart.
+
+    Raises:
+        SettingsError: It says something else.
+        UnitError: The side is no length.
+
+    >>> parse_marker("apriltag_36h11:4:10cm")
+    MarkerPrint(dictionary='apriltag_36h11', number=4, side=0.1)
+    """
+    parts = text.rsplit(":", 2)
+    if len(parts) != 3 or not parts[1].isdigit():
+        raise SettingsError(
+            f"'{text}' is no marker; expected DICTIONARY:NUMBER:SIDE such as {KIT_PRINT.text}",
+            key="--marker",
+        )
+    return MarkerPrint(parts[0], int(parts[1]), quantity_to_si(parts[2], "m"))

@@ -1,0 +1,41 @@
+# SPDX-License-Identifier: MIT
+"""`zebro-lab runs` and `exclude`: what has been recorded, and what of it counts."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from zebro_lab.terminal.messages import say
+
+DataDir = Annotated[Path, typer.Argument(metavar="DATA", help="Folder of run folders.")]
+RunFolder = Annotated[Path, typer.Argument(metavar="RUN", help="Run folder.")]
+Why = Annotated[str | None, typer.Option(help="Reason, kept with the run and those of before.")]
+Undo = Annotated[bool, typer.Option("--undo", help="Take the run in again.")]
+
+
+def runs(data: DataDir) -> None:
+    """List recorded runs: how each ended, what it holds and where it comes from."""
+    from zebro_lab.runs.stage import list_runs
+
+    listed = list_runs(data)
+    for run in listed:
+        say(
+            f"{run.name}  {run.state}  {run.duration}  {run.samples}  "
+            f"{'SIMULATED ' if run.source.startswith('sim:') else ''}{run.source}"
+        )
+    say(f"{len(listed)} run{'s' * (len(listed) != 1)} in {data}")
+
+
+def exclude(run: RunFolder, why: Why = None, undo: Undo = False) -> None:
+    """Leave a run out of every calibration, and keep it; or take it in again."""
+    from zebro_lab.runs.exclusion import exclude_run, take_in_again
+
+    if undo:
+        take_in_again(run, why=why)
+        say(f"{run.name} counts again from now on")
+        return
+    if why is None:
+        raise typer.BadParameter("needed: the reason, kept with the run", param_hint="'--why'")
+    manifest = exclude_run(run, why=why)
+    say(f"{run.name} is left out from now on: {(manifest.excluded or {})['why']}")

@@ -1,0 +1,103 @@
+# SPDX-License-Identifier: MIT
+"""Find data that are named twice: the same bytes, or the same samples imported twice."""
+
+import gzip
+import hashlib
+import zlib
+from collections.abc import Callable, Hashable, Sequence
+from pathlib import Path
+from typing import Final, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from model.slip.law import Array
+from zebro_lab.files.provenance import file_hash
+
+FEWEST: Final = 20
+"""Samples of a run below which equal numbers may be chance: averages are rounded."""
+_MOST: Final = 1 << 30  # bytes that are unpacked to be compared; a larger file is compared packed
+_CHUNK: Final = 1 << 20
+_SHOWN: Final = 3
+_T = TypeVar("_T")
+
+
+def content_hash(file: Path) -> str:
+    """Compute the SHA-256 of what a file holds: a gzip file counts by what was packed."""
+    if file.name.lower().endswith(".gz"):
+        try:
+            return _unpacked_hash(file) or file_hash(file)
+        except (OSError, EOFError, zlib.error):  # it is damaged: whoever reads it says so
+            return file_hash(file)
+    return file_hash(file)
+
+
+def _unpacked_hash(file: Path) -> str | None:
+    digest, read = hashlib.sha256(), 0
+    with gzip.open(file) as content:
+        while chunk := content.read(_CHUNK):
+            digest.update(chunk)
+            read += len(chunk)
+            if read > _MOST:
+                return None
+    return digest.hexdigest()
+
+
+def array_hash(*arrays: Array) -> str:
+    """Compute the SHA-256 of numbers, to the last bit."""
+    digest = hashlib.sha256()
+    for each in arrays:
+        digest.update(str(each.shape).encode())
+        digest.update(np.ascontiguousarray(each, dtype="<f8").tobytes())
+    return digest.hexdigest()
+
+
+def run_keys(forces: Sequence[Array], run: NDArray[np.intp], n_runs: int) -> tuple[str, ...]:
+    """Return what each run of a table is known by again, under any name and definition of slip.
+
+    That is its forces: two recordings never repeat them to the last bit. Runs of a few samples are
+    known by all forces of their table together, and so is one whose forces stand still.
+
+    Args:
+        forces: Columns of forces, each of shape (n,).
+        run: Run of each sample, shape (n,).
+        n_runs: How many runs there are.
+    """
+    whole = array_hash(*forces)
+    keys = []
+    for index in range(n_runs):
+        part = [column[run == index] for column in forces]
+        tells = len(part[0]) >= FEWEST and any(np.ptp(column) > 0 for column in part)
+        keys.append(array_hash(*part) if tells else f"{whole} {index}")
+    return tuple(keys)
+
+
+def first_of_each(
+    items: Sequence[_T], *, key: Callable[[_T], Hashable]
+) -> tuple[list[_T], list[tuple[_T, _T]]]:
+    """Return the items without repeated ones, and each repeated one with the one it repeats.
+
+    >>> first_of_each(["a.csv", "b.csv", "A.csv"], key=str.lower)
+    (['a.csv', 'b.csv'], [('A.csv', 'a.csv')])
+    """
+    first: dict[Hashable, _T] = {}
+    repeated: list[tuple[_T, _T]] = []
+    for item in items:
+        known = first.setdefault(key(item), item)
+        if known is not item:
+            repeated.append((item, known))
+    return list(first.values()), repeated
+
+
+def told_once(what: str, repeated: Sequence[tuple[object, object]]) -> tuple[str, ...]:
+    """Say in one line what is there twice; nothing where nothing is.
+
+    >>> told_once("tables", [("b.csv", "a.csv")])
+    ('1 of the tables is there twice and counts once: b.csv is a.csv',)
+    """
+    if not repeated:
+        return ()
+    shown = ", ".join(f"{one} is {other}" for one, other in repeated[:_SHOWN])
+    more = f" and {len(repeated) - _SHOWN} more" if len(repeated) > _SHOWN else ""
+    verb = "is there twice and counts" if len(repeated) == 1 else "are there twice and count"
+    return (f"{len(repeated)} of the {what} {verb} once: {shown}{more}",)

@@ -1,0 +1,101 @@
+# SPDX-License-Identifier: MIT
+"""Which files and run folders a command line means."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from zebro_lab.files.errors import DataError, NotFound
+from zebro_lab.runs.folder import LOG_FILE, MANIFEST_FILE
+from zebro_lab.tables.columns import COLUMNS_FILE
+from zebro_lab.tables.table_files import TABLE_SUFFIXES, is_table_file
+
+CALIBRATION_FILE = "slip.toml"  # what marks a folder as a calibration's output, not as data
+
+
+@dataclass(frozen=True)
+class DataSource:
+    """One table file or one run folder.
+
+    Attributes:
+        path: The file or the folder.
+        root: Folder named on the command line, or the named file's own.
+    """
+
+    path: Path
+    root: Path
+
+    @property
+    def is_run_folder(self) -> bool:
+        """Tell a run folder from a table file."""
+        return self.path.is_dir()
+
+    def columns_file(self) -> Path | None:
+        """Find the nearest `columns.toml`: beside the data, then upwards to the root."""
+        folder = self.path if self.is_run_folder else self.path.parent
+        while True:
+            if (folder / COLUMNS_FILE).is_file():
+                return folder / COLUMNS_FILE
+            if folder in (self.root, folder.parent):
+                return None
+            folder = folder.parent
+
+
+def find_sources(paths: Sequence[Path]) -> list[DataSource]:
+    """Find the tables and run folders that a command line means.
+
+    A folder stands for every CSV and Parquet file and every run folder below it, in the order
+    of their names; hidden folders and calibration outputs are passed over. What is named twice
+    counts once.
+
+    Args:
+        paths: Files and folders, as named.
+
+    Raises:
+        NotFound: A path does not exist.
+        DataError: A folder holds no data.
+    """
+    if not paths:
+        raise NotFound("no data named; name files or folders of CSV, Parquet or run folders")
+    found: dict[Path, DataSource] = {}
+    for path in map(Path, paths):
+        for source in _sources_at(path):
+            found.setdefault(source.path.resolve(), source)
+    return list(found.values())
+
+
+def _sources_at(path: Path) -> list[DataSource]:
+    if not path.exists():
+        raise NotFound(f"{path}: no such file or folder; working in {Path.cwd()}")
+    if path.is_dir():
+        sources = [DataSource(below, path) for below in _walk(path)]
+        if not sources:
+            raise DataError(_why_empty(path), file=path)
+        return sources
+    if path.name in (MANIFEST_FILE, LOG_FILE):
+        return _sources_at(path.parent)
+    return [DataSource(path, path.parent)]
+
+
+def _walk(folder: Path) -> Iterator[Path]:
+    if (folder / MANIFEST_FILE).is_file():
+        yield folder
+        return
+    if (folder / CALIBRATION_FILE).is_file():
+        return
+    for path in sorted(folder.iterdir()):
+        if path.name.startswith("."):
+            continue
+        if path.is_dir():
+            yield from _walk(path)
+        elif is_table_file(path):
+            yield path
+
+
+def _why_empty(folder: Path) -> str:
+    if (folder / CALIBRATION_FILE).is_file():
+        return "is a calibration's output; name the data it was made from"
+    return (
+        f"holds no data; expected files ending in {', '.join(TABLE_SUFFIXES)} "
+        f"or run folders with a {MANIFEST_FILE}, here or below"
+    )

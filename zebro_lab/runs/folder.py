@@ -1,0 +1,313 @@
+# SPDX-License-Identifier: MIT
+"""Run folders: `DATA/<utc time>_<kind>_<label>/` with `run.json` and `log.mcap`.
+
+This file alone knows their form, which docs/formats.md describes.
+"""
+
+import re
+import time
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from datetime import UTC, datetime, timedelta
+from pathlib import Path
+from typing import Final
+
+import numpy as np
+
+from zebro_lab.files.atomic import atomic_folder
+from zebro_lab.files.errors import AlreadyExists, DataError, NotFound, RecordingError
+from zebro_lab.files.provenance import file_hash
+from zebro_lab.mcap.raw_log import read_raw_log
+from zebro_lab.mcap.slip_rig_log import TOPIC, SlipRigTable, read_log, write_log
+from zebro_lab.runs.exclusion import exclude_run
+from zebro_lab.runs.manifest import (
+    IMPORTED,
+    KINDS,
+    MANIFEST_FILE,
+    RECORDING,
+    SCHEMA_VERSION,
+    RunManifest,
+    read_manifest,
+    software_version,
+    write_manifest,
+)
+
+__all__ = [
+    "IMPORTED",
+    "KINDS",
+    "LOG_FILE",
+    "MANIFEST_FILE",
+    "RECORDING",
+    "SCHEMA_VERSION",
+    "RunManifest",
+    "SlipRigRun",
+    "epoch_ns",
+    "exclude_run",
+    "find_runs",
+    "finished_run_folder",
+    "new_run_folder",
+    "read_manifest",
+    "read_slip_rig_run",
+    "require_recorded",
+    "run_path",
+    "run_state",
+    "write_manifest",
+    "write_slip_rig_run",
+]
+
+LOG_FILE = "log.mcap"
+STILL_GROWING: Final = 3.0
+"""A log touched so recently is being recorded: the recorder writes to it every second [s]."""
+
+
+@dataclass(frozen=True)
+class SlipRigRun:
+    """A run of the slip rig, as read.
+
+    Attributes:
+        folder: Its folder.
+        manifest: What `run.json` says.
+        table: The samples.
+        files: Files read.
+        notes: What a person should know about how it was read.
+    """
+
+    folder: Path
+    manifest: RunManifest
+    table: SlipRigTable
+    files: tuple[Path, ...]
+    notes: tuple[str, ...] = field(default=())
+
+
+def write_slip_rig_run(
+    data_dir: Path,
+    table: SlipRigTable,
+    *,
+    label: str,
+    material: str,
+    operator: str,
+    source: str,
+    start: datetime,
+    radius_leg: float,
+    radius_ground: float,
+    exit_status: str = "completed",
+    commit: str = "unknown",
+    inputs: Mapping[str, str] | None = None,
+    extra: Callable[[Path], object] | None = None,
+) -> Path:
+    """Write a run of the slip rig as a new run folder, atomically.
+
+    Args:
+        data_dir: Folder of run folders; made when missing.
+        table: The samples, at least one.
+        label: Name of the run.
+        material: Leg and ground material.
+        operator: Who ran it.
+        source: "real", "sim:what", "replay:what" or "import:FILE".
+        start: When sample time was 0, with its time zone.
+        radius_leg: Radius of the leg disc [m].
+        radius_ground: Radius of the ground disc [m].
+        exit_status: How the run ended.
+        commit: Commit of the software that recorded it.
+        inputs: SHA-256 of the files that the samples were imported from.
+        extra: Adds files of its own to the folder before it appears.
+
+    Returns:
+        The run folder.
+
+    Raises:
+        DataError: There is no sample.
+        AlreadyExists: A run of this start and label is there already.
+    """
+    if len(table) == 0:
+        raise DataError(f"run '{label}' has no samples to write")
+    finished = finished_run_folder(data_dir, kind="slip-rig", label=label, start=start)
+    with finished as (folder, draft):
+        if extra is not None:
+            extra(draft)
+        with (draft / LOG_FILE).open("wb") as file:
+            write_log(file, table, start_ns=epoch_ns(start))
+        manifest = RunManifest(
+            kind="slip-rig",
+            label=label,
+            material=material,
+            operator=operator,
+            source=source,
+            start=start.astimezone(UTC).isoformat(),
+            stop=(start.astimezone(UTC) + timedelta(seconds=float(table.t[-1]))).isoformat(),
+            exit_status=exit_status,
+            software=software_version(commit),
+            constants={"radius_leg": float(radius_leg), "radius_ground": float(radius_ground)},
+            streams={TOPIC: len(table)},
+            log_sha256=file_hash(draft / LOG_FILE),
+            inputs=inputs or {},
+        )
+        write_manifest(draft, manifest)
+    return folder
+
+
+@contextmanager
+def finished_run_folder(
+    data_dir: Path, *, kind: str, label: str, start: datetime
+) -> Iterator[tuple[Path, Path]]:
+    """Fill the folder of a run that is over, so that it appears finished or not at all.
+
+    Args:
+        data_dir: Folder of run folders; made when missing.
+        kind: One of `KINDS`.
+        label: Name of the run.
+        start: When it began, with its time zone.
+
+    Yields:
+        The run folder that is to be, and the draft to write into.
+
+    Raises:
+        AlreadyExists: A run of this start and label is there already.
+    """
+    folder = run_path(data_dir, kind, label, start)
+    if folder.exists():
+        raise AlreadyExists(f"{folder} exists already; give the run another label")
+    with atomic_folder(folder) as draft:
+        yield folder, draft
+
+
+def read_slip_rig_run(folder: Path) -> SlipRigRun:
+    """Read a run of the slip rig.
+
+    A log that was cut short is read up to its last whole chunk, and a note says so.
+
+    Raises:
+        NotFound: There is no manifest or no log.
+        DataError: The run is of another kind, or its log cannot be read or is not the one
+            that was recorded.
+    """
+    manifest = read_manifest(folder)
+    if manifest.kind != "slip-rig":
+        raise DataError(
+            f"is a run of kind '{manifest.kind}', expected 'slip-rig'; leave it out",
+            file=folder / MANIFEST_FILE,
+        )
+    path = folder / LOG_FILE
+    if not path.is_file():
+        raise NotFound(f"{path}: missing; restore it from where the run was recorded")
+    table, damage, notes = _slip_rig_table(folder, manifest)
+    _require_radii(manifest, folder / MANIFEST_FILE)
+    if damage is not None:
+        notes = (_salvage_note(folder, manifest, len(table), damage), *notes)
+    else:
+        require_recorded(path, manifest)
+    return SlipRigRun(folder, manifest, table, (folder / MANIFEST_FILE, path), notes)
+
+
+def new_run_folder(data_dir: Path, *, kind: str, label: str, start: datetime) -> Path:
+    """Make the folder of a run that is about to be recorded, empty.
+
+    Args:
+        data_dir: Folder of run folders; made when missing.
+        kind: One of `KINDS`.
+        label: Name of the run.
+        start: When it begins, with its time zone.
+
+    Raises:
+        AlreadyExists: A run of this start and label is there already.
+        RecordingError: Nothing can be written there.
+    """
+    folder = run_path(data_dir, kind, label, start)
+    try:
+        folder.mkdir(parents=True)
+    except FileExistsError as error:
+        if folder.is_dir():
+            raise AlreadyExists(f"{folder} exists already; give the run another label") from error
+        raise RecordingError(f"{error.filename} is a file; name a folder as --data") from error
+    except OSError as error:
+        raise RecordingError(
+            f"cannot write to {data_dir}: {error.strerror}; name another folder as --data"
+        ) from error
+    return folder
+
+
+def find_runs(data_dir: Path) -> list[Path]:
+    """Find all run folders below a folder, or the folder itself, in the order of their names.
+
+    Raises:
+        NotFound: There is no such folder.
+    """
+    if not data_dir.is_dir():
+        raise NotFound(f"{data_dir}: no such folder; name one that holds run folders")
+    return sorted(file.parent for file in data_dir.rglob(MANIFEST_FILE))
+
+
+def run_state(folder: Path, manifest: RunManifest) -> str:
+    """Say how a run ended: its exit status, or `recovered` where nobody could write one.
+
+    A run without an end is still `recording` while its log grows.
+    """
+    if manifest.exit_status != RECORDING:
+        return manifest.exit_status
+    log = folder / LOG_FILE
+    growing = log.is_file() and time.time() - log.stat().st_mtime < STILL_GROWING
+    return RECORDING if growing else "recovered"
+
+
+def _slip_rig_table(
+    folder: Path, manifest: RunManifest
+) -> tuple[SlipRigTable, str | None, tuple[str, ...]]:
+    """Read or derive the samples; also say what damage ended them, and what was left out."""
+    path = folder / LOG_FILE
+    if not manifest.profiles:
+        log = read_log(path)
+        return log.table, log.damage, ()
+    from zebro_lab.runs.slip_rig_decoding import derive_table  # drivers: not for every table
+
+    raw = read_raw_log(path)
+    table, notes = derive_table(folder, raw.streams, zero=manifest.constants)
+    return table, raw.damage, notes
+
+
+def _require_radii(manifest: RunManifest, file: Path) -> None:
+    for name in ("radius_leg", "radius_ground"):
+        radius = manifest.constants.get(name)
+        if isinstance(radius, bool) or not isinstance(radius, (int, float)):
+            raise DataError(
+                f"constants.{name} is {radius!r}, expected a radius in m", file=file, column=name
+            )
+        if not (np.isfinite(radius) and radius > 0):
+            raise DataError(
+                f"is {radius:g} m, expected more than 0", file=file, column=name, value=radius,
+                unit="m",
+            )  # fmt: skip
+
+
+def require_recorded(path: Path, manifest: RunManifest) -> None:
+    """Refuse a log that is not the one that was recorded.
+
+    Raises:
+        DataError: Its hash differs from the manifest's.
+    """
+    if manifest.log_sha256 is not None and file_hash(path) != manifest.log_sha256:
+        raise DataError(
+            f"is not the log that was recorded: its SHA-256 differs from {MANIFEST_FILE}; "
+            f"restore it, or exclude the run in {MANIFEST_FILE}",
+            file=path,
+        )
+
+
+def _salvage_note(folder: Path, manifest: RunManifest, count: int, damage: str) -> str:
+    recorded = manifest.streams.get(TOPIC)
+    of_all = f" of {recorded}" if recorded else ""
+    return f"{folder.name}: {LOG_FILE} is cut short ({damage}); {count}{of_all} samples read"
+
+
+def run_path(data_dir: Path, kind: str, label: str, start: datetime) -> Path:
+    """Name the folder of a run."""
+    return Path(data_dir) / f"{start.astimezone(UTC):%Y%m%dT%H%M%SZ}_{kind}_{_slug(label)}"
+
+
+def _slug(label: str) -> str:
+    return re.sub(r"[^\w.-]+", "-", label).strip("-.") or "run"
+
+
+def epoch_ns(moment: datetime) -> int:
+    """Return nanoseconds since the Unix epoch, to a microsecond."""
+    return (moment - datetime(1970, 1, 1, tzinfo=UTC)) // timedelta(microseconds=1) * 1000

@@ -1,0 +1,69 @@
+# SPDX-License-Identifier: MIT
+"""Read measured leg angles from a table, a walk folder or a recorded run."""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from model.robot import N_LEGS
+from zebro_lab.files.errors import DataError
+from zebro_lab.files.names import PATH_CSV
+from zebro_lab.files.replacement import settle
+from zebro_lab.files.toml_table import read_toml
+from zebro_lab.robot.leg_log import ANGLES, LEG_UNITS, LegLog, legs_of_table
+from zebro_lab.runs.recorded_legs import is_recorded, read_recorded_legs
+from zebro_lab.tables.columns import COLUMNS_FILE
+from zebro_lab.tables.mapped_columns import MappedColumns, canonical_columns, parse_mapped_columns
+from zebro_lab.tables.table_files import read_table_file
+
+
+def read_leg_log(
+    path: Path, *, columns: Path | None = None, leg_sign: Sequence[int] = (1,) * N_LEGS
+) -> LegLog:
+    """Read leg angles over time from CSV or Parquet: `t` [s] and `theta1` to `theta6` [rad].
+
+    Other names and units are mapped by a `columns.toml`, beside the table or as named. Angles may
+    be wrapped to one turn or not.
+
+    Args:
+        path: The table; a walk folder, whose path.csv holds the same columns; or a recorded run,
+            whose counts become angles with the profile that it keeps.
+        columns: A `columns.toml` in place of the one beside the table.
+        leg_sign: 1 or -1 for each leg, which its angles are multiplied with; see robot.toml.
+
+    Raises:
+        NotFound: A file does not exist.
+        SettingsError: The `columns.toml` says something that cannot be followed.
+        DataError: A leg is missing, a cell holds no finite number, time does not increase or has
+            a gap, or a leg turns too far between samples; names file, row and column.
+    """
+    if is_recorded(path):
+        table, files = read_recorded_legs(path)
+        return legs_of_table(table, _read_columns(None), files=files, leg_sign=leg_sign)
+    file = _table_of(path)
+    mapping = _read_columns(_columns_file(file, columns))
+    return legs_of_table(read_table_file(file), mapping, files=(file,), leg_sign=leg_sign)
+
+
+def _table_of(path: Path) -> Path:
+    settle(path)
+    if not path.is_dir():
+        return path
+    if (path / PATH_CSV).is_file():
+        return path / PATH_CSV
+    raise DataError(
+        f"is a folder without a {PATH_CSV}; name a CSV or Parquet file with t and "
+        f"{ANGLES[0]} to {ANGLES[-1]}",
+        file=path,
+    )
+
+
+def _columns_file(table: Path, named: Path | None) -> Path | None:
+    beside = table.parent / COLUMNS_FILE
+    return named or (beside if beside.is_file() else None)
+
+
+def _read_columns(file: Path | None) -> MappedColumns:
+    if file is None:
+        return canonical_columns(LEG_UNITS)
+    document = read_toml(file, advice=f"expected a {COLUMNS_FILE}")
+    return parse_mapped_columns(document.values, LEG_UNITS, file=file)

@@ -1,0 +1,212 @@
+# SPDX-License-Identifier: MIT
+"""What `run.json` of a run folder says: read, checked and written here alone."""
+
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass, field
+from datetime import UTC, datetime
+from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
+from typing import Any
+
+from zebro_lab.files.atomic import atomic_write_text
+from zebro_lab.files.errors import DataError
+from zebro_lab.files.folder_manifest import read_json_object
+from zebro_lab.files.known_keys import nearest
+
+PROFILES = "profiles"
+MANIFEST_FILE = "run.json"
+SCHEMA_VERSION = 1
+KINDS = ("slip-rig", "walk")
+IMPORTED = "imported"
+RECORDING = "recording"
+"""Exit status of a run that has not ended yet, or whose recorder was killed."""
+
+
+def profile_file(folder: Path, stream: str) -> Path:
+    """Return where a run keeps the profile of a stream; correcting it repairs the run."""
+    return folder / PROFILES / f"{stream}.toml"
+
+
+@dataclass(frozen=True)
+class RunManifest:
+    """What `run.json` says about a run.
+
+    Attributes:
+        kind: "slip-rig" or "walk".
+        label: Name its operator gave it.
+        material: Leg and ground material.
+        operator: Who ran it.
+        source: "real", "sim:what", "replay:what", or "import:FILE" where a file was imported and
+            nobody said more.
+        start: Start, UTC, ISO 8601.
+        stop: Stop, UTC, ISO 8601; None while it is recorded, or where nobody could write it.
+        exit_status: "completed", "recording", "imported", or why it ended.
+        software: Version and commit of what recorded it.
+        constants: Canonical columns that are one number for the rig, SI: radius_leg,
+            radius_ground; also zero_normal and zero_traction [N], where the unloaded load cell's
+            zero is to be subtracted.
+        streams: Samples recorded, by topic.
+        log_sha256: SHA-256 of `log.mcap`; None where the recorder could not close it.
+        excluded: {"why": reason} where the run is to be left out of every calibration.
+        exclusions: What was excluded and undone, in order: {"did": "excluded" or "undone", "why":
+            reason, "at": time}.
+        profiles: Name of each device's profile, by stream; the profile itself lies in the folder.
+        sources: Source of each stream.
+        counters: What happened to each stream: received, lost, damaged and so on, and how many the
+            recorder itself dropped.
+        clocks: Offset [s], drift [-] and delay [s] of each device's clock against the time of the
+            run, where the device tells time.
+        duration: How long the run was to last ("asked") and the time of the run from which that
+            counts ("from"), when every stream had sent its first sample; empty where it was to
+            last until it was stopped [s].
+        robot: Name of the robot, for a walk.
+        truth: What a simulated device knows to be true.
+        inputs: SHA-256 of the files that an imported run was made from, by their names.
+        point: Which point of an experiment the run is, and whether it is good.
+        schema_version: Version of this form.
+    """
+
+    kind: str
+    label: str
+    material: str
+    operator: str
+    source: str
+    start: str
+    stop: str | None
+    exit_status: str
+    software: Mapping[str, str]
+    constants: Mapping[str, float]
+    streams: Mapping[str, int]
+    log_sha256: str | None = None
+    excluded: Mapping[str, str] | None = None
+    exclusions: Sequence[Mapping[str, str]] = ()
+    profiles: Mapping[str, str] = field(default_factory=dict)
+    sources: Mapping[str, str] = field(default_factory=dict)
+    counters: Mapping[str, Mapping[str, int]] = field(default_factory=dict)
+    clocks: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
+    duration: Mapping[str, float] = field(default_factory=dict)
+    robot: str | None = None
+    truth: Mapping[str, Any] = field(default_factory=dict)
+    inputs: Mapping[str, str] = field(default_factory=dict)
+    point: Mapping[str, Any] = field(default_factory=dict)
+    schema_version: int = SCHEMA_VERSION
+
+
+def read_manifest(folder: Path) -> RunManifest:
+    """Read and check a run folder's `run.json`.
+
+    Raises:
+        NotFound: There is none.
+        DataError: It is damaged, incomplete, or of another version.
+    """
+    file = folder / MANIFEST_FILE
+    return _checked(read_json_object(file, of="run folder"), file)
+
+
+def write_manifest(folder: Path, manifest: RunManifest) -> Path:
+    """Write a run folder's `run.json`, whole or not at all.
+
+    Raises:
+        OSError: The folder cannot be written.
+    """
+    return atomic_write_text(folder / MANIFEST_FILE, manifest_text(manifest))
+
+
+def manifest_text(manifest: RunManifest) -> str:
+    """Render `run.json`; what is None or empty is left out."""
+    document = {
+        key: value for key, value in asdict(manifest).items()
+        if value is not None and (value or key not in _OPTIONAL)
+    }  # fmt: skip
+    return json.dumps(document, indent=2, ensure_ascii=False) + "\n"
+
+
+def software_version(commit: str = "unknown") -> dict[str, str]:
+    """Name what records: version of this software, and its commit."""
+    try:
+        return {"version": version("zebro-lab"), "commit": commit}
+    except PackageNotFoundError:
+        return {"version": "unknown", "commit": commit}
+
+
+_FIELD_TYPES: Mapping[str, type] = {
+    "kind": str, "label": str, "material": str, "operator": str, "source": str, "start": str,
+    "stop": str, "exit_status": str, "software": dict, "constants": dict, "streams": dict,
+    "log_sha256": str, "excluded": dict, "profiles": dict, "sources": dict, "counters": dict,
+    "clocks": dict, "duration": dict, "robot": str, "truth": dict, "inputs": dict, "point": dict,
+    "exclusions": list,
+}  # fmt: skip
+_ENTRY_TYPES: Mapping[str, tuple[type, ...]] = {
+    "software": (str,), "constants": (int, float), "streams": (int,), "excluded": (str,),
+    "profiles": (str,), "sources": (str,), "counters": (dict,), "clocks": (dict,),
+    "duration": (int, float), "inputs": (str,),
+}  # fmt: skip
+_NUMBERS = ("counters", "clocks")  # tables of tables of numbers
+_ADDED = (
+    "exclusions", "profiles", "sources", "counters", "clocks", "duration", "robot", "truth",
+    "inputs", "point",
+)  # fmt: skip
+_OPTIONAL = {"stop", "log_sha256", "excluded", *_ADDED}
+
+
+def _checked(document: Mapping[str, Any], file: Path) -> RunManifest:
+    found = document.get("schema_version")
+    if found != SCHEMA_VERSION:
+        raise DataError(
+            f"schema_version is {found!r}, expected {SCHEMA_VERSION}; "
+            f"read it with the version of zebro-lab that wrote it",
+            file=file,
+        )
+    for name, expected in _FIELD_TYPES.items():
+        if name in _OPTIONAL and document.get(name) is None:
+            continue
+        if not isinstance(document.get(name), expected):
+            raise DataError(
+                f"'{name}' is {document.get(name)!r}, expected {expected.__name__}", file=file
+            )
+    for each in document.get("exclusions") or ():
+        if not (isinstance(each, dict) and {"did", "why"} <= each.keys()):
+            raise DataError(f"'exclusions' holds {each!r}, expected did and why", file=file)
+    if document["kind"] not in KINDS:
+        raise DataError(f"unknown kind '{document['kind']}'; {nearest(document['kind'], KINDS)}",
+                        file=file)  # fmt: skip
+    _require_entries(document, file)
+    for name in ("start", "stop"):
+        if document.get(name) is not None:
+            _require_moment(name, document[name], file)
+    known: dict[str, Any] = {"stop": None}
+    known |= {name: document[name] for name in _FIELD_TYPES if document.get(name) is not None}
+    return RunManifest(**known)
+
+
+def _require_entries(document: Mapping[str, Any], file: Path) -> None:
+    for name, kinds in _ENTRY_TYPES.items():
+        for key, value in (document.get(name) or {}).items():
+            _require_entry(name, key, value, kinds, file)
+            if name in _NUMBERS:
+                for inner, number in value.items():
+                    _require_entry(name, f"{key}.{inner}", number, (int, float), file)
+
+
+def _require_entry(name: str, key: str, value: object, kinds: tuple[type, ...], file: Path) -> None:
+    # An angle or a count that could not be told is null in JSON.
+    if value is None and kinds != (str,) and kinds != (dict,):
+        return
+    if not isinstance(value, kinds) or isinstance(value, bool):
+        expected = " or ".join(kind.__name__ for kind in kinds)
+        raise DataError(f"'{name}' has {key!r}: {value!r}, expected {expected}", file=file)
+
+
+def _require_moment(name: str, text: str, file: Path) -> None:
+    try:
+        moment = datetime.fromisoformat(text)
+        known = moment.tzinfo is not None and moment.astimezone(UTC)
+    except (ValueError, OverflowError):
+        known = None
+    if not known:
+        raise DataError(
+            f"'{name}' is {text!r}, expected a moment with its time zone, such as "
+            "2026-01-01T12:00:00+00:00",
+            file=file,
+        )

@@ -1,0 +1,41 @@
+# SPDX-License-Identifier: MIT
+"""`zebro-lab plot RUN`: all raw streams of a run in one picture."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from zebro_lab.terminal.messages import say
+
+EPILOG = """
+Examples:
+
+zebro-lab plot data/20260304T050607Z_walk_circle
+
+zebro-lab plot data/20260304T050607Z_walk_circle --out circle.png
+"""
+
+Run = Annotated[Path, typer.Argument(metavar="RUN", help="Run folder.")]
+Out = Annotated[
+    Path | None, typer.Option(metavar="FILE", help="Picture to write; beside RUN without it.")
+]
+
+
+def plot(run: Run, out: Out = None) -> None:
+    """Draw everything a run recorded: legs, IMU, forces, speeds, with gaps and events marked."""
+    from rich.console import Console
+
+    from zebro_lab.runs.plot_stage import plot_run
+    from zebro_lab.terminal.progress import progress_bar
+
+    with progress_bar(Console(stderr=True)) as watcher:
+        watcher.step("drawing", None)
+        drawn = plot_run(run, out=out)
+    for note in drawn.signals.notes:
+        say(note)
+    for panel in drawn.signals.panels:
+        simulated = "SIMULATED " if panel.simulated else ""
+        gaps = f", {len(panel.gaps)} gaps" if len(panel.gaps) else ""
+        say(f"{simulated}{panel.title}: {len(panel.t)} samples{gaps}")
+    say(f"wrote {drawn.file}")

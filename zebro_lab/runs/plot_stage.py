@@ -1,0 +1,56 @@
+# SPDX-License-Identifier: MIT
+"""A run in, one picture of all that it recorded out."""
+
+from dataclasses import dataclass
+from io import BytesIO
+from pathlib import Path
+
+from zebro_lab.files.atomic import atomic_write_bytes
+from zebro_lab.files.errors import SettingsError
+from zebro_lab.files.own_file import picture, require_own
+from zebro_lab.runs.folder import LOG_FILE, MANIFEST_FILE
+from zebro_lab.runs.signals import RunSignals, read_signals
+
+SUFFIX = ".png"
+PLOT = picture("plot")
+
+
+@dataclass(frozen=True)
+class Drawn:
+    """A picture of a run.
+
+    Attributes:
+        file: The picture.
+        signals: What it shows.
+    """
+
+    file: Path
+    signals: RunSignals
+
+
+def plot_run(folder: Path, *, out: Path | None = None) -> Drawn:
+    """Draw every stream of a run.
+
+    Args:
+        folder: The run folder.
+        out: Picture to write, PNG; beside the run folder, under its name, when None.
+
+    Raises:
+        SettingsError: `out` is no name of a PNG file.
+        AlreadyExists: `out` is no picture of this command.
+        NotFound: It is no run folder, its log is missing, or the picture's folder is.
+        DataError: It cannot be read, or holds no samples.
+    """
+    place = folder.absolute()
+    file = out or place.with_name(place.name + SUFFIX)
+    if file.suffix.lower() != SUFFIX or file.is_dir():
+        raise SettingsError(f"'{file}' is no name of a picture; expected FILE{SUFFIX}", key="--out")
+    target = require_own(file, PLOT, inputs=(folder / LOG_FILE, folder / MANIFEST_FILE))
+    signals = read_signals(folder)
+    from zebro_lab.plots.sheet import save
+    from zebro_lab.runs.pictures import raw_streams  # matplotlib: only where all is read
+
+    drawn = BytesIO()
+    save(raw_streams(signals), drawn, command=PLOT.command)
+    atomic_write_bytes(target, drawn.getvalue())
+    return Drawn(file, signals)

@@ -1,0 +1,72 @@
+# SPDX-License-Identifier: MIT
+"""Leg angles of a recorded run, as a table like any other."""
+
+from pathlib import Path
+
+import numpy as np
+
+from rig.sample_columns import SampleColumns
+from zebro_lab.files.errors import DataError, NotFound
+from zebro_lab.mcap.raw_log import raw_topic, read_raw_log
+from zebro_lab.runs.folder import LOG_FILE, MANIFEST_FILE, read_manifest, require_recorded
+from zebro_lab.runs.manifest import profile_file
+from zebro_lab.tables.raw_table import RawTable
+
+LEGS = "legs"
+
+
+def is_recorded(path: Path) -> bool:
+    """Tell whether a path is a run folder."""
+    return (path / MANIFEST_FILE).is_file()
+
+
+def read_recorded_legs(folder: Path) -> tuple[RawTable, tuple[Path, ...]]:
+    """Read leg angles of a run: `t` [s] and `theta1` to `theta6` [rad], unwrapped.
+
+    Args:
+        folder: The run folder.
+
+    Returns:
+        The angles, and the files they were read from: manifest, profile and log.
+
+    Raises:
+        NotFound: Manifest, log or profile is missing.
+        DataError: One of them is damaged, or no legs were recorded.
+    """
+    import pandas as pd
+
+    manifest = read_manifest(folder)
+    log, profile = folder / LOG_FILE, profile_file(folder, LEGS)
+    for file in (log, profile):
+        if not file.is_file():
+            raise NotFound(f"{file}: missing; restore it, or name a run with leg angles")
+    raw = read_raw_log(log)
+    stream = raw.streams.get(raw_topic(LEGS))
+    if stream is None:
+        raise DataError(f"holds no samples on {raw_topic(LEGS)}", file=log)
+    notes = ()
+    if raw.damage is None:
+        require_recorded(log, manifest)
+    else:
+        notes = (f"{folder.name}: {LOG_FILE} is cut short ({raw.damage})",)
+    columns = {name: pd.Series(values) for name, values in _angles(stream, profile).items()}
+    source = manifest.sources.get(LEGS, manifest.source)
+    table = RawTable(log, columns, source=source, notes=notes)
+    return table, (folder / MANIFEST_FILE, profile, log)
+
+
+def _angles(stream: SampleColumns, profile_path: Path) -> dict[str, np.ndarray]:
+    from rig.errors import RigError
+    from rig.zebro.profile import decode_angles, load_leg_profile
+    from zebro_lab.runs.clock_watch import sample_times
+
+    try:
+        angles = decode_angles(load_leg_profile(str(profile_path)), stream)
+    except RigError as error:
+        raise DataError(str(error), file=profile_path) from error
+    t = sample_times(stream)
+    later = np.r_[True, np.diff(np.maximum.accumulate(t)) > 0]
+    columns = {"t": t[later]}
+    for column, leg in enumerate(angles.legs):
+        columns[f"theta{leg}"] = angles.theta[later, column]
+    return columns

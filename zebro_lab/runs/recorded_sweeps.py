@@ -1,0 +1,46 @@
+# SPDX-License-Identifier: MIT
+"""A recording of a rig that sweeps by itself, cut into its sweeps."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rig.slip_rig.sweeps import STANDING, sweeps
+from zebro_lab.files.errors import DataError
+from zebro_lab.runs.folder import LOG_FILE, SlipRigRun
+
+SWEEP = "sweep"
+"""Column that numbers them."""
+
+
+def recorded_sweeps(run: SlipRigRun) -> tuple[NDArray[np.intp], tuple[str, ...]]:
+    """Number the sweeps of a recorded run.
+
+    Args:
+        run: The run.
+
+    Returns:
+        Number of each sample's sweep from 1 on, 0 where none is, shape (n,); and what to tell a
+        person.
+
+    Raises:
+        DataError: The leg disc stood all the time, or slip never stopped jumping.
+    """
+    table, constants = run.table, run.manifest.constants
+    speed_leg = table.omega_leg * constants["radius_leg"]
+    number = 1 + sweeps(table.t, speed_leg, table.omega_ground * constants["radius_ground"])
+    left_out = float(np.mean(number == 0))
+    if left_out == 1:
+        raise DataError(_why_none(speed_leg), file=run.folder / LOG_FILE)
+    if not left_out:
+        return number, ()
+    note = (
+        f"{run.folder.name}: {left_out:.1%} of the samples left out, in which slip jumped from "
+        "sweep to sweep or the leg disc stood"
+    )
+    return number, (note,)
+
+
+def _why_none(speed_leg: NDArray[np.float64]) -> str:
+    if np.abs(speed_leg).max() <= STANDING:
+        return "the leg disc never turned, which leaves slip undefined; record while the rig runs"
+    return "slip jumped all the time, which leaves no sweep; record longer, or steadier"

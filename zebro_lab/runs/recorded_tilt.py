@@ -1,0 +1,62 @@
+# SPDX-License-Identifier: MIT
+"""Roll and pitch over time as an IMU of a recorded run measured them."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from model.slip.law import Array
+from zebro_lab.files.errors import DataError
+from zebro_lab.mcap.raw_log import raw_topic, read_raw_log
+from zebro_lab.runs.folder import LOG_FILE
+from zebro_lab.runs.manifest import profile_file
+
+IMUS = ("imu", "imu1", "imu2")
+"""Names of the streams, the first of which is taken."""
+
+
+@dataclass(frozen=True)
+class Tilt:
+    """Roll and pitch measured.
+
+    Attributes:
+        t: Times of the run, increasing, shape (n,) [s].
+        angles: Roll and pitch, shape (n, 2) [rad].
+        files: Files read.
+    """
+
+    t: Array
+    angles: Array
+    files: tuple[Path, ...]
+
+
+def read_recorded_tilt(folder: Path) -> Tilt | None:
+    """Read roll and pitch of a run; None where no IMU was recorded.
+
+    Args:
+        folder: The run folder.
+
+    Raises:
+        DataError: The log or the IMU's profile is damaged.
+    """
+    log = folder / LOG_FILE
+    name = next((name for name in IMUS if profile_file(folder, name).is_file()), None)
+    if name is None or not log.is_file():
+        return None
+    from rig.errors import RigError
+    from rig.imu.profile import decode_orientation, load_imu_profile
+    from zebro_lab.runs.clock_watch import sample_times
+
+    stream = read_raw_log(log).streams.get(raw_topic(name))
+    if stream is None:
+        return None
+    profile = profile_file(folder, name)
+    try:
+        decoded = decode_orientation(load_imu_profile(str(profile)), stream)
+    except RigError as error:
+        raise DataError(str(error), file=profile) from error
+    t = sample_times(stream)
+    later = np.r_[True, np.diff(np.maximum.accumulate(t)) > 0]
+    angles = np.column_stack([decoded.roll, decoded.pitch])
+    return Tilt(t[later], angles[later], (log, profile))

@@ -1,0 +1,222 @@
+# SPDX-License-Identifier: MIT
+"""Everything a run recorded, as curves over time: what devices sent, and where they fell silent."""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from datetime import datetime
+from pathlib import Path
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from model.slip.law import Array
+from rig.errors import RigError
+from rig.imu.profile import decode_orientation, load_imu_profile
+from rig.sample_columns import SampleColumns
+from rig.slip_rig.decode import Forces, decode_board, decode_forces
+from rig.slip_rig.drives import disc_speed
+from rig.slip_rig.profile import RigProfile, load_rig_profile
+from rig.zebro.profile import decode_angles, load_leg_profile
+from zebro_lab.files.errors import DataError
+from zebro_lab.mcap.raw_log import read_raw_log
+from zebro_lab.mcap.ros_log import read_messages
+from zebro_lab.mcap.ros_messages import LOG, WARNING
+from zebro_lab.runs.clock_watch import sample_times
+from zebro_lab.runs.folder import LOG_FILE, epoch_ns, read_manifest, read_slip_rig_run, run_state
+from zebro_lab.runs.manifest import RunManifest, profile_file
+from zebro_lab.runs.recorded_legs import LEGS
+from zebro_lab.runs.slip_rig_decoding import RIG
+
+GAP_STEPS: Final = 5.0
+GAP_LEAST: Final = 0.05
+"""Silence that counts as a gap: so many usual steps between samples, and as long as this [s]."""
+
+
+@dataclass(frozen=True)
+class Panel:
+    """Curves that share an axis.
+
+    Attributes:
+        title: Stream and quantity.
+        unit: Unit of the values.
+        t: Time of each sample, shape (n,) [s].
+        lines: Values by name, each of shape (n,); NaN where a device measures none.
+        simulated: The stream is simulated.
+        gaps: Begin and end of every stretch without samples, shape (k, 2) [s].
+    """
+
+    title: str
+    unit: str
+    t: Array
+    lines: Mapping[str, Array]
+    simulated: bool
+    gaps: Array
+
+
+@dataclass(frozen=True)
+class Event:
+    """Something that happened.
+
+    Attributes:
+        t: When [s].
+        text: What.
+        warning: It was no part of the plan.
+    """
+
+    t: float
+    text: str
+    warning: bool
+
+
+@dataclass(frozen=True)
+class RunSignals:
+    """A run as curves.
+
+    Attributes:
+        name: Name of the run folder.
+        state: How it ended.
+        source: Where it comes from.
+        panels: Curves of all streams.
+        events: What happened, in order.
+        notes: For a person, one line each.
+    """
+
+    name: str
+    state: str
+    source: str
+    panels: tuple[Panel, ...]
+    events: tuple[Event, ...]
+    notes: tuple[str, ...] = ()
+
+
+def read_signals(folder: Path) -> RunSignals:
+    """Read all streams of a run, recorded, imported or written at once.
+
+    Raises:
+        NotFound: It is no run folder, or its log is missing.
+        DataError: It cannot be read, or holds no samples.
+    """
+    manifest = read_manifest(folder)
+    log = folder / LOG_FILE
+    notes: tuple[str, ...] = ()
+    if manifest.profiles:
+        raw = read_raw_log(log)
+        panels = [p for topic, stream in raw.streams.items()
+                  for p in _panels(folder, manifest, topic, stream)]  # fmt: skip
+        notes = () if raw.damage is None else (f"{log}: is cut short ({raw.damage})",)
+    else:
+        run = read_slip_rig_run(folder)
+        panels, notes = list(_of_table(run.table.rows(), manifest)), run.notes
+    if not panels:
+        raise DataError("holds no samples to draw", file=log)
+    state = run_state(folder, manifest)
+    if manifest.excluded is not None:
+        state = f"excluded: {manifest.excluded.get('why', 'no reason given')}"
+    events = _events(log, manifest)
+    return RunSignals(folder.absolute().name, state, manifest.source, tuple(panels), events, notes)
+
+
+def find_gaps(t: Array, sequence: NDArray[np.int64] | None = None) -> Array:
+    """Find stretches without samples: silences, and numbers that are missing.
+
+    Args:
+        t: Time of each sample, shape (n,) [s].
+        sequence: Its number, -1 where it has none, shape (n,); None where nothing is numbered.
+
+    Returns:
+        Begin and end of each, shape (k, 2) [s].
+    """
+    steps = np.diff(t)
+    usual = float(np.median(steps[steps > 0])) if np.any(steps > 0) else 0.0
+    missing = steps > max(GAP_STEPS * usual, GAP_LEAST)
+    if sequence is not None:
+        numbered = (sequence[:-1] >= 0) & (sequence[1:] >= 0)
+        missing |= numbered & (np.diff(sequence) > 1)
+    at = np.flatnonzero(missing)
+    return np.column_stack([t[at], t[at + 1]])
+
+
+def _panels(
+    folder: Path, manifest: RunManifest, topic: str, stream: SampleColumns
+) -> Iterator[Panel]:
+    name = topic.split("/")[1]
+    source = manifest.sources.get(name, manifest.source)
+    t = sample_times(stream)
+    gaps = find_gaps(t, stream.sequence)
+    place = profile_file(folder, name if name == LEGS or name.startswith("imu") else RIG)
+    try:
+        for what, unit, part, lines in _decoded(name, place, t, stream):
+            own = gaps if len(part) == len(t) else find_gaps(part)
+            yield Panel(f"{name}: {what}", unit, part, lines, source.startswith("sim:"), own)
+    except RigError as error:
+        raise DataError(str(error), file=place) from error
+
+
+_Curves = Iterator[tuple[str, str, Array, Mapping[str, Array]]]
+
+
+def _decoded(name: str, place: Path, t: Array, stream: SampleColumns) -> _Curves:
+    """Yield quantity, unit, times and curves of one stream."""
+    if name == LEGS:
+        yield from _legs(place, t, stream)
+    elif name.startswith("imu"):
+        yield from _imu(place, t, stream)
+    else:
+        yield from _rig(load_rig_profile(str(place)), name, t, stream)
+
+
+def _legs(place: Path, t: Array, stream: SampleColumns) -> _Curves:
+    profile = load_leg_profile(str(place))
+    angles = decode_angles(profile, stream)
+    counts = {f"leg {leg}": stream.counts[:, i] for i, leg in enumerate(profile.legs)}
+    unit = f"1/{profile.counts_per_revolution} turn"
+    yield "counts as sent", unit, t, dict(sorted(counts.items()))
+    theta = {f"leg {leg}": angles.theta[:, i] for i, leg in enumerate(angles.legs)}
+    yield "angles, unwrapped", "rad", t, theta
+
+
+def _imu(place: Path, t: Array, stream: SampleColumns) -> _Curves:
+    seen = decode_orientation(load_imu_profile(str(place)), stream)
+    angles = {"roll": seen.roll, "pitch": seen.pitch, "yaw": seen.yaw}
+    yield "orientation", "deg", t, {name: np.degrees(angle) for name, angle in angles.items()}
+    yield "angular rate", "rad/s", t, dict(zip("xyz", seen.angular_rate.T, strict=True))
+    yield "specific force", "m/s²", t, dict(zip("xyz", seen.specific_force.T, strict=True))
+
+
+def _rig(profile: RigProfile, name: str, t: Array, stream: SampleColumns) -> _Curves:
+    if name == "drives" and profile.drives is not None:
+        for disc, drive in (("leg", profile.drives.leg), ("ground", profile.drives.ground)):
+            own = stream.channel == drive.node
+            speed = disc_speed(drive, 1.0) * stream.counts[own, 1]
+            yield f"speed of the {disc} disc", "rad/s", t[own], {disc: speed}
+    elif name == "load_cell" and profile.load_cell is not None:
+        yield "forces", "N", t, _forces(decode_forces(profile.load_cell, stream))
+    elif name == "board" and profile.board is not None:
+        forces, speeds = decode_board(profile.board, stream)
+        yield "forces", "N", t, _forces(forces)
+        yield "speeds of the discs", "rad/s", t, {"leg": speeds.leg, "ground": speeds.ground}
+
+
+def _forces(forces: Forces) -> Mapping[str, Array]:
+    return {"normal": forces.normal, "traction": forces.traction}
+
+
+def _of_table(rows: Array, manifest: RunManifest) -> Iterator[Panel]:
+    t, leg, ground, normal, traction = rows.T
+    simulated = manifest.source.startswith("sim:")
+    gaps = find_gaps(t)
+    speeds = {"leg": leg, "ground": ground}
+    yield Panel("rig: speeds of the discs", "rad/s", t, speeds, simulated, gaps)
+    forces = {"normal": normal, "traction": traction}
+    yield Panel("rig: forces", "N", t, forces, simulated, gaps)
+
+
+def _events(log: Path, manifest: RunManifest) -> tuple[Event, ...]:
+    start = epoch_ns(datetime.fromisoformat(manifest.start))
+    messages, _ = read_messages(log, schema=LOG.name)
+    return tuple(
+        Event(1e-9 * (message.log_time - start), message.content.msg,
+              message.content.level >= WARNING)
+        for message in messages
+    )  # fmt: skip

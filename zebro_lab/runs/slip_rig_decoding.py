@@ -1,0 +1,125 @@
+# SPDX-License-Identifier: MIT
+"""From raw samples of a recorded slip rig to the columns that a calibration takes."""
+
+from collections.abc import Mapping
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from model.slip.law import Array
+from rig.errors import RigError
+from rig.sample_columns import SampleColumns
+from rig.slip_rig.decode import decode_board, decode_forces, decode_speeds
+from rig.slip_rig.profile import BoardProfile, DriveProfile, LoadCellProfile, load_rig_profile
+from zebro_lab.files.errors import DataError
+from zebro_lab.mcap.raw_log import raw_topic
+from zebro_lab.mcap.slip_rig_log import SlipRigTable
+from zebro_lab.runs.clock_watch import sample_times
+from zebro_lab.runs.manifest import profile_file
+
+RIG = "rig"
+"""Name under which a run keeps the profile of its rig."""
+_MANY = 3  # forces to a speed, from which on they are averaged
+
+
+def derive_table(
+    folder: Path, streams: Mapping[str, SampleColumns], *, zero: Mapping[str, float]
+) -> tuple[SlipRigTable, tuple[str, ...]]:
+    """Compute speeds and forces of a recorded run from what its devices sent.
+
+    Where drives and load cell are apart, the slower of them, as a rule the drives, sets the rows:
+    forces are averaged about the instants of the speeds. Were speeds interpolated to many forces,
+    their noise would pass for wander of the slip, to which forces answer. What lies outside the
+    speeds is left out: nobody knows the slip there.
+
+    Args:
+        folder: The run folder, which keeps the profile.
+        streams: Raw streams of its log, by topic.
+        zero: What the unloaded load cell read, `zero_normal` and `zero_traction`, to be
+            subtracted; 0 where absent [N].
+
+    Returns:
+        The samples, and notes on what was left out.
+
+    Raises:
+        DataError: A stream is missing or without a complete sample, or the profile cannot be
+            followed.
+    """
+    file = profile_file(folder, RIG)
+    try:
+        profile = load_rig_profile(str(file))
+        if profile.board is not None:
+            table = _of_board(profile.board, _require(streams, "board", folder))
+        elif profile.drives is not None and profile.load_cell is not None:
+            cell, drives = (_require(streams, name, folder) for name in ("load_cell", "drives"))
+            table = _of_two(profile.drives, profile.load_cell, drives, cell)
+        else:
+            raise DataError("has neither a board nor drives and load cell", file=file)
+    except RigError as error:
+        raise DataError(str(error), file=folder) from error
+    if table.shape[1] == 0:
+        raise DataError("its log holds no force between two speeds of each disc", file=folder)
+    table[3] -= zero.get("zero_normal", 0.0)
+    table[4] -= zero.get("zero_traction", 0.0)
+    return _increasing(table)
+
+
+def _of_board(profile: BoardProfile, board: SampleColumns) -> Array:
+    forces, speeds = decode_board(profile, board)
+    columns = (speeds.leg, speeds.ground, forces.normal, forces.traction)
+    return np.vstack([sample_times(board), *columns])
+
+
+def _of_two(
+    drives: DriveProfile, cell: LoadCellProfile, speeds: SampleColumns, forces: SampleColumns
+) -> Array:
+    t = sample_times(forces)
+    decoded = decode_forces(cell, forces)
+    force = np.vstack([decoded.normal, decoded.traction])
+    disc = decode_speeds(drives.leg, drives.ground, speeds)
+    speed = np.vstack([disc.leg, disc.ground])
+    if len(t) > _MANY * len(disc.time):
+        at, around = averages_around(disc.time, t, force)
+        return np.vstack([disc.time[at], speed[:, at], around])
+    inside = (t >= disc.time[0]) & (t <= disc.time[-1])
+    across = [np.interp(t[inside], disc.time, row) for row in speed]
+    return np.vstack([t[inside], *across, force[:, inside]])
+
+
+def averages_around(at: Array, t: Array, values: Array) -> tuple[NDArray[np.intp], Array]:
+    """Average values about instants: what lies nearer to one than to its neighbours.
+
+    What is further away than the median interval is nobody's: there were samples lost.
+
+    Args:
+        at: Instants, increasing, shape (m,) [s].
+        t: Times of the values, increasing, shape (n,) [s].
+        values: The values, shape (k, n).
+
+    Returns:
+        Indices of the instants that have values about them, shape (j,), and the averages, shape
+        (k, j).
+    """
+    reach = float(np.median(np.diff(at))) if len(at) > 1 else np.inf
+    middle = 0.5 * (at[1:] + at[:-1])
+    begin = np.maximum(np.append(at[0] - reach / 2, middle), at - reach)
+    end = np.minimum(np.append(middle, at[-1] + reach / 2), at + reach)
+    first, last = np.searchsorted(t, begin), np.searchsorted(t, end)
+    found = np.flatnonzero(last > first)
+    total = np.cumsum(np.insert(values, 0, 0.0, axis=1), axis=1)
+    averages = (total[:, last] - total[:, first]) / np.maximum(last - first, 1)
+    return found, averages[:, found]
+
+
+def _require(streams: Mapping[str, SampleColumns], name: str, folder: Path) -> SampleColumns:
+    if raw_topic(name) not in streams:
+        raise DataError(f"its log holds no samples on {raw_topic(name)}", file=folder)
+    return streams[raw_topic(name)]
+
+
+def _increasing(table: Array) -> tuple[SlipRigTable, tuple[str, ...]]:
+    later = np.r_[True, np.diff(np.maximum.accumulate(table[0])) > 0]
+    left_out = int(np.sum(~later))
+    notes = (f"{left_out} samples left out whose time does not increase",) if left_out else ()
+    return SlipRigTable(*table[:, later]), notes

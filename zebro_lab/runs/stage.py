@@ -1,0 +1,76 @@
+# SPDX-License-Identifier: MIT
+"""Run folders in, a list of what they hold out."""
+
+from dataclasses import dataclass
+from datetime import datetime
+from pathlib import Path
+
+from zebro_lab.files.errors import ZebroLabError
+from zebro_lab.mcap.raw_log import read_raw_log
+from zebro_lab.runs.exclusion import UNSAID, past_reasons
+from zebro_lab.runs.folder import LOG_FILE, find_runs, read_manifest, run_state
+from zebro_lab.runs.manifest import RunManifest
+
+
+@dataclass(frozen=True)
+class ListedRun:
+    """A line of the list.
+
+    Attributes:
+        name: Name of the folder.
+        state: How it ended, whether it is left out, or what is wrong with it.
+        duration: How long it lasted, as text.
+        samples: How many samples of what, as text.
+        source: Where they come from.
+    """
+
+    name: str
+    state: str
+    duration: str = "-"
+    samples: str = "-"
+    source: str = "-"
+
+
+def list_runs(data: Path) -> list[ListedRun]:
+    """List the runs below a folder; one that cannot be read is listed with its fault.
+
+    The log of a run without an end record is read, to say what was recovered.
+
+    Raises:
+        NotFound: There is no such folder.
+    """
+    return [_listed(folder) for folder in find_runs(data)]
+
+
+def _listed(folder: Path) -> ListedRun:
+    try:
+        manifest = read_manifest(folder)
+        state = run_state(folder, manifest)
+        streams = manifest.streams
+        if state == "recovered":
+            found = read_raw_log(folder / LOG_FILE).streams
+            streams = {topic: len(stream) for topic, stream in found.items()}
+    except (ZebroLabError, OSError) as error:
+        return ListedRun(folder.name, f"unreadable: {error}")
+    state = _with_exclusions(state, manifest)
+    samples = ", ".join(f"{count} {topic}" for topic, count in streams.items())
+    return ListedRun(folder.name, state, _lasted(manifest), samples or "-", manifest.source)
+
+
+def _with_exclusions(state: str, manifest: RunManifest) -> str:
+    """Say why a run is left out now, and why it was before."""
+    before = "; ".join(past_reasons(manifest))
+    if manifest.excluded is None:
+        return f"{state} (was excluded: {before})" if before else state
+    why = manifest.excluded.get("why", UNSAID)
+    return f"excluded ({why}; before: {before})" if before else f"excluded ({why})"
+
+
+def _lasted(manifest: RunManifest) -> str:
+    if manifest.stop is None:
+        return "-"
+    try:
+        start, stop = map(datetime.fromisoformat, (manifest.start, manifest.stop))
+        return f"{(stop - start).total_seconds():.1f} s"
+    except (ValueError, TypeError):
+        return "-"

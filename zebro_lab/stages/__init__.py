@@ -1,2 +1,0 @@
-# SPDX-License-Identifier: MIT
-"""The stages: each reads finished files and writes one new folder."""

@@ -1,0 +1,101 @@
+# SPDX-License-Identifier: MIT
+"""Parquet files, read as raw tables within bounds."""
+
+import os
+from collections import Counter
+from pathlib import Path
+from typing import IO, TYPE_CHECKING, Any
+
+from zebro_lab.files.errors import DataError
+from zebro_lab.files.opening import open_file, parsing
+from zebro_lab.files.unpacking import FREELY, MOST_CELLS, MOST_RATIO
+from zebro_lab.tables.raw_table import RawTable
+
+if TYPE_CHECKING:
+    import pandas as pd
+    import pyarrow as pa
+
+_ADVICE = "it may have been cut short: export it again"
+_MOST_THRIFT = 1 << 26  # memory that a footer may ask for [bytes or entries]
+
+
+def read_parquet_file(path: Path) -> RawTable:
+    """Read a Parquet file.
+
+    Raises:
+        NotFound: There is no such file.
+        DataError: It is no whole Parquet file, or would unpack to too much.
+    """
+    with open_file(path) as file, parsing(path, "is not a whole Parquet file", advice=_ADVICE):
+        table = _read(file, path)
+        metadata = table.schema.metadata or {}
+        columns = {name: _cells(table.column(i)) for i, name in enumerate(table.column_names)}
+    source = metadata.get(b"source")
+    names = Counter(table.column_names)
+    return RawTable(
+        path,
+        columns,
+        frozenset(name for name, count in names.items() if count > 1),
+        source=source.decode(errors="replace") if source else None,
+        unreadable={field.name: str(field.type)[:80] for field in table.schema
+                    if not _is_plain(field.type)},
+    )  # fmt: skip
+
+
+def _read(file: IO[bytes], path: Path) -> "pa.Table":
+    import pyarrow.parquet as pq
+
+    limits: Any = {
+        "thrift_string_size_limit": _MOST_THRIFT, "thrift_container_size_limit": _MOST_THRIFT
+    }  # fmt: skip
+    with pq.ParquetFile(file, **limits) as opened:
+        metadata, schema = opened.metadata, opened.schema_arrow
+        _require_bounded(metadata, path, os.fstat(file.fileno()).st_size)
+    # A long text that stands in many rows is stored once; unpacked it would be copied into each.
+    texts = [field.name for field in schema if _is_text(field.type)]
+    with pq.ParquetFile(file, read_dictionary=texts, **limits) as opened:
+        return opened.read()
+
+
+def _require_bounded(metadata: Any, path: Path, size: int) -> None:
+    groups = [metadata.row_group(i) for i in range(metadata.num_row_groups)]
+    rows = max(metadata.num_rows, sum(group.num_rows for group in groups))
+    cells = rows * max(metadata.num_columns, 1)
+    if cells > MOST_CELLS:
+        raise DataError(
+            f"has {cells / 1e6:.0f} million cells; at most {MOST_CELLS / 1e6:.0f} are read: split "
+            "it, or leave out columns that nothing reads",
+            file=path,
+        )
+    # Not `group.column(i)`, where pyarrow 26 ends the process if a column's statistics are wrong.
+    unpacked = sum(group.total_byte_size for group in groups)
+    if unpacked > FREELY + MOST_RATIO * size:
+        raise DataError(
+            f"would unpack to {unpacked / 1e6:.0f} MB, more than {MOST_RATIO} times its size",
+            file=path,
+        )
+
+
+def _cells(column: "pa.ChunkedArray") -> "pd.Series":
+    import pandas as pd
+    import pyarrow as pa
+
+    if not _is_plain(column.type):
+        return pd.Series([None] * len(column), dtype=object)
+    cells = column.to_pandas()
+    return cells.astype(object) if pa.types.is_dictionary(column.type) else cells
+
+
+def _is_plain(kind: "pa.DataType") -> bool:
+    import pyarrow as pa
+
+    if isinstance(kind, pa.DictionaryType):
+        kind = kind.value_type
+    return _is_text(kind) or (pa.types.is_primitive(kind) or pa.types.is_null(kind)
+                              or pa.types.is_decimal(kind))  # fmt: skip
+
+
+def _is_text(kind: "pa.DataType") -> bool:
+    import pyarrow as pa
+
+    return pa.types.is_string(kind) or pa.types.is_large_string(kind)

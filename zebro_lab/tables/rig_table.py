@@ -1,0 +1,175 @@
+# SPDX-License-Identifier: MIT
+"""One table and its column map, turned into checked arrays in SI."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from model.slip.law import Array
+from zebro_lab.files.errors import DataError
+from zebro_lab.files.known_keys import nearest
+from zebro_lab.tables.columns import CANONICAL, COLUMNS_FILE, Columns, MappedColumn
+from zebro_lab.tables.raw_table import RawTable
+
+
+@dataclass(frozen=True)
+class RigTable:
+    """A raw table seen through its column map, on the rows that are kept.
+
+    Attributes:
+        raw: The table as its file has it.
+        columns: The column map.
+        rows: Indices of the kept rows, shape (n,).
+    """
+
+    raw: RawTable
+    columns: Columns
+    rows: NDArray[np.intp]
+
+    def source_of(self, name: str) -> MappedColumn | None:
+        """Say where a canonical column comes from; None where the table has none."""
+        if name in self.columns.columns:
+            return self.columns.columns[name]
+        if name in self.raw.columns or name in self.raw.repeated:
+            return MappedColumn(name, CANONICAL[name].unit or "")
+        return None
+
+    def si(self, name: str) -> Array:
+        """Return a canonical column in SI with the canonical sign, shape (n,).
+
+        Raises:
+            DataError: The column is missing, or a cell is no finite number.
+        """
+        source = self.source_of(name)
+        if source is None:
+            raise self.missing(name)
+        values = self.raw.numbers(source.name)[self.rows]
+        self._require_finite(name, source.name, values)
+        return values * source.factor
+
+    def texts(self, name: str) -> NDArray[np.object_]:
+        """Return a canonical column that holds names, as its file has it, shape (n,)."""
+        source = self.source_of(name)
+        if source is None:
+            raise self.missing(name)
+        return self.raw.column(source.name).to_numpy(dtype=object)[self.rows]
+
+    def constant_or_column(self, name: str) -> float | Array:
+        """Return a radius, one number or shape (n,), positive [m].
+
+        Raises:
+            DataError: It is missing, given twice, or not positive.
+        """
+        constant, source = self.columns.constants.get(name), self.source_of(name)
+        if constant is not None and source is not None:
+            raise DataError(
+                f"given twice: as a column and as [constants] {name} = {constant:g} m; "
+                f"keep one of them",
+                file=self.raw.path, column=source.name,
+            )  # fmt: skip
+        if constant is None:
+            if source is None:
+                raise DataError(
+                    f"missing, needed for slip from disc speeds; give it as "
+                    f"[constants] {name} = \"35 mm\" in {COLUMNS_FILE}",
+                    file=self.raw.path, column=name,
+                )  # fmt: skip
+            values = self.si(name)
+            self.require(name, values > 0, lambda v: f"radius is {v}, expected more than 0")
+            return values
+        if constant <= 0:
+            raise DataError(
+                f"radius is {constant:g} m, expected more than 0; correct it in [constants]",
+                file=self.columns.file or self.raw.path, column=name, value=constant, unit="m",
+            )  # fmt: skip
+        return constant
+
+    def require(self, name: str, good: NDArray[np.bool_], problem: Callable[[str], str]) -> None:
+        """Raise an error at the first row of a column that is not good.
+
+        Args:
+            name: Canonical column.
+            good: Which kept rows are good, shape (n,).
+            problem: What to say, given the value as the file has it, with its unit.
+
+        Raises:
+            DataError: A row is not good.
+        """
+        if not good.all():
+            raise self.error_at(name, int(np.argmin(good)), problem)
+
+    def error_at(self, name: str, index: int, problem: Callable[[str], str]) -> DataError:
+        """Make the error that names a cell; `index` counts the kept rows from 0."""
+        source = self.source_of(name)
+        if source is None:
+            raise self.missing(name)
+        row = int(self.rows[index]) + 1
+        value = float(self.raw.numbers(source.name)[row - 1])
+        unit = "" if source.unit == "dimensionless" else source.unit
+        return DataError(
+            problem(f"{value:g} {unit}".rstrip()), file=self.raw.path, column=source.name,
+            row=row, line=self.raw.line(row), value=value, unit=source.unit,
+        )  # fmt: skip
+
+    def missing(self, name: str) -> DataError:
+        """Make the error that says a canonical column is missing."""
+        return DataError(
+            f"missing; {nearest(name, list(self.raw.columns))}; "
+            f"map it in {COLUMNS_FILE} as [columns.{name}] (zebro-lab init writes one)",
+            file=self.raw.path, column=name,
+        )  # fmt: skip
+
+    def _require_finite(self, name: str, header: str, values: Array) -> None:
+        good = np.isfinite(values)
+        bound = "> -1e9" if np.isneginf(values).any() else "< 1e9"
+        self.require(
+            name,
+            good,
+            lambda value: (
+                f"{np.sum(~good)} of {len(good)} rows are not finite numbers, this one ({value}) "
+                f"is the first; delete them or leave them out with "
+                f'[rows] keep = ["`{header}` {bound}"]'
+            ),
+        )
+
+
+def kept_rows(raw: RawTable, columns: Columns) -> NDArray[np.intp]:
+    """Find the rows in which every condition of [rows] keep holds.
+
+    Raises:
+        DataError: A condition names a missing column, or no row is left.
+    """
+    keep = np.ones(len(raw), dtype=bool)
+    for condition in columns.keep:
+        keep &= condition.holds(raw.numbers(condition.column))
+    if not keep.any():
+        conditions = " and ".join(map(str, columns.keep))
+        raise DataError(
+            f"no row of {len(raw)} is left by [rows] keep: {conditions}; check its units",
+            file=raw.path,
+        )
+    return np.flatnonzero(keep)
+
+
+def normal_force(table: RigTable) -> Array:
+    """Return the normal force, positive everywhere, shape (n,) [N].
+
+    Raises:
+        DataError: A row's load is not positive; proposes a sign when nearly all are.
+    """
+    force = table.si("normal_force")
+    mostly_negative = np.mean(force < 0) > 0.9
+    advice = (
+        f"nearly all rows are negative: give [columns.normal_force] the other sign (sign = -1) "
+        f"in {COLUMNS_FILE}"
+        if mostly_negative
+        else "leave unloaded rows out with [rows] keep"
+    )
+    table.require(
+        "normal_force",
+        force > 0,
+        lambda value: f"normal force is {value}, expected more than 0 when pressed; {advice}",
+    )
+    return force

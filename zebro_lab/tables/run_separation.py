@@ -1,0 +1,144 @@
+# SPDX-License-Identifier: MIT
+"""Which rows of a table belong to one run, and whether their time makes sense."""
+
+from collections import Counter
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from model.slip.law import Array
+from zebro_lab.files.errors import DataError
+from zebro_lab.tables.columns import COLUMNS_FILE
+from zebro_lab.tables.rig_table import RigTable
+
+
+@dataclass(frozen=True)
+class Runs:
+    """The runs of one table.
+
+    Attributes:
+        index: Index into `names` of every kept row, non-decreasing, shape (n,).
+        names: One name a run.
+        rule: What separated them, for a person.
+    """
+
+    index: NDArray[np.intp]
+    names: tuple[str, ...]
+    rule: str
+
+
+def separate_runs(table: RigTable, label: str) -> Runs:
+    """Assign every kept row to a run.
+
+    Runs are found on all rows, before [rows] keep takes some away: leaving out the start-up of
+    a recording must not cut it in two.
+
+    Args:
+        table: The table.
+        label: Name of the table, with which every run's name begins.
+
+    Raises:
+        DataError: A column of the rule is missing, or the rule needs a time that is not there.
+    """
+    rule, mapped_run = table.columns.runs, table.source_of("run")
+    if rule.each_row:
+        names = tuple(f"{label} row {row + 1}" for row in table.rows)
+        return Runs(np.arange(len(names)), names, "every row a trial of its own")
+    if rule.gap is not None:
+        starts = _after_pauses(table, rule.gap)
+        return _named(table, starts, label, None, f"by pauses longer than {rule.gap:g} s")
+    by = rule.by or ((mapped_run.name,) if mapped_run else ())
+    if by:
+        starts = _at_changes(table, by)
+        return _named(table, starts, label, by, f"by changes of {', '.join(map(repr, by))}")
+    return Runs(np.zeros(len(table.rows), dtype=np.intp), (label,), "one a file")
+
+
+def run_times(table: RigTable, runs: Runs) -> Array | None:
+    """Return the time of every kept row, increasing within a run, shape (n,) [s].
+
+    Returns:
+        None where the table has no time, or every row is a trial.
+
+    Raises:
+        DataError: Time stands still or runs backwards inside a run.
+    """
+    if table.columns.runs.each_row or table.source_of("t") is None:
+        return None
+    time = table.si("t")
+    step = np.diff(time, prepend=-np.inf)
+    inside = np.diff(runs.index, prepend=-1) == 0
+    advice = (
+        f"if a new run begins here, say in {COLUMNS_FILE} what separates them: [runs] "
+        f'by = ["COLUMN"], gap = "1 s" or each_row = true'
+    )
+    table.require(
+        "t",
+        ~inside | (step >= 0),
+        lambda value: f"time runs backwards to {value}; {advice}",
+    )
+    table.require(
+        "t",
+        ~inside | (step > 0),
+        lambda value: f"time {value} is given twice in one run; delete the copy, or {advice}",
+    )
+    return time
+
+
+def _after_pauses(table: RigTable, gap: float) -> NDArray[np.bool_]:
+    source = table.source_of("t")
+    if source is None:
+        raise DataError(
+            "missing, needed to find the pauses of [runs] gap; map it as [columns.t]",
+            file=table.raw.path, column="t",
+        )  # fmt: skip
+    time = table.raw.numbers(source.name) * source.factor
+    known = np.flatnonzero(np.isfinite(time))  # a row without time belongs to the run before it
+    starts = np.zeros(len(time), dtype=bool)
+    starts[known[1:][np.diff(time[known]) > gap]] = True
+    return starts
+
+
+def _at_changes(table: RigTable, names: tuple[str, ...]) -> NDArray[np.bool_]:
+    import pandas as pd
+
+    starts = np.zeros(len(table.raw), dtype=bool)
+    for name in names:
+        codes, _ = pd.factorize(table.raw.column(name))
+        starts[1:] |= codes[1:] != codes[:-1]
+    return starts
+
+
+def _named(
+    table: RigTable,
+    starts: NDArray[np.bool_],
+    label: str,
+    by: tuple[str, ...] | None,
+    rule: str,
+) -> Runs:
+    run_of_row = np.cumsum(starts)[table.rows]
+    kept, index = np.unique(run_of_row, return_inverse=True)
+    if by is None:
+        return Runs(index, tuple(f"{label} run {k}" for k in range(1, len(kept) + 1)), rule)
+    first = table.rows[np.searchsorted(run_of_row, kept)]
+    columns = [table.raw.column(name).iloc[first] for name in by]
+    names = [
+        " ".join([label, *(f"{name}={_shown(cell)}" for name, cell in zip(by, cells, strict=True))])
+        for cells in zip(*columns, strict=True)
+    ]
+    return Runs(index, _unique(names), rule)
+
+
+def _shown(cell: object) -> str:
+    return f"{cell:g}" if isinstance(cell, (int, float, np.number)) else str(cell)
+
+
+def _unique(names: list[str]) -> tuple[str, ...]:
+    """Number the names of set-points that were visited again."""
+    seen: Counter[str] = Counter()
+    unique = []
+    for name in names:
+        seen[name] += 1
+        unique.append(name if seen[name] == 1 else f"{name} ({seen[name]})")
+    return tuple(unique)

@@ -1,0 +1,185 @@
+# SPDX-License-Identifier: MIT
+"""The slip ratio of a rig table: as given with its definition, or from the disc speeds."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from model.errors import DomainError
+from model.slip.definition import SlipDefinition, convert_slip, slip_ratio
+from model.slip.law import Array
+from zebro_lab.files.errors import DataError
+from zebro_lab.files.known_keys import nearest
+from zebro_lab.tables.columns import COLUMNS_FILE, MappedColumn, parse_definition
+from zebro_lab.tables.rig_table import RigTable
+
+_SPEEDS = ("omega_leg", "omega_ground")
+_SLIP_NOISE = 0.1  # by which a measured slip ratio may pass its limits; in percent it passes far
+
+
+@dataclass(frozen=True)
+class SlipColumn:
+    """Slip of every kept row, and how it came about.
+
+    Attributes:
+        ratio: Slip ratio in `definition`, shape (n,) [-].
+        definition: What it is divided by.
+        column: Canonical column to name where a row is at fault.
+        origin: How it was obtained, for a person.
+    """
+
+    ratio: Array
+    definition: SlipDefinition
+    column: str
+    origin: str
+
+
+def slip(table: RigTable) -> SlipColumn:
+    """Return the slip ratio: as given where its definition is, else from the disc speeds.
+
+    A given slip wins only when somebody said what it is (mapped it, or stated its definition);
+    otherwise speeds, where they are there, leave nothing to guess.
+
+    Raises:
+        DataError: Neither is there, the definition of a given slip is not stated, or a value
+            is impossible.
+    """
+    given = table.source_of("slip_ratio")
+    speeds = all(table.source_of(name) for name in _SPEEDS)
+    definition = _given_definition(table) if given else None
+    mapped = "slip_ratio" in table.columns.columns
+    if given and (definition or mapped or not speeds):
+        return _given_slip(table, given, definition, speeds=speeds)
+    if speeds:
+        return _slip_from_speeds(table, unused=given)
+    if any(table.source_of(name) for name in _SPEEDS):
+        raise table.missing(next(n for n in _SPEEDS if not table.source_of(n)))
+    raise DataError(
+        f"no slip: expected 'slip_ratio' with its definition, or 'omega_leg' and 'omega_ground' "
+        f"with radii; {nearest('slip_ratio', list(table.raw.columns))}; "
+        f"map them in {COLUMNS_FILE} (zebro-lab init writes one)",
+        file=table.raw.path, column="slip_ratio",
+    )  # fmt: skip
+
+
+def converted(table: RigTable, slip_column: SlipColumn, target: SlipDefinition) -> SlipColumn:
+    """Convert slip to another definition.
+
+    Raises:
+        DataError: A row's slip is outside what its definition can take, or infinite in the
+            other.
+    """
+    ratio, source, column = slip_column.ratio, slip_column.definition, slip_column.column
+    if source is target:
+        return slip_column
+    try:
+        values = convert_slip(ratio, source, target)
+    except DomainError as error:
+        message = str(error)
+        index = _first_refused(ratio, source, target)
+        raise table.error_at(column, index, lambda _: message) from error
+    infinite = ~np.isfinite(values)
+    if infinite.any():
+        index = int(np.argmax(infinite))
+        raise table.error_at(
+            column,
+            index,
+            lambda _: (
+                f"{source} slip {ratio[index]:g} is infinite as '{target}'; "
+                f"leave such rows out with [rows] keep"
+            ),
+        )
+    return SlipColumn(values, target, column, f"{slip_column.origin}, converted to {target}")
+
+
+def _given_definition(table: RigTable) -> SlipDefinition | None:
+    mapped = table.columns.columns.get("slip_ratio")
+    stated = mapped.definition if mapped else None
+    column = table.source_of("slip_definition")
+    if column is None:
+        return stated
+    texts = table.texts("slip_definition")
+    differing = texts != texts[0]
+    index = int(table.rows[np.argmax(differing)] if differing.any() else table.rows[0])
+    place = {"column": column.name, "row": index + 1, "line": table.raw.line(index + 1)}
+    if differing.any():
+        raise DataError(
+            f"two slip definitions in one file: '{texts[0]}' and "
+            f"'{texts[np.argmax(differing)]}'; split it by definition",
+            file=table.raw.path, **place,
+        )  # fmt: skip
+    found = parse_definition(texts[0], file=table.raw.path, key=column.name)
+    if stated not in (None, found):
+        raise DataError(
+            f"slip definition is '{found}' here and '{stated}' in {table.columns.file}; "
+            f"correct one of them",
+            file=table.raw.path, **place,
+        )  # fmt: skip
+    return found
+
+
+def _given_slip(
+    table: RigTable, given: MappedColumn, definition: SlipDefinition | None, *, speeds: bool
+) -> SlipColumn:
+    if definition is None:
+        raise DataError(
+            f"slip ratio without its definition; say what it is divided by: "
+            f"[columns.slip_ratio] definition = one of {', '.join(SlipDefinition)} "
+            f"in {COLUMNS_FILE}",
+            file=table.raw.path, column=given.name,
+        )  # fmt: skip
+    ratio = table.si("slip_ratio")
+    _refuse_impossible(table, ratio, definition)
+    unused = "; the disc speeds are there too and were not used" if speeds else ""
+    origin = f"as given in '{given.name}', {definition}{unused}"
+    return SlipColumn(ratio, definition, "slip_ratio", origin)
+
+
+def _refuse_impossible(table: RigTable, ratio: Array, definition: SlipDefinition) -> None:
+    # Noise may carry a measured slip past its limit: only what lies beyond a margin is an error.
+    inner = np.sign(ratio) * np.maximum(np.abs(ratio) - _SLIP_NOISE, 0)
+    other = next(d for d in SlipDefinition if d is not definition)
+    try:
+        convert_slip(inner, definition, other)
+    except DomainError as error:
+        raise table.error_at(
+            "slip_ratio",
+            _first_refused(inner, definition, other),
+            lambda value: (
+                f"slip ratio is {value}, outside what '{definition}' slip can be; "
+                f'check the definition, its sign, or the unit (unit = "%")'
+            ),
+        ) from error
+
+
+def _slip_from_speeds(table: RigTable, *, unused: MappedColumn | None) -> SlipColumn:
+    speed_leg = table.si("omega_leg") * table.constant_or_column("radius_leg")
+    speed_ground = table.si("omega_ground") * table.constant_or_column("radius_ground")
+    ratio = slip_ratio(speed_leg, speed_ground, SlipDefinition.MATERIAL)
+    leg = table.source_of("omega_leg")
+    header = leg.name if leg else "omega_leg"
+    table.require(
+        "omega_leg",
+        np.isfinite(ratio),
+        lambda value: (
+            f"leg disc stands still ({value}), which leaves slip undefined; "
+            f'leave such rows out with [rows] keep = ["`{header}` > 0.1"]'
+        ),
+    )
+    origin = "from the disc speeds and radii, material"
+    if unused:
+        origin += f"; '{unused.name}' has no stated definition and was not used"
+    return SlipColumn(ratio, SlipDefinition.MATERIAL, "omega_leg", origin)
+
+
+def _first_refused(values: Array, source: SlipDefinition, target: SlipDefinition) -> int:
+    """Find the first value that `convert_slip` refuses, by bisection on the prefix."""
+    accepted, refused = 0, len(values)
+    while refused - accepted > 1:
+        middle = (accepted + refused) // 2
+        try:
+            convert_slip(values[accepted:middle], source, target)
+            accepted = middle
+        except DomainError:
+            refused = middle
+    return accepted

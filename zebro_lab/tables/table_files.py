@@ -1,0 +1,46 @@
+# SPDX-License-Identifier: MIT
+"""CSV and Parquet files, read as raw tables."""
+
+from pathlib import Path
+
+from zebro_lab.files.errors import DataError, NotFound
+from zebro_lab.tables.csv_files import read_csv_file
+from zebro_lab.tables.parquet_files import read_parquet_file
+from zebro_lab.tables.raw_table import RawTable
+
+TABLE_SUFFIXES = (".csv", ".csv.gz", ".parquet")
+
+
+def is_table_file(path: Path) -> bool:
+    """Tell by its name whether a file is a table that can be read."""
+    return path.name.lower().endswith(TABLE_SUFFIXES)
+
+
+def read_table_file(path: Path) -> RawTable:
+    """Read a CSV file (also gzipped) or a Parquet file.
+
+    Raises:
+        NotFound: There is no such file.
+        DataError: It is of another kind, empty, damaged, or no table.
+    """
+    if not path.exists():
+        raise NotFound(f"{path}: no such file")
+    if path.is_dir() or not is_table_file(path):
+        raise DataError(
+            f"is no table file; expected one that ends in {', '.join(TABLE_SUFFIXES)}", file=path
+        )
+    is_parquet = path.name.lower().endswith(".parquet")
+    table = read_parquet_file(path) if is_parquet else read_csv_file(path)
+    if len(table) == 0:
+        raise DataError("has a header but no rows", file=path)
+    return table
+
+
+def table_stem(path: Path) -> str:
+    """Return a table's file name without its suffix.
+
+    >>> table_stem(Path("rig/sweep.csv.gz"))
+    'sweep'
+    """
+    suffix = next((s for s in TABLE_SUFFIXES if path.name.lower().endswith(s)), "")
+    return path.name[: len(path.name) - len(suffix)]

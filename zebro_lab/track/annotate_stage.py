@@ -1,0 +1,241 @@
+# SPDX-License-Identifier: MIT
+"""What a person says about photographs in, `annotations.toml` out; and a picture to read pixels in.
+
+No window is opened: what is said comes as arguments or as a file, and the pixels to say are read
+in a picture with a grid, which any viewer shows, on any machine.
+"""
+
+import difflib
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from io import BytesIO
+from math import radians
+from pathlib import Path
+
+from tracking.body import TopPlate
+from tracking.corrections import Correction, Delete, Flip, Move, Order
+from tracking.images import find_photos, read_pixels
+from zebro_lab.files.atomic import atomic_write_bytes, atomic_write_text
+from zebro_lab.files.errors import AlreadyExists, NotFound, SettingsError
+from zebro_lab.files.own_file import picture, require_own
+from zebro_lab.files.units import quantity_to_si
+from zebro_lab.robot.robot_file import RobotFile, read_robot_file
+from zebro_lab.track.annotations import (
+    Annotations,
+    Click,
+    TemplateClicks,
+    read_annotations,
+    render_annotations,
+)
+
+GRID = picture("annotate --grid")
+_EXPOSURE = "#"
+
+
+@dataclass(frozen=True)
+class AnnotateRequest:
+    """What is said.
+
+    Attributes:
+        photos: Folder of photographs, video, or composite picture.
+        out: The `annotations.toml` to write or to add to.
+        photo: Photograph whose robot is marked, or that is drawn with a grid.
+        corners: Corners of the robot's top in it, "u,v u,v u,v u,v": front left, front right, rear
+            right, rear left [px].
+        plate: "LENGTHxWIDTH@HEIGHT" of the top, height over the body's centre; None for the robot's
+            body.
+        margin: How much around the top belongs to its picture [m].
+        robot: A `robot.toml`; the source's robot when None.
+        clicks: Points of the floor, each "PHOTO:NAME=U,V" [px].
+        moves: Where the robot is, each "PHOTO:X,Y,YAW" [m, m, deg].
+        flips: Photographs in which head and tail are exchanged.
+        deletes: Photographs in which what was found is not the robot.
+        order: Photographs in the order in which they were taken.
+        said: A file of the same form whose content is added.
+    """
+
+    photos: Path
+    out: Path
+    photo: str | None = None
+    corners: str | None = None
+    plate: str | None = None
+    margin: float = 20e-3
+    robot: Path | None = None
+    clicks: Sequence[str] = ()
+    moves: Sequence[str] = ()
+    flips: Sequence[str] = ()
+    deletes: Sequence[str] = ()
+    order: Sequence[str] = ()
+    said: Path | None = None
+
+
+def annotate(request: AnnotateRequest) -> Annotations:
+    """Add what is said to the annotations and write them.
+
+    Args:
+        request: What is said; corrections of one request are taken as moves, flips, deletions and
+            order, after all those said before.
+
+    Returns:
+        All annotations, old and new.
+
+    Raises:
+        ZebroLabError: A photograph does not exist, or something is said that cannot be understood.
+        TrackingError: There are no photographs.
+    """
+    if request.said is not None and request.out.exists() and request.out.samefile(request.said):
+        raise AlreadyExists(f"{request.out} is read as --from; name another --out")
+    names = photo_names(request.photos)
+    new = Annotations(_template(request, names), _clicks(request, names), _corrections(request))
+    if request.said is not None:
+        new = new.merged(read_annotations(request.said))
+    _require_photos(new, names)
+    before = read_annotations(request.out) if request.out.exists() else Annotations()
+    said = before.merged(new)
+    atomic_write_text(request.out, render_annotations(said))
+    return said
+
+
+def photo_names(origin: Path) -> tuple[str, ...]:
+    """List the names of photographs; a video or a composite picture has one, its own.
+
+    Raises:
+        NotFound: There is nothing of this name.
+        TrackingError: The folder holds no photograph.
+    """
+    if origin.is_dir():
+        return tuple(path.name for path in find_photos(origin))
+    if not origin.is_file():
+        raise NotFound(f"{origin}: no such folder, video or picture")
+    return (origin.name,)
+
+
+def draw_grid(origin: Path, photo: str, file: Path, *, around: str | None = None,
+              reach: int = 100) -> None:  # fmt: skip
+    """Draw a photograph with a grid of pixel coordinates.
+
+    Args:
+        origin: Folder of photographs, or a picture.
+        photo: Its name.
+        file: The PNG to write.
+        around: "U,V", to draw only what is near it, enlarged [px].
+        reach: How far from there [px].
+
+    Raises:
+        ZebroLabError: There is no such photograph, or the file is not a grid to replace.
+        PhotoError: It cannot be read.
+    """
+    from zebro_lab.plots import save
+    from zebro_lab.plots.pixel_grid import pixel_grid
+
+    _known(photo, photo_names(origin))
+    path = origin / photo if origin.is_dir() else origin
+    target = require_own(file, GRID, inputs=(path,))
+    if origin.is_dir() and target.parent.samefile(origin):
+        raise AlreadyExists(
+            f"{file} would lie among the photographs and be tracked as one of them; name another "
+            "--grid"
+        )
+    middle = None if around is None else _pair(around, "--around")
+    drawn = BytesIO()
+    figure = pixel_grid(read_pixels(path), title=photo, around=middle, reach=reach)
+    save(figure, drawn, command=GRID.command)
+    atomic_write_bytes(target, drawn.getvalue())
+
+
+def _template(request: AnnotateRequest, names: Sequence[str]) -> TemplateClicks | None:
+    if request.corners is None:
+        return None
+    if request.photo is None:
+        raise SettingsError("needed: the photograph in which they are", key="--photo")
+    _known(request.photo, names)
+    corners = tuple(_pair(text, "--corners") for text in request.corners.split())
+    if len(corners) != 4:
+        raise SettingsError(
+            f"{len(corners)} corners; expected four, 'u,v u,v u,v u,v': front left, front right, "
+            "rear right, rear left",
+            key="--corners",
+        )
+    return TemplateClicks(request.photo, corners, _plate(request))
+
+
+def _plate(request: AnnotateRequest) -> TopPlate:
+    if request.plate is None:
+        described = RobotFile() if request.robot is None else read_robot_file(request.robot)
+        length, width, height = described.robot.body_size
+        return _with_margin(length, width, height / 2, request.margin)
+    sides, _, height = request.plate.partition("@")
+    length, _, width = sides.partition("x")
+    if not (length and width and height):
+        raise SettingsError(
+            f"'{request.plate}' is no plate; expected LENGTHxWIDTH@HEIGHT such as 194mmx251mm@35mm",
+            key="--plate",
+        )
+    sizes = [quantity_to_si(text, "m") for text in (length, width, height)]
+    return _with_margin(sizes[0], sizes[1], sizes[2], request.margin)
+
+
+def _with_margin(length: float, width: float, height: float, margin: float) -> TopPlate:
+    return TopPlate(length, width, height, margin=margin, front_margin=margin)
+
+
+def _clicks(request: AnnotateRequest, names: Sequence[str]) -> Mapping[str, Mapping[str, Click]]:
+    clicks: dict[str, dict[str, Click]] = {}
+    for text in request.clicks:
+        place, _, pixel = text.rpartition("=")
+        photo, _, name = place.rpartition(":")
+        if not (photo and name):
+            raise SettingsError(f"'{text}'; expected PHOTO:NAME=U,V", key="--click")
+        _known(photo, names)
+        clicks.setdefault(photo, {})[name] = _pair(pixel, "--click")
+    return clicks
+
+
+def _corrections(request: AnnotateRequest) -> tuple[Correction, ...]:
+    moves = [_move(text) for text in request.moves]
+    flips = [Flip(photo) for photo in request.flips]
+    deletes = [Delete(photo) for photo in request.deletes]
+    order = [Order(tuple(request.order))] if request.order else []
+    return (*moves, *flips, *deletes, *order)
+
+
+def _move(text: str) -> Move:
+    photo, _, place = text.rpartition(":")
+    numbers = _numbers(place, "--move")
+    if not photo or len(numbers) != 3:
+        raise SettingsError(f"'{text}'; expected PHOTO:X,Y,YAW in m, m, degrees", key="--move")
+    return Move(photo, numbers[0], numbers[1], radians(numbers[2]))
+
+
+def _pair(text: str, key: str) -> Click:
+    numbers = _numbers(text, key)
+    if len(numbers) != 2:
+        raise SettingsError(f"'{text}'; expected two pixels, U,V", key=key)
+    return numbers[0], numbers[1]
+
+
+def _numbers(text: str, key: str) -> list[float]:
+    try:
+        return [float(part) for part in text.split(",")]
+    except ValueError as error:
+        raise SettingsError(f"'{text}' holds what is no number", key=key) from error
+
+
+def _require_photos(said: Annotations, names: Sequence[str]) -> None:
+    if said.template is not None:
+        _known(said.template.photo, names)
+    for photo in said.clicks:
+        _known(photo, names)
+    for correction in said.corrections:
+        photos = correction.photos if isinstance(correction, Order) else (correction.photo,)
+        for photo in photos:
+            _known(photo, names)
+
+
+def _known(photo: str, names: Sequence[str]) -> None:
+    # Exposures and frames are counted only when they are tracked: walk.jpg#3 is one of walk.jpg.
+    if photo in names or photo.rpartition(_EXPOSURE)[0] in names:
+        return
+    near = difflib.get_close_matches(photo, names, n=1)
+    hint = f"did you mean '{near[0]}'?" if near else f"there are {names[0]} to {names[-1]}"
+    raise SettingsError(f"no photograph '{photo}'; {hint}")

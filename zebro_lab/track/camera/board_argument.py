@@ -1,0 +1,63 @@
+# SPDX-License-Identifier: MIT
+"""What `--board` says: which calibration board was photographed."""
+
+from tracking.camera import Board, CharucoBoard, Checkerboard
+from tracking.errors import TrackingError
+from tracking.markers import dictionary_named
+from zebro_lab.files.errors import SettingsError
+from zebro_lab.files.units import quantity_to_si
+
+_EXPECTED = (
+    "expected kit, checkerboard:COLUMNSxROWS:SQUARE (inner corners) such as "
+    "checkerboard:9x6:25mm, or charuco:COLUMNSxROWS:SQUARE:MARKER:DICTIONARY (squares) such as "
+    "charuco:7x5:35mm:26mm:5x5_50"
+)
+
+
+def parse_board(text: str) -> Board:
+    """Read a board from its description.
+
+    Raises:
+        SettingsError: It describes none.
+        UnitError: A length is none.
+
+    >>> parse_board("checkerboard:9x6:25mm")
+    Checkerboard(columns=9, rows=6, square=0.025)
+    """
+    kind, *parts = text.split(":")
+    if kind == "kit" and not parts:
+        from zebro_lab.track.camera.kit import BOARD
+
+        return BOARD
+    if kind == "checkerboard" and len(parts) == 2:
+        columns, rows = _grid(text, parts[0])
+        return Checkerboard(columns, rows, _length(text, parts[1]))
+    if kind == "charuco" and len(parts) == 4:
+        columns, rows = _grid(text, parts[0])
+        square, marker = _length(text, parts[1]), _length(text, parts[2])
+        if marker >= square:
+            raise _error(text, "its markers do not fit into its squares")
+        try:
+            dictionary_named(parts[3])
+        except TrackingError as error:
+            raise SettingsError(str(error), key="--board") from error
+        return CharucoBoard(columns, rows, square, marker, parts[3])
+    raise _error(text, "is no board")
+
+
+def _grid(text: str, part: str) -> tuple[int, int]:
+    columns, _, rows = part.partition("x")
+    if not (columns.isdigit() and rows.isdigit() and int(columns) > 1 and int(rows) > 1):
+        raise _error(text, f"'{part}' is no COLUMNSxROWS")
+    return int(columns), int(rows)
+
+
+def _length(text: str, part: str) -> float:
+    length = quantity_to_si(part, "m")
+    if not 0 < length < 1:
+        raise _error(text, f"'{part}' is not between 0 and 1 m; give a unit, as in 25mm")
+    return length
+
+
+def _error(text: str, problem: str) -> SettingsError:
+    return SettingsError(f"'{text}': {problem}; {_EXPECTED}", key="--board")

@@ -1,0 +1,132 @@
+# SPDX-License-Identifier: MIT
+"""`zebro-lab camera kit | calibrate | clock`: what has to be done before photographs are taken."""
+
+from enum import StrEnum
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from zebro_lab.terminal.messages import say
+
+if TYPE_CHECKING:
+    from zebro_lab.track.camera.stage import CameraResult
+
+app = typer.Typer(
+    no_args_is_help=True, help="Print the tracking kit, calibrate the camera, tie its clock."
+)
+
+CALIBRATE_EPILOG = """
+Examples:
+
+zebro-lab camera calibrate board-photos
+
+zebro-lab camera calibrate board-photos --board checkerboard:9x6:25mm --out camera.toml
+"""
+
+
+class Paper(StrEnum):
+    """Papers of the kit."""
+
+    A4 = "a4"
+    LETTER = "letter"
+
+
+class LensModel(StrEnum):
+    """Distortions, in order of complexity."""
+
+    AUTO = "auto"
+    NONE = "none"
+    K1 = "k1"
+    K1_K2 = "k1-k2"
+    FULL = "full"
+
+
+Workers = Annotated[int, typer.Option(min=1, help="Processes to use.")]
+
+
+@app.command()
+def kit(
+    out: Annotated[Path, typer.Option(help="Folder to write.")] = Path("tracking-kit"),
+    paper: Annotated[Paper, typer.Option(help="Size of the paper.")] = Paper.A4,
+) -> None:
+    """Write a true-scale PDF of markers, board and ruler, and a floor.toml to edit."""
+    from zebro_lab.track.camera.stage import write_kit
+
+    for file in write_kit(out, paper=paper.value):
+        say(f"wrote {file}")
+    say("print at 100 % and measure the 100 mm bar of every page")
+
+
+@app.command(epilog=CALIBRATE_EPILOG)
+def calibrate(
+    photos: Annotated[Path, typer.Argument(help="Folder of photographs of the board.")],
+    board: Annotated[
+        str,
+        typer.Option(
+            metavar="BOARD",
+            help="kit, checkerboard:COLUMNSxROWS:SQUARE (inner corners) or "
+            "charuco:COLUMNSxROWS:SQUARE:MARKER:DICTIONARY (squares).",
+        ),
+    ] = "kit",
+    out: Annotated[Path, typer.Option(help="File to write.")] = Path("camera.toml"),
+    lens: Annotated[
+        LensModel, typer.Option(help="Distortion to fit; auto: no more than the photographs show.")
+    ] = LensModel.AUTO,
+    workers: Workers = 2,
+) -> None:
+    """Calibrate the lens from photographs of a board: camera.toml."""
+    from rich.console import Console
+
+    from zebro_lab.terminal.progress import progress_bar
+    from zebro_lab.track.camera.stage import CameraRequest, calibrate_camera
+
+    request = CameraRequest(photos, out, board, lens.value, workers)
+    with progress_bar(Console(stderr=True)) as watcher:
+        result = calibrate_camera(request, watcher)
+    for line in calibration_lines(result):
+        say(line)
+
+
+def calibration_lines(result: "CameraResult") -> list[str]:
+    """Say what was fitted, how well it is known and what was left out."""
+    fit = result.fit
+    matrix, sd = fit.camera.matrix, fit.sd
+    width, height = fit.camera.size
+    numbers = (
+        ("fx", matrix[0, 0], sd[0]), ("fy", matrix[1, 1], sd[1]),
+        ("cx", matrix[0, 2], sd[2]), ("cy", matrix[1, 2], sd[3]),
+    )  # fmt: skip
+    names = ("k1", "k2", "p1", "p2", "k3")
+    bent = [
+        f"{name} {value:.4f} ± {spread:.4f}"
+        for name, value, spread in zip(names, fit.camera.distortion, sd[4:], strict=True)
+        if spread > 0
+    ]
+    lines = [f"{name}: {reason}; left out" for name, reason in result.left_out.items()]
+    lines += [
+        f"{len(fit.view_names)} photographs of {width}x{height} px, lens model '{fit.lens_model}'",
+        ", ".join(f"{name} {value:.2f} ± {spread:.2f} px" for name, value, spread in numbers),
+        f"distortion {', '.join(bent) or 'none seen'}",
+        f"corners are off by {fit.rms:.3f} px (rms) and cover {fit.coverage:.0%} of the picture:",
+        *("  " + " ".join("#" if count else "." for count in row) for row in fit.seen),
+        *(f"WARNING: {warning}" for warning in fit.warnings),
+        f"wrote {result.file}",
+    ]
+    return lines
+
+
+@app.command()
+def clock(
+    duration: Annotated[
+        float | None, typer.Option(min=0.0, help="How long; without it until Ctrl-C [s].")
+    ] = None,
+) -> None:
+    """Show the computer's time as a QR code to photograph; give the photograph to track --clock."""
+    from rich.console import Console
+
+    from zebro_lab.terminal.progress import progress_bar
+    from zebro_lab.track.camera.clock_screen import show_clock
+
+    with progress_bar(Console(stderr=True)) as watcher:
+        show_clock(watcher.stop_requested, duration=duration)

@@ -1,0 +1,152 @@
+# SPDX-License-Identifier: MIT
+"""Photographs of a board in, `camera.toml` out; the kit to print; the clock to photograph."""
+
+import os
+from collections import Counter
+from dataclasses import dataclass
+from io import BytesIO
+from pathlib import Path
+
+from tracking.camera import Board, BoardView, Calibration, calibrate, find_board
+from tracking.errors import CalibrationError, PhotoError
+from tracking.images import find_photos, read_pixels
+from zebro_lab.files.atomic import atomic_folder, atomic_write_bytes, atomic_write_text
+from zebro_lab.files.errors import AlreadyExists
+from zebro_lab.files.own_file import require_own, text_file
+from zebro_lab.files.provenance import file_hash
+from zebro_lab.track.camera.board_argument import parse_board
+from zebro_lab.track.camera.kit import kit_pages, starter_floor
+from zebro_lab.track.camera_file import HEADING, render_camera_file
+from zebro_lab.track.floor_file import FLOOR_FILE, render_floor_file
+from zebro_lab.track.photo_search import WORTH_WORKERS, Watcher, run_batches
+from zebro_lab.track.photo_sequence import upright_size
+
+KIT_FILE = "kit.pdf"
+LENS = text_file("camera calibrate", HEADING)
+
+
+@dataclass(frozen=True)
+class CameraRequest:
+    """What is asked of a calibration.
+
+    Attributes:
+        photos: Folder of photographs of the board.
+        out: The `camera.toml` to write.
+        board: The board, as `--board` says it.
+        lens_model: "auto" or the distortion to fit.
+        workers: Processes to use.
+    """
+
+    photos: Path
+    out: Path
+    board: str = "kit"
+    lens_model: str = "auto"
+    workers: int = 1
+
+
+@dataclass(frozen=True)
+class CameraResult:
+    """A calibration that was written.
+
+    Attributes:
+        file: The `camera.toml`.
+        fit: The calibration.
+        left_out: Photographs that were not used, with the reason.
+    """
+
+    file: Path
+    fit: Calibration
+    left_out: dict[str, str]
+
+
+def calibrate_camera(request: CameraRequest, watcher: Watcher) -> CameraResult:
+    """Calibrate the lens and write `camera.toml`.
+
+    Raises:
+        ZebroLabError: An option says what cannot be followed.
+        TrackingError: The photographs do not determine the lens.
+        TrackStopped: Somebody asked to stop.
+    """
+    target = require_own(request.out, LENS, inputs=(request.photos,))
+    board = parse_board(request.board)
+    paths = find_photos(request.photos)
+    sizes = Counter(size for path in paths if (size := upright_size(path)) is not None)
+    if not sizes:
+        raise CalibrationError(f"{request.photos}: none of {len(paths)} photographs can be read")
+    size = sizes.most_common(1)[0][0]
+    workers = request.workers if len(paths) * size[0] * size[1] > WORTH_WORKERS else 1
+    jobs = [(path, board, size) for path in paths]
+    looks = run_batches(_look, jobs, workers=workers, watcher=watcher, what="boards")
+    views = [view for view in looks if isinstance(view, BoardView)]
+    left_out = {
+        path.name: look for path, look in zip(paths, looks, strict=True) if isinstance(look, str)
+    }
+    if not views:
+        raise CalibrationError(_why_none(request, left_out))
+    watcher.step("lens", None)
+    fit = calibrate(views, size, lens_model=request.lens_model)
+    used = {path.name: file_hash(path) for path in paths if path.name not in left_out}
+    atomic_write_text(target, render_camera_file(fit, photos=used))
+    return CameraResult(request.out, fit, left_out)
+
+
+def _look(job: tuple[Path, Board, tuple[int, int]]) -> BoardView | str:
+    path, board, size = job
+    try:
+        view = find_board(read_pixels(path, size=size), board, name=path.name)
+    except PhotoError as error:
+        return error.reason
+    return "the board is not seen" if view is None else view
+
+
+def _why_none(request: CameraRequest, left_out: dict[str, str]) -> str:
+    name, reason = next(iter(left_out.items()))
+    return (
+        f"the board '{request.board}' is seen in none of {len(left_out)} photographs ({name}: "
+        f"{reason}); name the board that was photographed as --board"
+    )
+
+
+def write_kit(out: Path, *, paper: str = "a4") -> tuple[Path, ...]:
+    """Write the kit to print and a `floor.toml` to edit.
+
+    Args:
+        out: Folder to write into.
+        paper: "a4" or "letter".
+
+    Returns:
+        The files.
+
+    Raises:
+        AlreadyExists: There is a `floor.toml`, which may hold what a tape said, or another kit.
+        SettingsError: The paper is unknown.
+    """
+    from zebro_lab.track.camera.pictures import save_pages  # matplotlib takes most of a second
+
+    pages = kit_pages(paper)
+    if (out / FLOOR_FILE).exists():
+        raise AlreadyExists(
+            f"{out / FLOOR_FILE} exists already and may hold what a tape said; name another --out"
+        )
+    drawn = BytesIO()
+    save_pages(pages, drawn)
+    floor = render_floor_file(starter_floor(), heading=_HEADING)
+    if not out.is_dir():
+        with atomic_folder(out) as draft:
+            (draft / KIT_FILE).write_bytes(drawn.getvalue())
+            (draft / FLOOR_FILE).write_text(floor)
+    else:
+        _require_same(out / KIT_FILE, drawn.getvalue())
+        atomic_write_bytes(out / KIT_FILE, drawn.getvalue())
+        atomic_write_text(out / FLOOR_FILE, floor)
+    return out / KIT_FILE, out / FLOOR_FILE
+
+
+def _require_same(file: Path, content: bytes) -> None:
+    if os.path.lexists(file) and (not file.is_file() or file.read_bytes() != content):
+        raise AlreadyExists(f"{file} exists already and is another one; name another --out")
+
+
+_HEADING = """\
+The floor's markers. Replace x, y and yaw_deg by what the tape says; delete what is not laid.
+Markers as `zebro-lab camera kit` prints them; the places are an advice, not a measurement."""

@@ -1,0 +1,109 @@
+# SPDX-License-Identifier: MIT
+"""The zero of a track's time: the run's start, a moment given, or the first photograph."""
+
+from dataclasses import dataclass
+from datetime import datetime
+
+from tracking.errors import TimesError
+from tracking.images import PhotoTimes
+from zebro_lab.files.errors import SettingsError
+from zebro_lab.runs.manifest import RunManifest
+from zebro_lab.track.photo_sequence import TimeRequest
+
+_CLOCK = 1e8  # times beyond this are a clock's, counted from 1970 [s]
+_ROUND_A_RUN = 60.0  # how long before and after a run a photograph may well be taken [s]
+
+
+@dataclass(frozen=True)
+class CountedTimes:
+    """Times of photographs as the track has them.
+
+    Attributes:
+        times: Times and their standard deviations.
+        said: In words, where they are from.
+        notes: For a person, one line each.
+    """
+
+    times: PhotoTimes
+    said: str
+    notes: tuple[str, ...] = ()
+
+
+def counted_from(
+    times: PhotoTimes, *, start: datetime | None, manifest: RunManifest | None, asked: TimeRequest
+) -> CountedTimes:
+    """Count times from a moment: the one given, the run's start, or the first photograph.
+
+    Args:
+        times: Times of the photographs: since 1970 where they are a clock's, else as given.
+        start: The moment given, by the camera's clock.
+        manifest: The run they belong to.
+        asked: How the photographs got their times.
+
+    Raises:
+        SettingsError: A moment is given, but the photographs' times are no clock's.
+        TimesError: All photographs were taken long before or after the run.
+    """
+    if asked.interval is not None or asked.table is not None or not _by_a_clock(times):
+        return _as_given(times, start, manifest, asked)
+    zero, what, notes = float(times.t[0]), "the first photograph", ()
+    if start is not None:
+        zero, what = start.timestamp(), f"{start:%Y-%m-%d %H:%M:%S} by the camera's clock"
+    elif manifest is not None and asked.clock is not None:
+        zero = datetime.fromisoformat(manifest.start).timestamp()
+        what = f"the run's start, {manifest.start}"
+    elif manifest is not None:
+        notes = (untied(f"give --clock (docs/tracking-howto.md) or --start, or {LATER}"),)
+    counted = PhotoTimes(times.t - zero, times.sd, times.source)
+    if manifest is not None and not notes:
+        notes = _beside(counted, manifest)
+    return CountedTimes(counted, f"{times.source}; counted from {what}", notes)
+
+
+LATER = "bring it to the run's clock with `validate --time-offset`"
+
+
+def untied(advice: str) -> str:
+    """Say that nothing tells when in the run the photographs were taken."""
+    return (
+        "time is counted from the first photograph, and nothing tells when in the run it was "
+        f"taken: {advice}"
+    )
+
+
+def _by_a_clock(times: PhotoTimes) -> bool:
+    return len(times.t) > 0 and float(times.t[0]) > _CLOCK
+
+
+def _as_given(
+    times: PhotoTimes, start: datetime | None, manifest: RunManifest | None, asked: TimeRequest
+) -> CountedTimes:
+    if start is not None:
+        raise SettingsError(
+            f"these photographs have no clock ({times.source}), so that no moment can be found on "
+            "it; leave it out",
+            key="--start",
+        )
+    if manifest is None or asked.table is not None:
+        return CountedTimes(times, times.source)
+    advice = LATER if asked.interval is None else f"give --times, or {LATER}"
+    return CountedTimes(times, times.source, (untied(advice),))
+
+
+def _beside(counted: PhotoTimes, manifest: RunManifest) -> tuple[str, ...]:
+    """Compare times since the run's start with how long it lasted."""
+    length = float("inf")
+    if manifest.stop is not None:
+        begun, ended = map(datetime.fromisoformat, (manifest.start, manifest.stop))
+        length = (ended - begun).total_seconds()
+    first, last = float(counted.t.min()), float(counted.t.max())
+    if last < -_ROUND_A_RUN or first > length + _ROUND_A_RUN:
+        raise TimesError(
+            f"the photographs were taken {first:.1f} to {last:.1f} s after the run's start, and "
+            f"the run lasted {length:.1f} s; name the run they belong to, or correct --start (the "
+            "moment of the run's start as the camera's clock shows it)"
+        )
+    outside = int(((counted.t < 0) | (counted.t > length)).sum())
+    if not outside:
+        return ()
+    return (f"{outside} of {len(counted.t)} photographs were taken before or after the run",)

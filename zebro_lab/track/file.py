@@ -1,0 +1,154 @@
+# SPDX-License-Identifier: MIT
+"""Poses over time from a table: `track.csv`, `path.csv`, or a stranger's with the same columns."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from model.errors import DomainError
+from model.metrics.poses import Poses
+from model.slip.law import Array
+from zebro_lab.files.errors import DataError
+from zebro_lab.files.replacement import settle
+from zebro_lab.tables.cells import cell_error, require_increasing
+from zebro_lab.tables.raw_table import RawTable
+from zebro_lab.tables.table_files import read_table_file
+from zebro_lab.track.folder import MANIFEST, TRACK_CSV, read_track_manifest
+
+FEWEST = 3  # a start, which is not scored, and two poses to score
+_NAMES = (("t_s", "t"), ("x_m", "x"), ("y_m", "y"))
+_YAW = ("yaw_rad", "yaw")
+_COVARIANCE = ("cov_xx", "cov_xy", "cov_xyaw", "cov_yy", "cov_yyaw", "cov_yawyaw")
+
+
+@dataclass(frozen=True)
+class TrackFile:
+    """Tracked poses with what is known of their errors.
+
+    Attributes:
+        poses: The poses; headings NaN where the table has none.
+        covariance: Covariance of x, y, yaw at each, zero where nobody said, shape (n, 3, 3).
+        source: Where they come from: "real", "sim:what", "unknown".
+        file: The file.
+        notes: For a person, one line each.
+    """
+
+    poses: Poses
+    covariance: Array
+    source: str
+    file: Path
+    notes: tuple[str, ...] = ()
+
+
+def read_track(path: Path) -> TrackFile:
+    """Read a track.
+
+    Args:
+        path: A table with `t_s,x_m,y_m`, or `t,x,y`, perhaps `yaw_rad` (or `yaw`) and the upper
+            triangle of a covariance, `cov_xx` to `cov_yawyaw`; or the folder of a `track.csv`.
+
+    Raises:
+        NotFound: There is no such file.
+        DataError: A column is missing, a cell holds no number, time does not increase, or there
+            are too few poses; names file, row and column.
+    """
+    settle(path)
+    file = path / TRACK_CSV if path.is_dir() else path
+    return track_of_table(read_table_file(file))
+
+
+def track_of_table(table: RawTable) -> TrackFile:
+    """Check the poses of a table with the columns of `read_track`.
+
+    Raises:
+        DataError: As in `read_track`.
+    """
+    file = table.path
+    poses = _poses(table, file)
+    if len(poses) < FEWEST:
+        raise DataError(
+            f"has {len(poses)} poses; expected {FEWEST} or more, since the first only starts the "
+            "prediction: take photographs more often, or walk for longer",
+            file=file,
+        )
+    notes = [] if poses.has_yaw else [f"{file.name}: without headings; yaw is not scored"]
+    has_covariance = all(name in table.columns for name in _COVARIANCE)
+    if not has_covariance:
+        notes.append(f"{file.name}: without covariance; the tracker is taken as exact")
+    covariance = _covariance(table) if has_covariance else np.zeros((len(poses), 3, 3))
+    source = table.source or _tracked_source(file) or "unknown"
+    return TrackFile(poses, covariance, source, file, (*table.notes, *notes))
+
+
+def _tracked_source(file: Path) -> str | None:
+    """Take the source from the manifest of the track folder that holds a file."""
+    if file.name != TRACK_CSV or not (file.parent / MANIFEST).is_file():
+        return None
+    return str(read_track_manifest(file.parent).get("source", "unknown"))
+
+
+def read_poses(file: Path) -> Poses:
+    """Read a predicted path: the columns of `read_track`, without its covariance.
+
+    Raises:
+        NotFound: There is no such file.
+        DataError: It holds no path.
+    """
+    return _poses(read_table_file(file), file)
+
+
+def tum_lines(poses: Poses) -> str:
+    """Write poses as TUM does, `t x y z qx qy qz qw`, for evo; unknown headings are zero."""
+    yaw = np.nan_to_num(poses.yaw)
+    return "".join(
+        f"{t:.6f} {x:.6f} {y:.6f} 0 0 0 {np.sin(half):.9f} {np.cos(half):.9f}\n"
+        for t, (x, y), half in zip(poses.t, poses.position, yaw / 2, strict=True)
+    )
+
+
+def _poses(table: RawTable, file: Path) -> Poses:
+    t, x, y = (_numbers(table, _present(table, names)) for names in _NAMES)
+    require_increasing(table, _present(table, _NAMES[0]), t)
+    yaw_name = next((name for name in _YAW if name in table.columns), None)
+    yaw = np.full(len(t), np.nan) if yaw_name is None else _numbers(table, yaw_name)
+    try:
+        return Poses(t, np.column_stack([x, y]), np.unwrap(yaw))
+    except DomainError as error:
+        raise DataError(str(error), file=file) from error
+
+
+def _present(table: RawTable, names: Sequence[str]) -> str:
+    for name in names:
+        if name in table.columns:
+            return name
+    raise DataError(
+        f"missing; expected {names[0]} or {names[1]} among {', '.join(table.columns)}",
+        file=table.path,
+        column=names[0],
+    )
+
+
+def _numbers(table: RawTable, name: str) -> Array:
+    values = table.numbers(name)
+    good = np.isfinite(values)
+    if not good.all():
+        raise cell_error(
+            table, name, int(np.argmin(good)), "is no finite number; leave such poses out"
+        )
+    return values
+
+
+def _covariance(table: RawTable) -> Array:
+    upper = np.column_stack([_numbers(table, name) for name in _COVARIANCE])
+    covariance = np.empty((len(upper), 3, 3))
+    for k, (i, j) in enumerate(zip(*np.triu_indices(3), strict=True)):
+        covariance[:, i, j] = covariance[:, j, i] = upper[:, k]
+    smallest = np.linalg.eigvalsh(covariance).min(axis=1)
+    if np.any(smallest < -1e-9):
+        raise cell_error(
+            table, "cov_xx", int(np.argmin(smallest)),
+            "the covariance of this pose has a negative eigenvalue; expected none",
+        )  # fmt: skip
+    return covariance

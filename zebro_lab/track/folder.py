@@ -1,0 +1,97 @@
+# SPDX-License-Identifier: MIT
+"""The sole owner of the format of a track folder: `track.csv`, `track.tum` and `manifest.json`."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any, Protocol
+
+from zebro_lab.files.folder_manifest import read_folder_manifest
+from zebro_lab.files.replacement import settle
+from zebro_lab.files.result_folder import MANIFEST, ResultKind, result_folder
+from zebro_lab.track.annotations import ANNOTATIONS_FILE
+from zebro_lab.track.floor_file import FLOOR_FILE
+
+SCHEMA = 1
+KIND = "track"
+TRACK_CSV = "track.csv"
+TRACK_TUM = "track.tum"
+PICTURES = ("overlay.png", "map.png", "residuals.png")
+TRACKED = ResultKind(
+    KIND, "track", (TRACK_CSV, TRACK_TUM, FLOOR_FILE, ANNOTATIONS_FILE, *PICTURES), SCHEMA
+)
+"""What `track` writes; an earlier track's files are replaced."""
+
+_DIGITS = "%.10g"
+
+
+class WrittenTrack(Protocol):
+    """A path as a folder takes it: one that was tracked, or somebody else's."""
+
+    @property
+    def columns(self) -> Mapping[str, Sequence[float] | Sequence[str]]:
+        """The table `track.csv`, all of `tracking.path.TRACK_COLUMNS` that are known."""
+        ...
+
+    @property
+    def tum(self) -> Sequence[str]:
+        """Lines of a TUM file."""
+        ...
+
+
+@contextmanager
+def track_folder(
+    out: Path,
+    track: WrittenTrack,
+    *,
+    source: str,
+    settings: Mapping[str, object],
+    inputs: Mapping[str, str],
+    report: Mapping[str, object],
+) -> Iterator[Path]:
+    """Write a track folder so that it appears finished or not at all.
+
+    The body adds pictures and other files to the draft; the manifest, which lists them, comes last.
+
+    Args:
+        out: Folder to make or to renew.
+        track: The track.
+        source: "real", "sim:what" or "unknown".
+        settings: What was asked, as JSON can hold it.
+        inputs: SHA-256 of each file that was read.
+        report: What a reader should know: photographs left out and why, notes, zero of time.
+
+    Yields:
+        The draft.
+
+    Raises:
+        AlreadyExists: `out` is a file, or the result of another command.
+    """
+    content = {"source": source, "settings": settings, **report, "inputs": inputs}
+    with result_folder(out, TRACKED, content=content) as draft:
+        _write_track(draft, track)
+        yield draft
+
+
+def _write_track(folder: Path, track: WrittenTrack) -> None:
+    import pandas as pd
+
+    table = pd.DataFrame(dict(track.columns))
+    table.to_csv(folder / TRACK_CSV, index=False, float_format=_DIGITS, lineterminator="\n")
+    (folder / TRACK_TUM).write_text("\n".join(track.tum) + "\n")
+
+
+def read_track_manifest(folder: Path) -> Mapping[str, Any]:
+    """Read the manifest of a track folder.
+
+    Raises:
+        NotFound: There is none.
+        DataError: It is damaged, of a later schema, or that of another command.
+    """
+    settle(folder)
+    return read_folder_manifest(folder / MANIFEST, of="track", kinds=(KIND,), schema=SCHEMA)
+
+
+def written(folder: Path) -> Sequence[Path]:
+    """List what a track folder holds of ours."""
+    return [folder / name for name in (*TRACKED.names, MANIFEST) if (folder / name).is_file()]

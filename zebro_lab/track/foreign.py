@@ -1,0 +1,151 @@
+# SPDX-License-Identifier: MIT
+"""A path that somebody else tracked: a table or a TUM file, as `track` would have written it."""
+
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Final
+
+import numpy as np
+
+from model.slip.law import Array
+from zebro_lab.files.errors import DataError
+from zebro_lab.files.opening import read_text
+from zebro_lab.tables.mapped_columns import MappedColumns
+from zebro_lab.tables.raw_table import RawTable
+from zebro_lab.track.file import TrackFile, track_of_table, tum_lines
+
+_COVARIANCE: Final = {
+    "cov_xx": "m^2", "cov_xy": "m^2", "cov_xyaw": "m rad", "cov_yy": "m^2", "cov_yyaw": "m rad",
+    "cov_yawyaw": "rad^2",
+}  # fmt: skip
+TRACK_UNITS: Final[Mapping[str, str]] = {
+    "t_s": "s", "t_sigma": "s", "x_m": "m", "y_m": "m", "yaw_rad": "rad", **_COVARIANCE, "z_m": "m",
+}  # fmt: skip
+_SHORT: Final = {"t_s": "t", "x_m": "x", "y_m": "y", "z_m": "z", "yaw_rad": "yaw"}
+_NEEDED: Final = ("t_s", "x_m", "y_m")
+TUM_SUFFIXES: Final = (".tum", ".txt")
+TUM_COLUMNS: Final = ("t_s", "x_m", "y_m", "z_m", "qx", "qy", "qz", "qw")
+
+
+@dataclass(frozen=True)
+class ForeignTrack:
+    """Somebody else's path; satisfies `WrittenTrack`.
+
+    Attributes:
+        track: Poses and their covariance, checked.
+        more: Further columns of `track.csv` that are known: `t_sigma`, `z_m`.
+        with_covariance: The covariance is known.
+        files: Every file read.
+    """
+
+    track: TrackFile
+    more: Mapping[str, Array] = field(default_factory=dict)
+    with_covariance: bool = False
+    files: tuple[Path, ...] = ()
+
+    @property
+    def columns(self) -> Mapping[str, Sequence[float]]:
+        """The table `track.csv`: what is known of it."""
+        poses = self.track.poses
+        x, y = poses.position.T.tolist()
+        known: dict[str, Sequence[float]] = {"t_s": poses.t.tolist(), "x_m": x, "y_m": y}
+        if poses.has_yaw:
+            known["yaw_rad"] = poses.yaw.tolist()
+        if self.with_covariance:
+            upper = zip(_COVARIANCE, zip(*np.triu_indices(3), strict=True), strict=True)
+            known |= {name: self.track.covariance[:, i, j].tolist() for name, (i, j) in upper}
+        known |= {name: column.tolist() for name, column in self.more.items()}
+        return {name: known[name] for name in TRACK_UNITS if name in known}
+
+    @property
+    def tum(self) -> Sequence[str]:
+        """Lines of a TUM file."""
+        return tum_lines(self.track.poses).splitlines()
+
+
+def is_tum(path: Path) -> bool:
+    """Tell by its name whether a file is a TUM trajectory."""
+    return path.suffix.lower() in TUM_SUFFIXES
+
+
+def track_of_foreign_table(table: RawTable, mapping: MappedColumns, *, zero: float) -> ForeignTrack:
+    """Read a path from a table.
+
+    Args:
+        table: The table.
+        mapping: Where the columns come from, over `TRACK_UNITS`; `t`, `x`, `y`, `z` and `yaw` are
+            known too.
+        zero: Time of the table at which the run began [s].
+
+    Raises:
+        DataError: Time or place is missing, a cell holds no finite number, time does not increase,
+            or there are too few poses; names the cell.
+    """
+    import pandas as pd
+
+    columns = {}
+    for name in TRACK_UNITS:
+        seen = _seen_as(table, mapping, name)
+        if name in _NEEDED or seen.has(table, name):
+            values = seen.numbers(
+                table, name, what=f"{name} of the track", advice="leave such poses out"
+            )
+            columns[name] = values - zero if name == "t_s" else values
+    si = {name: pd.Series(values) for name, values in columns.items()}
+    source = mapping.source or table.source
+    checked = RawTable(table.path, si, source=source, notes=table.notes,
+                       header_line=table.header_line)  # fmt: skip
+    more = {name: columns[name] for name in ("t_sigma", "z_m") if name in columns}
+    files = (table.path, *([mapping.file] if mapping.file else []))
+    return ForeignTrack(track_of_table(checked), more, set(_COVARIANCE) <= set(columns), files)
+
+
+def read_tum(path: Path) -> RawTable:
+    """Read a TUM trajectory, `t x y z qx qy qz qw`, as the columns of `track.csv`.
+
+    Raises:
+        NotFound: There is no such file.
+        DataError: A line has not eight numbers, or a quaternion not length 1; names the row.
+    """
+    import pandas as pd
+
+    # Not splitlines: it also cuts at characters that no editor counts as the end of a line.
+    lines = re.split(r"\r\n|\n|\r", read_text(path))
+    numbered = [(i, line) for i, line in enumerate(lines, start=1)
+                if line.strip() and not line.startswith("#")]  # fmt: skip
+    if not numbered:
+        raise DataError("is empty; expected lines of t x y z qx qy qz qw", file=path)
+    rows = np.array([_pose(path, row, *line) for row, line in enumerate(numbered, start=1)])
+    t, x, y, z, qx, qy, qz, qw = rows.T
+    yaw = np.unwrap(np.arctan2(2 * (qw * qz + qx * qy), 1 - 2 * (qy**2 + qz**2)))
+    columns = {"t_s": t, "x_m": x, "y_m": y, "yaw_rad": yaw, "z_m": z}
+    return RawTable(path, {name: pd.Series(values) for name, values in columns.items()})
+
+
+def _seen_as(table: RawTable, mapping: MappedColumns, name: str) -> MappedColumns:
+    """Take a column by its short name where the table has that, and not the canonical one."""
+    short = _SHORT.get(name)
+    if short is None or mapping.has(table, name) or mapping.mapped[name].name != name:
+        return mapping
+    return mapping.called(name, short)
+
+
+def _pose(path: Path, row: int, line: int, text: str) -> list[float]:
+    try:
+        numbers = [float(word) for word in text.split()]
+    except ValueError as error:
+        raise DataError(f"{error}; expected 8 numbers", file=path, row=row, line=line) from error
+    if len(numbers) != len(TUM_COLUMNS) or not np.isfinite(numbers).all():
+        raise DataError(
+            f"found {len(numbers)} numbers; expected {len(TUM_COLUMNS)} finite ones: "
+            f"{' '.join(TUM_COLUMNS)}",
+            file=path, row=row, line=line,
+        )  # fmt: skip
+    norm = float(np.linalg.norm(numbers[4:]))
+    if abs(norm - 1) > 0.05:
+        raise DataError(
+            f"the quaternion has length {norm:.3g}; expected 1", file=path, row=row, line=line
+        )
+    return numbers

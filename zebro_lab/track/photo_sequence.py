@@ -1,0 +1,272 @@
+# SPDX-License-Identifier: MIT
+"""What is to be tracked: photographs of a folder, frames of a video, or one composite picture."""
+
+from collections import Counter
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from itertools import islice
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+import cv2
+import numpy as np
+
+from tracking.camera.lens import Array, Camera
+from tracking.errors import PhotoError
+from tracking.images import (
+    PhotoTimes,
+    clock_offset,
+    exif_time,
+    find_photos,
+    open_picture,
+    times_from_exif,
+    times_from_interval,
+    times_from_table,
+    video_frames,
+)
+from zebro_lab.files.errors import DataError, NotFound, SettingsError
+from zebro_lab.track.photo_search import Watcher, follow
+
+VIDEOS = (".mp4", ".mov", ".m4v", ".avi", ".mkv", ".webm")
+FRAME_STEP = 0.5
+"""Time between two frames of a video that are taken, unless told otherwise [s]."""
+
+_ORIENTATION = 0x0112
+_LYING = {5, 6, 7, 8}
+
+
+@dataclass(frozen=True)
+class TimeRequest:
+    """How photographs get their times.
+
+    Attributes:
+        interval: Interval of the timer; None to take another source [s].
+        table: CSV with columns `photo`, `t_s` and maybe `t_sigma`; None for another source.
+        clock: Photograph of the QR clock, which ties the camera's clock to the computer's.
+        every: Least time between two frames of a video; 0 takes all [s].
+    """
+
+    interval: float | None = None
+    table: Path | None = None
+    clock: Path | None = None
+    every: float = FRAME_STEP
+
+    def __post_init__(self) -> None:
+        if self.interval is not None and self.table is not None:
+            raise SettingsError("not together with --interval; give one of them", key="--times")
+
+
+@dataclass(frozen=True)
+class PhotoSequence:
+    """Photographs in order of time.
+
+    Attributes:
+        names: What the results call them, shape (n,).
+        paths: Files that hold them, shape (n,).
+        times: When they were taken; of a composite picture None until its exposures are counted.
+        source: "sim:…" where the files say that they are simulated, else None.
+        origin: What the user named: the folder, the video or the picture.
+        left_out: Photographs of the folder that are not among them, with the reason.
+    """
+
+    names: tuple[str, ...]
+    paths: tuple[Path, ...]
+    times: PhotoTimes | None
+    source: str | None
+    origin: Path
+    left_out: Mapping[str, str] = field(default_factory=dict)
+
+    @property
+    def is_composite(self) -> bool:
+        """Tell one picture with many exposures from photographs."""
+        return self.times is None
+
+
+@contextmanager
+def open_photos(
+    origin: Path, request: TimeRequest, *, watcher: Watcher | None = None, frames: int | None = None
+) -> Iterator[PhotoSequence]:
+    """Find the photographs and their times.
+
+    Frames of a video are kept in a temporary folder while the body runs.
+
+    Args:
+        origin: Folder of photographs, video, or one composite picture.
+        request: How they get their times.
+        watcher: Who follows while a video is read; None for nobody.
+        frames: Most frames of a video that are wanted; None for all.
+
+    Yields:
+        The photographs.
+
+    Raises:
+        NotFound: There is nothing of this name.
+        DataError: Frames of a video cannot be kept.
+        TrackingError: There is no photograph, or times are missing.
+        TrackStopped: Somebody asked to stop.
+    """
+    if origin.is_dir():
+        yield _of_folder(origin, request)
+    elif not origin.is_file():
+        raise NotFound(f"{origin}: no such folder, video or picture; working in {Path.cwd()}")
+    elif origin.suffix.lower() in VIDEOS:
+        _require_no_times(request)
+        with TemporaryDirectory(prefix="zebro-lab-") as folder:
+            yield _of_video(origin, Path(folder), request.every, frames, watcher)
+    else:
+        yield PhotoSequence((origin.name,), (origin,), None, _simulated(origin), origin)
+
+
+def calibrated_for(camera: Camera, sequence: PhotoSequence) -> Camera:
+    """Return the lens at the size of most of the photographs.
+
+    Raises:
+        DataError: They have another shape than those the camera was calibrated with.
+    """
+    sizes = Counter(size for path in sequence.paths if (size := upright_size(path)) is not None)
+    if not sizes:
+        return camera
+    try:
+        return camera.scaled(sizes.most_common(1)[0][0])
+    except ValueError as error:
+        raise DataError(str(error), file=sequence.origin) from error
+
+
+def upright_size(path: Path) -> tuple[int, int] | None:
+    """Read width and height of a picture as it is seen, or None of what is no picture [px]."""
+    try:
+        with open_picture(path) as picture:
+            width, height = picture.size
+            lying = picture.getexif().get(_ORIENTATION) in _LYING
+    except PhotoError:
+        return None
+    return (height, width) if lying else (width, height)
+
+
+def exposure_times(names: tuple[str, ...], request: TimeRequest) -> PhotoTimes:
+    """Find the times of a composite picture's exposures, already in order.
+
+    Raises:
+        SettingsError: Neither an interval nor a table was given.
+    """
+    if request.table is not None:
+        return times_from_table(request.table, [Path(name) for name in names])
+    if request.interval is None:
+        raise SettingsError(
+            f"a composite picture has no times of its own; give the interval between its "
+            f"{len(names)} exposures in seconds",
+            key="--interval",
+        )
+    return times_from_interval(len(names), request.interval)
+
+
+def _of_folder(folder: Path, request: TimeRequest) -> PhotoSequence:
+    clock = None if request.clock is None else request.clock.resolve()
+    paths = tuple(path for path in find_photos(folder) if path.resolve() != clock)
+    left_out: Mapping[str, str] = {}
+    if request.table is not None:
+        times = times_from_table(request.table, paths)
+    elif request.interval is not None:
+        times = times_from_interval(len(paths), request.interval)
+    else:
+        left_out = _without_time(paths)
+        paths = tuple(path for path in paths if path.name not in left_out)
+        # A file that is no picture has no EXIF either; it is named later, with what is wrong.
+        readable = [path for path in paths if upright_size(path) is not None]
+        times = _spread(readable, paths)
+    if request.clock is not None:
+        times = _by_computer(times, request.clock)
+    order = np.argsort(times.t, kind="stable")
+    ordered = tuple(paths[k] for k in order)
+    source = next((found for path in ordered if (found := _simulated(path))), None)
+    return PhotoSequence(
+        tuple(path.name for path in ordered),
+        ordered,
+        PhotoTimes(times.t[order], times.sd[order], times.source),
+        source,
+        folder,
+        left_out,
+    )
+
+
+def _without_time(paths: tuple[Path, ...]) -> Mapping[str, str]:
+    """Find the few pictures that have no EXIF time where most have one."""
+    readable = [path for path in paths if upright_size(path) is not None]
+    without = [path for path in readable if exif_time(path) is None]
+    if 2 * len(without) >= len(readable):
+        return {}
+    return {
+        path.name: "no EXIF time; give all times with --interval or --times" for path in without
+    }
+
+
+def _spread(readable: list[Path], paths: tuple[Path, ...]) -> PhotoTimes:
+    """Give files without a time that of the file before them; they are reported, not tracked."""
+    if not readable:
+        return PhotoTimes(np.zeros(len(paths)), np.zeros(len(paths)), "none: nothing can be read")
+    times = times_from_exif(readable)
+    place = {path: k for k, path in enumerate(readable)}
+    last, index = 0, []
+    for path in paths:
+        last = place.get(path, last)
+        index.append(last)
+    return PhotoTimes(times.t[index], times.sd[index], times.source)
+
+
+def _by_computer(times: PhotoTimes, clock: Path) -> PhotoTimes:
+    offset = clock_offset(clock)
+    # The offset's own error is common to all photographs; it is stated, not added to each.
+    said = f"{times.source}; camera's clock {offset.seconds:+.3f} s (sd {offset.sd:.3f} s) ahead"
+    return PhotoTimes(times.t - offset.seconds, times.sd, said)
+
+
+def _of_video(
+    video: Path, folder: Path, every: float, most: int | None, watcher: Watcher | None
+) -> PhotoSequence:
+    names, paths, t, sd = [], [], [], []
+    for frame in islice(video_frames(video, every=every), most):
+        if watcher is not None:
+            follow(watcher, "frames", None)
+        path = folder / f"{len(paths):06d}.png"
+        if not cv2.imwrite(str(path), frame.pixels, [cv2.IMWRITE_PNG_COMPRESSION, 1]):
+            raise DataError(
+                f"its frame {frame.name} cannot be kept in {folder.parent}; is the disk full? "
+                "--every SECONDS takes fewer frames",
+                file=video,
+            )
+        names.append(frame.name)
+        paths.append(path)
+        t.append(frame.t)
+        sd.append(frame.t_sd)
+    step = f", one every {every:g} s" if every > 0 else ""
+    times = PhotoTimes(_floats(t), _floats(sd), f"time stamps of the video's frames{step}")
+    return PhotoSequence(tuple(names), tuple(paths), times, None, video)
+
+
+def _require_no_times(request: TimeRequest) -> None:
+    given = {
+        "--interval": request.interval, "--times": request.table, "--clock": request.clock
+    }  # fmt: skip
+    for key, value in given.items():
+        if value is not None:
+            raise SettingsError("not with a video, whose frames tell their own times", key=key)
+
+
+def _floats(numbers: list[float]) -> Array:
+    return np.array(numbers, dtype=float)
+
+
+def _simulated(path: Path) -> str | None:
+    # What draws photographs for tests and demonstrations says so in the camera's make.
+    try:
+        with open_picture(path) as picture:
+            make = str(picture.getexif().get(0x010F, "")).strip("\0 ")
+    except PhotoError:
+        return None
+    return "sim:photographs" if make.lower() == "simulated" else None
+
+
+def by_name(sequence: PhotoSequence) -> Mapping[str, Path]:
+    """Return the photographs' files by name."""
+    return dict(zip(sequence.names, sequence.paths, strict=True))

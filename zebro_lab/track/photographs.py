@@ -1,0 +1,144 @@
+# SPDX-License-Identifier: MIT
+"""The photographs behind a track, found again by their hashes and seen from straight above."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from model.slip.law import Array
+from tracking.camera import Camera, CameraPose
+from tracking.errors import TrackingError
+from tracking.floor import FloorMap, FloorView, locate_camera
+from tracking.images import read_pixels
+from tracking.pictures import rectify_floor
+from zebro_lab.files.errors import DataError, NotFound, SettingsError
+from zebro_lab.files.provenance import file_hash
+from zebro_lab.tables.table_files import read_table_file
+from zebro_lab.track.annotations import ANNOTATIONS_FILE, Annotations, read_annotations
+from zebro_lab.track.camera_file import read_camera_file
+from zebro_lab.track.floor_file import FLOOR_FILE, read_floor_file
+from zebro_lab.track.folder import TRACK_CSV, read_track_manifest
+from zebro_lab.track.photo_search import Photo, Wanted, look_at
+from zebro_lab.track.photo_sequence import VIDEOS, upright_size
+
+
+@dataclass(frozen=True)
+class View:
+    """A photograph, and where the camera stood.
+
+    Attributes:
+        pixels: BGR, shape (height, width, 3).
+        camera: The lens.
+        pose: Where it stood.
+    """
+
+    pixels: NDArray[np.uint8]
+    camera: Camera
+    pose: CameraPose
+
+    def from_above(
+        self, low: Array, high: Array, *, pixels_per_metre: float, height: float = 0.0
+    ) -> NDArray[np.uint8]:
+        """Draw a level rectangle of the scene from straight above; see `rectify_floor`."""
+        return rectify_floor(
+            self.pixels, self.camera, self.pose, low=low, high=high,
+            pixels_per_metre=pixels_per_metre, height=height,
+        )  # fmt: skip
+
+
+@dataclass(frozen=True)
+class TrackedPhotos:
+    """Photographs of a track.
+
+    Attributes:
+        t: Time of each pose of the track, shape (n,) [s].
+        names: Its photograph.
+        files: Where each photograph is, by name.
+        camera: The lens, at the size it was calibrated with.
+        floor: The floor as refined with the photographs.
+        said: What a person said about them.
+        simulated: Whether nobody took them.
+    """
+
+    t: Array
+    names: tuple[str, ...]
+    files: Mapping[str, Path]
+    camera: Camera
+    floor: FloorMap
+    said: Annotations = field(default_factory=Annotations)
+    simulated: bool = False
+
+    def view(self, name: str) -> View:
+        """Read a photograph and find where the camera stood.
+
+        Raises:
+            TrackingError: It does not show the floor's marks.
+        """
+        file = self.files[name]
+        size = upright_size(file) or self.camera.size
+        camera = self.camera.scaled(size)
+        look = look_at(Photo(name, file), Wanted(size, self.floor, None))
+        if look.seen is None:
+            raise TrackingError(f"{name}: {look.problem}")
+        seen, clicks = look.seen.floor, self.said.clicks.get(name, {})
+        clicked = FloorView.of(name, (), clicked=clicks)
+        view = FloorView(
+            name,
+            {**seen.pixels, **clicked.pixels},
+            {**seen.covariances, **clicked.covariances},
+        )
+        pose = locate_camera(camera, self.floor, view)
+        return View(read_pixels(file, size=size), camera, pose)
+
+
+def photos_of_track(track: Path) -> TrackedPhotos:
+    """Find the photographs that a track folder was made from.
+
+    Args:
+        track: A track folder, or its track.csv.
+
+    Raises:
+        NotFound: It is no track folder, or photographs or the lens are no longer where they were.
+        DataError: Frames of a video, which are not kept, or a photograph is another one now.
+    """
+    folder = track if track.is_dir() else track.parent
+    manifest = read_track_manifest(folder)
+    table = read_table_file(folder / TRACK_CSV)
+    names = tuple(str(name) for name in table.columns["photo"])
+    inputs = {Path(path): str(digest) for path, digest in manifest["inputs"].items()}
+    said = folder / ANNOTATIONS_FILE
+    return TrackedPhotos(
+        t=table.numbers("t_s"),
+        names=names,
+        files={name: _file_of(name, inputs) for name in names},
+        camera=_camera(inputs, folder),
+        floor=read_floor_file(folder / FLOOR_FILE),
+        said=read_annotations(said) if said.is_file() else Annotations(),
+        simulated="sim:" in str(manifest["source"]),
+    )
+
+
+def _file_of(name: str, inputs: Mapping[Path, str]) -> Path:
+    """Find the file of a photograph; exposures of a composite share theirs."""
+    plain = name.rpartition("#")[0] or name
+    file = next((path for path in inputs if path.name == plain), None)
+    if file is None or not file.is_file():
+        raise NotFound(f"{file or plain}: the photograph is not where it was when it was tracked")
+    if file.suffix.lower() in VIDEOS:
+        raise DataError("frames of a video are not kept", file=file)
+    if file_hash(file) != inputs[file]:
+        raise DataError("is another photograph than the one that was tracked", file=file)
+    return file
+
+
+def _camera(inputs: Mapping[Path, str], folder: Path) -> Camera:
+    for path in inputs:
+        if path.suffix == ".toml" and path.is_file():
+            try:
+                return read_camera_file(path).camera
+            except SettingsError:  # the floor's or the robot's
+                continue
+    raise NotFound(f"{folder}: the camera.toml of this track is not where it was")

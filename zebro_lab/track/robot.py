@@ -1,0 +1,91 @@
+# SPDX-License-Identifier: MIT
+"""What tracking takes from `robot.toml`: the marker on the robot, and how high the body is."""
+
+import numpy as np
+
+from tracking.detect import Robot
+from tracking.errors import TrackingError
+from tracking.pose import BodyPrior, RobotMarker
+from zebro_lab.files.errors import SettingsError
+from zebro_lab.robot.marker_numbers import require_in_dictionary
+from zebro_lab.robot.marker_print import parse_marker
+from zebro_lab.robot.robot_file import RobotFile
+
+WALKING_HEIGHT_SD = 5e-3
+"""How far a walking body is from the height at which it stands: legs lift it as they turn [m]."""
+
+STEEPEST = 0.05
+"""Roll or pitch beyond which a marker on the robot is not level [rad]."""
+
+
+def tracked_robot(described: RobotFile, marker: str | None = None, *, prior: BodyPrior) -> Robot:
+    """Put together what is known of a robot that carries a marker.
+
+    The marker's frame in `robot.toml` has its x along the print's upward direction: a print whose
+    top points ahead has no yaw.
+
+    Args:
+        described: The `robot.toml`.
+        marker: What is printed on the robot, such as "4x4_50:0:120mm"; None for what the file says.
+        prior: Height and tilt of the body.
+
+    Raises:
+        SettingsError: The marker is none.
+        UnitError: Its side is no length.
+    """
+    place = described.marker
+    if place is None:
+        raise SettingsError(
+            "missing; say where the marker sits on the robot (docs/formats.md), or track the robot "
+            "by its own picture",
+            file=_file(described), key="marker",
+        )  # fmt: skip
+    roll, pitch, yaw = place.roll_pitch_yaw
+    if max(abs(roll), abs(pitch)) > STEEPEST:
+        raise SettingsError(
+            f"roll {np.degrees(roll):.1f} and pitch {np.degrees(pitch):.1f} degrees; a marker on "
+            f"the robot must lie within {np.degrees(STEEPEST):.0f} degrees of level",
+            file=described.file, key="marker.roll_pitch_yaw_deg",
+        )  # fmt: skip
+    printed = place.printed if marker is None else parse_marker(marker)
+    try:
+        require_in_dictionary(printed.dictionary, [printed.number])
+        on_robot = RobotMarker(
+            printed.number, printed.side, printed.dictionary, place.position, yaw=yaw - np.pi / 2
+        )
+    except TrackingError as error:
+        file, key = (_file(described), "marker") if marker is None else (None, "--marker")
+        raise SettingsError(str(error), file=file, key=key) from error
+    return Robot(on_robot, prior)
+
+
+def body_prior(
+    described: RobotFile, *, height: float | None = None, height_sd: float = WALKING_HEIGHT_SD
+) -> BodyPrior:
+    """Say how high the body's origin is, from a height given or from the marker's.
+
+    Args:
+        described: The `robot.toml`.
+        height: Height of the body's origin; None to take the marker's height while the robot
+            stands less its place on the body [m].
+        height_sd: Standard deviation of it over a walk [m].
+
+    Raises:
+        SettingsError: The height is not known, or its standard deviation is none.
+    """
+    if not height_sd > 0:
+        raise SettingsError(f"is {height_sd:g} m; expected more than 0", key="--height-sd")
+    if height is not None:
+        return BodyPrior(height, height_sd)
+    place = described.marker
+    if place is None or place.height is None:
+        raise SettingsError(
+            "missing; measure how high the marker is above the floor while the robot stands, or "
+            "give --body-height",
+            file=_file(described), key="marker.height",
+        )  # fmt: skip
+    return BodyPrior(place.height - place.position[2], height_sd)
+
+
+def _file(described: RobotFile) -> str:
+    return str(described.file or "the source's robot (--robot names another)")

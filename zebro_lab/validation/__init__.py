@@ -1,0 +1,2 @@
+# SPDX-License-Identifier: MIT
+"""Judge predicted paths against tracked ones; the validation folder."""

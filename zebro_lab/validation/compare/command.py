@@ -1,0 +1,78 @@
+# SPDX-License-Identifier: MIT
+"""`zebro-lab compare A B`: two calibrations or two runs over each other."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from zebro_lab.terminal.messages import plain
+
+if TYPE_CHECKING:
+    from rich.table import Table
+
+    from zebro_lab.validation.compare.stage import Compared
+
+EPILOG = """
+Examples:
+
+zebro-lab compare calibration-tiles calibration-carpet
+
+zebro-lab compare data/RUN1 data/RUN2 --out tiles-carpet
+
+Of calibrations the curve is compared at loads that both were tested at, and what walks said. Of
+runs speed, yaw rate and curvature, tracked and predicted. Probabilities take the two for
+independent; a track's errors are taken for independent from pose to pose.
+"""
+
+
+def compare(
+    first: Annotated[Path, typer.Argument(metavar="A", help="Calibration folder or run folder.")],
+    second: Annotated[Path, typer.Argument(metavar="B", help="Another of the same kind.")],
+    out: Annotated[Path, typer.Option(help="Folder to write.")] = Path("comparison"),
+    seed: Annotated[int, typer.Option(help="Seed of everything random.")] = 1,
+) -> None:
+    """Lay two calibrations or two runs over each other and say what differs, how surely."""
+    from rich.console import Console
+    from rich.text import Text
+
+    from zebro_lab.validation.compare.stage import CompareRequest
+    from zebro_lab.validation.compare.stage import compare as run
+
+    done = run(CompareRequest(first, second, out, seed))
+    console = Console(highlight=False)
+    if not console.is_terminal:
+        console = Console(highlight=False, width=120)
+    if "sim:" in done.comparison.source:
+        console.print(plain(f"SIMULATED: {done.comparison.source}"))
+    console.print(_table(done))
+    for note in done.comparison.notes:
+        console.print(plain(note))
+    console.print(Text(f"\nwritten to {out}"))
+
+
+def _table(done: "Compared") -> "Table":
+    from rich import box
+    from rich.table import Table
+
+    one, other = done.comparison.names
+    table = Table(
+        title=plain(f"{other} minus {one}: medians, 90 % intervals"),
+        box=box.SIMPLE,
+        title_justify="left",
+    )
+    table.add_column("quantity")
+    for name in (one, other, "difference", "unit", f"P({other} is larger)"):
+        table.add_column(plain(name), justify="right")
+    for quantity, apart in zip(done.comparison.quantities, done.differences, strict=True):
+        both = [_spelled(*quantity.quantiles(which)) for which in (0, 1)]
+        table.add_row(
+            quantity.name, *both, _spelled(apart.median, apart.low, apart.high), quantity.unit,
+            f"{apart.probability:.1%}" + (" *" if apart.clear else ""),
+        )  # fmt: skip
+    table.caption = "*: zero lies outside the difference's 90 % interval"
+    return table
+
+
+def _spelled(median: float, low: float, high: float) -> str:
+    return f"{median:.4g} ({low:.4g} … {high:.4g})"

@@ -1,0 +1,85 @@
+# SPDX-License-Identifier: MIT
+"""Two calibrations or two runs over each other, and their differences."""
+
+from collections.abc import Sequence
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from model.metrics.difference import Difference
+from zebro_lab.plots.sheet import BLUE, RED, legend_below, new_figure, styled
+from zebro_lab.validation.compare.values import Comparison, Curve, Walked
+
+_COLOURS = (BLUE, RED)
+_SHOWN_DRAWS = 40
+
+
+@styled
+def overlay(compared: Comparison, differences: Sequence[Difference], *, simulated: bool) -> Figure:
+    """Draw both over each other, and below the difference of each quantity in its own spread.
+
+    Args:
+        compared: What was compared.
+        differences: The difference of each of its quantities.
+        simulated: Say so in the title.
+
+    Returns:
+        The figure.
+    """
+    title = f"{compared.names[0]} and {compared.names[1]}"
+    n = len(compared.quantities)
+    figure = new_figure(title, simulated, width=9.0, height=4.6 + 0.25 * n)
+    columns = max(len(compared.curves), 1)
+    grid = figure.add_gridspec(2, columns, height_ratios=(3.6, 0.6 + 0.25 * n))
+    if compared.curves:
+        panels = [figure.add_subplot(grid[0, i]) for i in range(columns)]
+        for axes, curve in zip(panels, compared.curves, strict=True):
+            _draw_curve(axes, curve, compared.names)
+        panels[0].set_ylabel("traction force [N]")
+        panels[0].set_xlabel(f"slip ratio, {compared.definition} definition [-]")
+    else:
+        _draw_walked(figure.add_subplot(grid[0, 0]), compared.walked, compared.names)
+    _draw_differences(figure.add_subplot(grid[1, :]), compared, differences)
+    legend_below(figure, columns=4)
+    return figure
+
+
+def _draw_curve(axes: Axes, curve: Curve, names: Sequence[str]) -> None:
+    for (low, median, high), colour, name in zip(curve.bands, _COLOURS, names, strict=True):
+        axes.fill_between(curve.slip, low, high, color=colour, alpha=0.25, lw=0)
+        axes.plot(curve.slip, median, color=colour, lw=1.2, label=name)
+    axes.set_title(f"{curve.load:.3g} N", loc="left")
+    axes.grid(color="0.92", lw=0.6)
+
+
+def _draw_walked(axes: Axes, walked: Sequence[Walked], names: Sequence[str]) -> None:
+    for run, colour, name in zip(walked, _COLOURS, names, strict=True):
+        if run.band is not None:
+            for position in run.band.position[:_SHOWN_DRAWS]:
+                axes.plot(*position.T, color=colour, lw=0.5, alpha=0.2)
+            axes.plot([], [], color=colour, lw=1.0, label=f"{name}, predicted")
+        if run.track is not None:
+            axes.plot(
+                *run.track.position.T, ls="none", marker="o", ms=4, color=colour,
+                label=f"{name}, tracked",
+            )  # fmt: skip
+    axes.set(xlabel="x from the start [m]", ylabel="y [m]", aspect="equal")
+    axes.set_adjustable("datalim")
+    axes.grid(color="0.92", lw=0.6)
+
+
+def _draw_differences(axes: Axes, compared: Comparison, differences: Sequence[Difference]) -> None:
+    """Draw each difference in units of its own 90 % interval's half width."""
+    for i, each in enumerate(differences):
+        half = 0.5 * (each.high - each.low) or 1.0
+        ends = np.array([each.low, each.high]) / half
+        axes.plot(ends, [i, i], color="black" if each.clear else "0.6", lw=2.0)
+        axes.plot(each.median / half, i, marker="o", ms=4, color="black")
+    axes.axvline(0, color="0.5", lw=0.6)
+    axes.set_yticks(range(len(differences)), [q.name for q in compared.quantities])
+    axes.invert_yaxis()
+    axes.set_xlabel(
+        f"{compared.names[1]} minus {compared.names[0]}, over half its 90 % interval; black where "
+        "zero lies outside"
+    )

@@ -1,0 +1,155 @@
+# SPDX-License-Identifier: MIT
+"""Two runs compared: how fast they walked and turned, tracked and predicted."""
+
+from pathlib import Path
+
+import numpy as np
+
+from model.metrics.poses import Poses
+from model.metrics.turning import mean_yaw_rate
+from model.predict import states_at
+from model.slip.law import Array
+from model.walk.ensemble import PathEnsemble
+from zebro_lab.files.errors import DataError, NotFound
+from zebro_lab.files.replacement import settle
+from zebro_lab.track.file import TrackFile, read_track
+from zebro_lab.track.folder import TRACK_CSV
+from zebro_lab.validation.compare.values import Comparison, Quantity, Walked
+from zebro_lab.walk.folder import DRAWS, PREDICTION, read_walk_manifest
+from zebro_lab.walk.path_band import read_draws
+
+TRACK = "track"
+TRACKS = 1000  # drawn from a track's covariance
+EVERY = 1.0  # s between poses of a predicted path that has no track beside it
+_SUMMARY = (("speed", "mm/s", 1e3), ("yaw rate", "deg/s", 180 / np.pi), ("curvature", "1/m", 1.0))
+
+
+def is_walked(folder: Path) -> bool:
+    """Tell whether a folder holds a track or a prediction with draws."""
+    track, prediction = settle(folder / TRACK), settle(folder / PREDICTION)
+    return (track / TRACK_CSV).is_file() or (prediction / DRAWS).is_file()
+
+
+def compare_runs(
+    first: Path, second: Path, *, names: tuple[str, str], rng: np.random.Generator
+) -> Comparison:
+    """Compare two runs by their tracks, by their predictions, or both.
+
+    Args:
+        first: A run folder with `track/`, or with `prediction/` that has draws.
+        second: Another.
+        names: What they are called.
+        rng: Source of randomness.
+
+    Raises:
+        ZebroLabError: A file cannot be read, or one has a track alone and the other none.
+    """
+    runs = (_Run(first), _Run(second))
+    quantities = [
+        *_quantities("tracked", [run.tracks(rng) for run in runs]),
+        *_quantities("predicted", [run.predicted() for run in runs]),
+    ]
+    if not quantities:
+        raise DataError(
+            f"has {_what(runs[1])}, the first has {_what(runs[0])}: nothing is common to both; "
+            "track or predict the other, too",
+            file=second,
+        )
+    return Comparison(
+        kind="runs",
+        names=names,
+        quantities=tuple(quantities),
+        source=", ".join(sorted({each for run in runs for each in run.sources})),
+        files=tuple(dict.fromkeys(file for run in runs for file in run.files)),
+        notes=tuple(f"{n}: {note}" for n, r in zip(names, runs, strict=True) for note in r.notes),
+        walked=tuple(run.walked for run in runs),
+    )
+
+
+class _Run:
+    """A run's track and prediction, as far as it has them."""
+
+    def __init__(self, folder: Path) -> None:
+        settle(folder / TRACK)
+        settle(folder / PREDICTION)
+        self.track: TrackFile | None = None
+        self.band: PathEnsemble | None = None
+        self.files: list[Path] = []
+        self.sources: list[str] = []
+        self.notes: list[str] = []
+        if (folder / TRACK / TRACK_CSV).is_file():
+            self.track = read_track(folder / TRACK)
+            self.files.append(self.track.file)
+            self.sources.append(self.track.source)
+            self.notes += self.track.notes
+        if (folder / PREDICTION / DRAWS).is_file():
+            self.band = read_draws(folder / PREDICTION)
+            self.files.append(folder / PREDICTION / DRAWS)
+            self.sources.append(str(read_walk_manifest(folder / PREDICTION).get("source")))
+        if not self.files:
+            raise NotFound(f"{folder} holds neither {TRACK}/{TRACK_CSV} nor {PREDICTION}/{DRAWS}")
+
+    def tracks(self, rng: np.random.Generator) -> Array | None:
+        """Summarise the track, again and again with its own noise, shape (n, 3)."""
+        if self.track is None or not self.track.poses.has_yaw:
+            return None
+        poses, covariance = self.track.poses, self.track.covariance
+        states = np.column_stack([poses.position, poses.yaw])
+        noise = np.stack(
+            [rng.multivariate_normal(np.zeros(3), c, TRACKS, method="eigh") for c in covariance],
+            axis=1,
+        )
+        return _summaries(poses.t, states + noise)
+
+    def predicted(self) -> Array | None:
+        """Summarise every predicted path, at the track's times where there is one, shape (n, 3)."""
+        if self.band is None:
+            return None
+        t = np.arange(self.band.t[0], self.band.t[-1], EVERY)
+        if self.track is not None:
+            seen = self.track.poses.t
+            inside = seen[(seen >= self.band.t[0]) & (seen <= self.band.t[-1])]
+            t = inside if len(inside) > 1 else t
+        return _summaries(t, states_at(self.band, t))
+
+    @property
+    def walked(self) -> Walked:
+        """Track and band, both started at the origin along x."""
+        track = None if self.track is None else _from_origin(self.track.poses)
+        return Walked(track, self.band)
+
+
+def _summaries(t: Array, states: Array) -> Array:
+    """Return speed [m/s], yaw rate [rad/s] and curvature [1/m] of each path, shape (n, 3).
+
+    Args:
+        t: Times, shape (k,) [s].
+        states: x, y, yaw, shape (n, k, 3).
+    """
+    rows = []
+    for state in states:
+        poses = Poses(t, state[:, :2], state[:, 2])
+        speed, rate = poses.length / float(np.ptp(t)), mean_yaw_rate(poses)
+        rows.append((speed, rate, rate / speed if speed > 0 else 0.0))
+    return np.array(rows)
+
+
+def _quantities(what: str, summaries: list[Array | None]) -> list[Quantity]:
+    one, other = summaries
+    if one is None or other is None:
+        return []
+    return [
+        Quantity(f"{name}, {what}", unit, (scale * one[:, i], scale * other[:, i]))
+        for i, (name, unit, scale) in enumerate(_SUMMARY)
+    ]
+
+
+def _from_origin(poses: Poses) -> Poses:
+    turn = -float(poses.yaw[0]) if poses.has_yaw else 0.0
+    turned = poses.moved(rotation=turn, translation=[0.0, 0.0])
+    return turned.moved(rotation=0.0, translation=-turned.position[0])
+
+
+def _what(run: _Run) -> str:
+    parts = [name for name, part in (("a track", run.track), ("draws", run.band)) if part]
+    return " and ".join(parts)

@@ -1,0 +1,184 @@
+# SPDX-License-Identifier: MIT
+"""The sole owner of the format of a validation folder."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from model.errors import InsufficientData
+from model.metrics.bootstrap import Interval, bootstrap_mean
+from model.metrics.path_errors import pose_errors
+from zebro_lab.files.result_folder import ResultKind, result_folder
+from zebro_lab.track.file import tum_lines
+from zebro_lab.validation.judgement import Judged, RunJudged, TiltJudged
+from zebro_lab.validation.pictures import Judgement, draw_validation
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+SCHEMA = 1
+METRICS, ERRORS = "metrics.csv", "errors.csv"
+VALIDATION = ResultKind("validation", "validate", (METRICS, ERRORS, "*.tum", "*.png"), SCHEMA)
+MEANS = ("ate_m", "ate_of_length", "ate_aligned_m", "yaw_rms_deg", "energy_m", "crps_yaw_deg")
+"""Metrics of which a mean over runs is told."""
+
+
+@dataclass(frozen=True)
+class Summary:
+    """A metric over several runs.
+
+    Attributes:
+        model: The prediction or a baseline.
+        metric: A column of `metrics.csv`.
+        interval: Mean with its 90 % interval over runs.
+    """
+
+    model: str
+    metric: str
+    interval: Interval
+
+
+def metrics(judged: Judged) -> dict[str, float]:
+    """Return the metrics of one path or ensemble, by column; units are in the names."""
+    errors, scores = judged.errors, judged.scores
+    row = {
+        "poses": float(errors.poses),
+        "length_m": errors.length,
+        "length_ratio": errors.length_ratio,
+        "ate_m": errors.ate,
+        "ate_of_length": errors.ate_of_length,
+        "x_rms_m": errors.x,
+        "y_rms_m": errors.y,
+        "along_rms_m": errors.along,
+        "cross_rms_m": errors.cross,
+        "yaw_rms_deg": float(np.degrees(errors.yaw)),
+        "largest_m": errors.largest,
+        "final_m": errors.final_distance,
+        "final_yaw_deg": float(np.degrees(errors.final_yaw)),
+        "ate_aligned_m": errors.ate_aligned,
+        "alignment_yaw_deg": float(np.degrees(errors.alignment_yaw)),
+        "radius_m": errors.radius[0],
+        "radius_tracked_m": errors.radius[1],
+        "yaw_rate_deg_s": float(np.degrees(errors.yaw_rate[0])),
+        "yaw_rate_tracked_deg_s": float(np.degrees(errors.yaw_rate[1])),
+        "energy_m": scores.energy,
+        "crps_x_m": float(scores.crps[0]),
+        "crps_y_m": float(scores.crps[1]),
+        "crps_yaw_deg": float(np.degrees(scores.crps[2])),
+    }
+    for each in errors.relative:
+        row[f"rpe_{each.distance:g}m_m"] = each.position
+        row[f"rpe_{each.distance:g}m_deg"] = float(np.degrees(each.yaw))
+    row.update(_band_metrics(judged))
+    return row
+
+
+def _band_metrics(judged: Judged) -> dict[str, float]:
+    """Return coverage, width and consistency; a single path has none."""
+    scores, row = judged.scores, {}
+    if not np.any(scores.width > 0):
+        return row
+    for i, level in enumerate(scores.levels):
+        for j, (state, unit, scale) in enumerate(
+            (("x", "m", 1.0), ("y", "m", 1.0), ("yaw", "deg", 180 / np.pi))
+        ):
+            row[f"coverage{100 * level:.0f}_{state}"] = float(scores.coverage[i, j])
+            row[f"width{100 * level:.0f}_{state}_{unit}"] = float(scores.width[i, j] * scale)
+    for each in judged.consistency:
+        row[f"{each.name}_p"] = each.p_value
+        if each.name == "nees":
+            row |= {"nees": each.value, "nees_low": each.low, "nees_high": each.high}
+    return row
+
+
+def tilt_metrics(tilt: TiltJudged) -> dict[str, float]:
+    """Return errors of roll and pitch by name, in degrees."""
+    errors, row = tilt.errors, {"samples": float(tilt.errors.samples)}
+    for i, angle in enumerate(("roll", "pitch")):
+        for name in ("bias", "rms", "rms_unbiased", "swing"):
+            row[f"{angle}_{name}_deg"] = float(np.degrees(getattr(errors, name)[i]))
+    return row
+
+
+def summarise_runs(runs: Sequence[RunJudged], *, rng: np.random.Generator) -> list[Summary]:
+    """Average metrics over runs, with intervals from drawing whole runs again; none of one run."""
+    summaries = []
+    for name in [row.name for row in runs[0].rows]:
+        rows = [metrics(row) for run in runs for row in run.rows if row.name == name]
+        for metric in MEANS:
+            values = np.array([row[metric] for row in rows])
+            try:
+                interval = bootstrap_mean(values[np.isfinite(values)], rng=rng)
+            except InsufficientData:
+                continue
+            summaries.append(Summary(name, metric, interval))
+    return summaries
+
+
+def write_validation(
+    out: Path,
+    judgements: Sequence[Judgement],
+    *,
+    summary: Sequence[Summary],
+    settings: Mapping[str, object],
+    inputs: Mapping[str, str],
+    source: str,
+) -> None:
+    """Write the folder: metrics, errors pose by pose, TUM files for evo, pictures, manifest.
+
+    Args:
+        out: Folder to make or to renew.
+        judgements: What was judged.
+        summary: Means over runs.
+        settings: What was asked, as JSON can hold it.
+        inputs: SHA-256 of each file that was read.
+        source: Where prediction and track come from.
+
+    Raises:
+        AlreadyExists: `out` is a file, or holds the result of another command.
+    """
+    runs = [each.run for each in judgements]
+    notes = [f"{run.name}: {note}" for run in runs for note in run.notes]
+    content = {
+        "source": source,
+        "settings": settings,
+        "runs": {run.name: {row.name: metrics(row) for row in run.rows} for run in runs},
+        "imu": {run.name: tilt_metrics(run.tilt) for run in runs if run.tilt is not None},
+        "notes": notes,
+        "over_runs": [
+            {"model": s.model, "metric": s.metric, **s.interval._asdict()} for s in summary
+        ],
+        "inputs": inputs,
+    }
+    with result_folder(out, VALIDATION, content=content) as draft:
+        _write_tables(draft, runs)
+        for each in judgements:
+            undrawn = draw_validation(draft, each, simulated="sim:" in source)
+            notes += [f"{each.run.name}: {why}" for why in undrawn]
+
+
+def _write_tables(draft: Path, runs: Sequence[RunJudged]) -> None:
+    import pandas as pd
+
+    table = [{"run": run.name, "model": r.name, **metrics(r)} for run in runs for r in run.rows]
+    _to_csv(pd.DataFrame(table), draft / METRICS)
+    parts = []
+    for run in runs:
+        for row in run.rows:
+            errors = pose_errors(row.path.at(run.track.t), run.track)
+            columns = {
+                "t": errors.t, "x_m": errors.xy[:, 0], "y_m": errors.xy[:, 1],
+                "along_m": errors.along, "cross_m": errors.cross, "yaw_rad": errors.yaw,
+            }  # fmt: skip
+            parts.append(pd.DataFrame({"run": run.name, "model": row.name, **columns}))
+        (draft / f"{run.name}.track.tum").write_text(tum_lines(run.track))
+        matched = run.rows[0].path.at(run.track.t)
+        (draft / f"{run.name}.predicted.tum").write_text(tum_lines(matched))
+    _to_csv(pd.concat(parts), draft / ERRORS)
+
+
+def _to_csv(table: "pd.DataFrame", file: Path) -> None:
+    table.to_csv(file, index=False, float_format="%.8g", lineterminator="\n")

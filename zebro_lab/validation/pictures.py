@@ -1,0 +1,147 @@
+# SPDX-License-Identifier: MIT
+"""The pictures of a validation: errors, roll and pitch, and the photographs of the walk."""
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from model.slip.law import Array
+from tracking.errors import TrackingError
+from zebro_lab.track.photographs import TrackedPhotos, View
+from zebro_lab.validation.judgement import Prediction, RunJudged, TiltJudged, WalkedPath
+
+if TYPE_CHECKING:
+    from zebro_lab.plots.photo_poses import Shot
+
+SHOTS = 4
+_CROP = 0.45  # side of what is shown around the robot [m]
+_CROP_SCALE = 900.0  # px/m
+_MARGIN = 0.3  # around the paths on the floor [m]
+_MOST_FLOOR_PIXELS = 1.5e6
+
+
+@dataclass(frozen=True)
+class Judgement:
+    """All that is known of a judged walk, for those who draw it.
+
+    Attributes:
+        run: The walk, judged.
+        prediction: What was predicted.
+        photos: The photographs of its track; None where there are none to show.
+        time_offset: Added to the track's times to bring them to the prediction's clock [s].
+    """
+
+    run: RunJudged
+    prediction: Prediction
+    photos: TrackedPhotos | None = None
+    time_offset: float = 0.0
+
+
+def draw_validation(folder: Path, judgement: Judgement, *, simulated: bool) -> tuple[str, ...]:
+    """Draw `RUN.png` and, of what there is, `RUN.imu.png`, `RUN.photos.png` and `RUN.floor.png`.
+
+    Args:
+        folder: Folder to write into.
+        judgement: The walk.
+        simulated: Say so in the titles.
+
+    Returns:
+        What could not be drawn and why, one line each.
+    """
+    from zebro_lab.plots import save
+    from zebro_lab.plots.path_validation import path_validation
+
+    run = judgement.run
+    rows = {row.name: row.path for row in run.rows}
+    figure = path_validation(rows, run.track, band=run.band, title=run.name, simulated=simulated)
+    save(figure, folder / f"{run.name}.png")
+    if run.tilt is not None:
+        _draw_tilt(folder / f"{run.name}.imu.png", run.name, run.tilt, simulated)
+    if judgement.photos is None:
+        return ()
+    try:
+        _draw_photos(folder, judgement, judgement.photos)
+    except TrackingError as error:
+        return (f"photographs are not shown: {error}",)
+    return ()
+
+
+def _draw_tilt(file: Path, name: str, tilt: TiltJudged, simulated: bool) -> None:
+    from zebro_lab.plots import save
+    from zebro_lab.plots.tilt import tilt as draw
+
+    save(draw(tilt.t, tilt.predicted, tilt.measured, title=name, simulated=simulated), file)
+
+
+def _draw_photos(folder: Path, judgement: Judgement, photos: TrackedPhotos) -> None:
+    from zebro_lab.plots import save
+    from zebro_lab.plots.photo_poses import photos_beside_poses
+
+    run, walk = judgement.run, judgement.prediction.walk
+    rows = _instants(run, photos, judgement.time_offset)
+    if walk is None or not len(rows):
+        return
+    views = {int(row): photos.view(photos.names[row]) for row in rows}
+    at = {row: float(photos.t[row]) + judgement.time_offset for row in views}
+    shots = [_shot(run, walk, view, at[row]) for row, view in views.items()]
+    figure = photos_beside_poses(
+        shots, walk.robot, title=run.name, simulated_photos=photos.simulated
+    )
+    save(figure, folder / f"{run.name}.photos.png")
+    # The last photograph shows the floor under the path's beginning, where no robot stands now.
+    _draw_floor(folder / f"{run.name}.floor.png", run, views[max(views)], photos.simulated)
+
+
+def _instants(run: RunJudged, photos: TrackedPhotos, time_offset: float) -> NDArray[np.intp]:
+    """Return rows of the track, evenly spread over the poses that were scored."""
+    at = photos.t + time_offset
+    scored = np.flatnonzero((at >= run.track.t[0] - 1e-6) & (at <= run.track.t[-1] + 1e-6))
+    return np.unique(scored[np.linspace(0, len(scored) - 1, SHOTS).round().astype(int)])
+
+
+def _shot(run: RunJudged, walk: WalkedPath, view: View, t: float) -> "Shot":
+    from zebro_lab.plots.photo_poses import Shot
+
+    tracked, predicted = run.track.at([t]), run.rows[0].path.at([t])
+    row = int(np.abs(walk.path.t - t).argmin())
+    z, (roll, pitch) = walk.path.position[row, 2], walk.path.orientation[row, :2]
+    middle = tracked.position[0]
+    low, high = middle - _CROP / 2, middle + _CROP / 2
+    top = float(z) + walk.robot.body_size[2] / 2
+    return Shot(
+        t=t,
+        picture=view.from_above(low, high, pixels_per_metre=_CROP_SCALE, height=top),
+        extent=_extent(low, high),
+        tracked=np.append(middle, tracked.yaw[0]),
+        position=np.append(predicted.position[0], z),
+        orientation=np.array([roll, pitch, predicted.yaw[0]]),
+        theta=walk.path.theta[row],
+        contact=walk.path.contact[row],
+    )
+
+
+def _draw_floor(file: Path, run: RunJudged, view: View, simulated_photos: bool) -> None:
+    from zebro_lab.plots import save
+    from zebro_lab.plots.photo_poses import band_over_floor
+
+    path = run.rows[0].path
+    places = np.vstack([path.position, run.track.position])
+    low, high = places.min(axis=0) - _MARGIN, places.max(axis=0) + _MARGIN
+    scale = min(400.0, float(np.sqrt(_MOST_FLOOR_PIXELS / np.prod(high - low))))
+    figure = band_over_floor(
+        view.from_above(low, high, pixels_per_metre=scale),
+        extent=_extent(low, high),
+        path=path,
+        band=run.band,
+        track=run.track,
+        title=run.name,
+        simulated_photos=simulated_photos,
+    )
+    save(figure, file)
+
+
+def _extent(low: Array, high: Array) -> tuple[float, float, float, float]:
+    return float(low[0]), float(high[0]), float(low[1]), float(high[1])

@@ -1,0 +1,79 @@
+# SPDX-License-Identifier: MIT
+"""A track on the clock of a prediction: by an offset that is given, or found in the motion."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from model.errors import InsufficientData
+from model.metrics.clock import estimate_offset
+from model.metrics.poses import Poses
+from model.slip.law import Array
+from zebro_lab.files.errors import DataError
+from zebro_lab.track.file import TrackFile
+
+_STEP = 0.05  # s either side, over which the path's speed is taken
+
+
+@dataclass(frozen=True)
+class SharedClock:
+    """A track whose clock is a prediction's.
+
+    Attributes:
+        track: The track, its covariance widened by what is not known of the clock.
+        offset: What was added to its times [s].
+    """
+
+    track: TrackFile
+    offset: float
+
+
+def given_clock(track: TrackFile, offset: float) -> SharedClock:
+    """Add a known offset to a track's times [s]."""
+    return SharedClock(_moved(track, offset), offset)
+
+
+def estimated_clock(
+    track: TrackFile, path: Poses, *, otherwise: str = "Give --time-offset SECONDS"
+) -> SharedClock:
+    r"""Find the offset of a track's clock in the motion, and say what it leaves open.
+
+    An error of the clock puts every pose ahead or behind by as much time, so the covariance grows
+    by :math:`\sigma_\tau^2 v v^T` with v the path's velocity.
+
+    Args:
+        track: The track.
+        path: The prediction.
+        otherwise: What a person may do where the motion does not tell.
+
+    Raises:
+        DataError: The motion does not tell the offset.
+    """
+    try:
+        found = estimate_offset(track.poses, path)
+    except InsufficientData as error:
+        raise DataError(
+            f"the clock's offset cannot be estimated: {error}. {otherwise}",
+            file=track.file,
+        ) from error
+    moved = _moved(track, found.value)
+    v = _velocity(path, moved.poses.t)
+    widened = moved.covariance + found.sd**2 * v[:, :, None] * v[:, None, :]
+    note = (
+        f"clock: {found.value:+.2f} ± {found.sd:.2f} s were added to the track's times, as the "
+        "motion has it; errors along the path are the smaller for it"
+    )
+    told = replace(moved, covariance=widened, notes=(*moved.notes, note))
+    return SharedClock(told, found.value)
+
+
+def _moved(track: TrackFile, offset: float) -> TrackFile:
+    return replace(track, poses=replace(track.poses, t=track.poses.t + offset))
+
+
+def _velocity(path: Poses, t: Array) -> Array:
+    """Return the rates of x, y [m/s] and yaw [rad/s] at times, shape (n, 3)."""
+    before, after = (np.clip(t + step, path.t[0], path.t[-1]) for step in (-_STEP, _STEP))
+    span = np.maximum(after - before, _STEP)[:, None]
+    a, b = path.at(before), path.at(after)
+    return np.column_stack([b.position - a.position, b.yaw - a.yaw]) / span

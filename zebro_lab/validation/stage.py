@@ -1,0 +1,179 @@
+# SPDX-License-Identifier: MIT
+"""Predictions and tracks in, validation folder out."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+
+from model.errors import InsufficientData
+from zebro_lab.files.errors import DataError, NotFound, SettingsError
+from zebro_lab.files.names import PATH_CSV
+from zebro_lab.files.provenance import file_hashes
+from zebro_lab.files.replacement import settle
+from zebro_lab.files.result_folder import require_replaceable
+from zebro_lab.runs.counted_once import content_hash, first_of_each, told_once
+from zebro_lab.runs.recorded_legs import is_recorded
+from zebro_lab.runs.recorded_tilt import read_recorded_tilt
+from zebro_lab.track.file import read_track
+from zebro_lab.track.folder import TRACK_CSV
+from zebro_lab.track.photographs import photos_of_track
+from zebro_lab.validation.folder import VALIDATION, Summary, summarise_runs, write_validation
+from zebro_lab.validation.judgement import (
+    Prediction,
+    RunJudged,
+    judge_run,
+    judge_tilt,
+    read_prediction,
+)
+from zebro_lab.validation.pictures import Judgement
+from zebro_lab.validation.shared_clock import estimated_clock, given_clock
+from zebro_lab.walk.folder import PREDICTION
+from zebro_lab.walk.walking import Watcher
+
+TRACK = "track"
+
+
+@dataclass(frozen=True)
+class ValidateRequest:
+    """What is asked of a validation.
+
+    Attributes:
+        pairs: Prediction and track of each walk.
+        out: Folder to write.
+        anchor: Start each path from the first tracked pose, which is then not scored.
+        time_offset: Added to the tracks' times; None to find it in the motion of each [s].
+        seed: Seed of everything random.
+    """
+
+    pairs: tuple[tuple[Path, Path], ...]
+    out: Path
+    anchor: bool = True
+    time_offset: float | None = 0.0
+    seed: int = 1
+
+
+@dataclass(frozen=True)
+class Validated:
+    """A finished validation.
+
+    Attributes:
+        runs: Every walk, judged.
+        summary: Means over walks; empty for one.
+        source: Where predictions and tracks come from.
+    """
+
+    runs: tuple[RunJudged, ...]
+    summary: tuple[Summary, ...]
+    source: str
+
+
+def pairs_of_run(run: Path) -> tuple[Path, Path]:
+    """Return the prediction and the track of a run folder.
+
+    Raises:
+        NotFound: One of them is missing.
+    """
+    prediction, track = settle(run / PREDICTION), settle(run / TRACK)
+    if not (prediction / PATH_CSV).is_file():
+        raise NotFound(f"{prediction}: no prediction; predict {run} --out {prediction} makes it")
+    if not (track / TRACK_CSV).is_file():
+        raise NotFound(f"{track}: no {TRACK_CSV}; track the run's photographs into it first")
+    return prediction, track
+
+
+def validate(request: ValidateRequest, watcher: Watcher) -> Validated:
+    """Judge predictions against tracks and write the folder.
+
+    Raises:
+        ZebroLabError: A file is missing, or prediction and track share no time.
+        ModelError: A path cannot be judged.
+    """
+    if not request.pairs:
+        raise SettingsError("missing: nothing to validate", key="--predicted, --track")
+    inputs = [path for pair in request.pairs for path in pair]
+    require_replaceable(request.out, VALIDATION, inputs=inputs)
+    pairs, repeated = first_of_each(request.pairs, key=_content)
+    told = told_once("walks", [(one[0], other[0]) for one, other in repeated])
+    rng = np.random.default_rng(request.seed)
+    judgements, files, sources = [], [], []
+    names = _names([predicted for predicted, _ in pairs])
+    for i, (name, (predicted, tracked)) in enumerate(zip(names, pairs, strict=True)):
+        watcher.step("judging", i / len(names))
+        prediction, track = read_prediction(predicted), read_track(tracked)
+        clock = (
+            estimated_clock(track, prediction.path)
+            if request.time_offset is None
+            else given_clock(track, request.time_offset)
+        )
+        judged = judge_run(name, prediction, clock.track, anchor=request.anchor, rng=rng)
+        judgement, read = _with_surroundings(judged, prediction, tracked, clock.offset)
+        judgements.append(judgement if i else _noted(judgement, told))
+        files += [*prediction.files, track.file, *read]
+        sources += [prediction.source, track.source]
+    runs = [each.run for each in judgements]
+    summary = tuple(summarise_runs(runs, rng=rng)) if len(runs) > 1 else ()
+    source = ", ".join(sorted(set(sources)))
+    write_validation(
+        request.out,
+        judgements,
+        summary=summary,
+        settings={
+            "anchor": request.anchor,
+            "time_offset": {each.run.name: each.time_offset for each in judgements},
+            "time_offset_estimated": request.time_offset is None,
+            "seed": request.seed,
+        },
+        inputs=file_hashes(dict.fromkeys(files)),
+        source=source,
+    )  # fmt: skip
+    return Validated(tuple(runs), summary, source)
+
+
+def _content(pair: tuple[Path, Path]) -> tuple[str, ...]:
+    """Return what a walk is known by under another name: its predicted and its tracked path."""
+    return tuple(
+        content_hash(file) if file.is_file() else str(file)
+        for path, name in zip(pair, (PATH_CSV, TRACK_CSV), strict=True)
+        for file in [settle(path) / name if path.is_dir() else path]
+    )
+
+
+def _noted(judgement: Judgement, told: Sequence[str]) -> Judgement:
+    run = judgement.run
+    return replace(judgement, run=replace(run, notes=(*told, *run.notes)))
+
+
+def _with_surroundings(
+    judged: RunJudged, prediction: Prediction, tracked: Path, offset: float
+) -> tuple[Judgement, tuple[Path, ...]]:
+    """Add what else a run knows: its IMU, and the photographs of its track; return files read."""
+    notes, files, photos = list(judged.notes), (), None
+    run = tracked.parent if tracked.name == TRACK else None
+    measured = read_recorded_tilt(run) if run is not None and is_recorded(run) else None
+    if measured is not None and prediction.walk is not None:
+        try:
+            judged = replace(judged, tilt=judge_tilt(prediction.walk, measured))
+            files = measured.files
+        except InsufficientData as error:
+            notes.append(f"roll and pitch are not compared: {error}")
+    try:
+        photos = photos_of_track(tracked)
+    except (NotFound, DataError) as error:
+        notes.append(f"photographs are not shown: {error}")
+    judged = replace(judged, notes=tuple(notes))
+    return Judgement(judged, prediction, photos, offset), files
+
+
+def _names(paths: Sequence[Path]) -> list[str]:
+    """Name walks by their folders, with a number where two share a name."""
+    names = []
+    for path in paths:
+        place = path if path.is_dir() else path.with_suffix("")
+        absolute = place.absolute()
+        names.append(absolute.parent.name if absolute.name == PREDICTION else absolute.name)
+    return [
+        name if names.count(name) == 1 else f"{name}-{names[: i + 1].count(name)}"
+        for i, name in enumerate(names)
+    ]

@@ -1,0 +1,185 @@
+# SPDX-License-Identifier: MIT
+"""The sole owner of the format of a walk folder: `path.csv` and `manifest.json`."""
+
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from model.robot import N_LEGS
+from model.slip.law import Array
+from model.walk.path import WalkPath
+from zebro_lab.files.errors import NotFound
+from zebro_lab.files.folder_manifest import read_folder_manifest
+from zebro_lab.files.names import PATH_CSV
+from zebro_lab.files.replacement import settle
+from zebro_lab.files.result_folder import MANIFEST, ResultKind, result_folder
+from zebro_lab.tables.cells import cell_error, require_increasing
+from zebro_lab.tables.raw_table import RawTable
+from zebro_lab.tables.table_files import read_table_file
+
+SCHEMA = 1
+PREDICTION = "prediction"  # of a run
+KINDS = ("walk", "predict")
+PICTURES = (
+    "path", "motion", "orientation", "slip_ratio", "normal_force", "traction_force",
+    "paired_traction", "gantt",
+)  # fmt: skip
+ANIMATIONS = ("animation.mp4", "animation.gif")
+DRAWS, BAND_CSV, BAND_PICTURE = "draws.npz", "band.csv", "band.png"
+BAND = (DRAWS, BAND_CSV, BAND_PICTURE)
+FILES = (PATH_CSV, *(f"{name}.png" for name in PICTURES), *ANIMATIONS, *BAND)
+WALKED = {kind: ResultKind(kind, kind, FILES, SCHEMA) for kind in KINDS}
+"""What `walk` and `predict` write; an earlier result of the same command is replaced."""
+
+_DIGITS = "%.10g"  # far below what any model means, far above what a float loses
+
+
+@dataclass(frozen=True)
+class _Block:
+    """Neighbouring columns that hold one attribute of a path.
+
+    Attributes:
+        columns: Their names.
+        values: The attribute, one column each, shape (n, len(columns)).
+        may_be_empty: Cells may hold no number, where a model has none.
+        form: How a number is written.
+    """
+
+    columns: tuple[str, ...]
+    values: Callable[[WalkPath], Array]
+    may_be_empty: bool = False
+    form: str = _DIGITS
+
+
+def _legs(name: str) -> tuple[str, ...]:
+    return tuple(f"{name}{leg}" for leg in range(1, N_LEGS + 1))
+
+
+_BLOCKS = (
+    _Block(("t",), lambda path: path.t[:, None]),
+    _Block(("x", "y", "z"), lambda path: path.position),
+    _Block(("roll", "pitch", "yaw"), lambda path: path.orientation),
+    _Block(_legs("theta"), lambda path: path.theta),
+    _Block(_legs("contact"), lambda path: path.contact.astype(float), form="%d"),
+    _Block(_legs("slip_x"), lambda path: path.slip_velocity[..., 0], may_be_empty=True),
+    _Block(_legs("slip_y"), lambda path: path.slip_velocity[..., 1], may_be_empty=True),
+    _Block(_legs("normal"), lambda path: path.normal_force, may_be_empty=True),
+    _Block(_legs("force_x"), lambda path: path.traction_force[..., 0], may_be_empty=True),
+    _Block(_legs("force_y"), lambda path: path.traction_force[..., 1], may_be_empty=True),
+    _Block(_legs("slip_ratio"), lambda path: path.slip_ratio, may_be_empty=True),
+)
+COLUMNS = tuple(name for block in _BLOCKS for name in block.columns)
+"""The columns of `path.csv`, in order."""
+
+
+def write_path(file: Path, path: WalkPath) -> None:
+    """Write a path as CSV in SI with the columns `COLUMNS`; what a model does not have is empty."""
+    values = np.column_stack([block.values(path) for block in _BLOCKS])
+    line = ",".join(block.form for block in _BLOCKS for _ in block.columns)
+    rows = "\n".join([line % tuple(row) for row in values.tolist()])  # a third of pandas' time
+    text = f"{','.join(COLUMNS)}\n{rows.replace('nan', '')}\n"
+    file.write_text(text, encoding="utf-8", newline="\n")
+
+
+@contextmanager
+def walk_folder(
+    out: Path,
+    path: WalkPath,
+    *,
+    kind: str,
+    source: str,
+    settings: Mapping[str, object],
+    inputs: Mapping[str, str],
+) -> Iterator[Path]:
+    """Write a walk folder so that it appears finished or not at all.
+
+    The body adds pictures to the draft; the manifest, which lists them, comes last.
+
+    Args:
+        out: Folder to make or to renew.
+        path: The walked path.
+        kind: One of `KINDS`.
+        source: "sim:" and the model that walked.
+        settings: What the walk was asked to be, as JSON can hold it.
+        inputs: SHA-256 of each file that was read.
+
+    Yields:
+        The draft, for pictures.
+
+    Raises:
+        AlreadyExists: `out` is a file, or the result of another command.
+    """
+    content = {"source": source, "settings": settings, "inputs": inputs}
+    with result_folder(out, WALKED[kind], content=content) as draft:
+        write_path(draft / PATH_CSV, path)
+        yield draft
+
+
+def read_walk(path: Path) -> WalkPath:
+    """Read a path back.
+
+    Args:
+        path: A walk folder, or its `path.csv`.
+
+    Raises:
+        NotFound: There is no such file.
+        DataError: A column is missing or unknown, a cell holds no number, or time does not
+            increase; the message names file, row and column.
+    """
+    settle(path)
+    file = path / PATH_CSV if path.is_dir() else path
+    if not file.exists():
+        raise NotFound(f"{file}: no such file; name a folder that walk or predict wrote")
+    table = read_table_file(file)
+    numbers = np.column_stack([
+        _numbers(table, name, may_be_empty=block.may_be_empty)
+        for block in _BLOCKS
+        for name in block.columns
+    ])  # fmt: skip
+    require_increasing(table, "t", numbers[:, 0])
+    return _path_from(numbers)
+
+
+def read_walk_manifest(folder: Path) -> Mapping[str, Any]:
+    """Read the manifest of a walk folder.
+
+    Raises:
+        NotFound: There is none.
+        DataError: It is damaged, of a later schema, or that of another command.
+    """
+    settle(folder)
+    return read_folder_manifest(folder / MANIFEST, of="walk", kinds=KINDS, schema=SCHEMA)
+
+
+def _numbers(table: RawTable, name: str, *, may_be_empty: bool) -> Array:
+    values = table.numbers(name)
+    bad = np.isinf(values) if may_be_empty else ~np.isfinite(values)
+    if bad.any():
+        index = int(np.argmax(bad))
+        found = "infinite" if np.isinf(values[index]) else "empty"
+        raise cell_error(table, name, index, f"is {found}; expected a finite number")
+    return values
+
+
+def _path_from(numbers: Array) -> WalkPath:
+    parts: dict[str, Array] = {}
+    first = 0
+    for block in _BLOCKS:
+        width = len(block.columns)
+        parts[block.columns[0]] = numbers[:, first : first + width]
+        first += width
+    return WalkPath(
+        t=parts["t"][:, 0],
+        position=parts["x"],
+        orientation=parts["roll"],
+        theta=parts["theta1"],
+        contact=parts["contact1"] != 0,
+        slip_velocity=np.stack([parts["slip_x1"], parts["slip_y1"]], axis=-1),
+        slip_ratio=parts["slip_ratio1"],
+        normal_force=parts["normal1"],
+        traction_force=np.stack([parts["force_x1"], parts["force_y1"]], axis=-1),
+    )

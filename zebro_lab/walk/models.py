@@ -1,0 +1,131 @@
+# SPDX-License-Identifier: MIT
+"""The walking models by name."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Literal, TypeAlias
+
+import numpy as np
+
+from model.gait.cyclic import CyclicReference
+from model.gait.reference import LegReference
+from model.predict import LegState, bent_walk, law_in, robot_in
+from model.robot import GRAVITY, Robot
+from model.walk.path import WalkPath
+from model.walk.traction import ToeLaw
+from zebro_lab.calibration.slip_argument import EXPECTED_SLIP, Slip
+from zebro_lab.files.errors import SettingsError
+
+if TYPE_CHECKING:
+    from model.walk.thesis import SwitchedLegs
+
+Direction: TypeAlias = Literal["left", "right"]
+
+
+@dataclass(frozen=True)
+class ModelRun:
+    """What a model is to walk.
+
+    Attributes:
+        robot: The robot.
+        reference: Its leg angles over time, from time zero on.
+        slip: How its legs slip; None for a model without slip.
+        duration: Time walked [s].
+        dt: Length of a step [s].
+        toe: Traction of a leg on its toe.
+        direction: Side to which the gait turns, "left" or "right"; only the source's model asks.
+        legs: One draw of what is believed of legs and floor beyond the description; only our own
+            model asks.
+    """
+
+    robot: Robot
+    reference: LegReference
+    slip: Slip | None
+    duration: float
+    dt: float
+    toe: ToeLaw = "saturated"
+    direction: Direction = "left"
+    legs: LegState | None = None
+
+
+@dataclass(frozen=True)
+class WalkModel:
+    """A walking model.
+
+    Attributes:
+        name: Name under which it is chosen.
+        slips: Whether it needs a slip law.
+        dt: Length of its step where none is asked for [s].
+        run: Walks.
+    """
+
+    name: str
+    slips: bool
+    dt: float
+    run: Callable[[ModelRun], WalkPath]
+
+
+def _dynamics(run: ModelRun) -> WalkPath:
+    from model.walk.dynamics import DynamicsOptions, walk
+
+    table = _slip_of(run).traction_table(weight=run.robot.mass * GRAVITY, toe=run.toe)
+    options = DynamicsOptions(dt=run.dt)
+    if run.legs is None:
+        return walk(run.robot, run.reference, table, duration=run.duration, options=options)
+    robot, law = robot_in(run.robot, run.legs, 0), law_in(table, run.legs, 0)
+    path = walk(robot, run.reference, law, duration=run.duration, options=options)
+    steering, stride = float(run.legs.steering[0]), float(run.legs.stride[0])
+    return bent_walk(path, distance=stride, curvature=steering)
+
+
+def _thesis(run: ModelRun) -> WalkPath:
+    from model.walk.thesis import ThesisOptions, walk_thesis
+
+    traction = _slip_of(run).thesis_traction(weight=run.robot.mass * GRAVITY)
+    legs = _legs_of_the_source(run.reference)
+    # A log's legs stand, and turn back by hairs; the listing's slip would drive them at full grip.
+    logged = not isinstance(run.reference, CyclicReference)
+    options = ThesisOptions(dt=run.dt, direction=run.direction, mend_slip=logged)
+    return walk_thesis(run.robot, legs, duration=run.duration, traction=traction, options=options)
+
+
+def _legs_of_the_source(reference: LegReference) -> "LegReference | SwitchedLegs":
+    """Let a gait's legs switch speed by angle, as the source's do; follow others by the clock."""
+    from model.walk.thesis import SwitchedLegs
+
+    if not isinstance(reference, CyclicReference):
+        return reference
+    waits = np.any(reference.pause) or np.any(reference.offset)
+    in_turn = reference.touchdown.min() >= 0 and reference.liftoff.max() < 2 * np.pi
+    return SwitchedLegs.of(reference) if in_turn and not waits else reference
+
+
+def _no_slip(run: ModelRun) -> WalkPath:
+    from model.walk.no_slip import walk_no_slip
+
+    return walk_no_slip(run.robot, run.reference, duration=run.duration, dt=run.dt)
+
+
+def _wheels(run: ModelRun) -> WalkPath:
+    from model.walk.no_slip import walk_wheels
+
+    return walk_wheels(run.robot, run.reference, duration=run.duration, dt=run.dt)
+
+
+def _slip_of(run: ModelRun) -> Slip:
+    if run.slip is None:
+        raise SettingsError(f"missing: this model slips; name {EXPECTED_SLIP}", key="--slip")
+    return run.slip
+
+
+MODELS: Mapping[str, WalkModel] = MappingProxyType({
+    model.name: model
+    for model in (
+        WalkModel("dynamics", slips=True, dt=0.002, run=_dynamics),
+        WalkModel("thesis", slips=True, dt=0.001, run=_thesis),
+        WalkModel("no-slip", slips=False, dt=0.002, run=_no_slip),
+        WalkModel("no-slip-simple", slips=False, dt=0.002, run=_wheels),
+    )
+})  # fmt: skip
+"""Our own model, the source's, and the two baselines without slip."""

@@ -1,0 +1,191 @@
+# SPDX-License-Identifier: MIT
+"""The band of a predicted path: its draws, quantiles and picture, and the files they go to."""
+
+from dataclasses import asdict, dataclass, field
+from pathlib import Path
+
+import numpy as np
+
+from model.gait.quantised import QuantisedLog
+from model.gait.reference import LegReference
+from model.predict import (
+    LEVELS,
+    STATES,
+    LegState,
+    ModelSpread,
+    anchored,
+    predict_paths,
+    quantiles,
+    walk_draws,
+)
+from model.robot import GRAVITY, Robot
+from model.walk.ensemble import PathEnsemble
+from model.walk.traction import ToeLaw
+from zebro_lab.calibration.slip_argument import Slip
+from zebro_lab.calibration.slip_draws import slip_tables
+from zebro_lab.files.arrays import read_arrays
+from zebro_lab.files.errors import DataError, SettingsError
+from zebro_lab.files.opening import parsing
+from zebro_lab.walk.folder import BAND_CSV, BAND_PICTURE, DRAWS
+from zebro_lab.walk.informed_legs import InformedLegs
+from zebro_lab.walk.walking import Watcher
+
+SAMPLING = 0.1  # s between the poses kept of each draw
+ASSUMED_OFFSET_DEG = 0.3  # of legs whose zero was set by hand
+_TOLD = 50  # times the bar moves
+
+
+@dataclass(frozen=True)
+class BandRequest:
+    """What is asked of a band.
+
+    Attributes:
+        draws: Number of paths.
+        seed: Seed of everything random.
+        offset_sd_deg: Standard deviation of each leg's unknown offset; None for that of a count,
+            or for legs that are not counted `ASSUMED_OFFSET_DEG` [deg].
+        start_sd: Standard deviation of the start pose: x, y [m] and yaw [deg].
+        spread: What the walking model itself gets wrong.
+        threads: Draws walked at once.
+    """
+
+    draws: int
+    seed: int = 1
+    offset_sd_deg: float | None = None
+    start_sd: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    spread: ModelSpread = field(default_factory=ModelSpread)
+    threads: int = 2
+
+    def __post_init__(self) -> None:
+        """Refuse a band of nothing."""
+        if self.draws < 2:
+            raise SettingsError(f"{self.draws} draws make no band; ask for 200", key="--draws")
+        if any(sd < 0 for sd in (*self.start_sd, self.offset_sd_deg or 0.0)):
+            raise SettingsError("a standard deviation is negative", key="--start-sd")
+
+    def settings(self) -> dict[str, object]:
+        """Return what was asked, as JSON can hold it."""
+        return asdict(self)
+
+
+def predict_band(
+    request: BandRequest,
+    robot: Robot,
+    legs: LegReference | QuantisedLog,
+    slip: Slip,
+    *,
+    duration: float,
+    toe: ToeLaw,
+    informed: InformedLegs | None = None,
+    watcher: Watcher,
+) -> PathEnsemble:
+    """Walk an ensemble from time zero on, started at the origin.
+
+    Args:
+        request: What is asked.
+        robot: The robot.
+        legs: Its leg angles.
+        slip: How its legs slip.
+        duration: Time walked [s].
+        toe: Traction of a leg on its toe.
+        informed: What walks said of legs and floor.
+        watcher: Who follows.
+
+    Raises:
+        SettingsError: Offsets are asked for that walks have told.
+    """
+    rng = np.random.default_rng(request.seed)
+    state = _leg_state(request, legs, informed, rng)
+    tables = slip_tables(slip, request.draws, weight=robot.mass * GRAVITY, toe=toe, rng=rng)
+    watcher.step("predicting the band", 0.0)
+    draws = walk_draws(robot, legs, tables, state, rng=rng)
+    t = np.linspace(0.0, duration, max(round(duration / SAMPLING), 1) + 1)
+    told = 0
+
+    def tell(fraction: float) -> None:
+        nonlocal told
+        if fraction * _TOLD >= told + 1:
+            told += 1
+            watcher.step("predicting the band", fraction)
+
+    paths = predict_paths(
+        draws, t, state=state, error=request.spread, rng=rng, threads=request.threads, progress=tell
+    )
+    x, y, yaw_deg = request.start_sd
+    covariance = np.diag([x, y, np.radians(yaw_deg)]) ** 2
+    return anchored(paths, np.zeros(3), at=0.0, covariance=covariance, rng=rng)
+
+
+def _leg_state(
+    request: BandRequest,
+    legs: LegReference | QuantisedLog,
+    informed: InformedLegs | None,
+    rng: np.random.Generator,
+) -> LegState:
+    if informed is None:
+        offset_sd = np.radians(offset_sd_deg(request, legs))
+        return LegState.of_prior(request.draws, offset_sd=offset_sd, rng=rng)
+    if request.offset_sd_deg is not None:
+        raise SettingsError(
+            f"the walks of {informed.folder} say what the legs' offsets are; leave it out, or name "
+            "a slip.toml that lies alone",
+            key="--offset-sd-deg",
+        )
+    return informed.draw(request.draws, rng=rng)
+
+
+def offset_sd_deg(request: BandRequest, legs: LegReference | QuantisedLog) -> float:
+    """Return the standard deviation of leg offsets: as asked, or half a count either way [deg]."""
+    if request.offset_sd_deg is not None:
+        return request.offset_sd_deg
+    if isinstance(legs, QuantisedLog):
+        return float(np.degrees(legs.step) / np.sqrt(12.0))
+    return ASSUMED_OFFSET_DEG
+
+
+def write_band(folder: Path, paths: PathEnsemble, *, title: str) -> None:
+    """Write the draws, the quantiles and their picture into a walk folder.
+
+    Args:
+        folder: Folder to write into.
+        paths: The paths, in the time of the walk folder.
+        title: What was predicted.
+    """
+    import pandas as pd
+
+    from zebro_lab.plots import path_band, save
+
+    values = np.concatenate([paths.position, paths.yaw[..., None]], axis=-1)
+    np.savez_compressed(folder / DRAWS, t=paths.t, poses=values.astype(np.float32))
+    band = quantiles(paths)
+    columns = {"t": paths.t}
+    for i, state in enumerate(STATES):
+        for level, row in zip(LEVELS, band, strict=True):
+            columns[f"{state}_q{1000 * level:03.0f}"] = row[:, i]
+    pd.DataFrame(columns).to_csv(
+        folder / BAND_CSV, index=False, float_format="%.8g", lineterminator="\n"
+    )
+    figure = path_band.path_band(paths, title=f"Predicted path: {title}", simulated=True)
+    save(figure, folder / BAND_PICTURE)
+
+
+def read_draws(folder: Path) -> PathEnsemble:
+    """Read the draws of a walk folder.
+
+    Raises:
+        NotFound: It has none.
+        DataError: They are damaged.
+    """
+    file = folder / DRAWS
+    arrays = read_arrays(file, ("t", "poses"), advice="predict with --draws 500 writes it")
+    t, poses = arrays["t"], arrays["poses"]
+    if t.ndim != 1 or poses.ndim != 3 or poses.shape[1:] != (len(t), 3) or 0 in poses.shape:
+        raise DataError(
+            f"holds poses of shape {poses.shape} at times of shape {t.shape}; predict again",
+            file=file,
+        )
+    with parsing(file, "cannot be read as poses", advice="predict again"):
+        t, poses = t.astype(float), poses.astype(float)
+    if not np.all(np.diff(t) > 0):
+        raise DataError("holds times that do not increase; predict again", file=file)
+    return PathEnsemble(t, poses[..., :2], poses[..., 2])

@@ -1,0 +1,118 @@
+# SPDX-License-Identifier: MIT
+"""Measured leg angles in, walk folder out."""
+
+from dataclasses import dataclass, replace
+from functools import partial
+from pathlib import Path
+
+import numpy as np
+
+from model.gait.quantised import QuantisedLog
+from model.robot import N_LEGS
+from model.walk.ensemble import PathEnsemble
+from zebro_lab.files.names import PATH_CSV
+from zebro_lab.files.replacement import settle
+from zebro_lab.files.result_folder import require_replaceable
+from zebro_lab.robot.leg_log import LegLog
+from zebro_lab.robot.robot_file import ROBOT_FILE, RobotFile
+from zebro_lab.runs.legs import read_leg_log
+from zebro_lab.runs.recorded_legs import is_recorded
+from zebro_lab.walk.folder import WALKED
+from zebro_lab.walk.leg_angles import angles_from
+from zebro_lab.walk.models import Direction
+from zebro_lab.walk.path_band import BandRequest, write_band
+from zebro_lab.walk.walked_band import band_of
+from zebro_lab.walk.walking import ModelRequest, Walked, Watcher, robot_of, walk_with, write_walk
+
+
+@dataclass(frozen=True)
+class PredictRequest:
+    """What is asked of a prediction.
+
+    Attributes:
+        log: Leg angles: CSV, Parquet, or a walk folder.
+        model: Which model, on what, and what to write.
+        columns: A `columns.toml` in place of the one beside the log.
+        direction: Side the gait turns to; only the source's model asks.
+        band: What band to predict; None for the path alone.
+    """
+
+    log: Path
+    model: ModelRequest
+    columns: Path | None = None
+    direction: Direction = "left"
+    band: BandRequest | None = None
+
+    @property
+    def inputs(self) -> tuple[Path, ...]:
+        """What is read, as it was named."""
+        columns = () if self.columns is None else (self.columns,)
+        return (self.log, *columns, *self.model.inputs)
+
+
+def predict(request: PredictRequest, watcher: Watcher) -> Walked:
+    """Predict where measured leg angles lead and write the walk folder.
+
+    The path keeps the log's own time. A run that keeps a robot.toml is walked by that robot, unless
+    another is asked for.
+
+    Raises:
+        ZebroLabError: A file is missing or holds what cannot be followed.
+        ModelError: The walk cannot be computed.
+    """
+    settle(request.log)
+    request = _with_own_robot(request)
+    require_replaceable(request.model.out, WALKED["predict"], inputs=request.inputs)
+    described = robot_of(request.model)
+    walked_before = request.log.is_dir() or request.log.name == PATH_CSV
+    walked_before = walked_before and not is_recorded(request.log)
+    if walked_before:
+        described = _as_walked(described)
+    log = read_leg_log(request.log, columns=request.columns, leg_sign=described.leg_sign)
+    start, end = float(log.reference.t[0]), float(log.reference.t[-1])
+    legs, notes = angles_from(log, start)
+    watcher.step("walking", None)
+    walked = walk_with(
+        request.model,
+        described,
+        legs.smooth() if isinstance(legs, QuantisedLog) else legs,
+        duration=end - start,
+        what=_what(log),
+        direction=request.direction,
+        logs=log.files,
+        angles_are_true=walked_before,
+        notes=(*log.notes, *notes),
+    )
+    walked = replace(walked, path=replace(walked.path, t=walked.path.t + start))
+    settings: dict[str, object] = {"leg_angles": log.source, "direction": request.direction}
+    extra = None
+    if request.band is not None:
+        paths = band_of(
+            request.band, walked, legs,
+            duration=end - start, toe=request.model.toe, watcher=watcher,
+        )  # fmt: skip
+        settings["band"] = request.band.settings()
+        moved = PathEnsemble(paths.t + start, paths.position, paths.yaw)
+        extra = partial(write_band, paths=moved, title=walked.title)
+    write_walk(
+        request.model, walked, watcher,
+        kind="predict", settings=settings, files=log.files, extra=extra,
+    )  # fmt: skip
+    return walked
+
+
+def _with_own_robot(request: PredictRequest) -> PredictRequest:
+    own = request.log / ROBOT_FILE
+    if request.model.robot is not None or not is_recorded(request.log) or not own.is_file():
+        return request
+    return replace(request, model=replace(request.model, robot=own))
+
+
+def _as_walked(described: RobotFile) -> RobotFile:
+    """Return the robot without signs and offsets: the angles of a walked path are true ones."""
+    robot = replace(described.robot, leg_offset=np.zeros(N_LEGS))
+    return replace(described, robot=robot, leg_sign=(1,) * N_LEGS)
+
+
+def _what(log: LegLog) -> str:
+    return "simulated leg angles" if log.source.startswith("sim:") else "logged leg angles"

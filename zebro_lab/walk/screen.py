@@ -1,0 +1,123 @@
+# SPDX-License-Identifier: MIT
+"""What `walk` and `predict` print: where the robot went, and how."""
+
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import typer
+from rich import box
+from rich.console import Console
+from rich.table import Table
+from rich.text import Text
+
+from model.gait import CyclicReference
+from zebro_lab.files.result_folder import MANIFEST
+from zebro_lab.terminal.messages import plain, say
+from zebro_lab.terminal.progress import progress_bar
+from zebro_lab.walk.folder import FILES
+from zebro_lab.walk.summary import WalkSummary, summarise
+from zebro_lab.walk.walking import ModelRequest, Walked, WalkStopped, Watcher
+
+INTERRUPTED = 130
+_MANY_UNTESTED = 0.01  # of the contacts: a few at touchdown do not matter
+
+
+def run_and_report(run: Callable[[Watcher], Walked], request: ModelRequest) -> None:
+    """Run a stage under a progress bar and print what came out.
+
+    Args:
+        run: The stage.
+        request: What it was asked.
+
+    Raises:
+        Exit: The walk was stopped.
+    """
+    try:
+        with progress_bar(Console(stderr=True)) as watcher:
+            walked = run(watcher)
+    except WalkStopped as stopped:
+        say(str(stopped), err=True)
+        raise typer.Exit(INTERRUPTED) from None
+    console = Console(highlight=False)
+    if not console.is_terminal:
+        console = Console(highlight=False, width=120)
+    print_walk(console, walked, request.out)
+
+
+def print_walk(console: Console, walked: Walked, out: Path) -> None:
+    """Print a finished walk.
+
+    Args:
+        console: Where to print.
+        walked: The finished walk.
+        out: The walk folder.
+    """
+    console.print(plain(f"SIMULATED walk: {walked.title}, dt {walked.dt:g} s"))
+    if isinstance(walked.reference, CyclicReference):
+        console.print(gait_table(walked.reference))
+    summary = summarise(walked.path)
+    for line in (*summary_lines(summary), *slip_lines(walked, summary), *walked.notes):
+        console.print(plain(line))
+    console.print(Text(f"\nwritten to {out}:"))
+    for path in sorted(out.iterdir()):
+        if path.name in (*FILES, MANIFEST):
+            console.print(plain(f"  {path}"))
+
+
+def summary_lines(summary: WalkSummary) -> list[str]:
+    """Say where a walk went and how."""
+    x, y, yaw = summary.end
+    over = f"over {summary.strides} strides" if summary.strides else "over the whole walk"
+    rate = f"yaw rate {np.degrees(summary.yaw_rate):.3f} deg/s"
+    if summary.straight:
+        curve = f"straight ahead, {rate}"
+    else:
+        side = "left" if summary.radius > 0 else "right"
+        curve = f"turning {side}, radius {abs(summary.radius):.4f} m, {rate}"
+    return [
+        f"after {summary.duration:g} s at x {x:.4f} m, y {y:.4f} m, yaw {np.degrees(yaw):.2f} deg",
+        f"walked {summary.length:.4f} m at {1000 * summary.speed:.2f} mm/s; {curve} ({over})",
+        f"largest roll {np.degrees(summary.largest_roll):.2f} deg, "
+        f"pitch {np.degrees(summary.largest_pitch):.2f} deg",
+    ]
+
+
+def slip_lines(walked: Walked, summary: WalkSummary) -> list[str]:
+    """Say how much legs slipped, and whether at loads that were tested."""
+    lines = []
+    if np.isfinite(summary.mean_slip):
+        lines.append(f"legs in contact slip at {1000 * summary.mean_slip:.2f} mm/s on average")
+    if walked.slip is None:
+        return lines
+    untested, tested = walked.slip.loads_below_tested(walked.path), walked.slip.tested_loads
+    if untested is None or tested is None:
+        lines.append(f"slip: {walked.slip.text} is assumed, not measured")
+    elif untested > _MANY_UNTESTED:
+        lines.append(
+            f"WARNING: {untested:.0%} of the contacts carry less than {tested[0]:.3g} N, the "
+            "lowest load the slip law was tested at"
+        )
+    return lines
+
+
+def gait_table(reference: CyclicReference) -> Table:
+    """Make the table of what a gait is, a row for each leg."""
+    title = f"the gait, with a cycle of {reference.period:.4g} s"
+    table = Table(title=title, box=box.SIMPLE, title_justify="left")
+    table.add_column("leg")
+    for name in (
+        "touchdown [deg]", "lift-off [deg]", "ground [s]", "flight [s]", "ground [deg/s]",
+        "flight [deg/s]", "at t = 0 [deg]",
+    ):  # fmt: skip
+        table.add_column(name, justify="right")
+    start = np.degrees(reference.angles(0.0)[0]) % 360
+    columns = (
+        np.degrees(reference.touchdown), np.degrees(reference.liftoff), reference.ground_time,
+        reference.flight_time, np.degrees(reference.ground_speed),
+        np.degrees(reference.flight_speed), start,
+    )  # fmt: skip
+    for leg in range(reference.n_legs):
+        side = " inner" if leg in reference.inner else " outer" if reference.inner else ""
+        table.add_row(f"{leg + 1}{side}", *(f"{column[leg]:.4f}" for column in columns))
+    return table

@@ -1,0 +1,81 @@
+# SPDX-License-Identifier: MIT
+"""A gait in, walk folder out."""
+
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+
+from zebro_lab.files.atomic import atomic_write_text
+from zebro_lab.files.errors import AlreadyExists
+from zebro_lab.files.result_folder import require_replaceable
+from zebro_lab.robot.gait_argument import GaitRequest, make_gait
+from zebro_lab.robot.robot_file import render_robot_file
+from zebro_lab.walk.folder import WALKED
+from zebro_lab.walk.path_band import BandRequest, write_band
+from zebro_lab.walk.walked_band import band_of
+from zebro_lab.walk.walking import ModelRequest, Walked, Watcher, robot_of, walk_with, write_walk
+
+
+@dataclass(frozen=True)
+class WalkRequest:
+    """What is asked of a walk.
+
+    Attributes:
+        gait: The gait.
+        model: Which model, on what, and what to write.
+        duration: Time to walk [s].
+        band: What band to predict; None for the path alone.
+    """
+
+    gait: GaitRequest
+    model: ModelRequest
+    duration: float
+    band: BandRequest | None = None
+
+
+def walk(request: WalkRequest, watcher: Watcher) -> Walked:
+    """Walk a gait and write the walk folder.
+
+    Raises:
+        ZebroLabError: A file or an option says what cannot be followed.
+        ModelError: No legs can walk so, or the walk cannot be computed.
+    """
+    require_replaceable(request.model.out, WALKED["walk"], inputs=request.model.inputs)
+    described = robot_of(request.model)
+    gait = make_gait(request.gait, leg_arc=described.robot.leg_arc)
+    watcher.step("walking", None)
+    walked = walk_with(
+        request.model,
+        described,
+        gait.reference,
+        duration=request.duration,
+        what=gait.what,
+        direction=gait.direction,
+    )
+    settings: dict[str, object] = {
+        "gait": {"name": request.gait.name, **request.gait.given()},
+        "duration": request.duration,
+        "direction": gait.direction,
+    }
+    extra = None
+    if request.band is not None:
+        paths = band_of(
+            request.band, walked, gait.reference,
+            duration=request.duration, toe=request.model.toe, watcher=watcher,
+        )  # fmt: skip
+        settings["band"] = request.band.settings()
+        extra = partial(write_band, paths=paths, title=walked.title)
+    write_walk(request.model, walked, watcher, kind="walk", settings=settings, extra=extra)
+    return walked
+
+
+def write_robot(file: Path, request: ModelRequest) -> Path:
+    """Write the robot asked for as a commented robot.toml to start from.
+
+    Raises:
+        AlreadyExists: The file exists.
+        SettingsError: The robot asked for is none.
+    """
+    if file.exists():
+        raise AlreadyExists(f"{file} exists already; edit it, or name another")
+    return atomic_write_text(file, render_robot_file(robot_of(request)))

@@ -1,0 +1,267 @@
+# SPDX-License-Identifier: MIT
+"""What `walk` and `predict` have in common: a model walks leg angles, and a folder is written."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Protocol
+
+import numpy as np
+
+from model.errors import DomainError
+from model.gait.reference import LegReference
+from model.predict import FINE
+from model.robot import Robot
+from model.walk.path import WalkPath
+from model.walk.traction import ToeLaw
+from zebro_lab.calibration.slip_argument import THESIS, Slip, parse_slip
+from zebro_lab.files.errors import SettingsError, ZebroLabError
+from zebro_lab.files.provenance import file_hashes
+from zebro_lab.robot.robot_file import RobotFile, read_robot_file
+from zebro_lab.walk.folder import walk_folder
+from zebro_lab.walk.informed_legs import InformedLegs, informed_legs
+from zebro_lab.walk.models import MODELS, Direction, ModelRun
+from zebro_lab.walk.pictures import animate_walk, draw_walk
+
+INFORMED_MODEL = "dynamics"  # the one whose legs and floor walks were fitted with
+
+
+class Watcher(Protocol):
+    """Who follows a walk: a progress bar, or nobody."""
+
+    def step(self, what: str, fraction: float | None) -> None:
+        """Hear what is going on, and how far it is (None: unknown)."""
+        ...
+
+    def stop_requested(self) -> bool:
+        """Tell whether somebody asked to stop."""
+        ...
+
+
+class WalkStopped(ZebroLabError):
+    """A walk was stopped on request; nothing was written."""
+
+
+@dataclass(frozen=True)
+class ModelRequest:
+    """Which model is to walk, on what, and what is to be written.
+
+    Attributes:
+        out: Walk folder to write.
+        slip: What `--slip` names; None for a model without slip.
+        model: Name of the model.
+        toe: Traction of a leg on its toe.
+        robot: A `robot.toml`; the source's robot when None.
+        arc_deg: Angle of the legs' arc in place of the robot's [deg].
+        dt: Length of a step; the model's own when None [s].
+        figures: Draw the pictures.
+        animate: Draw the film.
+    """
+
+    out: Path
+    slip: str | None = None
+    model: str = "dynamics"
+    toe: ToeLaw = "saturated"
+    robot: Path | None = None
+    arc_deg: float | None = None
+    dt: float | None = None
+    figures: bool = False
+    animate: bool = False
+
+    @property
+    def inputs(self) -> tuple[Path, ...]:
+        """Files and folders that are read, as they were named."""
+        slip = () if self.slip in (None, THESIS) else (Path(str(self.slip)),)
+        return (*slip, *((self.robot,) if self.robot is not None else ()))
+
+
+@dataclass(frozen=True)
+class Walked:
+    """A finished walk.
+
+    Attributes:
+        path: The path.
+        reference: The leg angles it was walked with.
+        described: The robot, as asked for.
+        slip: How its legs slipped; None for a model without slip.
+        model: Name of the model.
+        dt: Length of its step [s].
+        title: What walked by which model.
+        notes: For a person, one line each.
+        informed: What walks said of its legs and floor; None without walks.
+    """
+
+    path: WalkPath
+    reference: LegReference
+    described: RobotFile
+    slip: Slip | None
+    model: str
+    dt: float
+    title: str
+    notes: tuple[str, ...]
+    informed: InformedLegs | None = None
+
+
+def robot_of(request: ModelRequest) -> RobotFile:
+    """Return the robot asked for: from its file or the source's, with the arc asked for.
+
+    Raises:
+        NotFound: There is no such file.
+        SettingsError: The file or the arc describes no robot.
+    """
+    described = RobotFile() if request.robot is None else read_robot_file(request.robot)
+    if request.arc_deg is None:
+        return described
+    try:
+        robot = replace(described.robot, leg_arc=float(np.radians(request.arc_deg)))
+    except DomainError as error:
+        raise SettingsError(str(error), key="--arc-deg") from error
+    return replace(described, robot=robot)
+
+
+def walk_with(
+    request: ModelRequest,
+    described: RobotFile,
+    reference: LegReference,
+    *,
+    duration: float,
+    what: str,
+    direction: Direction = "left",
+    logs: tuple[Path, ...] = (),
+    angles_are_true: bool = False,
+    notes: tuple[str, ...] = (),
+) -> Walked:
+    """Let the model asked for walk leg angles from time zero on.
+
+    Args:
+        request: Which model, and on what.
+        described: The robot.
+        reference: Leg angles over time.
+        duration: Time to walk [s].
+        what: What walks, for titles.
+        direction: Side the gait turns to.
+        logs: Files of the leg log; a walk that informed the calibration is known by them.
+        angles_are_true: The angles are those of a walked path: no offset is left to be found.
+        notes: What is known already, for a person.
+
+    Raises:
+        SettingsError: The model needs a slip law and has none, or an option makes no sense.
+        ModelError: The walk cannot be computed.
+    """
+    model = MODELS[request.model]
+    slip = None if request.slip is None else parse_slip(request.slip)
+    if slip is not None and not model.slips:
+        notes = (*notes, f"the model '{model.name}' does not slip: --slip {slip.text} not used")
+        slip = None
+    dt = model.dt if request.dt is None else request.dt
+    if not (dt > 0 and duration > dt and np.isfinite(duration)):
+        raise SettingsError(
+            f"{duration:g} s in steps of {dt:g} s is no walk; expected more than a step",
+            key="--duration, --dt",
+        )
+    informed = None
+    if slip is not None and slip.walks is not None and model.name == INFORMED_MODEL:
+        informed = informed_legs(
+            slip.walks, described, logs=logs, same_legs=False if angles_are_true else None
+        )
+        notes = (*notes, *informed.notes)
+        if request.dt is None:
+            dt = min(dt, FINE.dt)  # the step that its legs were found by
+    run = ModelRun(
+        described.robot, reference, slip, duration, dt, request.toe, direction,
+        None if informed is None else informed.middle,
+    )  # fmt: skip
+    path = model.run(run)
+    grip = f", slip {slip.title}" if slip is not None else ""
+    return Walked(
+        path=path,
+        reference=reference,
+        described=described,
+        slip=slip,
+        model=model.name,
+        dt=dt,
+        title=f"{what}, model '{model.name}'{grip}",
+        notes=(*notes, *(slip.notes if slip is not None else ())),
+        informed=informed,
+    )
+
+
+def write_walk(
+    request: ModelRequest,
+    walked: Walked,
+    watcher: Watcher,
+    *,
+    kind: str,
+    settings: Mapping[str, object],
+    files: tuple[Path, ...] = (),
+    extra: Callable[[Path], None] | None = None,
+) -> None:
+    """Write the walk folder with the pictures asked for.
+
+    Args:
+        request: What is to be written, and where.
+        walked: The finished walk.
+        watcher: Who follows.
+        kind: "walk" or "predict".
+        settings: What decided the numbers beyond model, robot and slip, as JSON can hold it.
+        files: Files read beyond those of robot and slip.
+        extra: Writes what else belongs into the folder.
+
+    Raises:
+        AlreadyExists: The folder is a file, or holds the result of another command.
+        WalkStopped: The watcher asked to stop.
+    """
+    described, slip = walked.described, walked.slip
+    read = [*files, *((described.file,) if described.file else ()), *(slip.files if slip else ())]
+    everything = {
+        "model": walked.model,
+        "dt": walked.dt,
+        "toe": request.toe,
+        "slip": None if slip is None else {"named": slip.text, "source": slip.source},
+        "robot": _robot_settings(described.robot),
+        "walks": None if walked.informed is None else walked.informed.settings(),
+        **settings,
+    }
+    with walk_folder(
+        request.out,
+        walked.path,
+        kind=kind,
+        source=f"sim:{walked.model}",
+        settings=everything,
+        inputs=file_hashes(read),
+    ) as folder:
+        _draw(request, walked, folder, watcher)
+        if extra is not None:
+            extra(folder)
+
+
+def _draw(request: ModelRequest, walked: Walked, folder: Path, watcher: Watcher) -> None:
+    robot, title = walked.described.robot, walked.title
+    _heed(watcher)
+    if request.figures:
+        watcher.step("drawing", None)
+        draw_walk(folder, walked.path, robot, title=title, period=walked.reference.period)
+    if request.animate:
+
+        def follow(fraction: float) -> None:
+            watcher.step("filming", fraction)
+            _heed(watcher)
+
+        animate_walk(folder, walked.path, robot, title=title, progress=follow)
+
+
+def _heed(watcher: Watcher) -> None:
+    if watcher.stop_requested():
+        raise WalkStopped("stopped; nothing was written")
+
+
+def _robot_settings(robot: Robot) -> dict[str, object]:
+    return {
+        "mass": robot.mass,
+        "body_size": list(robot.body_size),
+        "inertia": robot.principal_inertia.tolist(),
+        "leg_radius": robot.leg_radius,
+        "leg_arc": robot.leg_arc,
+        "leg_offset": robot.leg_offset.tolist(),
+        "hips": robot.hips.tolist(),
+    }

@@ -1,0 +1,37 @@
+# SPDX-License-Identifier: MIT
+"""The pictures of a fit of walks: prior and posterior, and each walk predicted from the others."""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from model.bayes.walk_posterior import WalkPosterior
+from zebro_lab.validation.judgement import RunJudged
+
+PARAMETERS, LEFT_OUT = "walk_parameters", "left_out."
+
+
+def draw_walks(
+    folder: Path, posterior: WalkPosterior, left_out: Sequence[RunJudged], *, simulated: bool
+) -> None:
+    """Draw into a folder.
+
+    Args:
+        folder: Folder to write into.
+        posterior: The posterior after walks.
+        left_out: Each walk judged by a fit of the others.
+        simulated: Say so in the titles.
+    """
+    from zebro_lab.plots import save
+    from zebro_lab.plots.path_validation import path_validation
+    from zebro_lab.plots.walks import walk_parameters
+
+    save(walk_parameters(posterior, simulated=simulated), folder / f"{PARAMETERS}.png")
+    for run in left_out:
+        figure = path_validation(
+            {row.name: row.path for row in run.rows},
+            run.track,
+            band=run.band,
+            title=f"{run.name}, from what the other walks say",
+            simulated=simulated,
+        )
+        save(figure, folder / f"{LEFT_OUT}{run.name}.png")

@@ -1,0 +1,200 @@
+# SPDX-License-Identifier: MIT
+"""Tracked walks fitted, and predicted from what other walks say: leave one out."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from model.bayes.walk_misfit import middle
+from model.bayes.walk_posterior import WalkPosterior
+from model.bayes.walk_prior import WalkPrior
+from model.bayes.walks import WalkFit, fit_walks
+from model.errors import InsufficientData
+from model.gait.reference import SampledReference
+from model.metrics.poses import Poses
+from model.predict import FINE, LegState, ModelSpread, predict_paths, walk_draws
+from model.robot import GRAVITY
+from model.slip.law import Array
+from model.walk.ensemble import PathEnsemble
+from zebro_lab.calibration.slip_argument import Slip
+from zebro_lab.calibration.slip_draws import slip_tables
+from zebro_lab.validation.judgement import Prediction, RunJudged, judge_run, walk_baselines
+from zebro_lab.walk_fit.tracked_walks import WalkOnFile
+
+SAMPLING = 0.1  # s between poses of a predicted path
+DRAWS = 300  # of a left-out walk's band
+EXACT = ModelSpread(0.0, 0.0, 0.0)
+
+Progress = Callable[[float], None]
+
+
+@dataclass(frozen=True)
+class WalksFitted:
+    """What walks said, and how well each is predicted from the others.
+
+    Attributes:
+        walks: The walks.
+        posterior: The posterior of legs and floor.
+        left_out: Each walk judged by a fit of the others; empty for a single walk.
+    """
+
+    walks: tuple[WalkOnFile, ...]
+    posterior: WalkPosterior
+    left_out: tuple[RunJudged, ...]
+
+
+def fit_walks_on_file(
+    walks: Sequence[WalkOnFile],
+    slip: Slip,
+    *,
+    prior: WalkPrior,
+    rng: np.random.Generator,
+    threads: int = 2,
+    progress: Progress | None = None,
+) -> WalkFit:
+    """Fit legs and floor to walks of one robot, with the slip law at its posterior mean.
+
+    Args:
+        walks: The walks.
+        slip: The rig's calibration.
+        prior: What is believed before.
+        rng: Source of randomness.
+        threads: Walks computed at once.
+        progress: Told the fraction done.
+
+    Raises:
+        ModelError: There is no walk, or one diverged.
+    """
+    if not walks:
+        raise InsufficientData("no walk to fit; name one or more with a track")
+    robot = walks[0].robot.robot
+    return fit_walks(
+        robot,
+        slip.traction_table(weight=robot.mass * GRAVITY),
+        [walk.tracked for walk in walks],
+        prior=prior,
+        rng=rng,
+        threads=threads,
+        progress=progress,
+    )
+
+
+def fit_and_leave_out(
+    walks: Sequence[WalkOnFile],
+    slip: Slip,
+    *,
+    prior: WalkPrior,
+    rng: np.random.Generator,
+    threads: int = 2,
+    progress: Progress | None = None,
+) -> WalksFitted:
+    """Fit all walks, then predict each from what the others say.
+
+    Args:
+        walks: The walks.
+        slip: The rig's calibration.
+        prior: What is believed before.
+        rng: Source of randomness.
+        threads: Walks computed at once.
+        progress: Told the fraction done.
+
+    Raises:
+        ModelError: There is no walk, or one diverged.
+    """
+    tell = progress or (lambda _: None)
+    fit = fit_walks_on_file(
+        walks, slip, prior=prior, rng=rng, threads=threads, progress=lambda done: tell(0.7 * done)
+    )
+    judged = []
+    for i, walk in enumerate(walks if len(walks) > 1 else ()):
+        tell(0.7 + 0.3 * i / len(walks))
+        judged.append(judge_from(fit.without(i), walk, slip, rng=rng, threads=threads))
+    return WalksFitted(tuple(walks), fit.posterior, tuple(judged))
+
+
+def judge_from(
+    posterior: WalkPosterior,
+    walk: WalkOnFile,
+    slip: Slip,
+    *,
+    rng: np.random.Generator,
+    draws: int = DRAWS,
+    index: int | None = None,
+    threads: int = 2,
+) -> RunJudged:
+    """Predict a walk from a posterior and judge it against its track, beside simpler models.
+
+    Args:
+        posterior: What other walks said.
+        walk: The walk.
+        slip: The rig's calibration.
+        rng: Source of randomness.
+        draws: Paths in the band.
+        index: The walk's index in the posterior, when it was among those fitted.
+        threads: Walks computed at once.
+    """
+    prediction = predict_from(
+        posterior, walk, slip, rng=rng, draws=draws, index=index, threads=threads
+    )
+    return judge_run(walk.name, prediction, walk.track, anchor=True, rng=rng)
+
+
+def predict_from(
+    posterior: WalkPosterior,
+    walk: WalkOnFile,
+    slip: Slip,
+    *,
+    rng: np.random.Generator,
+    draws: int = DRAWS,
+    index: int | None = None,
+    threads: int = 2,
+) -> Prediction:
+    """Predict a walk from a posterior, and by simpler models; its track is not looked at.
+
+    Args:
+        posterior: What other walks said.
+        walk: The walk.
+        slip: The rig's calibration.
+        rng: Source of randomness.
+        draws: Paths in the band.
+        index: The walk's index in the posterior, when it was among those fitted.
+        threads: Walks computed at once.
+    """
+    t = np.linspace(0.0, walk.duration, max(round(walk.duration / SAMPLING), 2) + 1)
+    state = posterior.draw(draws, rng=rng, walk=index)
+    band = _walked(walk, slip, state, t, posterior.prior.spread, rng, threads)
+    single = _middle_path(walk, slip, posterior.most_likely(walk=index), t, rng)
+    robot = walk.robot.robot
+    angles = middle(walk.legs)
+    told = SampledReference(t, angles.angles(t) + robot.leg_offset)
+    turned = single.yaw[-1] - single.yaw[0]
+    baselines, notes = walk_baselines(robot, told, direction="left" if turned >= 0 else "right")
+    return Prediction(single, band, baselines, walk.source, walk.files, notes)
+
+
+def _walked(
+    walk: WalkOnFile,
+    slip: Slip,
+    state: LegState,
+    t: Array,
+    error: ModelSpread,
+    rng: np.random.Generator,
+    threads: int,
+) -> PathEnsemble:
+    robot = walk.robot.robot
+    tables = slip_tables(slip, len(state), weight=robot.mass * GRAVITY, rng=rng)
+    drawn = walk_draws(robot, walk.legs, tables, state, rng=rng)
+    return predict_paths(drawn, t, state=state, error=error, rng=rng, threads=threads)
+
+
+def _middle_path(
+    walk: WalkOnFile, slip: Slip, state: LegState, t: Array, rng: np.random.Generator
+) -> Poses:
+    """Walk every unknown at its middle."""
+    plain = replace(walk, legs=middle(walk.legs))
+    robot = walk.robot.robot
+    table = slip.traction_table(weight=robot.mass * GRAVITY)
+    drawn = walk_draws(robot, plain.legs, [table], state, rng=rng)
+    path = predict_paths(drawn, t, state=state, error=EXACT, rng=rng, threads=1, options=FINE)
+    return Poses(path.t, path.position[0], path.yaw[0])

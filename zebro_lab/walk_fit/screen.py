@@ -1,0 +1,124 @@
+# SPDX-License-Identifier: MIT
+"""What `calibrate-slip --walks` prints: prior and posterior, wrong legs, walks left out."""
+
+import numpy as np
+from rich import box
+from rich.console import Console
+from rich.table import Table
+from rich.text import Text
+
+from model.bayes.walk_posterior import Contraction, WalkPosterior
+from model.bayes.walk_prior import FALL, UNITS
+from zebro_lab.terminal.messages import plain
+from zebro_lab.validation.judgement import RunJudged
+from zebro_lab.walk_fit.stage import WalksCalibrated
+
+_LIKELY = 0.01  # probability of a case that is worth a line
+_SHOWN = {"rad": (180 / np.pi, "deg"), "rad/m": (180 / np.pi, "deg/m"), "-": (100.0, "%")}
+
+
+def print_walks(console: Console, done: WalksCalibrated) -> None:
+    """Print a finished fit of walks.
+
+    Args:
+        console: Where to print.
+        done: The fit.
+    """
+    posterior = done.fitted.posterior
+    if "sim:" in done.source:
+        console.print(plain(f"SIMULATED: {done.source}"))
+    for note in done.notes:
+        console.print(plain(note))
+    console.print(_parameter_table(posterior))
+    for line in (*_uninformed(posterior), *_cases(posterior), *_quality(posterior)):
+        console.print(plain(line))
+    if done.fitted.left_out:
+        console.print(_left_out_table(done.fitted.left_out))
+    else:
+        console.print(plain("one walk alone: none is left to predict; add a second --walks"))
+    console.print(Text(f"\nwritten to {done.folder}"))
+
+
+def _parameter_table(posterior: WalkPosterior) -> Table:
+    title = f"legs and floor after {len(posterior.walks)} walk(s): {', '.join(posterior.walks)}"
+    table = Table(title=plain(title), box=box.SIMPLE, title_justify="left")
+    table.add_column("parameter", no_wrap=True)
+    for name in ("before", "after", "unit", "informed"):
+        table.add_column(name, justify="right", no_wrap=True)
+    for each, unit in zip(posterior.contractions(), UNITS, strict=True):
+        table.add_row(each.name, *_told(each, unit))
+    return table
+
+
+def _told(each: Contraction, unit: str) -> tuple[str, str, str, str]:
+    informed = f"{max(0.0, each.contraction):.0%}"
+    if unit == "log":  # of a factor
+        before = f"1 ×/÷ {np.exp(each.prior_sd):.2f}"
+        after = f"{np.exp(each.mean):.2f} ×/÷ {np.exp(each.sd):.2f}"
+        return before, after, "factor", informed
+    if each.name == "fall":
+        after = f"{FALL + each.mean:.2f} ± {each.sd:.2f}"
+        return f"{FALL:g} ± {each.prior_sd:.2f}", after, "factor", informed
+    scale, shown = _SHOWN[unit]
+    before = f"0 ± {scale * each.prior_sd:.2f}"
+    return before, f"{scale * each.mean:+.2f} ± {scale * each.sd:.2f}", shown, informed
+
+
+def _uninformed(posterior: WalkPosterior) -> list[str]:
+    names = [each.name for each in posterior.contractions() if not each.informed]
+    if not names:
+        return []
+    return [f"the walks did not inform {', '.join(names)}: what stands there is the prior"]
+
+
+def _cases(posterior: WalkPosterior) -> list[str]:
+    lines = []
+    for found in posterior.found():
+        if found.probability < _LIKELY:
+            continue
+        angle = (
+            ""
+            if found.case is None
+            else f", by {np.degrees(found.offset):+.1f} ± {np.degrees(found.sd):.1f} deg"
+        )
+        lines.append(f"mounted wrong: {found.name}{angle}: probability {found.probability:.0%}")
+    return lines
+
+
+def _quality(posterior: WalkPosterior) -> list[str]:
+    misfits = zip(posterior.walks, posterior.misfit, strict=True)
+    lines = [
+        "misfit, mean square of expected: "
+        + ", ".join(f"{name} {misfit:.2f}" for name, misfit in misfits),
+        f"{posterior.effective:.0f} effective draws",
+    ]
+    if not posterior.reliable:
+        lines.append("TOO FEW effective draws carry this answer; do not build on it")
+    return lines
+
+
+def _left_out_table(left_out: tuple[RunJudged, ...]) -> Table:
+    table = Table(
+        title="each walk predicted from what the others say", box=box.SIMPLE, title_justify="left"
+    )
+    table.add_column("walk", overflow="fold")
+    for name in (
+        "error, rms [mm]", "of path", "yaw [deg]", "radius [m]", "tracked [m]",
+        "90 % band holds x, y, yaw", "CRPS x, y [mm]", "best baseline's",
+    ):  # fmt: skip
+        table.add_column(name, justify="right")
+    for run in left_out:
+        prediction, *others = run.rows
+        e, scores = prediction.errors, prediction.scores
+        held = scores.coverage[list(scores.levels).index(0.9)]
+        table.add_row(
+            plain(run.name), f"{1000 * e.ate:.1f}", f"{e.ate_of_length:.2%}",
+            f"{np.degrees(e.yaw):.2f}", f"{e.radius[0]:.3f}", f"{e.radius[1]:.3f}",
+            " ".join(f"{share:.0%}" for share in held),
+            _two(scores.crps), _two([min(o.scores.crps[k] for o in others) for k in range(2)]),
+        )  # fmt: skip
+    return table
+
+
+def _two(values: "np.ndarray | list[float]") -> str:
+    return " ".join(f"{1000 * value:.1f}" for value in values[:2])

@@ -1,0 +1,122 @@
+# SPDX-License-Identifier: MIT
+"""A rig's calibration and tracked walks in, what the walks said beside the calibration out."""
+
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+
+from model.bayes.walk_prior import WalkPrior
+from zebro_lab.calibration.folder import SLIP_TOML
+from zebro_lab.calibration.slip_argument import parse_slip
+from zebro_lab.calibration.walks_folder import FOLDER, WALKS, WalksToWrite, write_walks
+from zebro_lab.files.errors import NotFound, SettingsError
+from zebro_lab.files.replacement import settle
+from zebro_lab.files.result_folder import require_replaceable
+from zebro_lab.validation.folder import metrics
+from zebro_lab.walk.walking import Watcher
+from zebro_lab.walk_fit.clocks import checked_clock, estimated_clock_of
+from zebro_lab.walk_fit.pictures import draw_walks
+from zebro_lab.walk_fit.prediction import WalksFitted, fit_and_leave_out
+from zebro_lab.walk_fit.tracked_walks import read_walks
+
+
+@dataclass(frozen=True)
+class WalksRequest:
+    """What is asked of a fit of walks.
+
+    Attributes:
+        walks: Run folders with leg angles and a track.
+        calibration: The rig's calibration folder, into which `walks/` is written.
+        robot: A `robot.toml` in place of those in the folders.
+        prior: What is believed before.
+        seed: Seed of everything random.
+        threads: Walks computed at once.
+        estimate_offset: Find in the motion how far each track's clock is behind its leg log's.
+    """
+
+    walks: tuple[Path, ...]
+    calibration: Path
+    robot: Path | None = None
+    prior: WalkPrior = field(default_factory=WalkPrior)
+    seed: int = 1
+    threads: int = 2
+    estimate_offset: bool = False
+
+
+@dataclass(frozen=True)
+class WalksCalibrated:
+    """A finished fit of walks and where it was written.
+
+    Attributes:
+        fitted: The fit, with each walk predicted from the others.
+        folder: Where it is.
+        source: Where rig data and walks come from.
+        notes: For a person, one line each.
+    """
+
+    fitted: WalksFitted
+    folder: Path
+    source: str
+    notes: tuple[str, ...]
+
+
+def calibrate_walks(request: WalksRequest, watcher: Watcher) -> WalksCalibrated:
+    """Fit legs and floor to walks, predict each from the others, and write `walks/`.
+
+    Args:
+        request: What is asked.
+        watcher: Hears of progress.
+
+    Raises:
+        ZebroLabError: A walk or the calibration is missing or cannot be used; nothing was written.
+        ModelError: A walk diverged; nothing was written.
+    """
+    slip_toml = _slip_of(request)
+    require_replaceable(request.calibration / FOLDER, WALKS, inputs=request.walks)
+    slip = parse_slip(str(slip_toml), with_walks=False)
+    watcher.step("reading walks", None)
+    clock = estimated_clock_of(slip) if request.estimate_offset else checked_clock(slip)
+    walks = read_walks(request.walks, robot=request.robot, clock=clock)
+    fitted = fit_and_leave_out(
+        walks,
+        slip,
+        prior=request.prior,
+        rng=np.random.default_rng(request.seed),
+        threads=request.threads,
+        progress=lambda done: watcher.step("fitting walks", done),
+    )
+    notes = (*slip.notes, *(f"{walk.name}: {note}" for walk in walks for note in walk.notes))
+    source = ", ".join(sorted({slip.source, *(walk.source for walk in walks)}))
+    watcher.step("drawing", None)
+    folder = write_walks(
+        request.calibration,
+        WalksToWrite(
+            posterior=fitted.posterior,
+            left_out={
+                run.name: {row.name: metrics(row) for row in run.rows} for run in fitted.left_out
+            },
+            robot=walks[0].robot,
+            logs=tuple(walk.files[0] for walk in walks),
+            inputs=(slip_toml, *(file for walk in walks for file in walk.files)),
+            settings={"seed": request.seed, "estimate_offset": request.estimate_offset},
+            source=source,
+            notes=notes,
+        ),
+        draw=lambda draft: draw_walks(
+            draft, fitted.posterior, fitted.left_out, simulated="sim:" in source
+        ),
+    )
+    return WalksCalibrated(fitted, folder, source, notes)
+
+
+def _slip_of(request: WalksRequest) -> Path:
+    if not request.walks:
+        raise SettingsError("missing: no walk to fit", key="--walks")
+    slip_toml = settle(request.calibration) / SLIP_TOML
+    if not slip_toml.is_file():
+        raise NotFound(
+            f"{slip_toml}: no such file; name rig data to calibrate from, or the --out of a "
+            "finished calibration"
+        )
+    return slip_toml

@@ -1,0 +1,207 @@
+# SPDX-License-Identifier: MIT
+"""Walks that were logged and tracked: run folders, or folders with a leg log and a track."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+
+from model.bayes.walk_misfit import FEWEST_POSES, TrackedWalk
+from model.bayes.walk_tilt import FEWEST, TIME, TiltSeen
+from model.gait.quantised import QuantisedLog
+from model.gait.reference import SampledReference
+from zebro_lab.calibration.walks_folder import describe_legs
+from zebro_lab.files.errors import DataError, NotFound, SettingsError
+from zebro_lab.files.replacement import settle
+from zebro_lab.robot.robot_file import ROBOT_FILE, RobotFile, read_robot_file
+from zebro_lab.runs.counted_once import array_hash, first_of_each, told_once
+from zebro_lab.runs.legs import read_leg_log
+from zebro_lab.runs.recorded_legs import is_recorded
+from zebro_lab.runs.recorded_tilt import read_recorded_tilt
+from zebro_lab.track.file import TrackFile, read_track
+from zebro_lab.track.folder import TRACK_CSV
+from zebro_lab.walk.leg_angles import angles_from
+from zebro_lab.walk_fit.clocks import Clock, since
+
+TRACK = "track"
+LEGS = ("legs.csv", "legs.csv.gz", "legs.parquet")
+
+
+@dataclass(frozen=True)
+class WalkOnFile:
+    """A tracked walk as it was read.
+
+    Attributes:
+        name: Name of its folder.
+        robot: The robot that walked.
+        legs: Its leg angles from time zero on.
+        track: The track, in the same time; poses outside the log's left out.
+        source: "real", "sim:what", "unknown"; both where log and track differ.
+        files: Every file read, the leg log's first.
+        notes: For a person, one line each.
+        tilt: Roll and pitch by the run's IMU, in the same time; None where it has none.
+    """
+
+    name: str
+    robot: RobotFile
+    legs: SampledReference | QuantisedLog
+    track: TrackFile
+    source: str
+    files: tuple[Path, ...]
+    notes: tuple[str, ...]
+    tilt: TiltSeen | None = None
+
+    @property
+    def tracked(self) -> TrackedWalk:
+        """The walk as `model.bayes.walks` takes it."""
+        poses = self.track.poses
+        states = np.column_stack([poses.position, poses.yaw])
+        return TrackedWalk(self.name, self.legs, poses.t, states, self.track.covariance, self.tilt)
+
+    @property
+    def duration(self) -> float:
+        """Time of its leg log [s]."""
+        return float(self.legs.t[-1])
+
+
+def read_walks(
+    folders: Sequence[Path], *, robot: Path | None = None, clock: Clock | None = None
+) -> list[WalkOnFile]:
+    """Read tracked walks of one robot; folders of one name are told apart by numbers.
+
+    Args:
+        folders: A folder each, as for `read_walk_on_file`.
+        robot: A `robot.toml` in place of those in the folders.
+        clock: Brings each track to its leg log's clock; None to take it as it is.
+
+    Raises:
+        ZebroLabError: As in `read_walk_on_file`; or the walks are of two robots.
+    """
+    read = [read_walk_on_file(folder, robot=robot, clock=clock) for folder in folders]
+    for walk in read[1:]:
+        if describe_legs(walk.robot) != describe_legs(read[0].robot):
+            raise SettingsError(
+                f"{walk.name} was walked by another robot than {read[0].name}; calibrate with the "
+                "walks of one robot at a time, or name a --robot for all",
+                file=walk.robot.file,
+            )
+    walks, repeated = first_of_each(read, key=_content)
+    told = told_once("walks", [(one.name, other.name) for one, other in repeated])
+    walks[:1] = [replace(walk, notes=(*walk.notes, *told)) for walk in walks[:1]]
+    names = [walk.name for walk in walks]
+    return [
+        walk
+        if names.count(walk.name) == 1
+        else replace(walk, name=f"{walk.name}-{names[: i + 1].count(walk.name)}")
+        for i, walk in enumerate(walks)
+    ]
+
+
+def _content(walk: WalkOnFile) -> str:
+    """Return what a walk is known by under another name: its leg angles and its track."""
+    poses = walk.track.poses
+    return array_hash(walk.legs.theta, poses.position, poses.yaw)
+
+
+def read_walk_on_file(
+    folder: Path, *, robot: Path | None = None, clock: Clock | None = None
+) -> WalkOnFile:
+    """Read a tracked walk.
+
+    Args:
+        folder: A run folder, or one with a leg log `legs.csv`; `track/track.csv` below it, and
+            perhaps its `robot.toml`.
+        robot: A `robot.toml` in place of the folder's.
+        clock: Brings the track to the leg log's clock; None to take it as it is.
+
+    Raises:
+        NotFound: There is no leg log or no track.
+        DataError: One of them cannot be read, the track has no headings or covariance, or too
+            little of it lies within the log's time.
+    """
+    log_file = _legs_of(folder)
+    track_file = settle(folder / TRACK) / TRACK_CSV
+    if not track_file.is_file():
+        raise NotFound(
+            f"{folder}: a walk without a track; zebro-lab track --out {folder / TRACK} makes one"
+        )
+    own = folder / ROBOT_FILE
+    described = read_robot_file(robot or own) if robot is not None or own.is_file() else RobotFile()
+    log = read_leg_log(log_file, leg_sign=described.leg_sign)
+    start = float(log.reference.t[0])
+    legs, counted = angles_from(log, start)
+    track = since(read_track(track_file), start)
+    track = track if clock is None else clock(track, legs, described.robot)
+    inside, notes = _inside(float(legs.t[-1]), track)
+    _require_states(inside)
+    tilt, imu_files, told = _tilt(folder, start, float(log.reference.t[-1]))
+    sources = sorted({log.source, track.source})
+    return WalkOnFile(
+        name=folder.absolute().name,
+        robot=described,
+        legs=legs,
+        track=inside,
+        source=", ".join(sources),
+        files=(*log.files, track.file, *([described.file] if described.file else []), *imu_files),
+        notes=(*log.notes, *counted, *track.notes, *notes, *told),
+        tilt=tilt,
+    )
+
+
+def _tilt(
+    folder: Path, start: float, end: float
+) -> tuple[TiltSeen | None, tuple[Path, ...], tuple[str, ...]]:
+    """Read what a run's IMU measured from `start` [s] on, its files, and what to tell of it."""
+    measured = read_recorded_tilt(folder) if is_recorded(folder) else None
+    if measured is None:
+        return None, (), ()
+    inside = (measured.t >= start) & (measured.t <= end)
+    if not inside.any() or np.ptp(measured.t[inside]) < FEWEST * TIME:
+        note = f"roll and pitch do not inform: no IMU from {start:g} to {end:g} s, as the log is"
+        return None, (), (note,)
+    seen = TiltSeen(measured.t[inside] - start, measured.angles[inside])
+    return seen, measured.files, ("roll and pitch by the IMU inform which leg is off",)
+
+
+def _legs_of(folder: Path) -> Path:
+    if not folder.is_dir():
+        raise NotFound(f"{folder}: no such folder; expected a run with leg angles and a track")
+    if is_recorded(folder):
+        return folder
+    for name in LEGS:
+        if (folder / name).is_file():
+            return folder / name
+    raise NotFound(
+        f"{folder}: no leg angles; expected a recorded run, or a folder with {LEGS[0]} and "
+        f"{TRACK}/{TRACK_CSV}"
+    )
+
+
+def _inside(end: float, track: TrackFile) -> tuple[TrackFile, tuple[str, ...]]:
+    """Leave out the poses that lie outside the leg log's time, which runs from zero to `end`."""
+    t = track.poses.t
+    keep = (t >= 0) & (t <= end)
+    if keep.sum() < FEWEST_POSES:
+        raise DataError(
+            f"{keep.sum()} of {len(t)} poses, from {t[0]:g} to {t[-1]:g} s after the leg log's "
+            f"first sample, lie within its {end:g} s; expected {FEWEST_POSES} or more: do both "
+            "keep the same clock? If not, --estimate-offset may find how far they are apart",
+            file=track.file,
+        )
+    left_out = int((~keep).sum())
+    notes = (f"{left_out} tracked poses lie outside the leg log's time",) if left_out else ()
+    part = replace(track, poses=track.poses.part(keep), covariance=track.covariance[keep])
+    return part, notes
+
+
+def _require_states(track: TrackFile) -> None:
+    """Refuse a track that cannot weigh its own errors."""
+    if not track.poses.has_yaw:
+        raise DataError("has no headings; a walk can inform a fit only with them", file=track.file)
+    if not np.all(np.linalg.eigvalsh(track.covariance) > 0):
+        raise DataError(
+            "has no covariance; a walk can inform a fit only when its track says how far it may be "
+            "off: add cov_xx to cov_yawyaw",
+            file=track.file,
+        )

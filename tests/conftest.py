@@ -2,6 +2,7 @@
 """Where the tests find reference data, and what every test shares."""
 
 import os
+import signal
 from pathlib import Path
 
 import pytest
@@ -11,6 +12,15 @@ import zebro_lab.terminal  # noqa: F401 - one BLAS thread, as the commands have
 
 # FFmpeg takes its log level from the first video that any test reads or writes; see tracking's.
 os.environ.setdefault("OPENCV_FFMPEG_LOGLEVEL", "-8")
+
+# Tests send these signals to commands that they start. A shell that starts the tests in the
+# background, or nohup, has them ignored, and commands inherit that.
+for _number, _usual in (
+    (signal.SIGINT, signal.default_int_handler),
+    (getattr(signal, "SIGHUP", signal.SIGTERM), signal.SIG_DFL),
+):
+    if signal.getsignal(_number) is signal.SIG_IGN:
+        signal.signal(_number, _usual)
 
 REFERENCE = Path(os.environ.get("ZEBRO_LAB_SHARED", Path(__file__).parents[2] / "shared"))
 

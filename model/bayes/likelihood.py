@@ -202,7 +202,9 @@ def _filter_runs(residual, noise, slope, slip_error, run_slip_error, starts, rho
             determinant = a * d - b * c
             x_1 = (d * d_1 * r1 - b * d_g * rg) / determinant
             x_g = (a * d_g * rg - c * d_1 * r1) / determinant
-            quadratic = rr - r1 * x_1 - rg * x_g
+            # Where noise is far below everything else, the difference cancels to its rounding
+            # errors, of either sign: it is taken for no less than they are.
+            quadratic = max(rr - r1 * x_1 - rg * x_g, 1e-14 * rr)
             size = starts[i + 1] - starts[i]
             log_determinant += np.log(determinant)
             result[w, i] = -0.5 * (quadratic + log_determinant + size * np.log(2 * np.pi))

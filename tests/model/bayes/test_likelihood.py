@@ -71,6 +71,18 @@ def blurred_blocks(sizes=SIZES, seed=0):
     return blocks(sizes, seed, slip_error=own, run_slip_error=shared, slip_wander=wander)
 
 
+@pytest.mark.parametrize("stiffness", [1e6, 1e10, 4e14])
+@pytest.mark.parametrize("noise_floor", [1e-6, 1e-10, 3e-14])
+def test_rounding_makes_no_density_of_a_misfit(stiffness, noise_floor):
+    data = blurred_blocks()
+    values = parameters(noise_floor=noise_floor, offset_spread=0.01)
+    values[0, 0] = stiffness
+    density = run_log_likelihood(data, LAW, values)
+    # A density is largest where nothing is left over; the noise floor bounds every variance below.
+    sizes = np.array(SIZES)
+    assert (density <= -sizes * (np.log(noise_floor) + 0.5 * np.log(2 * np.pi)) + 1e-9).all()
+
+
 def dense_covariances(data, predicted, *, rho, tau):
     """Build every run's covariance from the data model, term by term."""
     covariances = []

@@ -16,8 +16,9 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any, Final
 
-from zebro_lab.experiment.latch import EmergencyLatch
-from zebro_lab.files.errors import AlreadyExists, DataError, NotFound, SettingsError
+from zebro_lab.experiment.latch import LATCH_FILE, EmergencyLatch
+from zebro_lab.files.errors import AlreadyExists, DataError, RecordingError, SettingsError
+from zebro_lab.files.opening import read_bytes
 from zebro_lab.files.provenance import fingerprint
 
 JOURNAL_FILE: Final = "experiment.jsonl"
@@ -66,7 +67,9 @@ class JournalWriter:
 
     def __enter__(self) -> "JournalWriter":
         with contextlib.suppress(OSError):  # who begins on a full disk is told by the guard of room
-            self._reserve.write_bytes(os.urandom(RESERVE))
+            self._reserve.unlink(missing_ok=True)  # whatever is there: it is not written through
+            with self._reserve.open("xb") as file:
+                file.write(os.urandom(RESERVE))
         return self
 
     def __exit__(self, *_: object) -> None:
@@ -97,7 +100,7 @@ class JournalWriter:
 
     def repair(self) -> None:
         """Take a last line that a crash cut short away, and write down what it held."""
-        content = self._file.read_bytes()
+        content = read_bytes(self._file, most=LARGEST)
         whole, _, cut = content.rpartition(b"\n")
         if not cut:
             return
@@ -175,48 +178,49 @@ def begin_or_resume(data: Path, plan_text: str, *, resume: bool, reset: bool) ->
         SettingsError: It is of another plan, or an emergency stop is latched.
     """
     writer, latch = JournalWriter(data), EmergencyLatch(data)
-    if not resume:
-        if (data / JOURNAL_FILE).exists():
-            raise AlreadyExists(
-                f"{data} holds an experiment already; go on with it by --resume, or name another "
-                "--data"
-            )
+    journal = _begun(data, plan_text) if resume else None
+    if journal is None and os.path.lexists(data / JOURNAL_FILE):
+        raise AlreadyExists(
+            f"{data} holds an experiment already; go on with it by --resume, or name another --data"
+        )
+    latched = latch.reason or (journal.latched if journal else None)
+    if latched is not None and not reset:
+        raise SettingsError(
+            f"{latched} is latched; look after the rig, then go on with --reset-emergency",
+            file=data / (JOURNAL_FILE if journal else LATCH_FILE),
+        )
+    try:
         latch.prepare()
+    except OSError as error:
+        raise RecordingError(
+            f"{data / LATCH_FILE}: cannot be prepared ({error.strerror}); an emergency stop could "
+            "not be latched: move it away, or name another --data"
+        ) from error
+    if journal is None:
         writer.append("plan", plan_text, fingerprint=plan_fingerprint(plan_text))
-        return read_journal(data)
+    else:
+        writer.repair()
+    if latched is not None:
+        writer.append("reset", latched)
+        latch.reset()
+    return read_journal(data) if journal is None else journal
+
+
+def _begun(data: Path, plan_text: str) -> Journal:
+    """Read the journal of a plan that was begun; refuse that of another."""
     journal = read_journal(data)
     if journal.plan != plan_fingerprint(plan_text):
         raise SettingsError(
             "is not the plan that was begun here; give that one, or another --data",
             file=data / JOURNAL_FILE,
         )
-    latched = latch.reason or journal.latched
-    if latched is not None and not reset:
-        raise SettingsError(
-            f"{latched} is latched; look after the rig, then go on with --reset-emergency",
-            file=data / JOURNAL_FILE,
-        )
-    writer.repair()
-    latch.prepare()
-    if latched is not None:
-        writer.append("reset", latched)
-        latch.reset()
     return journal
 
 
 def _entries(file: Path) -> Iterator[dict[str, Any]]:
     """Yield the entries of a journal; a whole line that is none is one of kind `damaged`."""
-    try:
-        if file.stat().st_size > LARGEST:
-            raise DataError(
-                f"has {file.stat().st_size / 1e6:.0f} MB; expected at most "
-                f"{LARGEST / 1e6:.0f} MB of a journal", file=file
-            )  # fmt: skip
-        content = file.read_bytes()
-    except FileNotFoundError as error:
-        raise NotFound(f"{file}: no experiment to resume; run without --resume") from error
-    except OSError as error:
-        raise DataError(f"cannot be read: {error.strerror}", file=file) from error
+    advice = "no experiment to resume; run without --resume"
+    content = read_bytes(file, most=LARGEST, advice=advice)
     for number, line in enumerate(content.split(b"\n")[:-1], start=1):
         entry = _entry(line)
         if entry is None:

@@ -6,6 +6,7 @@ A run is left out of every calibration from its first moment. Its end record, wr
 run that a crash cut short, at whatever instant, is either finished and counted or neither.
 """
 
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -13,11 +14,12 @@ from typing import Any, Final
 
 from zebro_lab.experiment.journal import Journal
 from zebro_lab.files.errors import ZebroLabError
-from zebro_lab.runs.folder import exclude_run, find_runs
-from zebro_lab.runs.manifest import RECORDING, RunManifest, read_manifest
+from zebro_lab.runs.folder import LOG_FILE, exclude_run, require_recorded, run_state
+from zebro_lab.runs.manifest import MANIFEST_FILE, RECORDING, RunManifest, read_manifest
 
 UNJUDGED: Final = "it ended before it was judged; its point is measured again"
 """Why a run is left out until its end record says what it is worth."""
+_POINT_LABEL: Final = re.compile(r"(point|check)-\d{4} ")
 
 
 @dataclass(frozen=True)
@@ -49,7 +51,8 @@ def finished_points(data: Path, journal: Journal) -> Finished:
     """Find the points that earlier runs of a plan have finished.
 
     Runs of earlier versions have no `point` in their end record; for them the journal decides, and
-    those that were cut short are left out here.
+    those that were cut short are left out here. Recordings and experiments of others in the folder
+    or below it are not touched.
 
     Args:
         data: Folder of the experiment; its lock is held.
@@ -61,8 +64,12 @@ def finished_points(data: Path, journal: Journal) -> Finished:
     for run, manifest in sorted(manifests, key=lambda item: item[1].excluded is not None):
         number = _accepted(manifest, journal, run.name)
         if number is None:
-            if manifest.exit_status == RECORDING and manifest.excluded is None:
+            if _is_cut_short(run, manifest):
                 exclude_run(run, why=UNJUDGED)
+        elif (lost := _lost_log(run, manifest)) is not None:
+            notices.append(f"{lost}; point {number} is measured again")
+            if manifest.excluded is None:
+                exclude_run(run, why="its log is lost; its point is measured again")
         elif number not in numbers:
             numbers.add(number)
         elif manifest.excluded is None:
@@ -74,16 +81,42 @@ def finished_points(data: Path, journal: Journal) -> Finished:
     return Finished(frozenset(numbers), tuple(notices))
 
 
+def holds_points(data: Path) -> bool:
+    """Tell whether a folder holds runs of an experiment, whatever its plan."""
+    return any(manifest.point for _, manifest in _read_all(data)[0])
+
+
 def _read_all(data: Path) -> tuple[list[tuple[Path, RunManifest]], list[str]]:
     """Read the manifests of all runs; a damaged one is a notice and keeps nothing from going on."""
     manifests: list[tuple[Path, RunManifest]] = []
     notices: list[str] = []
-    for run in find_runs(data):
+    for run in sorted(file.parent for file in data.glob(f"*/{MANIFEST_FILE}")):
         try:
             manifests.append((run, read_manifest(run)))
         except ZebroLabError as error:
             notices.append(f"{error}; a point it may hold is measured again")
     return manifests, notices
+
+
+def _is_cut_short(run: Path, manifest: RunManifest) -> bool:
+    """Tell whether a run is a point of an earlier version that ended without an end record."""
+    return (
+        not manifest.point
+        and manifest.excluded is None
+        and manifest.kind == "slip-rig"
+        and _POINT_LABEL.match(manifest.label) is not None
+        and manifest.exit_status == RECORDING
+        and run_state(run, manifest) != RECORDING
+    )
+
+
+def _lost_log(run: Path, manifest: RunManifest) -> str | None:
+    """Say what is wrong with the log of a finished run; None where it is what was recorded."""
+    try:
+        require_recorded(run / LOG_FILE, manifest)
+    except (ZebroLabError, OSError) as error:
+        return f"{run.name}/{LOG_FILE} is missing" if isinstance(error, OSError) else str(error)
+    return None
 
 
 def _accepted(manifest: RunManifest, journal: Journal, name: str) -> int | None:

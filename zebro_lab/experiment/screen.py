@@ -127,10 +127,19 @@ class ExperimentScreen:
             )
 
     def draw_on(self) -> None:
-        """Draw what has changed, again and again, until closed."""
-        while not self._over.wait(PERIOD):
+        """Draw what has changed, again and again, until closed.
+
+        Raises:
+            BrokenPipeError: Nobody reads the output any more.
+        """
+        try:
+            while not self._over.wait(PERIOD):
+                self.draw()
             self.draw()
-        self.draw()
+        except SystemExit as error:  # how Rich answers a pipe that was closed
+            raise BrokenPipeError(
+                "nobody reads the output any more; leave it on a terminal, or write it to a file"
+            ) from error
 
     def draw(self) -> None:
         """Draw what has changed since the last time."""
@@ -202,7 +211,8 @@ def experiment_screen(console: Console, control: Control) -> Iterator[Experiment
 @contextmanager
 def _keys(console: Console, control: Control) -> Iterator[None]:
     """Listen to the keys of a terminal while the body runs."""
-    if not (console.is_terminal and sys.stdin.isatty()):
+    # Standard input is None where a shell has closed it.
+    if not (console.is_terminal and sys.stdin is not None and sys.stdin.isatty()):
         yield
         return
     keyboard = Keyboard(sys.stdin.fileno(), control)

@@ -22,10 +22,10 @@ from rig.experiment.watcher import Watcher
 from zebro_lab.experiment.folder import ExperimentFolder
 from zebro_lab.experiment.journal import JOURNAL_FILE, begin_or_resume
 from zebro_lab.experiment.plan_file import read_plan
-from zebro_lab.experiment.points import finished_points
+from zebro_lab.experiment.points import finished_points, holds_points
 from zebro_lab.experiment.rig_at_hand import RigAtHand, rig_at_hand
 from zebro_lab.files.documents import read_json_document, require_object
-from zebro_lab.files.errors import DataError, NotFound, RecordingError, ZebroLabError
+from zebro_lab.files.errors import AlreadyExists, DataError, NotFound, RecordingError, ZebroLabError
 from zebro_lab.recording.recorder import RunDescription
 
 CONTROL_FILE: Final = "control.json"
@@ -77,6 +77,8 @@ def run_experiment(request: RigRunRequest, watcher: Watcher, control: Control) -
         require_allowed(plan, rig.bench.profile)
         load = rig.load_setter(plan.load, control)
         with _owned(request.data):
+            if not request.resume:
+                _require_no_points(request.data)
             journal = begin_or_resume(
                 request.data, text, resume=request.resume, reset=request.reset_emergency
             )
@@ -119,6 +121,15 @@ def _description(plan: Plan, rig: RigAtHand) -> RunDescription:
         sources={stream.name: stream.source for stream in rig.bench.streams},
         truth=rig.truth,
     )
+
+
+def _require_no_points(data: Path) -> None:
+    """Refuse to measure over points whose journal is gone: each would count twice."""
+    if not (data / JOURNAL_FILE).exists() and holds_points(data):
+        raise AlreadyExists(
+            f"{data} holds points of an experiment without its {JOURNAL_FILE}; restore that, or "
+            "name another --data"
+        )
 
 
 @contextmanager

@@ -30,7 +30,9 @@ def runs(data: DataDir) -> None:
 def exclude(run: RunFolder, why: Why = None, undo: Undo = False) -> None:
     """Leave a run out of every calibration, and keep it; or take it in again."""
     from zebro_lab.runs.exclusion import exclude_run, take_in_again
+    from zebro_lab.runs.folder import require_ended
 
+    require_ended(run)
     if undo:
         take_in_again(run, why=why)
         say(f"{run.name} counts again from now on")

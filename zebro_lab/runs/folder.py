@@ -49,6 +49,7 @@ __all__ = [
     "new_run_folder",
     "read_manifest",
     "read_slip_rig_run",
+    "require_ended",
     "require_recorded",
     "run_path",
     "run_state",
@@ -248,6 +249,17 @@ def run_state(folder: Path, manifest: RunManifest) -> str:
     log = folder / LOG_FILE
     growing = log.is_file() and time.time() - log.stat().st_mtime < STILL_GROWING
     return RECORDING if growing else "recovered"
+
+
+def require_ended(folder: Path) -> None:
+    """Refuse a run that is being recorded: its end record would undo what is written now.
+
+    Raises:
+        NotFound: It is no run folder.
+        RecordingError: It is being recorded.
+    """
+    if run_state(folder, read_manifest(folder)) == RECORDING:
+        raise RecordingError(f"{folder} is being recorded; wait until it has ended")
 
 
 def _slip_rig_table(

@@ -19,6 +19,8 @@ def say_in_time(text: str, *, err: bool = False) -> bool:
 
     def write() -> None:
         stream = sys.stderr if err else sys.stdout
+        if stream is None:  # a shell has closed it
+            return
         stream.write(text + "\n")
         stream.flush()
 

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: MIT
+import contextlib
 import io
+import os
 import subprocess
 import sys
 import time
@@ -154,6 +156,27 @@ def test_text_of_a_plan_cannot_command_the_terminal():
     screen.notice("a [red]label\x1b[2J\ncompleted")
     screen.draw()
     assert console.file.getvalue() == "a [red]label\\x1b[2J\\ncompleted\n"
+
+
+def test_a_pipe_that_nobody_reads_is_named():
+    read, write = os.pipe()
+    os.close(read)
+    with contextlib.suppress(BrokenPipeError), os.fdopen(write, "w") as pipe:
+        screen = ExperimentScreen(Console(file=pipe), None)
+        screen.notice("begin")
+        screen.close()
+        with pytest.raises(BrokenPipeError, match="nobody reads"):
+            screen.draw_on()
+
+
+@pytest.mark.parametrize("closed", ["<&-", ">&-"])
+def test_a_stream_that_a_shell_has_closed_is_no_fault(plan, tmp_path, closed):
+    command = (
+        f"{sys.executable} -c 'from zebro_lab.main import main; main()' rig run {plan} --rig sim "
+        f"--fast --data {tmp_path / 'data'} {closed}"
+    )
+    done = subprocess.run(["sh", "-c", command], stderr=subprocess.PIPE, text=True, timeout=120)
+    assert (done.returncode, done.stderr) == (0, "")
 
 
 def test_a_hold_is_visible_and_says_which_key_goes_on(plan, tmp_path):

@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: MIT
 """An emergency stop stays latched, whatever happens beside it."""
 
+import os
+from pathlib import Path
+
 import pytest
 
 from rig.errors import RigError
@@ -8,7 +11,8 @@ from rig.experiment.acquire import Acquisition
 from rig.experiment.control import Control
 from rig.safety import StopCategory
 from zebro_lab.experiment.journal import JOURNAL_FILE, JournalWriter
-from zebro_lab.files.errors import SettingsError
+from zebro_lab.experiment.latch import LATCH_FILE, EmergencyLatch
+from zebro_lab.files.errors import NotFound, SettingsError, ZebroLabError
 
 
 def stop_by_emergency(lab, plan, data, reason="planted", action=lambda: None):
@@ -76,3 +80,48 @@ def test_a_journal_with_a_damaged_line_counts_as_latched(lab, plan, tmp_path, da
     with (data / JOURNAL_FILE).open("ab") as file:
         file.write(damage + b'{"kind": "note", "text": "after it"}\n')
     require_latched(lab, plan, data)
+
+
+@pytest.mark.parametrize("resume", [False, True])
+def test_a_latch_without_its_journal_is_latched(lab, plan, tmp_path, resume):
+    data = tmp_path / "data"
+    data.mkdir()
+    EmergencyLatch(data).prepare()
+    EmergencyLatch(data).latch("emergency stop: smoke")
+    with pytest.raises((SettingsError, NotFound), match=r"latched|no experiment"):
+        lab.run(plan, data, resume=resume)
+    assert EmergencyLatch(data).reason == "emergency stop: smoke"
+    if not resume:
+        assert lab.run(plan, data, reset_emergency=True).completed
+        assert EmergencyLatch(data).reason is None
+
+
+@pytest.mark.parametrize("name", ["emergency-latch", ".experiment.reserve", JOURNAL_FILE])
+@pytest.mark.parametrize("kind", ["fifo", "folder", "link"])
+@pytest.mark.timeout(60)
+def test_what_is_no_file_in_the_place_of_one_holds_nothing_up(lab, plan, tmp_path, name, kind):
+    data, victim = tmp_path / "data", tmp_path / "victim"
+    data.mkdir()
+    victim.write_text("precious")
+    place = data / name
+    make = {"fifo": os.mkfifo, "folder": Path.mkdir, "link": lambda p: p.symlink_to(victim)}
+    make[kind](place)
+    if name == ".experiment.reserve":
+        assert lab.run(plan, data).completed
+    else:
+        with pytest.raises(ZebroLabError) as raised:
+            lab.run(plan, data)
+        assert "\n" not in str(raised.value)
+        with pytest.raises(ZebroLabError):
+            lab.run(plan, data, resume=True)
+    assert victim.read_text() == "precious"
+
+
+def test_a_latch_that_turned_into_a_fifo_holds_no_stop_up(tmp_path):
+    latch = EmergencyLatch(tmp_path)
+    latch.prepare()
+    (tmp_path / LATCH_FILE).unlink()
+    os.mkfifo(tmp_path / LATCH_FILE)
+    with pytest.raises(OSError, match="emergency-latch"):
+        latch.latch("emergency stop: smoke")
+    assert "regular" in latch.reason

@@ -2,6 +2,7 @@
 """Run folders: what is written is read back, and damage is told."""
 
 import json
+import os
 from datetime import UTC, datetime, timedelta, timezone
 from pathlib import Path
 
@@ -205,3 +206,14 @@ def test_an_exclusion_can_be_undone_and_stays_on_record(tmp_path, monkeypatch, c
     assert "it was the other" in (folder / "run.json").read_text()
     assert zebro_lab(monkeypatch, "exclude", folder, "--undo") == 1
     assert "is not left out" in capsys.readouterr().err
+
+
+def test_a_run_that_is_being_recorded_is_not_excluded(tmp_path, monkeypatch, capsys):
+    folder = make_run(tmp_path)
+    edit(folder, exit_status="recording", stop=None)
+    before = (folder / "run.json").read_text()
+    assert zebro_lab(monkeypatch, "exclude", folder, "--why", "belt slipped") == 1
+    assert "is being recorded" in capsys.readouterr().err
+    assert (folder / "run.json").read_text() == before
+    os.utime(folder / "log.mcap", (0, 0))  # a kill left it behind
+    assert zebro_lab(monkeypatch, "exclude", folder, "--why", "belt slipped") == 0

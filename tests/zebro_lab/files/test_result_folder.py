@@ -301,6 +301,14 @@ def test_a_linked_folder_is_replaced_behind_its_link(tmp_path):
     assert read_track_manifest(tmp_path / "track-3")["settings"] == {"x": 1.0}
 
 
+@pytest.mark.parametrize("out", ["file/result", "file/deep/result", "broken", "broken/result"])
+def test_a_place_that_can_hold_no_folder_is_refused_before_anything_is_computed(out, tmp_path):
+    (tmp_path / "file").write_text("mine")
+    (tmp_path / "broken").symlink_to("nowhere")
+    with pytest.raises(ZebroLabError, match=r"^\S+ is (a file|a link).*; name another --out$"):
+        require_replaceable(tmp_path / out, TRACKED)
+
+
 def test_foreign_folders_links_and_rights_are_carried_over(tmp_path):
     out = tmp_path / "track"
     write_track(out, 0.0)

@@ -220,6 +220,14 @@ def test_a_foreign_page_is_kept(run, tmp_path):
     assert "My thesis" in out.read_text()
 
 
+@pytest.mark.timeout(60)
+def test_a_manifest_that_is_a_fifo_beside_a_page_is_not_waited_for(run, tmp_path):
+    page = tmp_path / "r.html"
+    report(ReportRequest(run, run / "none", page), made=START)
+    os.mkfifo(tmp_path / "manifest.json")
+    report(ReportRequest(run, run / "none", page), made=START)
+
+
 def test_a_plot_keeps_a_foreign_picture(run, tmp_path):
     out = tmp_path / "robot.png"
     Image.new("RGB", (8, 8), "red").save(out)

@@ -121,7 +121,7 @@ def send_command(port: int, token: str, command: str, *, timeout: float = 2.0) -
     """
     try:
         with socket.create_connection(("127.0.0.1", port), timeout=timeout) as link:
-            link.sendall(f"{token} {command}\n".encode())
+            link.sendall(f"{token} {command}\n".encode("utf-8", "backslashreplace"))
             with link.makefile("r", encoding="utf-8", errors="replace") as lines:
                 reply = lines.readline(LONGEST_LINE).strip()
     except OSError as problem:

@@ -20,6 +20,7 @@ import numpy as np
 
 from rig.exclusive import try_lock
 from zebro_lab.files.atomic import draft_name, nearest_folder, sync_files
+from zebro_lab.files.encodable import encodable
 from zebro_lab.files.errors import AlreadyExists, NotWritten, ZebroLabError
 from zebro_lab.files.folder_manifest import read_json_object
 from zebro_lab.files.provenance import file_hash, software
@@ -112,7 +113,7 @@ def result_folder(out: Path, kind: ResultKind, *, content: Mapping[str, object])
             "outputs": {p.name: file_hash(p) for p in sorted(draft.iterdir()) if p.is_file()},
             "software": software(),
         }
-        (draft / MANIFEST).write_text(json.dumps(plain_json(document), indent=2) + "\n")
+        (draft / MANIFEST).write_text(json.dumps(encodable(plain_json(document)), indent=2) + "\n")
         sync_files(draft)
         written = [path.name for path in draft.iterdir()]
 

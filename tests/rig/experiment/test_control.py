@@ -83,6 +83,13 @@ def test_who_does_not_know_the_token_commands_nothing():
     assert control.stop.pending is None
 
 
+def test_bytes_of_a_foreign_encoding_reach_the_run_as_escapes():
+    control = Control()
+    with ControlServer(control) as server:
+        assert send_command(server.port, server.token, "note caf\udce9") == "done"
+    assert [note.text for note in control.take_notes()] == [r"socket: caf\udce9"]
+
+
 def test_an_unknown_command_is_answered_with_the_known_ones():
     with ControlServer(Control()) as server, pytest.raises(ProtocolError, match="expected pause,"):
         send_command(server.port, server.token, "stopp")

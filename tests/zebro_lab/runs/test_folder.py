@@ -205,3 +205,11 @@ def test_an_exclusion_can_be_undone_and_stays_on_record(tmp_path, monkeypatch, c
     assert "it was the other" in (folder / "run.json").read_text()
     assert zebro_lab(monkeypatch, "exclude", folder, "--undo") == 1
     assert "is not left out" in capsys.readouterr().err
+
+
+def test_bytes_of_a_foreign_encoding_are_kept_as_escapes(tmp_path, monkeypatch):
+    folder = make_run(tmp_path, label="caf\udce9", material="\udcff")
+    assert zebro_lab(monkeypatch, "exclude", folder, "--why", "na\udcefve 🤖") == 0
+    manifest = read_manifest(folder)
+    assert (manifest.label, manifest.material) == (r"caf\udce9", r"\udcff")
+    assert manifest.excluded == {"why": r"na\udcefve 🤖"}

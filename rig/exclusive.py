@@ -107,7 +107,7 @@ class Exclusive:
                 "or name another"
             )
         os.ftruncate(handle, 0)
-        os.pwrite(handle, _owner().encode(), 0)
+        os.pwrite(handle, _owner().encode("utf-8", "backslashreplace"), 0)
         return handle
 
 
@@ -137,7 +137,7 @@ def device_lock(name: str) -> Exclusive:
     """
     real = os.path.realpath(name) if name.startswith("/") else name
     return Exclusive(
-        _lock_folder() / hashlib.sha256(real.encode()).hexdigest()[:32], what=name, shared=True
+        _lock_folder() / hashlib.sha256(os.fsencode(real)).hexdigest()[:32], what=name, shared=True
     )
 
 

@@ -173,9 +173,9 @@ def require_forces(samples: SlipSamples, cell: LoadCell) -> None:
     loads, traction = samples.normal_force, samples.traction_force
     for name, force in (("normal", loads), ("traction", traction)):
         largest = float(np.abs(force).max())
-        if not largest < MOST_FORCE:
+        if not largest <= MOST_FORCE:
             raise DomainError(
-                f"{name} force reaches {largest:.3g} N; expected less than {MOST_FORCE:g} N: check "
+                f"{name} force reaches {largest:.15g} N; expected at most {MOST_FORCE:g} N: check "
                 "its unit"
             )
     if np.ptp(traction) == 0:
@@ -186,9 +186,21 @@ def require_forces(samples: SlipSamples, cell: LoadCell) -> None:
     if loads.max() <= cell.zero_stability:
         raise InsufficientData(
             f"the largest normal force is {loads.max():.3g} N, no more than the load cell's own "
-            f"zero stability of {cell.zero_stability:.3g} N; are the forces in kN? Name their unit "
-            "in columns.toml, or give the cell's zero stability"
+            f"zero stability of {cell.zero_stability:.3g} N; "
+            f"{_implausible(float(loads.max()), float(np.abs(traction).max()))}"
         )
+
+
+def _implausible(load: float, traction: float) -> str:
+    """Say which number cannot be where the largest load [N] is lost in the zero's error."""
+    if max(load, traction) < 1:
+        return "are the forces in kN? Name their unit in columns.toml, or give the zero stability"
+    if traction > 10 * load:
+        return (
+            f"traction force reaches {traction:.3g} N, implausible under such a load: check both "
+            "columns and their units"
+        )
+    return "such a cell measures no such load: correct the cell's zero stability, or the loads"
 
 
 def _not_identified(blocks: SlipBlocks) -> dict[str, float]:

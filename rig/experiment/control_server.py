@@ -17,10 +17,11 @@ from types import TracebackType
 from typing import Final, Self
 
 from rig.errors import LinkError, PartFailed, ProtocolError
-from rig.experiment.control import Control
+from rig.experiment.control import LONGEST_NOTE, Control
 from rig.experiment.supervision import start_thread
 
-LONGEST_LINE: Final = 4096
+LONGEST_LINE: Final = 4 * LONGEST_NOTE + 256
+"""Bytes of a line: a token and a command of `LONGEST_NOTE` characters."""
 PATIENCE: Final = 600.0
 """Silence after which a client is hung up on [s]."""
 JOIN_LIMIT: Final = 2.0
@@ -117,11 +118,13 @@ def send_command(port: int, token: str, command: str, *, timeout: float = 2.0) -
 
     Raises:
         LinkError: Nobody answers: the run is over.
-        ProtocolError: It refused.
+        ProtocolError: It refused, or the command is not one line of at most `LONGEST_NOTE`
+            characters, so that a part of it would be lost.
     """
+    line = f"{token} {_whole(command)}\n"
     try:
         with socket.create_connection(("127.0.0.1", port), timeout=timeout) as link:
-            link.sendall(f"{token} {command}\n".encode())
+            link.sendall(line.encode())
             with link.makefile("r", encoding="utf-8", errors="replace") as lines:
                 reply = lines.readline(LONGEST_LINE).strip()
     except OSError as problem:
@@ -129,3 +132,17 @@ def send_command(port: int, token: str, command: str, *, timeout: float = 2.0) -
     if not reply.startswith("ok"):
         raise ProtocolError(reply.removeprefix("error: ") or "the run hung up")
     return reply.removeprefix("ok").strip()
+
+
+def _whole(command: str) -> str:
+    """Return a command that one line can carry; what is no character becomes an escape."""
+    text = command.strip().encode("utf-8", "backslashreplace").decode("utf-8")
+    lines = len(text.splitlines())
+    if lines > 1:
+        raise ProtocolError(f"found {lines} lines; expected one command: give each by itself")
+    if len(text) > LONGEST_NOTE:
+        raise ProtocolError(
+            f"the command has {len(text)} characters; at most {LONGEST_NOTE} are kept: shorten it, "
+            "or give several"
+        )
+    return text

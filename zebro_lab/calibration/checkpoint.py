@@ -11,6 +11,7 @@ from zebro_lab.files.arrays import read_arrays
 from zebro_lab.files.atomic import atomic_write_bytes
 from zebro_lab.files.errors import DataError
 from zebro_lab.files.opening import parsing
+from zebro_lab.files.result_folder import real_place, writing
 
 FILE = "checkpoint.npz"
 _ARRAYS = (
@@ -27,8 +28,10 @@ def save_checkpoint(folder: Path, chains: Chains, *, fingerprint: str) -> Path:
         folder: Folder of the calibration; made when missing.
         chains: Where the sampler stands.
         fingerprint: Hash of the data and settings the chains belong to.
+
+    Raises:
+        NotWritten: The file system refuses.
     """
-    folder.mkdir(parents=True, exist_ok=True)
     buffer = io.BytesIO()
     np.savez(
         buffer,
@@ -40,7 +43,11 @@ def save_checkpoint(folder: Path, chains: Chains, *, fingerprint: str) -> Path:
         random_keys=chains.random_keys,
         random_positions=chains.random_positions,
     )
-    return atomic_write_bytes(folder / FILE, buffer.getvalue())
+    place = real_place(folder)
+    with writing(folder):
+        place.mkdir(parents=True, exist_ok=True)
+        atomic_write_bytes(place / FILE, buffer.getvalue())
+    return folder / FILE
 
 
 def load_checkpoint(folder: Path, *, fingerprint: str) -> Chains:

@@ -33,6 +33,8 @@ from zebro_lab.walk.walking import Watcher
 
 _UNIX: Final = 1e9
 """Times from here on are seconds since 1970: no run lasts for 30 years [s]."""
+_FIRST: Final = datetime(1970, 1, 1, tzinfo=UTC)
+_LAST: Final = datetime(2262, 1, 1, tzinfo=UTC)  # a log counts nanoseconds in 64 bits
 
 
 @dataclass(frozen=True)
@@ -115,6 +117,11 @@ def _require_something(request: ImportRequest) -> None:
         raise SettingsError(
             f"{request.start.isoformat()} has no time zone; write it as "
             f"{request.start.isoformat()}+00:00",
+            key="--start",
+        )
+    if request.start is not None and not _FIRST <= request.start < _LAST:
+        raise SettingsError(
+            f"found {request.start.isoformat()}; expected a time from 1970 to the end of 2261",
             key="--start",
         )
 

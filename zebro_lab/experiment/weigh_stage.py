@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Known weights in, the gain prior of a fit out."""
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -42,6 +43,17 @@ class WeighRequest:
     seed: int = 0
 
 
+def _require_finite(request: WeighRequest) -> None:
+    given = {
+        "--masses": request.masses, "--weight-sd": [request.weight_sd],
+        "--gravity": [request.gravity],
+    }  # fmt: skip
+    for option, numbers in given.items():
+        for number in numbers:
+            if not math.isfinite(number):
+                raise SettingsError(f"found {number}; expected a finite number", key=option)
+
+
 def weigh_masses(
     request: WeighRequest, prompt: Callable[[str, float], None], control: Control
 ) -> tuple[Weighing, GainCheck, Path | None]:
@@ -56,10 +68,11 @@ def weigh_masses(
         The readings, the line through them, and the file that was written.
 
     Raises:
-        SettingsError: A mass is not positive.
+        SettingsError: A mass is not positive, or a number is not finite.
         AlreadyExists: There is a `columns.toml` already; nothing was measured.
         RigError: A weight is beyond the rig's limit, or a device failed.
     """
+    _require_finite(request)
     if not request.masses or min(request.masses) <= 0:
         raise SettingsError("expected masses above 0 kg, such as 0.2,0.5,1", key="--masses")
     target = None if request.data is None else request.data / COLUMNS_FILE

@@ -116,6 +116,8 @@ def _descriptor(path: Path, advice: str, fault: Fault) -> int:
         descriptor = os.open(path, os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC)
     except (FileNotFoundError, NotADirectoryError) as error:
         raise NotFound(f"{path}: no such file" + (f"; {advice}" if advice else "")) from error
+    except ZebroLabError:
+        raise
     except (OSError, ValueError) as error:
         said = error.strerror if isinstance(error, OSError) else str(error)
         raise fault(f"cannot be opened: {said}", file=path) from error

@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: MIT
 """Single files that a command makes: replaced where the file says that the command made it."""
 
-import json
 import os
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
-from zebro_lab.files.errors import AlreadyExists, NotFound
+from zebro_lab.files.errors import AlreadyExists, NotFound, ZebroLabError
+from zebro_lab.files.folder_manifest import read_json_object
 from zebro_lab.files.result_folder import MANIFEST
 
 _HEAD: Final = 1 << 16
@@ -101,11 +101,11 @@ def _require_ours(out: Path, file: Path, kind: OwnFile) -> None:
 def _listed_beside(file: Path) -> Sequence[str]:
     """List the files of the result that a file lies in, if it lies in one."""
     try:
-        with (file.parent / MANIFEST).open("rb") as opened:
-            outputs = json.loads(opened.read(1 << 24)).get("outputs")
-        return tuple(outputs)
-    except (OSError, ValueError, AttributeError, TypeError, RecursionError):
+        manifest = read_json_object(file.parent / MANIFEST, of="result folder")
+    except ZebroLabError:
         return ()
+    outputs = manifest.get("outputs")
+    return tuple(outputs) if isinstance(outputs, dict | list) else ()
 
 
 def _png_texts(head: bytes) -> Iterator[tuple[str, str]]:

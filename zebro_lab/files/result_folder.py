@@ -20,6 +20,7 @@ import numpy as np
 
 from rig.exclusive import try_lock
 from zebro_lab.files.atomic import draft_name, nearest_folder, sync_files
+from zebro_lab.files.encodable import encodable
 from zebro_lab.files.errors import AlreadyExists, NotWritten, ZebroLabError
 from zebro_lab.files.folder_manifest import read_json_object
 from zebro_lab.files.provenance import file_hash, software
@@ -58,12 +59,14 @@ def require_replaceable(out: Path, kind: ResultKind, *, inputs: Sequence[Path] =
         inputs: Files and folders that are read.
 
     Raises:
-        AlreadyExists: It is a file, an input, the result of another command, or holds a file of
-            somebody else, or one that was changed, where a file is to be written.
+        AlreadyExists: It is a file or below one, a broken link, an input, the result of another
+            command, or holds a file of somebody else, or one that was changed, where a file is to
+            be written.
         NotWritten: The folder in which it lies cannot be written to.
     """
-    folder = _place(out)
+    folder = real_place(out)
     settle(folder, writing=True)
+    _require_ground(out)
     if os.path.lexists(folder) and not folder.is_dir():
         raise AlreadyExists(f"{out} is a file where a folder is to be written; name another --out")
     _require_not_inside(out, folder)
@@ -100,7 +103,7 @@ def result_folder(out: Path, kind: ResultKind, *, content: Mapping[str, object])
         NotWritten: The folder cannot be made or moved.
     """
     require_replaceable(out, kind)
-    folder = _place(out)
+    folder = real_place(out)
     with _draft_of(folder) as draft:
         yield draft
         document = {
@@ -110,7 +113,7 @@ def result_folder(out: Path, kind: ResultKind, *, content: Mapping[str, object])
             "outputs": {p.name: file_hash(p) for p in sorted(draft.iterdir()) if p.is_file()},
             "software": software(),
         }
-        (draft / MANIFEST).write_text(json.dumps(plain_json(document), indent=2) + "\n")
+        (draft / MANIFEST).write_text(json.dumps(encodable(plain_json(document)), indent=2) + "\n")
         sync_files(draft)
         written = [path.name for path in draft.iterdir()]
 
@@ -119,14 +122,30 @@ def result_folder(out: Path, kind: ResultKind, *, content: Mapping[str, object])
             _require_free(folder, written, kind, names)
             return names
 
-        try:
+        with writing(out):
             replace_folder(folder, draft, owned=owned)
-        except OSError as error:
-            if isinstance(error, ZebroLabError):
-                raise
-            raise NotWritten(
-                f"{out} cannot be written ({error.strerror or error}); name another --out"
-            ) from error
+
+
+def real_place(path: Path) -> Path:
+    """Return a file or folder itself, not a link to it: a link is followed, never replaced."""
+    return Path(os.path.realpath(path))
+
+
+@contextmanager
+def writing(out: Path) -> Iterator[None]:
+    """Turn what the file system refuses while a folder is written into one line.
+
+    Raises:
+        NotWritten: The body raised an `OSError` that is not ours.
+    """
+    try:
+        yield
+    except OSError as error:
+        if isinstance(error, ZebroLabError):
+            raise
+        raise NotWritten(
+            f"{out} cannot be written ({error.strerror or error}); name another --out"
+        ) from error
 
 
 def plain_json(value: object) -> object:
@@ -138,9 +157,13 @@ def plain_json(value: object) -> object:
     return None if isinstance(value, float) and not np.isfinite(value) else value
 
 
-def _place(out: Path) -> Path:
-    """Return the folder itself, not a link to it: a link is followed, never replaced."""
-    return Path(os.path.realpath(out))
+def _require_ground(out: Path) -> None:
+    """Refuse a place that can hold no folder: one below a file, or behind a broken link."""
+    for place in (out, *out.parents):
+        if place.is_symlink() and not place.exists():
+            raise AlreadyExists(f"{place} is a link to what is not there; name another --out")
+        if place != out and place.exists() and not place.is_dir():
+            raise AlreadyExists(f"{place} is a file, which holds no folder; name another --out")
 
 
 def _require_not_inside(out: Path, folder: Path) -> None:
@@ -223,7 +246,7 @@ def _require_free(
 
 def _require_kept(out: Path, folder: Path, path: Path, replaced: Collection[str]) -> None:
     """Refuse a folder whose replacement would take an input away."""
-    place = _place(path)
+    place = real_place(path)
     inside = place.is_relative_to(folder) and place.relative_to(folder).parts[:1]
     if place == folder or (inside and inside[0] in replaced):
         raise AlreadyExists(

@@ -84,7 +84,7 @@ class CdrWriter:
 
 
 def _text_block(value: str) -> bytes:
-    data = value.encode() + b"\0"
+    data = value.encode("utf-8", "backslashreplace") + b"\0"
     return struct.pack("<I", len(data)) + data
 
 

@@ -45,8 +45,8 @@ def find_sources(paths: Sequence[Path]) -> list[DataSource]:
     """Find the tables and run folders that a command line means.
 
     A folder stands for every CSV and Parquet file and every run folder below it, in the order
-    of their names; hidden folders and calibration outputs are passed over. What is named twice
-    counts once.
+    of their names; links are followed, hidden folders and calibration outputs passed over. What is
+    named twice counts once.
 
     Args:
         paths: Files and folders, as named.
@@ -68,7 +68,7 @@ def _sources_at(path: Path) -> list[DataSource]:
     if not path.exists():
         raise NotFound(f"{path}: no such file or folder; working in {Path.cwd()}")
     if path.is_dir():
-        sources = [DataSource(below, path) for below in _walk(path)]
+        sources = [DataSource(below, path) for below in _walk(path, set())]
         if not sources:
             raise DataError(_why_empty(path), file=path)
         return sources
@@ -77,7 +77,17 @@ def _sources_at(path: Path) -> list[DataSource]:
     return [DataSource(path, path.parent)]
 
 
-def _walk(folder: Path) -> Iterator[Path]:
+def _walk(folder: Path, entered: set[tuple[int, int]]) -> Iterator[Path]:
+    """Yield the tables and run folders below a folder; links may lead in circles.
+
+    Args:
+        folder: Where to look.
+        entered: Device and inode of the folders that were looked at; this one is added.
+    """
+    status = folder.stat()
+    if (status.st_dev, status.st_ino) in entered:
+        return
+    entered.add((status.st_dev, status.st_ino))
     if (folder / MANIFEST_FILE).is_file():
         yield folder
         return
@@ -87,7 +97,7 @@ def _walk(folder: Path) -> Iterator[Path]:
         if path.name.startswith("."):
             continue
         if path.is_dir():
-            yield from _walk(path)
+            yield from _walk(path, entered)
         elif is_table_file(path):
             yield path
 

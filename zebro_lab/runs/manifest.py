@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from zebro_lab.files.atomic import atomic_write_text
+from zebro_lab.files.encodable import encodable
 from zebro_lab.files.errors import DataError
 from zebro_lab.files.folder_manifest import read_json_object
 from zebro_lab.files.known_keys import nearest
@@ -119,7 +120,7 @@ def manifest_text(manifest: RunManifest) -> str:
         key: value for key, value in asdict(manifest).items()
         if value is not None and (value or key not in _OPTIONAL)
     }  # fmt: skip
-    return json.dumps(document, indent=2, ensure_ascii=False) + "\n"
+    return json.dumps(encodable(document), indent=2, ensure_ascii=False) + "\n"
 
 
 def software_version(commit: str = "unknown") -> dict[str, str]:

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """How a command ends: one line for a known error, a traceback for an unknown one."""
 
+import os
 import sys
 import warnings
 from collections.abc import Callable
@@ -9,7 +10,10 @@ import typer
 
 
 def run(app: typer.Typer) -> None:
-    """Run a Typer app; known errors become one line on stderr and exit code 1."""
+    """Run a Typer app; known errors become one line on stderr and exit code 1.
+
+    Known are the errors of the project, and what the file system says of a file.
+    """
     # ArviZ tells developers of its next version once a day; users can do nothing about it.
     warnings.filterwarnings("ignore", message=r"\s*ArviZ is undergoing", category=FutureWarning)
     _guard(lambda: app())
@@ -19,14 +23,23 @@ def _guard(command: Callable[[], object]) -> None:
     try:
         command()
     except Exception as error:
-        if not _is_known(error):
+        said = str(error) if _is_known(error) else _of_a_file(error)
+        if said is None:
             raise
         from zebro_lab.files.shown_text import shortened, shown
         from zebro_lab.terminal.last_words import leave_at_once, say_in_time
 
-        if not say_in_time(f"error: {shortened(shown(str(error)))}", err=True):
+        if not say_in_time(f"error: {shortened(shown(said))}", err=True):
             leave_at_once(1)
         raise SystemExit(1) from None
+
+
+def _of_a_file(error: Exception) -> str | None:
+    """Say what the file system refuses to do with a file; None of an error of something else."""
+    if not isinstance(error, OSError) or error.filename is None:
+        return None
+    name = error.filename if isinstance(error.filename, int) else os.fsdecode(error.filename)
+    return f"{name}: {error.strerror or error}"
 
 
 def _is_known(error: Exception) -> bool:

@@ -37,6 +37,9 @@ WALKED = {kind: ResultKind(kind, kind, FILES, SCHEMA) for kind in KINDS}
 
 _DIGITS = "%.10g"  # far below what any model means, far above what a float loses
 
+_BATCH = 10_000
+"""Rows that are spelled at once, in a third of pandas' time; each takes 2 kB as Python's floats."""
+
 
 @dataclass(frozen=True)
 class _Block:
@@ -79,10 +82,12 @@ COLUMNS = tuple(name for block in _BLOCKS for name in block.columns)
 def write_path(file: Path, path: WalkPath) -> None:
     """Write a path as CSV in SI with the columns `COLUMNS`; what a model does not have is empty."""
     values = np.column_stack([block.values(path) for block in _BLOCKS])
-    line = ",".join(block.form for block in _BLOCKS for _ in block.columns)
-    rows = "\n".join([line % tuple(row) for row in values.tolist()])  # a third of pandas' time
-    text = f"{','.join(COLUMNS)}\n{rows.replace('nan', '')}\n"
-    file.write_text(text, encoding="utf-8", newline="\n")
+    line = ",".join(block.form for block in _BLOCKS for _ in block.columns) + "\n"
+    with file.open("w", encoding="utf-8", newline="\n") as text:
+        text.write(",".join(COLUMNS) + "\n")
+        for first in range(0, len(values), _BATCH):
+            rows = values[first : first + _BATCH].tolist()
+            text.write("".join([line % tuple(row) for row in rows]).replace("nan", ""))
 
 
 @contextmanager

@@ -4,7 +4,7 @@
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Protocol
+from typing import Final, Protocol
 
 import numpy as np
 
@@ -24,6 +24,9 @@ from zebro_lab.walk.models import MODELS, Direction, ModelRun
 from zebro_lab.walk.pictures import animate_walk, draw_walk
 
 INFORMED_MODEL = "dynamics"  # the one whose legs and floor walks were fitted with
+
+MOST_STEPS: Final = 500_000
+"""Steps of a walk; each takes about 1.1 kB while the path is computed and written."""
 
 
 class Watcher(Protocol):
@@ -154,11 +157,7 @@ def walk_with(
         notes = (*notes, f"the model '{model.name}' does not slip: --slip {slip.text} not used")
         slip = None
     dt = model.dt if request.dt is None else request.dt
-    if not (dt > 0 and duration > dt and np.isfinite(duration)):
-        raise SettingsError(
-            f"{duration:g} s in steps of {dt:g} s is no walk; expected more than a step",
-            key="--duration, --dt",
-        )
+    _require_steps(duration, dt)
     informed = None
     if slip is not None and slip.walks is not None and model.name == INFORMED_MODEL:
         informed = informed_legs(
@@ -167,6 +166,7 @@ def walk_with(
         notes = (*notes, *informed.notes)
         if request.dt is None:
             dt = min(dt, FINE.dt)  # the step that its legs were found by
+            _require_steps(duration, dt)
     run = ModelRun(
         described.robot, reference, slip, duration, dt, request.toe, direction,
         None if informed is None else informed.middle,
@@ -184,6 +184,22 @@ def walk_with(
         notes=(*notes, *(slip.notes if slip is not None else ())),
         informed=informed,
     )
+
+
+def _require_steps(duration: float, dt: float) -> None:
+    """Refuse what is no walk, and one that memory does not hold."""
+    if not (dt > 0 and duration > dt and np.isfinite(duration)):
+        raise SettingsError(
+            f"{duration:g} s in steps of {dt:g} s is no walk; expected more than a step",
+            key="--duration, --dt",
+        )
+    if duration / dt > MOST_STEPS:
+        raise SettingsError(
+            f"{duration:g} s in steps of {dt:g} s is {duration / dt:.3g} steps; at most "
+            f"{MOST_STEPS:,} are walked, which take 1 GB of memory: walk for a shorter time, or "
+            "lengthen --dt",
+            key="--duration, --dt",
+        )
 
 
 def write_walk(

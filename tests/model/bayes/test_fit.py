@@ -6,7 +6,7 @@ import pytest
 
 from model.bayes.blocks import block_means
 from model.bayes.cross_validation import CrossValidation
-from model.bayes.fit import CLEAR_WIN, compare, prepare_fit, scaled_load_cell
+from model.bayes.fit import CLEAR_WIN, compare, prepare_fit, require_forces, scaled_load_cell
 from model.bayes.laplace import find_mode
 from model.bayes.posterior import LoadCell, SlipPosterior
 from model.bayes.preliminary import BlockChoice
@@ -214,6 +214,42 @@ def test_what_is_known_goes_before_every_default():
     known = {"zero_stability": 0.02, "gain_sd": 0.001}
     cell = scaled_load_cell(simulated(), known)
     assert (cell.zero_stability, cell.gain_sd) == (0.02, 0.001)
+
+
+# --- forces from which no curve follows
+
+
+def of_largest(*, normal: float = 1.0, traction: float = 1.0):
+    samples = simulated()
+    return replace(
+        samples,
+        normal_force=normal * samples.normal_force / samples.normal_force.max(),
+        traction_force=traction * samples.traction_force / np.abs(samples.traction_force).max(),
+    )
+
+
+def test_a_force_just_beyond_the_bound_is_told_from_it():
+    require_forces(of_largest(traction=1e9, normal=1e9), LoadCell())
+    with pytest.raises(DomainError, match=r"reaches 1000000000\.5 N; expected at most 1e\+09 N"):
+        require_forces(of_largest(traction=1e9 + 0.5, normal=1.0), LoadCell())
+
+
+@pytest.mark.parametrize(
+    ("normal", "traction", "zero_stability", "advice"),
+    [
+        (0.013, 0.005, 0.15, "are the forces in kN"),
+        (13.0, 5e5, 2500.0, r"traction force reaches 5e\+05 N, implausible under such a load"),
+        (13.0, 5.0, 50.0, "correct the cell's zero stability"),
+    ],
+)
+def test_loads_below_the_zero_are_told_by_what_is_implausible(
+    normal, traction, zero_stability, advice
+):
+    with pytest.raises(InsufficientData, match=advice) as caught:
+        require_forces(
+            of_largest(normal=normal, traction=traction), LoadCell(zero_stability=zero_stability)
+        )
+    assert ("kN" in str(caught.value)) == (normal < 1)
 
 
 # --- comparing laws

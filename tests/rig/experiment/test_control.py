@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from rig.errors import LinkError, ProtocolError
-from rig.experiment.control import Control
+from rig.experiment.control import LONGEST_NOTE, Control
 from rig.experiment.control_server import ControlServer, send_command
 from rig.experiment.signal_stops import signal_stops
 from rig.safety import StopCategory, StopSwitch
@@ -81,6 +81,36 @@ def test_who_does_not_know_the_token_commands_nothing():
         with pytest.raises(ProtocolError, match="wrong token"):
             send_command(server.port, "POST", "/ HTTP/1.1")
     assert control.stop.pending is None
+
+
+def test_bytes_of_a_foreign_encoding_reach_the_run_as_escapes():
+    control = Control()
+    with ControlServer(control) as server:
+        assert send_command(server.port, server.token, "note caf\udce9") == "done"
+    assert [note.text for note in control.take_notes()] == [r"socket: caf\udce9"]
+
+
+@pytest.mark.parametrize(
+    ("command", "message"),
+    [
+        ("note a\nemergency", "found 2 lines; expected one command"),
+        ("note a\r\nb\n", "found 2 lines; expected one command"),
+        ("note " + "x" * LONGEST_NOTE, f"{LONGEST_NOTE + 5} characters; at most {LONGEST_NOTE}"),
+    ],
+)
+def test_a_command_that_would_be_cut_is_refused(command, message):
+    control = Control()
+    with ControlServer(control) as server, pytest.raises(ProtocolError, match=message):
+        send_command(server.port, server.token, command)
+    assert (list(control.take_notes()), control.stop.pending) == ([], None)
+
+
+def test_the_longest_command_arrives_whole():
+    control = Control()
+    text = "\U0001f916" * (LONGEST_NOTE - len("note "))
+    with ControlServer(control) as server:
+        assert send_command(server.port, server.token, f"note {text}\n") == "done"
+    assert [note.text for note in control.take_notes()] == [f"socket: {text}"]
 
 
 def test_an_unknown_command_is_answered_with_the_known_ones():

@@ -8,7 +8,8 @@ import sys
 import can
 import pytest
 
-from rig.errors import LinkError
+from rig.errors import InUse, LinkError
+from rig.exclusive import Exclusive, device_lock
 from rig.links.can import CanLink
 from rig.links.serial import SerialLink
 from rig.links.serve import PortServer
@@ -83,3 +84,14 @@ def test_a_serial_port_in_use_is_refused_with_its_owner_under_another_name(tmp_p
         other.symlink_to(server.port)
         link = SerialLink(str(other), baudrate=115_200)
         require_one_owner(f"SerialLink({server.port!r}, baudrate=115_200)", link)
+
+
+def test_arguments_of_a_foreign_encoding_do_not_keep_a_device_from_its_user(tmp_path, monkeypatch):
+    monkeypatch.setattr("sys.argv", ["zebro-lab", "record", "--label", "caf\udce9"])
+    with device_lock(str(tmp_path / "tty\udcff")):
+        pass
+    with (
+        Exclusive(tmp_path / "lock", what="it"),
+        pytest.raises(InUse, match=r"record --label .*caf.udce9"),
+    ):
+        Exclusive(tmp_path / "lock", what="it").take()

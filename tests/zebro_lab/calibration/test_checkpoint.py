@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from model.bayes.sampler import Chains
 from zebro_lab.calibration.checkpoint import FILE, load_checkpoint, save_checkpoint
-from zebro_lab.files.errors import DataError
+from zebro_lab.files.errors import DataError, NotWritten
 
 MARK = "f" * 64
 
@@ -45,6 +45,19 @@ def test_later_checkpoint_replaces_the_earlier_and_is_alone(tmp_path):
         save_checkpoint(tmp_path, chains(steps), fingerprint=MARK)
     assert load_checkpoint(tmp_path, fingerprint=MARK).n_steps == 7
     assert [path.name for path in tmp_path.iterdir()] == [FILE]
+
+
+def test_a_checkpoint_is_written_behind_a_link(tmp_path):
+    (tmp_path / "link").symlink_to("folder")
+    path = save_checkpoint(tmp_path / "link", chains(), fingerprint=MARK)
+    assert path == tmp_path / "link" / FILE
+    assert (tmp_path / "folder" / FILE).is_file()
+
+
+def test_a_checkpoint_that_cannot_be_written_is_told_in_one_line(tmp_path):
+    (tmp_path / "file").write_text("mine")
+    with pytest.raises(NotWritten, match=r"file/result cannot be written \(Not a directory\); "):
+        save_checkpoint(tmp_path / "file" / "result", chains(), fingerprint=MARK)
 
 
 def test_file_holds_no_pickle(tmp_path):

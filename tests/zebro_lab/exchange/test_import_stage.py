@@ -294,6 +294,14 @@ def test_half_a_request_is_refused(files, tmp_path, changes, message):
         taken(tmp_path, **named)
 
 
+@pytest.mark.parametrize(
+    "start", ["0001-01-01T00:00:00+14:00", "1969-12-31T23:59:59+00:00", "9999-12-31T23:59:59-14:00"]
+)
+def test_a_start_that_no_log_can_hold_is_refused(files, tmp_path, start):
+    with pytest.raises(SettingsError, match=r"^--start: found .* expected .* 1970 .* 2261$"):
+        taken(tmp_path, legs=files / "legs.csv", start=datetime.fromisoformat(start))
+
+
 def test_a_rig_without_speeds_or_with_trials_is_left_to_the_calibration(sweep, tmp_path):
     table = pd.read_csv(sweep / "sweep.csv")
     given = table.drop(columns=["omega_leg"]).assign(slip_ratio=0.1)

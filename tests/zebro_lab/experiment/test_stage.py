@@ -2,11 +2,13 @@
 """An experiment on disk: run folders, journal, resume, and what is left after a kill."""
 
 import json
+import math
 import os
 import signal
 import subprocess
 import sys
 import time
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -293,3 +295,12 @@ def test_a_signal_leaves_motors_at_rest_valid_runs_and_a_run_to_resume(
         assert process.returncode == 0, output
         assert rig.closed() == 6
         assert read_rig_data([rig.data]).samples.n_runs == 6
+
+
+@pytest.mark.parametrize("bad", [{"weight_sd": math.inf}, {"weight_sd": math.nan},
+                                 {"gravity": math.nan}, {"masses": (0.2, math.inf)}])  # fmt: skip
+def test_numbers_that_are_not_finite_are_not_weighed(bad, tmp_path):
+    request = replace(WeighRequest((0.2, 1.0), "sim", tmp_path, fast=True), **bad)
+    with pytest.raises(SettingsError, match="finite"):
+        weigh_masses(request, lambda text, normal: None, Control())
+    assert list(tmp_path.iterdir()) == []

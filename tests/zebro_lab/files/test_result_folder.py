@@ -220,6 +220,14 @@ def test_a_foreign_page_is_kept(run, tmp_path):
     assert "My thesis" in out.read_text()
 
 
+@pytest.mark.timeout(60)
+def test_a_manifest_that_is_a_fifo_beside_a_page_is_not_waited_for(run, tmp_path):
+    page = tmp_path / "r.html"
+    report(ReportRequest(run, run / "none", page), made=START)
+    os.mkfifo(tmp_path / "manifest.json")
+    report(ReportRequest(run, run / "none", page), made=START)
+
+
 def test_a_plot_keeps_a_foreign_picture(run, tmp_path):
     out = tmp_path / "robot.png"
     Image.new("RGB", (8, 8), "red").save(out)
@@ -299,6 +307,23 @@ def test_a_linked_folder_is_replaced_behind_its_link(tmp_path):
     write_track(tmp_path / "track", 1.0)
     assert (tmp_path / "track").is_symlink()
     assert read_track_manifest(tmp_path / "track-3")["settings"] == {"x": 1.0}
+
+
+def test_a_manifest_that_names_a_file_of_a_foreign_encoding_is_read_back(tmp_path):
+    with track_folder(
+        tmp_path / "track", Track(0.0), source="real", settings={}, inputs={"caf\udce9": "0"},
+        report={},
+    ):  # fmt: skip
+        pass
+    assert read_track_manifest(tmp_path / "track")["inputs"] == {r"caf\udce9": "0"}
+
+
+@pytest.mark.parametrize("out", ["file/result", "file/deep/result", "broken", "broken/result"])
+def test_a_place_that_can_hold_no_folder_is_refused_before_anything_is_computed(out, tmp_path):
+    (tmp_path / "file").write_text("mine")
+    (tmp_path / "broken").symlink_to("nowhere")
+    with pytest.raises(ZebroLabError, match=r"^\S+ is (a file|a link).*; name another --out$"):
+        require_replaceable(tmp_path / out, TRACKED)
 
 
 def test_foreign_folders_links_and_rights_are_carried_over(tmp_path):

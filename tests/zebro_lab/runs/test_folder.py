@@ -217,3 +217,11 @@ def test_a_run_that_is_being_recorded_is_not_excluded(tmp_path, monkeypatch, cap
     assert (folder / "run.json").read_text() == before
     os.utime(folder / "log.mcap", (0, 0))  # a kill left it behind
     assert zebro_lab(monkeypatch, "exclude", folder, "--why", "belt slipped") == 0
+
+
+def test_bytes_of_a_foreign_encoding_are_kept_as_escapes(tmp_path, monkeypatch):
+    folder = make_run(tmp_path, label="caf\udce9", material="\udcff")
+    assert zebro_lab(monkeypatch, "exclude", folder, "--why", "na\udcefve 🤖") == 0
+    manifest = read_manifest(folder)
+    assert (manifest.label, manifest.material) == (r"caf\udce9", r"\udcff")
+    assert manifest.excluded == {"why": r"na\udcefve 🤖"}

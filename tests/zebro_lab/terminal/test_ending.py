@@ -1,11 +1,14 @@
 # SPDX-License-Identifier: MIT
 """How a command ends."""
 
+import re
+
 import pytest
 import typer
 
 from model.errors import FitError
 from zebro_lab.files.errors import DataError
+from zebro_lab.main import app as zebro_lab
 from zebro_lab.terminal.ending import run
 
 
@@ -37,3 +40,43 @@ def test_unknown_error_keeps_its_traceback():
     with pytest.raises(ZeroDivisionError) as caught:
         run(app_that_raises(ZeroDivisionError("a bug")))
     assert caught.traceback[-1].name == "command"
+
+
+@pytest.mark.parametrize(
+    ("error", "said"),
+    [
+        (FileNotFoundError(2, "No such file", "a\nb"), r"a\nb: No such file"),
+        (OSError(36, "File name too long", b"x\xff"), r"x\udcff: File name too long"),
+        (FileExistsError(17, "File exists", "a", None, "b"), "a: File exists"),
+    ],
+)
+def test_what_the_file_system_says_of_a_file_is_one_line_and_exit_1(error, said, capsys):
+    with pytest.raises(SystemExit) as ended:
+        run(app_that_raises(error))
+    assert ended.value.code == 1
+    assert capsys.readouterr() == ("", f"error: {said}\n")
+
+
+@pytest.mark.parametrize("error", [OSError("no file is at fault"), TimeoutError(110, "timed out")])
+def test_an_error_of_the_system_without_a_file_keeps_its_traceback(error):
+    with pytest.raises(type(error)):
+        run(app_that_raises(error))
+
+
+LONG = "x" * 300
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ("runs", LONG), ("plot", LONG), ("report", LONG), ("init", LONG),
+        ("walk", "--slip", "coulomb:0.4", "--duration", "1", "--out", LONG),
+        ("rig", "say", "status", "--data", LONG),
+    ],
+)  # fmt: skip
+def test_a_name_too_long_for_the_file_system_is_one_line(arguments, capsys, monkeypatch):
+    monkeypatch.setattr("sys.argv", ["zebro-lab", *arguments])
+    with pytest.raises(SystemExit) as ended:
+        run(zebro_lab)
+    assert ended.value.code == 1
+    assert re.fullmatch(rf"error: \S*{LONG}\S*: .*File name too long.*\n", capsys.readouterr().err)

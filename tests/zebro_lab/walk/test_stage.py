@@ -185,6 +185,16 @@ def test_step_longer_than_the_walk_is_refused(bad, tmp_path):
     assert not (tmp_path / "out").exists()
 
 
+@pytest.mark.parametrize("model", MODELS)
+def test_a_walk_of_more_steps_than_memory_holds_is_refused(model, tmp_path):
+    endless = replace(request(tmp_path / "out", model=model), duration=1e12)
+    with pytest.raises(SettingsError, match=r"1e\+12 s in steps of .* at most 500,000 are walked"):
+        walk(endless, Nobody())
+    with pytest.raises(SettingsError, match=r"2e-06 s is 2e\+06 steps; .* lengthen --dt"):
+        walk(request(tmp_path / "out", model=model, dt=2e-6), Nobody())
+    assert not (tmp_path / "out").exists()
+
+
 def test_robot_written_out_is_the_robot_asked_for(tmp_path):
     file = write_robot(tmp_path / "robot.toml", ModelRequest(tmp_path, arc_deg=200.0))
     assert np.degrees(read_robot_file(file).robot.leg_arc) == pytest.approx(200)

@@ -116,7 +116,7 @@ def check_shadows(folder: Path, search: Sequence[str]) -> Iterator[Finding]:
         folder: Working folder, which `python` puts in front of everything.
         search: Where modules are searched for.
     """
-    home = Path(__file__).parents[1]
+    home = Path(__file__).parents[2]
     for module in OURS:
         yield _from(module, home / module, search)
     providers = packages_distributions()

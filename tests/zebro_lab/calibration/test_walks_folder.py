@@ -24,6 +24,7 @@ from zebro_lab.walk.informed_legs import informed_legs
 from zebro_lab.walk.path_band import BandRequest, read_draws
 from zebro_lab.walk.predict_stage import PredictRequest, predict
 from zebro_lab.walk.walking import ModelRequest
+from zebro_lab.walk_fit.pictures import draw_walks
 
 SLIP_TOML = """
 schema = 1
@@ -107,7 +108,7 @@ def stored(calibration, legs, posterior):
             posterior=posterior, left_out={}, robot=RobotFile(), logs=tuple(legs),
             inputs=(slip, *legs), settings={"seed": 1}, source="sim:test", notes=("a note",),
         ),
-        draw=lambda _: None,
+        draw=lambda draft: draw_walks(draft, posterior, (), simulated=True),
     )  # fmt: skip
     return read_walks_beside(slip)
 

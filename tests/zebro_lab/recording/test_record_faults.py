@@ -37,7 +37,7 @@ def recording(data, *options, **given):
 
 def growing(data):
     """Wait for a run that holds samples, and return its folder."""
-    end = time.monotonic() + 20
+    end = time.monotonic() + 60  # in a fresh clone numba may compile first
     while time.monotonic() < end:
         for log in data.glob("*/log.mcap"):
             if (log.parent / "run.json").is_file() and read_raw_log(log).streams:

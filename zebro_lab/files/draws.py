@@ -49,11 +49,16 @@ def read_draws_of(
         found = _own(data, group, path)
         if not isinstance(found, h5py.Group):
             raise DataError(f"'{group}' is no group of draws; {advice}", file=path)
-        held = tuple(found)
+        held = tuple(_text(name) for name in found)
         draws = {name: _draws(found, name, path) for name in names if name in held}
     if len({len(values) for values in draws.values()}) > 1:
         raise DataError(f"holds more draws of one parameter than of another; {advice}", file=path)
     return draws, held
+
+
+def _text(name: str | bytes) -> str:
+    """Return a name as text; h5py hands those that are no UTF-8 on as bytes."""
+    return name if isinstance(name, str) else name.decode("utf-8", "backslashreplace")
 
 
 def _own(group: "h5py.Group", name: str, path: Path) -> object:

@@ -290,3 +290,12 @@ def test_wrong_statistics_of_a_parquet_column_are_an_error_and_no_end_of_the_pro
     done = subprocess.run([sys.executable, "-c", code, str(file)], capture_output=True, text=True)
     assert (done.returncode, done.stdout.count("\n")) == (0, 1), done.stderr
     assert "is not a whole Parquet file" in done.stdout
+
+
+def test_a_parameter_whose_name_is_no_text_is_one_line(tmp_path):
+    (tmp_path / "slip.toml").write_text("")
+    with h5py.File(tmp_path / POSTERIOR, "w") as data:
+        data.create_group("posterior")[b"stiff\xff"] = np.arange(4.0)
+    with pytest.raises(DataError, match=r"holds draws of stiff\\xff, but") as raised:
+        draw_posterior(tmp_path)
+    assert "\n" not in str(raised.value)

@@ -85,3 +85,23 @@ def test_thinning_goes_by_time_and_not_by_number(tmp_path):
     frames = list(video_frames(phone_video(tmp_path / "walk.mp4", steps=STEPS), every=0.5))
     np.testing.assert_allclose([frame.t for frame in frames], [0, 0.9, 1.4, 2.2], atol=2e-3)
     assert [frame.name for frame in frames] == [f"walk.mp4#{number}" for number in (0, 4, 7, 8)]
+
+
+def test_a_frame_that_is_decoded_to_nothing_is_left_out(tmp_path, monkeypatch):
+    file = phone_video(tmp_path / "a.mp4")
+    usual, numbers = cv2.VideoCapture, iter(range(len(STEPS)))
+
+    class Damaged:
+        def __init__(self, *arguments):
+            self._capture = usual(*arguments)
+
+        def __getattr__(self, name):
+            return getattr(self._capture, name)
+
+        def retrieve(self):
+            found = self._capture.retrieve()
+            return (True, None) if next(numbers) == 3 else found
+
+    monkeypatch.setattr(cv2, "VideoCapture", Damaged)
+    names = [image.name for image in video_frames(file)]
+    assert names == [f"a.mp4#{number}" for number in range(len(STEPS)) if number != 3]

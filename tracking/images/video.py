@@ -79,7 +79,8 @@ def _frames(capture: cv2.VideoCapture, name: str, every: float) -> Iterator[Imag
         if t - last < every - FRAME_TIME_SD:
             continue
         decoded, pixels = capture.retrieve()
-        if not decoded:
+        # OpenCV may call a damaged frame decoded and hand over none.
+        if not decoded or pixels is None:
             continue
         last = t
         yield Image(f"{name}#{number}", np.asarray(pixels, dtype=np.uint8), t, FRAME_TIME_SD)

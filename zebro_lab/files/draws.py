@@ -56,9 +56,9 @@ def read_draws_of(
     return draws, held
 
 
-def _text(name: str | bytes) -> str:
+def _text(name: object) -> str:
     """Return a name as text; h5py hands those that are no UTF-8 on as bytes."""
-    return name if isinstance(name, str) else name.decode("utf-8", "backslashreplace")
+    return name.decode("utf-8", "backslashreplace") if isinstance(name, bytes) else str(name)
 
 
 def _own(group: "h5py.Group", name: str, path: Path) -> object:

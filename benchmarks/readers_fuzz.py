@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Read generated files by every reader of users' files; print the table of docs/formats.md.
+"""Read generated files by every reader of users' files; print the table of docs/reading.md.
 
 python -m benchmarks.readers_fuzz [--inputs N] [--only PART OF A NAME] [--leave-out NAME]
 

@@ -112,10 +112,13 @@ def _is_cut_short(run: Path, manifest: RunManifest) -> bool:
 
 def _lost_log(run: Path, manifest: RunManifest) -> str | None:
     """Say what is wrong with the log of a finished run; None where it is what was recorded."""
+    log = run / LOG_FILE
+    if not log.is_file():  # nor is a FIFO one, which would be waited for
+        return f"{run.name}/{LOG_FILE} is missing"
     try:
-        require_recorded(run / LOG_FILE, manifest)
+        require_recorded(log, manifest)
     except (ZebroLabError, OSError) as error:
-        return f"{run.name}/{LOG_FILE} is missing" if isinstance(error, OSError) else str(error)
+        return str(error)
     return None
 
 

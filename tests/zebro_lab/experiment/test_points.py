@@ -77,12 +77,16 @@ def test_points_without_their_journal_are_not_measured_over(lab, plan, tmp_path)
     assert manifests(data) == before
 
 
-@pytest.mark.parametrize("damage", ["gone", "empty"])
+@pytest.mark.parametrize("damage", ["gone", "empty", "fifo"])
 def test_a_point_whose_log_is_lost_is_measured_again(lab, plan, tmp_path, damage):
     data = tmp_path / "data"
     lab.run(plan, data)
     log = find_runs(data)[2] / LOG_FILE
-    log.unlink() if damage == "gone" else log.write_bytes(b"")
+    log.unlink()
+    if damage == "empty":
+        log.write_bytes(b"")
+    elif damage == "fifo":
+        os.mkfifo(log)
     said = []
     watcher = lab.StopAfter(99, lambda: None)
     watcher.notice = said.append

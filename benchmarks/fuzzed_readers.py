@@ -44,7 +44,7 @@ from rig.zebro.profile import load_leg_profile
 from tracking.images import exif_time, read_pixels, times_from_table, video_frames
 from zebro_lab.calibration.checkpoint import load_checkpoint
 from zebro_lab.calibration.rig_data import read_rig_data
-from zebro_lab.calibration.slip_argument import Slip, parse_slip
+from zebro_lab.calibration.slip_argument import NamedSlip, parse_slip
 from zebro_lab.calibration.slip_draws import POSTERIOR, law_draws
 from zebro_lab.calibration.walks_folder import SCHEMA, describe_legs, read_walks_beside
 from zebro_lab.exchange.import_columns import ForeignColumns
@@ -491,7 +491,7 @@ def _posterior(file: Path) -> object:
         law=slip_law("brush"), values=np.array([5.0, 0.4]), covariance=np.eye(2) * 1e-3,
         definition=SlipDefinition.MATERIAL, load_range=(1.0, 2.0), slip_range=(0.0, 1.0),
     )  # fmt: skip
-    slip = Slip("x", curve, "real", (file.parent / "slip.toml",))
+    slip = NamedSlip(curve, "real", "x", (file.parent / "slip.toml",))
     return law_draws(slip, curve, 10, rng=np.random.default_rng(1))
 
 

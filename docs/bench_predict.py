@@ -48,7 +48,7 @@ def write_walk(folder: Path, steering: float, side: Side, calibration: Path, see
     reference = tripod_reference(tripod_angles(np.radians(50.0), steering), 2.0, direction=side)
     robot = Robot()
     law = parse_slip(str(calibration), with_walks=False).traction_table(weight=robot.mass * GRAVITY)
-    true = planar_walk(WalkDraw(robot, reference, law), duration=DURATION)
+    true = planar_walk(WalkDraw(robot, reference, law), duration=DURATION).poses
     (folder / "track").mkdir(parents=True)
     t = np.arange(0.0, DURATION, 0.01)
     counted = STEP * np.round(reference.angles(t) / STEP)
@@ -57,7 +57,7 @@ def write_walk(folder: Path, steering: float, side: Side, calibration: Path, see
     )
     seen = np.arange(0.0, DURATION, EVERY)
     noise = np.random.default_rng(seed).normal(size=(len(seen), 3)) * NOISE
-    truth = np.array([np.interp(seen, true.t, a) for a in (true.x, true.y, true.yaw)])
+    truth = true.at(seen).states.T
     x, y, yaw = truth + noise.T
     covariance = dict(zip(("cov_xx", "cov_yy", "cov_yawyaw"), NOISE**2, strict=True))
     pd.DataFrame({

@@ -45,9 +45,9 @@ from model.gait.reference import SampledReference
 from model.robot import GRAVITY, N_LEGS, Robot
 from model.walk.dynamics import DynamicsOptions
 from model.walk.ensemble import WalkDraw, walk_ensemble
-from zebro_lab.calibration.slip_argument import Slip, parse_slip
+from zebro_lab.calibration.slip_argument import NamedSlip, parse_slip
 from zebro_lab.robot.robot_file import ROBOT_FILE, RobotFile, render_robot_file
-from zebro_lab.validation.judgement import RunJudged, judge_run
+from zebro_lab.validation.judged_run import JudgedRun, judge_run
 from zebro_lab.walk_fit.prediction import fit_walks_on_file, predict_from
 from zebro_lab.walk_fit.tracked_walks import WalkOnFile, read_walk_on_file
 
@@ -85,8 +85,8 @@ class Scored:
 
     walk: EngineWalk
     informed_by: str
-    judged: RunJudged
-    tracks: tuple[RunJudged, ...]
+    judged: JudgedRun
+    tracks: tuple[JudgedRun, ...]
 
     @property
     def turn_error(self) -> tuple[float, str]:
@@ -154,7 +154,7 @@ class Bench:
     """All walks as a lab has them, and the rig's calibration."""
 
     def __init__(self, calibration: Path, scratch: Path) -> None:
-        self.slip: Slip = parse_slip(str(calibration))
+        self.slip: NamedSlip = parse_slip(str(calibration))
         self._scratch = scratch
         self.engine = {
             file.stem: read_walk(file)

@@ -14,11 +14,11 @@ import numpy as np
 from model.errors import DomainError
 from model.gait.quantised import QuantisedLog
 from model.gait.reference import LegReference
-from model.metrics.poses import Poses
+from model.poses import Poses
 from model.robot import N_LEGS, Robot
 from model.slip.law import Array
 from model.walk.dynamics import DynamicsOptions
-from model.walk.ensemble import PathEnsemble, WalkDraw, walk_ensemble
+from model.walk.ensemble import WalkDraw, walk_ensemble
 from model.walk.path import WalkPath
 from model.walk.traction import TractionTable
 
@@ -206,7 +206,7 @@ def ensemble_step(
     means: dict[float, Array] = {}
     for dt in STEPS:
         options = DynamicsOptions(dt=dt)
-        paths = walk_ensemble(draws[:COMPARED], t, options=options, threads=threads)
+        paths = walk_ensemble(draws[:COMPARED], t, options=options, threads=threads).poses
         means[dt] = paths.position[:, -1].mean(axis=0)
         length = np.linalg.norm(np.diff(paths.position, axis=1), axis=2).sum(axis=1).mean()
         larger = 2 * dt
@@ -225,7 +225,7 @@ def predict_paths(
     threads: int = 2,
     options: DynamicsOptions | None = None,
     progress: Callable[[float], None] | None = None,
-) -> PathEnsemble:
+) -> Poses:
     """Walk every draw and add its steering and stride, and what the model gets wrong.
 
     Args:
@@ -244,7 +244,7 @@ def predict_paths(
     draws = with_contacts(draws, error, rng=rng)
     if options is None:
         options = ensemble_step(draws, duration=float(t[-1]), threads=threads)
-    walked = walk_ensemble(draws, t, options=options, threads=threads, progress=progress)
+    walked = walk_ensemble(draws, t, options=options, threads=threads, progress=progress).poses
     n = len(draws)
     return bent(
         walked,
@@ -266,7 +266,7 @@ def with_contacts(
     ]
 
 
-def bent(paths: PathEnsemble, *, distance: Array, curvature: Array) -> PathEnsemble:
+def bent(paths: Poses, *, distance: Array, curvature: Array) -> Poses:
     r"""Stretch and bend paths: :math:`d s' = (1 + \epsilon) ds, \; d\psi' = d\psi + \kappa\, ds`.
 
     Args:
@@ -282,7 +282,7 @@ def bent(paths: PathEnsemble, *, distance: Array, curvature: Array) -> PathEnsem
     steps = (1 + distance[:, None]) * forward * np.exp(1j * middle)
     moved = np.stack([_from_zero(np.real(steps)), _from_zero(np.imag(steps))], axis=-1)
     position = paths.position[:, :1] + moved
-    return PathEnsemble(paths.t, position, paths.yaw + turned)
+    return Poses(paths.t, position, paths.yaw + turned)
 
 
 def bent_walk(path: WalkPath, *, distance: float, curvature: float) -> WalkPath:
@@ -293,7 +293,7 @@ def bent_walk(path: WalkPath, *, distance: float, curvature: float) -> WalkPath:
         distance: Relative error of distance [-].
         curvature: Curvature added [rad/m].
     """
-    one = PathEnsemble(path.t, path.position[None, :, :2], path.yaw[None])
+    one = path.poses.draws()
     moved = bent(one, distance=np.array([distance]), curvature=np.array([curvature]))
     return replace(
         path,
@@ -303,13 +303,13 @@ def bent_walk(path: WalkPath, *, distance: float, curvature: float) -> WalkPath:
 
 
 def anchored(
-    paths: PathEnsemble,
+    paths: Poses,
     pose: Array,
     *,
     at: float,
     covariance: Array | None = None,
     rng: np.random.Generator,
-) -> PathEnsemble:
+) -> Poses:
     """Move every path so that it passes a known pose, known with some uncertainty.
 
     Args:
@@ -335,24 +335,23 @@ def anchored(
     c, s = np.cos(turn)[:, None], np.sin(turn)[:, None]
     x = wanted[:, :1] + c * away[..., 0] - s * away[..., 1]
     y = wanted[:, 1:2] + s * away[..., 0] + c * away[..., 1]
-    return PathEnsemble(paths.t, np.stack([x, y], axis=-1), paths.yaw + turn[:, None])
+    return Poses(paths.t, np.stack([x, y], axis=-1), paths.yaw + turn[:, None])
 
 
-def states_at(paths: PathEnsemble, t: Array) -> Array:
+def states_at(paths: Poses, t: Array) -> Array:
     """Interpolate x, y and yaw of every draw at times, shape (draws, len(t), 3) [m, m, rad]."""
-    values = np.concatenate([paths.position, paths.yaw[..., None]], axis=-1)
+    values = paths.states
     after = np.clip(np.searchsorted(paths.t, t, side="right"), 1, len(paths.t) - 1)
     share = (t - paths.t[after - 1]) / (paths.t[after] - paths.t[after - 1])
     return values[:, after - 1] + share[:, None] * (values[:, after] - values[:, after - 1])
 
 
-def quantiles(paths: PathEnsemble, levels: Sequence[float] = LEVELS) -> Array:
+def quantiles(paths: Poses, levels: Sequence[float] = LEVELS) -> Array:
     """Compute quantiles of x, y and yaw at every time, shape (levels, n, 3) [m, m, rad]."""
-    values = np.concatenate([paths.position, paths.yaw[..., None]], axis=-1)
-    return np.quantile(values, np.asarray(levels), axis=0)
+    return np.quantile(paths.states, np.asarray(levels), axis=0)
 
 
-def mean_path(paths: PathEnsemble) -> Poses:
+def mean_path(paths: Poses) -> Poses:
     """Return the mean position and heading at every time."""
     return Poses(paths.t, paths.position.mean(axis=0), paths.yaw.mean(axis=0))
 

@@ -20,7 +20,7 @@ from model.bayes.walk_tilt import TiltMisfit, TiltSeen
 from model.errors import InsufficientData
 from model.gait.quantised import QuantisedLog
 from model.gait.reference import LegReference
-from model.metrics.poses import wrap
+from model.poses import Poses, wrap
 from model.predict import (
     FINE,
     LegState,
@@ -34,7 +34,7 @@ from model.predict import (
 from model.robot import N_LEGS, Robot
 from model.slip.law import Array
 from model.walk.dynamics import DynamicsOptions
-from model.walk.ensemble import PathEnsemble, WalkDraw, walk_ensemble
+from model.walk.ensemble import PlanarWalk, WalkDraw, walk_ensemble
 from model.walk.traction import TractionTable
 
 RECONSTRUCTIONS = 16  # of counted angles, for the spread they leave; or walks by half the step
@@ -155,7 +155,7 @@ class WalkMisfit:
             WalkError: A walk diverged.
         """
         walked = self._walked_with(state, threads)
-        paths = bent(walked, distance=state.stride, curvature=state.steering)
+        paths = bent(walked.poses, distance=state.stride, curvature=state.steering)
         return self._with_tilt(self._difference(paths) @ self.root.T, walked)
 
     def terms(self, state: LegState, *, steering: float, stride: float, threads: int) -> Terms:
@@ -172,10 +172,10 @@ class WalkMisfit:
         """
         walked = self._walked_with(state, threads)
         no = np.zeros(len(state))
-        here = self._difference(walked)
+        here = self._difference(walked.poses)
         bends = [
-            self._difference(bent(walked, distance=no, curvature=no + steering)) - here,
-            self._difference(bent(walked, distance=no + stride, curvature=no)) - here,
+            self._difference(bent(walked.poses, distance=no, curvature=no + steering)) - here,
+            self._difference(bent(walked.poses, distance=no + stride, curvature=no)) - here,
         ]
         residuals = self._with_tilt(here @ self.root.T, walked)
         by_bend = np.zeros((*residuals.shape, len(bends)))  # roll and pitch do not bend
@@ -183,12 +183,12 @@ class WalkMisfit:
             by_bend[:, : len(self.root), i] = bend @ self.root.T
         return Terms.of(residuals, by_bend)
 
-    def _with_tilt(self, residuals: Array, walked: PathEnsemble) -> Array:
+    def _with_tilt(self, residuals: Array, walked: PlanarWalk) -> Array:
         if self.tilt is None or walked.tilt is None:
             return residuals
         return np.concatenate([residuals, self.tilt.residuals(walked.tilt)], axis=1)
 
-    def _walked_with(self, state: LegState, threads: int) -> PathEnsemble:
+    def _walked_with(self, state: LegState, threads: int) -> PlanarWalk:
         legs = middle(self.walk.legs)
         draws = [
             WalkDraw(robot_in(self.robot, state, i), legs, law_in(self.table, state, i))
@@ -196,7 +196,7 @@ class WalkMisfit:
         ]
         return self._walked(draws, threads)
 
-    def _walked(self, draws: Sequence[WalkDraw], threads: int) -> PathEnsemble:
+    def _walked(self, draws: Sequence[WalkDraw], threads: int) -> PlanarWalk:
         return walk_ensemble(
             draws, self._times(), options=self.options, threads=threads, tilt=self.tilt is not None
         )
@@ -206,7 +206,7 @@ class WalkMisfit:
         step = SAMPLING if self.walk.tilt is None else FINE_SAMPLING
         return np.linspace(0.0, end, max(round(end / step), 2) + 1)
 
-    def _difference(self, paths: PathEnsemble) -> Array:
+    def _difference(self, paths: Poses) -> Array:
         """Predict from the first pose, subtract what was tracked; shape (m, 3 (n - 1))."""
         states = from_first(states_at(paths, self.walk.t), self.walk.states[0])
         difference = states[:, 1:] - self.walk.states[1:]
@@ -220,8 +220,9 @@ class WalkMisfit:
             if isinstance(legs, QuantisedLog)
             else [legs]
         )
-        paths = self._walked([WalkDraw(self.robot, each, self.table) for each in several], threads)
-        one = PathEnsemble(paths.t, paths.position[:1], paths.yaw[:1])
+        draws = [WalkDraw(self.robot, each, self.table) for each in several]
+        paths = self._walked(draws, threads).poses
+        one = paths.draws(slice(1))
         total = self._of_tracker(self._difference(one)[0])
         total += self._of_model(one, spread) + 1e-12 * np.eye(len(total))
         total += self._of_contacts(spread, threads)
@@ -236,7 +237,9 @@ class WalkMisfit:
             for each in OFFSETS_SD * rng.standard_normal((RECONSTRUCTIONS, N_LEGS))
         ]
         half = replace(self, options=replace(self.options, dt=0.5 * self.options.dt))
-        coarse, fine = (each._difference(each._walked(draws, threads)) for each in (self, half))
+        coarse, fine = (
+            each._difference(each._walked(draws, threads).poses) for each in (self, half)
+        )
         return (coarse - fine).T @ (coarse - fine) / RECONSTRUCTIONS
 
     def _of_tracker(self, difference: Array) -> Array:
@@ -256,7 +259,7 @@ class WalkMisfit:
             total[3 * i : 3 * i + 3, 3 * i : 3 * i + 3] += walk.covariance[i + 1]
         return total
 
-    def _of_model(self, path: PathEnsemble, spread: ModelSpread) -> Array:
+    def _of_model(self, path: Poses, spread: ModelSpread) -> Array:
         """Return the covariance that the model's errors of distance and curvature give."""
         no, small = np.zeros(1), np.full(1, _BEND)
         here = self._difference(path)[0]
@@ -272,7 +275,7 @@ class WalkMisfit:
         factors = np.exp(spread.contacts * np.array([[1, 0], [-1, 0], [0, 1], [0, -1]]))
         plain = WalkDraw(self.robot, middle(self.walk.legs), self.table)
         draws = [replace(plain, stiffness=k, damping=c) for k, c in factors]
-        paths = self._difference(self._walked(draws, threads))
+        paths = self._difference(self._walked(draws, threads).poses)
         moved = 0.5 * (paths[::2] - paths[1::2])
         return moved.T @ moved
 

@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from model.metrics.poses import Poses
+from model.poses import Poses
 from model.slip.law import Array
 
 

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from model.errors import InsufficientData
-from model.metrics.poses import Poses
+from model.poses import Poses
 from model.slip.law import Array
 
 STEP = 0.05  # s between offsets that are tried; refined by a parabola

@@ -11,8 +11,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from model.errors import InsufficientData
-from model.metrics.poses import Poses, travel_direction
 from model.metrics.scores import centred, with_tracker_noise
+from model.poses import Poses, travel_direction
 from model.slip.law import Array
 
 STATISTICS = ("nees", "along", "cross", "yaw")

@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from model.metrics.alignment import align
-from model.metrics.poses import Poses, overlap, travel_direction, wrap
 from model.metrics.turning import fitted_radius, mean_yaw_rate
+from model.poses import Poses, overlap, travel_direction, wrap
 from model.slip.law import Array
 
 DISTANCES = (0.25, 0.5, 1.0)  # m over which relative errors are taken

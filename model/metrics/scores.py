@@ -8,7 +8,7 @@ import numpy as np
 from scipy.spatial.distance import pdist
 
 from model.errors import DomainError
-from model.metrics.poses import wrap
+from model.poses import wrap
 from model.slip.law import Array
 
 LEVELS = (0.5, 0.9, 0.95)

@@ -3,7 +3,7 @@
 
 import numpy as np
 
-from model.metrics.poses import Poses
+from model.poses import Poses
 
 STRAIGHT = np.radians(5.0)  # of turn in all; below, a radius is mostly the tracker's noise
 

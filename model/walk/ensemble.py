@@ -9,6 +9,7 @@ import numpy as np
 
 from model.errors import DomainError, WalkError
 from model.gait.reference import LegReference
+from model.poses import Poses
 from model.robot import N_LEGS, Robot
 from model.slip.law import Array
 from model.walk.arrays import Contacts, body_arrays
@@ -25,7 +26,7 @@ from model.walk.dynamics import (
 )
 from model.walk.ground import FLAT
 from model.walk.step import run_steps
-from model.walk.stride import PlanarPath, walk_by_strides
+from model.walk.stride import walk_by_strides
 from model.walk.traction import TractionTable
 
 
@@ -59,19 +60,16 @@ class WalkDraw:
 
 
 @dataclass(frozen=True)
-class PathEnsemble:
-    """Paths over the ground, one a draw.
+class PlanarWalk:
+    """Where a walk, or each draw of one, leads over the ground.
 
     Attributes:
-        t: Times, shape (n,) [s].
-        position: Positions, shape (draws, n, 2) [m].
-        yaw: Unwrapped headings, shape (draws, n) [rad].
-        tilt: Roll and pitch, shape (draws, n, 2); None where nobody asked [rad].
+        poses: The path, or one path for each draw.
+        tilt: Roll and pitch at the times of the poses, shape (n, 2) or (draws, n, 2); None where
+            they were not asked for [rad].
     """
 
-    t: Array
-    position: Array
-    yaw: Array
+    poses: Poses
     tilt: Array | None = None
 
 
@@ -83,7 +81,7 @@ def walk_ensemble(
     threads: int = 2,
     tilt: bool = False,
     progress: Callable[[float], None] | None = None,
-) -> PathEnsemble:
+) -> PlanarWalk:
     """Walk every draw on flat ground; a gait with a period by its stride map.
 
     Args:
@@ -95,7 +93,7 @@ def walk_ensemble(
         progress: Told the fraction done.
 
     Returns:
-        The paths, interpolated at `t`.
+        The paths of all draws, interpolated at `t`.
 
     Raises:
         DomainError: There is no draw, or the times do not increase from zero.
@@ -110,8 +108,9 @@ def walk_ensemble(
             path = planar_walk(draw, duration=duration, options=options, tilt=tilt)
         except WalkError as error:
             raise WalkError(f"draw {number} of {len(draws)}: {error}") from error
-        columns = [path.x, path.y, path.yaw, *(_tilt_of(path) if tilt else ())]
-        return np.stack([np.interp(t, path.t, a) for a in columns])
+        poses = path.poses
+        columns = [*poses.states.T, *(_tilt_of(path) if tilt else ())]
+        return np.stack([np.interp(t, poses.t, a) for a in columns], axis=-1)
 
     paths = []
     with ThreadPoolExecutor(threads) as pool:
@@ -119,14 +118,11 @@ def walk_ensemble(
             paths.append(path)
             if progress is not None:
                 progress(len(paths) / len(draws))
-    everything = np.stack(paths)
-    return PathEnsemble(
-        t, np.moveaxis(everything[:, :2], 1, 2), everything[:, 2],
-        np.moveaxis(everything[:, 3:], 1, 2) if tilt else None,
-    )  # fmt: skip
+    states = np.stack(paths)
+    return PlanarWalk(Poses.of_states(t, states), states[..., 3:] if tilt else None)
 
 
-def _tilt_of(path: PlanarPath) -> Array:
+def _tilt_of(path: PlanarWalk) -> Array:
     if path.tilt is None:
         raise WalkError(
             "roll and pitch of a gait walked by strides are not kept; sample its leg angles"
@@ -150,7 +146,7 @@ def planar_walk(
     duration: float,
     options: DynamicsOptions = DEFAULT_OPTIONS,
     tilt: bool = False,
-) -> PlanarPath:
+) -> PlanarWalk:
     """Walk one draw on flat ground and keep where it led over the ground.
 
     Args:
@@ -165,10 +161,11 @@ def planar_walk(
     """
     options = draw.options(options)
     if draw.reference.period is not None:
-        return walk_by_strides(
+        poses = walk_by_strides(
             draw.robot, draw.reference, draw.table,
             duration=duration, start=draw.start, options=options,
         )  # fmt: skip
+        return PlanarWalk(poses)
     t = step_times(duration, options.dt)
     theta = draw.reference.angles(t) + draw.robot.leg_offset
     state = start_state(draw.robot, theta[0], FLAT, draw.start, options)
@@ -183,4 +180,4 @@ def planar_walk(
         raise diverged(t[done], pose[done])
     yaw = unwrapped_yaw(pose[:, 3:])
     tilted = roll_pitch_yaw(pose[:, 3:])[:, :2] if tilt else None
-    return PlanarPath(t, pose[:, 0], pose[:, 1], yaw, tilted)
+    return PlanarWalk(Poses(t, pose[:, :2], yaw), tilted)

@@ -6,6 +6,7 @@ from dataclasses import dataclass, fields
 import numpy as np
 from numpy.typing import NDArray
 
+from model.poses import Poses
 from model.slip.law import Array
 
 
@@ -39,6 +40,11 @@ class WalkPath:
     slip_ratio: Array
     normal_force: Array
     traction_force: Array
+
+    @property
+    def poses(self) -> Poses:
+        """The body centre's path over the ground."""
+        return Poses(self.t, self.position[:, :2], self.yaw)
 
     @property
     def yaw(self) -> Array:

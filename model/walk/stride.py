@@ -5,13 +5,13 @@ On flat ground nothing depends on where the robot stands or which way it heads, 
 moves the body by the same element of SE(2) each time; walking on is composing it with itself.
 """
 
-from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
 
 from model.errors import WalkError
 from model.gait.reference import LegReference
+from model.poses import Poses
 from model.robot import N_LEGS, Robot
 from model.slip.law import Array
 from model.walk.arrays import Body, Contacts, State, body_arrays
@@ -53,25 +53,6 @@ class Planar(NamedTuple):
         return self.x + c * x - s * y, self.y + s * x + c * y, self.yaw + yaw
 
 
-@dataclass(frozen=True)
-class PlanarPath:
-    """Where a walk leads over the ground.
-
-    Attributes:
-        t: Times, shape (n,) [s].
-        x: Position [m].
-        y: Position [m].
-        yaw: Unwrapped heading [rad].
-        tilt: Roll and pitch, shape (n, 2); None where strides are repeated [rad].
-    """
-
-    t: Array
-    x: Array
-    y: Array
-    yaw: Array
-    tilt: Array | None = None
-
-
 def walk_by_strides(
     robot: Robot,
     reference: LegReference,
@@ -80,7 +61,7 @@ def walk_by_strides(
     duration: float,
     start: Start = ORIGIN,
     options: DynamicsOptions = DEFAULT_OPTIONS,
-) -> PlanarPath:
+) -> Poses:
     """Walk a gait that repeats itself: step by step until settled, then stride by stride.
 
     A gait that is not settled after `MAX_STRIDES` goes on by the last of them.
@@ -114,7 +95,7 @@ def walk_by_strides(
     x, y, yaw = (np.concatenate(column) for column in zip(*parts, strict=True))
     x, y, yaw = _repeat(x, y, yaw, n=n, times=strides - len(walked))
     keep = len(t)
-    return PlanarPath(t, x[:keep], y[:keep], yaw[:keep])
+    return Poses(t, np.column_stack([x, y])[:keep], yaw[:keep])
 
 
 def _settled_strides(

@@ -17,7 +17,8 @@ from model.bayes.samples import SlipSamples
 from model.errors import DomainError
 from model.slip.definition import SlipDefinition, slip_ratio
 from model.slip.law import Array, SlipLaw, Values
-from model.slip.magic_formula import MagicFormula
+from model.slip.thesis import THESIS_LAW as SOURCE_LAW
+from model.slip.thesis import THESIS_VALUES as SOURCE_VALUES
 from rig.slip_rig.imperfections import (
     RigImperfections,
     bump_rise,
@@ -38,13 +39,6 @@ __all__ = [
 ]
 
 Column: TypeAlias = Array | NDArray[np.int64]
-
-SOURCE_LAW = MagicFormula(curvature="peak")
-SOURCE_VALUES: tuple[float, ...] = (34.34 * 1.564 * 0.3798, 1.564, 0.3798, 0.0066)
-"""Values of `SOURCE_LAW`: B and C of Eq. (4-45); D = 0.3798·Fn and x_m = 0.0066·Fn, Listing A.20.
-
-K = B·C·mu [-], C [-], mu [-], x_m/Fn [1/N].
-"""
 
 
 def _require(holds: bool, name: str, value: float, expected: str) -> None:

@@ -9,6 +9,7 @@ from model.gait.quantised import QuantisedLog
 from model.gait.reference import SampledReference
 from model.gait.tetrapod import tetrapod_reference
 from model.gait.tripod import tripod_angles, tripod_reference
+from model.poses import Poses
 from model.predict import (
     STEPS,
     LegState,
@@ -27,7 +28,7 @@ from model.predict import (
 from model.robot import Robot
 from model.slip.magic_formula import MagicFormula
 from model.walk.dynamics import DynamicsOptions
-from model.walk.ensemble import PathEnsemble, WalkDraw, planar_walk
+from model.walk.ensemble import WalkDraw, planar_walk
 from model.walk.kernel import table_value
 from model.walk.traction import VelocityCoulomb, law_table
 
@@ -38,9 +39,9 @@ EXACT = ModelSpread(0.0, 0.0, 0.0)
 GAIT = tripod_reference(tripod_angles(np.radians(50.0), 1.2), 2.0)
 
 
-def straight(m=3) -> PathEnsemble:
+def straight(m=3) -> Poses:
     x = np.broadcast_to(0.1 * T, (m, len(T)))
-    return PathEnsemble(T, np.stack([x, 0 * x], axis=-1), np.zeros((m, len(T))))
+    return Poses(T, np.stack([x, 0 * x], axis=-1), np.zeros((m, len(T))))
 
 
 def counted_log():
@@ -192,10 +193,9 @@ def test_an_ensemble_takes_the_step_that_its_gait_needs():
     assert ensemble_step([tripod], duration=12.0).dt == STEPS[0]
     chosen = ensemble_step([carried], duration=12.0)
     assert chosen.dt < STEPS[0]
-    fine = planar_walk(carried, duration=12.0, options=DynamicsOptions(dt=0.0005))
-    length = np.hypot(np.diff(fine.x), np.diff(fine.y)).sum()
+    fine = planar_walk(carried, duration=12.0, options=DynamicsOptions(dt=0.0005)).poses
     off = []
     for options in (DynamicsOptions(dt=STEPS[0]), chosen):
-        path = planar_walk(carried, duration=12.0, options=options)
-        off.append(np.hypot(path.x[-1] - fine.x[-1], path.y[-1] - fine.y[-1]) / length)
+        path = planar_walk(carried, duration=12.0, options=options).poses
+        off.append(np.linalg.norm(path.position[-1] - fine.position[-1]) / fine.length)
     assert off[1] < 0.01 < off[0]

@@ -1,46 +1,37 @@
 # SPDX-License-Identifier: MIT
-"""What `--slip` means: a calibration, Coulomb friction, or the source's own curve."""
+"""What `--slip` means: a calibration, Coulomb friction, or the thesis's own curve."""
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from model.slip.curve import SlipCurve
 from model.slip.definition import SlipDefinition
-from model.walk.traction import ToeLaw, TractionTable, VelocityCoulomb, curve_table
+from model.slip.thesis import thesis_curve
+from model.walk.slip import Slip
+from model.walk.traction import VelocityCoulomb
 from zebro_lab.calibration.folder import SLIP_TOML, read_slip_file
 from zebro_lab.calibration.walks_folder import StoredWalks, read_walks_beside
 from zebro_lab.files.errors import NotFound, SettingsError
 from zebro_lab.files.replacement import settle
 
-if TYPE_CHECKING:
-    from model.walk.path import WalkPath
-    from model.walk.thesis import Traction
-
 THESIS = "thesis"
 COULOMB = "coulomb"
 EXPECTED_SLIP = f"a {SLIP_TOML}, the folder that holds it, coulomb:MU[:V] or thesis"
-_SOURCE_LOADS = (2.13, 12.75)  # Fig. 4-14 [N]
 
 
 @dataclass(frozen=True)
-class Slip:
-    """How legs slip, as a command line names it.
+class NamedSlip(Slip):
+    """A slip law as a command line names it.
 
     Attributes:
-        text: What was named.
-        law: A calibrated curve, or Coulomb friction by slip velocity.
-        source: Where the law comes from: "real", "sim:...", "assumed", "thesis", "unknown".
+        text: The value of `--slip`.
         files: Files that were read.
         notes: For a person, one line each.
         walks: What tracked walks said of legs and floor; None where none informed it.
     """
 
     text: str
-    law: SlipCurve | VelocityCoulomb
-    source: str
     files: tuple[Path, ...] = ()
     notes: tuple[str, ...] = ()
     walks: StoredWalks | None = None
@@ -52,48 +43,8 @@ class Slip:
             return self.text
         return self.files[0].absolute().parent.name or self.text
 
-    def traction_table(self, *, weight: float, toe: ToeLaw = "saturated") -> TractionTable:
-        """Tabulate the law for a robot of a weight [N]; slip of any definition is converted."""
-        if isinstance(self.law, VelocityCoulomb):
-            return self.law.table(weight=weight, toe=toe)
-        return curve_table(self.law, weight=weight, toe=toe)
 
-    def thesis_traction(self, *, weight: float) -> "Traction":
-        """Prepare the law for the source's model, for a robot of a weight [N].
-
-        Raises:
-            SettingsError: The curve is one of another definition than the rig's.
-        """
-        from model.walk.thesis import law_traction, table_traction
-
-        if isinstance(self.law, VelocityCoulomb):
-            return table_traction(self.law.table(weight=weight))
-        if self.law.definition is not SlipDefinition.MATERIAL:
-            raise SettingsError(
-                f"was fitted to '{self.law.definition}' slip, but the source's model takes "
-                f"'{SlipDefinition.MATERIAL}' slip; calibrate again with --slip-definition "
-                f"{SlipDefinition.MATERIAL}, or use --model dynamics, which converts",
-                file=self.text,
-            )
-        return law_traction(self.law.law, self.law.values, weight=weight)
-
-    @property
-    def tested_loads(self) -> tuple[float, float] | None:
-        """Smallest and largest load tested; None for an assumed law [N]."""
-        return None if isinstance(self.law, VelocityCoulomb) else self.law.load_range
-
-    def loads_below_tested(self, path: "WalkPath") -> float | None:
-        """Return the share of leg contacts whose load lies below what was tested [-].
-
-        None where no load was ever tested: an assumed law has no range.
-        """
-        if self.tested_loads is None:
-            return None
-        loads = path.normal_force[path.contact]
-        return float(np.mean(loads < self.tested_loads[0])) if len(loads) else 0.0
-
-
-def parse_slip(text: str, *, with_walks: bool = True) -> Slip:
+def parse_slip(text: str, *, with_walks: bool = True) -> NamedSlip:
     """Read the value of `--slip`.
 
     Args:
@@ -110,29 +61,14 @@ def parse_slip(text: str, *, with_walks: bool = True) -> Slip:
     VelocityCoulomb(friction=0.38, speed_scale=0.001)
     """
     if text == THESIS:
-        return Slip(text, source_curve(), source=THESIS)
+        return NamedSlip(thesis_curve(), THESIS, text)
     name, *numbers = text.split(":")
     if name == COULOMB:
-        return Slip(text, _coulomb(text, numbers), source="assumed")
+        return NamedSlip(_coulomb(text, numbers), "assumed", text)
     path = settle(Path(text))
     if not path.exists():
         raise NotFound(f"--slip: '{text}' is no file or folder; expected {EXPECTED_SLIP}")
     return _calibrated(text, path, with_walks=with_walks)
-
-
-def source_curve() -> SlipCurve:
-    """Return the source's slip curve, Eq. (4-45) and Listings A.20 and A.21, as given: sd zero."""
-    from rig.slip_rig.sweep import SOURCE_LAW, SOURCE_VALUES
-
-    k = len(SOURCE_VALUES)
-    return SlipCurve(
-        law=SOURCE_LAW,
-        values=np.array(SOURCE_VALUES),
-        covariance=np.zeros((k, k)),
-        definition=SlipDefinition.MATERIAL,
-        load_range=_SOURCE_LOADS,
-        slip_range=(0.0, 1.0),
-    )
 
 
 def _coulomb(text: str, numbers: list[str]) -> VelocityCoulomb:
@@ -150,7 +86,7 @@ def _coulomb(text: str, numbers: list[str]) -> VelocityCoulomb:
     return VelocityCoulomb(*values)
 
 
-def _calibrated(text: str, path: Path, *, with_walks: bool) -> Slip:
+def _calibrated(text: str, path: Path, *, with_walks: bool) -> NamedSlip:
     said = read_slip_file(path)
     curve, file, notes = said.curve, said.file, []
     if said.doubt is not None:
@@ -159,4 +95,4 @@ def _calibrated(text: str, path: Path, *, with_walks: bool) -> Slip:
         notes.append(f"slip: fitted to '{curve.definition}' slip, converted where it is evaluated")
     walks = read_walks_beside(file) if with_walks else None
     files = (file, *(walks.files if walks is not None else ()))
-    return Slip(text, curve, said.source, files, tuple(notes), walks)
+    return NamedSlip(curve, said.source, text, files, tuple(notes), walks)

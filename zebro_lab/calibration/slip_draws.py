@@ -9,7 +9,7 @@ from model.errors import DomainError
 from model.slip.curve import SlipCurve
 from model.slip.law import Array
 from model.walk.traction import ToeLaw, TractionTable, VelocityCoulomb, law_table
-from zebro_lab.calibration.slip_argument import Slip
+from zebro_lab.calibration.slip_argument import NamedSlip
 from zebro_lab.files.draws import read_draws_of
 from zebro_lab.files.errors import DataError
 
@@ -19,7 +19,7 @@ MOST_TABLES = 200  # a table costs as much as walking a second, and paths hardly
 
 
 def slip_tables(
-    slip: Slip, n: int, *, weight: float, toe: ToeLaw = "saturated", rng: np.random.Generator
+    slip: NamedSlip, n: int, *, weight: float, toe: ToeLaw = "saturated", rng: np.random.Generator
 ) -> list[TractionTable]:
     """Tabulate draws of the law, up to `MOST_TABLES`.
 
@@ -47,7 +47,7 @@ def slip_tables(
     return tables or [slip.traction_table(weight=weight, toe=toe)]
 
 
-def law_draws(slip: Slip, curve: SlipCurve, n: int, *, rng: np.random.Generator) -> Array:
+def law_draws(slip: NamedSlip, curve: SlipCurve, n: int, *, rng: np.random.Generator) -> Array:
     """Draw values of a law's parameters: from the posterior's draws, or from their Gaussian.
 
     Args:

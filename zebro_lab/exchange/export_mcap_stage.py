@@ -21,11 +21,10 @@ from pathlib import Path
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from model.metrics.poses import Poses
+from model.poses import Poses
 from model.predict import anchored, mean_path, states_at
 from model.robot import N_LEGS, Robot
 from model.slip.law import Array
-from model.walk.ensemble import PathEnsemble
 from model.walk.path import WalkPath
 from zebro_lab.files.atomic import atomic_write_bytes
 from zebro_lab.files.errors import AlreadyExists, NotFound
@@ -48,10 +47,11 @@ from zebro_lab.runs.folder import epoch_ns, read_manifest
 from zebro_lab.runs.recorded_legs import is_recorded, read_recorded_legs
 from zebro_lab.track.file import TrackFile, read_track
 from zebro_lab.track.folder import TRACK_CSV
-from zebro_lab.validation.judgement import robot_of_walk, shared_time
+from zebro_lab.validation.shared_clock import shared_time
 from zebro_lab.validation.stage import TRACK
 from zebro_lab.walk.folder import DRAWS, PREDICTION, read_walk, read_walk_manifest
 from zebro_lab.walk.path_band import read_draws
+from zebro_lab.walk.prediction_file import robot_of_walk
 
 FLOOR, BODY, TRACKED = "floor", "body", "tracked"
 SHOWN_DRAWS = 20
@@ -80,7 +80,7 @@ class _Predicted:
     walk: WalkPath
     robot: Robot
     path: Poses
-    draws: PathEnsemble | None
+    draws: Poses | None
 
 
 class _Stamped:
@@ -148,19 +148,18 @@ def _read_predicted(folder: Path, track: TrackFile | None) -> _Predicted | None:
     if not (folder / PATH_CSV).is_file():
         return None
     walk = read_walk(folder)
-    single = PathEnsemble(walk.t, walk.position[None, :, :2], walk.yaw[None])
+    single = walk.poses.draws()
     draws = read_draws(folder) if (folder / DRAWS).is_file() else None
     if track is not None and track.poses.has_yaw:
-        path_walked = Poses(walk.t, walk.position[:, :2], walk.yaw)
-        first = int(np.argmax(shared_time(track.poses, path_walked, file=track.file)))
+        first = int(np.argmax(shared_time(track.poses, walk.poses, file=track.file)))
         at, seen = float(track.poses.t[first]), track.poses
-        pose, rng = np.append(seen.position[first], seen.yaw[first]), np.random.default_rng(1)
+        pose, rng = seen.states[first], np.random.default_rng(1)
         single = anchored(single, pose, at=at, rng=rng)
         if draws is not None:
             spread = track.covariance[first]
             draws = anchored(draws, pose, at=at, covariance=spread, rng=rng)
-    path_of = Poses(walk.t, single.position[0], single.yaw[0])
-    return _Predicted(walk, robot_of_walk(read_walk_manifest(folder)), path_of, draws)
+    robot = robot_of_walk(read_walk_manifest(folder))
+    return _Predicted(walk, robot, single.draws(0), draws)
 
 
 def _write_legs(log: _Stamped, run: Path | None, predicted: _Predicted | None) -> None:
@@ -220,7 +219,7 @@ def _write_prediction(log: _Stamped, predicted: _Predicted) -> None:
         _write_band(log, predicted.draws, height=float(positions[0, 2]))
 
 
-def _write_band(log: _Stamped, draws: PathEnsemble, *, height: float) -> None:
+def _write_band(log: _Stamped, draws: Poses, *, height: float) -> None:
     mean, stamps = mean_path(draws), log.stamps(draws.t)
     states = states_at(draws, draws.t)
     positions = np.column_stack([mean.position, np.full(len(mean), height)])

@@ -4,9 +4,8 @@
 import numpy as np
 from matplotlib.figure import Figure
 
-from model.metrics.poses import Poses
+from model.poses import Poses
 from model.predict import quantiles
-from model.walk.ensemble import PathEnsemble
 from zebro_lab.plots.sheet import BLUE, RED, legend_below, new_figure, styled
 
 _SHOWN_DRAWS = 60
@@ -14,9 +13,7 @@ _LEVELS = (0.05, 0.25, 0.5, 0.75, 0.95)
 
 
 @styled
-def path_band(
-    paths: PathEnsemble, *, title: str, simulated: bool, track: Poses | None = None
-) -> Figure:
+def path_band(paths: Poses, *, title: str, simulated: bool, track: Poses | None = None) -> Figure:
     """Draw an ensemble of paths: some of them from above, x, y and yaw over time.
 
     Args:
@@ -52,7 +49,7 @@ def path_band(
         )  # fmt: skip
         axes.plot(paths.t, median[:, i] * scale[i], color="black", lw=1.0, label="median")
         if track is not None:
-            seen = np.column_stack([track.position, track.yaw])[:, i] * scale[i]
+            seen = track.states[:, i] * scale[i]
             axes.plot(track.t, seen, ls="none", marker="o", ms=3, color=RED, label="track")
         axes.set_ylabel(name)
         axes.grid(color="0.92", lw=0.6)

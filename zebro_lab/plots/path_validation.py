@@ -7,8 +7,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from model.metrics.path_errors import pose_errors
-from model.metrics.poses import Poses
-from model.walk.ensemble import PathEnsemble
+from model.poses import Poses
 from zebro_lab.plots.sheet import CYCLE, legend_below, new_figure, styled
 
 _SHOWN_DRAWS = 60
@@ -20,7 +19,7 @@ def path_validation(
     paths: Mapping[str, Poses],
     track: Poses,
     *,
-    band: PathEnsemble | None,
+    band: Poses | None,
     title: str,
     simulated: bool,
 ) -> Figure:

@@ -9,10 +9,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from model.metrics.poses import Poses
+from model.poses import Poses
 from model.robot import Robot
 from model.slip.law import Array
-from model.walk.ensemble import PathEnsemble
 from zebro_lab.plots.sheet import BLUE, RED, legend_below, new_figure, styled
 from zebro_lab.plots.walk_robot import leg_arcs, outline, to_world
 
@@ -105,7 +104,7 @@ def band_over_floor(
     *,
     extent: tuple[float, float, float, float],
     path: Poses,
-    band: PathEnsemble | None,
+    band: Poses | None,
     track: Poses,
     title: str,
     simulated_photos: bool,

@@ -2,13 +2,13 @@
 """Poses over time from a table: `track.csv`, `path.csv`, or a stranger's with the same columns."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 
 from model.errors import DomainError
-from model.metrics.poses import Poses
+from model.poses import Poses
 from model.slip.law import Array
 from zebro_lab.files.errors import DataError
 from zebro_lab.files.replacement import settle
@@ -28,18 +28,22 @@ class TrackFile:
     """Tracked poses with what is known of their errors.
 
     Attributes:
-        poses: The poses; headings NaN where the table has none.
-        covariance: Covariance of x, y, yaw at each, zero where nobody said, shape (n, 3, 3).
+        poses: The poses with their covariance; headings NaN where the table has none.
         source: Where they come from: "real", "sim:what", "unknown".
         file: The file.
         notes: For a person, one line each.
     """
 
     poses: Poses
-    covariance: Array
     source: str
     file: Path
     notes: tuple[str, ...] = ()
+
+    @property
+    def covariance(self) -> Array:
+        """Covariance of x, y, yaw of each pose, zero where it is not known, shape (n, 3, 3)."""
+        known = self.poses.covariance
+        return np.zeros((len(self.poses), 3, 3)) if known is None else known
 
 
 def read_track(path: Path) -> TrackFile:
@@ -77,9 +81,10 @@ def track_of_table(table: RawTable) -> TrackFile:
     has_covariance = all(name in table.columns for name in _COVARIANCE)
     if not has_covariance:
         notes.append(f"{file.name}: without covariance; the tracker is taken as exact")
-    covariance = _covariance(table) if has_covariance else np.zeros((len(poses), 3, 3))
+    if has_covariance:
+        poses = replace(poses, covariance=_covariance(table))
     source = table.source or _tracked_source(file) or "unknown"
-    return TrackFile(poses, covariance, source, file, (*table.notes, *notes))
+    return TrackFile(poses, source, file, (*table.notes, *notes))
 
 
 def _tracked_source(file: Path) -> str | None:

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from rich.console import Console
     from rich.table import Table
 
-    from zebro_lab.validation.judgement import RunJudged
+    from zebro_lab.validation.judged_run import JudgedRun
     from zebro_lab.validation.stage import Validated
 
 EPILOG = """
@@ -111,7 +111,7 @@ def print_validated(console: "Console", validated: "Validated", out: Path) -> No
     console.print(Text(f"\nwritten to {out}"))
 
 
-def _table(run: "RunJudged") -> "Table":
+def _table(run: "JudgedRun") -> "Table":
     import numpy as np
     from rich import box
     from rich.table import Table
@@ -137,7 +137,7 @@ def _table(run: "RunJudged") -> "Table":
     return table
 
 
-def _tilt(run: "RunJudged") -> list[str]:
+def _tilt(run: "JudgedRun") -> list[str]:
     """Say how roll and pitch compare with the IMU's."""
     import numpy as np
 
@@ -153,7 +153,7 @@ def _tilt(run: "RunJudged") -> list[str]:
     ]  # fmt: skip
 
 
-def _verdict(run: "RunJudged") -> list[str]:
+def _verdict(run: "JudgedRun") -> list[str]:
     """Say what the band is worth."""
     row = run.rows[0]
     if run.band is None:

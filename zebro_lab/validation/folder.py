@@ -9,12 +9,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from model.errors import InsufficientData
+from model.judgement import Judged, TiltJudged
 from model.metrics.bootstrap import Interval, bootstrap_mean
 from model.metrics.path_errors import pose_errors
 from zebro_lab.files.result_folder import ResultKind, result_folder
 from zebro_lab.track.file import tum_lines
-from zebro_lab.validation.judgement import Judged, RunJudged, TiltJudged
-from zebro_lab.validation.pictures import Judgement, draw_validation
+from zebro_lab.validation.judged_run import JudgedRun
+from zebro_lab.validation.pictures import ShownRun, draw_validation
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -103,7 +104,7 @@ def tilt_metrics(tilt: TiltJudged) -> dict[str, float]:
     return row
 
 
-def summarise_runs(runs: Sequence[RunJudged], *, rng: np.random.Generator) -> list[Summary]:
+def summarise_runs(runs: Sequence[JudgedRun], *, rng: np.random.Generator) -> list[Summary]:
     """Average metrics over runs, with intervals from drawing whole runs again; none of one run."""
     summaries = []
     for name in [row.name for row in runs[0].rows]:
@@ -120,7 +121,7 @@ def summarise_runs(runs: Sequence[RunJudged], *, rng: np.random.Generator) -> li
 
 def write_validation(
     out: Path,
-    judgements: Sequence[Judgement],
+    shown: Sequence[ShownRun],
     *,
     summary: Sequence[Summary],
     settings: Mapping[str, object],
@@ -131,7 +132,7 @@ def write_validation(
 
     Args:
         out: Folder to make or to renew.
-        judgements: What was judged.
+        shown: What was judged.
         summary: Means over runs.
         settings: What was asked, as JSON can hold it.
         inputs: SHA-256 of each file that was read.
@@ -140,7 +141,7 @@ def write_validation(
     Raises:
         AlreadyExists: `out` is a file, or holds the result of another command.
     """
-    runs = [each.run for each in judgements]
+    runs = [each.run for each in shown]
     notes = [f"{run.name}: {note}" for run in runs for note in run.notes]
     content = {
         "source": source,
@@ -155,12 +156,12 @@ def write_validation(
     }
     with result_folder(out, VALIDATION, content=content) as draft:
         _write_tables(draft, runs)
-        for each in judgements:
+        for each in shown:
             undrawn = draw_validation(draft, each, simulated="sim:" in source)
             notes += [f"{each.run.name}: {why}" for why in undrawn]
 
 
-def _write_tables(draft: Path, runs: Sequence[RunJudged]) -> None:
+def _write_tables(draft: Path, runs: Sequence[JudgedRun]) -> None:
     import pandas as pd
 
     table = [{"run": run.name, "model": r.name, **metrics(r)} for run in runs for r in run.rows]

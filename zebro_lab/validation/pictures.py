@@ -8,10 +8,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from model.judgement import TiltJudged
 from model.slip.law import Array
 from tracking.errors import TrackingError
 from zebro_lab.track.photographs import TrackedPhotos, View
-from zebro_lab.validation.judgement import Prediction, RunJudged, TiltJudged, WalkedPath
+from zebro_lab.validation.judged_run import JudgedRun
+from zebro_lab.walk.prediction_file import PredictionFile, WalkedPath
 
 if TYPE_CHECKING:
     from zebro_lab.plots.photo_poses import Shot
@@ -24,8 +26,8 @@ _MOST_FLOOR_PIXELS = 1.5e6
 
 
 @dataclass(frozen=True)
-class Judgement:
-    """All that is known of a judged walk, for those who draw it.
+class ShownRun:
+    """A judged walk with all that its pictures show.
 
     Attributes:
         run: The walk, judged.
@@ -34,18 +36,18 @@ class Judgement:
         time_offset: Added to the track's times to bring them to the prediction's clock [s].
     """
 
-    run: RunJudged
-    prediction: Prediction
+    run: JudgedRun
+    prediction: PredictionFile
     photos: TrackedPhotos | None = None
     time_offset: float = 0.0
 
 
-def draw_validation(folder: Path, judgement: Judgement, *, simulated: bool) -> tuple[str, ...]:
+def draw_validation(folder: Path, shown: ShownRun, *, simulated: bool) -> tuple[str, ...]:
     """Draw `RUN.png` and, of what there is, `RUN.imu.png`, `RUN.photos.png` and `RUN.floor.png`.
 
     Args:
         folder: Folder to write into.
-        judgement: The walk.
+        shown: The walk.
         simulated: Say so in the titles.
 
     Returns:
@@ -54,16 +56,16 @@ def draw_validation(folder: Path, judgement: Judgement, *, simulated: bool) -> t
     from zebro_lab.plots import save
     from zebro_lab.plots.path_validation import path_validation
 
-    run = judgement.run
+    run = shown.run
     rows = {row.name: row.path for row in run.rows}
     figure = path_validation(rows, run.track, band=run.band, title=run.name, simulated=simulated)
     save(figure, folder / f"{run.name}.png")
     if run.tilt is not None:
         _draw_tilt(folder / f"{run.name}.imu.png", run.name, run.tilt, simulated)
-    if judgement.photos is None:
+    if shown.photos is None:
         return ()
     try:
-        _draw_photos(folder, judgement, judgement.photos)
+        _draw_photos(folder, shown, shown.photos)
     except TrackingError as error:
         return (f"photographs are not shown: {error}",)
     return ()
@@ -76,16 +78,16 @@ def _draw_tilt(file: Path, name: str, tilt: TiltJudged, simulated: bool) -> None
     save(draw(tilt.t, tilt.predicted, tilt.measured, title=name, simulated=simulated), file)
 
 
-def _draw_photos(folder: Path, judgement: Judgement, photos: TrackedPhotos) -> None:
+def _draw_photos(folder: Path, shown: ShownRun, photos: TrackedPhotos) -> None:
     from zebro_lab.plots import save
     from zebro_lab.plots.photo_poses import photos_beside_poses
 
-    run, walk = judgement.run, judgement.prediction.walk
-    rows = _instants(run, photos, judgement.time_offset)
+    run, walk = shown.run, shown.prediction.walk
+    rows = _instants(run, photos, shown.time_offset)
     if walk is None or not len(rows):
         return
     views = {int(row): photos.view(photos.names[row]) for row in rows}
-    at = {row: float(photos.t[row]) + judgement.time_offset for row in views}
+    at = {row: float(photos.t[row]) + shown.time_offset for row in views}
     shots = [_shot(run, walk, view, at[row]) for row, view in views.items()]
     figure = photos_beside_poses(
         shots, walk.robot, title=run.name, simulated_photos=photos.simulated
@@ -95,14 +97,14 @@ def _draw_photos(folder: Path, judgement: Judgement, photos: TrackedPhotos) -> N
     _draw_floor(folder / f"{run.name}.floor.png", run, views[max(views)], photos.simulated)
 
 
-def _instants(run: RunJudged, photos: TrackedPhotos, time_offset: float) -> NDArray[np.intp]:
+def _instants(run: JudgedRun, photos: TrackedPhotos, time_offset: float) -> NDArray[np.intp]:
     """Return rows of the track, evenly spread over the poses that were scored."""
     at = photos.t + time_offset
     scored = np.flatnonzero((at >= run.track.t[0] - 1e-6) & (at <= run.track.t[-1] + 1e-6))
     return np.unique(scored[np.linspace(0, len(scored) - 1, SHOTS).round().astype(int)])
 
 
-def _shot(run: RunJudged, walk: WalkedPath, view: View, t: float) -> "Shot":
+def _shot(run: JudgedRun, walk: WalkedPath, view: View, t: float) -> "Shot":
     from zebro_lab.plots.photo_poses import Shot
 
     tracked, predicted = run.track.at([t]), run.rows[0].path.at([t])
@@ -123,7 +125,7 @@ def _shot(run: RunJudged, walk: WalkedPath, view: View, t: float) -> "Shot":
     )
 
 
-def _draw_floor(file: Path, run: RunJudged, view: View, simulated_photos: bool) -> None:
+def _draw_floor(file: Path, run: JudgedRun, view: View, simulated_photos: bool) -> None:
     from zebro_lab.plots import save
     from zebro_lab.plots.photo_poses import band_over_floor
 

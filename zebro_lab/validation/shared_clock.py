@@ -2,12 +2,14 @@
 """A track on the clock of a prediction: by an offset that is given, or found in the motion."""
 
 from dataclasses import dataclass, replace
+from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
 from model.errors import InsufficientData
 from model.metrics.clock import estimate_offset
-from model.metrics.poses import Poses
+from model.poses import Poses, overlap
 from model.slip.law import Array
 from zebro_lab.files.errors import DataError
 from zebro_lab.track.file import TrackFile
@@ -63,12 +65,33 @@ def estimated_clock(
         f"clock: {found.value:+.2f} ± {found.sd:.2f} s were added to the track's times, as the "
         "motion has it; errors along the path are the smaller for it"
     )
-    told = replace(moved, covariance=widened, notes=(*moved.notes, note))
-    return SharedClock(told, found.value)
+    poses = replace(moved.poses, covariance=widened)
+    return SharedClock(replace(moved, poses=poses, notes=(*moved.notes, note)), found.value)
+
+
+def shared_time(track: Poses, path: Poses, *, file: Path) -> NDArray[np.bool_]:
+    """Tell which tracked poses lie within the time of a path, shape (len(track),).
+
+    Args:
+        track: The track.
+        path: The path.
+        file: The track's file, for the message.
+
+    Raises:
+        DataError: Fewer than two do.
+    """
+    try:
+        return overlap(track, path)
+    except InsufficientData as error:
+        raise DataError(
+            f"{error} Give --time-offset SECONDS, which is added to the track's times, or "
+            "--estimate-offset",
+            file=file,
+        ) from error
 
 
 def _moved(track: TrackFile, offset: float) -> TrackFile:
-    return replace(track, poses=replace(track.poses, t=track.poses.t + offset))
+    return replace(track, poses=track.poses.delayed(offset))
 
 
 def _velocity(path: Poses, t: Array) -> Array:

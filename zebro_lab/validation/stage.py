@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from model.errors import InsufficientData
+from model.judgement import judge_tilt
 from zebro_lab.files.errors import DataError, NotFound, SettingsError
 from zebro_lab.files.names import PATH_CSV
 from zebro_lab.files.provenance import file_hashes
@@ -20,16 +21,11 @@ from zebro_lab.track.file import read_track
 from zebro_lab.track.folder import TRACK_CSV
 from zebro_lab.track.photographs import photos_of_track
 from zebro_lab.validation.folder import VALIDATION, Summary, summarise_runs, write_validation
-from zebro_lab.validation.judgement import (
-    Prediction,
-    RunJudged,
-    judge_run,
-    judge_tilt,
-    read_prediction,
-)
-from zebro_lab.validation.pictures import Judgement
+from zebro_lab.validation.judged_run import JudgedRun, judge_run
+from zebro_lab.validation.pictures import ShownRun
 from zebro_lab.validation.shared_clock import estimated_clock, given_clock
 from zebro_lab.walk.folder import PREDICTION
+from zebro_lab.walk.prediction_file import PredictionFile, read_prediction
 from zebro_lab.walk.walking import Watcher
 
 TRACK = "track"
@@ -64,7 +60,7 @@ class Validated:
         source: Where predictions and tracks come from.
     """
 
-    runs: tuple[RunJudged, ...]
+    runs: tuple[JudgedRun, ...]
     summary: tuple[Summary, ...]
     source: str
 
@@ -97,31 +93,31 @@ def validate(request: ValidateRequest, watcher: Watcher) -> Validated:
     pairs, repeated = first_of_each(request.pairs, key=_content)
     told = told_once("walks", [(one[0], other[0]) for one, other in repeated])
     rng = np.random.default_rng(request.seed)
-    judgements, files, sources = [], [], []
+    shown, files, sources = [], [], []
     names = _names([predicted for predicted, _ in pairs])
     for i, (name, (predicted, tracked)) in enumerate(zip(names, pairs, strict=True)):
         watcher.step("judging", i / len(names))
         prediction, track = read_prediction(predicted), read_track(tracked)
         clock = (
-            estimated_clock(track, prediction.path)
+            estimated_clock(track, prediction.prediction.path)
             if request.time_offset is None
             else given_clock(track, request.time_offset)
         )
         judged = judge_run(name, prediction, clock.track, anchor=request.anchor, rng=rng)
-        judgement, read = _with_surroundings(judged, prediction, tracked, clock.offset)
-        judgements.append(judgement if i else _noted(judgement, told))
+        one, read = _with_surroundings(judged, prediction, tracked, clock.offset)
+        shown.append(one if i else _noted(one, told))
         files += [*prediction.files, track.file, *read]
         sources += [prediction.source, track.source]
-    runs = [each.run for each in judgements]
+    runs = [each.run for each in shown]
     summary = tuple(summarise_runs(runs, rng=rng)) if len(runs) > 1 else ()
     source = ", ".join(sorted(set(sources)))
     write_validation(
         request.out,
-        judgements,
+        shown,
         summary=summary,
         settings={
             "anchor": request.anchor,
-            "time_offset": {each.run.name: each.time_offset for each in judgements},
+            "time_offset": {each.run.name: each.time_offset for each in shown},
             "time_offset_estimated": request.time_offset is None,
             "seed": request.seed,
         },
@@ -140,21 +136,23 @@ def _content(pair: tuple[Path, Path]) -> tuple[str, ...]:
     )
 
 
-def _noted(judgement: Judgement, told: Sequence[str]) -> Judgement:
-    run = judgement.run
-    return replace(judgement, run=replace(run, notes=(*told, *run.notes)))
+def _noted(shown: ShownRun, told: Sequence[str]) -> ShownRun:
+    run = shown.run
+    return replace(shown, run=replace(run, notes=(*told, *run.notes)))
 
 
 def _with_surroundings(
-    judged: RunJudged, prediction: Prediction, tracked: Path, offset: float
-) -> tuple[Judgement, tuple[Path, ...]]:
+    judged: JudgedRun, prediction: PredictionFile, tracked: Path, offset: float
+) -> tuple[ShownRun, tuple[Path, ...]]:
     """Add what else a run knows: its IMU, and the photographs of its track; return files read."""
     notes, files, photos = list(judged.notes), (), None
     run = tracked.parent if tracked.name == TRACK else None
     measured = read_recorded_tilt(run) if run is not None and is_recorded(run) else None
     if measured is not None and prediction.walk is not None:
         try:
-            judged = replace(judged, tilt=judge_tilt(prediction.walk, measured))
+            judged = replace(
+                judged, tilt=judge_tilt(prediction.walk.path, measured.t, measured.angles)
+            )
             files = measured.files
         except InsufficientData as error:
             notes.append(f"roll and pitch are not compared: {error}")
@@ -163,7 +161,7 @@ def _with_surroundings(
     except (NotFound, DataError) as error:
         notes.append(f"photographs are not shown: {error}")
     judged = replace(judged, notes=tuple(notes))
-    return Judgement(judged, prediction, photos, offset), files
+    return ShownRun(judged, prediction, photos, offset), files
 
 
 def _names(paths: Sequence[Path]) -> list[str]:

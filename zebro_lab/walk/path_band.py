@@ -8,6 +8,7 @@ import numpy as np
 
 from model.gait.quantised import QuantisedLog
 from model.gait.reference import LegReference
+from model.poses import Poses
 from model.predict import (
     LEVELS,
     STATES,
@@ -19,9 +20,8 @@ from model.predict import (
     walk_draws,
 )
 from model.robot import GRAVITY, Robot
-from model.walk.ensemble import PathEnsemble
 from model.walk.traction import ToeLaw
-from zebro_lab.calibration.slip_argument import Slip
+from zebro_lab.calibration.slip_argument import NamedSlip
 from zebro_lab.calibration.slip_draws import slip_tables
 from zebro_lab.files.arrays import read_arrays
 from zebro_lab.files.errors import DataError, SettingsError
@@ -72,13 +72,13 @@ def predict_band(
     request: BandRequest,
     robot: Robot,
     legs: LegReference | QuantisedLog,
-    slip: Slip,
+    slip: NamedSlip,
     *,
     duration: float,
     toe: ToeLaw,
     informed: InformedLegs | None = None,
     watcher: Watcher,
-) -> PathEnsemble:
+) -> Poses:
     """Walk an ensemble from time zero on, started at the origin.
 
     Args:
@@ -143,7 +143,7 @@ def offset_sd_deg(request: BandRequest, legs: LegReference | QuantisedLog) -> fl
     return ASSUMED_OFFSET_DEG
 
 
-def write_band(folder: Path, paths: PathEnsemble, *, title: str) -> None:
+def write_band(folder: Path, paths: Poses, *, title: str) -> None:
     """Write the draws, the quantiles and their picture into a walk folder.
 
     Args:
@@ -155,8 +155,7 @@ def write_band(folder: Path, paths: PathEnsemble, *, title: str) -> None:
 
     from zebro_lab.plots import path_band, save
 
-    values = np.concatenate([paths.position, paths.yaw[..., None]], axis=-1)
-    np.savez_compressed(folder / DRAWS, t=paths.t, poses=values.astype(np.float32))
+    np.savez_compressed(folder / DRAWS, t=paths.t, poses=paths.states.astype(np.float32))
     band = quantiles(paths)
     columns = {"t": paths.t}
     for i, state in enumerate(STATES):
@@ -169,7 +168,7 @@ def write_band(folder: Path, paths: PathEnsemble, *, title: str) -> None:
     save(figure, folder / BAND_PICTURE)
 
 
-def read_draws(folder: Path) -> PathEnsemble:
+def read_draws(folder: Path) -> Poses:
     """Read the draws of a walk folder.
 
     Raises:
@@ -188,4 +187,4 @@ def read_draws(folder: Path) -> PathEnsemble:
         t, poses = t.astype(float), poses.astype(float)
     if not np.all(np.diff(t) > 0):
         raise DataError("holds times that do not increase; predict again", file=file)
-    return PathEnsemble(t, poses[..., :2], poses[..., 2])
+    return Poses.of_states(t, poses)

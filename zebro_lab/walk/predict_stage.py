@@ -7,9 +7,9 @@ from pathlib import Path
 
 import numpy as np
 
+from model.gait.direction import Direction
 from model.gait.quantised import QuantisedLog
 from model.robot import N_LEGS
-from model.walk.ensemble import PathEnsemble
 from zebro_lab.files.names import PATH_CSV
 from zebro_lab.files.replacement import settle
 from zebro_lab.files.result_folder import require_replaceable
@@ -19,7 +19,6 @@ from zebro_lab.runs.legs import read_leg_log
 from zebro_lab.runs.recorded_legs import is_recorded
 from zebro_lab.walk.folder import WALKED
 from zebro_lab.walk.leg_angles import angles_from
-from zebro_lab.walk.models import Direction
 from zebro_lab.walk.path_band import BandRequest, write_band
 from zebro_lab.walk.walked_band import band_of
 from zebro_lab.walk.walking import ModelRequest, Walked, Watcher, robot_of, walk_with, write_walk
@@ -92,8 +91,7 @@ def predict(request: PredictRequest, watcher: Watcher) -> Walked:
             duration=end - start, toe=request.model.toe, watcher=watcher,
         )  # fmt: skip
         settings["band"] = request.band.settings()
-        moved = PathEnsemble(paths.t + start, paths.position, paths.yaw)
-        extra = partial(write_band, paths=moved, title=walked.title)
+        extra = partial(write_band, paths=paths.delayed(start), title=walked.title)
     write_walk(
         request.model, walked, watcher,
         kind="predict", settings=settings, files=log.files, extra=extra,

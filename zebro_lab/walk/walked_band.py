@@ -3,7 +3,7 @@
 
 from model.gait.quantised import QuantisedLog
 from model.gait.reference import LegReference
-from model.walk.ensemble import PathEnsemble
+from model.poses import Poses
 from model.walk.traction import ToeLaw
 from zebro_lab.files.errors import SettingsError
 from zebro_lab.walk.path_band import BandRequest, predict_band
@@ -18,7 +18,7 @@ def band_of(
     duration: float,
     toe: ToeLaw,
     watcher: Watcher,
-) -> PathEnsemble:
+) -> Poses:
     """Walk an ensemble of what is not known about a walk, from time zero on.
 
     Args:

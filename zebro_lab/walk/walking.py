@@ -8,19 +8,20 @@ from typing import Final, Protocol
 
 import numpy as np
 
-from model.errors import DomainError
+from model.errors import DefinitionMismatch, DomainError
+from model.gait.direction import Direction
 from model.gait.reference import LegReference
 from model.predict import FINE
 from model.robot import Robot
 from model.walk.path import WalkPath
 from model.walk.traction import ToeLaw
-from zebro_lab.calibration.slip_argument import THESIS, Slip, parse_slip
+from model.walk_models import MODELS, ModelRun, WalkModel
+from zebro_lab.calibration.slip_argument import EXPECTED_SLIP, THESIS, NamedSlip, parse_slip
 from zebro_lab.files.errors import SettingsError, ZebroLabError
 from zebro_lab.files.provenance import file_hashes
 from zebro_lab.robot.robot_file import RobotFile, read_robot_file
 from zebro_lab.walk.folder import walk_folder
 from zebro_lab.walk.informed_legs import InformedLegs, informed_legs
-from zebro_lab.walk.models import MODELS, Direction, ModelRun
 from zebro_lab.walk.pictures import animate_walk, draw_walk
 
 INFORMED_MODEL = "dynamics"  # the one whose legs and floor walks were fitted with
@@ -97,7 +98,7 @@ class Walked:
     path: WalkPath
     reference: LegReference
     described: RobotFile
-    slip: Slip | None
+    slip: NamedSlip | None
     model: str
     dt: float
     title: str
@@ -156,6 +157,8 @@ def walk_with(
     if slip is not None and not model.slips:
         notes = (*notes, f"the model '{model.name}' does not slip: --slip {slip.text} not used")
         slip = None
+    if slip is None and model.slips:
+        raise SettingsError(f"missing: this model slips; name {EXPECTED_SLIP}", key="--slip")
     dt = model.dt if request.dt is None else request.dt
     _require_steps(duration, dt)
     informed = None
@@ -171,7 +174,7 @@ def walk_with(
         described.robot, reference, slip, duration, dt, request.toe, direction,
         None if informed is None else informed.middle,
     )  # fmt: skip
-    path = model.run(run)
+    path = _run(run, model, slip)
     grip = f", slip {slip.title}" if slip is not None else ""
     return Walked(
         path=path,
@@ -184,6 +187,18 @@ def walk_with(
         notes=(*notes, *(slip.notes if slip is not None else ())),
         informed=informed,
     )
+
+
+def _run(run: ModelRun, model: WalkModel, slip: NamedSlip | None) -> WalkPath:
+    try:
+        return model.run(run)
+    except DefinitionMismatch as error:
+        raise SettingsError(
+            f"was fitted to '{error.found}' slip, but the thesis's model takes '{error.expected}' "
+            f"slip; calibrate again with --slip-definition {error.expected}, or use --model "
+            "dynamics, which converts",
+            file=None if slip is None else slip.text,
+        ) from error
 
 
 def _require_steps(duration: float, dt: float) -> None:

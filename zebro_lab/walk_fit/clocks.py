@@ -5,17 +5,15 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import TypeAlias
 
-import numpy as np
-
 from model.bayes.walk_misfit import middle
 from model.errors import InsufficientData
 from model.gait.quantised import QuantisedLog
 from model.gait.reference import SampledReference
 from model.metrics.clock import estimate_offset
-from model.metrics.poses import Poses
+from model.poses import Poses
 from model.robot import GRAVITY, Robot
 from model.walk.ensemble import WalkDraw, planar_walk
-from zebro_lab.calibration.slip_argument import Slip
+from model.walk.slip import Slip
 from zebro_lab.files.errors import DataError
 from zebro_lab.track.file import TrackFile
 from zebro_lab.validation.shared_clock import estimated_clock
@@ -67,11 +65,10 @@ def estimated_clock_of(slip: Slip) -> Clock:
 
 def since(track: TrackFile, start: float) -> TrackFile:
     """Count a track's times from another zero [s]."""
-    return replace(track, poses=replace(track.poses, t=track.poses.t - start))
+    return replace(track, poses=track.poses.delayed(-start))
 
 
 def _walked(legs: Legs, robot: Robot, slip: Slip) -> Poses:
     angles = middle(legs)
     draw = WalkDraw(robot, angles, slip.traction_table(weight=robot.mass * GRAVITY))
-    path = planar_walk(draw, duration=float(legs.t[-1]))
-    return Poses(path.t, np.column_stack([path.x, path.y]), path.yaw)
+    return planar_walk(draw, duration=float(legs.t[-1])).poses

@@ -5,13 +5,13 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from model.bayes.walk_posterior import WalkPosterior
-from zebro_lab.validation.judgement import RunJudged
+from zebro_lab.validation.judged_run import JudgedRun
 
 PARAMETERS, LEFT_OUT = "walk_parameters", "left_out."
 
 
 def draw_walks(
-    folder: Path, posterior: WalkPosterior, left_out: Sequence[RunJudged], *, simulated: bool
+    folder: Path, posterior: WalkPosterior, left_out: Sequence[JudgedRun], *, simulated: bool
 ) -> None:
     """Draw into a folder.
 

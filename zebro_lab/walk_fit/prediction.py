@@ -12,14 +12,16 @@ from model.bayes.walk_prior import WalkPrior
 from model.bayes.walks import WalkFit, fit_walks
 from model.errors import InsufficientData
 from model.gait.reference import SampledReference
-from model.metrics.poses import Poses
+from model.judgement import Prediction
+from model.poses import Poses
 from model.predict import FINE, LegState, ModelSpread, predict_paths, walk_draws
 from model.robot import GRAVITY
 from model.slip.law import Array
-from model.walk.ensemble import PathEnsemble
-from zebro_lab.calibration.slip_argument import Slip
+from model.walk_models import baseline_paths
+from zebro_lab.calibration.slip_argument import NamedSlip
 from zebro_lab.calibration.slip_draws import slip_tables
-from zebro_lab.validation.judgement import Prediction, RunJudged, judge_run, walk_baselines
+from zebro_lab.validation.judged_run import JudgedRun, judge_run
+from zebro_lab.walk.prediction_file import PredictionFile
 from zebro_lab.walk_fit.tracked_walks import WalkOnFile
 
 SAMPLING = 0.1  # s between poses of a predicted path
@@ -41,12 +43,12 @@ class WalksFitted:
 
     walks: tuple[WalkOnFile, ...]
     posterior: WalkPosterior
-    left_out: tuple[RunJudged, ...]
+    left_out: tuple[JudgedRun, ...]
 
 
 def fit_walks_on_file(
     walks: Sequence[WalkOnFile],
-    slip: Slip,
+    slip: NamedSlip,
     *,
     prior: WalkPrior,
     rng: np.random.Generator,
@@ -82,7 +84,7 @@ def fit_walks_on_file(
 
 def fit_and_leave_out(
     walks: Sequence[WalkOnFile],
-    slip: Slip,
+    slip: NamedSlip,
     *,
     prior: WalkPrior,
     rng: np.random.Generator,
@@ -116,13 +118,13 @@ def fit_and_leave_out(
 def judge_from(
     posterior: WalkPosterior,
     walk: WalkOnFile,
-    slip: Slip,
+    slip: NamedSlip,
     *,
     rng: np.random.Generator,
     draws: int = DRAWS,
     index: int | None = None,
     threads: int = 2,
-) -> RunJudged:
+) -> JudgedRun:
     """Predict a walk from a posterior and judge it against its track, beside simpler models.
 
     Args:
@@ -143,13 +145,13 @@ def judge_from(
 def predict_from(
     posterior: WalkPosterior,
     walk: WalkOnFile,
-    slip: Slip,
+    slip: NamedSlip,
     *,
     rng: np.random.Generator,
     draws: int = DRAWS,
     index: int | None = None,
     threads: int = 2,
-) -> Prediction:
+) -> PredictionFile:
     """Predict a walk from a posterior, and by simpler models; its track is not looked at.
 
     Args:
@@ -169,19 +171,19 @@ def predict_from(
     angles = middle(walk.legs)
     told = SampledReference(t, angles.angles(t) + robot.leg_offset)
     turned = single.yaw[-1] - single.yaw[0]
-    baselines, notes = walk_baselines(robot, told, direction="left" if turned >= 0 else "right")
-    return Prediction(single, band, baselines, walk.source, walk.files, notes)
+    baselines, notes = baseline_paths(robot, told, direction="left" if turned >= 0 else "right")
+    return PredictionFile(Prediction(single, band, baselines), walk.source, walk.files, notes)
 
 
 def _walked(
     walk: WalkOnFile,
-    slip: Slip,
+    slip: NamedSlip,
     state: LegState,
     t: Array,
     error: ModelSpread,
     rng: np.random.Generator,
     threads: int,
-) -> PathEnsemble:
+) -> Poses:
     robot = walk.robot.robot
     tables = slip_tables(slip, len(state), weight=robot.mass * GRAVITY, rng=rng)
     drawn = walk_draws(robot, walk.legs, tables, state, rng=rng)
@@ -189,12 +191,12 @@ def _walked(
 
 
 def _middle_path(
-    walk: WalkOnFile, slip: Slip, state: LegState, t: Array, rng: np.random.Generator
+    walk: WalkOnFile, slip: NamedSlip, state: LegState, t: Array, rng: np.random.Generator
 ) -> Poses:
     """Walk every unknown at its middle."""
     plain = replace(walk, legs=middle(walk.legs))
     robot = walk.robot.robot
     table = slip.traction_table(weight=robot.mass * GRAVITY)
     drawn = walk_draws(robot, plain.legs, [table], state, rng=rng)
-    path = predict_paths(drawn, t, state=state, error=EXACT, rng=rng, threads=1, options=FINE)
-    return Poses(path.t, path.position[0], path.yaw[0])
+    paths = predict_paths(drawn, t, state=state, error=EXACT, rng=rng, threads=1, options=FINE)
+    return paths.draws(0)

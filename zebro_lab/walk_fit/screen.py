@@ -10,7 +10,7 @@ from rich.text import Text
 from model.bayes.walk_posterior import Contraction, WalkPosterior
 from model.bayes.walk_prior import FALL, UNITS
 from zebro_lab.terminal.messages import plain
-from zebro_lab.validation.judgement import RunJudged
+from zebro_lab.validation.judged_run import JudgedRun
 from zebro_lab.walk_fit.stage import WalksCalibrated
 
 _LIKELY = 0.01  # probability of a case that is worth a line
@@ -97,7 +97,7 @@ def _quality(posterior: WalkPosterior) -> list[str]:
     return lines
 
 
-def _left_out_table(left_out: tuple[RunJudged, ...]) -> Table:
+def _left_out_table(left_out: tuple[JudgedRun, ...]) -> Table:
     table = Table(
         title="each walk predicted from what the others say", box=box.SIMPLE, title_justify="left"
     )

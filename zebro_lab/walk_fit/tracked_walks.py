@@ -191,7 +191,7 @@ def _inside(end: float, track: TrackFile) -> tuple[TrackFile, tuple[str, ...]]:
         )
     left_out = int((~keep).sum())
     notes = (f"{left_out} tracked poses lie outside the leg log's time",) if left_out else ()
-    part = replace(track, poses=track.poses.part(keep), covariance=track.covariance[keep])
+    part = replace(track, poses=track.poses.part(keep))
     return part, notes
 
 

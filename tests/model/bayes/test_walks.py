@@ -26,9 +26,9 @@ def tracked(steering, side, *, offset, seed, duration=DURATION):
     gait = tripod_reference(tripod_angles(np.radians(50.0), steering), 2.0, direction=side)
     t = np.arange(0.0, duration + 0.005, 0.01)
     legs = SampledReference(t, gait.angles(t))
-    true = planar_walk(WalkDraw(Robot(leg_offset=offset), legs, TABLE), duration=duration)
+    true = planar_walk(WalkDraw(Robot(leg_offset=offset), legs, TABLE), duration=duration).poses
     seen = np.arange(0.0, duration, duration / 8)
-    states = np.column_stack([np.interp(seen, true.t, a) for a in (true.x, true.y, true.yaw)])
+    states = true.at(seen).states
     states += np.random.default_rng(seed).normal(0, 1, states.shape) * NOISE
     covariance = np.tile(np.diag(NOISE**2), (len(seen), 1, 1))
     return TrackedWalk(f"{steering} {side}", legs, seen, states, covariance)

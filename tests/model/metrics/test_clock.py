@@ -4,7 +4,7 @@ import pytest
 
 from model.errors import InsufficientData
 from model.metrics.clock import estimate_offset
-from model.metrics.poses import Poses
+from model.poses import Poses
 
 
 def walk(*, standing=2.0, speed=0.1, radius=1.5, duration=24.0):

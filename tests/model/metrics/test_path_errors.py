@@ -7,8 +7,8 @@ from hypothesis import strategies as st
 from model.errors import DomainError, InsufficientData
 from model.metrics.alignment import align, aligned
 from model.metrics.path_errors import path_errors, pose_errors, relative_error
-from model.metrics.poses import Poses, overlap, travel_direction
 from model.metrics.turning import fitted_radius, mean_yaw_rate
+from model.poses import Poses, overlap, travel_direction
 
 angles = st.floats(-3.0, 3.0)
 shifts = st.tuples(st.floats(-5, 5), st.floats(-5, 5))

@@ -30,16 +30,18 @@ def draws(n=6, *, gait=TURN):
 
 def test_an_ensemble_is_its_draws_whatever_the_threads():
     t = np.linspace(0, 20.0, 41)
-    one, two = (walk_ensemble(draws(), t, options=OPTIONS, threads=n) for n in (1, 2))
+    one, two = (walk_ensemble(draws(), t, options=OPTIONS, threads=n).poses for n in (1, 2))
     np.testing.assert_array_equal(one.position, two.position)
     np.testing.assert_array_equal(one.yaw, two.yaw)
-    alone = planar_walk(draws()[4], duration=20.0, options=OPTIONS)
-    np.testing.assert_allclose(one.position[4, :, 0], np.interp(t, alone.t, alone.x), atol=1e-12)
+    alone = planar_walk(draws()[4], duration=20.0, options=OPTIONS).poses
+    np.testing.assert_allclose(
+        one.position[4, :, 0], np.interp(t, alone.t, alone.position[:, 0]), atol=1e-12
+    )
     assert one.position.shape == (6, 41, 2)
 
 
 def test_leg_offsets_spread_the_path():
-    ensemble = walk_ensemble(draws(12), np.array([0.0, 20.0]), options=OPTIONS)
+    ensemble = walk_ensemble(draws(12), np.array([0.0, 20.0]), options=OPTIONS).poses
     assert np.all(ensemble.position[:, 0] == 0)
     assert ensemble.position[:, -1].std(axis=0).max() > 0.01
 
@@ -50,7 +52,7 @@ def test_a_log_is_walked_whole_and_like_its_gait():
     times = np.linspace(0, 11.9, 20)
     ensemble = walk_ensemble(
         [WalkDraw(ROBOT, log, SLIP), WalkDraw(ROBOT, TURN, SLIP)], times, options=OPTIONS
-    )
+    ).poses
     np.testing.assert_allclose(ensemble.position[0], ensemble.position[1], atol=0.003)
 
 

@@ -18,11 +18,11 @@ from zebro_lab.calibration.walks_folder import FOLDER, WalksToWrite, read_walks_
 from zebro_lab.files.errors import DataError, SettingsError
 from zebro_lab.report.stage import ReportRequest, report
 from zebro_lab.robot.robot_file import RobotFile
-from zebro_lab.validation.judgement import read_prediction
 from zebro_lab.walk.folder import read_walk, read_walk_manifest
 from zebro_lab.walk.informed_legs import informed_legs
 from zebro_lab.walk.path_band import BandRequest, read_draws
 from zebro_lab.walk.predict_stage import PredictRequest, predict
+from zebro_lab.walk.prediction_file import read_prediction
 from zebro_lab.walk.walking import ModelRequest
 from zebro_lab.walk_fit.pictures import draw_walks
 
@@ -220,7 +220,9 @@ def test_baselines_know_the_legs_as_described_not_as_fitted(calibration, legs, t
     predicted(tmp_path, legs[0], str(calibration), name="plain")
     stored(calibration, legs, posterior_of(WrongLeg(2)))
     predicted(tmp_path, legs[0], str(calibration), name="fitted")
-    plain, fitted = (read_prediction(tmp_path / name).baselines for name in ("plain", "fitted"))
+    plain, fitted = (
+        read_prediction(tmp_path / name).prediction.baselines for name in ("plain", "fitted")
+    )
     for name in ("no-slip", "no-slip-simple"):
         np.testing.assert_allclose(plain[name].position, fitted[name].position, atol=1e-6)
 

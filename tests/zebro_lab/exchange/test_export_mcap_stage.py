@@ -10,8 +10,8 @@ from mcap.reader import make_reader
 from mcap_ros2.decoder import DecoderFactory
 from scipy.spatial.transform import Rotation
 
+from model.poses import Poses
 from model.robot import Robot
-from model.walk.ensemble import PathEnsemble
 from zebro_lab.exchange.export_mcap_stage import export_mcap
 from zebro_lab.files.errors import AlreadyExists, DataError, NotFound
 from zebro_lab.walk.folder import walk_folder
@@ -33,7 +33,7 @@ def run(walked, tmp_path_factory):
     t = np.arange(0.0, 4.01, 0.1)
     base = np.column_stack([np.interp(t, walked.t, column) for column in walked.position[:, :2].T])
     spread = rng.normal(0, 0.05, (80, 1, 1)) * t[:, None] / 4
-    paths = PathEnsemble(t, base + spread, np.interp(t, walked.t, walked.yaw) + np.zeros((80, 1)))
+    paths = Poses(t, base + spread, np.interp(t, walked.t, walked.yaw) + np.zeros((80, 1)))
     with walk_folder(
         folder / "prediction", walked, kind="predict", source="sim:dynamics",
         settings={"robot": described}, inputs={},

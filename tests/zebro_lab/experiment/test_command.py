@@ -205,12 +205,12 @@ def test_a_hold_is_visible_and_says_which_key_goes_on(plan, tmp_path):
 def test_a_rig_that_lost_friction_has_drifted(plan, tmp_path, monkeypatch):
     from dataclasses import replace
 
-    from zebro_lab.calibration.slip_argument import source_curve
+    from model.slip.thesis import thesis_curve
     from zebro_lab.experiment import check_stage as rig_check
 
     data = tmp_path / "data"
     assert zebro_lab("run", plan, "--rig", "sim", "--fast", "--data", data).exit_code == 0
-    curve = source_curve()
+    curve = thesis_curve()
     monkeypatch.setattr(rig_check, "read_slip", lambda path: curve)
     assert not any(found.drifted for found in check_runs([data], tmp_path))
     slippery = replace(curve, values=curve.values * np.array([1.0, 1.0, 0.6, 1.0]))

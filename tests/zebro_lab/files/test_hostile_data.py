@@ -23,7 +23,7 @@ from model.slip.curve import SlipCurve
 from model.slip.definition import SlipDefinition
 from model.slip.laws import slip_law
 from zebro_lab.calibration.rig_data import read_rig_data
-from zebro_lab.calibration.slip_argument import Slip
+from zebro_lab.calibration.slip_argument import NamedSlip
 from zebro_lab.calibration.slip_draws import POSTERIOR, law_draws
 from zebro_lab.files.errors import DataError, ZebroLabError
 from zebro_lab.mcap.raw_log import COUNTS_NAME, read_raw_log
@@ -86,12 +86,12 @@ def npy_header(text: str) -> bytes:
 GOOD_DRAWS = {"t": npy(np.arange(5.0)), "poses": npy(np.zeros((3, 5, 3), np.float32))}
 
 
-def slip_of(folder: Path) -> tuple[Slip, SlipCurve]:
+def slip_of(folder: Path) -> tuple[NamedSlip, SlipCurve]:
     curve = SlipCurve(
         law=slip_law("brush"), values=np.array([5.0, 0.4]), covariance=np.eye(2) * 1e-3,
         definition=SlipDefinition.MATERIAL, load_range=(1.0, 2.0), slip_range=(0.0, 1.0),
     )  # fmt: skip
-    return Slip("x", curve, "real", (folder / "slip.toml",)), curve
+    return NamedSlip(curve, "real", "x", (folder / "slip.toml",)), curve
 
 
 def draw_posterior(folder: Path) -> object:

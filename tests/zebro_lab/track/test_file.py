@@ -2,7 +2,7 @@
 import numpy as np
 import pytest
 
-from model.metrics.poses import Poses
+from model.poses import Poses
 from zebro_lab.files.errors import DataError, NotFound
 from zebro_lab.track.file import read_track, tum_lines
 

@@ -11,7 +11,8 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from model.metrics.poses import Poses
+from model.judgement import Prediction, judge_tilt
+from model.poses import Poses
 from model.robot import Robot
 from zebro_lab.files.errors import DataError, NotFound
 from zebro_lab.files.provenance import file_hash
@@ -19,8 +20,9 @@ from zebro_lab.plots.photo_poses import Shot, photos_beside_poses
 from zebro_lab.runs.recorded_tilt import Tilt
 from zebro_lab.track.file import TrackFile
 from zebro_lab.track.photographs import photos_of_track
-from zebro_lab.validation.judgement import Prediction, WalkedPath, judge_run, judge_tilt
-from zebro_lab.validation.pictures import Judgement, draw_validation
+from zebro_lab.validation.judged_run import judge_run
+from zebro_lab.validation.pictures import ShownRun, draw_validation
+from zebro_lab.walk.prediction_file import PredictionFile, WalkedPath
 
 DATA = Path(__file__).parents[3] / "datasets/walk-sim"
 SHOWN = ("simulated_03.jpg", "simulated_12.jpg")
@@ -69,19 +71,18 @@ def test_from_above_the_robot_s_marker_lies_where_the_robot_was(track, name):
 def judged(track, walked, *, measured=None):
     """Judge the made-up walk against a track that is a centimetre to its left."""
     photos = photos_of_track(track)
-    path = Poses(walked.t, walked.position[:, :2], walked.yaw)
+    path = walked.poses
     seen = path.at(photos.t)
     seen = Poses(seen.t, seen.position + np.array([0.0, 0.01]), seen.yaw)
-    zero = np.zeros((len(seen), 3, 3))
     walk = WalkedPath(walked, Robot())
-    prediction = Prediction(path, None, {}, "sim:dynamics", (), walk=walk)
+    prediction = PredictionFile(Prediction(path), "sim:dynamics", (), walk=walk)
     run = judge_run(
-        "walk", prediction, TrackFile(seen, zero, "sim:photographs", track),
+        "walk", prediction, TrackFile(seen, "sim:photographs", track),
         anchor=False, rng=np.random.default_rng(1),
     )  # fmt: skip
     if measured is not None:
-        run = replace(run, tilt=judge_tilt(walk, measured))
-    return Judgement(run, prediction, photos)
+        run = replace(run, tilt=judge_tilt(walked, measured.t, measured.angles))
+    return ShownRun(run, prediction, photos)
 
 
 def retimed(track, times):

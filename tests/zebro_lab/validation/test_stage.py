@@ -16,10 +16,10 @@ from zebro_lab.files.errors import AlreadyExists, DataError, NotFound, SettingsE
 from zebro_lab.main import app
 from zebro_lab.runs.legs import read_leg_log
 from zebro_lab.terminal.ending import run as run_app
-from zebro_lab.validation.judgement import read_prediction
 from zebro_lab.validation.stage import ValidateRequest, pairs_of_run, validate
 from zebro_lab.walk.path_band import BandRequest, read_draws
 from zebro_lab.walk.predict_stage import PredictRequest, predict
+from zebro_lab.walk.prediction_file import read_prediction
 from zebro_lab.walk.walking import ModelRequest
 
 STEP = np.radians(3.6)
@@ -45,14 +45,14 @@ def write_walk_data(folder, *, steering=1.2, offset_deg=0.0, seed=3):
     reference = gait(steering)
     robot = Robot(leg_offset=np.radians(offset_deg) * np.array([0, 1, 0, 0, 0, 0]))
     table = VelocityCoulomb(0.38).table(weight=robot.mass * 9.81)
-    true = planar_walk(WalkDraw(robot, reference, table), duration=DURATION)
+    true = planar_walk(WalkDraw(robot, reference, table), duration=DURATION).poses
     t = np.arange(0, DURATION, 0.01)
     counted = STEP * np.round(reference.angles(t) / STEP)
     legs = pd.DataFrame({"t": t} | {f"theta{i + 1}": counted[:, i] for i in range(6)})
     legs.to_csv(folder / "legs.csv", index=False)
     rng = np.random.default_rng(seed)
     seen = np.arange(0.5, DURATION - 0.1, 1.0)
-    x, y, yaw = (np.interp(seen, true.t, a) for a in (true.x, true.y, true.yaw))
+    x, y, yaw = true.at(seen).states.T
     c, s = np.cos(0.7), np.sin(0.7)  # the floor's frame is not the robot's
     noise = rng.normal(0, [[0.002], [0.002], [0.005]], (3, len(seen)))
     track = pd.DataFrame({
@@ -150,7 +150,7 @@ def test_a_gait_that_a_baseline_cannot_walk_is_judged_without_it(tmp_path):
     )
     legs.to_csv(tmp_path / "legs.csv", index=False)
     prediction = read_prediction(predicted(tmp_path, tmp_path / "legs.csv", draws=0))
-    assert set(prediction.baselines) == {"no-slip-simple", "no-slip"}
+    assert set(prediction.prediction.baselines) == {"no-slip-simple", "no-slip"}
     assert any("'thesis' cannot walk" in note for note in prediction.notes)
 
 

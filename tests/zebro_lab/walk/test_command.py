@@ -8,12 +8,12 @@ from pathlib import Path
 
 import pytest
 
+from model.walk_models import MODELS
 from zebro_lab.main import app
 from zebro_lab.robot.gait_argument import GAITS
 from zebro_lab.terminal.ending import run as run_app
 from zebro_lab.walk import options as walk_options
 from zebro_lab.walk.command import GaitName
-from zebro_lab.walk.models import MODELS
 
 COMMAND = str(Path(sys.executable).with_name("zebro-lab"))
 

@@ -9,12 +9,12 @@ import pytest
 
 from model.errors import DomainError
 from model.gait import tripod_angles, tripod_reference
+from model.walk_models import MODELS
 from zebro_lab.files.errors import AlreadyExists, SettingsError
 from zebro_lab.robot.gait_argument import GaitRequest
 from zebro_lab.robot.leg_log import ANGLES
 from zebro_lab.robot.robot_file import read_robot_file
 from zebro_lab.walk.folder import PICTURES, read_walk, read_walk_manifest
-from zebro_lab.walk.models import MODELS
 from zebro_lab.walk.path_band import BandRequest, read_draws
 from zebro_lab.walk.predict_stage import PredictRequest, predict
 from zebro_lab.walk.stage import WalkRequest, walk, write_robot

@@ -8,7 +8,7 @@ import pytest
 
 from model.gait import tripod_angles, tripod_reference
 from model.gait.reference import SampledReference
-from model.metrics.poses import Poses
+from model.poses import Poses
 from model.robot import GRAVITY, Robot
 from model.walk.ensemble import WalkDraw, planar_walk
 from zebro_lab.calibration.slip_argument import parse_slip
@@ -33,14 +33,13 @@ def track(walked, *, behind, begin=0.0, end=np.inf):
     """Look at the walk every two seconds by a clock that is behind."""
     robot = Robot()
     law = SLIP.traction_table(weight=robot.mass * GRAVITY)
-    path = planar_walk(WalkDraw(robot, walked, law), duration=float(walked.t[-1]))
+    path = planar_walk(WalkDraw(robot, walked, law), duration=float(walked.t[-1])).poses
     t = np.arange(max(begin, 0.3), min(end, path.t[-1]), 2.0)
-    x, y, yaw = (np.interp(t, path.t, each) for each in (path.x, path.y, path.yaw))
+    true = path.at(t)
     noise = np.random.default_rng(1).normal(0.0, NOISE, (len(t), 2))
-    poses = Poses(t - behind, np.column_stack([x, y]) + noise, yaw)
-    return TrackFile(
-        poses, np.tile(np.eye(3) * NOISE**2, (len(t), 1, 1)), "sim:test", Path("t.csv")
-    )
+    covariance = np.tile(np.eye(3) * NOISE**2, (len(t), 1, 1))
+    poses = Poses(t - behind, true.position + noise, true.yaw, covariance)
+    return TrackFile(poses, "sim:test", Path("t.csv"))
 
 
 def test_a_track_by_another_clock_is_refused():

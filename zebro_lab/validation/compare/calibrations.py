@@ -9,7 +9,7 @@ from model.bayes.walk_posterior import WalkPosterior
 from model.bayes.walk_prior import NAMES, UNITS
 from model.slip.curve import SlipCurve
 from model.slip.law import Array
-from zebro_lab.calibration.slip_argument import Slip, parse_slip
+from zebro_lab.calibration.slip_argument import NamedSlip, parse_slip
 from zebro_lab.calibration.slip_draws import law_draws
 from zebro_lab.files.errors import DataError
 from zebro_lab.validation.compare.values import Comparison, Curve, Quantity
@@ -61,7 +61,7 @@ def compare_calibrations(
     )
 
 
-def _curve_of(slip: Slip) -> SlipCurve:
+def _curve_of(slip: NamedSlip) -> SlipCurve:
     if not isinstance(slip.law, SlipCurve):
         raise DataError("is an assumed friction, no calibration", file=Path(slip.text))
     return slip.law
@@ -116,7 +116,7 @@ def _band(curves: tuple[SlipCurve, ...], drawn: list[Array], load: float, limit:
 
 
 def _walk_quantities(
-    slips: tuple[Slip, ...], rng: np.random.Generator
+    slips: tuple[NamedSlip, ...], rng: np.random.Generator
 ) -> tuple[list[Quantity], list[str]]:
     """Compare what walks said, where they said anything in either."""
     one, other = (slip.walks for slip in slips)

@@ -5,11 +5,10 @@ from pathlib import Path
 
 import numpy as np
 
-from model.metrics.poses import Poses
 from model.metrics.turning import mean_yaw_rate
+from model.poses import Poses
 from model.predict import states_at
 from model.slip.law import Array
-from model.walk.ensemble import PathEnsemble
 from zebro_lab.files.errors import DataError, NotFound
 from zebro_lab.files.replacement import settle
 from zebro_lab.track.file import TrackFile, read_track
@@ -73,7 +72,7 @@ class _Run:
         settle(folder / TRACK)
         settle(folder / PREDICTION)
         self.track: TrackFile | None = None
-        self.band: PathEnsemble | None = None
+        self.band: Poses | None = None
         self.files: list[Path] = []
         self.sources: list[str] = []
         self.notes: list[str] = []
@@ -94,12 +93,11 @@ class _Run:
         if self.track is None or not self.track.poses.has_yaw:
             return None
         poses, covariance = self.track.poses, self.track.covariance
-        states = np.column_stack([poses.position, poses.yaw])
         noise = np.stack(
             [rng.multivariate_normal(np.zeros(3), c, TRACKS, method="eigh") for c in covariance],
             axis=1,
         )
-        return _summaries(poses.t, states + noise)
+        return _summaries(poses.t, poses.states + noise)
 
     def predicted(self) -> Array | None:
         """Summarise every predicted path, at the track's times where there is one, shape (n, 3)."""
@@ -128,7 +126,7 @@ def _summaries(t: Array, states: Array) -> Array:
     """
     rows = []
     for state in states:
-        poses = Poses(t, state[:, :2], state[:, 2])
+        poses = Poses.of_states(t, state)
         speed, rate = poses.length / float(np.ptp(t)), mean_yaw_rate(poses)
         rows.append((speed, rate, rate / speed if speed > 0 else 0.0))
     return np.array(rows)

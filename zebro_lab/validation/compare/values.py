@@ -7,9 +7,8 @@ from pathlib import Path
 import numpy as np
 
 from model.metrics.difference import Difference, difference
-from model.metrics.poses import Poses
+from model.poses import Poses
 from model.slip.law import Array
-from model.walk.ensemble import PathEnsemble
 
 
 @dataclass(frozen=True)
@@ -61,7 +60,7 @@ class Walked:
     """
 
     track: Poses | None
-    band: PathEnsemble | None
+    band: Poses | None
 
 
 @dataclass(frozen=True)

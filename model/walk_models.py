@@ -1,26 +1,29 @@
 # SPDX-License-Identifier: MIT
-"""The walking models by name."""
+"""The walking models by name, and the simpler ones that a prediction is compared with."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Literal, TypeAlias
+from typing import TYPE_CHECKING
 
 import numpy as np
 
+from model.errors import DomainError, WalkError
 from model.gait.cyclic import CyclicReference
-from model.gait.reference import LegReference
+from model.gait.direction import Direction
+from model.gait.reference import LegReference, SampledReference
+from model.poses import Poses
 from model.predict import LegState, bent_walk, law_in, robot_in
 from model.robot import GRAVITY, Robot
+from model.slip.thesis import thesis_curve
 from model.walk.path import WalkPath
+from model.walk.slip import Slip
 from model.walk.traction import ToeLaw
-from zebro_lab.calibration.slip_argument import EXPECTED_SLIP, Slip
-from zebro_lab.files.errors import SettingsError
 
 if TYPE_CHECKING:
     from model.walk.thesis import SwitchedLegs
 
-Direction: TypeAlias = Literal["left", "right"]
+BASELINES = ("no-slip-simple", "no-slip", "thesis")
 
 
 @dataclass(frozen=True)
@@ -34,9 +37,9 @@ class ModelRun:
         duration: Time walked [s].
         dt: Length of a step [s].
         toe: Traction of a leg on its toe.
-        direction: Side to which the gait turns, "left" or "right"; only the source's model asks.
-        legs: One draw of what is believed of legs and floor beyond the description; only our own
-            model asks.
+        direction: Side to which the gait turns; only the thesis's model uses it.
+        legs: One draw of what is believed of legs and floor beyond the description; only the
+            model "dynamics" uses it.
     """
 
     robot: Robot
@@ -56,14 +59,43 @@ class WalkModel:
     Attributes:
         name: Name under which it is chosen.
         slips: Whether it needs a slip law.
-        dt: Length of its step where none is asked for [s].
-        run: Walks.
+        dt: Default length of its step [s].
+        run: Computes the walk.
     """
 
     name: str
     slips: bool
     dt: float
     run: Callable[[ModelRun], WalkPath]
+
+
+def baseline_paths(
+    robot: Robot, reference: SampledReference, *, direction: Direction = "left", start: float = 0.0
+) -> tuple[dict[str, Poses], tuple[str, ...]]:
+    """Walk leg angles by every simpler model.
+
+    Args:
+        robot: The robot.
+        reference: True leg angles from time zero on; all of them are walked.
+        direction: Side the gait turns to; only the thesis's model uses it.
+        start: Added to the paths' times [s].
+
+    Returns:
+        Paths by the models' names, and one line for each model that cannot walk these angles.
+    """
+    duration = float(reference.t[-1])
+    paths, notes = {}, []
+    for name in BASELINES:
+        model = MODELS[name]
+        slip = Slip(thesis_curve(), source="thesis") if model.slips else None
+        run = ModelRun(robot, reference, slip, duration, model.dt, "saturated", direction)
+        try:
+            path = model.run(run)
+        except (WalkError, DomainError) as error:
+            notes.append(f"baseline '{name}' cannot walk these leg angles: {error}")
+            continue
+        paths[name] = path.poses.delayed(start)
+    return paths, tuple(notes)
 
 
 def _dynamics(run: ModelRun) -> WalkPath:
@@ -83,15 +115,16 @@ def _thesis(run: ModelRun) -> WalkPath:
     from model.walk.thesis import ThesisOptions, walk_thesis
 
     traction = _slip_of(run).thesis_traction(weight=run.robot.mass * GRAVITY)
-    legs = _legs_of_the_source(run.reference)
-    # A log's legs stand, and turn back by hairs; the listing's slip would drive them at full grip.
+    legs = _legs_of_the_thesis(run.reference)
+    # The legs of a log stand still and turn back by fractions of a degree; by the listing's slip
+    # ratio such a leg would pull at full grip.
     logged = not isinstance(run.reference, CyclicReference)
     options = ThesisOptions(dt=run.dt, direction=run.direction, mend_slip=logged)
     return walk_thesis(run.robot, legs, duration=run.duration, traction=traction, options=options)
 
 
-def _legs_of_the_source(reference: LegReference) -> "LegReference | SwitchedLegs":
-    """Let a gait's legs switch speed by angle, as the source's do; follow others by the clock."""
+def _legs_of_the_thesis(reference: LegReference) -> "LegReference | SwitchedLegs":
+    """Let a gait's legs switch speed by angle, as the thesis's do; other legs follow the clock."""
     from model.walk.thesis import SwitchedLegs
 
     if not isinstance(reference, CyclicReference):
@@ -115,7 +148,7 @@ def _wheels(run: ModelRun) -> WalkPath:
 
 def _slip_of(run: ModelRun) -> Slip:
     if run.slip is None:
-        raise SettingsError(f"missing: this model slips; name {EXPECTED_SLIP}", key="--slip")
+        raise DomainError("this walking model needs a slip law; none was given")
     return run.slip
 
 
@@ -128,4 +161,4 @@ MODELS: Mapping[str, WalkModel] = MappingProxyType({
         WalkModel("no-slip-simple", slips=False, dt=0.002, run=_wheels),
     )
 })  # fmt: skip
-"""Our own model, the source's, and the two baselines without slip."""
+"""Our own model, the thesis's, and the two baselines without slip."""

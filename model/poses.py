@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""Planar poses at irregular times: what a track is, and what a path becomes to be compared."""
+"""Planar poses over time: one path, or many draws of one."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -14,12 +15,15 @@ STANDING = 1e-6  # m: between poses closer than this there is no direction of tr
 
 @dataclass(frozen=True)
 class Poses:
-    """Planar poses over time.
+    """Planar poses over time: of one path, or of several draws of it at the same times.
 
     Attributes:
         t: Times, strictly increasing, not necessarily evenly spaced, shape (n,) [s].
-        position: Positions, shape (n, 2) [m].
-        yaw: Unwrapped headings, shape (n,) [rad]; NaN throughout where nobody measured them.
+        position: Positions x, y, shape (n, 2), or (draws, n, 2) for several draws [m].
+        yaw: Unwrapped headings, shape (n,) or (draws, n) [rad]; NaN throughout where nobody
+            measured them.
+        covariance: Covariance of x, y and yaw of each pose of one path, shape (n, 3, 3)
+            [m, m, rad]; None where it is not known.
 
     Raises:
         DomainError: Shapes do not match, times do not increase or a position is not finite.
@@ -28,11 +32,19 @@ class Poses:
     t: Array
     position: Array
     yaw: Array
+    covariance: Array | None = None
 
     def __post_init__(self) -> None:
-        """Refuse what is no path."""
+        """Raise if this is no path."""
         n = len(self.t)
-        if self.t.shape != (n,) or self.position.shape != (n, 2) or self.yaw.shape != (n,):
+        batch = self.yaw.shape[:-1]
+        if (
+            self.t.shape != (n,)
+            or len(batch) > 1
+            or self.position.shape != (*batch, n, 2)
+            or self.yaw.shape != (*batch, n)
+            or (self.covariance is not None and self.covariance.shape != (n, 3, 3))
+        ):
             raise DomainError(
                 f"times {self.t.shape}, positions {self.position.shape} and headings "
                 f"{self.yaw.shape} do not match; expected (n,), (n, 2), (n,)"
@@ -46,32 +58,64 @@ class Poses:
         if not (np.isfinite(self.t).all() and np.isfinite(self.position).all()):
             raise DomainError("a time or position is not finite; leave such poses out")
 
+    @classmethod
+    def of_states(cls, t: Array, states: Array) -> Self:
+        """Build poses from states.
+
+        Args:
+            t: Times, shape (n,) [s].
+            states: x, y and unwrapped yaw, shape (n, 3) or (draws, n, 3) [m, m, rad].
+        """
+        return cls(t, states[..., :2], states[..., 2])
+
     def __len__(self) -> int:
-        """Count the poses."""
+        """Return the number of times."""
         return len(self.t)
 
     @property
+    def states(self) -> Array:
+        """x, y and yaw side by side, shape (n, 3) or (draws, n, 3) [m, m, rad]."""
+        return np.concatenate([self.position, self.yaw[..., None]], axis=-1)
+
+    def draws(self, keep: int | slice = slice(None)) -> "Poses":
+        """Return one draw as a single path, or some draws; a single path has one draw.
+
+        Args:
+            keep: Index of a draw, or a slice of them.
+        """
+        one = self.yaw.ndim == 1
+        position, yaw = (self.position[None], self.yaw[None]) if one else (self.position, self.yaw)
+        return Poses(self.t, position[keep], yaw[keep])
+
+    @property
     def has_yaw(self) -> bool:
-        """Tell whether every heading is known."""
+        """Whether every heading is known."""
         return bool(np.isfinite(self.yaw).all())
 
     @property
     def travelled(self) -> Array:
-        """Distance travelled up to each pose, along straight lines between them, shape (n,) [m]."""
+        """Distance travelled up to each pose of one path, along straight lines, shape (n,) [m]."""
         steps = np.linalg.norm(np.diff(self.position, axis=0), axis=1)
         return np.concatenate([[0.0], np.cumsum(steps)])
 
     @property
     def length(self) -> float:
-        """Length of the line through all poses [m]."""
+        """Length of the line through all poses of one path [m]."""
         return float(self.travelled[-1]) if len(self) else 0.0
 
     def part(self, keep: slice | NDArray[np.bool_] | NDArray[np.intp]) -> "Poses":
-        """Return some of the poses."""
-        return Poses(self.t[keep], self.position[keep], self.yaw[keep])
+        """Return the poses of some of the times."""
+        covariance = None if self.covariance is None else self.covariance[keep]
+        return Poses(
+            self.t[keep], self.position[..., keep, :], self.yaw[..., keep], covariance=covariance
+        )
+
+    def delayed(self, offset: float) -> "Poses":
+        """Add an offset to all times [s]."""
+        return replace(self, t=self.t + offset)
 
     def at(self, t: ArrayLike) -> "Poses":
-        """Interpolate linearly at times within the path; yaw takes the unwrapped way.
+        """Interpolate one path linearly at times within it; yaw takes the unwrapped way.
 
         Args:
             t: Times, shape (m,) [s].
@@ -89,10 +133,10 @@ class Poses:
         return Poses(at, np.column_stack([x, y]), yaw)
 
     def moved(self, *, rotation: float, translation: ArrayLike) -> "Poses":
-        """Turn the whole path about the origin, then shift it.
+        """Rotate one path about the origin, then translate it.
 
         Args:
-            rotation: Angle [rad].
+            rotation: Angle, counter-clockwise [rad].
             translation: Shift, shape (2,) [m].
         """
         c, s = np.cos(rotation), np.sin(rotation)

@@ -1,0 +1,100 @@
+# SPDX-License-Identifier: MIT
+"""A predicted path read back: a walk folder with its draws, or any table of poses."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from model.gait.reference import SampledReference
+from model.judgement import STAND_STILL, Prediction
+from model.poses import Poses
+from model.robot import Robot
+from model.walk.path import WalkPath
+from model.walk_models import baseline_paths
+from zebro_lab.files.names import PATH_CSV
+from zebro_lab.files.replacement import settle
+from zebro_lab.track.file import read_poses
+from zebro_lab.walk.folder import DRAWS, MANIFEST, read_walk, read_walk_manifest
+from zebro_lab.walk.path_band import read_draws
+
+
+@dataclass(frozen=True)
+class WalkedPath:
+    """The single path of a walk folder with all that the model says of it, and its robot."""
+
+    path: WalkPath
+    robot: Robot
+
+
+@dataclass(frozen=True)
+class PredictionFile:
+    """A prediction as it was read.
+
+    Attributes:
+        prediction: The predicted path with its draws and baselines.
+        source: Where it comes from.
+        files: Files that were read.
+        notes: For a person, one line each.
+        walk: The single path with roll, pitch, legs and robot; None where it is a bare table.
+    """
+
+    prediction: Prediction
+    source: str
+    files: tuple[Path, ...]
+    notes: tuple[str, ...] = ()
+    walk: WalkedPath | None = None
+
+
+def read_prediction(path: Path) -> PredictionFile:
+    """Read a walk folder with its draws, or any table of poses; walk its baselines.
+
+    Raises:
+        ZebroLabError: It is missing, or no path.
+    """
+    settle(path)
+    file = path / PATH_CSV if path.is_dir() else path
+    poses = read_poses(file)
+    folder = file.parent
+    if file.name != PATH_CSV or not (folder / MANIFEST).is_file():
+        note = f"{path.name}: no walk folder, so no baseline but '{STAND_STILL}'"
+        return PredictionFile(Prediction(poses), "unknown", (file,), (note,))
+    manifest = read_walk_manifest(folder)
+    has_draws = (folder / DRAWS).is_file()
+    draws = read_draws(folder) if has_draws else None
+    walk = WalkedPath(read_walk(folder), robot_of_walk(manifest))
+    baselines, notes = _baselines(walk, manifest)
+    return PredictionFile(
+        Prediction(poses, draws, baselines),
+        str(manifest.get("source", "unknown")),
+        (file, *([folder / DRAWS] if has_draws else [])),
+        (*notes, *(() if has_draws else ("no draws: predict with --draws 500 for a band",))),
+        walk,
+    )
+
+
+def robot_of_walk(manifest: Mapping[str, Any]) -> Robot:
+    """Read the robot without leg offsets: the angles of a walked path are true ones already."""
+    described = manifest["settings"]["robot"]
+    return Robot(
+        hips=np.array(described["hips"]),
+        leg_radius=described["leg_radius"],
+        leg_arc=described["leg_arc"],
+        mass=described["mass"],
+        body_size=tuple(described["body_size"]),
+        inertia=tuple(described["inertia"]),
+    )
+
+
+def _baselines(
+    walked: WalkedPath, manifest: Mapping[str, Any]
+) -> tuple[dict[str, Poses], tuple[str, ...]]:
+    """Walk the leg angles of a walk folder by every simpler model: as described, not as fitted."""
+    walk = walked.path
+    found = (manifest["settings"].get("walks") or {}).get("leg_offset", 0.0)
+    reference = SampledReference(walk.t - walk.t[0], walk.theta - np.asarray(found))
+    direction = manifest["settings"].get("direction", "left")
+    start = float(walk.t[0])
+    return baseline_paths(walked.robot, reference, direction=direction, start=start)

@@ -32,7 +32,7 @@ from benchmarks.hostile_inputs import (
     pool,
     tables,
 )
-from model.bayes.walk_prior import WRONG, WalkPrior
+from model.bayes.walks.prior import WRONG, WalkPrior
 from model.slip.curve import SlipCurve
 from model.slip.definition import SlipDefinition
 from model.slip.laws import slip_law

@@ -36,11 +36,11 @@ import pandas as pd
 from against_engine import SHARED, EngineWalk, radius, read_walk
 
 from model.bayes import walk_importance, walk_modes
-from model.bayes.walk_misfit import middle
-from model.bayes.walk_posterior import WalkPosterior
-from model.bayes.walk_prior import WalkPrior
-from model.bayes.walk_tilt import SD, TiltMisfit, TiltSeen
-from model.bayes.walks import WalkFit
+from model.bayes.walks.fit import WalkFit
+from model.bayes.walks.misfit import middle
+from model.bayes.walks.posterior import WalkPosterior
+from model.bayes.walks.prior import WalkPrior
+from model.bayes.walks.tilt import SD, TiltMisfit, TiltSeen
 from model.gait.reference import SampledReference
 from model.robot import GRAVITY, N_LEGS, Robot
 from model.walk.dynamics import DynamicsOptions

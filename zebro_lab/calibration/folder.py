@@ -20,12 +20,7 @@ from zebro_lab.files.replacement import settle
 from zebro_lab.files.result_folder import ResultKind
 
 if TYPE_CHECKING:  # the fit's own parts take seconds to import, and a law is read in most commands
-    from model.bayes.convergence import Convergence
-    from model.bayes.estimate import Agreement, Draws, Estimate
-    from model.bayes.fit import Comparison, PreparedFit
-    from model.bayes.posterior import SlipPosterior
-    from model.bayes.residuals import Residuals
-    from model.bayes.verdict import Verdict
+    from model.bayes.calibration import Calibration
 
 SCHEMA = 1
 SLIP_TOML = "slip.toml"
@@ -47,53 +42,6 @@ SUMMARY_COLUMNS = (
 
 
 @dataclass(frozen=True)
-class Calibration:
-    """A finished fit.
-
-    Attributes:
-        fit: Posterior, mode, cross-validation and block length.
-        comparison: The laws that were compared; None where one was asked for.
-        draws: Posterior draws.
-        parameters: Posterior of every parameter.
-        levels: Loads that were set, shape (m,) [N].
-        curves: Posterior of the curve's features at each load level.
-        convergence: Evidence on the sampler.
-        residuals: What the fit leaves over.
-        agreement: How the second engine's answer compares.
-        verdict: What the fit is worth.
-        contraction: 1 - posterior over prior variance of each sampled parameter, by name.
-        r_squared: Variance of left-out samples explained; None for a single run [-].
-        source: Where the data come from: "real", "sim:...", "unknown".
-        seconds: Time the sampler took [s].
-    """
-
-    fit: "PreparedFit"
-    comparison: "Comparison | None"
-    draws: "Draws"
-    parameters: Sequence["Estimate"]
-    levels: np.ndarray
-    curves: Sequence[Sequence["Estimate"]]
-    convergence: "Convergence"
-    residuals: "Residuals"
-    agreement: "Agreement"
-    verdict: "Verdict"
-    contraction: Mapping[str, float]
-    r_squared: float | None
-    source: str
-    seconds: float
-
-    @property
-    def posterior(self) -> "SlipPosterior":
-        """The posterior that was sampled."""
-        return self.fit.posterior
-
-    @property
-    def simulated(self) -> bool:
-        """Tell whether any of the data is simulated."""
-        return "sim:" in self.source
-
-
-@dataclass(frozen=True)
 class SlipFile:
     """What a `slip.toml` says.
 
@@ -110,7 +58,7 @@ class SlipFile:
     doubt: str | None
 
 
-def write_tables(folder: Path, calibration: Calibration, *, inputs: Mapping[str, str]) -> None:
+def write_tables(folder: Path, calibration: "Calibration", *, inputs: Mapping[str, str]) -> None:
     """Write everything but the pictures and the manifest.
 
     Args:
@@ -189,7 +137,7 @@ def _numbers(found: object, shape: tuple[int, ...]) -> np.ndarray:
     return numbers
 
 
-def _slip_toml(calibration: Calibration, inputs: Mapping[str, str]) -> str:
+def _slip_toml(calibration: "Calibration", inputs: Mapping[str, str]) -> str:
     import tomlkit
 
     blocks, law = calibration.posterior.blocks, calibration.posterior.law
@@ -246,7 +194,7 @@ def _distinct_names(paths: Sequence[str]) -> list[str]:
     return next((names for names in shortened if len(set(names)) == len(names)), list(paths))
 
 
-def _summary_csv(calibration: Calibration) -> str:
+def _summary_csv(calibration: "Calibration") -> str:
     convergence = calibration.convergence
     free = {p.name: i for i, p in enumerate(calibration.posterior.free)}
     text = io.StringIO()
@@ -266,7 +214,7 @@ def _summary_csv(calibration: Calibration) -> str:
     return text.getvalue()
 
 
-def _write_posterior(path: Path, calibration: Calibration) -> None:
+def _write_posterior(path: Path, calibration: "Calibration") -> None:
     """Write the draws as ArviZ InferenceData; a chain is an ensemble."""
     import arviz as az
 

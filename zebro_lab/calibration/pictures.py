@@ -3,7 +3,7 @@
 
 from pathlib import Path
 
-from zebro_lab.calibration.folder import Calibration
+from model.bayes.calibration import Calibration
 
 CURVE_DRAWS = 400
 

@@ -8,8 +8,8 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
+from model.bayes.calibration import Calibration
 from model.bayes.estimate import Estimate
-from zebro_lab.calibration.folder import Calibration
 from zebro_lab.calibration.rig_data import RigData
 from zebro_lab.terminal.messages import plain
 

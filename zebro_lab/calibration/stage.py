@@ -6,55 +6,32 @@ import time
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
-from typing import Literal, Protocol
+from typing import Literal
 
 import numpy as np
 
 from model.bayes.blocks import block_means
-from model.bayes.convergence import Convergence, assess
-from model.bayes.cross_validation import r_squared
-from model.bayes.estimate import (
-    agreement,
-    contraction,
-    curve_estimates,
-    estimate,
-    thin_draws,
-)
-from model.bayes.fit import (
-    Comparison,
-    PreparedFit,
-    breakdown_told,
-    compare,
-    prepare_fit,
-    require_forces,
-    scaled_load_cell,
-)
-from model.bayes.laplace import importance_draws
-from model.bayes.posterior import LoadCell
-from model.bayes.preliminary import BlockChoice
-from model.bayes.residuals import analyse_residuals, largest_slips, load_levels
-from model.bayes.sampler import Chains, advance, start_chains
+from model.bayes.calibrate import FitStopped, SamplerSettings
+from model.bayes.calibrate import calibrate as fit_slip_law
+from model.bayes.calibration import Calibration
+from model.bayes.fit import scaled_load_cell
+from model.bayes.residuals import load_levels
+from model.bayes.sampler import Chains
 from model.bayes.samples import SlipSamples
-from model.bayes.verdict import judge
+from model.progress import Watcher
 from model.slip.law import SlipLaw
 from model.slip.laws import slip_law
 from model.slip.magic_formula import MagicFormula
 from zebro_lab.calibration.checkpoint import FILE as CHECKPOINT
 from zebro_lab.calibration.checkpoint import load_checkpoint, save_checkpoint
-from zebro_lab.calibration.folder import CALIBRATION, Calibration, write_tables
+from zebro_lab.calibration.folder import CALIBRATION, write_tables
 from zebro_lab.calibration.pictures import draw_calibration
 from zebro_lab.calibration.rig_data import RigData, read_rig_data
 from zebro_lab.files.errors import SettingsError, ZebroLabError
 from zebro_lab.files.provenance import file_hashes, fingerprint
 from zebro_lab.files.result_folder import require_replaceable, result_folder
 
-THIN = 5  # sampler moves a kept step
-CHUNK = 20  # kept steps between looks at the clock, the keyboard and the bar
-FIRST_LOOK = 100  # kept steps before convergence is judged for the first time
 CHECKPOINT_SECONDS = 5.0
-DRAWS_PER_ENSEMBLE = 1000
-IMPORTANCE_DRAWS = 10_000
-FEW_BLOCKS = 500  # below, numpy's calls are so short that threads only wait for each other
 
 
 class Stopped(ZebroLabError):
@@ -71,18 +48,6 @@ class Stopped(ZebroLabError):
             else f"stopped; {checkpoint} keeps the fit: the same command with --resume goes on"
         )
         self.checkpoint = checkpoint
-
-
-class Watcher(Protocol):
-    """Who follows a fit: a progress bar, or nobody."""
-
-    def step(self, what: str, fraction: float | None) -> None:
-        """Hear what is going on, and how far it is (None: unknown)."""
-        ...
-
-    def stop_requested(self) -> bool:
-        """Tell whether the fit should be put down at the next good moment."""
-        ...
 
 
 @dataclass(frozen=True)
@@ -126,6 +91,16 @@ class CalibrationRequest:
         """What is read, as it was named."""
         return (*self.data, *((self.columns,) if self.columns is not None else ()))
 
+    def sampler(self) -> SamplerSettings:
+        """Return how the posterior is to be sampled."""
+        return SamplerSettings(
+            ensembles=self.ensembles,
+            max_steps=self.max_steps,
+            block_length=self.block_length,
+            threads=self.threads,
+            seed=self.seed,
+        )
+
     def decisive(self) -> dict[str, object]:
         """Return what decides the numbers, as JSON can hold it."""
         return {
@@ -163,24 +138,47 @@ def calibrate(request: CalibrationRequest, watcher: Watcher) -> tuple[Calibratio
     inputs = file_hashes(data.files)
     mark = fingerprint(inputs, request.decisive())
     earlier = load_checkpoint(request.out, fingerprint=mark) if request.resume else None
-    rng = np.random.default_rng(request.seed)
-    cell = scaled_load_cell(data.samples, {**data.load_cell, **request.load_cell})
-    require_forces(data.samples, cell)
-    fit, comparison = _choose_law(request, data.samples, cell, rng, watcher)
-    began = time.monotonic()
-    judging = rng.spawn(1)[0]  # its draws are the same whether or not the fit was resumed
-    with breakdown_told(data.samples, fit.posterior.law):
-        chains, convergence = _sample(request, fit, earlier, mark, rng, watcher)
-        seconds = time.monotonic() - began
-        watcher.step("judging", None)
-        calibration = _conclude(fit, comparison, chains, convergence, data, seconds, judging)
+    checkpoint = _Checkpoint(request.out, mark)
+    try:
+        calibration, chains = fit_slip_law(
+            data.samples,
+            _candidates(request, data.samples),
+            load_cell=scaled_load_cell(data.samples, {**data.load_cell, **request.load_cell}),
+            settings=request.sampler(),
+            source=data.source,
+            watcher=watcher,
+            clock=time.monotonic,
+            earlier=earlier,
+            keep=checkpoint.keep,
+        )
+    except FitStopped as stopped:
+        raise Stopped(checkpoint.save(stopped.chains)) from stopped
     watcher.step("drawing", None)
     _write(request, calibration, inputs)
-    if convergence.converged:
+    if calibration.convergence.converged:
         (request.out / CHECKPOINT).unlink(missing_ok=True)
     else:
-        save_checkpoint(request.out, chains, fingerprint=mark)
+        checkpoint.save(chains)
     return calibration, data
+
+
+class _Checkpoint:
+    """The checkpoint of a fit, written every few seconds."""
+
+    def __init__(self, folder: Path, mark: str) -> None:
+        self._folder, self._mark, self._saved = folder, mark, time.monotonic()
+
+    def keep(self, chains: Chains) -> None:
+        """Write the chains if the last time was long ago."""
+        if time.monotonic() - self._saved > CHECKPOINT_SECONDS:
+            self.save(chains)
+
+    def save(self, chains: Chains | None) -> Path | None:
+        """Write the chains, if there are any, and return where."""
+        if chains is None:
+            return None
+        self._saved = time.monotonic()
+        return save_checkpoint(self._folder, chains, fingerprint=self._mark)
 
 
 def _candidates(request: CalibrationRequest, samples: SlipSamples) -> dict[str, SlipLaw]:
@@ -217,132 +215,6 @@ def _curvature(text: str) -> Literal["peak", "constant"] | float:
             f"--curvature is '{text}'; expected auto, peak, constant or a number below 1"
         )
     return number
-
-
-def _choose_law(
-    request: CalibrationRequest,
-    samples: SlipSamples,
-    cell: LoadCell,
-    rng: np.random.Generator,
-    watcher: Watcher,
-) -> tuple[PreparedFit, Comparison | None]:
-    laws = _candidates(request, samples)
-    fits: list[PreparedFit] = []
-    asked = request.block_length
-    choice = None if asked is None else BlockChoice(asked, None, "the length asked for")
-    for name, law in laws.items():
-        watcher.step(f"preparing: {name}", None)
-        if watcher.stop_requested():
-            raise Stopped(None)
-        fit = prepare_fit(
-            samples, law, load_cell=cell, rng=rng, block_choice=choice, threads=request.threads
-        )
-        choice = fit.block_choice  # laws are compared on the same blocks
-        fits.append(fit)
-    if len(fits) == 1:
-        return fits[0], None
-    comparison = compare(list(laws), fits)
-    return fits[comparison.chosen], comparison
-
-
-def _sample(
-    request: CalibrationRequest,
-    fit: PreparedFit,
-    earlier: Chains | None,
-    mark: str,
-    rng: np.random.Generator,
-    watcher: Watcher,
-) -> tuple[Chains, Convergence]:
-    """Walk until converged or out of steps, with a checkpoint every few seconds."""
-    density = fit.posterior.log_density
-    chains = earlier or start_chains(
-        density, fit.approximation, ensembles=request.ensembles, thin=THIN, rng=rng
-    )
-    most = max(request.max_steps // chains.thin, FIRST_LOOK)
-    threads = 1 if len(fit.posterior.blocks) < FEW_BLOCKS else request.threads
-    look, saved = _look_from(chains.n_steps - CHUNK + 1), time.monotonic()
-    watcher.step("sampling", 0.0)
-    while True:
-        if chains.n_steps >= min(look, most):
-            convergence = assess(chains)
-            if convergence.converged or chains.n_steps >= most:
-                return chains, convergence
-            fraction = max(convergence.fraction_done(), chains.n_steps / most)
-            watcher.step("sampling", fraction)
-            look = _look_from(chains.n_steps + 1)
-        if watcher.stop_requested():
-            raise Stopped(save_checkpoint(request.out, chains, fingerprint=mark))
-        chains = advance(
-            density, chains, steps=CHUNK, approximation=fit.approximation, threads=threads
-        )
-        if time.monotonic() - saved > CHECKPOINT_SECONDS:
-            save_checkpoint(request.out, chains, fingerprint=mark)
-            saved = time.monotonic()
-
-
-def _look_from(n_steps: int) -> int:
-    """Return the first of the fixed steps, each a fifth beyond the last, at which to judge.
-
-    Fixed, so that a fit that was stopped and resumed ends where one that was not would have.
-    """
-    look = FIRST_LOOK
-    while look < n_steps:
-        look = int(look * 1.2)
-    return look
-
-
-def _conclude(
-    fit: PreparedFit,
-    comparison: Comparison | None,
-    chains: Chains,
-    convergence: Convergence,
-    data: RigData,
-    seconds: float,
-    rng: np.random.Generator,
-) -> Calibration:
-    posterior, samples = fit.posterior, data.samples
-    draws = thin_draws(posterior, chains, convergence, n=DRAWS_PER_ENSEMBLE)
-    some = draws.flat[:: max(1, len(draws.flat) // 400)]
-    residuals = analyse_residuals(posterior.blocks, posterior.law, some)
-    weighted = importance_draws(
-        posterior.log_density, fit.approximation, n=IMPORTANCE_DRAWS, rng=rng
-    )
-    narrowed = contraction(posterior, draws)
-    levels = load_levels(posterior.blocks)
-    k = len(posterior.law.parameters)
-    validation = fit.cross_validation
-    return Calibration(
-        fit=fit,
-        comparison=comparison,
-        draws=draws,
-        parameters=[
-            estimate(parameter, draws.flat[:, i])
-            for i, parameter in enumerate(posterior.parameters)
-        ],
-        levels=levels,
-        curves=[
-            curve_estimates(posterior.law, draws.flat[:, :k], load=load, slip_limit=float(limit))
-            for load, limit in zip(levels, largest_slips(posterior.blocks), strict=True)
-        ],
-        convergence=convergence,
-        residuals=residuals,
-        agreement=agreement(draws, weighted),
-        verdict=judge(
-            blocks=posterior.blocks,
-            law=posterior.law,
-            values=some,
-            contraction=narrowed,
-            convergence=convergence,
-            residuals=residuals,
-            offset_scale=fit.load_cell.zero_stability,
-        ),
-        contraction=narrowed,
-        r_squared=None
-        if validation is None
-        else r_squared(samples.traction_force, validation.predict(samples, posterior.law)),
-        source=data.source,
-        seconds=seconds,
-    )
 
 
 def _write(request: CalibrationRequest, calibration: Calibration, inputs: dict[str, str]) -> None:

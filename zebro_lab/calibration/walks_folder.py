@@ -8,8 +8,8 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
-from model.bayes.walk_posterior import WalkPosterior
-from model.bayes.walk_prior import UNITS, WRONG, WalkPrior, WrongLeg, all_cases
+from model.bayes.walks.posterior import WalkPosterior
+from model.bayes.walks.prior import UNITS, WRONG, WalkPrior, WrongLeg, all_cases
 from model.predict import ModelSpread
 from zebro_lab.files.arrays import read_arrays
 from zebro_lab.files.documents import read_toml_document

@@ -9,6 +9,7 @@ from typing import Final
 
 import numpy as np
 
+from model.progress import Watcher
 from model.slip.law import Array
 from zebro_lab.exchange.import_columns import IMU, LEGS, RIG, TRACK, foreign_columns
 from zebro_lab.exchange.imported_rig import RigRun, rig_runs, write_rig_run
@@ -29,7 +30,6 @@ from zebro_lab.track.foreign import (
     read_tum,
     track_of_foreign_table,
 )
-from zebro_lab.walk.walking import Watcher
 
 _UNIX: Final = 1e9
 """Times from here on are seconds since 1970: no run lasts for 30 years [s]."""

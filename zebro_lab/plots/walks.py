@@ -5,8 +5,8 @@ import numpy as np
 from matplotlib.figure import Figure
 from scipy.stats import norm
 
-from model.bayes.walk_posterior import Contraction, WalkPosterior
-from model.bayes.walk_prior import UNITS
+from model.bayes.walks.posterior import Contraction, WalkPosterior
+from model.bayes.walks.prior import UNITS
 from zebro_lab.plots.sheet import BLUE, legend_below, new_figure, styled
 
 _COLUMNS = 4

@@ -9,6 +9,7 @@ import numpy as np
 
 from model.errors import InsufficientData
 from model.judgement import judge_tilt
+from model.progress import Watcher
 from zebro_lab.files.errors import DataError, NotFound, SettingsError
 from zebro_lab.files.names import PATH_CSV
 from zebro_lab.files.provenance import file_hashes
@@ -26,7 +27,6 @@ from zebro_lab.validation.pictures import ShownRun
 from zebro_lab.validation.shared_clock import estimated_clock, given_clock
 from zebro_lab.walk.folder import PREDICTION
 from zebro_lab.walk.prediction_file import PredictionFile, read_prediction
-from zebro_lab.walk.walking import Watcher
 
 TRACK = "track"
 

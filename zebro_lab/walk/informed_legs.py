@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from model.bayes.walk_posterior import WalkPosterior
+from model.bayes.walks.posterior import WalkPosterior
 from model.predict import LegState
 from zebro_lab.calibration.walks_folder import StoredWalks, describe_legs
 from zebro_lab.files.provenance import file_hash

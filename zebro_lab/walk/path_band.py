@@ -19,6 +19,7 @@ from model.predict import (
     quantiles,
     walk_draws,
 )
+from model.progress import Watcher
 from model.robot import GRAVITY, Robot
 from model.walk.traction import ToeLaw
 from zebro_lab.calibration.slip_argument import NamedSlip
@@ -28,7 +29,6 @@ from zebro_lab.files.errors import DataError, SettingsError
 from zebro_lab.files.opening import parsing
 from zebro_lab.walk.folder import BAND_CSV, BAND_PICTURE, DRAWS
 from zebro_lab.walk.informed_legs import InformedLegs
-from zebro_lab.walk.walking import Watcher
 
 SAMPLING = 0.1  # s between the poses kept of each draw
 ASSUMED_OFFSET_DEG = 0.3  # of legs whose zero was set by hand

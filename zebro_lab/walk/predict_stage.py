@@ -9,6 +9,7 @@ import numpy as np
 
 from model.gait.direction import Direction
 from model.gait.quantised import QuantisedLog
+from model.progress import Watcher
 from model.robot import N_LEGS
 from zebro_lab.files.names import PATH_CSV
 from zebro_lab.files.replacement import settle
@@ -21,7 +22,7 @@ from zebro_lab.walk.folder import WALKED
 from zebro_lab.walk.leg_angles import angles_from
 from zebro_lab.walk.path_band import BandRequest, write_band
 from zebro_lab.walk.walked_band import band_of
-from zebro_lab.walk.walking import ModelRequest, Walked, Watcher, robot_of, walk_with, write_walk
+from zebro_lab.walk.walking import ModelRequest, Walked, robot_of, walk_with, write_walk
 
 
 @dataclass(frozen=True)

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 
+from model.progress import Watcher
 from zebro_lab.files.atomic import atomic_write_text
 from zebro_lab.files.errors import AlreadyExists
 from zebro_lab.files.result_folder import require_replaceable
@@ -13,7 +14,7 @@ from zebro_lab.robot.robot_file import render_robot_file
 from zebro_lab.walk.folder import WALKED
 from zebro_lab.walk.path_band import BandRequest, write_band
 from zebro_lab.walk.walked_band import band_of
-from zebro_lab.walk.walking import ModelRequest, Walked, Watcher, robot_of, walk_with, write_walk
+from zebro_lab.walk.walking import ModelRequest, Walked, robot_of, walk_with, write_walk
 
 
 @dataclass(frozen=True)

@@ -4,10 +4,11 @@
 from model.gait.quantised import QuantisedLog
 from model.gait.reference import LegReference
 from model.poses import Poses
+from model.progress import Watcher
 from model.walk.traction import ToeLaw
 from zebro_lab.files.errors import SettingsError
 from zebro_lab.walk.path_band import BandRequest, predict_band
-from zebro_lab.walk.walking import Walked, Watcher
+from zebro_lab.walk.walking import Walked
 
 
 def band_of(

@@ -4,7 +4,7 @@
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Final, Protocol
+from typing import Final
 
 import numpy as np
 
@@ -12,6 +12,7 @@ from model.errors import DefinitionMismatch, DomainError
 from model.gait.direction import Direction
 from model.gait.reference import LegReference
 from model.predict import FINE
+from model.progress import Watcher
 from model.robot import Robot
 from model.walk.path import WalkPath
 from model.walk.traction import ToeLaw
@@ -28,18 +29,6 @@ INFORMED_MODEL = "dynamics"  # the one whose legs and floor walks were fitted wi
 
 MOST_STEPS: Final = 500_000
 """Steps of a walk; each takes about 1.1 kB while the path is computed and written."""
-
-
-class Watcher(Protocol):
-    """Who follows a walk: a progress bar, or nobody."""
-
-    def step(self, what: str, fraction: float | None) -> None:
-        """Hear what is going on, and how far it is (None: unknown)."""
-        ...
-
-    def stop_requested(self) -> bool:
-        """Tell whether somebody asked to stop."""
-        ...
 
 
 class WalkStopped(ZebroLabError):

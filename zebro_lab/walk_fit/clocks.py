@@ -5,7 +5,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import TypeAlias
 
-from model.bayes.walk_misfit import middle
+from model.bayes.walks.misfit import middle
 from model.errors import InsufficientData
 from model.gait.quantised import QuantisedLog
 from model.gait.reference import SampledReference

@@ -4,7 +4,7 @@
 from collections.abc import Sequence
 from pathlib import Path
 
-from model.bayes.walk_posterior import WalkPosterior
+from model.bayes.walks.posterior import WalkPosterior
 from zebro_lab.validation.judged_run import JudgedRun
 
 PARAMETERS, LEFT_OUT = "walk_parameters", "left_out."

@@ -6,10 +6,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from model.bayes.walk_misfit import middle
-from model.bayes.walk_posterior import WalkPosterior
-from model.bayes.walk_prior import WalkPrior
-from model.bayes.walks import WalkFit, fit_walks
+from model.bayes.walks.fit import WalkFit, fit_walks
+from model.bayes.walks.misfit import middle
+from model.bayes.walks.posterior import WalkPosterior
+from model.bayes.walks.prior import WalkPrior
 from model.errors import InsufficientData
 from model.gait.reference import SampledReference
 from model.judgement import Prediction

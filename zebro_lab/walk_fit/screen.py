@@ -7,8 +7,8 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from model.bayes.walk_posterior import Contraction, WalkPosterior
-from model.bayes.walk_prior import FALL, UNITS
+from model.bayes.walks.posterior import Contraction, WalkPosterior
+from model.bayes.walks.prior import FALL, UNITS
 from zebro_lab.terminal.messages import plain
 from zebro_lab.validation.judged_run import JudgedRun
 from zebro_lab.walk_fit.stage import WalksCalibrated

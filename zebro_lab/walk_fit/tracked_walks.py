@@ -7,8 +7,8 @@ from pathlib import Path
 
 import numpy as np
 
-from model.bayes.walk_misfit import FEWEST_POSES, TrackedWalk
-from model.bayes.walk_tilt import FEWEST, TIME, TiltSeen
+from model.bayes.walks.misfit import FEWEST_POSES, TrackedWalk
+from model.bayes.walks.tilt import FEWEST, TIME, TiltSeen
 from model.gait.quantised import QuantisedLog
 from model.gait.reference import SampledReference
 from zebro_lab.calibration.walks_folder import describe_legs

@@ -9,8 +9,8 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from model.bayes.walk_posterior import WalkPosterior
-from model.bayes.walk_prior import LINEAR, NAMES, WRONG, WalkPrior, WrongLeg, all_cases
+from model.bayes.walks.posterior import WalkPosterior
+from model.bayes.walks.prior import LINEAR, NAMES, WRONG, WalkPrior, WrongLeg, all_cases
 from model.gait import tripod_angles, tripod_reference
 from model.robot import Robot
 from zebro_lab.calibration.slip_argument import parse_slip

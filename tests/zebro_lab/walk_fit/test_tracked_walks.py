@@ -8,7 +8,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from model.bayes.walk_prior import WalkPrior
+from model.bayes.walks.prior import WalkPrior
 from model.errors import ModelError
 from model.gait import tripod_angles, tripod_reference
 from model.gait.quantised import QuantisedLog

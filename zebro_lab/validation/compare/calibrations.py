@@ -5,8 +5,8 @@ from pathlib import Path
 
 import numpy as np
 
-from model.bayes.walk_posterior import WalkPosterior
-from model.bayes.walk_prior import NAMES, UNITS
+from model.bayes.walks.posterior import WalkPosterior
+from model.bayes.walks.prior import NAMES, UNITS
 from model.slip.curve import SlipCurve
 from model.slip.law import Array
 from zebro_lab.calibration.slip_argument import NamedSlip, parse_slip

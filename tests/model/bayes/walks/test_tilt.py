@@ -4,7 +4,7 @@
 import numpy as np
 import pytest
 
-from model.bayes.walk_tilt import SD, TiltMisfit, TiltSeen
+from model.bayes.walks.tilt import SD, TiltMisfit, TiltSeen
 from model.errors import InsufficientData, WalkError
 from model.gait import tripod_angles, tripod_reference
 from model.gait.reference import SampledReference

@@ -4,9 +4,9 @@
 import numpy as np
 import pytest
 
-from model.bayes.walk_misfit import TrackedWalk, from_first
-from model.bayes.walk_prior import FLOOR, NAMES, WalkPrior, WrongLeg, all_cases, legs_of
-from model.bayes.walks import fit_walks
+from model.bayes.walks.fit import fit_walks
+from model.bayes.walks.misfit import TrackedWalk, from_first
+from model.bayes.walks.prior import FLOOR, NAMES, WalkPrior, WrongLeg, all_cases, legs_of
 from model.errors import InsufficientData
 from model.gait import tripod_angles, tripod_reference
 from model.gait.reference import SampledReference
@@ -49,7 +49,7 @@ def fitted(offset, *, turns=THREE):
 def straight_legs():
     walk = tracked(1.3, "left", offset=np.zeros(6), seed=0, duration=4.0)
     with pytest.MonkeyPatch.context() as patched:  # no leg is off, so that no case is worth a climb
-        patched.setattr("model.bayes.walk_modes.CLIMBED", 0)
+        patched.setattr("model.bayes.walks.modes.CLIMBED", 0)
         fit = fit_walks(Robot(), TABLE, [walk], prior=PRIOR, rng=np.random.default_rng(1))
     return fit.posterior
 

@@ -4,8 +4,8 @@
 import numpy as np
 import pytest
 
-from model.bayes.walk_importance import Mode, weighted_draws
-from model.bayes.walk_prior import WrongLeg
+from model.bayes.walks.importance import Mode, weighted_draws
+from model.bayes.walks.prior import WrongLeg
 
 D = 4
 CASES = (None, WrongLeg(1))
@@ -67,8 +67,8 @@ def test_a_kink_comes_back_from_a_narrow_start():
 
 
 def test_bumps_around_draws_leave_the_weights_right(monkeypatch):
-    monkeypatch.setattr("model.bayes.walk_importance.PATIENCE", 1)
-    monkeypatch.setattr("model.bayes.walk_importance.ENOUGH", 1e9)
+    monkeypatch.setattr("model.bayes.walks.importance.PATIENCE", 1)
+    monkeypatch.setattr("model.bayes.walks.importance.ENOUGH", 1e9)
     density = lambda z, case: -0.5 * (z**2).sum(axis=1) + np.log(np.where(case == 1, 0.75, 0.25))  # noqa: E731
     wide = [Mode(case, np.ones(D), 0.3 * np.eye(D), 0.0) for case in CASES]
     results = [

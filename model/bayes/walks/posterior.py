@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from model.bayes.walk_prior import (
+from model.bayes.walks.prior import (
     FLOOR,
     NAMES,
     WRONG,

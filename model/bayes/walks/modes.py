@@ -18,9 +18,9 @@ from collections.abc import Callable, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from model.bayes.walk_importance import Mode
-from model.bayes.walk_misfit import WalkMisfit
-from model.bayes.walk_prior import WRONG, Case, WalkPrior, WrongLeg, legs_of, wrong_legs
+from model.bayes.walks.importance import Mode
+from model.bayes.walks.misfit import WalkMisfit
+from model.bayes.walks.prior import WRONG, Case, WalkPrior, WrongLeg, legs_of, wrong_legs
 from model.robot import N_LEGS
 from model.slip.law import Array
 

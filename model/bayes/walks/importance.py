@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import solve_triangular
 
-from model.bayes.walk_prior import Case
+from model.bayes.walks.prior import Case
 from model.slip.law import Array
 
 DRAWS = 200  # a round

@@ -15,8 +15,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from model.bayes.walk_terms import Terms
-from model.bayes.walk_tilt import TiltMisfit, TiltSeen
+from model.bayes.walks.terms import Terms
+from model.bayes.walks.tilt import TiltMisfit, TiltSeen
 from model.errors import InsufficientData
 from model.gait.quantised import QuantisedLog
 from model.gait.reference import LegReference

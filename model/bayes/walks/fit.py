@@ -3,9 +3,9 @@
 
 Two walks cannot tell six offsets apart unless most are small. So a prior says: every leg is off by
 a little, and perhaps one, mounted wrong or knocked off before one walk, by a lot. For each of these
-cases the posterior's place is sought (`model.bayes.walk_modes`), around them it is drawn and
-weighted (`model.bayes.walk_importance`), with steering and stride integrated out
-(`model.bayes.walk_terms`). Paths alone often cannot name the leg: the weights say so.
+cases the posterior's place is sought (`model.bayes.walks.modes`), around them it is drawn and
+weighted (`model.bayes.walks.importance`), with steering and stride integrated out
+(`model.bayes.walks.terms`). Paths alone often cannot name the leg: the weights say so.
 """
 
 from collections.abc import Callable, Sequence
@@ -13,12 +13,12 @@ from collections.abc import Callable, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from model.bayes.walk_importance import WeightedDraws, weighted_draws
-from model.bayes.walk_misfit import TrackedWalk, WalkMisfit
-from model.bayes.walk_modes import ModeSearch
-from model.bayes.walk_posterior import WalkPosterior, state_in
-from model.bayes.walk_prior import LINEAR, WALKED, WRONG, WalkPrior, all_cases
-from model.bayes.walk_terms import Terms
+from model.bayes.walks.importance import WeightedDraws, weighted_draws
+from model.bayes.walks.misfit import TrackedWalk, WalkMisfit
+from model.bayes.walks.modes import ModeSearch
+from model.bayes.walks.posterior import WalkPosterior, state_in
+from model.bayes.walks.prior import LINEAR, WALKED, WRONG, WalkPrior, all_cases
+from model.bayes.walks.terms import Terms
 from model.errors import InsufficientData
 from model.robot import Robot
 from model.slip.law import Array

@@ -1,0 +1,188 @@
+# SPDX-License-Identifier: MIT
+"""From rig samples to a calibration: choose a law, sample its posterior, judge the result."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from model.bayes.calibration import Calibration, conclude
+from model.bayes.convergence import Convergence, assess
+from model.bayes.fit import (
+    Comparison,
+    PreparedFit,
+    breakdown_told,
+    compare,
+    prepare_fit,
+    require_forces,
+)
+from model.bayes.posterior import LoadCell
+from model.bayes.preliminary import BlockChoice
+from model.bayes.sampler import Chains, advance, start_chains
+from model.bayes.samples import SlipSamples
+from model.errors import FitError
+from model.progress import Watcher
+from model.slip.law import SlipLaw
+
+THIN = 5  # sampler moves a kept step
+CHUNK = 20  # kept steps between looks at the watcher
+FIRST_LOOK = 100  # kept steps before convergence is judged for the first time
+FEW_BLOCKS = 500  # below, numpy's calls are so short that threads only wait for each other
+
+
+class FitStopped(FitError):
+    """The watcher asked to stop.
+
+    Attributes:
+        chains: Where the sampler stands; None when sampling had not begun.
+    """
+
+    def __init__(self, chains: Chains | None) -> None:
+        super().__init__("stopped on request")
+        self.chains = chains
+
+
+@dataclass(frozen=True)
+class SamplerSettings:
+    """How a posterior is sampled.
+
+    Attributes:
+        ensembles: Independent ensembles of walkers.
+        max_steps: Sampler moves after which a fit that has not converged ends as such.
+        block_length: Samples in a block; chosen from the residuals when None.
+        threads: Ensembles advanced at once.
+        seed: Seed of everything random.
+    """
+
+    ensembles: int = 4
+    max_steps: int = 30_000
+    block_length: int | None = None
+    threads: int = 2
+    seed: int = 1
+
+
+def calibrate(
+    samples: SlipSamples,
+    laws: Mapping[str, SlipLaw],
+    *,
+    load_cell: LoadCell,
+    settings: SamplerSettings,
+    source: str,
+    watcher: Watcher,
+    clock: Callable[[], float],
+    earlier: Chains | None = None,
+    keep: Callable[[Chains], object] = lambda _: None,
+) -> tuple[Calibration, Chains]:
+    """Fit a slip law to rig samples by Bayesian inference.
+
+    Args:
+        samples: The samples.
+        laws: The laws to choose from, simplest first, by the name they are reported under.
+        load_cell: What is known of the load cell.
+        settings: How to sample.
+        source: Where the samples come from, for the result.
+        watcher: Follows the progress and may ask to stop.
+        clock: Returns the time, to measure how long sampling takes [s].
+        earlier: Chains of a stopped fit of the same samples and settings, to go on from.
+        keep: Called with the chains as they grow, so that a fit that dies can go on.
+
+    Returns:
+        The calibration, and the chains it was made from.
+
+    Raises:
+        ModelError: The samples cannot determine the law, or the fit failed.
+        FitStopped: The watcher asked to stop.
+    """
+    rng = np.random.default_rng(settings.seed)
+    require_forces(samples, load_cell)
+    fit, comparison = _choose_law(samples, laws, load_cell, settings, rng, watcher)
+    began = clock()
+    judging = rng.spawn(1)[0]  # its draws are the same whether or not the fit was resumed
+    with breakdown_told(samples, fit.posterior.law):
+        chains, convergence = _sample(fit, earlier, settings, rng, watcher, keep)
+        seconds = clock() - began
+        watcher.step("judging", None)
+        calibration = conclude(
+            fit, comparison, chains, convergence, samples,
+            source=source, seconds=seconds, rng=judging,
+        )  # fmt: skip
+    return calibration, chains
+
+
+def _choose_law(
+    samples: SlipSamples,
+    laws: Mapping[str, SlipLaw],
+    load_cell: LoadCell,
+    settings: SamplerSettings,
+    rng: np.random.Generator,
+    watcher: Watcher,
+) -> tuple[PreparedFit, Comparison | None]:
+    """Prepare the fit of every law and choose the one that predicts left-out runs best."""
+    fits: list[PreparedFit] = []
+    asked = settings.block_length
+    choice = None if asked is None else BlockChoice(asked, None, "the length asked for")
+    for name, law in laws.items():
+        watcher.step(f"preparing: {name}", None)
+        if watcher.stop_requested():
+            raise FitStopped(None)
+        fit = prepare_fit(
+            samples, law, load_cell=load_cell, rng=rng, block_choice=choice,
+            threads=settings.threads,
+        )  # fmt: skip
+        choice = fit.block_choice  # laws are compared on the same blocks
+        fits.append(fit)
+    if len(fits) == 1:
+        return fits[0], None
+    comparison = compare(list(laws), fits)
+    return fits[comparison.chosen], comparison
+
+
+def _sample(
+    fit: PreparedFit,
+    earlier: Chains | None,
+    settings: SamplerSettings,
+    rng: np.random.Generator,
+    watcher: Watcher,
+    keep: Callable[[Chains], object],
+) -> tuple[Chains, Convergence]:
+    """Sample until the chains have converged or the steps are used up."""
+    density = fit.posterior.log_density
+    chains = earlier or start_chains(
+        density, fit.approximation, ensembles=settings.ensembles, thin=THIN, rng=rng
+    )
+    most = max(settings.max_steps // chains.thin, FIRST_LOOK)
+    threads = 1 if len(fit.posterior.blocks) < FEW_BLOCKS else settings.threads
+    look = next_look(chains.n_steps - CHUNK + 1)
+    watcher.step("sampling", 0.0)
+    while True:
+        if chains.n_steps >= min(look, most):
+            convergence = assess(chains)
+            if convergence.converged or chains.n_steps >= most:
+                return chains, convergence
+            fraction = max(convergence.fraction_done(), chains.n_steps / most)
+            watcher.step("sampling", fraction)
+            look = next_look(chains.n_steps + 1)
+        if watcher.stop_requested():
+            raise FitStopped(chains)
+        chains = advance(
+            density, chains, steps=CHUNK, approximation=fit.approximation, threads=threads
+        )
+        keep(chains)
+
+
+def next_look(n_steps: int) -> int:
+    """Return the first of the fixed steps, each a fifth beyond the last, at which to judge.
+
+    They are fixed, so that a fit that was stopped and resumed ends where one that was not would
+    have.
+
+    Args:
+        n_steps: Kept steps after which to look.
+
+    >>> [next_look(n) for n in (1, 101, 121)]
+    [100, 120, 144]
+    """
+    look = FIRST_LOOK
+    while look < n_steps:
+        look = int(look * 1.2)
+    return look

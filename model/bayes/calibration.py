@@ -1,0 +1,151 @@
+# SPDX-License-Identifier: MIT
+"""What a fit of a slip law concluded: estimates, curve, checks and verdict."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from model.bayes.convergence import Convergence
+from model.bayes.cross_validation import r_squared
+from model.bayes.estimate import (
+    Agreement,
+    Draws,
+    Estimate,
+    agreement,
+    contraction,
+    curve_estimates,
+    estimate,
+    thin_draws,
+)
+from model.bayes.fit import Comparison, PreparedFit
+from model.bayes.laplace import importance_draws
+from model.bayes.posterior import SlipPosterior
+from model.bayes.residuals import Residuals, analyse_residuals, largest_slips, load_levels
+from model.bayes.sampler import Chains
+from model.bayes.samples import SlipSamples
+from model.bayes.verdict import Verdict, judge
+
+DRAWS_PER_ENSEMBLE = 1000
+IMPORTANCE_DRAWS = 10_000
+_CHECKED = 400  # draws by which residuals and verdict are computed
+
+
+@dataclass(frozen=True)
+class Calibration:
+    """A finished fit.
+
+    Attributes:
+        fit: Posterior, mode, cross-validation and block length.
+        comparison: The laws that were compared; None where one was asked for.
+        draws: Posterior draws.
+        parameters: Posterior of every parameter.
+        levels: Loads that were set, shape (m,) [N].
+        curves: Posterior of the curve's features at each load level.
+        convergence: Evidence on the sampler.
+        residuals: What the fit leaves over.
+        agreement: How the second engine's answer compares.
+        verdict: What the fit is worth.
+        contraction: 1 - posterior over prior variance of each sampled parameter, by name.
+        r_squared: Variance of left-out samples explained; None for a single run [-].
+        source: Where the data come from: "real", "sim:...", "unknown".
+        seconds: Time the sampler took [s].
+    """
+
+    fit: PreparedFit
+    comparison: Comparison | None
+    draws: Draws
+    parameters: Sequence[Estimate]
+    levels: np.ndarray
+    curves: Sequence[Sequence[Estimate]]
+    convergence: Convergence
+    residuals: Residuals
+    agreement: Agreement
+    verdict: Verdict
+    contraction: Mapping[str, float]
+    r_squared: float | None
+    source: str
+    seconds: float
+
+    @property
+    def posterior(self) -> SlipPosterior:
+        """The posterior that was sampled."""
+        return self.fit.posterior
+
+    @property
+    def simulated(self) -> bool:
+        """Whether any of the data is simulated."""
+        return "sim:" in self.source
+
+
+def conclude(
+    fit: PreparedFit,
+    comparison: Comparison | None,
+    chains: Chains,
+    convergence: Convergence,
+    samples: SlipSamples,
+    *,
+    source: str,
+    seconds: float,
+    rng: np.random.Generator,
+) -> Calibration:
+    """Summarise and check a sampled posterior.
+
+    Args:
+        fit: The fit that was sampled.
+        comparison: The laws that were compared; None where one was asked for.
+        chains: The sampler's chains.
+        convergence: Evidence that they converged.
+        samples: The samples that were fitted.
+        source: Where the samples come from.
+        seconds: Time the sampler took [s].
+        rng: Source of randomness of the importance draws.
+    """
+    posterior = fit.posterior
+    draws = thin_draws(posterior, chains, convergence, n=DRAWS_PER_ENSEMBLE)
+    some = draws.flat[:: max(1, len(draws.flat) // _CHECKED)]
+    residuals = analyse_residuals(posterior.blocks, posterior.law, some)
+    weighted = importance_draws(
+        posterior.log_density, fit.approximation, n=IMPORTANCE_DRAWS, rng=rng
+    )
+    narrowed = contraction(posterior, draws)
+    levels = load_levels(posterior.blocks)
+    validation = fit.cross_validation
+    return Calibration(
+        fit=fit,
+        comparison=comparison,
+        draws=draws,
+        parameters=[
+            estimate(parameter, draws.flat[:, i])
+            for i, parameter in enumerate(posterior.parameters)
+        ],
+        levels=levels,
+        curves=_curves(posterior, draws, levels),
+        convergence=convergence,
+        residuals=residuals,
+        agreement=agreement(draws, weighted),
+        verdict=judge(
+            blocks=posterior.blocks,
+            law=posterior.law,
+            values=some,
+            contraction=narrowed,
+            convergence=convergence,
+            residuals=residuals,
+            offset_scale=fit.load_cell.zero_stability,
+        ),
+        contraction=narrowed,
+        r_squared=None
+        if validation is None
+        else r_squared(samples.traction_force, validation.predict(samples, posterior.law)),
+        source=source,
+        seconds=seconds,
+    )
+
+
+def _curves(posterior: SlipPosterior, draws: Draws, levels: np.ndarray) -> list[Sequence[Estimate]]:
+    """Estimate the features of the slip curve at each load."""
+    k = len(posterior.law.parameters)
+    return [
+        curve_estimates(posterior.law, draws.flat[:, :k], load=load, slip_limit=float(limit))
+        for load, limit in zip(levels, largest_slips(posterior.blocks), strict=True)
+    ]

@@ -1,0 +1,81 @@
+# SPDX-License-Identifier: MIT
+"""From samples to a calibration: where the sampler is judged, and how it is stopped."""
+
+import numpy as np
+import pytest
+
+from model.bayes.calibrate import CHUNK, FitStopped, SamplerSettings, calibrate, next_look
+from model.bayes.posterior import LoadCell
+from model.slip.thesis import THESIS_LAW, THESIS_VALUES
+from rig.slip_rig.imperfections import TYPICAL_RIG
+from rig.slip_rig.sweep import SweepPlan, simulate_sweep
+
+
+class Watcher:
+    """Notes the steps and asks to stop at one of its looks."""
+
+    def __init__(self, stop_at=None):
+        self.steps, self.looks, self.stop_at = [], 0, stop_at
+
+    def step(self, what, fraction):
+        self.steps.append(what)
+
+    def stop_requested(self):
+        self.looks += 1
+        return self.looks == self.stop_at
+
+
+@pytest.fixture(scope="module")
+def samples():
+    plan = SweepPlan(slips=tuple(np.linspace(0.005, 0.3, 8)), loads=(4.0, 12.0), rate=40.0)
+    rng = np.random.default_rng(2)
+    return simulate_sweep(
+        THESIS_LAW, THESIS_VALUES, plan=plan, imperfections=TYPICAL_RIG, rng=rng
+    ).samples
+
+
+def fitted(samples, watcher, **options):
+    return calibrate(
+        samples, {"thesis": THESIS_LAW}, load_cell=LoadCell(),
+        settings=SamplerSettings(ensembles=2, max_steps=500, block_length=10, threads=1),
+        source="sim:test", watcher=watcher, clock=lambda: 0.0, **options,
+    )  # fmt: skip
+
+
+def test_a_fit_that_was_stopped_goes_on_to_the_same_calibration(samples):
+    whole, chains = fitted(samples, Watcher())
+    with pytest.raises(FitStopped) as stopped:
+        fitted(samples, Watcher(stop_at=4))
+    assert 1 < stopped.value.chains.n_steps < chains.n_steps
+    resumed, _ = fitted(samples, Watcher(), earlier=stopped.value.chains)
+    np.testing.assert_array_equal(resumed.draws.flat, whole.draws.flat)
+    assert [e.mean for e in resumed.parameters] == [e.mean for e in whole.parameters]
+    assert whole.simulated
+    assert whole.comparison is None
+
+
+def test_a_fit_stopped_before_sampling_has_no_chains(samples):
+    with pytest.raises(FitStopped) as stopped:
+        fitted(samples, Watcher(stop_at=1))
+    assert stopped.value.chains is None
+
+
+def test_chains_are_handed_out_as_they_grow(samples):
+    kept = []
+    fitted(samples, Watcher(), keep=kept.append)
+    lengths = [chains.n_steps for chains in kept]
+    assert lengths == sorted(set(lengths))
+    assert lengths[-1] >= 100
+
+
+@pytest.mark.parametrize("n_steps", range(1, 400, 20))
+def test_resumed_fit_is_judged_where_the_uninterrupted_one_is(n_steps):
+    def judged(first: int) -> list[int]:
+        found, look = [], next_look(first - CHUNK + 1)
+        for n in range(first, 1000, CHUNK):
+            if n >= look:
+                found.append(n)
+                look = next_look(n + 1)
+        return found
+
+    assert judged(n_steps) == [n for n in judged(1) if n >= n_steps]

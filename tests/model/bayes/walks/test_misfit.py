@@ -1,0 +1,74 @@
+# SPDX-License-Identifier: MIT
+import numpy as np
+import pytest
+
+from model.bayes.walks.misfit import TrackedWalk, WalkMisfit, from_first
+from model.bayes.walks.prior import WRONG, legs_of
+from model.errors import InsufficientData
+from model.gait.reference import SampledReference
+from model.gait.tripod import tripod_angles, tripod_reference
+from model.predict import ModelSpread
+from model.robot import Robot
+from model.walk.ensemble import WalkDraw, planar_walk
+from model.walk.traction import VelocityCoulomb
+
+TABLE = VelocityCoulomb(0.38).table(weight=21.3)
+NOISE = np.array([0.001, 0.001, 0.003])
+STEERING, STRIDE = WRONG - 2, WRONG - 1
+
+
+@pytest.fixture(scope="module")
+def walk():
+    gait = tripod_reference(tripod_angles(np.radians(50.0), 1.3), 2.0)
+    t = np.arange(0.0, 6.005, 0.01)
+    legs = SampledReference(t, gait.angles(t))
+    seen = np.arange(0.0, 6.0, 1.0)
+    states = planar_walk(WalkDraw(Robot(), legs, TABLE), duration=6.0).poses.at(seen).states
+    return TrackedWalk("walk", legs, seen, states, np.tile(np.diag(NOISE**2), (len(seen), 1, 1)))
+
+
+@pytest.fixture(scope="module")
+def misfit(walk):
+    rng = np.random.default_rng(1)
+    spread = ModelSpread(0.002, 0.002)
+    return WalkMisfit.of(Robot(), TABLE, walk, spread=spread, rng=rng, threads=1)
+
+
+def legs(*, steering=0.0, stride=0.0):
+    values = np.zeros((1, WRONG + 1))
+    values[0, STEERING], values[0, STRIDE] = steering, stride
+    state = legs_of(values, None)
+    state.fall[:] = 1.0
+    return state
+
+
+def squares(residuals):
+    return float((residuals**2).sum())
+
+
+def test_the_walk_as_it_was_has_the_least_residuals(misfit):
+    assert misfit.size == 3 * 5
+    here = squares(misfit.residuals(legs(), threads=1))
+    assert here < 1.0
+    for bend in ({"steering": 0.2}, {"steering": -0.2}, {"stride": 0.1}, {"stride": -0.1}):
+        assert squares(misfit.residuals(legs(**bend), threads=1)) > here + 10
+
+
+def test_terms_say_what_residuals_do_for_small_steering_and_stride(misfit):
+    terms = misfit.terms(legs(), steering=1e-3, stride=1e-3, threads=1)
+    y = np.array([[0.7, -0.4]])
+    bent = misfit.residuals(legs(steering=0.7e-3, stride=-0.4e-3), threads=1)
+    assert terms.squares_at(y)[0, 0] == pytest.approx(squares(bent), rel=0.02, abs=1e-3)
+
+
+def test_paths_are_moved_to_begin_at_a_pose():
+    states = np.array([[[1.0, 1.0, 0.5], [2.0, 1.0, 0.6]]])
+    moved = from_first(states, np.array([0.0, 0.0, 0.5 + np.pi / 2]))
+    np.testing.assert_allclose(
+        moved[0], [[0, 0, 0.5 + np.pi / 2], [0, 1, 0.6 + np.pi / 2]], atol=1e-12
+    )
+
+
+def test_two_poses_are_no_track(walk):
+    with pytest.raises(InsufficientData, match="2 tracked poses"):
+        TrackedWalk("short", walk.legs, walk.t[:2], walk.states[:2], walk.covariance[:2])

@@ -1,0 +1,54 @@
+# SPDX-License-Identifier: MIT
+"""The search for modes on a problem that is linear, where every answer is known."""
+
+import numpy as np
+import pytest
+
+from model.bayes.walks.modes import ModeSearch
+from model.bayes.walks.prior import WRONG, WalkPrior, WrongLeg
+from model.robot import N_LEGS
+
+K = 40
+
+
+class LinearMisfit:
+    """Residuals that are linear in the leg offsets, with a true offset of each leg [rad]."""
+
+    size = K
+
+    def __init__(self, offset):
+        self.A = np.random.default_rng(4).standard_normal((K, N_LEGS)) / np.radians(0.3)
+        self.offset = np.asarray(offset)
+
+    def residuals(self, legs, *, threads):
+        return (legs.offset - self.offset) @ self.A.T
+
+
+def search(offset):
+    return ModeSearch([LinearMisfit(offset)], WalkPrior(), threads=1)
+
+
+def test_a_climb_ends_where_the_gradient_is_zero():
+    found = search(np.radians([0.3, -0.2, 0.1, 0.0, 0.2, 0.0]))
+    mode, J = found.climb(None, np.zeros(WRONG + 1))
+    gradient = J.T @ found.residuals(mode.z[None], None)[0] + mode.z
+    assert np.abs(gradient).max() < 0.5
+    assert found.cost(mode.z, None) < found.cost(np.zeros(WRONG + 1), None)
+    expected = np.linalg.inv(J.T @ J + np.eye(WRONG + 1))
+    np.testing.assert_allclose(mode.covariance, expected)
+
+
+def test_the_leg_that_is_wrong_is_the_likeliest_case():
+    offset = np.zeros(N_LEGS)
+    offset[3] = np.radians(6.0)
+    told = []
+    modes = search(offset).modes(tell=told.append)
+    best = max(modes, key=lambda mode: mode.log_evidence)
+    assert best.case == WrongLeg(3)
+    assert best.z[WRONG] * WalkPrior().wrong_sd == pytest.approx(np.radians(6.0), rel=0.1)
+    assert told == sorted(told)
+
+
+def test_legs_as_described_are_likeliest_without_a_wrong_one():
+    modes = search(np.zeros(N_LEGS)).modes(tell=lambda _: None)
+    assert max(modes, key=lambda mode: mode.log_evidence).case is None

@@ -1,0 +1,39 @@
+# SPDX-License-Identifier: MIT
+import numpy as np
+import pytest
+
+from model.metrics.turning import fitted_radius, mean_yaw_rate
+from model.poses import Poses
+
+
+def circle(radius, *, turn=4.0, crab=0.0, n=30):
+    """Return poses on a circle, counter-clockwise for a positive radius."""
+    yaw = np.sign(radius) * np.linspace(0.0, turn, n)
+    position = radius * np.column_stack([np.sin(yaw), -np.cos(yaw)])
+    return Poses(np.linspace(0.0, 2.0, n), position, yaw + crab)
+
+
+@pytest.mark.parametrize("radius", [0.5, -0.5])
+@pytest.mark.parametrize("crab", [0.0, 0.3])
+def test_a_circle_s_radius_comes_back_with_its_side(radius, crab):
+    assert fitted_radius(circle(radius, crab=crab)) == pytest.approx(radius)
+
+
+def test_beyond_a_full_turn_the_radius_stays():
+    assert fitted_radius(circle(0.4, turn=9.0)) == pytest.approx(0.4)
+
+
+def test_what_hardly_turns_is_straight():
+    assert fitted_radius(circle(20.0, turn=0.05)) == np.inf
+
+
+def test_headings_are_needed():
+    poses = circle(0.5)
+    blind = Poses(poses.t, poses.position, np.full(len(poses), np.nan))
+    assert np.isnan(fitted_radius(blind))
+    assert np.isnan(mean_yaw_rate(blind))
+
+
+def test_the_yaw_rate_is_the_slope_of_the_heading():
+    assert mean_yaw_rate(circle(0.5)) == pytest.approx(2.0)
+    assert mean_yaw_rate(circle(-0.5)) == pytest.approx(-2.0)

@@ -1,0 +1,50 @@
+# SPDX-License-Identifier: MIT
+import numpy as np
+import pytest
+
+from model.errors import DomainError
+from model.gait.reference import SampledReference
+from model.gait.tetrapod import tetrapod_reference
+from model.gait.tripod import tripod_angles, tripod_reference
+from model.robot import Robot
+from model.slip.thesis import thesis_curve
+from model.walk.slip import Slip
+from model.walk_models import BASELINES, MODELS, ModelRun, baseline_paths
+
+GAIT = tripod_reference(tripod_angles(np.radians(50.0), 1.0), 2.0)
+THESIS = Slip(thesis_curve(), "thesis")
+T = np.arange(0.0, 4.005, 0.01)
+
+
+def run(name, *, slip=THESIS, reference=GAIT):
+    model = MODELS[name]
+    return model.run(ModelRun(Robot(), reference, slip if model.slips else None, 4.0, model.dt))
+
+
+@pytest.mark.parametrize("name", MODELS)
+def test_every_model_walks_a_straight_gait_forward(name):
+    path = run(name)
+    assert path.position[-1, 0] > 0.15
+    assert abs(path.yaw[-1] - path.yaw[0]) < np.radians(3)
+
+
+@pytest.mark.parametrize("name", [name for name, model in MODELS.items() if model.slips])
+def test_a_model_that_slips_needs_a_law(name):
+    with pytest.raises(DomainError, match="needs a slip law"):
+        run(name, slip=None)
+
+
+def test_baselines_walk_the_same_angles_by_simpler_models():
+    paths, notes = baseline_paths(Robot(), SampledReference(T, GAIT.angles(T)), start=5.0)
+    assert set(paths) == set(BASELINES)
+    assert notes == ()
+    for path in paths.values():
+        assert path.t[0] == pytest.approx(5.0)
+        assert path.length > 0.15
+
+
+def test_a_model_that_cannot_walk_a_gait_is_left_out_and_said():
+    four = tetrapod_reference(np.radians(45.0), np.radians(135.0), cycle_time=3.0)
+    paths, notes = baseline_paths(Robot(), SampledReference(T, four.angles(T)))
+    assert "thesis" not in paths
+    assert any("'thesis' cannot walk" in note for note in notes)

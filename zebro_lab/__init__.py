@@ -1,2 +1,65 @@
 # SPDX-License-Identifier: MIT
-"""The lab bench: files, order and people."""
+"""Measure how a six-legged robot's feet slip, and predict where it walks.
+
+>>> import zebro_lab as zl
+>>> zl.walk_gait("tripod", slip="coulomb:0.4", duration=2.0).path.length > 0.1
+True
+"""
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    __version__: str
+    from zebro_lab.api import (
+        CalibrationResult,
+        Run,
+        WalkResult,
+        calibrate,
+        open_devices,
+        open_run,
+        predict_walk,
+        read_legs,
+        read_rig_data,
+        read_slip_curve,
+        read_track,
+        track_photos,
+        validate_walks,
+        walk_gait,
+        write_report,
+    )
+
+__all__ = [
+    "CalibrationResult",
+    "Run",
+    "WalkResult",
+    "__version__",
+    "calibrate",
+    "open_devices",
+    "open_run",
+    "predict_walk",
+    "read_legs",
+    "read_rig_data",
+    "read_slip_curve",
+    "read_track",
+    "track_photos",
+    "validate_walks",
+    "walk_gait",
+    "write_report",
+]
+
+
+def __getattr__(name: str) -> Any:
+    """Load the functions when they are first asked for: commands start without them."""
+    if name == "__version__":
+        from importlib.metadata import version
+
+        return version("zebro-lab")
+    if name in __all__:
+        return getattr(import_module("zebro_lab.api"), name)
+    raise AttributeError(f"module 'zebro_lab' has no attribute '{name}'")
+
+
+def __dir__() -> list[str]:
+    """List what the package offers."""
+    return sorted(__all__)

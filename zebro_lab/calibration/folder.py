@@ -20,6 +20,8 @@ from zebro_lab.files.replacement import settle
 from zebro_lab.files.result_folder import ResultKind
 
 if TYPE_CHECKING:  # the fit's own parts take seconds to import, and a law is read in most commands
+    import arviz as az
+
     from model.bayes.calibration import Calibration
 
 SCHEMA = 1
@@ -67,8 +69,8 @@ def write_tables(folder: Path, calibration: "Calibration", *, inputs: Mapping[st
         inputs: SHA-256 of each file that was read.
     """
     (folder / SLIP_TOML).write_text(_slip_toml(calibration, inputs))
-    (folder / "summary.csv").write_text(_summary_csv(calibration))
-    _write_posterior(folder / "posterior.nc", calibration)
+    (folder / "summary.csv").write_text(summary_csv(calibration))
+    inference_data(calibration).to_netcdf(str(folder / "posterior.nc"), engine="h5netcdf")
 
 
 def read_slip(path: Path) -> SlipCurve:
@@ -194,7 +196,8 @@ def _distinct_names(paths: Sequence[str]) -> list[str]:
     return next((names for names in shortened if len(set(names)) == len(names)), list(paths))
 
 
-def _summary_csv(calibration: "Calibration") -> str:
+def summary_csv(calibration: "Calibration") -> str:
+    """Return the table of parameters, one line each, with the columns `SUMMARY_COLUMNS`."""
     convergence = calibration.convergence
     free = {p.name: i for i, p in enumerate(calibration.posterior.free)}
     text = io.StringIO()
@@ -214,8 +217,8 @@ def _summary_csv(calibration: "Calibration") -> str:
     return text.getvalue()
 
 
-def _write_posterior(path: Path, calibration: "Calibration") -> None:
-    """Write the draws as ArviZ InferenceData; a chain is an ensemble."""
+def inference_data(calibration: "Calibration") -> "az.InferenceData":
+    """Return draws and data as ArviZ InferenceData; a chain is an ensemble of walkers."""
     import arviz as az
 
     posterior, draws = calibration.posterior, calibration.draws
@@ -226,7 +229,7 @@ def _write_posterior(path: Path, calibration: "Calibration") -> None:
         "law": posterior.law.name,
         "verdict": calibration.verdict.headline(),
     }
-    data = az.from_dict(
+    return az.from_dict(
         posterior={
             p.name: draws.values[..., i]
             for i, p in enumerate(posterior.parameters)
@@ -247,4 +250,3 @@ def _write_posterior(path: Path, calibration: "Calibration") -> None:
         },
         attrs=attributes,
     )
-    data.to_netcdf(str(path), engine="h5netcdf")

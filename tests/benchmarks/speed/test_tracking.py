@@ -23,7 +23,8 @@ def test_both_detectors_find_every_marker_and_are_timed(monkeypatch, rows):
     lens = Camera((1200, 900), seen.matrix, np.array(seen.distortion))
     monkeypatch.setattr(tracking, "LENS", lens)
     tracking.main()
-    *detectors, path = rows()
+    *detectors, path, few, many = rows()
     assert len(detectors) == 2
     assert all(float(cell) > 0 for row in detectors for cell in row)
     assert path[0] == "2"
+    assert 0 < float(few[1]) < float(many[1])

@@ -82,15 +82,27 @@ def _yields(node: ast.AST) -> bool:
     )
 
 
-def run_tests(root: Path, test: Path, *, timeout: float) -> int:
-    """Run one test module in a copy; return pytest's exit code, 1 where it takes too long."""
+def compiles(module: Module) -> bool:
+    """Tell whether numba compiles a function of a module."""
+    return "model.compiled import" in module.text or "numba import" in module.text
+
+
+def run_tests(root: Path, test: Path, *, timeout: float, loops: str) -> int:
+    """Run one test module in a copy; return pytest's exit code, 1 where it takes too long.
+
+    Args:
+        root: The copy.
+        test: The test module, from the top of the copy.
+        timeout: Longest run [s].
+        loops: Folder of the copy that keeps loops compiled by numba.
+    """
     command = [sys.executable, "-m", "pytest", "-q", "-x", "-p", "no:cacheprovider",
                "-m", "not long", str(test)]  # fmt: skip
     path = os.pathsep.join([str(root), os.environ.get("PYTHONPATH", "")]).rstrip(os.pathsep)
     shared = os.environ.get("ZEBRO_LAB_SHARED", str(HERE.parent / "shared"))
     environment = os.environ | {
         "PYTHONPATH": path, "PYTHONDONTWRITEBYTECODE": "1", "ZEBRO_LAB_SHARED": shared,
-        "NUMBA_CACHE_DIR": str(root / ".numba"),
+        "NUMBA_CACHE_DIR": str(root / loops),
     }  # fmt: skip
     try:
         return subprocess.run(
@@ -101,21 +113,23 @@ def run_tests(root: Path, test: Path, *, timeout: float) -> int:
 
 
 def judge(root: Path, module: Module, *, timeout: float) -> tuple[str, str]:
-    """Return what was replaced and what came of it: noticed, survived, or why there is no saying."""
+    """Return what was replaced and what came of it, or why there is no saying."""
     text, largest = broken(module), largest_function(module)
     if text is None or largest is None:
         return "", "no function"
     name, test, file = largest[0].name, mirror_of(module), root / module.path
     file.write_text(text, encoding="utf-8")
     try:
-        code = run_tests(root, test, timeout=timeout)
+        # Numba keeps what it compiled when a function that it calls changes in another file.
+        loops = f".numba-{module.name}" if compiles(module) else ".numba"
+        code = run_tests(root, test, timeout=timeout, loops=loops)
     finally:
         file.write_text(module.text, encoding="utf-8")
     if code == NO_TESTS:
         return name, "no test ran"
     if code == PASSED:
         return name, "SURVIVED"
-    whole = run_tests(root, test, timeout=timeout)
+    whole = run_tests(root, test, timeout=timeout, loops=".numba")
     return name, "noticed" if whole == PASSED else "fails anyway"
 
 
@@ -129,7 +143,7 @@ def main(arguments: list[str]) -> int:
     found: list[tuple[str, str, str]] = []
     with TemporaryDirectory(prefix="mirrored-") as folder:
         root = Path(folder) / "checkout"
-        shutil.copytree(asked.checkout, root, ignore=LEFT_OUT)
+        shutil.copytree(asked.checkout, root, symlinks=True, ignore=LEFT_OUT)
         checkout = Checkout.read(root)
         for module in branching_modules(checkout):
             if (

@@ -62,4 +62,3 @@ def test_a_test_that_looks_away_survives_and_one_that_looks_does_not(tmp_path, c
     said = capsys.readouterr().out
     assert "1 of 2 replaced functions were noticed" in said
     assert "| model/unseen.py | larger | SURVIVED |" in said
-    assert main([str(tmp_path), "--only", "model/se*"]) == 0

@@ -5,6 +5,7 @@ import csv
 import gzip
 import io
 import json
+import re
 import tomllib
 from collections.abc import Callable, Mapping
 from pathlib import Path
@@ -20,6 +21,11 @@ from mcap.reader import make_reader
 from benchmarks.documented_commands.normal import Normaliser
 
 Content = Mapping[str, object]
+_STAMPED = re.compile(
+    rb"(\s*(#[^\n]*)?\n)*\s*(std_msgs/(msg/)?Header|builtin_interfaces/(msg/)?Time)\b"
+)
+_STAMP = slice(4, 12)
+"""Where the date is in a message in CDR that begins with one; logs count from their start."""
 OF_THE_RUN = {
     "software", "versions", "version", "host", "hostname", "user", "operator", "seconds",
     "elapsed", "elapsed_s", "duration_seconds", "commit", "git", "created", "created_at", "made",
@@ -147,10 +153,15 @@ def _hdf5(data: bytes, normal: Normaliser) -> Content:
 def _mcap(data: bytes, normal: Normaliser) -> Content:
     found: dict[str, object] = {}
     reader = make_reader(io.BytesIO(data))
-    for _, channel, message in reader.iter_messages(log_time_order=False):
+    start: int | None = None
+    for schema, channel, message in reader.iter_messages(log_time_order=False):
         payloads = found.setdefault(f"messages {channel.topic}", [])
         assert isinstance(payloads, list)
-        payloads.append((message.log_time, message.sequence, message.data))
+        start = message.log_time if start is None else start
+        data = message.data
+        if schema is not None and _STAMPED.match(schema.data):
+            data = data[: _STAMP.start] + data[_STAMP.stop :]
+        payloads.append((message.log_time - start, message.sequence, data))
     for attachment in reader.iter_attachments():
         text = attachment.data.decode(errors="replace")
         found[f"attachment {attachment.name}"] = normal.text(text)

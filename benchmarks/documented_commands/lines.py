@@ -30,7 +30,7 @@ INSTEAD = (
     (r"--(zebro|imu|rig) \S+@(?:/dev|socketcan)\S+", r"--\1 sim", "no device at hand"),
 )
 SERVES = re.compile(r"^zebro-lab sim ")
-REAL_TIME = re.compile(r"^zebro-lab (record|sim|doctor|runs|plot) ?")
+REAL_TIME = re.compile(r"^zebro-lab (record|sim|doctor|runs)\b")
 """Commands whose numbers depend on when they run, or on runs recorded in real time."""
 
 
@@ -136,7 +136,8 @@ PREPARED = {
     "docs/calibration.md": (_RIG_TABLE.format("data/bench.csv"),),
     "docs/experiments.md": (),
     "docs/recording.md": (
-        _LOGS, _TUM, _RIG_TABLE.format("sweep.csv"), "cp datasets/rig-sim/columns.toml .",
+        _LOGS, _TUM, _RIG_TABLE.format("sweep.csv"),
+        "sed 's/^\\[/[rig./' datasets/rig-sim/columns.toml > columns.toml",
         "zebro-lab walk --gait tripod --steering 1.3 --slip coulomb:0.4 --duration 10 --out walk",
         f"zebro-lab import --legs legs.csv --robot robot.toml --label circle {_START} --data data",
     ),

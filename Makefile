@@ -77,9 +77,9 @@ floors: $(STAMP)
 
 bench: $(STAMP) ## speed, side by side with a peer in the same run
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --group bench
-	$(BIN)/python docs/bench.py
-	$(BIN)/python docs/bench_walk.py
-	$(BIN)/python docs/bench_tracking.py
+	$(BIN)/python -m benchmarks.speed.calibration
+	$(BIN)/python -m benchmarks.speed.walking
+	$(BIN)/python -m benchmarks.speed.tracking
 
 clean-cache: ## remove compiled loops that numba cached
 	find model rig tracking zebro_lab -name '*.nb[ic]' -delete

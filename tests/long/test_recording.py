@@ -14,6 +14,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from benchmarks.speed.recording import measure, report
 from rig.backends import open_rig
 from rig.slip_rig.can_simple import describe_error
 from rig.slip_rig.decode import decode_board, decode_speeds
@@ -174,6 +175,7 @@ DRIVE = """
 import signal
 import sys
 signal.signal(signal.SIGINT, lambda *_: sys.exit())
+from benchmarks.speed.recording import measure, report
 from rig.backends import open_rig
 from rig.device import iterate
 device = getattr(open_rig(sys.argv[1]), sys.argv[2])
@@ -189,13 +191,7 @@ with device:
 
 
 def test_nothing_is_lost_in_the_host_at_full_rate_for_long(tmp_path):
-    sys.path.insert(0, str(Path(__file__).parents[2] / "docs"))
-    try:
-        from recording_bench import measure, report
-
-        manifest, share, size = measure(SOAK, tmp_path)  # in a process that looks there too
-    finally:
-        sys.path.pop(0)
+    manifest, share, size = measure(SOAK, tmp_path)
     tell(f"\n{SOAK:g} s:")
     report(manifest, share, size)
     for name, counters in manifest.counters.items():

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: MIT
 """What walks must do for a prediction, on walks of an independent engine; tables are printed."""
 
-import importlib.util
 import subprocess
 import sys
 from pathlib import Path
@@ -9,7 +8,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-DOCS = Path(__file__).parents[2] / "docs"
+from benchmarks.accuracy import predicted_walks
+from benchmarks.accuracy.lab_walks import Bench
+
 COLUMNS = """
 source = "sim:virtual-world"
 columns.normal_force = "Fn"
@@ -26,18 +27,7 @@ pytestmark = [pytest.mark.long, pytest.mark.reference, pytest.mark.timeout(5400)
 
 
 @pytest.fixture(scope="module")
-def script():
-    sys.path.insert(0, str(DOCS))
-    spec = importlib.util.spec_from_file_location("walks", DOCS / "walks_virtual_world.py")
-    module = importlib.util.module_from_spec(spec)
-    sys.modules["walks"] = module
-    spec.loader.exec_module(module)
-    yield module
-    sys.path.remove(str(DOCS))
-
-
-@pytest.fixture(scope="module")
-def bench(script, shared, tmp_path_factory):
+def bench(shared, tmp_path_factory):
     place = tmp_path_factory.mktemp("walks")
     (place / "columns.toml").write_text(COLUMNS)
     command = Path(sys.executable).with_name("calibrate-slip")
@@ -46,13 +36,13 @@ def bench(script, shared, tmp_path_factory):
          "--curvature", "constant", "--out", place / "calibration"],
         check=True, capture_output=True,
     )  # fmt: skip
-    return script.Bench(place / "calibration", place / "walks")
+    return Bench(place / "calibration", place / "walks")
 
 
 @pytest.fixture(scope="module")
-def half_circles(script, bench):
-    scored = list(script.half_circles(bench))
-    script.print_rows(scored)
+def half_circles(bench):
+    scored = list(predicted_walks.half_circles(bench))
+    predicted_walks.print_rows(scored)
     return scored
 
 
@@ -71,8 +61,8 @@ def test_positions_are_predicted_within_two_percent_of_the_path(half_circles):
         assert each.judged.rows[0].errors.ate_of_length < OF_PATH, each.walk.name
 
 
-def test_bands_hold_what_they_say(script, half_circles):
-    held = np.concatenate([script.cover(each) for each in half_circles])
+def test_bands_hold_what_they_say(half_circles):
+    held = np.concatenate([predicted_walks.cover(each) for each in half_circles])
     assert COVERED[0] <= held.mean() <= COVERED[1]
 
 

@@ -2,7 +2,6 @@
 """A photograph gives the robot and the floor; what is wrong with it is said with its name."""
 
 import json
-import time
 
 import cv2
 import numpy as np
@@ -56,33 +55,6 @@ def test_a_hint_changes_where_is_looked_and_not_what_is_found():
     moved = np.roll(picture, 130, axis=0)
     far = detect("c.jpg", moved, floor=FLOOR, robot=ROBOT, hint=plain)
     assert set(far.floor.pixels) == {10, 11}
-
-
-def test_a_known_neighbourhood_costs_no_more_than_plain_detection_of_12_megapixels():
-    rng = np.random.default_rng(0)
-    picture = cv2.resize(rng.integers(120, 180, (300, 400), np.uint8), (4000, 3000))
-    for place, number in (((300, 400), 10), ((300, 3300), 11), ((1500, 1800), 0)):
-        board = np.pad(
-            cv2.aruco.generateImageMarker(dictionary_named("4x4_50"), number, 180), 30,
-            constant_values=255,
-        )  # fmt: skip
-        picture[place[0] : place[0] + 240, place[1] : place[1] + 240] = board
-    picture = cv2.GaussianBlur(picture, (0, 0), 1.0)
-    hint = detect("a.jpg", picture, floor=FLOOR, robot=ROBOT)
-    plain = cv2.aruco.ArucoDetector(dictionary_named("4x4_50"))
-    ours = min(
-        _seconds(lambda: detect("b", picture, floor=FLOOR, robot=ROBOT, hint=hint))
-        for _ in range(3)
-    )
-    bare = min(_seconds(lambda: plain.detectMarkers(picture)) for _ in range(3))
-    assert ours < 1.2 * bare
-
-
-def _seconds(work):
-    # Processor time: OpenCV's detector uses all processors, and other work may run beside the test.
-    start = time.process_time()
-    work()
-    return time.process_time() - start
 
 
 def test_the_region_of_ninety_percent_holds_ninety_percent():

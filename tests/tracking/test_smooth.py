@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Smoothing helps where it should, states its error, and invents nothing."""
 
-import time
-
 import numpy as np
 import pytest
 from hypothesis import given
@@ -135,14 +133,3 @@ def test_one_pose_is_its_own_path():
 def test_times_that_do_not_increase_are_named():
     with pytest.raises(PathError, match="sample 2 is at 1 s"):
         smooth([0, 1, 1], np.zeros((3, 3)), covariance=np.tile(COV, (3, 1, 1)))
-
-
-def test_cost_is_linear_in_samples():
-    def seconds(n):
-        t = np.arange(float(n))
-        start = time.perf_counter()
-        smooth(t, arc(t), covariance=np.tile(COV, (n, 1, 1)), process=Process(1e-4, 1e-3))
-        return time.perf_counter() - start
-
-    seconds(50)
-    assert seconds(1600) < 16 * max(min(seconds(200) for _ in range(3)), 1e-3)

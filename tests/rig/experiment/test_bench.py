@@ -94,7 +94,7 @@ def test_a_force_beyond_its_limit_is_answered_in_the_same_look(lab, monkeypatch)
                 acquire.until(lambda _: False, 0.5)
             reactions.append(acquire.reaction)
             assert stands(drives)
-    assert min(reactions) < 0.02  # docs/experiments_bench.py says how long it usually takes
+    assert min(reactions) < 0.02  # benchmarks.speed.guard_reaction prints the usual time
 
 
 def test_a_silent_load_cell_stops_the_discs(lab, monkeypatch):

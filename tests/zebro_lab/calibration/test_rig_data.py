@@ -2,7 +2,6 @@
 """Tables of every accepted form become the same samples."""
 
 import gzip
-import time
 from datetime import UTC, datetime
 from pathlib import Path
 
@@ -314,15 +313,6 @@ def test_numbers_survive_to_the_last_bit(tmp_path):
         table.to_csv(file, index=False)
     read = read_rig_data([tmp_path]).samples.traction_force
     np.testing.assert_array_max_ulp(read, table.traction_force.to_numpy(), 1)
-
-
-def test_a_quarter_of_a_million_rows_are_read_within_seconds(tmp_path):
-    n = 250_000
-    write(tmp_path, speeds(n).round(6))
-    columns(tmp_path, RADII)
-    begin = time.perf_counter()
-    assert len(read_rig_data([tmp_path]).samples) == n
-    assert time.perf_counter() - begin < 5  # 0.2 s on an idle core; loops over rows take minutes
 
 
 def test_unknown_slip_definition_is_a_settings_error(tmp_path):

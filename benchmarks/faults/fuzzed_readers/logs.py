@@ -1,0 +1,79 @@
+# SPDX-License-Identifier: MIT
+"""Readers of MCAP."""
+
+import io
+from collections.abc import Mapping
+
+import numpy as np
+
+from benchmarks.faults.fuzzed_readers.reader import Reader, mcap_check
+from benchmarks.faults.hostile_inputs import (
+    Make,
+    pick,
+    pool,
+)
+from rig.device import Sample
+from rig.zebro.profile import load_leg_profile
+from zebro_lab.mcap.log_writer import LogWriter
+from zebro_lab.mcap.raw_log import read_raw_log
+from zebro_lab.mcap.ros_log import read_messages
+from zebro_lab.mcap.slip_rig_log import SlipRigTable, read_log, write_log
+from zebro_lab.mcap.stream_views import LegsView
+
+
+def of_logs() -> Mapping[str, Reader]:
+    """Return readers of MCAP."""
+    recorded, rig = _recorded(), io.BytesIO()
+    t = np.arange(200) / 100
+    write_log(rig, SlipRigTable(t, t, t, t, t), start_ns=10**18)
+    log = "rcl_interfaces/msg/Log"
+    raw, samples = _logs([recorded]), _logs([rig.getvalue()])
+    return {
+        "log.mcap, raw": Reader("log.mcap", read_raw_log, raw, mcap_check),
+        "log.mcap, rig": Reader("log.mcap", read_log, samples, mcap_check),
+        "log.mcap, ROS 2": Reader("log.mcap", lambda f: read_messages(f, schema=log), raw,
+                                  mcap_check),
+    }  # fmt: skip
+
+
+def _recorded() -> bytes:
+    profile, out = load_leg_profile("zebro-100-serial"), io.BytesIO()
+    writer = LogWriter(
+        out, views={"legs": LegsView("legs", profile=profile)},
+        attachments={"profiles/legs.toml": "x = 1"}, start=0.0, start_ns=10**18,
+    )  # fmt: skip
+    writer.event(0.0, "began")
+    samples = [Sample(0.01 * n, 0.01 * n, n, tuple(range(n, n + 6))) for n in range(60)]
+    for first in range(0, 60, 20):
+        writer.write("legs", samples[first : first + 20])
+        writer.flush()
+    writer.finish()
+    return out.getvalue()
+
+
+def _logs(made: list[bytes]) -> Make:
+    """Make logs whose records, inside chunks too, were changed, with sums that are right."""
+    from mcap.records import Chunk
+    from mcap.stream_reader import StreamReader, get_chunk_data_stream
+
+    magic = b"\x89MCAP0\r\n"
+    parsed = [list(StreamReader(io.BytesIO(data), emit_chunks=True).records) for data in made]
+    inner = [
+        get_chunk_data_stream(record)[0]._stream.getvalue()  # pyright: ignore[reportAttributeAccessIssue]
+        for records in parsed for record in records if isinstance(record, Chunk)
+    ]  # fmt: skip
+    whole = pool(made)
+
+    def make(rng: np.random.Generator) -> bytes:
+        if rng.random() < 0.4:
+            return whole(rng)
+        parts = [magic]
+        for data in inner:
+            body = pool([data], 0.7)(rng)
+            size = pick(rng, (len(body),) * 8 + (0, 1 << 40))
+            chunk = bytes(16) + size.to_bytes(8, "little") + bytes(4) + (0).to_bytes(4, "little")
+            chunk += len(body).to_bytes(8, "little") + body
+            parts.append(b"\x06" + len(chunk).to_bytes(8, "little") + chunk)
+        return b"".join(parts)
+
+    return make

@@ -1,0 +1,30 @@
+# SPDX-License-Identifier: MIT
+import cv2
+import numpy as np
+import pytest
+
+from benchmarks.speed import tracking
+from tracking.camera import Camera
+from tracking.synthetic import look_at
+
+
+@pytest.fixture(autouse=True)
+def threads():
+    before = cv2.getNumThreads()
+    yield
+    cv2.setNumThreads(before)
+
+
+def test_both_detectors_find_every_marker_and_are_timed(monkeypatch, rows):
+    for name, few in (("PHOTOS", 2), ("REPEATS", 1), ("STRETCHES", (2,))):
+        monkeypatch.setattr(tracking, name, few)
+    seen = look_at((0.8, -1.2, 1.8), (0.8, 0.6, 0.0), width=1200, height=900)
+    monkeypatch.setattr(tracking, "CAMERA", seen)
+    lens = Camera((1200, 900), seen.matrix, np.array(seen.distortion))
+    monkeypatch.setattr(tracking, "LENS", lens)
+    tracking.main()
+    *detectors, path, few, many = rows()
+    assert len(detectors) == 2
+    assert all(float(cell) > 0 for row in detectors for cell in row)
+    assert path[0] == "2"
+    assert 0 < float(few[1]) < float(many[1])

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 from typing import Final, Literal, TypeAlias
 
 from rig.device import Limits
-from rig.experiment.plan_table import PlanTable
 from rig.safety import REST_SPEED
 from rig.slip_rig.profile import FURTHER_LIMITS
+from rig.toml_table import TomlTable
 
 SCHEMA: Final = 1
 MOST_POINTS: Final = 100_000
@@ -203,7 +203,7 @@ class Plan:
     limits: RunLimits
 
 
-def parse_plan(table: PlanTable) -> Plan:
+def parse_plan(table: TomlTable) -> Plan:
     """Read a plan.
 
     Args:
@@ -213,7 +213,8 @@ def parse_plan(table: PlanTable) -> Plan:
         The plan.
 
     Raises:
-        ProfileError: A key is missing, unknown (the nearest known one is named) or impossible.
+        ProfileError: A key is missing, unknown (the nearest known one is named) or impossible; or
+            the table's own error.
     """
     table.whole("schema", least=SCHEMA, most=SCHEMA)
     parts = {key: table.table(key) for key in
@@ -230,8 +231,7 @@ def parse_plan(table: PlanTable) -> Plan:
         controls=_controls(parts["controls"]),
         limits=_limits(parts["limits"], top_speed=points.omega_leg),
     )
-    for part in (*parts.values(), table):
-        part.finish()
+    table.finish()
     return plan
 
 
@@ -267,7 +267,7 @@ def rig_limits(limits: RunLimits, allowed: Limits) -> Limits:
     )
 
 
-def _points(table: PlanTable) -> PointGrid:
+def _points(table: TomlTable) -> PointGrid:
     length = table.choice("length", ("duration", "turns"))
     omega = table.positive("omega_leg")
     # Turns are the leg disc's: the ground disc stands still at slip 1.
@@ -293,7 +293,7 @@ def _points(table: PlanTable) -> PointGrid:
     return grid
 
 
-def _load(table: PlanTable) -> LoadSetting:
+def _load(table: TomlTable) -> LoadSetting:
     return LoadSetting(
         set_by=table.choice("set_by", ("hand", "axis")),
         tolerance=table.positive("tolerance"),
@@ -301,7 +301,7 @@ def _load(table: PlanTable) -> LoadSetting:
     )
 
 
-def _settle(table: PlanTable) -> SettleCriterion:
+def _settle(table: TomlTable) -> SettleCriterion:
     criterion = SettleCriterion(
         window=table.positive("window"),
         speed=table.positive("speed"),
@@ -316,7 +316,7 @@ def _settle(table: PlanTable) -> SettleCriterion:
     return criterion
 
 
-def _accept(table: PlanTable) -> Acceptance:
+def _accept(table: TomlTable) -> Acceptance:
     return Acceptance(
         slip=table.positive("slip"),
         slip_drift=table.positive("slip_drift"),
@@ -325,7 +325,7 @@ def _accept(table: PlanTable) -> Acceptance:
     )
 
 
-def _controls(table: PlanTable) -> Controls:
+def _controls(table: TomlTable) -> Controls:
     return Controls(
         tare_every=table.whole("tare_every", 0, most=MOST_POINTS),
         tare_duration=table.positive("tare_duration", 1.0),
@@ -335,7 +335,7 @@ def _controls(table: PlanTable) -> Controls:
     )
 
 
-def _limits(table: PlanTable, *, top_speed: float) -> RunLimits:
+def _limits(table: TomlTable, *, top_speed: float) -> RunLimits:
     off_above = OFF_ABOVE | {"speed_error": top_speed / 2}
     silence = table.positive("silence", 0.25)
     limits = RunLimits(
@@ -360,7 +360,7 @@ def _limits(table: PlanTable, *, top_speed: float) -> RunLimits:
     return limits
 
 
-def _require_guard(table: PlanTable, limits: RunLimits, name: str, highest: float) -> None:
+def _require_guard(table: TomlTable, limits: RunLimits, name: str, highest: float) -> None:
     """Refuse a limit that turns its guard off without saying so, and saying so of one that is on.
 
     Raises:

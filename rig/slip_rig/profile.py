@@ -6,7 +6,8 @@ from pathlib import Path
 from typing import Final, Literal
 
 from rig.device import Limits
-from rig.profile import Table, open_profile
+from rig.profile import open_profile
+from rig.toml_table import TomlTable
 
 AXES: Final = ("x", "y", "z")
 HIGHEST_NODE: Final = 0x3F
@@ -173,15 +174,14 @@ def load_rig_profile(name: str) -> RigProfile:
         load_cell=None if load_cell.empty else _load_cell(load_cell),
         board=None if board.empty else _board(board),
     )
-    for part in (discs, limits, drives, load_cell, board, table):
-        part.finish()
+    table.finish()
     for key in FURTHER_LIMITS:
         if getattr(profile.limits, key) is not None and key not in profile.measured:
             raise limits.fault("is a limit of something that no device of this rig measures", key)
     return profile
 
 
-def _drives(table: Table) -> DriveProfile:
+def _drives(table: TomlTable) -> DriveProfile:
     leg, ground = (_disc_drive(table.table(key)) for key in ("leg", "ground"))
     if leg.node == ground.node:
         raise table.fault(f"both drives have node {leg.node}; expected two different ones")
@@ -194,17 +194,15 @@ def _drives(table: Table) -> DriveProfile:
     )
 
 
-def _disc_drive(table: Table) -> DiscDrive:
-    drive = DiscDrive(
+def _disc_drive(table: TomlTable) -> DiscDrive:
+    return DiscDrive(
         node=table.whole("node", most=HIGHEST_NODE),
         gear=table.positive("gear"),
         sign=table.sign("sign"),
     )
-    table.finish()
-    return drive
 
 
-def _load_cell(table: Table) -> LoadCellProfile:
+def _load_cell(table: TomlTable) -> LoadCellProfile:
     return LoadCellProfile(
         host=table.text("host"),
         port=table.whole("port", 49_152, least=1, most=65_535),
@@ -216,13 +214,11 @@ def _load_cell(table: Table) -> LoadCellProfile:
     )
 
 
-def _axis(table: Table) -> ForceAxis:
-    axis = ForceAxis(AXES.index(table.choice("axis", AXES)), table.sign("sign"))
-    table.finish()
-    return axis
+def _axis(table: TomlTable) -> ForceAxis:
+    return ForceAxis(AXES.index(table.choice("axis", AXES)), table.sign("sign"))
 
 
-def _board(table: Table) -> BoardProfile:
+def _board(table: TomlTable) -> BoardProfile:
     return BoardProfile(
         baudrate=table.whole("baudrate", least=1, most=20_000_000),
         rate=table.positive("rate"),

@@ -9,11 +9,11 @@ from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any
 
+from rig.nearest_name import nearest
 from zebro_lab.files.atomic import atomic_write_text
 from zebro_lab.files.encodable import encodable
 from zebro_lab.files.errors import DataError
 from zebro_lab.files.folder_manifest import read_json_object
-from zebro_lab.files.known_keys import nearest
 
 PROFILES = "profiles"
 MANIFEST_FILE = "run.json"

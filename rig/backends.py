@@ -165,12 +165,13 @@ def open_rig(address: str, *, buffered: bool = False, clock: Clock = SYSTEM_CLOC
         The devices.
 
     Raises:
-        ProfileError: The address or the profile is not right.
+        ProfileError: The address or the profile is not right, or of a table.
     """
-    from rig.slip_rig.profile import load_rig_profile
+    from rig.slip_rig.profile import load_rig_profile, require_device
 
     profile_name, port = split_address(address)
     profile = load_rig_profile(profile_name)
+    require_device(profile)
     if profile.board is not None:
         from rig.links.serial import SerialLink
         from rig.slip_rig.board import RigBoard

@@ -101,9 +101,11 @@ class TomlTable:
             raise self.fault(f"found {value!r}; expected a list of texts", key)
         return tuple(texts)
 
-    def choice(self, key: str, choices: tuple[Choice, ...]) -> Choice:
+    def choice(
+        self, key: str, choices: tuple[Choice, ...], default: Choice | None = None
+    ) -> Choice:
         """Take one of several texts."""
-        value = self.value(key)
+        value = self.value(key, default)
         for choice in choices:
             if value == choice:
                 return choice

@@ -15,7 +15,8 @@ from zebro_lab.files.provenance import file_hashes
 from zebro_lab.files.settings_text import fill_in
 from zebro_lab.files.source_names import stated_source
 from zebro_lab.mcap.slip_rig_log import SlipRigTable
-from zebro_lab.runs.folder import IMPORTED, write_slip_rig_run
+from zebro_lab.runs.folder import IMPORTED
+from zebro_lab.runs.table_run import write_slip_rig_run
 from zebro_lab.tables.columns import COLUMNS_FILE, Columns
 from zebro_lab.tables.rig_table import RigTable, kept_rows
 from zebro_lab.tables.run_separation import run_times, separate_runs

@@ -30,7 +30,7 @@ from zebro_lab.runs.folder import (
     finished_run_folder,
     write_manifest,
 )
-from zebro_lab.runs.manifest import profile_file, software_version
+from zebro_lab.runs.manifest import TABLE, profile_file, software_version
 from zebro_lab.runs.recorded_legs import LEGS
 from zebro_lab.track.folder import track_folder
 from zebro_lab.track.foreign import ForeignTrack
@@ -209,7 +209,7 @@ def _manifest(
         constants={},
         streams={f"/{name}/raw": count for name, count in counts.items()},
         log_sha256=file_hash(draft / LOG_FILE),
-        profiles=dict.fromkeys(streams, "table"),
+        profiles=dict.fromkeys(streams, TABLE),
         sources={name: _source_of(name, walk) for name in streams},
         counters={n: asdict(Counters(received=c)) | {"dropped": 0} for n, c in counts.items()},
         robot=None if walk.robot.file is None else walk.robot.file.stem,

@@ -27,7 +27,7 @@ from rig.twins import simulated_rig_devices
 from zebro_lab.files.errors import SettingsError
 from zebro_lab.mcap.stream_views import BoardView, DrivesView, LoadCellView, View
 from zebro_lab.recording.devices import SIMULATED, profile_text, resolve
-from zebro_lab.runs.slip_rig_decoding import RIG
+from zebro_lab.runs.manifest import RIG
 
 TWIN_PROFILE: Final = "rig-board-serial"
 FAST_PERIOD: Final = 0.02

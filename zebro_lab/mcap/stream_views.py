@@ -228,9 +228,8 @@ class BoardView:
         profile: Profile of the board.
     """
 
-    raw_schema = COUNTS_NAME
-
     def __init__(self, name: str, *, profile: BoardProfile) -> None:
+        self.raw_schema = VALUES_NAME if profile.link == "table" else COUNTS_NAME
         self._profile = profile
         self._wrench = f"/{name}/wrench"
         self._joints = f"/{name}/joint_states"

@@ -27,7 +27,7 @@ from zebro_lab.mcap.stream_views import BoardView, DrivesView, ImuView, LegsView
 from zebro_lab.recording.acquisition import Device
 from zebro_lab.robot.gait_argument import GaitRequest, make_gait
 from zebro_lab.robot.gait_player import GaitPlayer
-from zebro_lab.runs.slip_rig_decoding import RIG
+from zebro_lab.runs.manifest import RIG
 
 SIMULATED: Final = "sim"
 """In place of a port, or of PROFILE@PORT, this is a simulated twin."""

@@ -20,6 +20,10 @@ MANIFEST_FILE = "run.json"
 SCHEMA_VERSION = 1
 KINDS = ("slip-rig", "walk")
 IMPORTED = "imported"
+RIG = "rig"
+"""Name under which a run keeps the profile of its rig."""
+TABLE = "table"
+"""Name of the profile of samples that a table gave, already decoded and cut into runs."""
 RECORDING = "recording"
 """Exit status of a run that has not ended yet, or whose recorder was killed."""
 

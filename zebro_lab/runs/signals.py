@@ -24,9 +24,8 @@ from zebro_lab.mcap.ros_log import read_messages
 from zebro_lab.mcap.ros_messages import LOG, WARNING
 from zebro_lab.runs.clock_watch import sample_times
 from zebro_lab.runs.folder import LOG_FILE, epoch_ns, read_manifest, read_slip_rig_run, run_state
-from zebro_lab.runs.manifest import RunManifest, profile_file
+from zebro_lab.runs.manifest import RIG, RunManifest, profile_file
 from zebro_lab.runs.recorded_legs import LEGS
-from zebro_lab.runs.slip_rig_decoding import RIG
 
 GAP_STEPS: Final = 5.0
 GAP_LEAST: Final = 0.05

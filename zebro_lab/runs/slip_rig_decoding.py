@@ -16,10 +16,8 @@ from zebro_lab.files.errors import DataError
 from zebro_lab.mcap.raw_log import raw_topic
 from zebro_lab.mcap.slip_rig_log import SlipRigTable
 from zebro_lab.runs.clock_watch import sample_times
-from zebro_lab.runs.manifest import profile_file
+from zebro_lab.runs.manifest import RIG, profile_file
 
-RIG = "rig"
-"""Name under which a run keeps the profile of its rig."""
 _MANY = 3  # forces to a speed, from which on they are averaged
 
 

@@ -19,7 +19,7 @@ import numpy as np
 from rig.backends import RigDevices
 from rig.clock import ManualClock
 from rig.errors import FrozenReading, RigError
-from rig.experiment.acquire import Acquisition
+from rig.experiment.acquire import GuardedAcquisition
 from rig.experiment.bench import Bench, make_bench
 from rig.experiment.control import Control
 from rig.experiment.plan import Plan
@@ -106,7 +106,7 @@ def freeze(lab: Lab, plan: Plan, channels: tuple[int, ...]) -> float | None:
     """Freeze channels after 3 s of turning; return when that is seen, None if never [s]."""
     lab.rig.load = 8.0
     with lab.bench:
-        acquire = Acquisition(
+        acquire = GuardedAcquisition(
             lab.bench, limits=plan.limits, control=Control(), sink=Forgetful(), clock=lab.clock,
             period=PERIOD,
         )  # fmt: skip

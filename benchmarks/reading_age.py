@@ -33,7 +33,7 @@ import numpy as np
 from rig.backends import RigDevices
 from rig.clock import SYSTEM_CLOCK
 from rig.device import Sample
-from rig.experiment.acquire import Acquisition
+from rig.experiment.acquire import GuardedAcquisition
 from rig.experiment.bench import Bench, make_bench
 from rig.experiment.control import Control
 from rig.experiment.plan import RunLimits
@@ -217,7 +217,7 @@ def ramp_ages(
     """Ramp up and down; return the true ages by stream, and those that the guards see [s]."""
     true, told = defaultdict(list), defaultdict(list)
     with bench:
-        acquire = Acquisition(
+        acquire = GuardedAcquisition(
             bench, limits=limits(seconds), control=Control(), sink=MemorySink(),
             clock=SYSTEM_CLOCK,
         )  # fmt: skip

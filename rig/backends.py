@@ -6,7 +6,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any, Final
 
 from rig.clock import SYSTEM_CLOCK, Clock
-from rig.device import LoadCell, Stream
+from rig.device import LoadCellStream, Stream
 from rig.errors import ProfileError
 from rig.profile import split_address
 
@@ -144,7 +144,7 @@ class RigDevices:
 
     profile: "RigProfile"
     drives: "DriveBus | None" = None
-    load_cell: LoadCell | None = None
+    load_cell: LoadCellStream | None = None
     board: "RigBoard | None" = None
 
     @property

@@ -18,7 +18,7 @@ from rig.experiment.bench import Batch, Bench
 from rig.experiment.control import Control
 from rig.experiment.plan import RunLimits, ground_speed, rig_limits
 from rig.experiment.rest import DISCS, prove_rest
-from rig.experiment.sink import Sink
+from rig.experiment.sink import RunSink
 from rig.safety import (
     FollowingGuard,
     SampleGuard,
@@ -66,7 +66,7 @@ class Ramp:
         return leg, ground
 
 
-class Acquisition:
+class GuardedAcquisition:
     """Reads a bench, guards every sample, and turns the discs.
 
     Args:
@@ -89,7 +89,7 @@ class Acquisition:
         *,
         limits: RunLimits,
         control: Control,
-        sink: Sink,
+        sink: RunSink,
         clock: Clock,
         period: float = PERIOD,
     ) -> None:
@@ -98,7 +98,7 @@ class Acquisition:
         self._bench = bench
         self._limits = limits
         self._control = control
-        self._sink: Sink | None = sink
+        self._sink: RunSink | None = sink
         self._clock = clock
         self._period = period
         self._look_at = clock.now() + period

@@ -7,7 +7,7 @@ from typing import Protocol
 from rig.errors import RigError
 from rig.experiment.bench import Batch, Readings, join
 from rig.experiment.steps import Point
-from rig.experiment.verdict import Verdict
+from rig.experiment.verdict import PointVerdict
 from rig.slip_rig.decode import Zero
 
 
@@ -32,7 +32,7 @@ class RunStart:
     zero: Zero
 
 
-class Sink(Protocol):
+class RunSink(Protocol):
     """A recorder of runs, each a point; called by the acquiring thread, which it must not hold up.
 
     Every method may raise `SinkFailed`, upon which the rig is stopped.
@@ -51,7 +51,7 @@ class Sink(Protocol):
         """
         ...
 
-    def close_run(self, verdict: Verdict | None, *, reason: str) -> None:
+    def close_run(self, verdict: PointVerdict | None, *, reason: str) -> None:
         """End the run.
 
         Args:
@@ -86,7 +86,7 @@ class MemoryRun:
 
     start: RunStart
     parts: list[Readings] = field(default_factory=list)
-    verdict: Verdict | None = None
+    verdict: PointVerdict | None = None
     reason: str = ""
 
     @property
@@ -126,7 +126,7 @@ class MemorySink:
         self.require_room(1.0)
         self.runs[-1].parts.append(readings)
 
-    def close_run(self, verdict: Verdict | None, *, reason: str) -> None:
+    def close_run(self, verdict: PointVerdict | None, *, reason: str) -> None:
         """End the run."""
         self.runs[-1].verdict, self.runs[-1].reason = verdict, reason
 

@@ -29,9 +29,9 @@ def test_samples_of_one_time_compare_no_clocks():
 def test_a_recording_whose_time_runs_back_is_not_replayed():
     samples = [Sample(1.0, None, 0, ()), Sample(0.5, None, 1, ())]
     with pytest.raises(ProtocolError, match=r"runs back from 1 to 0\.5"):
-        ReplayStream(samples, name="legs", origin="RUN")
+        ReplayStream(samples, name="legs", source="replay:RUN")
     with pytest.raises(ProtocolError, match="replay speed is 0"):
-        ReplayStream(samples[:1], name="legs", origin="RUN", speed=0.0)
+        ReplayStream(samples[:1], name="legs", source="replay:RUN", speed=0.0)
 
 
 @pytest.mark.parametrize("seed", range(5))

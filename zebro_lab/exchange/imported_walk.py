@@ -18,7 +18,7 @@ from zebro_lab.files.atomic import atomic_write_text
 from zebro_lab.files.provenance import file_hash, file_hashes
 from zebro_lab.files.source_names import stated_source
 from zebro_lab.mcap.log_writer import LogWriter
-from zebro_lab.mcap.stream_views import ImuView, LegsView, View
+from zebro_lab.mcap.stream_views import ImuView, LegsView, StreamView
 from zebro_lab.robot.imu_log import ImuLog
 from zebro_lab.robot.leg_log import LegLog
 from zebro_lab.robot.robot_file import ROBOT_FILE, RobotFile
@@ -81,7 +81,7 @@ class ImportedWalk:
 
 @dataclass(frozen=True)
 class _Stream:
-    view: View
+    view: StreamView
     profile: str
     samples: list[Sample]
 

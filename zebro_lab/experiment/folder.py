@@ -18,12 +18,12 @@ from typing import Any, Final, Self
 from rig.clock import SYSTEM_CLOCK, Clock
 from rig.experiment.bench import Batch, Readings
 from rig.experiment.sink import RunStart, SinkFailed
-from rig.experiment.verdict import Verdict
+from rig.experiment.verdict import PointVerdict
 from zebro_lab.experiment.journal import EMERGENCY, JournalWriter
 from zebro_lab.experiment.latch import EmergencyLatch
 from zebro_lab.experiment.points import UNJUDGED, point_record
 from zebro_lab.files.errors import AlreadyExists
-from zebro_lab.mcap.stream_views import View
+from zebro_lab.mcap.stream_views import StreamView
 from zebro_lab.recording.recorder import RunDescription, RunRecorder
 
 MOST_WAITING: Final = 20_000
@@ -60,7 +60,7 @@ class ExperimentFolder:
         data: Path,
         *,
         description: RunDescription,
-        views: Callable[[], Mapping[str, View]],
+        views: Callable[[], Mapping[str, StreamView]],
         plan: str = "",
         clock: Clock = SYSTEM_CLOCK,
         in_step: bool = False,
@@ -115,7 +115,7 @@ class ExperimentFolder:
         self._require_well()
         self._put(write_now)
 
-    def close_run(self, verdict: Verdict | None, *, reason: str) -> None:
+    def close_run(self, verdict: PointVerdict | None, *, reason: str) -> None:
         """End the run folder; what is not good is excluded, and kept; see `Sink.close_run`.
 
         This is tried after a failure as well: what can still be written is.
@@ -195,7 +195,7 @@ class ExperimentFolder:
                 label = f"{description.label.partition(' again')[0]} again {again}"
                 description = replace(description, label=label)
 
-    def _close_now(self, verdict: Verdict | None, reason: str) -> None:
+    def _close_now(self, verdict: PointVerdict | None, reason: str) -> None:
         recorder, self._recorder = self._recorder, None
         if recorder is None or self._start is None:
             return
@@ -292,7 +292,7 @@ def _identity(folder: Path) -> tuple[int, int] | None:
     return found.st_dev, found.st_ino
 
 
-def _why_not(verdict: Verdict | None, reason: str, failure: str | None) -> str:
+def _why_not(verdict: PointVerdict | None, reason: str, failure: str | None) -> str:
     """Say why a run does not count."""
     if failure is not None:
         return failure

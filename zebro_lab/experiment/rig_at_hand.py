@@ -25,7 +25,7 @@ from rig.slip_rig.simulated_board import SimulatedBoard
 from rig.slip_rig.sweep import SweepPlan
 from rig.twins import simulated_rig_devices
 from zebro_lab.files.errors import SettingsError
-from zebro_lab.mcap.stream_views import BoardView, DrivesView, LoadCellView, View
+from zebro_lab.mcap.stream_views import StreamView, rig_views
 from zebro_lab.recording.devices import SIMULATED, profile_text, resolve
 from zebro_lab.runs.manifest import RIG
 
@@ -61,17 +61,9 @@ class RigAtHand:
         profile = self.bench.profile
         return {"radius_leg": profile.radius_leg, "radius_ground": profile.radius_ground}
 
-    def views(self) -> dict[str, View]:
+    def views(self) -> dict[str, StreamView]:
         """Make new views of its streams for a log."""
-        profile = self.bench.profile
-        views: dict[str, View] = {}
-        if profile.board is not None:
-            views["board"] = BoardView("board", profile=profile.board)
-        if profile.drives is not None:
-            views["drives"] = DrivesView("drives", profile=profile.drives)
-        if profile.load_cell is not None:
-            views["load_cell"] = LoadCellView("load_cell", profile=profile.load_cell)
-        return views
+        return rig_views(self.bench.profile)
 
     def load_setter(self, setting: LoadSetting, control: Control) -> LoadSetter:
         """Choose who sets the normal force.

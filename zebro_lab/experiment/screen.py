@@ -18,11 +18,11 @@ from rich.live import Live
 from rich.progress_bar import ProgressBar
 from rich.text import Text
 
-from rig.experiment.condition import Condition, State
+from rig.experiment.condition import Condition, RigState
 from rig.experiment.control import Control
 from rig.experiment.steps import Point
 from rig.experiment.supervision import start_thread
-from rig.experiment.verdict import Verdict
+from rig.experiment.verdict import PointVerdict
 from zebro_lab.experiment.keyboard import Keyboard
 from zebro_lab.files.shown_text import shown
 from zebro_lab.terminal.messages import plain
@@ -34,13 +34,13 @@ PERIOD: Final = 0.125
 LAST_PICTURE: Final = 1.0
 """How long a terminal may take for the last lines; a stopped one shows them when it goes on [s]."""
 _STYLES: Final = {
-    State.RUNNING: "green", State.HOLDING: "bold yellow", State.STOPPING: "bold yellow",
-    State.LATCHED: "bold red",
+    RigState.RUNNING: "green", RigState.HOLDING: "bold yellow", RigState.STOPPING: "bold yellow",
+    RigState.LATCHED: "bold red",
 }  # fmt: skip
 
 
 @dataclass(frozen=True)
-class Picture:
+class ScreenPicture:
     """What the screen shows.
 
     Attributes:
@@ -67,7 +67,7 @@ class Picture:
             keys = self.condition.keys.replace("; ", "\n")
             parts = [Text(shown(self.condition.headline), style=style), Text(keys)]
         # A run that holds or stops makes no progress: its figures would only mislead.
-        if self.condition is None or self.condition.state is State.RUNNING:
+        if self.condition is None or self.condition.state is RigState.RUNNING:
             parts.append(plain(self.head))
         parts.append(ProgressBar(total=self.of, completed=self.done, width=WIDTH))
         chart = Text("\n" + slip_chart(list(self.points)))  # a bar ends no line
@@ -85,8 +85,8 @@ class ExperimentScreen:
     def __init__(self, console: Console, live: Live | None) -> None:
         self._console = console
         self._live = live
-        self._picture = Picture()
-        self._shown: Picture | None = None
+        self._picture = ScreenPicture()
+        self._shown: ScreenPicture | None = None
         self._lines: deque[str] = deque()
         self._over = threading.Event()
 
@@ -114,7 +114,7 @@ class ExperimentScreen:
             self._lines.append(text)
             self._picture = replace(self._picture, prompt=text)
 
-    def judged(self, point: Point, verdict: Verdict, *, attempt: int) -> None:
+    def judged(self, point: Point, verdict: PointVerdict, *, attempt: int) -> None:
         """Show what a point is worth; see `Watcher.judged`."""
         worth = "; ".join(verdict.problems) or "good"
         if verdict.accepted:

@@ -12,7 +12,7 @@ from rig.device import Counters, Sample, Stream
 from rig.errors import RigTimeout
 from rig.safety import SilenceGuard
 from zebro_lab.mcap.ros_messages import WARNING
-from zebro_lab.mcap.stream_views import View
+from zebro_lab.mcap.stream_views import StreamView
 from zebro_lab.recording.sample_queue import LossyTap
 from zebro_lab.recording.threads import needing_threads
 from zebro_lab.runs.clock_watch import ClockWatch
@@ -51,7 +51,7 @@ class Device:
     """
 
     stream: Stream
-    view: View
+    view: StreamView
     check: Callable[[Sequence[Sample]], None] | None = None
     command: Callable[[float], None] | None = None
     at_end: Callable[[], object] | None = None

@@ -13,7 +13,7 @@ import numpy as np
 from rig.backends import leg_driver, leg_link
 from rig.clock import SYSTEM_CLOCK, Clock
 from rig.twins import simulated_legs
-from rig.zebro.check import Observation, check_legs, find_lift_off, latest_counts, zero_legs
+from rig.zebro.check import MovedLeg, check_legs, find_lift_off, latest_counts, zero_legs
 from rig.zebro.profile import LegProfile, encode_counts, load_leg_profile, save_leg_profile
 from zebro_lab.files.errors import AlreadyExists
 from zebro_lab.recording.devices import LEGS_PROFILE, SIMULATED, default_gait, resolve
@@ -25,7 +25,7 @@ MOVING: Final = 1.0
 class Person(Protocol):
     """Who watches the robot."""
 
-    def watch(self, channel: int) -> Observation:
+    def watch(self, channel: int) -> MovedLeg:
         """Say which leg moved with a channel, and which way."""
         ...
 

@@ -23,11 +23,13 @@ from rig.slip_rig.sweep import SweepPlan
 from rig.twins import simulated_imu, simulated_legs, simulated_rig_devices
 from rig.zebro.profile import load_leg_profile
 from zebro_lab.files.errors import SettingsError
-from zebro_lab.mcap.stream_views import BoardView, DrivesView, ImuView, LegsView, LoadCellView
+from zebro_lab.mcap.stream_views import ImuView, LegsView, rig_views
 from zebro_lab.recording.acquisition import Device
+from zebro_lab.recording.replayed import IMU, REPLAY, read_replay
 from zebro_lab.robot.gait_argument import GaitRequest, make_gait
 from zebro_lab.robot.gait_player import GaitPlayer
 from zebro_lab.runs.manifest import RIG
+from zebro_lab.runs.recorded_legs import LEGS
 
 SIMULATED: Final = "sim"
 """In place of a port, or of PROFILE@PORT, this is a simulated twin."""
@@ -47,7 +49,7 @@ class DevicesRequest:
     """Which devices are asked for; None and nothing where none is.
 
     Attributes:
-        zebro: `PROFILE@PORT`, `PROFILE@sim` or `sim`.
+        zebro: `PROFILE@PORT`, `PROFILE@sim`, `sim` or `replay:RUN`.
         imus: The same, each.
         rig: The same.
         play: Gait whose set-points the robot is sent.
@@ -70,12 +72,14 @@ class OpenDevices:
         profiles: Name and text of each profile, by the name a run keeps it under.
         constants: Radii of the rig's discs [m].
         truth: What simulated devices know to be true.
+        lasts: How long replayed runs last; None where none is replayed [s].
     """
 
     devices: tuple[Device, ...]
     profiles: Mapping[str, tuple[str, str]]
     constants: Mapping[str, float] = field(default_factory=dict)
     truth: Mapping[str, Any] = field(default_factory=dict)
+    lasts: float | None = None
 
 
 @contextmanager
@@ -106,7 +110,9 @@ def open_devices(request: DevicesRequest) -> Iterator[OpenDevices]:
             _add_rig(opened, stack, request.rig, rng)
         for device in opened.devices:
             stack.enter_context(device.stream)
-        yield OpenDevices(tuple(opened.devices), opened.profiles, opened.constants, opened.truth)
+        yield OpenDevices(
+            tuple(opened.devices), opened.profiles, opened.constants, opened.truth, opened.lasts
+        )
 
 
 def default_gait() -> LegReference:
@@ -124,9 +130,17 @@ def twin_rig(rng: np.random.Generator) -> SimulatedRig:
 def resolve(address: str, *, default: str) -> tuple[str, str]:
     """Split an address into profile and port; `sim` alone is the default profile's twin.
 
+    Raises:
+        SettingsError: It is a replay, which moves nothing and has no port.
+        ProfileError: Profile or port is missing.
+
     >>> resolve("sim", default="zebro-100-serial")
     ('zebro-100-serial', 'sim')
     """
+    if address.startswith(REPLAY):
+        raise SettingsError(
+            f"'{address}' only plays what was recorded; `record` takes it, what moves does not"
+        )
     return (default, SIMULATED) if address == SIMULATED else split_address(address)
 
 
@@ -144,6 +158,7 @@ class _Opened:
     profiles: dict[str, tuple[str, str]] = field(default_factory=dict)
     constants: dict[str, float] = field(default_factory=dict)
     truth: dict[str, Any] = field(default_factory=dict)
+    lasts: float | None = None
 
 
 def _require_any(request: DevicesRequest) -> None:
@@ -160,6 +175,11 @@ def _add_legs(
     play: LegReference | None,
     rng: np.random.Generator,
 ) -> None:
+    if address.startswith(REPLAY):
+        if play is not None:
+            raise SettingsError("a replayed robot takes no set-points", key="--play")
+        _replay(opened, address, LEGS)
+        return
     name, port = resolve(address, default=LEGS_PROFILE)
     profile = load_leg_profile(name)
     if port == SIMULATED:
@@ -183,6 +203,9 @@ def _add_legs(
 def _add_imu(
     opened: _Opened, stack: ExitStack, stream: str, address: str, rng: np.random.Generator
 ) -> None:
+    if address.startswith(REPLAY):
+        _replay(opened, address, IMU, name=stream)
+        return
     name, port = resolve(address, default=IMU_PROFILE)
     profile = load_imu_profile(name)
     if port == SIMULATED:
@@ -194,6 +217,9 @@ def _add_imu(
 
 
 def _add_rig(opened: _Opened, stack: ExitStack, address: str, rng: np.random.Generator) -> None:
+    if address.startswith(REPLAY):
+        _replay(opened, address, RIG)
+        return
     name, port = resolve(address, default=RIG_PROFILE)
     profile = load_rig_profile(name)
     if port == SIMULATED:
@@ -208,15 +234,22 @@ def _add_rig(opened: _Opened, stack: ExitStack, address: str, rng: np.random.Gen
 
 
 def _of_rig(profile: RigProfile, rig: RigDevices) -> Iterator[Device]:
-    check = ForceCheck(profile)
-    if rig.board is not None and profile.board is not None:
-        view = BoardView(rig.board.name, profile=profile.board)
-        yield Device(rig.board, view, check, pause=PAUSE)
-    if rig.drives is not None and profile.drives is not None:
-        yield Device(rig.drives, DrivesView(rig.drives.name, profile=profile.drives))
-    if rig.load_cell is not None and profile.load_cell is not None:
-        view = LoadCellView(rig.load_cell.name, profile=profile.load_cell)
-        yield Device(rig.load_cell, view, check, pause=PAUSE)
+    check, views = ForceCheck(profile), rig_views(profile)
+    for stream in rig.streams:
+        if stream is rig.drives:
+            yield Device(stream, views[stream.name])
+        else:
+            yield Device(stream, views[stream.name], check, pause=PAUSE)
+
+
+def _replay(opened: "_Opened", address: str, what: str, *, name: str | None = None) -> None:
+    """Add the streams of a recorded run in place of a device."""
+    replayed = read_replay(address, what, name=name)
+    opened.devices += [Device(s, view, pause=PAUSE) for s, view in replayed.streams]
+    opened.profiles[name or what] = replayed.profile
+    opened.lasts = max(opened.lasts or 0.0, replayed.lasts)
+    if what == RIG:
+        opened.constants |= replayed.manifest.constants
 
 
 class ForceCheck:

@@ -24,7 +24,7 @@ from zebro_lab.files.errors import RecordingError
 from zebro_lab.files.provenance import file_hash
 from zebro_lab.mcap.log_writer import LogWriter
 from zebro_lab.mcap.ros_messages import INFO
-from zebro_lab.mcap.stream_views import View
+from zebro_lab.mcap.stream_views import StreamView
 from zebro_lab.recording.place import OpenPlace, sync_files
 from zebro_lab.recording.sample_queue import SampleQueue
 from zebro_lab.recording.threads import needing_threads
@@ -123,7 +123,7 @@ class RunRecorder:
         data_dir: Path,
         *,
         description: RunDescription,
-        views: Mapping[str, View],
+        views: Mapping[str, StreamView],
         limit: int = LIMIT,
         least_free: int = LEAST_FREE,
         clock: Clock = SYSTEM_CLOCK,

@@ -36,12 +36,12 @@ class RecordRequest:
     Attributes:
         data: Folder of run folders.
         label: Name of the run.
-        zebro: Robot: `PROFILE@PORT`, `PROFILE@sim` or `sim`; None for none.
+        zebro: Robot: `PROFILE@PORT`, `PROFILE@sim`, `sim` or `replay:RUN`; None for none.
         imus: Inertial measurement units, the same.
         rig: Slip rig, the same.
         play: Table or walk folder with leg angles that the robot is to follow.
         duration: How long to record, from the first sample of the stream that begins last; None
-            until it is stopped, or the played gait ends [s].
+            until it is stopped, or the played gait or the replayed run ends [s].
         material: Leg and ground material.
         operator: Who records.
         robot: Name of the robot.
@@ -138,6 +138,8 @@ def record(
     wanted = DevicesRequest(request.zebro, request.imus, request.rig, play, request.seed)
     with needing_threads(), ExitStack() as kept, open_devices(wanted) as opened:
         views = {device.name: device.view for device in opened.devices}
+        if opened.lasts is not None:
+            duration = min(opened.lasts, opened.lasts if duration is None else duration)
         recorder = RunRecorder(
             request.data, description=_description(request, opened), views=views, clock=clock
         )

@@ -20,7 +20,7 @@ from zebro_lab.files.provenance import file_hash
 from zebro_lab.mcap.log_writer import LogWriter
 from zebro_lab.mcap.raw_log import raw_topic
 from zebro_lab.mcap.slip_rig_log import SlipRigTable
-from zebro_lab.mcap.stream_views import BoardView
+from zebro_lab.mcap.stream_views import RigBoardView
 from zebro_lab.runs.folder import LOG_FILE, epoch_ns, finished_run_folder
 from zebro_lab.runs.manifest import (
     RIG,
@@ -127,7 +127,7 @@ def _write_samples(draft: Path, table: SlipRigTable, profile: Path, *, start_ns:
     with (draft / LOG_FILE).open("wb") as file:
         log = LogWriter(
             file,
-            views={_BOARD: BoardView(_BOARD, profile=board)},
+            views={_BOARD: RigBoardView(_BOARD, profile=board)},
             attachments={f"{profile.parent.name}/{profile.name}": profile.read_text("utf-8")},
             start=0.0,
             start_ns=start_ns,

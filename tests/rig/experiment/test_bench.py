@@ -10,7 +10,7 @@ import pytest
 from rig.clock import SYSTEM_CLOCK
 from rig.device import Sample
 from rig.errors import DeviceFault, LimitExceeded, RigTimeout, StaleReading, UnreliableRecords
-from rig.experiment.acquire import Acquisition
+from rig.experiment.acquire import GuardedAcquisition
 from rig.experiment.bench import HostTime, make_bench
 from rig.experiment.control import Control
 from rig.experiment.sink import MemorySink
@@ -54,7 +54,7 @@ def turning(lab, monkeypatch, *, speed=12.0, slip=0.2, **limits):
         simulated_rig_devices(PROFILE, rig, rng=rng, watchdog=WATCHDOG) as devices,
         make_bench(devices) as bench,
     ):
-        acquire = Acquisition(
+        acquire = GuardedAcquisition(
             bench, limits=lab["plan"](limits=PATIENT | limits).limits, control=Control(),
             sink=MemorySink(), clock=SYSTEM_CLOCK,
         )  # fmt: skip

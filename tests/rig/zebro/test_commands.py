@@ -18,7 +18,7 @@ from rig.profile import shipped_file
 from rig.twins import robot_twin, simulated_legs
 from rig.zebro.can import CLOCK, POSITIONS, SET_POINTS
 from rig.zebro.check import (
-    Observation,
+    MovedLeg,
     check_legs,
     find_lift_off,
     latest_counts,
@@ -136,7 +136,7 @@ def test_the_check_finds_order_and_signs():
     stream, clock = robot(truth=truth)
 
     def watch(channel):
-        return Observation(truth.legs[channel], truth.sign[channel] == 1)
+        return MovedLeg(truth.legs[channel], truth.sign[channel] == 1)
 
     with stream:
         found = check_legs(stream, watch, clock=clock)
@@ -146,7 +146,7 @@ def test_the_check_finds_order_and_signs():
 def test_a_leg_seen_twice_ends_the_check():
     stream, clock = robot()
     with stream, pytest.raises(DeviceFault, match="leg 1 was seen to move for two channels"):
-        check_legs(stream, lambda _: Observation(1, True), clock=clock)
+        check_legs(stream, lambda _: MovedLeg(1, True), clock=clock)
 
 
 def test_zeros_are_what_is_read_with_the_toes_ahead():

@@ -15,7 +15,7 @@ from typer.testing import CliRunner
 
 from rig.experiment.control import Control
 from rig.experiment.steps import Point
-from rig.experiment.verdict import Verdict
+from rig.experiment.verdict import PointVerdict
 from rig.safety import StopCategory
 from rig.twins import simulated_rig_devices
 from zebro_lab.experiment.check_stage import check_runs
@@ -133,7 +133,7 @@ def test_a_terminal_sees_progress_prompt_and_curve():
     with experiment_screen(console, Control()) as screen:
         screen.doing("point-0001", done=1, of=4, left=75.0)
         screen.prompt("set it", normal=3.2)
-        verdict = Verdict((), 100, 0.1, 0.3, 4.0)
+        verdict = PointVerdict((), 100, 0.1, 0.3, 4.0)
         screen.judged(Point(1, 4.0, (0.1,)), verdict, attempt=1)
     shown = console.file.getvalue()
     assert "1 of 4 points, 1:15 left" in shown

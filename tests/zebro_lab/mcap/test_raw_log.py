@@ -19,7 +19,7 @@ from rig.zebro.profile import decode_angles, load_leg_profile
 from zebro_lab.files.errors import DataError
 from zebro_lab.mcap.log_writer import LogWriter
 from zebro_lab.mcap.raw_log import RAW_SCHEMAS, decode_raw, encode_raw, read_raw_log
-from zebro_lab.mcap.stream_views import BoardView, DrivesView, ImuView, LegsView, LoadCellView
+from zebro_lab.mcap.stream_views import DrivesView, ImuView, LegsView, LoadCellView, RigBoardView
 
 START = 100.0
 RIG = load_rig_profile("rig-odrive-netft")
@@ -30,7 +30,7 @@ VIEWS = {
     "imu": ImuView("imu", profile=load_imu_profile("imu-quaternion-serial")),
     "drives": DrivesView("drives", profile=RIG.drives),
     "load_cell": LoadCellView("load_cell", profile=RIG.load_cell),
-    "board": BoardView("board", profile=BOARD.board),
+    "board": RigBoardView("board", profile=BOARD.board),
 }
 COUNTS = {
     "legs": (99, 1, 2, 3, 4, 5),

@@ -121,7 +121,7 @@ def test_a_recorded_rig_is_data_for_a_calibration(everything):
 def test_recorded_samples_replay_through_the_drivers_interface(everything):
     stream = read_raw_log(everything[0].folder / "log.mcap").streams["/load_cell/raw"]
     samples = stream
-    replay = ReplayStream(samples, name="load_cell", origin="RUN", speed=1e6)
+    replay = ReplayStream(samples, name="load_cell", source="replay:RUN", speed=1e6)
     with replay:
         time.sleep(0.01)
         again = replay.read(0.1)

@@ -10,6 +10,7 @@ once. Then forces, and in a new start the leg disc's speed, freeze after 3 s of 
 
 import argparse
 import itertools
+import sys
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -25,7 +26,6 @@ from rig.experiment.control import Control
 from rig.experiment.plan import Plan
 from rig.experiment.run import run_plan
 from rig.experiment.simulated_load import SimulatedOperator
-from rig.experiment.sink import MemorySink
 from rig.links.memory import MemoryLink
 from rig.slip_rig.board import RigBoard
 from rig.slip_rig.imperfections import draw_imperfections
@@ -34,6 +34,9 @@ from rig.slip_rig.simulated import RigDynamics, SimulatedRig, simulated_rig
 from rig.slip_rig.simulated_board import SimulatedBoard
 from rig.slip_rig.sweep import SweepPlan
 from zebro_lab.experiment.plan_file import read_plan
+
+sys.path.append(str(Path(__file__).parents[1] / "tests"))
+from support.memory_sink import MemorySink
 
 PERIOD = 0.02
 SOURCE_PLAN = Path(__file__).parents[1] / "examples" / "plan-source.toml"

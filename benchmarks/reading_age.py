@@ -37,7 +37,6 @@ from rig.experiment.acquire import GuardedAcquisition
 from rig.experiment.bench import Bench, make_bench
 from rig.experiment.control import Control
 from rig.experiment.plan import RunLimits
-from rig.experiment.sink import MemorySink
 from rig.links.can import CanLink
 from rig.links.serial import SerialLink
 from rig.links.serve import PortServer, Ticker
@@ -55,6 +54,9 @@ from rig.slip_rig.simulated_drives import SimulatedDrives
 from rig.slip_rig.simulated_load_cell import SimulatedLoadCell
 from rig.slip_rig.sweep import SweepPlan
 from zebro_lab.experiment.plan_file import read_plan
+
+sys.path.append(str(Path(__file__).parents[1] / "tests"))
+from support.memory_sink import MemorySink
 
 PROJECT = Path(__file__).parents[1]
 TOP_SPEED = 12.0

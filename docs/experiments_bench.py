@@ -5,6 +5,7 @@ The twin runs in real time in threads of the same process, which makes the figur
 of a rig outside it.
 """
 
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -13,9 +14,11 @@ from rig.clock import SYSTEM_CLOCK
 from rig.errors import LimitExceeded
 from rig.experiment.acquire import GuardedAcquisition
 from rig.experiment.control import Control
-from rig.experiment.sink import MemorySink
 from zebro_lab.experiment.plan_file import read_plan
 from zebro_lab.experiment.rig_at_hand import rig_at_hand
+
+sys.path.append(str(Path(__file__).parents[1] / "tests"))
+from support.memory_sink import MemorySink
 
 TRIPS = 200
 PLAN = read_plan(Path(__file__).parents[1] / "examples" / "plan-source.toml")

@@ -6,7 +6,7 @@ import time
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
-from typing import Literal, Protocol
+from typing import Literal
 
 import numpy as np
 
@@ -47,6 +47,7 @@ from zebro_lab.calibration.rig_data import RigData, read_rig_data
 from zebro_lab.files.errors import SettingsError, ZebroLabError
 from zebro_lab.files.provenance import file_hashes, fingerprint
 from zebro_lab.files.result_folder import require_replaceable, result_folder
+from zebro_lab.terminal.watcher import Watcher
 
 THIN = 5  # sampler moves a kept step
 CHUNK = 20  # kept steps between looks at the clock, the keyboard and the bar
@@ -71,18 +72,6 @@ class Stopped(ZebroLabError):
             else f"stopped; {checkpoint} keeps the fit: the same command with --resume goes on"
         )
         self.checkpoint = checkpoint
-
-
-class Watcher(Protocol):
-    """Who follows a fit: a progress bar, or nobody."""
-
-    def step(self, what: str, fraction: float | None) -> None:
-        """Hear what is going on, and how far it is (None: unknown)."""
-        ...
-
-    def stop_requested(self) -> bool:
-        """Tell whether the fit should be put down at the next good moment."""
-        ...
 
 
 @dataclass(frozen=True)

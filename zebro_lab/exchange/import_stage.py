@@ -22,6 +22,7 @@ from zebro_lab.robot.robot_file import RobotFile, read_robot_file
 from zebro_lab.runs.folder import run_path
 from zebro_lab.tables.mapped_columns import canonical_columns
 from zebro_lab.tables.table_files import read_table_file, table_stem
+from zebro_lab.terminal.watcher import Watcher
 from zebro_lab.track.foreign import (
     TRACK_UNITS,
     ForeignTrack,
@@ -29,7 +30,6 @@ from zebro_lab.track.foreign import (
     read_tum,
     track_of_foreign_table,
 )
-from zebro_lab.walk.walking import Watcher
 
 _UNIX: Final = 1e9
 """Times from here on are seconds since 1970: no run lasts for 30 years [s]."""

@@ -6,10 +6,10 @@ from pathlib import Path
 
 from rig.experiment.plan import Plan
 from rig.experiment.steps import DurationEstimate, Step, estimate, require_allowed, spell_out
+from rig.openers import resolve
 from rig.slip_rig.profile import RigProfile, load_rig_profile
 from zebro_lab.experiment.plan_file import read_plan
 from zebro_lab.experiment.rig_at_hand import TWIN_PROFILE
-from zebro_lab.recording.devices import resolve
 
 
 @dataclass(frozen=True)

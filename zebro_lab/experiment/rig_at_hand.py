@@ -17,6 +17,7 @@ from rig.experiment.load import DrivenShaft, HandShaft, LoadSetter
 from rig.experiment.plan import LoadSetting
 from rig.experiment.simulated_load import SimulatedAxis, SimulatedOperator
 from rig.links.memory import MemoryLink
+from rig.openers import SIMULATED, resolve
 from rig.slip_rig.board import RigBoard
 from rig.slip_rig.imperfections import RigImperfections, draw_imperfections
 from rig.slip_rig.profile import RigProfile, load_rig_profile
@@ -26,7 +27,7 @@ from rig.slip_rig.sweep import SweepPlan
 from rig.twins import simulated_rig_devices
 from zebro_lab.files.errors import SettingsError
 from zebro_lab.mcap.stream_views import StreamView, rig_views
-from zebro_lab.recording.devices import SIMULATED, profile_text, resolve
+from zebro_lab.recording.devices import profile_text
 from zebro_lab.runs.manifest import RIG
 
 TWIN_PROFILE: Final = "rig-board-serial"

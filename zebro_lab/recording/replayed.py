@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Final
 
 from rig.imu.profile import load_imu_profile
+from rig.openers import REPLAY
 from rig.replay import ReplayStream
 from rig.slip_rig.profile import load_rig_profile
 from rig.zebro.profile import load_leg_profile
@@ -17,7 +18,6 @@ from zebro_lab.runs.folder import LOG_FILE, read_manifest
 from zebro_lab.runs.manifest import RIG, RunManifest, profile_file
 from zebro_lab.runs.recorded_legs import LEGS
 
-REPLAY: Final = "replay:"
 IMU: Final = "imu"
 _RIG_STREAMS: Final = ("drives", "load_cell", "board")
 _MARGIN: Final = 1e-3  # so that rounding loses no last sample [s]
@@ -28,13 +28,15 @@ class Replayed:
     """Streams of a run that are to be played again.
 
     Attributes:
-        streams: Each stream, not yet entered, and how it shows in a log.
+        streams: Each stream, not yet entered.
+        views: How each shows in a log, by its name.
         profile: Name and text of their profile.
         manifest: Of the run.
         lasts: Time from the first to the last sample [s].
     """
 
-    streams: tuple[tuple[ReplayStream, StreamView], ...]
+    streams: tuple[ReplayStream, ...]
+    views: Mapping[str, StreamView]
     profile: tuple[str, str]
     manifest: RunManifest
     lasts: float
@@ -75,9 +77,10 @@ def read_replay(address: str, what: str, *, name: str | None = None) -> Replayed
             raise DataError(f"describes no {each}, of which the log has samples", file=file)
     return Replayed(
         tuple(
-            (ReplayStream(samples, name=each, source=_source(folder, manifest, own)), views[each])
+            ReplayStream(samples, name=each, source=_source(folder, manifest, own))
             for each, (own, samples) in streams.items()
         ),
+        views,
         (manifest.profiles.get(kept, file.stem), file.read_text(encoding="utf-8")),
         manifest,
         max(float(s.host_time[-1] - s.host_time[0]) for _, s in streams.values()) + _MARGIN,

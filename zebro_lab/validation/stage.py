@@ -16,6 +16,7 @@ from zebro_lab.files.result_folder import require_replaceable
 from zebro_lab.runs.counted_once import content_hash, first_of_each, told_once
 from zebro_lab.runs.recorded_legs import is_recorded
 from zebro_lab.runs.recorded_tilt import read_recorded_tilt
+from zebro_lab.terminal.watcher import Watcher
 from zebro_lab.track.file import read_track
 from zebro_lab.track.folder import TRACK_CSV
 from zebro_lab.track.photographs import photos_of_track
@@ -30,7 +31,6 @@ from zebro_lab.validation.judgement import (
 from zebro_lab.validation.pictures import Judgement
 from zebro_lab.validation.shared_clock import estimated_clock, given_clock
 from zebro_lab.walk.folder import PREDICTION
-from zebro_lab.walk.walking import Watcher
 
 TRACK = "track"
 

@@ -17,12 +17,13 @@ from zebro_lab.robot.leg_log import LegLog
 from zebro_lab.robot.robot_file import ROBOT_FILE, RobotFile
 from zebro_lab.runs.legs import read_leg_log
 from zebro_lab.runs.recorded_legs import is_recorded
+from zebro_lab.terminal.watcher import Watcher
 from zebro_lab.walk.folder import WALKED
 from zebro_lab.walk.leg_angles import angles_from
 from zebro_lab.walk.models import Direction
 from zebro_lab.walk.path_band import BandRequest, write_band
 from zebro_lab.walk.walked_band import band_of
-from zebro_lab.walk.walking import ModelRequest, Walked, Watcher, robot_of, walk_with, write_walk
+from zebro_lab.walk.walking import ModelRequest, Walked, robot_of, walk_with, write_walk
 
 
 @dataclass(frozen=True)

@@ -15,9 +15,10 @@ from model.gait import CyclicReference
 from zebro_lab.files.result_folder import MANIFEST
 from zebro_lab.terminal.messages import plain, say
 from zebro_lab.terminal.progress import progress_bar
+from zebro_lab.terminal.watcher import Watcher
 from zebro_lab.walk.folder import FILES
 from zebro_lab.walk.summary import WalkSummary, summarise
-from zebro_lab.walk.walking import ModelRequest, Walked, WalkStopped, Watcher
+from zebro_lab.walk.walking import ModelRequest, Walked, WalkStopped
 
 INTERRUPTED = 130
 _MANY_UNTESTED = 0.01  # of the contacts: a few at touchdown do not matter

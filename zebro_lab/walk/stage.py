@@ -10,10 +10,11 @@ from zebro_lab.files.errors import AlreadyExists
 from zebro_lab.files.result_folder import require_replaceable
 from zebro_lab.robot.gait_argument import GaitRequest, make_gait
 from zebro_lab.robot.robot_file import render_robot_file
+from zebro_lab.terminal.watcher import Watcher
 from zebro_lab.walk.folder import WALKED
 from zebro_lab.walk.path_band import BandRequest, write_band
 from zebro_lab.walk.walked_band import band_of
-from zebro_lab.walk.walking import ModelRequest, Walked, Watcher, robot_of, walk_with, write_walk
+from zebro_lab.walk.walking import ModelRequest, Walked, robot_of, walk_with, write_walk
 
 
 @dataclass(frozen=True)

@@ -6,8 +6,9 @@ from model.gait.reference import LegReference
 from model.walk.ensemble import PathEnsemble
 from model.walk.traction import ToeLaw
 from zebro_lab.files.errors import SettingsError
+from zebro_lab.terminal.watcher import Watcher
 from zebro_lab.walk.path_band import BandRequest, predict_band
-from zebro_lab.walk.walking import Walked, Watcher
+from zebro_lab.walk.walking import Walked
 
 
 def band_of(

@@ -4,7 +4,7 @@
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Final, Protocol
+from typing import Final
 
 import numpy as np
 
@@ -18,6 +18,7 @@ from zebro_lab.calibration.slip_argument import THESIS, Slip, parse_slip
 from zebro_lab.files.errors import SettingsError, ZebroLabError
 from zebro_lab.files.provenance import file_hashes
 from zebro_lab.robot.robot_file import RobotFile, read_robot_file
+from zebro_lab.terminal.watcher import Watcher
 from zebro_lab.walk.folder import walk_folder
 from zebro_lab.walk.informed_legs import InformedLegs, informed_legs
 from zebro_lab.walk.models import MODELS, Direction, ModelRun
@@ -27,18 +28,6 @@ INFORMED_MODEL = "dynamics"  # the one whose legs and floor walks were fitted wi
 
 MOST_STEPS: Final = 500_000
 """Steps of a walk; each takes about 1.1 kB while the path is computed and written."""
-
-
-class Watcher(Protocol):
-    """Who follows a walk: a progress bar, or nobody."""
-
-    def step(self, what: str, fraction: float | None) -> None:
-        """Hear what is going on, and how far it is (None: unknown)."""
-        ...
-
-    def stop_requested(self) -> bool:
-        """Tell whether somebody asked to stop."""
-        ...
 
 
 class WalkStopped(ZebroLabError):

@@ -13,8 +13,8 @@ from zebro_lab.calibration.walks_folder import FOLDER, WALKS, WalksToWrite, writ
 from zebro_lab.files.errors import NotFound, SettingsError
 from zebro_lab.files.replacement import settle
 from zebro_lab.files.result_folder import require_replaceable
+from zebro_lab.terminal.watcher import Watcher
 from zebro_lab.validation.folder import metrics
-from zebro_lab.walk.walking import Watcher
 from zebro_lab.walk_fit.clocks import checked_clock, estimated_clock_of
 from zebro_lab.walk_fit.pictures import draw_walks
 from zebro_lab.walk_fit.prediction import WalksFitted, fit_and_leave_out

@@ -15,7 +15,6 @@ from rig.experiment.control import Control
 from rig.experiment.plan import Plan, parse_plan
 from rig.experiment.run import run_plan
 from rig.experiment.simulated_load import SimulatedOperator
-from rig.experiment.sink import MemorySink
 from rig.links.memory import MemoryLink
 from rig.slip_rig.board import RigBoard
 from rig.slip_rig.imperfections import TYPICAL_RIG
@@ -24,6 +23,7 @@ from rig.slip_rig.simulated import RigDynamics, SimulatedRig, simulated_rig
 from rig.slip_rig.simulated_board import SimulatedBoard
 from rig.slip_rig.sweep import SweepPlan
 from rig.toml_table import TomlTable
+from support.memory_sink import MemorySink
 
 PROFILE = load_rig_profile("rig-board-serial")
 

@@ -13,7 +13,6 @@ from rig.errors import DeviceFault, LimitExceeded, RigTimeout, StaleReading, Unr
 from rig.experiment.acquire import GuardedAcquisition
 from rig.experiment.bench import HostTime, make_bench
 from rig.experiment.control import Control
-from rig.experiment.sink import MemorySink
 from rig.experiment.verdict import measured_slip
 from rig.links.can import CanLink
 from rig.slip_rig.can_simple import Command, split_id
@@ -25,6 +24,7 @@ from rig.slip_rig.simulated_drives import SimulatedDrives
 from rig.slip_rig.simulated_load_cell import SimulatedLoadCell
 from rig.slip_rig.sweep import SweepPlan
 from rig.twins import simulated_rig_devices
+from support.memory_sink import MemorySink
 
 PROFILE = load_rig_profile("rig-odrive-netft")
 WATCHDOG = 1.0

@@ -5,11 +5,12 @@ import pytest
 from rig.errors import DeviceFault, LimitExceeded, ProtocolError, RigTimeout
 from rig.experiment.load import DrivenShaft, HandShaft
 from rig.experiment.simulated_load import SimulatedAxis
-from rig.experiment.sink import MemorySink, SinkFailed
+from rig.experiment.sink import SinkFailed
 from rig.experiment.verdict import measured_slip
 from rig.experiment.watcher import NobodyWatches
 from rig.safety import StopCategory
 from rig.slip_rig.sweep import SOURCE_LAW, SOURCE_VALUES
+from support.memory_sink import MemorySink
 
 
 def reasons(sink):

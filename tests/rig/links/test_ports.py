@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from model.gait.reference import SampledReference
-from rig.backends import leg_driver, leg_link, open_imu, open_legs, open_rig
+from rig.backends import leg_driver, leg_link
 from rig.clock import ManualClock
 from rig.device import iterate
 from rig.errors import LinkError, RigTimeout
@@ -188,13 +188,3 @@ def test_a_twin_that_raises_is_kept_for_its_owner_to_see(wait_until):
     with Ticker(fail) as ticker:
         wait_until(lambda: ticker.failure)
     assert isinstance(ticker.failure, RuntimeError)
-
-
-def test_addresses_choose_the_driver(take):
-    with server() as port, open_legs(f"zebro-100-serial@{port.port}") as stream:
-        assert stream.source == "real"  # nobody told it; who serves a twin does
-        assert take(stream, 1)
-    assert open_imu("imu-quaternion-serial@/dev/null").name == "imu"
-    devices = open_rig("rig-odrive-netft@virtual:x")
-    assert [stream.name for stream in devices.streams] == ["drives", "load_cell"]
-    assert [s.name for s in open_rig("rig-board-serial@/dev/null").streams] == ["board"]

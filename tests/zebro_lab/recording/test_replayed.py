@@ -6,22 +6,17 @@ from datetime import UTC, datetime
 import numpy as np
 import pytest
 
+from rig.errors import ProfileError
+from rig.openers import resolve
+from support.watchers import Onlooker
 from zebro_lab.files.errors import DataError, NotFound, SettingsError
 from zebro_lab.mcap.raw_log import read_raw_log
 from zebro_lab.mcap.slip_rig_log import SlipRigTable
-from zebro_lab.recording.devices import DevicesRequest, open_devices, resolve
+from zebro_lab.recording.devices import DevicesRequest, open_devices
 from zebro_lab.recording.replayed import read_replay
 from zebro_lab.recording.stage import RecordRequest, record
 from zebro_lab.runs.folder import read_slip_rig_run
 from zebro_lab.runs.table_run import write_slip_rig_run
-
-
-class Nobody:
-    def show(self, status):
-        pass
-
-    def stop_reason(self):
-        return None
 
 
 @pytest.fixture
@@ -41,7 +36,7 @@ def make(tmp_path):
 
 def test_a_replay_is_recorded_to_the_last_sample_and_says_what_it_is(make, tmp_path):
     run = make("real")
-    recorded = record(RecordRequest(tmp_path / "again", "b", rig=f"replay:{run}"), Nobody())
+    recorded = record(RecordRequest(tmp_path / "again", "b", rig=f"replay:{run}"), Onlooker())
     assert recorded.manifest.source == f"replay:{run.name}"
     assert recorded.manifest.sources == {"board": f"replay:{run.name}"}
     assert recorded.manifest.exit_status == "completed"
@@ -55,7 +50,7 @@ def test_a_replay_is_recorded_to_the_last_sample_and_says_what_it_is(make, tmp_p
 
 def test_a_replay_of_a_simulated_run_stays_simulated(make):
     run = make("sim:noise")
-    (stream, _), = read_replay(f"replay:{run}", "rig").streams  # fmt: skip
+    (stream,) = read_replay(f"replay:{run}", "rig").streams
     assert stream.source == f"sim:replay:{run.name}"
 
 
@@ -74,7 +69,7 @@ def test_a_run_that_is_not_there_or_lost_its_profile_is_named(make, tmp_path):
 
 
 def test_a_replay_moves_nothing(make):
-    with pytest.raises(SettingsError, match="only plays what was recorded"):
+    with pytest.raises(ProfileError, match="only plays what was recorded"):
         resolve("replay:RUN", default="rig-board-serial")
     play = DevicesRequest(zebro=f"replay:{make('real')}", play=object())
     with pytest.raises(SettingsError, match="takes no set-points"), open_devices(play):

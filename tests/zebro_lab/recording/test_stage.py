@@ -10,11 +10,13 @@ import numpy as np
 import pytest
 
 from model.gait.reference import SampledReference
+from rig.acquisition import Acquisition, Device, acquiring
 from rig.backends import leg_driver, leg_link
 from rig.device import Counters, Sample
 from rig.errors import DeviceMismatch, LimitExceeded, ProfileError
 from rig.links.serve import PortServer
 from rig.replay import ReplayStream
+from rig.sample_queue import LossyTap
 from rig.slip_rig.profile import load_rig_profile
 from rig.twins import robot_twin
 from rig.zebro.profile import load_leg_profile
@@ -22,10 +24,8 @@ from zebro_lab.files.errors import DataError, RecordingError, SettingsError
 from zebro_lab.mcap.raw_log import read_raw_log
 from zebro_lab.mcap.stream_views import LegsView
 from zebro_lab.recording import stage as module
-from zebro_lab.recording.acquisition import Acquisition, Device, acquiring
 from zebro_lab.recording.devices import ForceCheck, OpenDevices, default_gait
 from zebro_lab.recording.recorder import RunDescription, RunRecorder
-from zebro_lab.recording.sample_queue import LossyTap
 from zebro_lab.recording.simulate_stage import TwinRequest, serve_zebro
 from zebro_lab.recording.stage import RecordRequest, record
 from zebro_lab.robot.gait_player import LEAD_IN
@@ -268,9 +268,13 @@ def test_an_unplugged_robot_is_a_gap_that_is_counted_and_the_run_goes_on(tmp_pat
     description = RunDescription(kind="walk", label="gap", source=twin.source)
     with PortServer(twin) as server:
         legs = leg_driver(LEGS, leg_link(LEGS, server.port, source=twin.source))
-        device = Device(legs, LegsView("legs", profile=LEGS))
-        recorder = RunRecorder(tmp_path, description=description, views={"legs": device.view})
-        with legs, recorder, acquiring([device], sink=recorder, start=recorder.start) as readers:
+        views = {"legs": LegsView("legs", profile=LEGS)}
+        recorder = RunRecorder(tmp_path, description=description, views=views)
+        with (
+            legs,
+            recorder,
+            acquiring([Device(legs)], sink=recorder, start=recorder.start) as readers,
+        ):
             wait_until(lambda: readers["legs"].counters.received > 20)
             server.unplug()
             time.sleep(1.3)
@@ -302,7 +306,7 @@ def test_a_viewer_that_hangs_slows_nobody(tmp_path):
             def event(self, text, *, level=20):
                 pass
 
-        reader = Acquisition(Device(legs, LegsView("legs", profile=LEGS)), sink=Sink(), start=0.0)
+        reader = Acquisition(Device(legs), sink=Sink(), start=0.0)
         reader.tap = LossyTap(limit=10)
         with legs:
             reader.start()
@@ -351,14 +355,15 @@ def given(monkeypatch):
     """Return a way to let the next recording open streams of this test."""
 
     def give(*streams, **changes):
-        devices = [Device(s, LegsView(s.name, profile=LEGS), **changes) for s in streams]
+        devices = [Device(s, **changes) for s in streams]
+        views = {s.name: LegsView(s.name, profile=LEGS) for s in streams}
 
         @contextmanager
         def opened(_request):
             for device in devices:
                 device.stream.__enter__()
             try:
-                yield OpenDevices(tuple(devices), {})
+                yield OpenDevices(tuple(devices), views, {})
             finally:
                 for device in devices:
                     device.stream.__exit__(None, None, None)

@@ -34,3 +34,26 @@ class Onlooker:
 
     def stop_reason(self) -> str | None:
         return None
+
+
+class RecordWatcher:
+    """Looks on; asks for the end after so many looks or samples of each stream, or raises."""
+
+    def __init__(self, *, looks=None, samples=None, error=None):
+        self.seen = []
+        self._looks, self._samples, self._error = looks, samples or {}, error
+
+    def show(self, status):
+        self.seen.append(status)
+        if self._error is not None and len(self.seen) > 2:
+            raise self._error
+
+    def stop_reason(self):
+        looked = self._looks is not None and len(self.seen) >= self._looks
+        return "key" if looked or self._enough() else None
+
+    def _enough(self):
+        if not (self._samples and self.seen):
+            return False
+        streams = self.seen[-1].streams
+        return all(streams[k].counters.received >= n for k, n in self._samples.items())

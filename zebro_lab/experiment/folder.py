@@ -44,7 +44,7 @@ class _Job:
 
 
 class ExperimentFolder:
-    """Satisfies `rig.experiment.sink.Sink`; a context manager.
+    """Satisfies `rig.experiment.sink.RunSink`; a context manager.
 
     Args:
         data: Folder of the experiment.
@@ -85,7 +85,7 @@ class ExperimentFolder:
         self._thread = threading.Thread(target=self._work, daemon=True, name="writer")
 
     def open_run(self, start: RunStart) -> None:
-        """Begin a run folder; see `Sink.open_run`."""
+        """Begin a run folder; see `RunSink.open_run`."""
         label = start.point.label + (f" attempt {start.attempt}" if start.attempt > 1 else "")
         zero = {"zero_normal": start.zero.normal, "zero_traction": start.zero.traction}
         common = self._description
@@ -102,7 +102,7 @@ class ExperimentFolder:
         self._put(open_now, wait=True)
 
     def write(self, readings: Readings, batch: Batch) -> None:
-        """Keep the raw samples, out of which readings come again; see `Sink.write`."""
+        """Keep the raw samples, out of which readings come again; see `RunSink.write`."""
         del readings
         raw = batch.raw
 
@@ -116,14 +116,14 @@ class ExperimentFolder:
         self._put(write_now)
 
     def close_run(self, verdict: PointVerdict | None, *, reason: str) -> None:
-        """End the run folder; what is not good is excluded, and kept; see `Sink.close_run`.
+        """End the run folder; what is not good is excluded, and kept; see `RunSink.close_run`.
 
         This is tried after a failure as well: what can still be written is.
         """
         self._put(lambda: self._close_now(verdict, reason), wait=True)
 
     def event(self, kind: str, text: str) -> None:
-        """Append to the journal, and to the run's log, after a failure too; see `Sink.event`."""
+        """Append to the journal, and to the run's log, after a failure too; see `RunSink.event`."""
 
         def note() -> None:
             if self._recorder is not None:
@@ -144,7 +144,7 @@ class ExperimentFolder:
         self._require_well()
 
     def latch(self, reason: str) -> None:
-        """Latch an emergency stop on disk, from this thread; see `Sink.latch`."""
+        """Latch an emergency stop on disk, from this thread; see `RunSink.latch`."""
         try:
             self._latch.latch(f"{EMERGENCY}: {reason}")
         except OSError as error:

@@ -75,7 +75,7 @@ class ScreenPicture:
 
 
 class ExperimentScreen:
-    """Follows an experiment; satisfies `Watcher`, and never waits for the console.
+    """Follows an experiment; satisfies `ExperimentWatcher`, and never waits for the console.
 
     Args:
         console: Where to draw.
@@ -91,23 +91,23 @@ class ExperimentScreen:
         self._over = threading.Event()
 
     def changed(self, condition: Condition) -> None:
-        """Show the state of the run; see `Watcher.changed`."""
+        """Show the state of the run; see `ExperimentWatcher.changed`."""
         self._picture = replace(self._picture, condition=condition, prompt="")
         if self._live is None:
             self._lines.append(f"{condition.headline}; {condition.keys}")
 
     def notice(self, text: str) -> None:
-        """Show a line that stays; see `Watcher.notice`."""
+        """Show a line that stays; see `ExperimentWatcher.notice`."""
         self._lines.append(text)
 
     def doing(self, what: str, *, done: int, of: int, left: float) -> None:
-        """Show what begins; see `Watcher.doing`."""
+        """Show what begins; see `ExperimentWatcher.doing`."""
         minutes, seconds = divmod(round(left), 60)
         head = f"{what}: {done} of {of} points, {minutes}:{seconds:02d} left"
         self._picture = replace(self._picture, head=head, done=done, of=max(of, 1), prompt="")
 
     def prompt(self, text: str, *, normal: float) -> None:
-        """Show what the operator is to do and the force now; see `Watcher.prompt`."""
+        """Show what the operator is to do and the force now; see `ExperimentWatcher.prompt`."""
         if self._live is not None:
             self._picture = replace(self._picture, prompt=f"{text}; now {normal:.2f} N")
         elif self._picture.prompt != text:
@@ -115,7 +115,7 @@ class ExperimentScreen:
             self._picture = replace(self._picture, prompt=text)
 
     def judged(self, point: Point, verdict: PointVerdict, *, attempt: int) -> None:
-        """Show what a point is worth; see `Watcher.judged`."""
+        """Show what a point is worth; see `ExperimentWatcher.judged`."""
         worth = "; ".join(verdict.problems) or "good"
         if verdict.accepted:
             good = (point.load, verdict.slip, verdict.friction)

@@ -27,6 +27,27 @@ LEG_DRIVERS: Final = {
 """Driver of each layout of a leg stream."""
 
 
+def open_legs(address: str, *, name: str = "legs", clock: Clock = SYSTEM_CLOCK) -> Any:
+    """Make the driver of a robot's leg stream; entering it opens the port.
+
+    Args:
+        address: `PROFILE@PORT`; for CAN the port is `INTERFACE:CHANNEL`.
+        name: Name of the stream.
+        clock: Host time.
+
+    Returns:
+        A `Stream` that also takes `LegCommands`.
+
+    Raises:
+        ProfileError: The address or the profile is not right.
+    """
+    from rig.zebro.profile import load_leg_profile
+
+    profile_name, port = split_address(address)
+    profile = load_leg_profile(profile_name)
+    return leg_driver(profile, leg_link(profile, port, clock=clock), name=name, clock=clock)
+
+
 def leg_link(
     profile: "LegProfile", port: str, *, source: str = "real", clock: Clock = SYSTEM_CLOCK
 ) -> Any:

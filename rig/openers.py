@@ -8,7 +8,7 @@ from typing import Any, Final
 import numpy as np
 
 from model.gait.reference import LegReference
-from rig.backends import leg_driver, leg_link, open_imu
+from rig.backends import open_imu, open_legs
 from rig.errors import ProfileError
 from rig.imu.profile import load_imu_profile
 from rig.imu.stream import ImuStream
@@ -63,12 +63,11 @@ def legs_at(address: str, gait: LegReference, *, rng: np.random.Generator) -> It
         ProfileError: The address or the profile is not right.
     """
     name, port = resolve(address, default=LEGS_PROFILE)
-    profile = load_leg_profile(name)
     if port == SIMULATED:
-        with simulated_legs(profile, gait, rng=rng) as legs:
+        with simulated_legs(load_leg_profile(name), gait, rng=rng) as legs:
             yield legs
     else:
-        yield leg_driver(profile, leg_link(profile, port))
+        yield open_legs(address)
 
 
 @contextmanager

@@ -14,9 +14,10 @@ import numpy as np
 
 from rig.clock import Clock
 from rig.errors import DeviceFault, NotAtRest, RigError
-from rig.experiment.bench import Batch, Bench
+from rig.experiment.bench import Bench
 from rig.experiment.control import Control
 from rig.experiment.plan import RunLimits, ground_speed, rig_limits
+from rig.experiment.readings import Batch
 from rig.experiment.rest import DISCS, prove_rest
 from rig.experiment.sink import RunSink
 from rig.safety import (

@@ -8,11 +8,12 @@ from typing import Final
 from rig.clock import SYSTEM_CLOCK, Clock
 from rig.errors import LimitExceeded, ProtocolError, RigError
 from rig.experiment.acquire import PERIOD, GuardedAcquisition
-from rig.experiment.bench import Batch, Bench, Readings, join
+from rig.experiment.bench import Bench
 from rig.experiment.condition import Condition, RigState
 from rig.experiment.control import Control
 from rig.experiment.load import LoadSetter
 from rig.experiment.plan import Plan
+from rig.experiment.readings import Batch, Readings, join
 from rig.experiment.sink import RunSink, RunStart, SinkFailed
 from rig.experiment.steps import Point, Step, Tare, estimate, require_allowed, spell_out
 from rig.experiment.verdict import LEAST_COVERED, PointVerdict, is_steady, judge_point, span

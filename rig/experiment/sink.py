@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import Protocol
 
 from rig.errors import RigError
-from rig.experiment.bench import Batch, Readings
+from rig.experiment.readings import Batch, Readings
 from rig.experiment.steps import Point
 from rig.experiment.verdict import PointVerdict
 from rig.slip_rig.decode import Zero

@@ -8,8 +8,8 @@ import numpy as np
 
 from model.slip.definition import SlipDefinition, slip_ratio
 from model.slip.law import Array
-from rig.experiment.bench import Readings
 from rig.experiment.plan import Acceptance, SettleCriterion
+from rig.experiment.readings import Readings
 from rig.experiment.steps import Point
 from rig.slip_rig.profile import RigProfile
 

@@ -3,7 +3,7 @@
 
 import pytest
 
-from rig.backends import LEG_DRIVERS, leg_driver, leg_link, open_imu, open_rig
+from rig.backends import LEG_DRIVERS, leg_driver, leg_link, open_imu, open_legs, open_rig
 from rig.clock import ManualClock
 from rig.errors import ProfileError
 from rig.imu.profile import render_table_profile
@@ -42,6 +42,8 @@ def test_a_rig_is_a_board_or_drives_and_a_load_cell():
     board = open_rig("rig-board-serial@/dev/null")
     assert [stream.name for stream in board.streams] == ["board"]
     assert open_imu("imu-quaternion-serial@/dev/null", name="imu1").name == "imu1"
+    legs = open_legs("zebro-100-serial@/dev/null", name="left")
+    assert (legs.name, legs.source) == ("left", "real")
 
 
 def test_a_profile_of_a_table_opens_nothing(tmp_path):

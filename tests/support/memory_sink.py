@@ -3,7 +3,7 @@
 
 from dataclasses import dataclass, field
 
-from rig.experiment.bench import Batch, Readings, join
+from rig.experiment.readings import Batch, Readings, join
 from rig.experiment.sink import RunStart, SinkFailed
 from rig.experiment.verdict import PointVerdict
 

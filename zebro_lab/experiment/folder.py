@@ -16,7 +16,7 @@ from types import TracebackType
 from typing import Any, Final, Self
 
 from rig.clock import SYSTEM_CLOCK, Clock
-from rig.experiment.bench import Batch, Readings
+from rig.experiment.readings import Batch, Readings
 from rig.experiment.sink import RunStart, SinkFailed
 from rig.experiment.verdict import PointVerdict
 from zebro_lab.experiment.journal import EMERGENCY, JournalWriter

@@ -3,7 +3,8 @@
 
 from pathlib import Path
 
-from rig.experiment.plan import Plan, parse_plan
+from rig.experiment.plan import Plan
+from rig.experiment.plan_reading import parse_plan
 from zebro_lab.files.settings_table import read_settings
 
 

@@ -12,7 +12,8 @@ from rig.backends import RigDevices
 from rig.clock import ManualClock
 from rig.experiment.bench import make_bench
 from rig.experiment.control import Control
-from rig.experiment.plan import Plan, parse_plan
+from rig.experiment.plan import Plan
+from rig.experiment.plan_reading import parse_plan
 from rig.experiment.run import run_plan
 from rig.experiment.simulated_load import SimulatedOperator
 from rig.links.memory import MemoryLink

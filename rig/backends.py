@@ -6,7 +6,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any, Final
 
 from rig.clock import SYSTEM_CLOCK, Clock
-from rig.device import LoadCell, Stream
+from rig.device import LoadCellStream, Stream
 from rig.errors import ProfileError
 from rig.profile import split_address
 
@@ -144,7 +144,7 @@ class RigDevices:
 
     profile: "RigProfile"
     drives: "DriveBus | None" = None
-    load_cell: LoadCell | None = None
+    load_cell: LoadCellStream | None = None
     board: "RigBoard | None" = None
 
     @property
@@ -165,12 +165,13 @@ def open_rig(address: str, *, buffered: bool = False, clock: Clock = SYSTEM_CLOC
         The devices.
 
     Raises:
-        ProfileError: The address or the profile is not right.
+        ProfileError: The address or the profile is not right, or of a table.
     """
-    from rig.slip_rig.profile import load_rig_profile
+    from rig.slip_rig.profile import load_rig_profile, require_device
 
     profile_name, port = split_address(address)
     profile = load_rig_profile(profile_name)
+    require_device(profile)
     if profile.board is not None:
         from rig.links.serial import SerialLink
         from rig.slip_rig.board import RigBoard

@@ -144,7 +144,7 @@ class Drive(Protocol):
         ...
 
 
-class LoadCell(Stream, Protocol):
+class LoadCellStream(Stream, Protocol):
     """A stream of forces whose zero the device can set by itself."""
 
     def bias(self) -> None:

@@ -20,7 +20,7 @@ class ReplayStream:
     Args:
         samples: The recording, in order.
         name: Name of the stream.
-        origin: What was recorded, such as a run's folder name.
+        source: Where the samples come from, such as `replay:RUN`.
         speed: How many times faster than it happened.
         clock: Host time.
 
@@ -33,7 +33,7 @@ class ReplayStream:
         samples: Sequence[Sample],
         *,
         name: str,
-        origin: str,
+        source: str,
         speed: float = 1.0,
         clock: Clock = SYSTEM_CLOCK,
     ) -> None:
@@ -46,7 +46,7 @@ class ReplayStream:
                     f"{after.host_time:g} s; sort the samples first"
                 )
         self.name = name
-        self.source = f"replay:{origin}"
+        self.source = source
         self._samples = samples
         self._speed = speed
         self._clock = clock

@@ -29,7 +29,13 @@ from rig.links.udp import UdpLink
 from rig.slip_rig.board import RigBoard
 from rig.slip_rig.drives import DriveBus
 from rig.slip_rig.load_cell import NetFtCell
-from rig.slip_rig.profile import BoardProfile, DriveProfile, LoadCellProfile, RigProfile
+from rig.slip_rig.profile import (
+    BoardProfile,
+    DriveProfile,
+    LoadCellProfile,
+    RigProfile,
+    require_device,
+)
 from rig.slip_rig.simulated import SimulatedRig
 from rig.slip_rig.simulated_board import SimulatedBoard
 from rig.slip_rig.simulated_drives import SimulatedDrives
@@ -159,8 +165,9 @@ def simulated_rig_devices(
         The drivers, not yet entered.
 
     Raises:
-        ProfileError: The profile has neither a board nor drives and load cell.
+        ProfileError: The profile has neither a board nor drives and load cell, or is a table's.
     """
+    require_device(profile)
     if profile.board is not None:
         with _board(profile, profile.board, rig, watchdog, faults, rng) as devices:
             yield devices

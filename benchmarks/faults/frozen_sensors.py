@@ -19,13 +19,12 @@ import numpy as np
 from rig.backends import RigDevices
 from rig.clock import ManualClock
 from rig.errors import FrozenReading, RigError
-from rig.experiment.acquire import Acquisition
+from rig.experiment.acquire import GuardedAcquisition
 from rig.experiment.bench import Bench, make_bench
 from rig.experiment.control import Control
 from rig.experiment.plan import Plan
 from rig.experiment.run import run_plan
 from rig.experiment.simulated_load import SimulatedOperator
-from rig.experiment.sink import MemorySink
 from rig.links.memory import MemoryLink
 from rig.slip_rig.board import RigBoard
 from rig.slip_rig.imperfections import draw_imperfections
@@ -33,6 +32,7 @@ from rig.slip_rig.profile import load_rig_profile
 from rig.slip_rig.simulated import RigDynamics, SimulatedRig, simulated_rig
 from rig.slip_rig.simulated_board import SimulatedBoard
 from rig.slip_rig.sweep import SweepPlan
+from support.memory_sink import MemorySink
 from zebro_lab.experiment.plan_file import read_plan
 
 PERIOD = 0.02
@@ -106,7 +106,7 @@ def freeze(lab: Lab, plan: Plan, channels: tuple[int, ...]) -> float | None:
     """Freeze channels after 3 s of turning; return when that is seen, None if never [s]."""
     lab.rig.load = 8.0
     with lab.bench:
-        acquire = Acquisition(
+        acquire = GuardedAcquisition(
             lab.bench, limits=plan.limits, control=Control(), sink=Forgetful(), clock=lab.clock,
             period=PERIOD,
         )  # fmt: skip

@@ -11,9 +11,9 @@ import numpy as np
 
 from rig.clock import SYSTEM_CLOCK
 from rig.errors import LimitExceeded
-from rig.experiment.acquire import Acquisition
+from rig.experiment.acquire import GuardedAcquisition
 from rig.experiment.control import Control
-from rig.experiment.sink import MemorySink
+from support.memory_sink import MemorySink
 from zebro_lab.experiment.plan_file import read_plan
 from zebro_lab.experiment.rig_at_hand import rig_at_hand
 
@@ -29,7 +29,7 @@ def main() -> None:
             assert rig.twin is not None
             for _ in range(TRIPS):
                 rig.twin.load = 5.0
-                acquire = Acquisition(
+                acquire = GuardedAcquisition(
                     rig.bench, limits=PLAN.limits, control=Control(), sink=MemorySink(),
                     clock=SYSTEM_CLOCK,
                 )  # fmt: skip

@@ -35,11 +35,10 @@ import numpy as np
 from rig.backends import RigDevices
 from rig.clock import SYSTEM_CLOCK
 from rig.device import Sample
-from rig.experiment.acquire import Acquisition
+from rig.experiment.acquire import GuardedAcquisition
 from rig.experiment.bench import Bench, make_bench
 from rig.experiment.control import Control
 from rig.experiment.plan import RunLimits
-from rig.experiment.sink import MemorySink
 from rig.links.can import CanLink
 from rig.links.serial import SerialLink
 from rig.links.serve import PortServer, Ticker
@@ -56,6 +55,7 @@ from rig.slip_rig.simulated_board import SimulatedBoard
 from rig.slip_rig.simulated_drives import SimulatedDrives
 from rig.slip_rig.simulated_load_cell import SimulatedLoadCell
 from rig.slip_rig.sweep import SweepPlan
+from support.memory_sink import MemorySink
 from zebro_lab.experiment.plan_file import read_plan
 
 PROJECT = Path(__file__).parents[2]
@@ -227,7 +227,7 @@ def ramp_ages(
     """Ramp up and down; return the true ages by stream, and those that the guards see [s]."""
     true, told = defaultdict(list), defaultdict(list)
     with bench:
-        acquire = Acquisition(
+        acquire = GuardedAcquisition(
             bench, limits=limits(seconds), control=Control(), sink=MemorySink(),
             clock=SYSTEM_CLOCK,
         )  # fmt: skip

@@ -17,6 +17,7 @@ from pathlib import Path
 
 import numpy as np
 
+from rig.acquisition import Device, acquiring
 from rig.imu.profile import load_imu_profile
 from rig.imu.simulated import SimulatedImu
 from rig.imu.stream import ImuStream
@@ -30,7 +31,6 @@ from rig.twins import robot_twin
 from rig.zebro.profile import load_leg_profile
 from rig.zebro.serial import PacketLegs
 from zebro_lab.mcap.stream_views import ImuView, LegsView, LoadCellView
-from zebro_lab.recording.acquisition import Device, acquiring
 from zebro_lab.recording.devices import PAUSE, ForceCheck, default_gait
 from zebro_lab.recording.recorder import RunDescription, RunRecorder
 from zebro_lab.runs.manifest import RunManifest, read_manifest
@@ -88,15 +88,14 @@ def measure(
         ImuStream(SerialLink(imu_port, baudrate=IMU.baudrate), profile=IMU),
         NetFtCell(UdpLink(*address), profile=CELL, buffered=buffered),
     )
-    views = (LegsView("legs", profile=LEGS), ImuView("imu", profile=IMU),
-             LoadCellView("load_cell", profile=CELL))  # fmt: skip
+    views = {"legs": LegsView("legs", profile=LEGS), "imu": ImuView("imu", profile=IMU),
+             "load_cell": LoadCellView("load_cell", profile=CELL)}  # fmt: skip
     devices = [
-        Device(stream, view, check, pause=PAUSE)
-        for stream, view, check in zip(streams, views, (None, None, ForceCheck(RIG)), strict=True)
+        Device(stream, check, pause=PAUSE)
+        for stream, check in zip(streams, (None, None, ForceCheck(RIG)), strict=True)
     ]
     description = RunDescription(kind="walk", label="bench", source="sim:bench")
-    recorder = RunRecorder(folder, description=description,
-                           views={d.name: d.view for d in devices})  # fmt: skip
+    recorder = RunRecorder(folder, description=description, views=views)
     with streams[0], streams[1], streams[2], recorder:
         with acquiring(devices, sink=recorder, start=recorder.start) as readers:
             time.sleep(0.5)

@@ -14,11 +14,12 @@ import numpy as np
 
 from rig.clock import Clock
 from rig.errors import DeviceFault, NotAtRest, RigError
-from rig.experiment.bench import Batch, Bench
+from rig.experiment.bench import Bench
 from rig.experiment.control import Control
 from rig.experiment.plan import RunLimits, ground_speed, rig_limits
+from rig.experiment.readings import Batch
 from rig.experiment.rest import DISCS, prove_rest
-from rig.experiment.sink import Sink
+from rig.experiment.sink import RunSink
 from rig.safety import (
     FollowingGuard,
     SampleGuard,
@@ -66,7 +67,7 @@ class Ramp:
         return leg, ground
 
 
-class Acquisition:
+class GuardedAcquisition:
     """Reads a bench, guards every sample, and turns the discs.
 
     Args:
@@ -89,7 +90,7 @@ class Acquisition:
         *,
         limits: RunLimits,
         control: Control,
-        sink: Sink,
+        sink: RunSink,
         clock: Clock,
         period: float = PERIOD,
     ) -> None:
@@ -98,7 +99,7 @@ class Acquisition:
         self._bench = bench
         self._limits = limits
         self._control = control
-        self._sink: Sink | None = sink
+        self._sink: RunSink | None = sink
         self._clock = clock
         self._period = period
         self._look_at = clock.now() + period

@@ -8,7 +8,7 @@ from typing import Final
 from rig.safety import StopCategory
 
 
-class State(Enum):
+class RigState(Enum):
     """State of a run; docs/experiments.md has the table of its changes."""
 
     PREPARING = "preparing"
@@ -54,7 +54,7 @@ class Condition:
         hold: How long a hold lasts before a safe stop follows [s].
     """
 
-    state: State
+    state: RigState
     energised: bool
     why: str = ""
     pending: StopCategory | None = None
@@ -64,7 +64,7 @@ class Condition:
     def headline(self) -> str:
         """Say state, energy and reason in words.
 
-        >>> Condition(State.HOLDING, True, "soft stop: Ctrl-C, time 1").headline
+        >>> Condition(RigState.HOLDING, True, "soft stop: Ctrl-C, time 1").headline
         'HOLDING, discs energised: soft stop: Ctrl-C, time 1'
         """
         energy = "discs energised" if self.energised else "discs de-energised"
@@ -74,10 +74,10 @@ class Condition:
     def keys(self) -> str:
         """Say which key does what next; each but Ctrl-C is followed by Enter.
 
-        >>> Condition(State.STOPPING, True, "", StopCategory.SAFE).keys
+        >>> Condition(RigState.STOPPING, True, "", StopCategory.SAFE).keys
         'Ctrl-C or e: emergency stop (de-energise at once, latched)'
         """
-        if self.state in (State.STOPPED, State.LATCHED):
+        if self.state in (RigState.STOPPED, RigState.LATCHED):
             return "no key does anything any more: the run is over"
         by_ctrl_c = next_stop(self.pending)
         known = [
@@ -85,9 +85,9 @@ class Condition:
             for category, name in _STOP_NAMES.items()
             if category > (self.pending or 0) or category is StopCategory.EMERGENCY
         ]
-        if self.state is State.HOLDING:
+        if self.state is RigState.HOLDING:
             known.insert(0, "r: go on")
             known.append(f"without a word a safe stop follows after {self.hold:g} s")
-        elif self.state is State.RUNNING:
+        elif self.state is RigState.RUNNING:
             known.insert(0, "Enter: confirm a prompt; p: pause after this point")
         return "; ".join(known)

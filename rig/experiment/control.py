@@ -62,9 +62,9 @@ class Control:
         if command == "status":
             return self.status
         if command in STOPS:
-            self.stop.request(STOPS[command], encodable(text) or f"asked for by {who}")
+            self.stop.request(STOPS[command], storable_note(text) or f"asked for by {who}")
         elif command == "note" and text:
-            self._notes.append(Note("note", f"{who}: {encodable(text)}"))
+            self._notes.append(Note("note", f"{who}: {storable_note(text)}"))
         elif command == "pause":
             self.pause()
         elif command == "resume":
@@ -113,12 +113,12 @@ class Control:
             yield self._notes.popleft()
 
 
-def encodable(text: str) -> str:
+def storable_note(text: str) -> str:
     r"""Return a text, no longer than a note may be, that every file and log can encode.
 
     What is no character, such as bytes of a foreign encoding, becomes an escape.
 
-    >>> encodable("caf\udce9")
+    >>> storable_note("caf\udce9")
     'caf\\udce9'
     """
     return text[:LONGEST_NOTE].encode("utf-8", "backslashreplace").decode("utf-8")

@@ -9,7 +9,7 @@ import numpy as np
 
 from rig.clock import Clock
 from rig.errors import NotAtRest
-from rig.experiment.bench import Batch
+from rig.experiment.readings import Batch
 
 WINDOW: Final = 0.25
 """Time over which each disc's speed is averaged; by default no reading may be older [s]."""

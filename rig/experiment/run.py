@@ -7,16 +7,17 @@ from typing import Final
 
 from rig.clock import SYSTEM_CLOCK, Clock
 from rig.errors import LimitExceeded, ProtocolError, RigError
-from rig.experiment.acquire import PERIOD, Acquisition
-from rig.experiment.bench import Batch, Bench, Readings, join
-from rig.experiment.condition import Condition, State
+from rig.experiment.acquire import PERIOD, GuardedAcquisition
+from rig.experiment.bench import Bench
+from rig.experiment.condition import Condition, RigState
 from rig.experiment.control import Control
 from rig.experiment.load import LoadSetter
 from rig.experiment.plan import Plan
-from rig.experiment.sink import RunStart, Sink, SinkFailed
+from rig.experiment.readings import Batch, Readings, join
+from rig.experiment.sink import RunSink, RunStart, SinkFailed
 from rig.experiment.steps import Point, Step, Tare, estimate, require_allowed, spell_out
-from rig.experiment.verdict import LEAST_COVERED, Verdict, is_steady, judge_point, span
-from rig.experiment.watcher import NobodyWatches, Watcher
+from rig.experiment.verdict import LEAST_COVERED, PointVerdict, is_steady, judge_point, span
+from rig.experiment.watcher import ExperimentWatcher, NobodyWatches
 from rig.safety import StopCategory, StopRequested
 from rig.slip_rig.decode import Forces, Zero, require_zero, tare
 
@@ -53,9 +54,9 @@ def run_plan(
     *,
     bench: Bench,
     load: LoadSetter,
-    sink: Sink,
+    sink: RunSink,
     control: Control,
-    watcher: Watcher | None = None,
+    watcher: ExperimentWatcher | None = None,
     clock: Clock = SYSTEM_CLOCK,
     period: float = PERIOD,
     done: Collection[int] = (),
@@ -98,9 +99,9 @@ class _Run:
         plan: Plan,
         bench: Bench,
         load: LoadSetter,
-        sink: Sink,
+        sink: RunSink,
         control: Control,
-        watcher: Watcher,
+        watcher: ExperimentWatcher,
         clock: Clock,
         period: float,
         done: Collection[int],
@@ -112,7 +113,7 @@ class _Run:
         self._control = control
         self._watcher = watcher
         self._clock = clock
-        self._acquire = Acquisition(
+        self._acquire = GuardedAcquisition(
             bench, limits=plan.limits, control=control, sink=sink, clock=clock, period=period
         )
         self._steps = spell_out(plan)
@@ -130,7 +131,7 @@ class _Run:
         """Run, and whatever happens leave the rig at rest and say why."""
         reason = "failed"
         try:
-            self._show(State.PREPARING)
+            self._show(RigState.PREPARING)
             with self._bench:
                 reason = self._guarded()
         except BaseException as error:
@@ -149,10 +150,10 @@ class _Run:
             self._sink.event("guards off", self._plan.limits.off_said)
         try:
             self._acquire.arm()
-            self._show(State.RUNNING)
+            self._show(RigState.RUNNING)
             for step in self._remaining():
                 self._softly(step)
-            self._show(State.STOPPING, "the plan is done")
+            self._show(RigState.STOPPING, "the plan is done")
             self._acquire.come_to_rest(REST_LIMIT)
         except StopRequested as asked:
             self._obey(asked)
@@ -161,7 +162,7 @@ class _Run:
             hardest = self._control.stop.pending  # another may have come on the way to rest
             return str(asked if hardest is None else StopRequested(hardest))
         except SinkFailed as failed:
-            self._show(State.STOPPING, str(failed))
+            self._show(RigState.STOPPING, str(failed))
             self._acquire.heed_no_more(StopCategory.SAFE)
             self._rest_without_sink()
             raise
@@ -206,9 +207,9 @@ class _Run:
             self._control.stop.request(StopCategory.SOFT, why)  # the next one is a harder one
         self._acquire.heed_no_more(StopCategory.SOFT)
         self._sink.event("hold", why)
-        self._show(State.STOPPING, why)
+        self._show(RigState.STOPPING, why)
         self._acquire.come_to_rest(REST_LIMIT)
-        self._show(State.HOLDING, why)
+        self._show(RigState.HOLDING, why)
 
         def released(_: Batch) -> bool:
             return self._control.stop.pending is None and not self._control.paused
@@ -219,16 +220,16 @@ class _Run:
         self._acquire.heed_no_more(None)
         self._acquire.look()  # raises where the wait ended in a harder stop
         self._sink.event("go on", why)
-        self._show(State.RUNNING)
+        self._show(RigState.RUNNING)
 
-    def _show(self, state: State, why: str = "") -> None:
+    def _show(self, state: RigState, why: str = "") -> None:
         """Tell the watcher, and whoever asks for the status, in which state the run is."""
         pending = self._control.stop.pending
         condition = Condition(
             state, self._acquire.energised, why, None if pending is None else pending.category,
             self._plan.limits.hold,
         )  # fmt: skip
-        if state is not State.RUNNING:
+        if state is not RigState.RUNNING:
             self._control.status = f"{condition.headline}; {condition.keys}"
         self._watcher.changed(condition)
 
@@ -288,7 +289,7 @@ class _Run:
         self._refused.append(point.number)
         self._sink.event("refused", f"{point.label}: {'; '.join(problems)}")
 
-    def _attempt(self, point: Point, attempt: int) -> Verdict:
+    def _attempt(self, point: Point, attempt: int) -> PointVerdict:
         self._tell(point.label if attempt == 1 else f"{point.label}, attempt {attempt}")
         self._attempts += 1
         settled = self._settle(point)
@@ -364,7 +365,7 @@ class _Run:
             self._acquire.disarm()
             self._sink.latch(asked.stop.reason)
             return
-        self._show(State.STOPPING, str(asked))
+        self._show(RigState.STOPPING, str(asked))
         self._acquire.heed_no_more(asked.stop.category)
         try:
             self._acquire.come_to_rest(REST_LIMIT)
@@ -386,7 +387,7 @@ class _Run:
         finally:
             self._acquire.disarm()
 
-    def _close(self, reason: str, verdict: Verdict | None = None) -> None:
+    def _close(self, reason: str, verdict: PointVerdict | None = None) -> None:
         if self._recording:
             self._recording = False
             self._sink.close_run(verdict, reason=reason)
@@ -408,4 +409,4 @@ class _Run:
                 failed = error
         if failed is not None and reason == "completed":
             raise failed
-        self._show(State.LATCHED if latched else State.STOPPED, reason)
+        self._show(RigState.LATCHED if latched else RigState.STOPPED, reason)

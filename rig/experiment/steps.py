@@ -163,7 +163,7 @@ def require_allowed(plan: Plan, profile: RigProfile) -> None:
 
 
 @dataclass(frozen=True)
-class Estimate:
+class DurationEstimate:
     """How long steps take.
 
     Attributes:
@@ -177,7 +177,7 @@ class Estimate:
     loads: int
 
 
-def estimate(plan: Plan, steps: tuple[Step, ...]) -> Estimate:
+def estimate(plan: Plan, steps: tuple[Step, ...]) -> DurationEstimate:
     """Reckon how long steps take.
 
     Args:
@@ -196,4 +196,4 @@ def estimate(plan: Plan, steps: tuple[Step, ...]) -> Estimate:
         else:
             seconds += RISE + plan.settle.window + plan.points.duration
             points += 1
-    return Estimate(seconds, points, loads)
+    return DurationEstimate(seconds, points, loads)

@@ -8,8 +8,8 @@ import numpy as np
 
 from model.slip.definition import SlipDefinition, slip_ratio
 from model.slip.law import Array
-from rig.experiment.bench import Readings
 from rig.experiment.plan import Acceptance, SettleCriterion
+from rig.experiment.readings import Readings
 from rig.experiment.steps import Point
 from rig.slip_rig.profile import RigProfile
 
@@ -18,7 +18,7 @@ LEAST_COVERED: Final = 0.8
 
 
 @dataclass(frozen=True)
-class Verdict:
+class PointVerdict:
     """What a recorded point is worth.
 
     Attributes:
@@ -102,7 +102,7 @@ def judge_point(
     settled: bool,
     duration: float,
     profile: RigProfile,
-) -> Verdict:
+) -> PointVerdict:
     """Say what a recorded point is worth.
 
     Args:
@@ -117,7 +117,7 @@ def judge_point(
         The verdict. The normal force is told and not judged: the disc may stand on its bump.
     """
     if len(readings) < 8:
-        return Verdict((f"{len(readings)} samples",), len(readings), np.nan, np.nan, np.nan)
+        return PointVerdict((f"{len(readings)} samples",), len(readings), np.nan, np.nan, np.nan)
     slip = measured_slip(readings, profile)
     first, late = halves(readings)
     problems = [] if settled else ["not settled in time"]
@@ -135,7 +135,7 @@ def judge_point(
         change = friction(late) - friction(first)
         if not abs(change) <= accept.friction_drift:
             problems.append(f"friction drifted by {change:+.3f} (limit {accept.friction_drift:g})")
-    return Verdict(
+    return PointVerdict(
         problems=tuple(problems),
         samples=len(readings),
         slip=float(slip.mean()),

@@ -5,10 +5,10 @@ from typing import Protocol
 
 from rig.experiment.condition import Condition
 from rig.experiment.steps import Point
-from rig.experiment.verdict import Verdict
+from rig.experiment.verdict import PointVerdict
 
 
-class Watcher(Protocol):
+class ExperimentWatcher(Protocol):
     """Who follows a run: a terminal, or nobody."""
 
     def changed(self, condition: Condition) -> None:
@@ -34,7 +34,7 @@ class Watcher(Protocol):
         """Hear, again and again, what a person is asked to do and the normal force now [N]."""
         ...
 
-    def judged(self, point: Point, verdict: Verdict, *, attempt: int) -> None:
+    def judged(self, point: Point, verdict: PointVerdict, *, attempt: int) -> None:
         """Hear what a point is worth."""
         ...
 
@@ -54,5 +54,5 @@ class NobodyWatches:
     def prompt(self, text: str, *, normal: float) -> None:
         """Ignore it."""
 
-    def judged(self, point: Point, verdict: Verdict, *, attempt: int) -> None:
+    def judged(self, point: Point, verdict: PointVerdict, *, attempt: int) -> None:
         """Ignore it."""

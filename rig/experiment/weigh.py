@@ -10,8 +10,9 @@ import numpy as np
 from rig.clock import SYSTEM_CLOCK, Clock
 from rig.errors import ProtocolError
 from rig.experiment.acquire import PERIOD
-from rig.experiment.bench import Batch, Bench
+from rig.experiment.bench import Bench
 from rig.experiment.load import LoadSetter
+from rig.experiment.readings import Batch
 from rig.experiment.rest import prove_rest
 from rig.safety import REST_SPEED
 

@@ -112,8 +112,7 @@ def load_imu_profile(name: str) -> ImuProfile:
         rate=stream.positive("rate"),
         link=kind,
     )
-    for part in (link, frame, scale, mounting, stream, table):
-        part.finish()
+    table.finish()
     return profile
 
 

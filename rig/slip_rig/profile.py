@@ -1,17 +1,24 @@
 # SPDX-License-Identifier: MIT
 """Profile of a slip rig: discs, limits, and the devices that turn and weigh them."""
 
+import math
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Final, Literal
+from typing import Final, Literal, TypeAlias
+
+import tomlkit
 
 from rig.device import Limits
-from rig.profile import Table, open_profile
+from rig.errors import ProfileError
+from rig.profile import SCHEMA, open_profile
+from rig.toml_table import TomlTable
 
+BoardLink: TypeAlias = Literal["serial", "table"]
 AXES: Final = ("x", "y", "z")
 HIGHEST_NODE: Final = 0x3F
 FURTHER_LIMITS: Final = {"lateral_force": "N", "torque": "N m", "temperature_celsius": "degC"}
 """Limits that a rig need not have, and their units."""
+_NO_LIMITS: Final = Limits(speed=math.inf, normal_force=math.inf, traction_force=math.inf)
 
 
 @dataclass(frozen=True)
@@ -89,14 +96,16 @@ class BoardProfile:
     """One micro-controller in place of drives and load cell.
 
     Attributes:
-        baudrate: Line rate [baud].
+        baudrate: Line rate; 0 for a table [baud].
         rate: Samples in a second [Hz].
         byte_order: Of values of several bytes.
-        feed_interval: Between two speed commands that feed the board's watchdog [s].
+        feed_interval: Between two speed commands that feed the board's watchdog; 0 for a
+            table [s].
         counts_per_force: Counts in 1 N.
         counts_per_speed: Counts in 1 rad/s.
         normal_sign: What makes pressing positive.
         traction_sign: What makes driving positive.
+        link: `serial`, or `table` for a file that somebody else wrote.
     """
 
     baudrate: int
@@ -107,6 +116,7 @@ class BoardProfile:
     counts_per_speed: float
     normal_sign: int
     traction_sign: int
+    link: BoardLink = "serial"
 
 
 @dataclass(frozen=True)
@@ -142,6 +152,36 @@ class RigProfile:
         return frozenset(key for key, known in told.items() if known)
 
 
+def render_table_profile(*, radius_leg: float, radius_ground: float, rate: float) -> str:
+    """Spell the profile of speeds and forces from a table in SI, as TOML.
+
+    Args:
+        radius_leg: Radius of the leg disc [m].
+        radius_ground: Radius of the ground disc [m].
+        rate: Samples in a second [Hz].
+    """
+    document = {
+        "schema": SCHEMA,
+        "device": "slip-rig",
+        "discs": {"radius_leg": radius_leg, "radius_ground": radius_ground},
+        "board": {
+            "link": "table", "rate": rate, "counts_per_force": 1.0, "counts_per_speed": 1.0,
+            "normal_sign": 1, "traction_sign": 1,
+        },
+    }  # fmt: skip
+    return tomlkit.dumps(document)
+
+
+def require_device(profile: RigProfile) -> None:
+    """Raise where a profile describes a table and no device that could be opened.
+
+    Raises:
+        ProfileError: It does.
+    """
+    if profile.board is not None and profile.board.link == "table":
+        raise ProfileError("is of a file and no device; name a device's profile", file=profile.name)
+
+
 def load_rig_profile(name: str) -> RigProfile:
     """Read the profile of a slip rig.
 
@@ -163,25 +203,28 @@ def load_rig_profile(name: str) -> RigProfile:
         name=Path(name).stem,
         radius_leg=discs.positive("radius_leg"),
         radius_ground=discs.positive("radius_ground"),
-        limits=Limits(
-            speed=limits.positive("speed"),
-            normal_force=limits.positive("normal_force"),
-            traction_force=limits.positive("traction_force"),
-            **{key: limits.positive_or_none(key) for key in FURTHER_LIMITS},
-        ),
         drives=None if drives.empty else _drives(drives),
         load_cell=None if load_cell.empty else _load_cell(load_cell),
-        board=None if board.empty else _board(board),
+        board=(made := None if board.empty else _board(board)),
+        limits=_NO_LIMITS if made and made.link == "table" else _limits(limits),
     )
-    for part in (discs, limits, drives, load_cell, board, table):
-        part.finish()
+    table.finish()
     for key in FURTHER_LIMITS:
         if getattr(profile.limits, key) is not None and key not in profile.measured:
             raise limits.fault("is a limit of something that no device of this rig measures", key)
     return profile
 
 
-def _drives(table: Table) -> DriveProfile:
+def _limits(table: TomlTable) -> Limits:
+    return Limits(
+        speed=table.positive("speed"),
+        normal_force=table.positive("normal_force"),
+        traction_force=table.positive("traction_force"),
+        **{key: table.positive_or_none(key) for key in FURTHER_LIMITS},
+    )
+
+
+def _drives(table: TomlTable) -> DriveProfile:
     leg, ground = (_disc_drive(table.table(key)) for key in ("leg", "ground"))
     if leg.node == ground.node:
         raise table.fault(f"both drives have node {leg.node}; expected two different ones")
@@ -194,17 +237,15 @@ def _drives(table: Table) -> DriveProfile:
     )
 
 
-def _disc_drive(table: Table) -> DiscDrive:
-    drive = DiscDrive(
+def _disc_drive(table: TomlTable) -> DiscDrive:
+    return DiscDrive(
         node=table.whole("node", most=HIGHEST_NODE),
         gear=table.positive("gear"),
         sign=table.sign("sign"),
     )
-    table.finish()
-    return drive
 
 
-def _load_cell(table: Table) -> LoadCellProfile:
+def _load_cell(table: TomlTable) -> LoadCellProfile:
     return LoadCellProfile(
         host=table.text("host"),
         port=table.whole("port", 49_152, least=1, most=65_535),
@@ -216,18 +257,19 @@ def _load_cell(table: Table) -> LoadCellProfile:
     )
 
 
-def _axis(table: Table) -> ForceAxis:
-    axis = ForceAxis(AXES.index(table.choice("axis", AXES)), table.sign("sign"))
-    table.finish()
-    return axis
+def _axis(table: TomlTable) -> ForceAxis:
+    return ForceAxis(AXES.index(table.choice("axis", AXES)), table.sign("sign"))
 
 
-def _board(table: Table) -> BoardProfile:
+def _board(table: TomlTable) -> BoardProfile:
+    link: BoardLink = table.choice("link", ("serial", "table"), "serial")
+    is_table = link == "table"
     return BoardProfile(
-        baudrate=table.whole("baudrate", least=1, most=20_000_000),
+        link=link,
+        baudrate=0 if is_table else table.whole("baudrate", least=1, most=20_000_000),
         rate=table.positive("rate"),
-        byte_order=table.choice("byte_order", ("little", "big")),
-        feed_interval=table.positive("feed_interval"),
+        byte_order="little" if is_table else table.choice("byte_order", ("little", "big")),
+        feed_interval=0.0 if is_table else table.positive("feed_interval"),
         counts_per_force=table.positive("counts_per_force"),
         counts_per_speed=table.positive("counts_per_speed"),
         normal_sign=table.sign("normal_sign"),

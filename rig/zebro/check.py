@@ -30,7 +30,7 @@ class CheckedLegs(LegCommands, Stream, Protocol):
 
 
 @dataclass(frozen=True)
-class Observation:
+class MovedLeg:
     """What a person saw when one channel was moved up by some counts.
 
     Attributes:
@@ -44,7 +44,7 @@ class Observation:
 
 def check_legs(
     robot: CheckedLegs,
-    observe: Callable[[int], Observation],
+    observe: Callable[[int], MovedLeg],
     *,
     clock: Clock = SYSTEM_CLOCK,
 ) -> LegProfile:
@@ -62,7 +62,7 @@ def check_legs(
         RigTimeout: The robot sends nothing.
         DeviceFault: A channel did not follow its command, or a leg was seen twice.
     """
-    seen: list[Observation] = []
+    seen: list[MovedLeg] = []
     for channel in range(len(robot.profile.legs)):
         move_channel(robot, channel, clock=clock)
         observation = observe(channel)

@@ -12,8 +12,9 @@ from numpy.typing import NDArray
 
 from rig.device import Sample
 from rig.errors import ProtocolError
-from rig.profile import SCHEMA, Table, open_profile
+from rig.profile import SCHEMA, open_profile
 from rig.sample_columns import as_columns
+from rig.toml_table import TomlTable
 
 Array: TypeAlias = NDArray[np.float64]
 Layout: TypeAlias = Literal["packet", "can", "dump", "poll", "table"]
@@ -169,8 +170,7 @@ def load_leg_profile(name: str) -> LegProfile:
         registers=registers,
         can_ids=_can_ids(frame) if layout == "can" else CanIds(),
     )
-    for part in (link, frame, legs, stream, table):
-        part.finish()
+    table.finish()
     return profile
 
 
@@ -242,13 +242,13 @@ def encode_counts(profile: LegProfile, theta: Sequence[float] | Array) -> tuple[
     return tuple(int(c) for c in np.remainder(counts, profile.counts_per_revolution))
 
 
-def _byte_order(frame: Table, layout: Layout) -> Order:
+def _byte_order(frame: TomlTable, layout: Layout) -> Order:
     if layout in ("can", "table"):
         return "little"
     return frame.choice("byte_order", ("little", "big"))
 
 
-def _order(legs: Table) -> tuple[int, ...]:
+def _order(legs: TomlTable) -> tuple[int, ...]:
     found = legs.wholes("order", most=6)
     if not found or sorted(set(found)) != sorted(found) or not set(found) <= set(range(1, 7)):
         raise legs.fault(f"found {list(found)}; expected different leg numbers, 1 to 6", "order")
@@ -261,7 +261,7 @@ def _by_channel(by_leg: tuple[Any, ...], order: tuple[int, ...]) -> tuple[Any, .
     return tuple(by_leg[ascending.index(leg)] for leg in order)
 
 
-def _registers(frame: Table, layout: Layout, channels: int) -> Registers:
+def _registers(frame: TomlTable, layout: Layout, channels: int) -> Registers:
     last = DUMP_REGISTERS - 2  # a value takes two
     positions = frame.wholes("registers", most=last)
     if len(positions) != channels:
@@ -288,7 +288,7 @@ def _registers(frame: Table, layout: Layout, channels: int) -> Registers:
     )
 
 
-def _can_ids(frame: Table) -> CanIds:
+def _can_ids(frame: TomlTable) -> CanIds:
     names = ("clock", "positions", "set_points", "stop")
     ids = {name: frame.whole(f"{name}_id", most=0x7FF) for name in names}
     if len(set(ids.values())) != len(ids):

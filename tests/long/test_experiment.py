@@ -19,10 +19,10 @@ from model.bayes.samples import SlipSamples
 from model.slip.definition import SlipDefinition
 from rig.experiment.control import Control
 from rig.experiment.run import run_plan
-from rig.experiment.sink import MemorySink
 from rig.experiment.verdict import measured_slip
 from rig.slip_rig.imperfections import draw_imperfections
 from rig.slip_rig.sweep import SOURCE_LAW, SOURCE_VALUES
+from support.memory_sink import MemorySink
 from zebro_lab.experiment.plan_file import read_plan
 from zebro_lab.experiment.rig_at_hand import rig_at_hand
 

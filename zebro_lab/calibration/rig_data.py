@@ -18,6 +18,7 @@ from zebro_lab.files.errors import DataError, SettingsError, ZebroLabError
 from zebro_lab.runs.counted_once import content_hash, first_of_each, run_keys, told_once
 from zebro_lab.runs.data_paths import DataSource, find_sources
 from zebro_lab.runs.folder import LOG_FILE, read_manifest, read_slip_rig_run
+from zebro_lab.runs.manifest import RIG, TABLE
 from zebro_lab.runs.recorded_sweeps import SWEEP, recorded_sweeps
 from zebro_lab.tables.columns import (
     Columns,
@@ -247,7 +248,7 @@ def _run_folder_table(folder: Path, columns: Columns) -> tuple[RawTable, Columns
 
     run, notes, rule = read_slip_rig_run(folder), (), RunRule()
     columns_read = dict(vars(run.table))
-    if run.manifest.profiles:  # as devices sent it: nobody has cut it yet
+    if run.manifest.profiles.get(RIG, TABLE) != TABLE:  # as devices sent it: not cut yet
         number, notes = recorded_sweeps(run)
         rule = RunRule(by=(SWEEP,)) if number.max() > 1 else rule
         columns_read = {

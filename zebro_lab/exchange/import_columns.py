@@ -6,9 +6,10 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Final
 
+from rig.nearest_name import nearest
+from zebro_lab.files.documents import read_toml_document
 from zebro_lab.files.errors import SettingsError
-from zebro_lab.files.known_keys import require_known
-from zebro_lab.files.toml_table import read_toml
+from zebro_lab.files.settings_table import SettingsTable
 from zebro_lab.robot.imu_log import IMU_UNITS
 from zebro_lab.robot.leg_log import LEG_UNITS
 from zebro_lab.tables.columns import COLUMNS_FILE, Columns, parse_columns
@@ -32,12 +33,12 @@ class ForeignColumns:
     Attributes:
         entries: Its entries for this file; None where there are none.
         file: The `columns.toml`; None without one.
-        where: Place of the entries in it, with a final dot; "" for all of it.
+        section: Key of the entries in it; "" for all of it.
     """
 
-    entries: Mapping[str, Any] | None = None
+    entries: dict[str, Any] | None = None
     file: Path | None = None
-    where: str = ""
+    section: str = ""
 
     @property
     def topic(self) -> str | None:
@@ -46,11 +47,9 @@ class ForeignColumns:
         Raises:
             SettingsError: It is no text.
         """
-        topic = None if self.entries is None else self.entries.get("topic")
-        if topic is not None and not isinstance(topic, str):
-            raise SettingsError(f"expected a text, found {topic!r}", file=self.file,
-                                key=f"{self.where}topic")  # fmt: skip
-        return topic
+        if self.entries is None or self.file is None or "topic" not in self.entries:
+            return None
+        return SettingsTable(self.entries, file=self.file, path=self.section).text("topic")
 
     def series(self, what: str) -> MappedColumns:
         """Return the map of a time series.
@@ -64,7 +63,9 @@ class ForeignColumns:
         if self.entries is None or self.file is None:
             return replace(canonical_columns(SERIES[what]), where=f"{what}.")
         entries = {key: value for key, value in self.entries.items() if key != "topic"}
-        return parse_mapped_columns(entries, SERIES[what], file=self.file, where=self.where)
+        return parse_mapped_columns(
+            SettingsTable(entries, file=self.file, path=self.section), SERIES[what]
+        )
 
     def rig(self) -> Columns:
         """Return the map of a rig's table.
@@ -74,7 +75,7 @@ class ForeignColumns:
         """
         if self.entries is None or self.file is None:
             return Columns()
-        return parse_columns(self.entries, file=self.file, where=self.where)
+        return parse_columns(SettingsTable(self.entries, file=self.file, path=self.section))
 
 
 def foreign_columns(what: str, table: Path, named: Path | None) -> ForeignColumns:
@@ -93,12 +94,14 @@ def foreign_columns(what: str, table: Path, named: Path | None) -> ForeignColumn
     file = named or (beside if beside.is_file() else None)
     if file is None:
         return ForeignColumns()
-    document = read_toml(file, advice=f"expected a {COLUMNS_FILE}").values
+    document = read_toml_document(file, advice=f"expected a {COLUMNS_FILE}")
     source = {"source": document["source"]} if "source" in document else {}
     if not set(document) & set(_SECTIONS):
         return ForeignColumns(document if what in _PLAIN else source, file)
-    require_known(document, ("source", *_SECTIONS), file=file, where="")
+    for key in document:
+        if key not in (known := ("source", *_SECTIONS)):
+            raise SettingsError(f"unknown key; {nearest(key, known)}", file=file, key=key)
     entries = document.get(what, {})
     if not isinstance(entries, dict):
-        raise SettingsError("expected a table", file=file, key=what)
-    return ForeignColumns(source | entries, file, f"{what}.")
+        raise SettingsError(f"found {entries!r}; expected a table", file=file, key=what)
+    return ForeignColumns(source | entries, file, what)

@@ -12,10 +12,11 @@ from model.slip.law import Array
 from zebro_lab.files.atomic import atomic_write_text
 from zebro_lab.files.errors import DataError
 from zebro_lab.files.provenance import file_hashes
+from zebro_lab.files.settings_text import fill_in
 from zebro_lab.files.source_names import stated_source
-from zebro_lab.files.toml_table import spelled
 from zebro_lab.mcap.slip_rig_log import SlipRigTable
-from zebro_lab.runs.folder import IMPORTED, write_slip_rig_run
+from zebro_lab.runs.folder import IMPORTED
+from zebro_lab.runs.table_run import write_slip_rig_run
 from zebro_lab.tables.columns import COLUMNS_FILE, Columns
 from zebro_lab.tables.rig_table import RigTable, kept_rows
 from zebro_lab.tables.run_separation import run_times, separate_runs
@@ -170,6 +171,5 @@ def _left_out(table: RigTable) -> tuple[str, ...]:
 
 def _write_load_cell(draft: Path, load_cell: Mapping[str, float]) -> None:
     if load_cell:
-        lines = [f"{name} = {spelled(value)}" for name, value in load_cell.items()]
-        text = "\n".join(["[load_cell]  # standard deviations, SI", *lines])
-        atomic_write_text(draft / COLUMNS_FILE, text + "\n")
+        template = "[load_cell]  # standard deviations, SI\n"
+        atomic_write_text(draft / COLUMNS_FILE, fill_in(template, {"load_cell": load_cell}))

@@ -18,7 +18,7 @@ from zebro_lab.files.atomic import atomic_write_text
 from zebro_lab.files.provenance import file_hash, file_hashes
 from zebro_lab.files.source_names import stated_source
 from zebro_lab.mcap.log_writer import LogWriter
-from zebro_lab.mcap.stream_views import ImuView, LegsView, View
+from zebro_lab.mcap.stream_views import ImuView, LegsView, StreamView
 from zebro_lab.robot.imu_log import ImuLog
 from zebro_lab.robot.leg_log import LegLog
 from zebro_lab.robot.robot_file import ROBOT_FILE, RobotFile
@@ -30,7 +30,7 @@ from zebro_lab.runs.folder import (
     finished_run_folder,
     write_manifest,
 )
-from zebro_lab.runs.manifest import profile_file, software_version
+from zebro_lab.runs.manifest import TABLE, profile_file, software_version
 from zebro_lab.runs.recorded_legs import LEGS
 from zebro_lab.track.folder import track_folder
 from zebro_lab.track.foreign import ForeignTrack
@@ -81,7 +81,7 @@ class ImportedWalk:
 
 @dataclass(frozen=True)
 class _Stream:
-    view: View
+    view: StreamView
     profile: str
     samples: list[Sample]
 
@@ -209,7 +209,7 @@ def _manifest(
         constants={},
         streams={f"/{name}/raw": count for name, count in counts.items()},
         log_sha256=file_hash(draft / LOG_FILE),
-        profiles=dict.fromkeys(streams, "table"),
+        profiles=dict.fromkeys(streams, TABLE),
         sources={name: _source_of(name, walk) for name in streams},
         counters={n: asdict(Counters(received=c)) | {"dropped": 0} for n, c in counts.items()},
         robot=None if walk.robot.file is None else walk.robot.file.stem,

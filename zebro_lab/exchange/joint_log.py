@@ -6,8 +6,8 @@ from typing import Any, Final
 
 import numpy as np
 
+from rig.nearest_name import nearest
 from zebro_lab.files.errors import DataError
-from zebro_lab.files.known_keys import nearest
 from zebro_lab.mcap.ros_log import read_messages
 from zebro_lab.mcap.ros_messages import JOINT_STATE
 from zebro_lab.tables.raw_table import RawTable

@@ -16,14 +16,14 @@ from types import TracebackType
 from typing import Any, Final, Self
 
 from rig.clock import SYSTEM_CLOCK, Clock
-from rig.experiment.bench import Batch, Readings
+from rig.experiment.readings import Batch, Readings
 from rig.experiment.sink import RunStart, SinkFailed
-from rig.experiment.verdict import Verdict
+from rig.experiment.verdict import PointVerdict
 from zebro_lab.experiment.journal import EMERGENCY, JournalWriter
 from zebro_lab.experiment.latch import EmergencyLatch
 from zebro_lab.experiment.points import UNJUDGED, point_record
 from zebro_lab.files.errors import AlreadyExists
-from zebro_lab.mcap.stream_views import View
+from zebro_lab.mcap.stream_views import StreamView
 from zebro_lab.recording.recorder import RunDescription, RunRecorder
 
 MOST_WAITING: Final = 20_000
@@ -44,7 +44,7 @@ class _Job:
 
 
 class ExperimentFolder:
-    """Satisfies `rig.experiment.sink.Sink`; a context manager.
+    """Satisfies `rig.experiment.sink.RunSink`; a context manager.
 
     Args:
         data: Folder of the experiment.
@@ -60,7 +60,7 @@ class ExperimentFolder:
         data: Path,
         *,
         description: RunDescription,
-        views: Callable[[], Mapping[str, View]],
+        views: Callable[[], Mapping[str, StreamView]],
         plan: str = "",
         clock: Clock = SYSTEM_CLOCK,
         in_step: bool = False,
@@ -85,7 +85,7 @@ class ExperimentFolder:
         self._thread = threading.Thread(target=self._work, daemon=True, name="writer")
 
     def open_run(self, start: RunStart) -> None:
-        """Begin a run folder; see `Sink.open_run`."""
+        """Begin a run folder; see `RunSink.open_run`."""
         label = start.point.label + (f" attempt {start.attempt}" if start.attempt > 1 else "")
         zero = {"zero_normal": start.zero.normal, "zero_traction": start.zero.traction}
         common = self._description
@@ -102,7 +102,7 @@ class ExperimentFolder:
         self._put(open_now, wait=True)
 
     def write(self, readings: Readings, batch: Batch) -> None:
-        """Keep the raw samples, out of which readings come again; see `Sink.write`."""
+        """Keep the raw samples, out of which readings come again; see `RunSink.write`."""
         del readings
         raw = batch.raw
 
@@ -115,15 +115,15 @@ class ExperimentFolder:
         self._require_well()
         self._put(write_now)
 
-    def close_run(self, verdict: Verdict | None, *, reason: str) -> None:
-        """End the run folder; what is not good is excluded, and kept; see `Sink.close_run`.
+    def close_run(self, verdict: PointVerdict | None, *, reason: str) -> None:
+        """End the run folder; what is not good is excluded, and kept; see `RunSink.close_run`.
 
         This is tried after a failure as well: what can still be written is.
         """
         self._put(lambda: self._close_now(verdict, reason), wait=True)
 
     def event(self, kind: str, text: str) -> None:
-        """Append to the journal, and to the run's log, after a failure too; see `Sink.event`."""
+        """Append to the journal, and to the run's log, after a failure too; see `RunSink.event`."""
 
         def note() -> None:
             if self._recorder is not None:
@@ -144,7 +144,7 @@ class ExperimentFolder:
         self._require_well()
 
     def latch(self, reason: str) -> None:
-        """Latch an emergency stop on disk, from this thread; see `Sink.latch`."""
+        """Latch an emergency stop on disk, from this thread; see `RunSink.latch`."""
         try:
             self._latch.latch(f"{EMERGENCY}: {reason}")
         except OSError as error:
@@ -195,7 +195,7 @@ class ExperimentFolder:
                 label = f"{description.label.partition(' again')[0]} again {again}"
                 description = replace(description, label=label)
 
-    def _close_now(self, verdict: Verdict | None, reason: str) -> None:
+    def _close_now(self, verdict: PointVerdict | None, reason: str) -> None:
         recorder, self._recorder = self._recorder, None
         if recorder is None or self._start is None:
             return
@@ -292,7 +292,7 @@ def _identity(folder: Path) -> tuple[int, int] | None:
     return found.st_dev, found.st_ino
 
 
-def _why_not(verdict: Verdict | None, reason: str, failure: str | None) -> str:
+def _why_not(verdict: PointVerdict | None, reason: str, failure: str | None) -> str:
     """Say why a run does not count."""
     if failure is not None:
         return failure

@@ -3,11 +3,9 @@
 
 from pathlib import Path
 
-from rig.errors import ProfileError
-from rig.experiment.plan import Plan, parse_plan
-from rig.experiment.plan_table import PlanTable
-from zebro_lab.files.documents import read_toml_document
-from zebro_lab.files.errors import SettingsError
+from rig.experiment.plan import Plan
+from rig.experiment.plan_reading import parse_plan
+from zebro_lab.files.settings_table import read_settings
 
 
 def read_plan(file: Path) -> Plan:
@@ -23,8 +21,4 @@ def read_plan(file: Path) -> Plan:
         NotFound: There is no such file.
         SettingsError: It is not TOML, or a key is missing, unknown or impossible.
     """
-    entries = read_toml_document(file, advice="examples/plan-source.toml is one")
-    try:
-        return parse_plan(PlanTable(entries, file=str(file)))
-    except ProfileError as error:
-        raise SettingsError(error.problem, file=error.file, key=error.key) from error
+    return parse_plan(read_settings(file, advice="examples/plan-source.toml is one"))

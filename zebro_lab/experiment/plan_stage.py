@@ -5,11 +5,11 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from rig.experiment.plan import Plan
-from rig.experiment.steps import Estimate, Step, estimate, require_allowed, spell_out
+from rig.experiment.steps import DurationEstimate, Step, estimate, require_allowed, spell_out
+from rig.openers import resolve
 from rig.slip_rig.profile import RigProfile, load_rig_profile
 from zebro_lab.experiment.plan_file import read_plan
 from zebro_lab.experiment.rig_at_hand import TWIN_PROFILE
-from zebro_lab.recording.devices import resolve
 
 
 @dataclass(frozen=True)
@@ -26,7 +26,7 @@ class Foreseen:
     plan: Plan
     profile: RigProfile
     steps: tuple[Step, ...]
-    estimate: Estimate
+    estimate: DurationEstimate
 
 
 def foresee(file: Path, rig: str) -> Foreseen:

@@ -17,6 +17,7 @@ from rig.experiment.load import DrivenShaft, HandShaft, LoadSetter
 from rig.experiment.plan import LoadSetting
 from rig.experiment.simulated_load import SimulatedAxis, SimulatedOperator
 from rig.links.memory import MemoryLink
+from rig.openers import SIMULATED, resolve
 from rig.slip_rig.board import RigBoard
 from rig.slip_rig.imperfections import RigImperfections, draw_imperfections
 from rig.slip_rig.profile import RigProfile, load_rig_profile
@@ -25,9 +26,9 @@ from rig.slip_rig.simulated_board import SimulatedBoard
 from rig.slip_rig.sweep import SweepPlan
 from rig.twins import simulated_rig_devices
 from zebro_lab.files.errors import SettingsError
-from zebro_lab.mcap.stream_views import BoardView, DrivesView, LoadCellView, View
-from zebro_lab.recording.devices import SIMULATED, profile_text, resolve
-from zebro_lab.runs.slip_rig_decoding import RIG
+from zebro_lab.mcap.stream_views import StreamView, rig_views
+from zebro_lab.recording.devices import profile_text
+from zebro_lab.runs.manifest import RIG
 
 TWIN_PROFILE: Final = "rig-board-serial"
 FAST_PERIOD: Final = 0.02
@@ -61,17 +62,9 @@ class RigAtHand:
         profile = self.bench.profile
         return {"radius_leg": profile.radius_leg, "radius_ground": profile.radius_ground}
 
-    def views(self) -> dict[str, View]:
+    def views(self) -> dict[str, StreamView]:
         """Make new views of its streams for a log."""
-        profile = self.bench.profile
-        views: dict[str, View] = {}
-        if profile.board is not None:
-            views["board"] = BoardView("board", profile=profile.board)
-        if profile.drives is not None:
-            views["drives"] = DrivesView("drives", profile=profile.drives)
-        if profile.load_cell is not None:
-            views["load_cell"] = LoadCellView("load_cell", profile=profile.load_cell)
-        return views
+        return rig_views(self.bench.profile)
 
     def load_setter(self, setting: LoadSetting, control: Control) -> LoadSetter:
         """Choose who sets the normal force.

@@ -18,11 +18,11 @@ from rich.live import Live
 from rich.progress_bar import ProgressBar
 from rich.text import Text
 
-from rig.experiment.condition import Condition, State
+from rig.experiment.condition import Condition, RigState
 from rig.experiment.control import Control
 from rig.experiment.steps import Point
 from rig.experiment.supervision import start_thread
-from rig.experiment.verdict import Verdict
+from rig.experiment.verdict import PointVerdict
 from zebro_lab.experiment.keyboard import Keyboard
 from zebro_lab.files.shown_text import shown
 from zebro_lab.terminal.messages import plain
@@ -34,13 +34,13 @@ PERIOD: Final = 0.125
 LAST_PICTURE: Final = 1.0
 """How long a terminal may take for the last lines; a stopped one shows them when it goes on [s]."""
 _STYLES: Final = {
-    State.RUNNING: "green", State.HOLDING: "bold yellow", State.STOPPING: "bold yellow",
-    State.LATCHED: "bold red",
+    RigState.RUNNING: "green", RigState.HOLDING: "bold yellow", RigState.STOPPING: "bold yellow",
+    RigState.LATCHED: "bold red",
 }  # fmt: skip
 
 
 @dataclass(frozen=True)
-class Picture:
+class ScreenPicture:
     """What the screen shows.
 
     Attributes:
@@ -67,7 +67,7 @@ class Picture:
             keys = self.condition.keys.replace("; ", "\n")
             parts = [Text(shown(self.condition.headline), style=style), Text(keys)]
         # A run that holds or stops makes no progress: its figures would only mislead.
-        if self.condition is None or self.condition.state is State.RUNNING:
+        if self.condition is None or self.condition.state is RigState.RUNNING:
             parts.append(plain(self.head))
         parts.append(ProgressBar(total=self.of, completed=self.done, width=WIDTH))
         chart = Text("\n" + slip_chart(list(self.points)))  # a bar ends no line
@@ -75,7 +75,7 @@ class Picture:
 
 
 class ExperimentScreen:
-    """Follows an experiment; satisfies `Watcher`, and never waits for the console.
+    """Follows an experiment; satisfies `ExperimentWatcher`, and never waits for the console.
 
     Args:
         console: Where to draw.
@@ -85,37 +85,37 @@ class ExperimentScreen:
     def __init__(self, console: Console, live: Live | None) -> None:
         self._console = console
         self._live = live
-        self._picture = Picture()
-        self._shown: Picture | None = None
+        self._picture = ScreenPicture()
+        self._shown: ScreenPicture | None = None
         self._lines: deque[str] = deque()
         self._over = threading.Event()
 
     def changed(self, condition: Condition) -> None:
-        """Show the state of the run; see `Watcher.changed`."""
+        """Show the state of the run; see `ExperimentWatcher.changed`."""
         self._picture = replace(self._picture, condition=condition, prompt="")
         if self._live is None:
             self._lines.append(f"{condition.headline}; {condition.keys}")
 
     def notice(self, text: str) -> None:
-        """Show a line that stays; see `Watcher.notice`."""
+        """Show a line that stays; see `ExperimentWatcher.notice`."""
         self._lines.append(text)
 
     def doing(self, what: str, *, done: int, of: int, left: float) -> None:
-        """Show what begins; see `Watcher.doing`."""
+        """Show what begins; see `ExperimentWatcher.doing`."""
         minutes, seconds = divmod(round(left), 60)
         head = f"{what}: {done} of {of} points, {minutes}:{seconds:02d} left"
         self._picture = replace(self._picture, head=head, done=done, of=max(of, 1), prompt="")
 
     def prompt(self, text: str, *, normal: float) -> None:
-        """Show what the operator is to do and the force now; see `Watcher.prompt`."""
+        """Show what the operator is to do and the force now; see `ExperimentWatcher.prompt`."""
         if self._live is not None:
             self._picture = replace(self._picture, prompt=f"{text}; now {normal:.2f} N")
         elif self._picture.prompt != text:
             self._lines.append(text)
             self._picture = replace(self._picture, prompt=text)
 
-    def judged(self, point: Point, verdict: Verdict, *, attempt: int) -> None:
-        """Show what a point is worth; see `Watcher.judged`."""
+    def judged(self, point: Point, verdict: PointVerdict, *, attempt: int) -> None:
+        """Show what a point is worth; see `ExperimentWatcher.judged`."""
         worth = "; ".join(verdict.problems) or "good"
         if verdict.accepted:
             good = (point.load, verdict.slip, verdict.friction)

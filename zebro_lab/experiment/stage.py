@@ -18,7 +18,7 @@ from rig.experiment.run import Outcome, run_plan
 from rig.experiment.signal_stops import signal_stops
 from rig.experiment.steps import require_allowed
 from rig.experiment.supervision import supervised
-from rig.experiment.watcher import Watcher
+from rig.experiment.watcher import ExperimentWatcher
 from zebro_lab.experiment.folder import ExperimentFolder
 from zebro_lab.experiment.journal import JOURNAL_FILE, begin_or_resume
 from zebro_lab.experiment.plan_file import read_plan
@@ -55,7 +55,7 @@ class RigRunRequest:
     seed: int = 0
 
 
-def run_experiment(request: RigRunRequest, watcher: Watcher, control: Control) -> Outcome:
+def run_experiment(request: RigRunRequest, watcher: ExperimentWatcher, control: Control) -> Outcome:
     """Run a plan, each point into a run folder of its own.
 
     Args:

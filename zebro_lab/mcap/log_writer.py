@@ -13,7 +13,7 @@ from zebro_lab.mcap.cdr import CdrWriter
 from zebro_lab.mcap.message_log import MessageLog
 from zebro_lab.mcap.raw_log import RAW_SCHEMAS, encode_raw, raw_topic
 from zebro_lab.mcap.ros_messages import INFO, LOG, Schema, log_entry
-from zebro_lab.mcap.stream_views import View
+from zebro_lab.mcap.stream_views import StreamView
 
 EVENTS: Final = "/events"
 COUNTERS: Final = Schema(
@@ -43,7 +43,7 @@ class LogWriter:
         self,
         file: IO[bytes],
         *,
-        views: Mapping[str, View],
+        views: Mapping[str, StreamView],
         attachments: Mapping[str, str],
         start: float,
         start_ns: int,
@@ -96,7 +96,7 @@ class LogWriter:
         """Compute nanoseconds since the Unix epoch; no step of the wall clock shows in them."""
         return self._start_ns + round((host_time - self._start) * 1e9)
 
-    def _register(self, name: str, view: View) -> None:
+    def _register(self, name: str, view: StreamView) -> None:
         _, text = RAW_SCHEMAS[view.raw_schema]
         raw = Schema(view.raw_schema, text)
         self._log.register(raw_topic(name), raw, metadata=view.metadata)

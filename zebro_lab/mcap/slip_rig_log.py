@@ -1,15 +1,13 @@
 # SPDX-License-Identifier: MIT
-"""The slip rig's samples as MCAP: blocks of samples as ROS 2 messages in CDR.
+"""Samples of the slip rig in SI, and the message of earlier versions that held them so.
 
-The messages are encoded here: the schema has only sequences of doubles, for which CDR is a
-length and the numbers, and numpy writes and reads them 50 times faster than the general encoder
-of mcap-ros2-support, against which the tests hold them.
+Runs that are written now hold raw samples alone (`raw_log`); logs with this message are still read.
 """
 
 import struct
 from dataclasses import dataclass, fields
 from pathlib import Path
-from typing import IO, TYPE_CHECKING
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,8 +29,6 @@ float64[] normal_force    # positive when pressed together [N]
 float64[] traction_force  # positive when driving [N]
 """
 
-_BLOCK = 64  # samples: 9 ms at the load cell's 7 kHz
-_CHUNK_BYTES = 1 << 16  # what a file cut short can lose
 _CDR_LITTLE_ENDIAN = b"\x00\x01\x00\x00"
 
 
@@ -76,20 +72,14 @@ class SalvagedLog:
     damage: str | None
 
 
-def encode_block(rows: NDArray[np.float64]) -> bytes:
-    """Encode samples as one CDR message.
+def decode_block(data: bytes) -> NDArray[np.float64]:
+    """Decode a CDR message of `SCHEMA_TEXT`, shape (m, 5).
 
     Args:
-        rows: Samples, shape (m, 5), m >= 1.
-    """
-    # Doubles are aligned to 8 bytes, counted from behind the 4 bytes of header.
-    length = struct.pack("<I4x", len(rows))
-    columns = np.ascontiguousarray(rows.T, dtype="<f8")
-    return _CDR_LITTLE_ENDIAN + b"".join(length + column.tobytes() for column in columns)
+        data: The message.
 
-
-def decode_block(data: bytes) -> NDArray[np.float64]:
-    """Decode a CDR message of `encode_block`, shape (m, 5).
+    Returns:
+        Samples in the order of the attributes of `SlipRigTable`.
 
     Raises:
         ValueError: The message is not of that form.
@@ -102,29 +92,6 @@ def decode_block(data: bytes) -> NDArray[np.float64]:
         raise ValueError(f"a message of {len(data)} bytes does not hold {count} samples")
     words = np.frombuffer(data, dtype="<f8", offset=4).reshape(width, count + 1)
     return words[:, 1:].T
-
-
-def write_log(file: IO[bytes], table: SlipRigTable, *, start_ns: int) -> None:
-    """Write samples as MCAP, compressed with zstd.
-
-    Args:
-        file: Where to write.
-        table: The samples.
-        start_ns: Start of the run, since the Unix epoch [ns].
-    """
-    from mcap.well_known import MessageEncoding, SchemaEncoding
-    from mcap.writer import CompressionType, Writer
-
-    writer = Writer(file, chunk_size=_CHUNK_BYTES, compression=CompressionType.ZSTD)
-    writer.start(profile="ros2", library="zebro-lab")
-    schema = writer.register_schema(SCHEMA_NAME, SchemaEncoding.ROS2, SCHEMA_TEXT.encode())
-    channel = writer.register_channel(TOPIC, MessageEncoding.CDR, schema)
-    rows = table.rows()
-    for sequence, first in enumerate(range(0, len(rows), _BLOCK)):
-        block = rows[first : first + _BLOCK]
-        stamp = start_ns + round(block[0, 0] * 1e9)
-        writer.add_message(channel, stamp, encode_block(block), stamp, sequence)
-    writer.finish()
 
 
 def read_log(path: Path) -> SalvagedLog:

@@ -16,7 +16,7 @@ from rig.imu.profile import ImuProfile
 from rig.sample_columns import as_columns
 from rig.slip_rig.decode import Forces, decode_board, decode_forces
 from rig.slip_rig.drives import disc_speed
-from rig.slip_rig.profile import BoardProfile, DriveProfile, LoadCellProfile
+from rig.slip_rig.profile import BoardProfile, DriveProfile, LoadCellProfile, RigProfile
 from rig.zebro.profile import LegProfile, decode_angles
 from zebro_lab.mcap.raw_log import COUNTS_NAME, VALUES_NAME
 from zebro_lab.mcap.ros_messages import IMU, JOINT_STATE, WRENCH, Schema, imu, joint_state, wrench
@@ -32,7 +32,7 @@ ENOUGH: Final = 1000.0
 _DISCS: Final = ("leg_disc", "ground_disc")
 
 
-class View(Protocol):
+class StreamView(Protocol):
     """How one device shows in a log."""
 
     @property
@@ -66,7 +66,7 @@ class View(Protocol):
 
 
 class LegsView:
-    """Leg angles as joint states, unwrapped; satisfies `View`.
+    """Leg angles as joint states, unwrapped; satisfies `StreamView`.
 
     Args:
         name: Name of the stream.
@@ -90,7 +90,7 @@ class LegsView:
     def messages(
         self, samples: Sequence[Sample], stamps: Sequence[int]
     ) -> Iterator[tuple[str, int, bytes]]:
-        """Make joint states; see `View.messages`."""
+        """Make joint states; see `StreamView.messages`."""
         theta = self._continued(samples)
         names = [f"leg_{leg}" for leg in sorted(self._profile.legs)]
         for row in range(0, len(samples), self._stride):
@@ -109,7 +109,7 @@ class LegsView:
 
 
 class ImuView:
-    """Orientation, rate and specific force of the body; satisfies `View`.
+    """Orientation, rate and specific force of the body; satisfies `StreamView`.
 
     Args:
         name: Name of the stream.
@@ -133,7 +133,7 @@ class ImuView:
     def messages(
         self, samples: Sequence[Sample], stamps: Sequence[int]
     ) -> Iterator[tuple[str, int, bytes]]:
-        """Make `Imu` messages; see `View.messages`."""
+        """Make `Imu` messages; see `StreamView.messages`."""
         chosen = range(0, len(samples), self._stride)
         counts = as_columns(samples).counts[:: self._stride]
         # Not by way of roll, pitch and yaw, as decode_orientation: that would cost several times
@@ -153,7 +153,7 @@ class ImuView:
 
 
 class DrivesView:
-    """Angles and speeds of both discs as joint states; satisfies `View`.
+    """Angles and speeds of both discs as joint states; satisfies `StreamView`.
 
     Args:
         name: Name of the stream.
@@ -181,7 +181,7 @@ class DrivesView:
     def messages(
         self, samples: Sequence[Sample], stamps: Sequence[int]
     ) -> Iterator[tuple[str, int, bytes]]:
-        """Make joint states of one disc each; see `View.messages`."""
+        """Make joint states of one disc each; see `StreamView.messages`."""
         for sample, stamp in zip(samples, stamps, strict=True):
             disc, place = self._discs[sample.channel]
             # What turns a velocity in revolutions into rad/s turns a position into rad.
@@ -190,7 +190,7 @@ class DrivesView:
 
 
 class LoadCellView:
-    """Mean force of each `MEAN_OVER` as a wrench; satisfies `View`.
+    """Mean force of each `MEAN_OVER` as a wrench; satisfies `StreamView`.
 
     Args:
         name: Name of the stream.
@@ -214,23 +214,22 @@ class LoadCellView:
     def messages(
         self, samples: Sequence[Sample], stamps: Sequence[int]
     ) -> Iterator[tuple[str, int, bytes]]:
-        """Make wrenches; see `View.messages`."""
+        """Make wrenches; see `StreamView.messages`."""
         step = self._thin
         forces = decode_forces(self._profile, samples[::step])
         yield from _mean_wrenches(self._topic, forces, stamps[::step], self._profile.rate / step)
 
 
-class BoardView:
-    """Mean force and speeds of each `MEAN_OVER`; satisfies `View`.
+class RigBoardView:
+    """Mean force and speeds of each `MEAN_OVER`; satisfies `StreamView`.
 
     Args:
         name: Name of the stream.
         profile: Profile of the board.
     """
 
-    raw_schema = COUNTS_NAME
-
     def __init__(self, name: str, *, profile: BoardProfile) -> None:
+        self.raw_schema = VALUES_NAME if profile.link == "table" else COUNTS_NAME
         self._profile = profile
         self._wrench = f"/{name}/wrench"
         self._joints = f"/{name}/joint_states"
@@ -244,13 +243,25 @@ class BoardView:
     def messages(
         self, samples: Sequence[Sample], stamps: Sequence[int]
     ) -> Iterator[tuple[str, int, bytes]]:
-        """Make wrenches and joint states; see `View.messages`."""
+        """Make wrenches and joint states; see `StreamView.messages`."""
         forces, speeds = decode_board(self._profile, samples)
         yield from _mean_wrenches(self._wrench, forces, stamps, self._profile.rate)
         for part in _parts(len(samples), self._profile.rate):
             means = [float(speeds.leg[part].mean()), float(speeds.ground[part].mean())]
             stamp = stamps[part.stop - 1]
             yield self._joints, stamp, joint_state(stamp, _DISCS, velocity=means)
+
+
+def rig_views(profile: RigProfile) -> dict[str, StreamView]:
+    """Make the views of all streams of a slip rig, by the streams' names."""
+    views: dict[str, StreamView] = {}
+    if profile.board is not None:
+        views["board"] = RigBoardView("board", profile=profile.board)
+    if profile.drives is not None:
+        views["drives"] = DrivesView("drives", profile=profile.drives)
+    if profile.load_cell is not None:
+        views["load_cell"] = LoadCellView("load_cell", profile=profile.load_cell)
+    return views
 
 
 def _mean_wrenches(

@@ -9,7 +9,7 @@ import typer
 from zebro_lab.terminal.messages import say
 
 if TYPE_CHECKING:
-    from rig.zebro.check import Observation
+    from rig.zebro.check import MovedLeg
 
 app = typer.Typer(no_args_is_help=True, help="Work on the robot itself.")
 
@@ -49,14 +49,14 @@ def check(
 class _Terminal:
     """Asks the person at the terminal; satisfies `Person`."""
 
-    def watch(self, channel: int) -> "Observation":
+    def watch(self, channel: int) -> "MovedLeg":
         """Ask what moved."""
-        from rig.zebro.check import Observation
+        from rig.zebro.check import MovedLeg
 
         leg = typer.prompt(
             f"channel {channel + 1} moved; which leg was it (1 to 6)?", value_proc=_leg_number
         )
-        return Observation(leg, typer.confirm("did it turn as in walking forward?"))
+        return MovedLeg(leg, typer.confirm("did it turn as in walking forward?"))
 
     def hold_toes_ahead(self) -> None:
         """Wait until every toe points straight ahead."""

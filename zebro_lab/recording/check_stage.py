@@ -10,13 +10,12 @@ from typing import Any, Final, Protocol
 
 import numpy as np
 
-from rig.backends import leg_driver, leg_link
 from rig.clock import SYSTEM_CLOCK, Clock
-from rig.twins import simulated_legs
-from rig.zebro.check import Observation, check_legs, find_lift_off, latest_counts, zero_legs
-from rig.zebro.profile import LegProfile, encode_counts, load_leg_profile, save_leg_profile
+from rig.openers import LEGS_PROFILE, SIMULATED, legs_at, resolve
+from rig.zebro.check import MovedLeg, check_legs, find_lift_off, latest_counts, zero_legs
+from rig.zebro.profile import LegProfile, encode_counts, save_leg_profile
 from zebro_lab.files.errors import AlreadyExists
-from zebro_lab.recording.devices import LEGS_PROFILE, SIMULATED, default_gait, resolve
+from zebro_lab.recording.devices import default_gait
 
 MOVING: Final = 1.0
 """How long a leg is given to turn to an angle [s]."""
@@ -25,7 +24,7 @@ MOVING: Final = 1.0
 class Person(Protocol):
     """Who watches the robot."""
 
-    def watch(self, channel: int) -> Observation:
+    def watch(self, channel: int) -> MovedLeg:
         """Say which leg moved with a channel, and which way."""
         ...
 
@@ -100,15 +99,10 @@ def check_zebro(request: CheckRequest, person: Person, *, clock: Clock = SYSTEM_
 
 @contextmanager
 def _robot(address: str) -> Iterator[Any]:
-    name, port = resolve(address, default=LEGS_PROFILE)
-    profile = load_leg_profile(name)
-    if port == SIMULATED:
-        rng = np.random.default_rng(0)
-        with simulated_legs(profile, default_gait(), rng=rng) as robot, robot:
+    _, port = resolve(address, default=LEGS_PROFILE)
+    with legs_at(address, default_gait(), rng=np.random.default_rng(0)) as robot, robot:
+        if port == SIMULATED:
             robot.set_points(latest_counts_as_targets(robot), 0.0)
-            yield robot
-        return
-    with leg_driver(profile, leg_link(profile, port)) as robot:
         yield robot
 
 

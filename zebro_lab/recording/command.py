@@ -20,7 +20,7 @@ zebro-lab record --zebro zebro-100-serial@/dev/ttyUSB0 --play walk/path.csv --la
 zebro-lab record --rig rig-odrive-netft@socketcan:can0 --label "POM on steel" --material
 "POM on steel" --data data
 """
-_ADDRESS = "PROFILE@PORT|sim"
+_ADDRESS = "PROFILE@PORT|sim|replay:RUN"
 STOPPED = 130
 
 Zebro = Annotated[str | None, typer.Option(metavar=_ADDRESS, help="Robot whose legs to record.")]
@@ -36,8 +36,8 @@ Play = Annotated[
 Duration = Annotated[
     float | None,
     typer.Option(
-        help="How long, from the first samples; without it until q, Ctrl-C or the played gait's "
-        "end [s]."
+        help="How long, from the first samples; without it until q, Ctrl-C or the end of the "
+        "played gait or replayed run [s]."
     ),
 ]
 Label = Annotated[str, typer.Option(help="Name of the run.")]

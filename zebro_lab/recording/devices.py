@@ -10,29 +10,27 @@ from typing import Any, Final
 import numpy as np
 
 from model.gait.reference import LegReference
-from rig.backends import RigDevices, leg_driver, leg_link, open_imu, open_rig
+from rig.acquisition import Device
+from rig.backends import open_rig
 from rig.device import Sample
 from rig.imu.profile import load_imu_profile
-from rig.profile import shipped_file, split_address
+from rig.openers import IMU_PROFILE, LEGS_PROFILE, REPLAY, SIMULATED, imu_at, legs_at, resolve
+from rig.profile import shipped_file
 from rig.safety import SampleGuard
 from rig.sample_columns import as_columns
 from rig.slip_rig.imperfections import TYPICAL_RIG
 from rig.slip_rig.profile import RigProfile, load_rig_profile
 from rig.slip_rig.simulated import RigDynamics, SimulatedRig, simulated_rig
 from rig.slip_rig.sweep import SweepPlan
-from rig.twins import simulated_imu, simulated_legs, simulated_rig_devices
-from rig.zebro.profile import load_leg_profile
+from rig.twins import simulated_rig_devices
 from zebro_lab.files.errors import SettingsError
-from zebro_lab.mcap.stream_views import BoardView, DrivesView, ImuView, LegsView, LoadCellView
-from zebro_lab.recording.acquisition import Device
+from zebro_lab.mcap.stream_views import ImuView, LegsView, StreamView, rig_views
+from zebro_lab.recording.replayed import IMU, read_replay
 from zebro_lab.robot.gait_argument import GaitRequest, make_gait
 from zebro_lab.robot.gait_player import GaitPlayer
-from zebro_lab.runs.slip_rig_decoding import RIG
+from zebro_lab.runs.manifest import RIG
+from zebro_lab.runs.recorded_legs import LEGS
 
-SIMULATED: Final = "sim"
-"""In place of a port, or of PROFILE@PORT, this is a simulated twin."""
-LEGS_PROFILE: Final = "zebro-100-serial"
-IMU_PROFILE: Final = "imu-quaternion-serial"
 RIG_PROFILE: Final = "rig-odrive-netft"
 PAUSE: Final = 0.053
 """Between two reads of a device that tells time: the system keeps what comes meanwhile, and with
@@ -47,7 +45,7 @@ class DevicesRequest:
     """Which devices are asked for; None and nothing where none is.
 
     Attributes:
-        zebro: `PROFILE@PORT`, `PROFILE@sim` or `sim`.
+        zebro: `PROFILE@PORT`, `PROFILE@sim`, `sim` or `replay:RUN`.
         imus: The same, each.
         rig: The same.
         play: Gait whose set-points the robot is sent.
@@ -67,15 +65,19 @@ class OpenDevices:
 
     Attributes:
         devices: The devices.
+        views: How each stream shows in a log, by its name.
         profiles: Name and text of each profile, by the name a run keeps it under.
         constants: Radii of the rig's discs [m].
         truth: What simulated devices know to be true.
+        lasts: How long replayed runs last; None where none is replayed [s].
     """
 
     devices: tuple[Device, ...]
+    views: Mapping[str, StreamView]
     profiles: Mapping[str, tuple[str, str]]
     constants: Mapping[str, float] = field(default_factory=dict)
     truth: Mapping[str, Any] = field(default_factory=dict)
+    lasts: float | None = None
 
 
 @contextmanager
@@ -106,7 +108,14 @@ def open_devices(request: DevicesRequest) -> Iterator[OpenDevices]:
             _add_rig(opened, stack, request.rig, rng)
         for device in opened.devices:
             stack.enter_context(device.stream)
-        yield OpenDevices(tuple(opened.devices), opened.profiles, opened.constants, opened.truth)
+        yield OpenDevices(
+            tuple(opened.devices),
+            opened.views,
+            opened.profiles,
+            opened.constants,
+            opened.truth,
+            opened.lasts,
+        )
 
 
 def default_gait() -> LegReference:
@@ -121,15 +130,6 @@ def twin_rig(rng: np.random.Generator) -> SimulatedRig:
     )
 
 
-def resolve(address: str, *, default: str) -> tuple[str, str]:
-    """Split an address into profile and port; `sim` alone is the default profile's twin.
-
-    >>> resolve("sim", default="zebro-100-serial")
-    ('zebro-100-serial', 'sim')
-    """
-    return (default, SIMULATED) if address == SIMULATED else split_address(address)
-
-
 def profile_text(name: str) -> str:
     """Read the TOML of a profile, shipped or a file."""
     path = Path(name)
@@ -141,9 +141,11 @@ class _Opened:
     """What has been opened so far."""
 
     devices: list[Device] = field(default_factory=list)
+    views: dict[str, StreamView] = field(default_factory=dict)
     profiles: dict[str, tuple[str, str]] = field(default_factory=dict)
     constants: dict[str, float] = field(default_factory=dict)
     truth: dict[str, Any] = field(default_factory=dict)
+    lasts: float | None = None
 
 
 def _require_any(request: DevicesRequest) -> None:
@@ -160,40 +162,44 @@ def _add_legs(
     play: LegReference | None,
     rng: np.random.Generator,
 ) -> None:
-    name, port = resolve(address, default=LEGS_PROFILE)
-    profile = load_leg_profile(name)
-    if port == SIMULATED:
-        gait = play or default_gait()
-        legs = stack.enter_context(simulated_legs(profile, gait, rng=rng))
-    else:
-        legs = leg_driver(profile, leg_link(profile, port))
+    if address.startswith(REPLAY):
+        if play is not None:
+            raise SettingsError("a replayed robot takes no set-points", key="--play")
+        _replay(opened, address, LEGS)
+        return
+    legs = stack.enter_context(legs_at(address, play or default_gait(), rng=rng))
+    profile = legs.profile
     player = None if play is None else GaitPlayer(legs, play, profile)
     opened.devices.append(
         Device(
             legs,
-            LegsView("legs", profile=profile),
             command=player,
             at_end=None if player is None else legs.stop,
             pause=PAUSE if player is None and profile.layout == "packet" else 0.0,
         )
     )
-    opened.profiles["legs"] = (profile.name, profile_text(name))
+    opened.views[LEGS] = LegsView(LEGS, profile=profile)
+    opened.profiles[LEGS] = (profile.name, profile_text(resolve(address, default=LEGS_PROFILE)[0]))
 
 
 def _add_imu(
     opened: _Opened, stack: ExitStack, stream: str, address: str, rng: np.random.Generator
 ) -> None:
-    name, port = resolve(address, default=IMU_PROFILE)
+    if address.startswith(REPLAY):
+        _replay(opened, address, IMU, name=stream)
+        return
+    name, _ = resolve(address, default=IMU_PROFILE)
     profile = load_imu_profile(name)
-    if port == SIMULATED:
-        unit = stack.enter_context(simulated_imu(profile, rng=rng, name=stream))
-    else:
-        unit = open_imu(address, name=stream)
-    opened.devices.append(Device(unit, ImuView(stream, profile=profile), pause=PAUSE))
+    unit = stack.enter_context(imu_at(address, name=stream, rng=rng))
+    opened.devices.append(Device(unit, pause=PAUSE))
+    opened.views[stream] = ImuView(stream, profile=profile)
     opened.profiles[stream] = (profile.name, profile_text(name))
 
 
 def _add_rig(opened: _Opened, stack: ExitStack, address: str, rng: np.random.Generator) -> None:
+    if address.startswith(REPLAY):
+        _replay(opened, address, RIG)
+        return
     name, port = resolve(address, default=RIG_PROFILE)
     profile = load_rig_profile(name)
     if port == SIMULATED:
@@ -202,21 +208,24 @@ def _add_rig(opened: _Opened, stack: ExitStack, address: str, rng: np.random.Gen
         opened.truth["rig"] = rig.description() | {"sweep": asdict(TWIN_SWEEP)}
     else:
         devices = open_rig(address, buffered=True)  # nothing moves by what is recorded
-    opened.devices += _of_rig(profile, devices)
+    check = ForceCheck(profile)
+    for device in devices.streams:
+        is_drives = device is devices.drives
+        opened.devices.append(Device(device) if is_drives else Device(device, check, pause=PAUSE))
+    opened.views |= rig_views(profile)
     opened.profiles[RIG] = (profile.name, profile_text(name))
     opened.constants |= {"radius_leg": profile.radius_leg, "radius_ground": profile.radius_ground}
 
 
-def _of_rig(profile: RigProfile, rig: RigDevices) -> Iterator[Device]:
-    check = ForceCheck(profile)
-    if rig.board is not None and profile.board is not None:
-        view = BoardView(rig.board.name, profile=profile.board)
-        yield Device(rig.board, view, check, pause=PAUSE)
-    if rig.drives is not None and profile.drives is not None:
-        yield Device(rig.drives, DrivesView(rig.drives.name, profile=profile.drives))
-    if rig.load_cell is not None and profile.load_cell is not None:
-        view = LoadCellView(rig.load_cell.name, profile=profile.load_cell)
-        yield Device(rig.load_cell, view, check, pause=PAUSE)
+def _replay(opened: "_Opened", address: str, what: str, *, name: str | None = None) -> None:
+    """Add the streams of a recorded run in place of a device."""
+    replayed = read_replay(address, what, name=name)
+    opened.devices += [Device(stream, pause=PAUSE) for stream in replayed.streams]
+    opened.views |= replayed.views
+    opened.profiles[name or what] = replayed.profile
+    opened.lasts = max(opened.lasts or 0.0, replayed.lasts)
+    if what == RIG:
+        opened.constants |= replayed.manifest.constants
 
 
 class ForceCheck:

@@ -39,7 +39,7 @@ CAN_TYPE: Final = "280"
 """What Linux calls the hardware type of a CAN interface."""
 
 
-class State(StrEnum):
+class Grade(StrEnum):
     """How a finding is to be taken."""
 
     OK = "ok"
@@ -57,7 +57,7 @@ class Finding:
         text: What was found, and what to do about it.
     """
 
-    state: State
+    state: Grade
     what: str
     text: str
 
@@ -83,8 +83,8 @@ def check_python(version: tuple[int, ...]) -> Finding:
     found = f"{'.'.join(map(str, version))} on {platform.system()} {platform.machine()}"
     if version[:2] < LEAST_PYTHON:
         wanted = ".".join(map(str, LEAST_PYTHON))
-        return Finding(State.BROKEN, "python", f"{found}; needs {wanted} or later")
-    return Finding(State.OK, "python", found)
+        return Finding(Grade.BROKEN, "python", f"{found}; needs {wanted} or later")
+    return Finding(Grade.OK, "python", found)
 
 
 def check_requirements(needed: Sequence[str]) -> Iterator[Finding]:
@@ -99,14 +99,14 @@ def check_requirements(needed: Sequence[str]) -> Iterator[Finding]:
             continue
         found = _version(requirement.name)
         if found is None:
-            yield Finding(State.BROKEN, requirement.name,
+            yield Finding(Grade.BROKEN, requirement.name,
                           f"missing: install it with `pip install '{requirement}'`")  # fmt: skip
         elif not requirement.specifier.contains(found, prereleases=True):
-            yield Finding(State.BROKEN, requirement.name,
+            yield Finding(Grade.BROKEN, requirement.name,
                           f"found {found}; `pip install '{requirement}'`")  # fmt: skip
         else:
             fitting.append(f"{requirement.name} {found}")
-    yield Finding(State.OK, "packages", ", ".join(fitting))
+    yield Finding(Grade.OK, "packages", ", ".join(fitting))
 
 
 def check_shadows(folder: Path, search: Sequence[str]) -> Iterator[Finding]:
@@ -127,7 +127,7 @@ def check_shadows(folder: Path, search: Sequence[str]) -> Iterator[Finding]:
         others = sorted(set(providers.get(module, ())) - {package})
         if others:
             yield Finding(
-                State.BROKEN, f"module {module}",
+                Grade.BROKEN, f"module {module}",
                 f"comes from {package} and {', '.join(others)}: `pip uninstall {' '.join(others)}`,"
                 f" then `pip install --force-reinstall {package}`",
             )  # fmt: skip
@@ -140,7 +140,7 @@ def check_serial_ports() -> Iterator[Finding]:
 
     ports = sorted(list_ports.comports())
     if not ports:
-        yield Finding(State.NOTE, "serial ports", "none found; plug the device in, or use a twin "
+        yield Finding(Grade.NOTE, "serial ports", "none found; plug the device in, or use a twin "
                       "(`zebro-lab sim zebro`)")  # fmt: skip
     for port in ports:
         yield check_port(Path(port.device), port.description)
@@ -158,10 +158,10 @@ def check_port(
     """
     what = f"serial port {device}"
     if sys.platform == "win32" or may(device, os.R_OK | os.W_OK):
-        return Finding(State.OK, what, f"{description}, may be opened")
+        return Finding(Grade.OK, what, f"{description}, may be opened")
     group = _group(device)
     return Finding(
-        State.NOTE, what,
+        Grade.NOTE, what,
         f"{description}, may not be opened; it is the group {group}'s: "
         f"`sudo usermod -aG {group} $USER`, then log in again",
     )  # fmt: skip
@@ -176,7 +176,7 @@ def check_can(net: Path) -> Iterator[Finding]:
     found = [place for place in sorted(net.glob("*")) if _read(place / "type") == CAN_TYPE]
     if not found:
         yield Finding(
-            State.NOTE, "CAN", "no interface found; an adapter on a serial line needs none "
+            Grade.NOTE, "CAN", "no interface found; an adapter on a serial line needs none "
             "(PROFILE@slcan:/dev/ttyACM0), nor does a twin (`zebro-lab sim rig rig-odrive-netft`)",
         )  # fmt: skip
     for place in found:
@@ -184,7 +184,7 @@ def check_can(net: Path) -> Iterator[Finding]:
         name = place.name
         text = f"up: PROFILE@socketcan:{name}" if up else (
             f"down; `sudo ip link set {name} up type can bitrate 1000000`")  # fmt: skip
-        yield Finding(State.OK if up else State.NOTE, f"CAN {name}", text)
+        yield Finding(Grade.OK if up else Grade.NOTE, f"CAN {name}", text)
 
 
 def check_udp(limit: Path) -> Iterator[Finding]:
@@ -198,10 +198,10 @@ def check_udp(limit: Path) -> Iterator[Finding]:
         return
     granted = int(text)
     if granted >= UDP_BUFFER:
-        yield Finding(State.OK, "UDP buffer", f"{granted >> 10} KiB")
+        yield Finding(Grade.OK, "UDP buffer", f"{granted >> 10} KiB")
         return
     yield Finding(
-        State.NOTE, "UDP buffer",
+        Grade.NOTE, "UDP buffer",
         f"the system grants {granted >> 10} KiB; a load cell at 7 kHz may lose samples when the "
         f"machine is busy: `sudo sysctl net.core.rmem_max={UDP_BUFFER}`",
     )  # fmt: skip
@@ -219,23 +219,23 @@ def check_disk(data: Path) -> Finding:
     free = shutil.disk_usage(place).free
     text = f"{free / 1e9:.1f} GB free at {place}"
     if not os.access(place, os.W_OK):
-        return Finding(State.BROKEN, "disk", f"{place} cannot be written; name another --data")
+        return Finding(Grade.BROKEN, "disk", f"{place} cannot be written; name another --data")
     if free < LEAST_FREE:
-        return Finding(State.BROKEN, "disk", f"{text}; recording needs {LEAST_FREE / 1e6:.0f} MB")
+        return Finding(Grade.BROKEN, "disk", f"{text}; recording needs {LEAST_FREE / 1e6:.0f} MB")
     if free < COMFORTABLE:
-        return Finding(State.NOTE, "disk", f"{text}; a load cell at 7 kHz fills 0.3 GB an hour")
-    return Finding(State.OK, "disk", text)
+        return Finding(Grade.NOTE, "disk", f"{text}; a load cell at 7 kHz fills 0.3 GB an hour")
+    return Finding(Grade.OK, "disk", text)
 
 
 def check_optional() -> Iterator[Finding]:
     """Tell of what is not needed, and what for it would be."""
     for program, purpose in OPTIONAL_PROGRAMS.items():
         found = shutil.which(program)
-        yield Finding(State.OK if found else State.NOTE, program,
+        yield Finding(Grade.OK if found else Grade.NOTE, program,
                       found or f"not found; only needed for {purpose}")  # fmt: skip
     for package, purpose in OPTIONAL_PACKAGES.items():
         version = _version(package)
-        yield Finding(State.OK if version else State.NOTE, package,
+        yield Finding(Grade.OK if version else Grade.NOTE, package,
                       version or f"not installed; only needed for {purpose}")  # fmt: skip
 
 
@@ -247,9 +247,9 @@ def _from(module: str, place: Path, search: Sequence[str], of: str = "ours") -> 
         origin = Path(str(loaded.__file__))
     what = f"module {module}"
     if origin is not None and origin.resolve().is_relative_to(place.resolve()):
-        return Finding(State.OK, what, of)
+        return Finding(Grade.OK, what, of)
     return Finding(
-        State.BROKEN, what,
+        Grade.BROKEN, what,
         f"comes from {origin}, expected {place}: something of the same name shadows it; remove or "
         "rename it, or install zebro-lab into an environment of its own",
     )  # fmt: skip
@@ -262,7 +262,7 @@ def _local_shadows(folder: Path, home: Path) -> Iterator[Finding]:
             shadows = place.is_file() or (place / "__init__.py").is_file()
             if shadows and not ours:
                 yield Finding(
-                    State.NOTE, f"module {module}",
+                    Grade.NOTE, f"module {module}",
                     f"{place} would be taken for it by any `python` started here; rename it",
                 )  # fmt: skip
 

@@ -23,11 +23,11 @@ Data = Annotated[Path, typer.Option(metavar="DIR", help="Folder that recordings 
 
 def doctor(data: Data = Path()) -> None:
     """Look at versions, packages, serial ports, CAN interfaces, disk and optional programs."""
-    from zebro_lab.recording.doctor import State, examine
+    from zebro_lab.recording.doctor import Grade, examine
 
     broken = 0
     for finding in examine(data):
-        broken += finding.state is State.BROKEN
+        broken += finding.state is Grade.BROKEN
         say(f"{finding.state:<6}  {finding.what}: {finding.text}")
     say(f"{broken} broken" if broken else "everything needed is there")
     if broken:

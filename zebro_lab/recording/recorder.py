@@ -20,13 +20,13 @@ from typing import IO, Any, Final, Self
 
 from rig.clock import SYSTEM_CLOCK, Clock
 from rig.device import Counters, Sample
+from rig.sample_queue import SampleQueue
 from zebro_lab.files.errors import RecordingError
 from zebro_lab.files.provenance import file_hash
 from zebro_lab.mcap.log_writer import LogWriter
 from zebro_lab.mcap.ros_messages import INFO
-from zebro_lab.mcap.stream_views import View
+from zebro_lab.mcap.stream_views import StreamView
 from zebro_lab.recording.place import OpenPlace, sync_files
-from zebro_lab.recording.sample_queue import SampleQueue
 from zebro_lab.recording.threads import needing_threads
 from zebro_lab.runs.folder import LOG_FILE, epoch_ns, new_run_folder
 from zebro_lab.runs.manifest import (
@@ -123,7 +123,7 @@ class RunRecorder:
         data_dir: Path,
         *,
         description: RunDescription,
-        views: Mapping[str, View],
+        views: Mapping[str, StreamView],
         limit: int = LIMIT,
         least_free: int = LEAST_FREE,
         clock: Clock = SYSTEM_CLOCK,

@@ -8,13 +8,13 @@ from pathlib import Path
 from typing import Final, Protocol
 
 from model.gait.reference import SampledReference
+from rig.acquisition import Acquisition, acquiring
 from rig.clock import SYSTEM_CLOCK, Clock
 from rig.device import Counters
 from rig.errors import RigError
 from zebro_lab.files.errors import RecordingError, SettingsError
 from zebro_lab.files.source_names import joined_source
 from zebro_lab.mcap.ros_messages import WARNING
-from zebro_lab.recording.acquisition import Acquisition, acquiring
 from zebro_lab.recording.devices import DevicesRequest, OpenDevices, open_devices
 from zebro_lab.recording.display import Display
 from zebro_lab.recording.recorder import RunDescription, RunRecorder
@@ -36,12 +36,12 @@ class RecordRequest:
     Attributes:
         data: Folder of run folders.
         label: Name of the run.
-        zebro: Robot: `PROFILE@PORT`, `PROFILE@sim` or `sim`; None for none.
+        zebro: Robot: `PROFILE@PORT`, `PROFILE@sim`, `sim` or `replay:RUN`; None for none.
         imus: Inertial measurement units, the same.
         rig: Slip rig, the same.
         play: Table or walk folder with leg angles that the robot is to follow.
         duration: How long to record, from the first sample of the stream that begins last; None
-            until it is stopped, or the played gait ends [s].
+            until it is stopped, or the played gait or the replayed run ends [s].
         material: Leg and ground material.
         operator: Who records.
         robot: Name of the robot.
@@ -137,9 +137,10 @@ def record(
     duration = _duration(request, play)
     wanted = DevicesRequest(request.zebro, request.imus, request.rig, play, request.seed)
     with needing_threads(), ExitStack() as kept, open_devices(wanted) as opened:
-        views = {device.name: device.view for device in opened.devices}
+        if opened.lasts is not None:
+            duration = min(opened.lasts, opened.lasts if duration is None else duration)
         recorder = RunRecorder(
-            request.data, description=_description(request, opened), views=views, clock=clock
+            request.data, description=_description(request, opened), views=opened.views, clock=clock
         )
         kept.enter_context(recorder)  # left after the devices: they wait for no disk
         problem = _run(recorder, opened, watcher, duration, clock)
@@ -167,6 +168,7 @@ def _run(
     try:
         with (
             closing(display),
+            needing_threads(),
             acquiring(opened.devices, sink=recorder, start=recorder.start, clock=clock) as readers,
         ):
             board = _Board(recorder, readers, opened, duration)

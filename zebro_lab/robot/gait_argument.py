@@ -21,8 +21,8 @@ from model.gait import (
     tripod_reference,
     turning_system,
 )
+from rig.nearest_name import nearest
 from zebro_lab.files.errors import SettingsError
-from zebro_lab.files.known_keys import nearest
 
 
 @dataclass(frozen=True)

@@ -6,7 +6,7 @@ This file alone knows their form, which docs/formats.md describes.
 
 import re
 import time
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from datetime import UTC, datetime, timedelta
@@ -18,8 +18,8 @@ import numpy as np
 from zebro_lab.files.atomic import atomic_folder
 from zebro_lab.files.errors import AlreadyExists, DataError, NotFound, RecordingError
 from zebro_lab.files.provenance import file_hash
-from zebro_lab.mcap.raw_log import read_raw_log
-from zebro_lab.mcap.slip_rig_log import TOPIC, SlipRigTable, read_log, write_log
+from zebro_lab.mcap.raw_log import raw_topic, read_raw_log
+from zebro_lab.mcap.slip_rig_log import TOPIC, SlipRigTable, read_log
 from zebro_lab.runs.exclusion import exclude_run
 from zebro_lab.runs.manifest import (
     IMPORTED,
@@ -29,7 +29,6 @@ from zebro_lab.runs.manifest import (
     SCHEMA_VERSION,
     RunManifest,
     read_manifest,
-    software_version,
     write_manifest,
 )
 
@@ -54,10 +53,10 @@ __all__ = [
     "run_path",
     "run_state",
     "write_manifest",
-    "write_slip_rig_run",
 ]
 
 LOG_FILE = "log.mcap"
+_BOARD_TOPIC: Final = raw_topic("board")
 STILL_GROWING: Final = 3.0
 """A log touched so recently is being recorded: the recorder writes to it every second [s]."""
 
@@ -79,73 +78,6 @@ class SlipRigRun:
     table: SlipRigTable
     files: tuple[Path, ...]
     notes: tuple[str, ...] = field(default=())
-
-
-def write_slip_rig_run(
-    data_dir: Path,
-    table: SlipRigTable,
-    *,
-    label: str,
-    material: str,
-    operator: str,
-    source: str,
-    start: datetime,
-    radius_leg: float,
-    radius_ground: float,
-    exit_status: str = "completed",
-    commit: str = "unknown",
-    inputs: Mapping[str, str] | None = None,
-    extra: Callable[[Path], object] | None = None,
-) -> Path:
-    """Write a run of the slip rig as a new run folder, atomically.
-
-    Args:
-        data_dir: Folder of run folders; made when missing.
-        table: The samples, at least one.
-        label: Name of the run.
-        material: Leg and ground material.
-        operator: Who ran it.
-        source: "real", "sim:what", "replay:what" or "import:FILE".
-        start: When sample time was 0, with its time zone.
-        radius_leg: Radius of the leg disc [m].
-        radius_ground: Radius of the ground disc [m].
-        exit_status: How the run ended.
-        commit: Commit of the software that recorded it.
-        inputs: SHA-256 of the files that the samples were imported from.
-        extra: Adds files of its own to the folder before it appears.
-
-    Returns:
-        The run folder.
-
-    Raises:
-        DataError: There is no sample.
-        AlreadyExists: A run of this start and label is there already.
-    """
-    if len(table) == 0:
-        raise DataError(f"run '{label}' has no samples to write")
-    finished = finished_run_folder(data_dir, kind="slip-rig", label=label, start=start)
-    with finished as (folder, draft):
-        if extra is not None:
-            extra(draft)
-        with (draft / LOG_FILE).open("wb") as file:
-            write_log(file, table, start_ns=epoch_ns(start))
-        manifest = RunManifest(
-            kind="slip-rig",
-            label=label,
-            material=material,
-            operator=operator,
-            source=source,
-            start=start.astimezone(UTC).isoformat(),
-            stop=(start.astimezone(UTC) + timedelta(seconds=float(table.t[-1]))).isoformat(),
-            exit_status=exit_status,
-            software=software_version(commit),
-            constants={"radius_leg": float(radius_leg), "radius_ground": float(radius_ground)},
-            streams={TOPIC: len(table)},
-            log_sha256=file_hash(draft / LOG_FILE),
-            inputs=inputs or {},
-        )
-        write_manifest(draft, manifest)
-    return folder
 
 
 @contextmanager
@@ -306,7 +238,7 @@ def require_recorded(path: Path, manifest: RunManifest) -> None:
 
 
 def _salvage_note(folder: Path, manifest: RunManifest, count: int, damage: str) -> str:
-    recorded = manifest.streams.get(TOPIC)
+    recorded = manifest.streams.get(_BOARD_TOPIC, manifest.streams.get(TOPIC))
     of_all = f" of {recorded}" if recorded else ""
     return f"{folder.name}: {LOG_FILE} is cut short ({damage}); {count}{of_all} samples read"
 

@@ -8,7 +8,7 @@ from model.robot import N_LEGS
 from zebro_lab.files.errors import DataError
 from zebro_lab.files.names import PATH_CSV
 from zebro_lab.files.replacement import settle
-from zebro_lab.files.toml_table import read_toml
+from zebro_lab.files.settings_table import read_settings
 from zebro_lab.robot.leg_log import ANGLES, LEG_UNITS, LegLog, legs_of_table
 from zebro_lab.runs.recorded_legs import is_recorded, read_recorded_legs
 from zebro_lab.tables.columns import COLUMNS_FILE
@@ -65,5 +65,4 @@ def _columns_file(table: Path, named: Path | None) -> Path | None:
 def _read_columns(file: Path | None) -> MappedColumns:
     if file is None:
         return canonical_columns(LEG_UNITS)
-    document = read_toml(file, advice=f"expected a {COLUMNS_FILE}")
-    return parse_mapped_columns(document.values, LEG_UNITS, file=file)
+    return parse_mapped_columns(read_settings(file, advice=f"expected a {COLUMNS_FILE}"), LEG_UNITS)

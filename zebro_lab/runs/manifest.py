@@ -9,17 +9,21 @@ from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any
 
+from rig.nearest_name import nearest
 from zebro_lab.files.atomic import atomic_write_text
 from zebro_lab.files.encodable import encodable
 from zebro_lab.files.errors import DataError
 from zebro_lab.files.folder_manifest import read_json_object
-from zebro_lab.files.known_keys import nearest
 
 PROFILES = "profiles"
 MANIFEST_FILE = "run.json"
 SCHEMA_VERSION = 1
 KINDS = ("slip-rig", "walk")
 IMPORTED = "imported"
+RIG = "rig"
+"""Name under which a run keeps the profile of its rig."""
+TABLE = "table"
+"""Name of the profile of samples that a table gave, already decoded and cut into runs."""
 RECORDING = "recording"
 """Exit status of a run that has not ended yet, or whose recorder was killed."""
 

@@ -56,9 +56,9 @@ def read_recorded_legs(folder: Path) -> tuple[RawTable, tuple[Path, ...]]:
 
 
 def _angles(stream: SampleColumns, profile_path: Path) -> dict[str, np.ndarray]:
+    from rig.clock_watch import sample_times
     from rig.errors import RigError
     from rig.zebro.profile import decode_angles, load_leg_profile
-    from zebro_lab.runs.clock_watch import sample_times
 
     try:
         angles = decode_angles(load_leg_profile(str(profile_path)), stream)

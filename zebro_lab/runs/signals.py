@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from model.slip.law import Array
+from rig.clock_watch import sample_times
 from rig.errors import RigError
 from rig.imu.profile import decode_orientation, load_imu_profile
 from rig.sample_columns import SampleColumns
@@ -22,11 +23,9 @@ from zebro_lab.files.errors import DataError
 from zebro_lab.mcap.raw_log import read_raw_log
 from zebro_lab.mcap.ros_log import read_messages
 from zebro_lab.mcap.ros_messages import LOG, WARNING
-from zebro_lab.runs.clock_watch import sample_times
 from zebro_lab.runs.folder import LOG_FILE, epoch_ns, read_manifest, read_slip_rig_run, run_state
-from zebro_lab.runs.manifest import RunManifest, profile_file
+from zebro_lab.runs.manifest import RIG, RunManifest, profile_file
 from zebro_lab.runs.recorded_legs import LEGS
-from zebro_lab.runs.slip_rig_decoding import RIG
 
 GAP_STEPS: Final = 5.0
 GAP_LEAST: Final = 0.05

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from model.slip.law import Array
+from rig.clock_watch import sample_times
 from rig.errors import RigError
 from rig.sample_columns import SampleColumns
 from rig.slip_rig.decode import decode_board, decode_forces, decode_speeds
@@ -15,11 +16,8 @@ from rig.slip_rig.profile import BoardProfile, DriveProfile, LoadCellProfile, lo
 from zebro_lab.files.errors import DataError
 from zebro_lab.mcap.raw_log import raw_topic
 from zebro_lab.mcap.slip_rig_log import SlipRigTable
-from zebro_lab.runs.clock_watch import sample_times
-from zebro_lab.runs.manifest import profile_file
+from zebro_lab.runs.manifest import RIG, profile_file
 
-RIG = "rig"
-"""Name under which a run keeps the profile of its rig."""
 _MANY = 3  # forces to a speed, from which on they are averaged
 
 

@@ -4,17 +4,16 @@
 The keys are described in docs/formats.md; `zebro-lab init FILE` writes a commented example.
 """
 
-from collections.abc import Collection, Mapping
+import math
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from types import MappingProxyType
-from typing import Any
 
 from model.slip.definition import SlipDefinition
-from zebro_lab.files.documents import read_toml_document
-from zebro_lab.files.errors import SettingsError, UnitError
-from zebro_lab.files.known_keys import nearest, require_known
-from zebro_lab.files.units import factor_to_si, quantity_to_si
+from rig.nearest_name import nearest
+from zebro_lab.files.errors import SettingsError
+from zebro_lab.files.settings_table import SettingsTable, read_settings
 from zebro_lab.tables.row_conditions import RowCondition, parse_row_condition
 
 COLUMNS_FILE = "columns.toml"
@@ -122,22 +121,64 @@ def read_columns(file: Path) -> Columns:
         NotFound: There is no such file.
         SettingsError: It is no TOML, or holds an unknown key, unit or value.
     """
-    document = read_toml_document(file, advice=f"expected a {COLUMNS_FILE}")
-    return parse_columns(document, file=file)
+    return parse_columns(read_settings(file, advice=f"expected a {COLUMNS_FILE}"))
 
 
-def parse_columns(document: Mapping[str, Any], *, file: Path, where: str = "") -> Columns:
+def parse_columns(table: SettingsTable) -> Columns:
     """Check what a `columns.toml` holds.
 
     Args:
-        document: Its content, or a section of one.
-        file: File that is named in errors.
-        where: The section, with a final dot; "" for the whole file.
+        table: Its content, or a section of one; every key is taken.
+
+    Returns:
+        What it says.
 
     Raises:
         SettingsError: It holds an unknown key, unit or value.
     """
-    return _Reader(file, where).columns(document)
+    columns = table.table("columns")
+    said = Columns(
+        file=Path(table.file),
+        source=_source(table),
+        columns={
+            name: parse_mapped_column(columns, name, column.unit)
+            for name, column in CANONICAL.items()
+            if name in columns
+        },
+        constants=_quantities(table.table("constants"), _CONSTANTS),
+        runs=_runs(table),
+        keep=_keep(table.table("rows")),
+        load_cell=_quantities(table.table("load_cell"), _LOAD_CELL, least=0.0),
+    )
+    table.finish()
+    return said
+
+
+def parse_mapped_column(columns: SettingsTable, name: str, si_unit: str | None) -> MappedColumn:
+    """Take header, unit and sign of one column.
+
+    Args:
+        columns: The section that has an entry for it: a table, or its header alone.
+        name: Its canonical name.
+        si_unit: Its SI unit; None where it holds no number.
+
+    Returns:
+        Where the column comes from.
+
+    Raises:
+        SettingsError: Header, unit or sign cannot be followed.
+    """
+    found = columns.value(name)
+    if isinstance(found, str):  # t = "ET": a name alone, in SI
+        found = {"name": found}
+    table = columns.as_table(name, found, expected="a table with name, unit, sign")
+    unit, factor = table.factor("unit", si_unit) if si_unit else ("", 1.0)
+    sign = table.sign("sign") if si_unit else 1
+    definition = None
+    if name == "slip_ratio" and "definition" in table:
+        key = table.dotted("definition") or ""
+        definition = parse_definition(table.value("definition"), file=Path(table.file), key=key)
+    return MappedColumn(table.text("name", name), unit, sign * factor, definition)
 
 
 def parse_definition(text: object, *, file: Path | None, key: str) -> SlipDefinition:
@@ -155,117 +196,39 @@ def parse_definition(text: object, *, file: Path | None, key: str) -> SlipDefini
         ) from error
 
 
-@dataclass(frozen=True)
-class _Reader:
-    """Turns the tables of one document into values, naming the file in every error."""
+def _source(table: SettingsTable) -> str | None:
+    if "source" not in table:
+        return None
+    source = table.text("source")
+    if source.split(":")[0] not in _SOURCES:
+        raise table.fault(f"'{source}' is none of 'real', 'sim:WHAT', 'replay:WHAT'", "source")
+    return source
 
-    file: Path
-    where: str = ""
 
-    def columns(self, document: Mapping[str, Any]) -> Columns:
-        known = ("source", "columns", "constants", "runs", "rows", "load_cell")
-        self._require_known(document, known, "")
-        tables = {
-            name: self._typed(document.get(name, {}), dict, name, "a table") for name in known[1:]
-        }
-        self._require_known(tables["columns"], CANONICAL, "columns.")
-        return Columns(
-            file=self.file,
-            source=self._source(document.get("source")),
-            columns={name: self._column(name, t) for name, t in tables["columns"].items()},
-            constants=self._quantities("constants", tables["constants"], _CONSTANTS),
-            runs=self._runs(tables["runs"]),
-            keep=self._keep(tables["rows"]),
-            load_cell=self._quantities("load_cell", tables["load_cell"], _LOAD_CELL),
-        )
+def _runs(table: SettingsTable) -> RunRule:
+    runs = table.table("runs")
+    given = [key for key in ("by", "gap", "each_row") if key in runs]
+    if len(given) > 1:
+        raise table.fault(f"{' and '.join(given)} at once; give one of them", "runs")
+    return RunRule(
+        by=runs.texts("by"),
+        gap=runs.quantity("gap", "s", above=0.0) if "gap" in runs else None,
+        each_row=runs.flag("each_row", False),
+    )
 
-    def _source(self, text: Any) -> str | None:
-        if text is None:
-            return None
-        source = self._typed(text, str, "source", "a text")
-        if source.split(":")[0] not in _SOURCES:
-            raise self._error("source", f"'{source}' is none of 'real', 'sim:WHAT', 'replay:WHAT'")
-        return source
 
-    def _column(self, name: str, table: Any) -> MappedColumn:
-        key = f"columns.{name}"
-        if isinstance(table, str):  # t = "ET": a name alone, in SI
-            table = {"name": table}
-        table = self._typed(table, dict, key, "a table with name, unit, sign")
-        si_unit = CANONICAL[name].unit
-        known = ["name", *(["unit", "sign"] if si_unit else [])]
-        known += ["definition"] if name == "slip_ratio" else []
-        self._require_known(table, known, f"{key}.")
-        unit = self._typed(table.get("unit", si_unit or ""), str, f"{key}.unit", "a text")
-        sign = table.get("sign", 1)
-        if sign not in (1, -1) or isinstance(sign, bool):
-            raise self._error(f"{key}.sign", f"{sign!r} is neither 1 nor -1")
-        definition = table.get("definition")
-        if definition is not None:
-            key_of_definition = f"{self.where}{key}.definition"
-            definition = parse_definition(definition, file=self.file, key=key_of_definition)
-        factor = sign * (self._factor(f"{key}.unit", unit, si_unit) if si_unit else 1.0)
-        header = self._typed(table.get("name", name), str, f"{key}.name", "a text")
-        return MappedColumn(header, unit, factor, definition)
+def _keep(rows: SettingsTable) -> tuple[RowCondition, ...]:
+    try:
+        return tuple(map(parse_row_condition, rows.texts("keep")))
+    except SettingsError:
+        raise
+    except ValueError as error:
+        raise rows.fault(str(error), "keep") from error
 
-    def _runs(self, table: Mapping[str, Any]) -> RunRule:
-        self._require_known(table, ("by", "gap", "each_row"), "runs.")
-        if len(table) > 1:
-            raise self._error("runs", f"{' and '.join(table)} at once; give one of them")
-        by, gap = self._texts("runs.by", table.get("by", [])), table.get("gap")
-        if gap is not None and (gap := self._quantity("runs.gap", gap, "s")) <= 0:
-            raise self._error("runs.gap", f"{gap:g} s is not a pause; expected more than 0 s")
-        each_row = self._typed(table.get("each_row", False), bool, "runs.each_row", "true or false")
-        return RunRule(by, gap, each_row)
 
-    def _keep(self, table: Mapping[str, Any]) -> tuple[RowCondition, ...]:
-        self._require_known(table, ("keep",), "rows.")
-        try:
-            return tuple(map(parse_row_condition, self._texts("rows.keep", table.get("keep", []))))
-        except ValueError as error:
-            raise self._error("rows.keep", str(error)) from error
-
-    def _quantities(
-        self, name: str, table: Mapping[str, Any], units: Mapping[str, str]
-    ) -> dict[str, float]:
-        self._require_known(table, units, f"{name}.")
-        values = {
-            key: self._quantity(f"{name}.{key}", value, units[key]) for key, value in table.items()
-        }
-        for key, value in values.items():
-            if name == "load_cell" and value < 0:
-                raise self._error(f"{name}.{key}", f"{value:g} is no standard deviation; >= 0")
-        return values
-
-    def _quantity(self, key: str, value: Any, si_unit: str) -> float:
-        if isinstance(value, bool) or not isinstance(value, (int, float, str)):
-            raise self._error(
-                key, f"expected a number in {si_unit} or a text such as '1 {si_unit}'"
-            )
-        try:
-            return quantity_to_si(value, si_unit)
-        except UnitError as error:
-            raise self._error(key, str(error)) from error
-
-    def _factor(self, key: str, unit: str, si_unit: str) -> float:
-        try:
-            return factor_to_si(unit, si_unit)
-        except UnitError as error:
-            raise self._error(key, str(error)) from error
-
-    def _texts(self, key: str, value: Any) -> tuple[str, ...]:
-        texts = [value] if isinstance(value, str) else value
-        if not isinstance(texts, list) or not all(isinstance(text, str) for text in texts):
-            raise self._error(key, f"expected a list of texts, found {value!r}")
-        return tuple(texts)
-
-    def _typed(self, value: Any, kind: type, key: str, expected: str) -> Any:
-        if not isinstance(value, kind):
-            raise self._error(key, f"expected {expected}, found {value!r}")
-        return value
-
-    def _require_known(self, found: Collection[str], known: Collection[str], where: str) -> None:
-        require_known(found, known, file=self.file, where=f"{self.where}{where}")
-
-    def _error(self, key: str, problem: str) -> SettingsError:
-        return SettingsError(problem, file=self.file, key=f"{self.where}{key}")
+def _quantities(
+    table: SettingsTable, units: Mapping[str, str], *, least: float = -math.inf
+) -> dict[str, float]:
+    return {
+        key: table.quantity(key, unit, least=least) for key, unit in units.items() if key in table
+    }

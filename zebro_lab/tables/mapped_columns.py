@@ -4,16 +4,15 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
 from model.slip.law import Array
-from zebro_lab.files.errors import DataError, SettingsError, UnitError
-from zebro_lab.files.known_keys import nearest, require_known
-from zebro_lab.files.units import factor_to_si
+from rig.nearest_name import nearest
+from zebro_lab.files.errors import DataError
+from zebro_lab.files.settings_table import SettingsTable
 from zebro_lab.tables.cells import cell_error
-from zebro_lab.tables.columns import COLUMNS_FILE, MappedColumn
+from zebro_lab.tables.columns import COLUMNS_FILE, MappedColumn, parse_mapped_column
 from zebro_lab.tables.raw_table import RawTable
 
 
@@ -85,46 +84,28 @@ def canonical_columns(units: Mapping[str, str]) -> MappedColumns:
     return MappedColumns({name: MappedColumn(name, unit) for name, unit in units.items()})
 
 
-def parse_mapped_columns(
-    document: Mapping[str, Any], units: Mapping[str, str], *, file: Path, where: str = ""
-) -> MappedColumns:
+def parse_mapped_columns(table: SettingsTable, units: Mapping[str, str]) -> MappedColumns:
     """Read names, units and signs; what is not mapped keeps its canonical name and unit.
 
     Args:
-        document: The keys `source` and `columns`.
+        table: The keys `source` and `columns`; every key is taken.
         units: SI unit of every column that the stage knows.
-        file: File that is named in errors.
-        where: Place of the document in the file, with a final dot; "" for all of it.
+
+    Returns:
+        The map.
 
     Raises:
         SettingsError: A key, a unit or a sign cannot be followed.
     """
-    require_known(document, ("source", "columns"), file=file, where=where)
-    tables = document.get("columns", {})
-    if not isinstance(tables, dict):
-        raise SettingsError("expected a table", file=file, key=f"{where}columns")
-    require_known(tables, units, file=file, where=f"{where}columns.")
+    columns = table.table("columns")
     mapped = {
-        name: _mapped(table, name, units[name], file, f"{where}columns.{name}")
-        for name, table in tables.items()
+        name: parse_mapped_column(columns, name, unit)
+        for name, unit in units.items()
+        if name in columns
     }
-    source = document.get("source")
-    canonical = canonical_columns(units).mapped
-    stated = None if source is None else str(source)
-    return MappedColumns({**canonical, **mapped}, stated, file, where)
-
-
-def _mapped(table: Any, name: str, si_unit: str, file: Path, key: str) -> MappedColumn:
-    if isinstance(table, str):  # theta1 = "th1": a name alone, in SI
-        table = {"name": table}
-    if not isinstance(table, dict):
-        raise SettingsError("expected a table with name, unit, sign", file=file, key=key)
-    require_known(table, ("name", "unit", "sign"), file=file, where=f"{key}.")
-    sign, unit = table.get("sign", 1), str(table.get("unit", si_unit))
-    if sign not in (1, -1) or isinstance(sign, bool):
-        raise SettingsError(f"{sign!r} is neither 1 nor -1", file=file, key=f"{key}.sign")
-    try:
-        factor = sign * factor_to_si(unit, si_unit)
-    except UnitError as error:
-        raise SettingsError(str(error), file=file, key=f"{key}.unit") from error
-    return MappedColumn(str(table.get("name", name)), unit, factor)
+    source = table.text("source") if "source" in table else None
+    table.finish()
+    where = f"{table.path}." if table.path else ""
+    return MappedColumns(
+        {**canonical_columns(units).mapped, **mapped}, source, Path(table.file), where
+    )

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from rig.nearest_name import nearest
 from zebro_lab.files.errors import DataError
-from zebro_lab.files.known_keys import nearest
 from zebro_lab.files.opening import parsing
 from zebro_lab.files.unpacking import open_unpacked
 

@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from model.slip.law import Array
+from rig.nearest_name import nearest
 from zebro_lab.files.errors import DataError
-from zebro_lab.files.known_keys import nearest
 from zebro_lab.tables.columns import CANONICAL, COLUMNS_FILE, Columns, MappedColumn
 from zebro_lab.tables.raw_table import RawTable
 

@@ -8,8 +8,8 @@ import numpy as np
 from model.errors import DomainError
 from model.slip.definition import SlipDefinition, convert_slip, slip_ratio
 from model.slip.law import Array
+from rig.nearest_name import nearest
 from zebro_lab.files.errors import DataError
-from zebro_lab.files.known_keys import nearest
 from zebro_lab.tables.columns import COLUMNS_FILE, MappedColumn, parse_definition
 from zebro_lab.tables.rig_table import RigTable
 

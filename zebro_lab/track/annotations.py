@@ -12,15 +12,11 @@ from typing import Any
 from tracking.body import TopPlate
 from tracking.corrections import Correction, correction_from, plain
 from tracking.errors import TrackingError
-from zebro_lab.files.errors import SettingsError
-from zebro_lab.files.toml_table import TomlTable, listed, quoted, read_toml, spelled
+from zebro_lab.files.settings_table import SettingsTable, read_settings
+from zebro_lab.files.settings_text import fill_in
 
 ANNOTATIONS_FILE = "annotations.toml"
 Click = tuple[float, float]
-_TOP = ("template", "clicks", "correction")
-_TEMPLATE = (
-    "photo", "corners_px", "length", "width", "height", "centre_x", "margin", "front_margin",
-)  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -73,97 +69,88 @@ def read_annotations(file: Path) -> Annotations:
         NotFound: There is no such file.
         SettingsError: It is no TOML, or holds an unknown key or an impossible value.
     """
-    table = read_toml(file, advice="`zebro-lab annotate PHOTOS` writes one")
-    table.require_known(_TOP)
+    table = read_settings(file, advice="`zebro-lab annotate PHOTOS` writes one")
     template = _template(table.table("template")) if "template" in table else None
     clicks = table.table("clicks")
-    by_photo = {photo: _clicks(clicks.table(photo)) for photo in clicks.values}
-    return Annotations(template, by_photo, _corrections(table))
+    by_photo = {photo: _clicks(clicks.table(photo)) for photo in clicks.left}
+    said = Annotations(template, by_photo, _corrections(table))
+    table.finish()
+    return said
 
 
-def _template(table: TomlTable) -> TemplateClicks:
-    table.require_known(_TEMPLATE)
-    found = table.values.get("corners_px")
+def _template(table: SettingsTable) -> TemplateClicks:
+    found = table.value("corners_px", [])
     if not isinstance(found, list) or len(found) != 4:
-        raise table.error("corners_px", "expected four pixels: front left, front right, rear "
-                                        "right, rear left of the robot's top")  # fmt: skip
-    rows = TomlTable(table.file, {str(k): row for k, row in enumerate(found)}, f"{table.where}")
+        raise table.fault("expected four pixels: front left, front right, rear right, rear left "
+                          "of the robot's top", "corners_px")  # fmt: skip
+    rows = table.as_table("corners_px", {str(k): row for k, row in enumerate(found)})
     corners = tuple(_pixel(rows, str(k)) for k in range(4))
     optional = {
-        key: table.number(key, "m") for key in ("centre_x", "margin", "front_margin")
+        key: table.quantity(key, "m") for key in ("centre_x", "margin", "front_margin")
         if key in table
     }  # fmt: skip
     try:
         plate = TopPlate(
-            table.number("length", "m"), table.number("width", "m"), table.number("height", "m"),
-            **optional,
-        )  # fmt: skip
+            *(table.quantity(key, "m") for key in ("length", "width", "height")), **optional
+        )
     except TrackingError as error:
-        raise SettingsError(str(error), file=table.file, key="template") from error
-    return TemplateClicks(table.text("photo"), corners, plate)
+        raise table.fault(str(error)) from error
+    return TemplateClicks(table.text("photo", least=1), corners, plate)
 
 
-def _clicks(table: TomlTable) -> dict[str, Click]:
-    return {name: _pixel(table, name) for name in table.values}
+def _clicks(table: SettingsTable) -> dict[str, Click]:
+    return {name: _pixel(table, name) for name in table.left}
 
 
-def _pixel(table: TomlTable, key: str) -> Click:
-    u, v = table.numbers(key, 2)
+def _pixel(table: SettingsTable, key: str) -> Click:
+    u, v = table.quantities(key, 2, "dimensionless")
     return u, v
 
 
-def _corrections(table: TomlTable) -> tuple[Correction, ...]:
-    entries = table.values.get("correction", [])
+def _corrections(table: SettingsTable) -> tuple[Correction, ...]:
+    entries = table.value("correction", [])
     if not isinstance(entries, list):
-        raise table.error("correction", "expected [[correction]] tables")
+        raise table.fault("expected [[correction]] tables", "correction")
     corrections = []
     for number, entry in enumerate(entries, 1):
-        where = table.as_table(f"correction[{number}]", entry)
+        key = f"correction[{number}]"
+        if not isinstance(entry, dict):
+            raise table.fault(f"found {entry!r}; expected a table", key)
         try:
-            corrections.append(correction_from(where.values))
+            corrections.append(correction_from(entry))
         except TrackingError as error:
-            raise SettingsError(str(error), file=table.file, key=where.where.rstrip(".")) from error
+            raise table.fault(str(error), key) from error
     return tuple(corrections)
 
 
 def render_annotations(said: Annotations) -> str:
     """Write annotations as commented TOML that `read_annotations` reads back."""
-    parts = [_HEADING]
+    template, values = _HEADING, {}
     if said.template is not None:
-        parts.append(_template_section(said.template))
-    for photo, clicks in said.clicks.items():
-        lines = [f"{quoted(name)} = {listed(click)}" for name, click in clicks.items()]
-        parts.append("\n".join([f"[clicks.{quoted(photo)}]", *lines]))
-    parts += [_correction_section(plain(correction)) for correction in said.corrections]
-    return "\n\n".join(parts) + "\n"
+        template += _TEMPLATE_SECTION
+        values["template"] = _template_values(said.template)
+    if said.clicks:
+        values["clicks"] = said.clicks
+    if said.corrections:
+        values["correction"] = [plain(correction) for correction in said.corrections]
+    return fill_in(template, values)
 
 
 _HEADING = """\
 # What a person said about photographs; `zebro-lab track --annotations` replays it.
-# Pixels: the centre of the first one is (0, 0). Lengths in m, angles in rad."""
+# Pixels: the centre of the first one is (0, 0). Lengths in m, angles in rad.
+"""
+_TEMPLATE_SECTION = """
+[template]  # the robot's top in one photograph
+photo = ""
+corners_px = []  # front left, front right, rear right, rear left
+"""
 
 
-def _template_section(template: TemplateClicks) -> str:
+def _template_values(template: TemplateClicks) -> Mapping[str, Any]:
     plate = template.plate
-    corners = ", ".join(listed(corner) for corner in template.corners_px)
-    sizes = {
+    return {
+        "photo": template.photo, "corners_px": template.corners_px,
         "length": plate.length, "width": plate.width, "height": plate.height,
         "centre_x": plate.centre_x, "margin": plate.margin, "front_margin": plate.front_margin,
     }  # fmt: skip
-    return "\n".join([
-        "[template]  # the robot's top in one photograph",
-        f"photo = {quoted(template.photo)}",
-        f"corners_px = [{corners}]  # front left, front right, rear right, rear left",
-        *(f"{name} = {spelled(value)}" for name, value in sizes.items()),
-    ])  # fmt: skip
-
-
-def _correction_section(entry: Mapping[str, Any]) -> str:
-    lines = [f"{key} = {_value(value)}" for key, value in entry.items()]
-    return "\n".join(["[[correction]]", *lines])
-
-
-def _value(value: str | float | list[str]) -> str:
-    if isinstance(value, list):
-        return f"[{', '.join(map(quoted, value))}]"
-    return quoted(value) if isinstance(value, str) else spelled(value)

@@ -8,10 +8,10 @@ from pathlib import Path
 import numpy as np
 
 from tracking.camera import Calibration, Camera
-from zebro_lab.files.toml_table import TomlTable, listed, quoted, read_toml, spelled
+from zebro_lab.files.settings_table import SettingsTable, read_settings
+from zebro_lab.files.settings_text import fill_in
 
 CAMERA_FILE = "camera.toml"
-_TOP = ("size", "focal", "centre", "distortion", "calibration")
 _CALIBRATION = (
     "lens_model", "rms_px", "focal_sd", "centre_sd", "distortion_sd", "coverage", "photos",
 )  # fmt: skip
@@ -37,22 +37,28 @@ def read_camera_file(file: Path) -> CameraFile:
         NotFound: There is no such file.
         SettingsError: It is no TOML, or holds an unknown key or an impossible value.
     """
-    table = read_toml(file, advice="`zebro-lab camera calibrate PHOTOS` writes one")
-    table.require_known(_TOP)
-    table.table("calibration").require_known(_CALIBRATION)
-    fx, fy = table.numbers("focal", 2)
-    cx, cy = table.numbers("centre", 2)
+    table = read_settings(file, advice="`zebro-lab camera calibrate PHOTOS` writes one")
+    fx, fy = table.quantities("focal", 2, "dimensionless")
+    cx, cy = table.quantities("centre", 2, "dimensionless")
     if min(fx, fy) <= 0:
-        raise table.error("focal", f"is {fx:g}, {fy:g} px; expected more than 0")
+        raise table.fault(f"is {fx:g}, {fy:g} px; expected more than 0", "focal")
     matrix = np.array([[fx, 0.0, cx], [0.0, fy, cy], [0.0, 0.0, 1.0]])
-    distortion = np.array(table.numbers("distortion", 5)) if "distortion" in table else np.zeros(5)
-    return CameraFile(Camera(_size(table), matrix, distortion), file)
+    distortion = np.zeros(5)
+    if "distortion" in table:
+        distortion = np.array(table.quantities("distortion", 5, "dimensionless"))
+    size = _size(table)
+    fit = table.table("calibration")
+    for key in _CALIBRATION:
+        if key in fit:
+            fit.value(key)
+    table.finish()
+    return CameraFile(Camera(size, matrix, distortion), file)
 
 
-def _size(table: TomlTable) -> tuple[int, int]:
-    width, height = table.numbers("size", 2)
+def _size(table: SettingsTable) -> tuple[int, int]:
+    width, height = table.quantities("size", 2, "dimensionless")
     if min(width, height) < 16 or width % 1 or height % 1:
-        raise table.error("size", f"is {width:g} x {height:g} px; expected whole numbers of pixels")
+        raise table.fault(f"is {width:g} x {height:g} px; expected whole numbers of pixels", "size")
     return int(width), int(height)
 
 
@@ -64,20 +70,21 @@ def render_camera_file(fit: Calibration, *, photos: Mapping[str, str]) -> str:
         photos: SHA-256 of the photographs it is from, by name.
     """
     camera, sd = fit.camera, fit.sd
-    used = "".join(f'{quoted(name)} = "{digest}"\n' for name, digest in photos.items())
-    return _TEMPLATE.format(
-        size=list(camera.size),
-        focal=listed([camera.matrix[0, 0], camera.matrix[1, 1]]),
-        centre=listed([camera.matrix[0, 2], camera.matrix[1, 2]]),
-        distortion=listed(camera.distortion),
-        lens_model=fit.lens_model,
-        rms=spelled(round(fit.rms, 4)),
-        coverage=spelled(round(fit.coverage, 3)),
-        focal_sd=listed(sd[:2].round(4)),
-        centre_sd=listed(sd[2:4].round(4)),
-        distortion_sd=listed(sd[4:].round(7)),
-        photos=used,
-    )
+    return fill_in(_TEMPLATE, {
+        "size": camera.size,
+        "focal": [camera.matrix[0, 0], camera.matrix[1, 1]],
+        "centre": [camera.matrix[0, 2], camera.matrix[1, 2]],
+        "distortion": camera.distortion,
+        "calibration": {
+            "lens_model": fit.lens_model,
+            "rms_px": round(fit.rms, 4),
+            "coverage": round(fit.coverage, 3),
+            "focal_sd": sd[:2].round(4),
+            "centre_sd": sd[2:4].round(4),
+            "distortion_sd": sd[4:].round(7),
+            "photos": photos,
+        },
+    })  # fmt: skip
 
 
 HEADING = "# The camera's lens, in pixels."
@@ -87,19 +94,19 @@ _TEMPLATE = (
     + """ The centre of the first pixel is (0, 0), as in OpenCV.
 # Photographs of another size are used scaled, if they are not cropped.
 
-size = {size}  # width, height
-focal = {focal}  # fx, fy
-centre = {centre}  # cx, cy
-distortion = {distortion}  # k1, k2, p1, p2, k3 of OpenCV's lens model
+size = []  # width, height
+focal = []  # fx, fy
+centre = []  # cx, cy
+distortion = []  # k1, k2, p1, p2, k3 of OpenCV's lens model
 
 [calibration]  # how well it is known: nothing reads this but people
-lens_model = "{lens_model}"
-rms_px = {rms}  # distance between corners seen and predicted
-coverage = {coverage}  # share of the picture in which corners were seen
-focal_sd = {focal_sd}  # standard deviations
-centre_sd = {centre_sd}
-distortion_sd = {distortion_sd}
+lens_model = ""
+rms_px = 0  # distance between corners seen and predicted
+coverage = 0  # share of the picture in which corners were seen
+focal_sd = []  # standard deviations
+centre_sd = []
+distortion_sd = []
 
 [calibration.photos]  # SHA-256
-{photos}"""
+"""
 )

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """`floor.toml`: markers and points on the floor, as measured with a tape."""
 
+from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
@@ -8,7 +9,8 @@ import numpy as np
 from tracking.errors import TrackingError
 from tracking.floor import FloorMap, FloorMarker, FloorPoint
 from zebro_lab.files.errors import SettingsError
-from zebro_lab.files.toml_table import TomlTable, quoted, read_toml, spelled
+from zebro_lab.files.settings_table import SettingsTable, read_settings
+from zebro_lab.files.settings_text import fill_in, inline_table
 from zebro_lab.robot.marker_numbers import require_in_dictionary
 from zebro_lab.robot.marker_print import KIT_PRINT
 
@@ -16,9 +18,7 @@ FLOOR_FILE = "floor.toml"
 DICTIONARY = KIT_PRINT.dictionary
 """Dictionary of the markers that the kit prints."""
 
-_TOP = ("dictionary", "side", "position_sd", "yaw_sd_deg", "side_sd", "markers", "points")
-_MARKER = ("x", "y", "yaw_deg", "z", "side", "position_sd", "yaw_sd_deg", "side_sd")
-_POINT = ("x", "y", "z", "position_sd")
+_COMMON = {"side": "m", "position_sd": "m", "yaw_sd_deg": "dimensionless", "side_sd": "m"}
 _MOST_DIGITS = 6  # of the number of a marker
 _POSITION_SD, _YAW_SD_DEG, _SIDE_SD = 1e-3, float(np.degrees(0.01)), 2e-4
 
@@ -30,60 +30,63 @@ def read_floor_file(file: Path) -> FloorMap:
         NotFound: There is no such file.
         SettingsError: It is no TOML, or holds an unknown key or an impossible value.
     """
-    table = read_toml(file, advice="`zebro-lab camera kit` starts one")
-    table.require_known(_TOP)
+    table = read_settings(file, advice="`zebro-lab camera kit` starts one")
     markers, points = table.table("markers"), table.table("points")
-    if not markers.values and not points.values:
-        raise table.error("markers", "no marker and no point; the floor needs at least one marker")
+    if markers.empty and points.empty:
+        raise table.fault("no marker and no point; the floor needs at least one marker", "markers")
+    common = _common(table)
     try:
-        dictionary = table.text("dictionary", DICTIONARY)
+        dictionary = table.text("dictionary", DICTIONARY, least=1)
         floor = FloorMap(
             dictionary,
-            tuple(_marker(table, markers, number) for number in markers.values),
-            tuple(_point(table, points, name) for name in points.values),
+            tuple(_marker(markers, number, common) for number in markers.left),
+            tuple(_point(points, name, common) for name in points.left),
         )
         require_in_dictionary(dictionary, floor.marker_ids)
     except TrackingError as error:
         raise SettingsError(str(error), file=file) from error
+    table.finish()
     return floor
 
 
-def _marker(top: TomlTable, markers: TomlTable, number: str) -> FloorMarker:
+def _common(table: SettingsTable) -> dict[str, float]:
+    """Take what holds for all marks that do not say otherwise."""
+    stated = {
+        key: table.quantity(key, unit, above=0.0) for key, unit in _COMMON.items() if key in table
+    }
+    return {"position_sd": _POSITION_SD, "yaw_sd_deg": _YAW_SD_DEG, "side_sd": _SIDE_SD} | stated
+
+
+def _marker(markers: SettingsTable, number: str, common: Mapping[str, float]) -> FloorMarker:
     if not number.isdecimal() or len(number) > _MOST_DIGITS:
-        raise markers.error(number, "expected the marker's number in its dictionary as the key")
+        raise markers.fault("expected the marker's number in its dictionary as the key", number)
     table = markers.table(number)
-    table.require_known(_MARKER)
-    yaw_sd = _own_or_common(top, table, "yaw_sd_deg", "dimensionless", _YAW_SD_DEG)
+    own = {
+        key: table.quantity(key, unit, default=common.get(key), above=0.0)
+        for key, unit in _COMMON.items()
+    }
     return FloorMarker(
         int(number),
-        _own_or_common(top, table, "side", "m", None),
-        table.number("x", "m"),
-        table.number("y", "m"),
-        yaw=float(np.radians(table.number("yaw_deg", default=0.0))),
-        z=table.number("z", "m", default=0.0),
-        position_sd=_own_or_common(top, table, "position_sd", "m", _POSITION_SD),
-        yaw_sd=float(np.radians(yaw_sd)),
-        side_sd=_own_or_common(top, table, "side_sd", "m", _SIDE_SD),
+        own["side"],
+        table.quantity("x", "m"),
+        table.quantity("y", "m"),
+        yaw=float(np.radians(table.quantity("yaw_deg", "dimensionless", default=0.0))),
+        z=table.quantity("z", "m", default=0.0),
+        position_sd=own["position_sd"],
+        yaw_sd=float(np.radians(own["yaw_sd_deg"])),
+        side_sd=own["side_sd"],
     )
 
 
-def _point(top: TomlTable, points: TomlTable, name: str) -> FloorPoint:
+def _point(points: SettingsTable, name: str, common: Mapping[str, float]) -> FloorPoint:
     table = points.table(name)
-    table.require_known(_POINT)
     return FloorPoint(
         name,
-        table.number("x", "m"),
-        table.number("y", "m"),
-        z=table.number("z", "m", default=0.0),
-        position_sd=_own_or_common(top, table, "position_sd", "m", _POSITION_SD),
+        table.quantity("x", "m"),
+        table.quantity("y", "m"),
+        z=table.quantity("z", "m", default=0.0),
+        position_sd=table.quantity("position_sd", "m", default=common["position_sd"], above=0.0),
     )
-
-
-def _own_or_common(
-    top: TomlTable, own: TomlTable, key: str, unit: str, default: float | None
-) -> float:
-    source = own if key in own or key not in top else top
-    return source.number(key, unit, default=default, above=0.0)
 
 
 def render_floor_file(floor: FloorMap, *, heading: str) -> str:
@@ -94,12 +97,15 @@ def render_floor_file(floor: FloorMap, *, heading: str) -> str:
         heading: What it is, as comment lines without their `#`.
     """
     lines = [*(f"# {line}".rstrip() for line in heading.splitlines()), *_LEGEND]
-    lines += ["", f'dictionary = "{floor.dictionary}"', "", "[markers]"]
-    lines += [f"{marker.marker_id} = {{ {_marker_line(marker)} }}" for marker in floor.markers]
+    template = "\n".join([*lines, "", 'dictionary = ""', "", "[markers]", ""])
+    values = {
+        "dictionary": floor.dictionary,
+        "markers": {str(each.marker_id): _marker_line(each) for each in floor.markers},
+    }
     if floor.points:
-        lines += ["", "[points]"]
-        lines += [f"{quoted(each.name)} = {{ {_point_line(each)} }}" for each in floor.points]
-    return "\n".join(lines) + "\n"
+        template += "\n[points]\n"
+        values["points"] = {each.name: _point_line(each) for each in floor.points}
+    return fill_in(template, values)
 
 
 _LEGEND = (
@@ -110,22 +116,17 @@ _LEGEND = (
 )  # fmt: skip
 
 
-def _marker_line(marker: FloorMarker) -> str:
-    return ", ".join((
-        f"x = {_rounded(marker.x)}", f"y = {_rounded(marker.y)}",
-        f"yaw_deg = {_rounded(np.degrees(marker.yaw))}", f"z = {_rounded(marker.z)}",
-        f"side = {_rounded(marker.side)}", f"position_sd = {_rounded(marker.position_sd)}",
-        f"yaw_sd_deg = {_rounded(np.degrees(marker.yaw_sd))}",
-        f"side_sd = {_rounded(marker.side_sd)}",
-    ))  # fmt: skip
+def _marker_line(marker: FloorMarker) -> Mapping[str, float]:
+    return _line(
+        x=marker.x, y=marker.y, yaw_deg=np.degrees(marker.yaw), z=marker.z, side=marker.side,
+        position_sd=marker.position_sd, yaw_sd_deg=np.degrees(marker.yaw_sd),
+        side_sd=marker.side_sd,
+    )  # fmt: skip
 
 
-def _point_line(point: FloorPoint) -> str:
-    return ", ".join((
-        f"x = {_rounded(point.x)}", f"y = {_rounded(point.y)}", f"z = {_rounded(point.z)}",
-        f"position_sd = {_rounded(point.position_sd)}",
-    ))  # fmt: skip
+def _point_line(point: FloorPoint) -> Mapping[str, float]:
+    return _line(x=point.x, y=point.y, z=point.z, position_sd=point.position_sd)
 
 
-def _rounded(value: float) -> str:
-    return spelled(round(float(value), 7))
+def _line(**values: float) -> Mapping[str, float]:
+    return inline_table({key: round(float(value), 7) for key, value in values.items()})

@@ -14,10 +14,13 @@ from benchmarks.faults.hostile_inputs import (
 )
 from rig.device import Sample
 from rig.zebro.profile import load_leg_profile
+from zebro_lab.mcap.cdr import CdrWriter
 from zebro_lab.mcap.log_writer import LogWriter
+from zebro_lab.mcap.message_log import MessageLog
 from zebro_lab.mcap.raw_log import read_raw_log
 from zebro_lab.mcap.ros_log import read_messages
-from zebro_lab.mcap.slip_rig_log import SlipRigTable, read_log, write_log
+from zebro_lab.mcap.ros_messages import Schema
+from zebro_lab.mcap.slip_rig_log import SCHEMA_NAME, SCHEMA_TEXT, TOPIC, read_log
 from zebro_lab.mcap.stream_views import LegsView
 
 
@@ -25,7 +28,12 @@ def of_logs() -> Mapping[str, Reader]:
     """Return readers of MCAP."""
     recorded, rig = _recorded(), io.BytesIO()
     t = np.arange(200) / 100
-    write_log(rig, SlipRigTable(t, t, t, t, t), start_ns=10**18)
+    earlier, message = MessageLog(rig), CdrWriter()
+    earlier.register(TOPIC, Schema(SCHEMA_NAME, SCHEMA_TEXT))
+    for _ in range(5):
+        message.array(t)
+    earlier.add(TOPIC, 10**18, message.message())
+    earlier.finish()
     log = "rcl_interfaces/msg/Log"
     raw, samples = _logs([recorded]), _logs([rig.getvalue()])
     return {

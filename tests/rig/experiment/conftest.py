@@ -12,11 +12,10 @@ from rig.backends import RigDevices
 from rig.clock import ManualClock
 from rig.experiment.bench import make_bench
 from rig.experiment.control import Control
-from rig.experiment.plan import Plan, parse_plan
-from rig.experiment.plan_table import PlanTable
+from rig.experiment.plan import Plan
+from rig.experiment.plan_reading import parse_plan
 from rig.experiment.run import run_plan
 from rig.experiment.simulated_load import SimulatedOperator
-from rig.experiment.sink import MemorySink
 from rig.links.memory import MemoryLink
 from rig.slip_rig.board import RigBoard
 from rig.slip_rig.imperfections import TYPICAL_RIG
@@ -24,6 +23,8 @@ from rig.slip_rig.profile import load_rig_profile
 from rig.slip_rig.simulated import RigDynamics, SimulatedRig, simulated_rig
 from rig.slip_rig.simulated_board import SimulatedBoard
 from rig.slip_rig.sweep import SweepPlan
+from rig.toml_table import TomlTable
+from support.memory_sink import MemorySink
 
 PROFILE = load_rig_profile("rig-board-serial")
 
@@ -75,7 +76,7 @@ def plan(*, drop=None, **changes) -> Plan:
         del entries[drop[0]][drop[1]]
     for table, values in changes.items():
         entries[table] |= values
-    return parse_plan(PlanTable(entries, file="plan.toml"))
+    return parse_plan(TomlTable(entries, file="plan.toml"))
 
 
 @dataclass

@@ -9,7 +9,7 @@ import pytest
 from rig.backends import RigDevices
 from rig.clock import ManualClock
 from rig.errors import RigError
-from rig.experiment.acquire import Acquisition
+from rig.experiment.acquire import GuardedAcquisition
 from rig.experiment.bench import make_bench
 from rig.experiment.load import HandShaft
 from rig.experiment.watcher import NobodyWatches
@@ -19,7 +19,7 @@ from rig.slip_rig.board import RigBoard
 
 
 def acquisition(twin, plan):
-    return Acquisition(
+    return GuardedAcquisition(
         twin.bench, limits=plan.limits, control=twin.control, sink=twin.sink, clock=twin.clock,
         period=0.01,
     )  # fmt: skip

@@ -8,12 +8,10 @@ import numpy as np
 import pytest
 
 from rig.clock import SYSTEM_CLOCK
-from rig.device import Sample
 from rig.errors import DeviceFault, LimitExceeded, RigTimeout, StaleReading, UnreliableRecords
-from rig.experiment.acquire import Acquisition
-from rig.experiment.bench import HostTime, make_bench
+from rig.experiment.acquire import GuardedAcquisition
+from rig.experiment.bench import make_bench
 from rig.experiment.control import Control
-from rig.experiment.sink import MemorySink
 from rig.experiment.verdict import measured_slip
 from rig.links.can import CanLink
 from rig.slip_rig.can_simple import Command, split_id
@@ -25,6 +23,7 @@ from rig.slip_rig.simulated_drives import SimulatedDrives
 from rig.slip_rig.simulated_load_cell import SimulatedLoadCell
 from rig.slip_rig.sweep import SweepPlan
 from rig.twins import simulated_rig_devices
+from support.memory_sink import MemorySink
 
 PROFILE = load_rig_profile("rig-odrive-netft")
 WATCHDOG = 1.0
@@ -54,7 +53,7 @@ def turning(lab, monkeypatch, *, speed=12.0, slip=0.2, **limits):
         simulated_rig_devices(PROFILE, rig, rng=rng, watchdog=WATCHDOG) as devices,
         make_bench(devices) as bench,
     ):
-        acquire = Acquisition(
+        acquire = GuardedAcquisition(
             bench, limits=lab["plan"](limits=PATIENT | limits).limits, control=Control(),
             sink=MemorySink(), clock=SYSTEM_CLOCK,
         )  # fmt: skip
@@ -232,37 +231,3 @@ def test_watchdogs_are_fed_at_fifty_hertz_while_all_is_well(lab, monkeypatch):
         acquire.until(lambda _: False, 3.0)
         assert len(seen) <= 3.0 * 50 + 2
         assert np.median(np.diff(seen)) < 0.05  # 0.02, where the machine is not busy
-
-
-def test_device_time_undoes_batches_and_survives_a_restart():
-    clock = HostTime()
-    first = [Sample(10.02, 1.00 + 0.01 * k, k, ()) for k in range(3)]
-    np.testing.assert_allclose(clock.map(first), [10.0, 10.01, 10.02])
-    late = [Sample(10.09, 1.03, 3, ())]
-    np.testing.assert_allclose(clock.map(late), [10.03], atol=1e-3)
-    anew = [Sample(20.0, 0.0, 0, ())]
-    np.testing.assert_allclose(clock.map(anew), [20.0])
-
-
-def test_time_never_runs_back_where_a_quicker_sample_corrects_it():
-    clock = HostTime()
-    clock.map([Sample(10.05, 1.0, 0, ()), Sample(10.06, 1.01, 1, ())])  # 50 ms underway
-    quick = clock.map([Sample(10.02, 1.02, 2, ()), Sample(10.10, 1.10, 3, ())])
-    np.testing.assert_allclose(quick, [10.06, 10.10])
-
-
-@pytest.mark.parametrize("drift", [-0.005, 0.005])
-def test_an_hour_of_drift_is_not_taken_for_lateness(drift):
-    clock = HostTime()
-    host = 100.0 + 0.1 * np.arange(36_000)
-    device = (1 + drift) * (host - 100.0)
-    late = [h - clock.map([Sample(h, d, 0, ())])[0] for h, d in zip(host, device, strict=True)]
-    assert max(late) < 0.01
-
-
-def test_a_backlog_is_seen_however_long_it_stays():
-    clock = HostTime()
-    clock.map([Sample(10.0 + k / 100, k / 100, k, ()) for k in range(10)])
-    for k in range(10, 110):  # half of real time
-        taken = clock.map([Sample(10.0 + k / 50 - 0.1, k / 100, k, ())])
-    assert 10.0 + 109 / 50 - 0.1 - taken[0] == pytest.approx(0.99, abs=0.05)

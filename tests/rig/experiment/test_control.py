@@ -1,16 +1,9 @@
 # SPDX-License-Identifier: MIT
-import os
-import signal
-import socket
+"""Stops and their order."""
 
-import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from rig.errors import LinkError, ProtocolError
-from rig.experiment.control import LONGEST_NOTE, Control
-from rig.experiment.control_server import ControlServer, send_command
-from rig.experiment.signal_stops import signal_stops
 from rig.safety import StopCategory, StopSwitch
 
 
@@ -26,107 +19,3 @@ def test_the_hardest_stop_prevails_and_only_soft_ones_are_released(asked):
     assert (switch.pending.category if switch.pending else None) == max(left, default=None)
     switch.reset()
     assert switch.pending is None
-
-
-def test_ctrl_c_asks_for_a_softer_stop_first():
-    switch = StopSwitch()
-    before = signal.getsignal(signal.SIGINT)
-    with signal_stops(switch):
-        found = []
-        for _ in range(4):
-            os.kill(os.getpid(), signal.SIGINT)
-            found.append(switch.pending.category)
-    assert found == [*StopCategory, StopCategory.EMERGENCY]
-    assert signal.getsignal(signal.SIGINT) is before
-
-
-def test_sigterm_asks_for_a_safe_stop():
-    switch = StopSwitch()
-    with signal_stops(switch):
-        os.kill(os.getpid(), signal.SIGTERM)
-    assert (switch.pending.category, switch.pending.reason) == (StopCategory.SAFE, "SIGTERM")
-
-
-def test_the_socket_commands_the_run():
-    control = Control()
-    with ControlServer(control) as server:
-
-        def say(command):
-            return send_command(server.port, server.token, command)
-
-        assert say("status") == "not started"
-        say("pause")
-        assert control.paused
-        say("note the leg squeaks")
-        say("confirm")
-        assert control.take_confirmation()
-        assert not control.take_confirmation()
-        say("soft")
-        assert control.stop.pending.category is StopCategory.SOFT
-        say("resume")
-        assert control.stop.pending is None
-        say("emergency smoke")
-        assert control.stop.pending.reason == "smoke"
-        say("resume")
-        assert control.stop.latched
-        kinds = [note.kind for note in control.take_notes()]
-        assert kinds == ["pause", "note", "resume", "resume"]
-
-
-def test_who_does_not_know_the_token_commands_nothing():
-    control = Control()
-    with ControlServer(control) as server:
-        with pytest.raises(ProtocolError, match="wrong token"):
-            send_command(server.port, "guess", "soft")
-        with pytest.raises(ProtocolError, match="wrong token"):
-            send_command(server.port, "POST", "/ HTTP/1.1")
-    assert control.stop.pending is None
-
-
-def test_bytes_of_a_foreign_encoding_reach_the_run_as_escapes():
-    control = Control()
-    with ControlServer(control) as server:
-        assert send_command(server.port, server.token, "note caf\udce9") == "done"
-    assert [note.text for note in control.take_notes()] == [r"socket: caf\udce9"]
-
-
-@pytest.mark.parametrize(
-    ("command", "message"),
-    [
-        ("note a\nemergency", "found 2 lines; expected one command"),
-        ("note a\r\nb\n", "found 2 lines; expected one command"),
-        ("note " + "x" * LONGEST_NOTE, f"{LONGEST_NOTE + 5} characters; at most {LONGEST_NOTE}"),
-    ],
-)
-def test_a_command_that_would_be_cut_is_refused(command, message):
-    control = Control()
-    with ControlServer(control) as server, pytest.raises(ProtocolError, match=message):
-        send_command(server.port, server.token, command)
-    assert (list(control.take_notes()), control.stop.pending) == ([], None)
-
-
-def test_the_longest_command_arrives_whole():
-    control = Control()
-    text = "\U0001f916" * (LONGEST_NOTE - len("note "))
-    with ControlServer(control) as server:
-        assert send_command(server.port, server.token, f"note {text}\n") == "done"
-    assert [note.text for note in control.take_notes()] == [f"socket: {text}"]
-
-
-def test_an_unknown_command_is_answered_with_the_known_ones():
-    with ControlServer(Control()) as server, pytest.raises(ProtocolError, match="expected pause,"):
-        send_command(server.port, server.token, "stopp")
-
-
-def test_only_this_machine_is_listened_to():
-    with ControlServer(Control()) as server, socket.socket() as other:
-        other.settimeout(1.0)
-        with pytest.raises(OSError):
-            other.bind(("127.0.0.1", server.port))
-
-
-def test_a_run_that_is_over_does_not_answer():
-    with ControlServer(Control()) as server:
-        port = server.port
-    with pytest.raises(LinkError, match="is it over"):
-        send_command(port, "x", "status")

@@ -1,153 +1,41 @@
 # SPDX-License-Identifier: MIT
-import itertools
-import math
-from collections import Counter
+"""Values of a plan: the ground disc's speed of a slip ratio, and limits that combine."""
+
+from dataclasses import replace
 
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
-from rig.errors import LimitExceeded, ProfileError
-from rig.experiment.steps import Point, Tare, estimate, require_allowed, spell_out
-from rig.slip_rig.profile import load_rig_profile
+from model.slip.definition import SlipDefinition, slip_ratio
+from rig.device import Limits
+from rig.experiment.plan import ground_speed, rig_limits
 
-PROFILE = load_rig_profile("rig-board-serial")
-
-
-def points(plan):
-    return [step for step in spell_out(plan) if isinstance(step, Point)]
-
-
-@pytest.mark.parametrize("order", ["monotone", "shuffled", "up-down"])
-def test_every_slip_is_measured_at_every_load(lab, order):
-    plan = lab["plan"](points={"order": order})
-    seen = {(point.load, point.slips[0]) for point in points(plan)}
-    assert seen == {(load, slip) for load in (4.0, 8.0) for slip in (0.02, 0.2, 0.8)}
+RADII = {"radius_leg": 0.035, "radius_ground": 0.12}
+ALLOWED = Limits(speed=40.0, normal_force=20.0, traction_force=20.0, torque=2.0)
 
 
-@pytest.mark.parametrize("seed", [0, 1, 77])
-def test_a_shuffle_depends_on_its_seed_alone(lab, seed):
-    plan, other = (lab["plan"](points={"order": "shuffled", "seed": s}) for s in (seed, seed + 5))
-    assert spell_out(plan) == spell_out(plan)
-    assert spell_out(plan) != spell_out(other)
+@given(st.floats(-3, 1), st.floats(0.1, 50))
+def test_the_ground_discs_speed_makes_the_slip_ratio_that_was_asked_for(slip, omega):
+    ground = ground_speed(slip, omega, **RADII)
+    speeds = (omega * RADII["radius_leg"], ground * RADII["radius_ground"])
+    assert slip_ratio(*speeds, SlipDefinition.MATERIAL) == pytest.approx(slip, abs=1e-9)
 
 
-def test_up_and_down_meets_every_slip_from_both_sides(lab):
-    plan = lab["plan"](points={"order": "up-down"})
-    found = [(p.slips[0], p.direction) for p in points(plan) if p.load == 4.0]
-    assert found == [(0.02, "up"), (0.2, "up"), (0.8, "up"), (0.2, "down"), (0.02, "down")]
+def test_at_slip_1_the_ground_disc_stands():
+    assert ground_speed(1.0, 12.0, **RADII) == 0.0
 
 
-def test_loads_are_set_as_seldom_as_can_be(lab):
-    plan = lab["plan"](points={"order": "shuffled", "repeats": 3})
-    loads = [point.load for point in points(plan)]
-    assert sum(a != b for a, b in itertools.pairwise(loads)) == 1
-    assert Counter(loads) == {4.0: 9, 8.0: 9}
+def test_of_a_plans_and_a_rigs_limits_the_smaller_counts(lab):
+    limits = replace(lab["plan"]().limits, speed=50.0, normal_force=10.0, torque=None,
+                     lateral_force=3.0, temperature_celsius=None)  # fmt: skip
+    both = rig_limits(limits, ALLOWED)
+    assert (both.speed, both.normal_force) == (40.0, 10.0)
+    assert (both.torque, both.lateral_force, both.temperature_celsius) == (2.0, 3.0, None)
 
 
-def test_zeros_and_check_points_come_as_often_as_asked(lab):
-    plan = lab["plan"](controls={"tare_every": 2, "check_every": 3, "check_slip": 0.5})
-    steps = spell_out(plan)
-    assert [step.number for step in steps] == list(range(1, len(steps) + 1))
-    assert sum(isinstance(step, Tare) for step in steps) == 3
-    assert sum(isinstance(s, Point) and s.kind == "check" for s in steps) == 2
-
-
-def test_a_sweep_is_one_run_a_load_through_all_slips(lab):
-    found = points(lab["plan"](points={"sweep": True}))
-    assert [point.load for point in found] == [4.0, 8.0]
-    assert [found[0].slip_at(f) for f in (0.0, 0.25, 0.5, 1.0)] == pytest.approx(
-        [0.02, 0.11, 0.2, 0.8]
-    )
-
-
-def test_turns_are_the_leg_discs(lab):
-    changes = {"length": "turns", "turns": 3.0}
-    with pytest.raises(ProfileError, match=r"points\.duration: unknown key"):
-        lab["plan"](points=changes)  # a duration that is not followed is an error
-    plan = lab["plan"](points=changes, drop=("points", "duration"))
-    assert plan.points.duration == pytest.approx(3 * 2 * math.pi / 12.0)
-
-
-def test_the_estimate_counts_points_loads_and_time(lab):
-    plan = lab["plan"](load={"patience": 10.0})
-    found = estimate(plan, spell_out(plan))
-    assert (found.points, found.loads) == (6, 3)
-    assert found.seconds == pytest.approx(3 * (10 + 0.6) + 0.3 + 6 * (0.15 + 0.2 + 0.3))
-
-
-@pytest.mark.parametrize(
-    ("changes", "said"),
-    [
-        ({"points": {"omega_leg": 45.0}}, r"omega_leg is 45 rad/s; its limit is 40 rad/s"),
-        ({"points": {"loads": [26.0]}}, r"Fn 26 N .* is 26 N; its limit is 25 N"),
-        ({"points": {"slips": [-12.0]}}, r"ground disc's speed .* 45.5 rad/s; its limit is 40"),
-        ({"limits": {"normal_force": 31.0}}, r"limits.normal_force is 31 N; its limit is 30 N"),
-    ],
-)
-def test_a_plan_beyond_a_limit_is_refused_before_motion(lab, changes, said):
-    twin = lab["twin"]()
-    plan = lab["plan"](**changes)
-    with pytest.raises(LimitExceeded, match=said):
-        require_allowed(plan, PROFILE)
-    with pytest.raises(LimitExceeded, match=said):
-        twin.run(plan)
-    assert twin.clock.now() == 0
-    assert twin.sink.events == []
-
-
-def test_a_limit_on_what_the_rig_cannot_measure_is_refused_before_motion(lab):
-    twin = lab["twin"]()  # a board's, which tells no temperature
-    with pytest.raises(ProfileError, match=r"temperature_celsius is 80 degC, but no device"):
-        twin.run(lab["plan"](limits={"temperature_celsius": 80.0}))
-    assert twin.sink.events == []
-
-
-@pytest.mark.parametrize(
-    ("changes", "said"),
-    [
-        ({"limits": {"normal_froce": 1.0}}, "limits.normal_froce: unknown key; did you mean 'norm"),
-        ({"points": {"order": "sideways"}}, "points.order: found 'sideways'; expected one of mono"),
-        ({"points": {"slips": [1.2]}}, "points.slips: found 1.2; expected at most 1"),
-        ({"points": {"slips": []}}, r"points.slips: found \[\]; expected numbers"),
-        ({"points": {"slips": {"first": 0.0, "lost": 1.0, "count": 3}}}, "slips.last: is missing"),
-        ({"points": {"loads": [0.0]}}, "points.loads: found 0 N; expected loads above 0 N"),
-        ({"points": {"sweep": 1}}, "points.sweep: found 1; expected true or false"),
-        ({"settle": {"timeout": 0.1}}, "settle.timeout: found 0.1 s; expected at least the wind"),
-    ],
-)
-def test_a_malformed_plan_is_refused_and_the_place_named(lab, changes, said):
-    with pytest.raises(ProfileError, match=said):
-        lab["plan"](**changes)
-
-
-@pytest.mark.parametrize(
-    ("limit", "said"),
-    [
-        ({"silence": 1.5}, r"limits.silence: found 1.5 s, above 1 s"),
-        ({"speed_error_time": 1.5}, r"limits.speed_error_time: found 1.5 s, above 1 s"),
-        ({"speed_error": 6.5}, r"limits.speed_error: found 6.5 rad/s, above 6 rad/s"),
-        ({"in_a_row": 11}, r"limits.in_a_row: found 11 samples, above 10"),
-        ({"reading_age": 1.5}, r"limits.reading_age: found 1.5 s, above 1 s"),
-        ({"frozen": 1.5}, r"limits.frozen: found 1.5 s, above 1 s"),
-        ({"rest_speed": 1.5}, r"limits.rest_speed: found 1.5 rad/s, above 1 rad/s"),
-    ],
-)
-def test_a_limit_so_high_that_its_guard_is_off_is_refused(lab, limit, said):
-    with pytest.raises(ProfileError, match=said):
-        lab["plan"](limits=limit)
-
-
-def test_a_guard_is_off_only_where_it_is_named_so(lab):
-    plan = lab["plan"](limits={"silence": 1.5, "frozen": 9.0, "guards_off": ["silence", "frozen"]})
-    assert plan.limits.off_said == "silence (1.5 s), frozen (9 s)"
-    assert lab["plan"]().limits.off_said == ""
-    with pytest.raises(ProfileError, match=r"guards_off: names 'silence', whose limit of 0.25 s"):
-        lab["plan"](limits={"guards_off": ["silence"]})
-    with pytest.raises(ProfileError, match=r"guards_off: found \['everything'\]; expected a list"):
-        lab["plan"](limits={"guards_off": ["everything"]})
-
-
-def test_an_even_series_has_both_ends(lab):
-    plan = lab["plan"](points={"slips": {"first": 0.0, "last": 1.0, "count": 62}})
-    assert len(plan.points.slips) == 62
-    assert (plan.points.slips[0], plan.points.slips[-1]) == (0.0, 1.0)
-    assert math.isclose(plan.points.slips[1], 1 / 61)
+def test_guards_that_are_off_are_named_with_their_limits(lab):
+    limits = lab["plan"]().limits
+    assert limits.off_said == ""
+    off = replace(limits, silence=2.0, speed_error=9.0, guards_off=("silence", "speed_error"))
+    assert off.off_said == "silence (2 s), speed_error (9 rad/s)"

@@ -4,7 +4,7 @@ import pytest
 
 from rig.clock import ManualClock
 from rig.errors import NotAtRest
-from rig.experiment.bench import Batch, join
+from rig.experiment.readings import Batch, join
 from rig.experiment.rest import prove_rest
 
 PERIOD = 0.01

@@ -2,7 +2,7 @@
 import numpy as np
 import pytest
 
-from rig.experiment.bench import Readings
+from rig.experiment.readings import Readings
 from rig.experiment.steps import Point
 from rig.experiment.verdict import friction, halves, is_steady, judge_point
 from rig.slip_rig.profile import load_rig_profile

@@ -1,35 +1,27 @@
 # SPDX-License-Identifier: MIT
+""""""
+
 import math
 import time
 from contextlib import contextmanager
 
 import can
-import cantools
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from rig.clock import ManualClock
-from rig.device import iterate
 from rig.errors import DeviceFault, LimitExceeded, RigTimeout
 from rig.links.can import CanLink
 from rig.links.serve import Ticker
 from rig.links.slcan import SlcanAdapter
-from rig.profile import shipped_file
 from rig.slip_rig.can_simple import (
-    AXIS_STATE,
-    CONTROLLER_MODE,
     ESTIMATES,
-    HEARTBEAT,
-    INPUT_VELOCITY,
-    TEMPERATURES,
     Command,
     can_id,
     describe_error,
-    split_id,
 )
-from rig.slip_rig.decode import decode_speeds
 from rig.slip_rig.drives import DriveBus, disc_speed
 from rig.slip_rig.imperfections import RigImperfections
 from rig.slip_rig.profile import load_rig_profile
@@ -74,18 +66,6 @@ def healthy(drives):
     return True
 
 
-def test_discs_reach_their_speeds_and_slip_is_that_of_the_speeds(request, take):
-    with twin(request) as (_, drives), drives:
-        turn(drives)
-        samples = take(drives, 100)
-        drives.require_healthy()
-    speeds = decode_speeds(PROFILE.drives.leg, PROFILE.drives.ground, samples)
-    assert speeds.leg[-1] == pytest.approx(10.0, rel=0.01)
-    assert speeds.ground[-1] == pytest.approx(2.0, rel=0.01)
-    slip = 1 - 2.0 * PROFILE.radius_ground / (10.0 * PROFILE.radius_leg)
-    assert speeds.slip(PROFILE)[-1] == pytest.approx(slip, abs=0.02)
-
-
 def test_leaving_stops_the_discs(request, wait_until):
     with twin(request) as (axes, drives):
         with drives:
@@ -99,17 +79,6 @@ def test_leaving_by_an_error_stops_the_discs(request, wait_until):
         with pytest.raises(LimitExceeded), drives:
             turn(drives, leg=1e6)
         wait_until(lambda: not axes.turning())
-
-
-def test_a_host_that_reads_no_more_is_stopped_by_the_watchdog(request, wait_until):
-    with twin(request) as (axes, drives), drives:
-        turn(drives)
-        list(iterate(drives, duration=2 * WATCHDOG))
-        assert axes.turning()  # reading feeds
-        wait_until(lambda: not axes.turning())
-        wait_until(lambda: not healthy(drives), reading=drives)
-        with pytest.raises(DeviceFault, match="watchdog timer expired"):
-            drives.require_healthy()
 
 
 def test_a_fault_of_a_drive_is_spelled_out_and_arming_again_clears_it(request, wait_until):
@@ -152,45 +121,9 @@ def test_an_estimate_that_is_no_number_is_refused(request, wait_until):
     assert all(math.isfinite(sample.counts[0]) for sample in samples)
 
 
-@given(st.integers(0, 63), st.sampled_from(Command))
-def test_an_id_splits_into_what_made_it(node, command):
-    assert split_id(can_id(node, command)) == (node, command)
-    assert can_id(node, command) <= 0x7FF
-
-
 @given(st.integers(0, 2**32 - 1), st.sampled_from(["0.5", "0.6"]))
 def test_every_error_is_spelled_out(error, firmware):
     assert bool(describe_error(error, firmware)) == bool(error)
-
-
-def test_the_shipped_dbc_agrees_with_the_layouts():
-    text = shipped_file("odrive-cansimple.dbc").read_text()
-    database = cantools.database.load_string(text, "dbc")
-
-    def decode(command, data):
-        return database.decode_message(int(command), data, decode_choices=False)
-
-    assert decode(Command.HEARTBEAT, HEARTBEAT.pack(0x800, 8) + bytes(3)) == {
-        "AxisError": 0x800,
-        "AxisState": 8,
-    }
-    assert decode(Command.ENCODER_ESTIMATES, ESTIMATES.pack(-1.5, 0.25)) == {
-        "Position": -1.5,
-        "Velocity": 0.25,
-    }
-    assert decode(Command.SET_INPUT_VELOCITY, INPUT_VELOCITY.pack(2.5, 0.0)) == {
-        "InputVelocity": 2.5,
-        "TorqueFeedForward": 0.0,
-    }
-    assert decode(Command.SET_AXIS_STATE, AXIS_STATE.pack(8)) == {"RequestedState": 8}
-    assert decode(Command.SET_CONTROLLER_MODE, CONTROLLER_MODE.pack(2, 1)) == {
-        "ControlMode": 2,
-        "InputMode": 1,
-    }
-    assert decode(Command.TEMPERATURE, TEMPERATURES.pack(41.5, 30.25)) == {
-        "TransistorTemperature": 41.5,
-        "MotorTemperature": 30.25,
-    }
 
 
 class AdapterPort:

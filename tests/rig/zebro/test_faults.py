@@ -15,7 +15,6 @@ from rig.links.faults import Faults
 from rig.links.memory import MemoryLink
 from rig.twins import robot_twin
 from rig.zebro.profile import encode_counts, load_leg_profile
-from rig.zebro.simulated_legs import RobotImperfections, SimulatedLegs
 
 TIMES = np.linspace(0, 200, 4001)
 GAIT = SampledReference(TIMES, np.outer(TIMES, np.full(6, 4.0)) + np.arange(6))
@@ -64,33 +63,10 @@ def test_no_wrong_sample_is_handed_on_and_every_missing_one_is_counted(faults):
     assert len(samples) > 100
 
 
-def test_doubled_frames_are_refused_as_repeated():
-    samples, counters = read(Faults(duplicate=1.0), duration=2.0)
-    assert counters.repeated == len(samples)
-    assert counters.lost == 0
-
-
-def test_a_late_frame_is_counted_as_lost_and_as_repeated():
-    _, counters = read(Faults(delay=0.1))
-    assert counters.lost == pytest.approx(counters.repeated, abs=2)
-    assert counters.lost > 50
-
-
 def test_damage_is_counted_and_so_is_finding_back():
     _, counters = read(Faults(truncate=0.1))
     assert counters.damaged > 50
     assert 0 < counters.resynchronised <= counters.damaged
-
-
-def test_a_robot_that_restarts_is_noticed_and_read_on():
-    stream, clock, twin = stream_of(SERIAL, Faults())
-    with stream:
-        before = list(iterate(stream, duration=5.0, clock=clock))
-        twin.legs.restart()
-        after = list(iterate(stream, duration=1.0, clock=clock))
-    assert stream.counters.restarted == 1
-    assert len(after) >= 99
-    assert before[-1].sequence < after[0].sequence
 
 
 def test_another_device_at_the_port_is_named_as_a_mismatch():
@@ -100,56 +76,6 @@ def test_another_device_at_the_port_is_named_as_a_mismatch():
     stream, clock, _ = stream_of(SERIAL, Faults(), twin=imu)
     with stream, pytest.raises(DeviceMismatch, match="ports swapped"):
         list(iterate(stream, duration=5.0, clock=clock))
-
-
-def test_counts_beyond_the_circle_are_refused():
-    clock = ManualClock()
-    fine = load_leg_profile("zebrobus-uart")
-    twin = robot_twin(fine, GAIT, rng=np.random.default_rng(0))
-    coarse = load_leg_profile("zebrobus-uart")
-    object.__setattr__(coarse, "counts_per_revolution", 100)
-    with leg_driver(coarse, MemoryLink(twin, clock=clock), clock=clock) as stream:
-        list(iterate(stream, duration=5.0, clock=clock))
-    assert stream.counters.refused > 100
-
-
-def test_a_poll_whose_answer_is_cut_is_not_mixed_with_the_next():
-    profile = load_leg_profile("zebrobus-uart")
-    samples, counters = read(Faults(truncate=0.2, drop=0.1), 20.0, profile)
-    assert counters.damaged > 50
-    assert counters.resynchronised > 0
-    # every leg turns at 4 rad/s: never a jump, as of a value taken for another leg's
-    turned = np.diff([sample.counts for sample in samples], axis=0)
-    expected = np.diff([sample.host_time for sample in samples]) * 4.0 / (2 * np.pi) * 910
-    error = (turned - expected[:, None] + 455) % 910 - 455
-    assert np.all(np.abs(error) < 910 * 4.0 * 0.03 / (2 * np.pi))
-
-
-def test_an_answer_that_comes_too_late_is_never_taken_for_the_next_one():
-    class Late:
-        """Answers the k-th request with k, every fifth too late."""
-
-        source = "sim:zebro"
-        requests = 0
-        due = ()
-
-        def poll(self, now, received):
-            if received:
-                self.requests += 1
-                when = now + (0.055 if self.requests % 5 == 0 else 0.01)
-                self.due = (*self.due, (when, self.requests))
-            ready = [k for when, k in self.due if when <= now]
-            self.due = tuple(item for item in self.due if item[0] > now)
-            return b"".join(6 * k.to_bytes(2, "big") for k in ready)
-
-    twin = Late()
-    stream, *_ = stream_of(load_leg_profile("zebrobus-uart"), Faults(), twin=twin)
-    with stream:
-        for _ in range(200):
-            for sample in stream.read(0.2):
-                assert sample.counts == (twin.requests,) * 6
-    assert stream.counters.damaged == twin.requests // 5
-    assert stream.counters.received == twin.requests - twin.requests // 5
 
 
 def test_half_a_frame_from_before_a_gap_does_not_spoil_the_first_one_after_it():
@@ -176,42 +102,3 @@ def test_half_a_frame_from_before_a_gap_does_not_spoil_the_first_one_after_it():
         numbers = [s.sequence for _ in range(2) for s in stream.read(0.1)]
     assert numbers == [0, 2, 3]
     assert stream.counters.damaged == 0
-
-
-@pytest.mark.parametrize("faults", [Faults(truncate=0.1), Faults(drop=0.2), Faults(garbage=0.2)])
-def test_a_dump_keeps_its_values_apart_through_faults_of_whole_frames(faults):
-    profile = load_leg_profile("vregs-dump")
-    samples, _ = read(faults, 20.0, profile)
-    assert len(samples) > 500
-    steps = np.diff([sample.counts[0] for sample in samples]) % 910
-    assert np.all(steps < 910 * 4.0 * 0.3 / (2 * np.pi))
-
-
-def test_a_pause_holds_the_legs_and_the_gait_goes_on_after_it():
-    cycle = np.array([0.0, 0.8, 1.0])
-    turn = np.array([0.0, 1.0, 2 * np.pi])
-    t = np.concatenate([cycle[:2] + k for k in range(20)])
-    theta = np.concatenate([turn[:2] + 2 * np.pi * k for k in range(20)])
-    gait = SampledReference(t, np.repeat(theta[:, None], 6, axis=1))
-    pausing = RobotImperfections(pause_probability=1.0, pause=0.3)
-    legs = SimulatedLegs(gait, profile=SERIAL, imperfections=pausing, rng=np.random.default_rng(0))
-    frames = [f for k in range(1000) for f in legs.frames(k / 100)]
-    behind = 10.0 - np.interp(legs.angles(10.0)[0], theta, t)
-    pauses = round(behind / 0.3)
-    assert len(frames) == 1000
-    assert 6 <= pauses <= 8  # one a cycle of 1.3 s
-    assert behind == pytest.approx(0.3 * pauses, abs=0.02 * pauses)
-
-
-def test_jitter_moves_the_reading_and_leaves_the_order():
-    legs = SimulatedLegs(
-        GAIT,
-        profile=SERIAL,
-        imperfections=RobotImperfections(jitter=0.01, clock_rate_error=1e-4),
-        rng=np.random.default_rng(0),
-    )
-    frames = [f for k in range(500) for f in legs.frames(k / 100)]
-    taken = np.array([f.time for f in frames])
-    assert np.all(np.diff(taken) > 0)
-    assert np.std(taken - np.arange(len(taken)) / 100) > 0.002
-    assert frames[-1].device_time / frames[-1].time == pytest.approx(1 + 1e-4)

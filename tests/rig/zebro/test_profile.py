@@ -1,4 +1,6 @@
 # SPDX-License-Identifier: MIT
+""""""
+
 from dataclasses import replace
 
 import numpy as np
@@ -8,7 +10,7 @@ from hypothesis import strategies as st
 
 from rig.device import Sample
 from rig.errors import ProfileError, ProtocolError
-from rig.profile import open_profile, shipped_file, shipped_profiles, split_address
+from rig.profile import shipped_file
 from rig.zebro.profile import (
     decode_angles,
     encode_counts,
@@ -121,18 +123,3 @@ def test_any_text_is_a_profile_or_a_profile_error(tmp_path_factory, text):
     path.write_text(text, encoding="utf-8", errors="replace")
     with pytest.raises(ProfileError):
         load_leg_profile(str(path))
-
-
-def test_an_unknown_profile_is_named_with_its_nearest():
-    with pytest.raises(ProfileError, match="did you mean 'zebro-100-serial'"):
-        open_profile("zebro-100-serail", device="legs")
-
-
-def test_every_shipped_profile_has_a_device():
-    assert set(LEG_PROFILES) < set(shipped_profiles())
-
-
-@pytest.mark.parametrize("address", ["zebro-100-serial", "@/dev/ttyUSB0", "profile@"])
-def test_half_an_address_is_refused(address):
-    with pytest.raises(ProfileError, match="PROFILE@PORT"):
-        split_address(address)

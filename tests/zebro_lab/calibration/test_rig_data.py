@@ -13,7 +13,7 @@ from model.slip import convert_slip
 from zebro_lab.calibration.rig_data import RigData, read_rig_data
 from zebro_lab.files.errors import DataError, SettingsError
 from zebro_lab.mcap.slip_rig_log import SlipRigTable
-from zebro_lab.runs.folder import write_slip_rig_run
+from zebro_lab.runs.table_run import write_slip_rig_run
 
 RADII = '[constants]\nradius_leg = "35 mm"\nradius_ground = 0.12\n'
 N = 40

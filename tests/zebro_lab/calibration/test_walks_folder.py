@@ -13,6 +13,7 @@ from model.bayes.walks.posterior import WalkPosterior
 from model.bayes.walks.prior import LINEAR, NAMES, WRONG, WalkPrior, WrongLeg, all_cases
 from model.gait import tripod_angles, tripod_reference
 from model.robot import Robot
+from support.watchers import Nobody
 from zebro_lab.calibration.slip_argument import parse_slip
 from zebro_lab.calibration.walks_folder import FOLDER, WalksToWrite, read_walks_beside, write_walks
 from zebro_lab.files.errors import DataError, SettingsError
@@ -44,16 +45,6 @@ STEERING, STRIDE = LINEAR
 GRIP = NAMES.index("grip")
 KNOCKED = WrongLeg(2, walk=1)
 OFF = np.radians(5.0)
-
-
-class Nobody:
-    """A watcher that does not look."""
-
-    def step(self, what: str, fraction: float | None) -> None:
-        pass
-
-    def stop_requested(self) -> bool:
-        return False
 
 
 def posterior_of(case, *, steering=0.0):

@@ -4,6 +4,7 @@
 import numpy as np
 import pytest
 
+from support.watchers import Onlooker
 from zebro_lab.exchange.export_stage import FORMATS, export_run
 from zebro_lab.files.errors import AlreadyExists
 from zebro_lab.recording.stage import RecordRequest, record
@@ -12,21 +13,11 @@ from zebro_lab.runs.legs import read_leg_log
 from zebro_lab.tables.table_files import read_table_file
 
 
-class Silent:
-    """Looks on and says nothing."""
-
-    def show(self, status):
-        pass
-
-    def stop_reason(self):
-        return None
-
-
 @pytest.fixture(scope="module")
 def recorded(tmp_path_factory):
     """Return a run folder of a simulated robot and rig."""
     data = tmp_path_factory.mktemp("data")
-    return record(RecordRequest(data, "x", zebro="sim", rig="sim", duration=2.0), Silent()).folder
+    return record(RecordRequest(data, "x", zebro="sim", rig="sim", duration=2.0), Onlooker()).folder
 
 
 @pytest.mark.parametrize("form", FORMATS)

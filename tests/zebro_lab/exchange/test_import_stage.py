@@ -14,6 +14,7 @@ from rig.backends import leg_driver, leg_link
 from rig.errors import ProfileError
 from rig.imu.profile import decode_orientation, load_imu_profile
 from rig.zebro.profile import load_leg_profile
+from support.watchers import Nobody
 from zebro_lab.calibration.rig_data import read_rig_data
 from zebro_lab.exchange.export_stage import export_run
 from zebro_lab.exchange.import_stage import ImportRequest, import_run
@@ -47,14 +48,6 @@ rate_z = {name = "yaw_rate", unit = "deg/s"}
 x_m = {name = "east_mm", unit = "mm"}
 y_m = {name = "north_mm", unit = "mm"}
 """
-
-
-class Nobody:
-    def step(self, what, fraction):
-        pass
-
-    def stop_requested(self):
-        return False
 
 
 @pytest.fixture

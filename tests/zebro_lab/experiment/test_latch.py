@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from rig.errors import RigError
-from rig.experiment.acquire import Acquisition
+from rig.experiment.acquire import GuardedAcquisition
 from rig.experiment.control import Control
 from rig.safety import StopCategory
 from zebro_lab.experiment.journal import JOURNAL_FILE, JournalWriter
@@ -41,7 +41,7 @@ def test_a_line_separator_in_the_reason_releases_nothing(lab, plan, tmp_path, se
 
 def test_an_emergency_beside_a_guard_is_latched(lab, plan, tmp_path, monkeypatch):
     plan.write_text(plan.read_text().replace("traction_force = 15.0", "traction_force = 0.6"))
-    data, control, guard = tmp_path / "data", Control(), Acquisition._guard
+    data, control, guard = tmp_path / "data", Control(), GuardedAcquisition._guard
 
     def trip(self, batch, now):
         try:
@@ -50,7 +50,7 @@ def test_an_emergency_beside_a_guard_is_latched(lab, plan, tmp_path, monkeypatch
             control.stop.request(StopCategory.EMERGENCY, "planted")
             raise
 
-    monkeypatch.setattr(Acquisition, "_guard", trip)
+    monkeypatch.setattr(GuardedAcquisition, "_guard", trip)
     with pytest.raises(RigError, match="traction force"):
         lab.run(plan, data, control=control)
     with pytest.raises(SettingsError, match="latched"):

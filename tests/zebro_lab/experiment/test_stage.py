@@ -1,59 +1,32 @@
 # SPDX-License-Identifier: MIT
 """An experiment on disk: run folders, journal, resume, and what is left after a kill."""
 
-import json
-import math
 import os
 import signal
 import subprocess
 import sys
 import time
-from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from rig.errors import LimitExceeded, RigError
 from rig.experiment.control import Control
-from rig.experiment.sink import SinkFailed
 from rig.links.serve import PortServer
 from rig.safety import StopCategory
 from rig.slip_rig.imperfections import TYPICAL_RIG
 from rig.slip_rig.profile import load_rig_profile
 from rig.slip_rig.simulated import RigDynamics, simulated_rig
 from rig.slip_rig.simulated_board import SimulatedBoard
-from rig.slip_rig.sweep import SOURCE_LAW, SOURCE_VALUES, SweepPlan
+from rig.slip_rig.sweep import SweepPlan
 from zebro_lab.calibration.rig_data import read_rig_data
-from zebro_lab.experiment.folder import ExperimentFolder
-from zebro_lab.experiment.journal import JOURNAL_FILE, JournalWriter, read_journal
-from zebro_lab.experiment.plan_file import read_plan
-from zebro_lab.experiment.rig_at_hand import rig_at_hand
+from zebro_lab.experiment.journal import read_journal
 from zebro_lab.experiment.stage import command_run
-from zebro_lab.experiment.weigh_stage import WeighRequest, render_load_cell, weigh_masses
 from zebro_lab.files.errors import AlreadyExists, DataError, NotFound, SettingsError
-from zebro_lab.runs.folder import find_runs, read_manifest, read_slip_rig_run
+from zebro_lab.runs.folder import find_runs, read_slip_rig_run
 
 WATCHDOG = 2.0
 """Ten times a real one's [s]: a busy machine holds a process up for longer than that."""
-
-
-def test_each_point_is_a_run_that_a_calibration_reads(lab, plan, tmp_path):
-    data = tmp_path / "data"
-    outcome = lab.run(plan, data)
-    assert outcome.completed
-    found = read_rig_data([data])
-    assert found.samples.n_runs == 6
-    assert found.source == "sim:rig"
-    for index in range(6):
-        chosen = found.samples.run == index
-        expected = SOURCE_LAW.force(
-            found.samples.slip[chosen], found.samples.normal_force[chosen], SOURCE_VALUES
-        )
-        assert found.samples.traction_force[chosen].mean() == pytest.approx(
-            expected.mean(), abs=0.3
-        )
-    assert lab.journal(data)[-1]["text"] == "completed"
-    assert not (data / "control.json").exists()
 
 
 @pytest.mark.parametrize(
@@ -70,18 +43,6 @@ def test_a_damaged_address_of_an_experiment_is_one_line(tmp_path, content):
 def test_no_address_means_that_no_experiment_runs(tmp_path):
     with pytest.raises(NotFound, match="no experiment runs here"):
         command_run(tmp_path, "status")
-
-
-def test_a_run_keeps_raw_counts_profile_and_zero(lab, plan, tmp_path):
-    data = tmp_path / "data"
-    lab.run(plan, data)
-    manifest = read_manifest(find_runs(data)[0])
-    assert manifest.profiles == {"rig": "rig-board-serial"}
-    assert {"zero_normal", "zero_traction", "radius_leg", "radius_ground"} <= set(
-        manifest.constants
-    )
-    assert manifest.label.startswith("point-0002 Fn 4 N slip 0.0200")
-    assert "magic-formula" in json.dumps(dict(manifest.truth))
 
 
 def test_a_stopped_experiment_is_resumed_where_it_was(lab, plan, tmp_path):
@@ -118,81 +79,11 @@ def test_an_emergency_stop_stays_latched_on_disk_until_it_is_reset(lab, plan, tm
     assert lab.run(plan, data, resume=True).attempts == 0  # the latch is gone
 
 
-def test_refused_attempts_are_kept_and_left_out(lab, plan, tmp_path):
-    plan.write_text(plan.read_text().replace("slip = 0.02   ", "slip = 1e-9   "))
-    outcome = lab.run(plan, tmp_path / "data")
-    assert len(outcome.refused) == 6
-    runs = find_runs(tmp_path / "data")
-    assert len(runs) == 18
-    assert all("off its set-point" in read_manifest(r).excluded["why"] for r in runs)
-
-
 def test_a_plan_beyond_a_limit_leaves_nothing_behind(lab, plan, tmp_path):
     plan.write_text(plan.read_text().replace("omega_leg = 12.0", "omega_leg = 50.0"))
     with pytest.raises(LimitExceeded, match="50 rad/s; its limit is 40 rad/s"):
         lab.run(plan, tmp_path / "data")
     assert not (tmp_path / "data").exists()
-
-
-def test_an_unknown_key_names_file_key_and_the_nearest(plan):
-    plan.write_text(plan.read_text().replace("acceleration =", "aceleration ="))
-    with pytest.raises(SettingsError, match=r"plan\.toml, limits\.acceleration: is missing"):
-        read_plan(plan)
-    plan.write_text(plan.read_text() + "acceleration = 40.0\n")
-    with pytest.raises(SettingsError, match="aceleration: unknown key; did you mean 'accelera"):
-        read_plan(plan)
-
-
-def test_a_full_disk_stops_and_the_journal_says_why(lab, plan, tmp_path, monkeypatch):
-    def full(self, least):
-        raise SinkFailed("room for data is 0 MB; its limit is 100 MB")
-
-    data, filled = tmp_path / "data", []
-
-    def fill():
-        filled.append(monkeypatch.setattr(ExperimentFolder, "require_room", full))
-
-    with pytest.raises(SinkFailed, match="room for data is 0 MB"):
-        lab.run(plan, data, watcher=lab.StopAfter(2, fill))
-    assert "room for data is 0 MB" in lab.journal(data)[-1]["text"]
-    monkeypatch.undo()
-    assert lab.run(plan, data, resume=True).finished == 6
-
-
-def test_a_disk_that_fails_while_writing_stops(lab, plan, tmp_path, monkeypatch):
-    def fail(self, stream, samples):
-        raise OSError(28, "No space left on device")
-
-    def plant():
-        monkeypatch.setattr("zebro_lab.recording.recorder.RunRecorder.write", fail)
-
-    with pytest.raises(RigError, match="No space left on device"):
-        lab.run(plan, tmp_path / "data", watcher=lab.StopAfter(1, plant))
-
-
-def test_a_journal_survives_a_line_cut_short(tmp_path):
-    writer = JournalWriter(tmp_path)
-    writer.append("plan", "text", fingerprint="f")
-    writer.append("point", "accepted", number=2, accepted=True, folder="a")
-    with (tmp_path / JOURNAL_FILE).open("a") as file:
-        file.write('{"kind": "point", "number": 3, "acc')
-    assert read_journal(tmp_path).accepted == {"a": 2}
-    writer.repair()
-    writer.append("point", "accepted", number=4, accepted=True, folder="b")
-    found = read_journal(tmp_path)
-    assert (found.accepted, found.latched) == ({"a": 2, "b": 4}, None)
-
-
-def test_a_weighing_gives_the_gain_its_prior(tmp_path):
-    request = WeighRequest((0.2, 0.5, 1.0), "sim", tmp_path, fast=True)
-    weighing, check, written = weigh_masses(request, lambda text, normal: None, Control())
-    with rig_at_hand("sim", seed=request.seed, fast=True) as rig:
-        gain = rig.truth["rig"]["imperfections"]["gain_normal"]
-    assert check.slope == pytest.approx(1 / (1 + gain), abs=1e-4)
-    assert len(weighing.forces) == 4
-    assert written.read_text() == render_load_cell(check)
-    with pytest.raises(AlreadyExists):
-        weigh_masses(request, lambda text, normal: None, Control())
 
 
 class Rig:
@@ -295,12 +186,3 @@ def test_a_signal_leaves_motors_at_rest_valid_runs_and_a_run_to_resume(
         assert process.returncode == 0, output
         assert rig.closed() == 6
         assert read_rig_data([rig.data]).samples.n_runs == 6
-
-
-@pytest.mark.parametrize("bad", [{"weight_sd": math.inf}, {"weight_sd": math.nan},
-                                 {"gravity": math.nan}, {"masses": (0.2, math.inf)}])  # fmt: skip
-def test_numbers_that_are_not_finite_are_not_weighed(bad, tmp_path):
-    request = replace(WeighRequest((0.2, 1.0), "sim", tmp_path, fast=True), **bad)
-    with pytest.raises(SettingsError, match="finite"):
-        weigh_masses(request, lambda text, normal: None, Control())
-    assert list(tmp_path.iterdir()) == []

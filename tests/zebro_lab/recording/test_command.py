@@ -14,7 +14,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from rig.zebro.profile import load_leg_profile
 from zebro_lab.main import app
 from zebro_lab.mcap.raw_log import read_raw_log
 from zebro_lab.terminal.ending import run as run_app
@@ -145,37 +144,6 @@ def test_a_disk_that_takes_no_more_ends_a_recording_with_its_record(run, tmp_pat
     assert manifest["exit_status"].startswith("failed: ")
     assert "log_sha256" not in manifest
     assert len(read_raw_log(folder / "log.mcap").streams["/load_cell/raw"]) > 100
-
-
-def test_a_twin_prints_its_port_and_any_program_can_record_it(run, tmp_path):
-    with started("sim", "zebro", "--socket", "--drop", "0.1", "--seed", "3") as twin:
-        line = twin.stdout.readline()
-        assert line.startswith("SIMULATED robot (sim:zebro), profile zebro-100-serial: socket://")
-        port = line.split()[-1]
-        code, out, _ = run("record", "--zebro", f"zebro-100-serial@{port}", "--duration", 1.0,
-                           "--label", "x", "--data", tmp_path)  # fmt: skip
-        twin.send_signal(signal.SIGTERM)
-        assert twin.wait(20) == 0
-    assert code == 0
-    received, lost = map(int, re.search(r"legs: (\d+) samples, (\d+) lost", out).groups())
-    assert received > 50
-    assert 0 < lost < 0.3 * received
-
-
-def test_zebro_check_fixes_order_and_writes_a_profile(tmp_path):
-    file = tmp_path / "mine.toml"
-    answers = ["1", "y", "2", "y", "9", "3", "n", "5", "y", "4", "y", "6", "y", ""]
-    command = [COMMAND, "zebro", "check", "sim", "--save", file]
-    checked = subprocess.run(
-        command, input="\n".join(answers) + "\n", capture_output=True, text=True, check=False
-    )
-    assert checked.returncode == 0, checked.stderr
-    assert f"wrote {file}" in checked.stdout
-    profile = load_leg_profile(str(file))
-    assert profile.legs == (1, 2, 3, 5, 4, 6)
-    assert profile.sign == (1, 1, -1, 1, 1, 1)
-    again = subprocess.run(command, input="", capture_output=True, text=True, check=False)
-    assert (again.returncode, again.stderr.count("\n")) == (1, 1)
 
 
 def test_a_run_is_exported_as_tables(run, tmp_path):

@@ -4,7 +4,6 @@
 import errno
 import json
 import os
-import shutil
 import threading
 import time
 from datetime import datetime
@@ -201,42 +200,6 @@ def test_no_step_of_the_wall_clock_shows_in_the_log(tmp_path, monkeypatch):
     monkeypatch.undo()
     host = read_raw_log(run.folder / "log.mcap").streams["/legs/raw"].host_time
     assert 0 <= host[0] <= host[1] < 1.0
-
-
-REMOVALS = {
-    "the run folder removed": lambda folder: shutil.rmtree(folder),
-    "the data folder removed": lambda folder: shutil.rmtree(folder.parent),
-    "the run folder renamed": lambda folder: folder.rename(folder.with_name("renamed")),
-    "the data folder renamed": lambda folder: folder.parent.rename(
-        folder.parent.with_name("renamed")
-    ),
-    "another log in its place": lambda folder: (
-        (folder / "copy").write_bytes(b"") or (folder / "copy").replace(folder / "log.mcap")
-    ),
-}
-
-
-@pytest.mark.parametrize("remove", REMOVALS.values(), ids=REMOVALS)
-def test_a_folder_that_goes_while_recording_is_a_failure_within_a_second(tmp_path, remove):
-    before = set(threading.enumerate())
-    with recorder(tmp_path / "data") as run:
-        run.write("legs", some(0, 10))
-        until(lambda: count_in(run) == 10)
-        remove(run.folder)
-        until(lambda: run.failure is not None, limit=1.0)
-    assert "log.mcap" in run.failure
-    assert "removed or renamed" in run.failure
-    assert set(threading.enumerate()) <= before
-
-
-def test_a_run_folder_renamed_while_recording_gets_its_end_record(tmp_path):
-    with recorder(tmp_path) as run:
-        run.write("legs", some(0, 10))
-        until(lambda: count_in(run) == 10)
-        there = run.folder.rename(tmp_path / "renamed")
-        until(lambda: run.failure is not None, limit=1.0)
-    assert "removed or renamed" in read_manifest(there).exit_status
-    assert len(read_raw_log(there / "log.mcap").streams["/legs/raw"]) == 10
 
 
 @pytest.mark.parametrize("error", [OSError(errno.EIO, "Input/output error"), MemoryError("full")])

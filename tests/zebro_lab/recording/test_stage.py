@@ -10,22 +10,22 @@ import numpy as np
 import pytest
 
 from model.gait.reference import SampledReference
+from rig.acquisition import Acquisition, Device, acquiring
 from rig.backends import leg_driver, leg_link
 from rig.device import Counters, Sample
-from rig.errors import DeviceMismatch, LimitExceeded, ProfileError
+from rig.errors import DeviceMismatch
 from rig.links.serve import PortServer
 from rig.replay import ReplayStream
-from rig.slip_rig.profile import load_rig_profile
+from rig.sample_queue import LossyTap
 from rig.twins import robot_twin
 from rig.zebro.profile import load_leg_profile
-from zebro_lab.files.errors import DataError, RecordingError, SettingsError
+from support.watchers import RecordWatcher
+from zebro_lab.files.errors import DataError, RecordingError
 from zebro_lab.mcap.raw_log import read_raw_log
 from zebro_lab.mcap.stream_views import LegsView
 from zebro_lab.recording import stage as module
-from zebro_lab.recording.acquisition import Acquisition, Device, acquiring
-from zebro_lab.recording.devices import ForceCheck, OpenDevices, default_gait
+from zebro_lab.recording.devices import OpenDevices, default_gait
 from zebro_lab.recording.recorder import RunDescription, RunRecorder
-from zebro_lab.recording.sample_queue import LossyTap
 from zebro_lab.recording.simulate_stage import TwinRequest, serve_zebro
 from zebro_lab.recording.stage import RecordRequest, record
 from zebro_lab.robot.gait_player import LEAD_IN
@@ -37,29 +37,6 @@ from zebro_lab.runs.stage import list_runs
 LEGS = load_leg_profile("zebro-100-serial")
 ENOUGH = {"legs": 120, "imu1": 120, "imu2": 120, "drives": 240, "load_cell": 8000}
 """Samples of each simulated device that a run of all waits for: about 1.2 s of each."""
-
-
-class Watcher:
-    """Looks on; asks for the end after so many looks or samples of each stream, or raises."""
-
-    def __init__(self, *, looks=None, samples=None, error=None):
-        self.seen = []
-        self._looks, self._samples, self._error = looks, samples or {}, error
-
-    def show(self, status):
-        self.seen.append(status)
-        if self._error is not None and len(self.seen) > 2:
-            raise self._error
-
-    def stop_reason(self):
-        looked = self._looks is not None and len(self.seen) >= self._looks
-        return "key" if looked or self._enough() else None
-
-    def _enough(self):
-        if not (self._samples and self.seen):
-            return False
-        streams = self.seen[-1].streams
-        return all(streams[k].counters.received >= n for k, n in self._samples.items())
 
 
 def events(folder):
@@ -77,7 +54,7 @@ def everything(tmp_path_factory):
 
     It ends when enough has come: how long that takes is the machine's affair.
     """
-    watcher = Watcher(samples=ENOUGH)
+    watcher = RecordWatcher(samples=ENOUGH)
     request = RecordRequest(
         tmp_path_factory.mktemp("data"), "all", zebro="sim", imus=("sim", "sim"), rig="sim",
         duration=30.0, material="POM", operator="a",
@@ -121,19 +98,11 @@ def test_a_recorded_rig_is_data_for_a_calibration(everything):
 def test_recorded_samples_replay_through_the_drivers_interface(everything):
     stream = read_raw_log(everything[0].folder / "log.mcap").streams["/load_cell/raw"]
     samples = stream
-    replay = ReplayStream(samples, name="load_cell", origin="RUN", speed=1e6)
+    replay = ReplayStream(samples, name="load_cell", source="replay:RUN", speed=1e6)
     with replay:
         time.sleep(0.01)
         again = replay.read(0.1)
     assert [s[1:] for s in again] == [s[1:] for s in samples]
-
-
-def test_a_board_is_data_for_a_calibration(tmp_path):
-    request = RecordRequest(tmp_path, "board", rig="rig-board-serial@sim", duration=30.0)
-    recorded = record(request, Watcher(samples={"board": 600}))
-    table = read_slip_rig_run(recorded.folder).table
-    assert len(table) >= 600
-    assert np.median(np.diff(table.t)) == pytest.approx(1e-3, rel=0.01)
 
 
 @pytest.fixture(scope="module")
@@ -147,7 +116,7 @@ def walked(tmp_path_factory):
         "\n".join([",".join(["t", *(f"theta{leg}" for leg in range(1, 7))]), *rows])
     )
     request = RecordRequest(folder, "walk", zebro="sim", play=folder / "legs.csv")
-    return record(request, Watcher()), gait
+    return record(request, RecordWatcher()), gait
 
 
 def test_a_played_gait_is_followed_and_ends_the_run(walked):
@@ -178,19 +147,19 @@ def test_a_wrong_zero_found_later_is_repaired_in_the_runs_own_profile(walked):
 
 def test_a_run_without_legs_is_no_leg_log(everything, tmp_path):
     request = RecordRequest(tmp_path, "imu", imus=("sim",), duration=0.2)
-    folder = record(request, Watcher()).folder
+    folder = record(request, RecordWatcher()).folder
     with pytest.raises((DataError, FileNotFoundError), match="leg"):
         read_leg_log(folder)
 
 
 def test_a_wish_to_stop_is_the_reason(tmp_path):
-    recorded = record(RecordRequest(tmp_path, "x", imus=("sim",)), Watcher(looks=3))
+    recorded = record(RecordRequest(tmp_path, "x", imus=("sim",)), RecordWatcher(looks=3))
     assert recorded.manifest.exit_status == "stopped: key"
     assert recorded.manifest.log_sha256 is not None
 
 
 def test_a_display_that_raises_ends_no_run(tmp_path):
-    watcher = Watcher(error=RuntimeError("screen"))
+    watcher = RecordWatcher(error=RuntimeError("screen"))
     found = record(RecordRequest(tmp_path, "x", imus=("sim",), duration=2.0), watcher)
     assert found.manifest.exit_status == "completed"
     assert found.manifest.streams["/imu/raw"] > 40
@@ -200,7 +169,7 @@ def test_a_display_that_raises_ends_no_run(tmp_path):
 
 
 def test_a_watcher_that_cannot_say_whether_to_stop_ends_the_run_with_its_record(tmp_path):
-    watcher = Watcher()
+    watcher = RecordWatcher()
     watcher.stop_reason = lambda: 1 / 0
     with pytest.raises(ZeroDivisionError):
         record(RecordRequest(tmp_path, "x", imus=("sim",)), watcher)
@@ -212,48 +181,9 @@ def test_swapped_devices_end_the_run_with_a_line_that_says_so(tmp_path):
     with serve_zebro(TwinRequest("zebro-100-serial")) as served:
         address = f"imu-quaternion-serial@{served.places['robot']}"
         with pytest.raises(RecordingError, match="are two ports swapped"):
-            record(RecordRequest(tmp_path, "x", imus=(address,), duration=5.0), Watcher())
+            record(RecordRequest(tmp_path, "x", imus=(address,), duration=5.0), RecordWatcher())
     (listed,) = list_runs(tmp_path)
     assert listed.state.startswith(f"failed: imu: {DeviceMismatch.__name__}")
-
-
-@pytest.mark.parametrize(
-    ("changes", "error", "message"),
-    [
-        ({}, SettingsError, "no device"),
-        ({"rig": "sim", "duration": 0.0}, SettingsError, "expected more than 0"),
-        ({"zebro": "zebro-100-serail@sim"}, ProfileError, "did you mean 'zebro-100-serial'"),
-        ({"zebro": "zebro-100-serial"}, ProfileError, "expected PROFILE@PORT"),
-        ({"zebro": "zebro-100-serial@/dev/nowhere"}, ConnectionError, "cannot open port"),
-    ],
-)
-def test_what_cannot_be_recorded_leaves_nothing(tmp_path, changes, error, message):
-    with pytest.raises(error, match=message):
-        record(RecordRequest(tmp_path, "x", **changes), Watcher())
-    assert list(tmp_path.iterdir()) == []
-
-
-def test_a_malformed_profile_is_named_and_leaves_nothing(tmp_path):
-    profile = tmp_path / "mine.toml"
-    profile.write_text('schema = 1\ndevice = "legs"\n')
-    with pytest.raises(ProfileError, match=r"mine\.toml"):
-        record(RecordRequest(tmp_path / "data", "x", zebro=f"{profile}@sim"), Watcher())
-    assert not (tmp_path / "data").exists()
-
-
-def test_a_force_beyond_its_limit_ends_the_reading():
-    profile = load_rig_profile("rig-odrive-netft")
-    check, cell = ForceCheck(profile), profile.load_cell
-
-    def weighed(*newtons):
-        counts = [int(-n * cell.counts_per_force) for n in newtons]
-        check([Sample(0.0, 0.0, i, (0, 0, c, 0, 0, 0)) for i, c in enumerate(counts)])
-
-    weighed(6.0, 31.0, 31.0)
-    weighed(6.0, 6.0, 6.0)
-    weighed(31.0, 6.0, 31.0)
-    with pytest.raises(LimitExceeded, match="normal force is 31 N; its limit is 30 N"):
-        weighed(6.0, 31.0)  # three of five
 
 
 def wait_until(met, limit=20.0):
@@ -268,9 +198,13 @@ def test_an_unplugged_robot_is_a_gap_that_is_counted_and_the_run_goes_on(tmp_pat
     description = RunDescription(kind="walk", label="gap", source=twin.source)
     with PortServer(twin) as server:
         legs = leg_driver(LEGS, leg_link(LEGS, server.port, source=twin.source))
-        device = Device(legs, LegsView("legs", profile=LEGS))
-        recorder = RunRecorder(tmp_path, description=description, views={"legs": device.view})
-        with legs, recorder, acquiring([device], sink=recorder, start=recorder.start) as readers:
+        views = {"legs": LegsView("legs", profile=LEGS)}
+        recorder = RunRecorder(tmp_path, description=description, views=views)
+        with (
+            legs,
+            recorder,
+            acquiring([Device(legs)], sink=recorder, start=recorder.start) as readers,
+        ):
             wait_until(lambda: readers["legs"].counters.received > 20)
             server.unplug()
             time.sleep(1.3)
@@ -302,7 +236,7 @@ def test_a_viewer_that_hangs_slows_nobody(tmp_path):
             def event(self, text, *, level=20):
                 pass
 
-        reader = Acquisition(Device(legs, LegsView("legs", profile=LEGS)), sink=Sink(), start=0.0)
+        reader = Acquisition(Device(legs), sink=Sink(), start=0.0)
         reader.tap = LossyTap(limit=10)
         with legs:
             reader.start()
@@ -351,14 +285,15 @@ def given(monkeypatch):
     """Return a way to let the next recording open streams of this test."""
 
     def give(*streams, **changes):
-        devices = [Device(s, LegsView(s.name, profile=LEGS), **changes) for s in streams]
+        devices = [Device(s, **changes) for s in streams]
+        views = {s.name: LegsView(s.name, profile=LEGS) for s in streams}
 
         @contextmanager
         def opened(_request):
             for device in devices:
                 device.stream.__enter__()
             try:
-                yield OpenDevices(tuple(devices), {})
+                yield OpenDevices(tuple(devices), views, {})
             finally:
                 for device in devices:
                     device.stream.__exit__(None, None, None)
@@ -386,7 +321,7 @@ def ended(act, limit):
 
 def test_the_duration_counts_from_the_first_sample_of_the_stream_that_begins_last(tmp_path, given):
     given(Legs("legs"), Legs("late", late=0.6))
-    found = record(RecordRequest(tmp_path, "x", zebro="sim", duration=0.5), Watcher())
+    found = record(RecordRequest(tmp_path, "x", zebro="sim", duration=0.5), RecordWatcher())
     assert spans(found.folder)["late"] >= 0.48
     assert spans(found.folder)["legs"] >= 1.0
     assert found.manifest.exit_status == "completed"
@@ -398,7 +333,7 @@ def test_a_device_without_a_first_sample_ends_a_run_with_a_duration(tmp_path, gi
     monkeypatch.setattr(module, "FIRST_SAMPLE", 0.3, raising=False)
     given(Legs("legs"), Legs("silent", late=1e6))
     with pytest.raises(RecordingError, match=r"no sample of silent within 0\.3 s"):
-        record(RecordRequest(tmp_path, "x", zebro="sim", duration=0.2), Watcher())
+        record(RecordRequest(tmp_path, "x", zebro="sim", duration=0.2), RecordWatcher())
     (listed,) = list_runs(tmp_path)
     assert "no sample of silent" in listed.state
 
@@ -406,14 +341,14 @@ def test_a_device_without_a_first_sample_ends_a_run_with_a_duration(tmp_path, gi
 def test_a_slow_disk_falsifies_neither_duration_nor_clocks(tmp_path, monkeypatch):
     real = os.fsync
     monkeypatch.setattr(os, "fsync", lambda file: (time.sleep(0.7), real(file))[1])
-    found = record(RecordRequest(tmp_path, "x", zebro="sim", duration=1.0), Watcher())
+    found = record(RecordRequest(tmp_path, "x", zebro="sim", duration=1.0), RecordWatcher())
     assert 0.98 < spans(found.folder)["legs"] < 1.5
     assert set(found.manifest.clocks) == {"legs"}
     assert found.manifest.counters["legs"]["lost"] == 0
 
 
 def test_a_display_that_hangs_holds_up_nothing(tmp_path):
-    watcher, released = Watcher(), threading.Event()
+    watcher, released = RecordWatcher(), threading.Event()
     watcher.show = lambda _status: released.wait(60)
     request = RecordRequest(tmp_path, "x", imus=("sim",), duration=0.5)
     try:
@@ -442,7 +377,7 @@ def test_a_thread_that_cannot_be_started_ends_the_run_with_its_record(
 
     monkeypatch.setattr(threading.Thread, "start", fail)
     with pytest.raises(RecordingError, match="can't start new thread"):
-        record(RecordRequest(tmp_path, "x", zebro="sim", duration=0.2), Watcher())
+        record(RecordRequest(tmp_path, "x", zebro="sim", duration=0.2), RecordWatcher())
     assert first.closed
     assert stopped == [True, True]
     (listed,) = list_runs(tmp_path)
@@ -454,7 +389,7 @@ def test_a_thread_that_cannot_be_started_ends_the_run_with_its_record(
 def test_whatever_ends_a_reader_ends_the_run(tmp_path, given, error):
     legs = Legs(error=error)
     given(legs)
-    watcher = Watcher()
+    watcher = RecordWatcher()
     watcher.stop_reason = lambda: legs.fails.set()
     with pytest.raises(RecordingError, match="over"):
         record(RecordRequest(tmp_path, "x", zebro="sim", duration=2.0), watcher)
@@ -465,7 +400,7 @@ def test_whatever_ends_a_reader_ends_the_run(tmp_path, given, error):
 def test_a_fault_in_the_last_read_is_not_completed(tmp_path, given):
     legs = Legs(error=OSError("link lost"))
     given(legs)
-    watcher = Watcher(looks=3)
+    watcher = RecordWatcher(looks=3)
     asked = watcher.stop_reason
 
     def stop_reason():
@@ -481,7 +416,7 @@ def test_a_fault_in_the_last_read_is_not_completed(tmp_path, given):
 
 def test_all_streams_end_together(tmp_path, given):
     given(*[Legs(f"legs{k}") for k in range(3)], pause=0.3)
-    found = record(RecordRequest(tmp_path, "x", zebro="sim", duration=1.0), Watcher())
+    found = record(RecordRequest(tmp_path, "x", zebro="sim", duration=1.0), RecordWatcher())
     streams = read_raw_log(found.folder / "log.mcap").streams.values()
     assert np.ptp([stream.host_time[-1] for stream in streams]) < 0.15
     assert min(stream.host_time[0] for stream in streams) < 0.2
@@ -497,7 +432,7 @@ def test_a_display_that_cannot_be_started_ends_no_run(tmp_path, given, monkeypat
         start(thread)
 
     monkeypatch.setattr(threading.Thread, "start", fail)
-    found = record(RecordRequest(tmp_path, "x", zebro="sim", duration=0.2), Watcher())
+    found = record(RecordRequest(tmp_path, "x", zebro="sim", duration=0.2), RecordWatcher())
     assert found.manifest.exit_status == "completed"
     assert any("display cannot be started" in text for text in events(found.folder))
 
@@ -505,7 +440,7 @@ def test_a_display_that_cannot_be_started_ends_no_run(tmp_path, given, monkeypat
 @pytest.mark.parametrize("pause", [0.0, 0.05])
 def test_a_loop_that_is_held_up_ends_no_recording_late(tmp_path, given, pause):
     given(Legs(), pause=pause)
-    watcher = Watcher()
+    watcher = RecordWatcher()
     looks = iter([0.0] * 4)
     watcher.stop_reason = lambda: time.sleep(next(looks, 0.7))
     found = record(RecordRequest(tmp_path, "x", zebro="sim", duration=0.5), watcher)

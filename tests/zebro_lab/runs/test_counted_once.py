@@ -9,6 +9,7 @@ from pathlib import Path
 import pandas as pd
 import pytest
 
+from support.watchers import Nobody
 from zebro_lab.calibration.rig_data import RigData, read_rig_data
 from zebro_lab.exchange.import_stage import ImportRequest, import_run
 from zebro_lab.experiment.check_stage import check_runs
@@ -16,16 +17,6 @@ from zebro_lab.runs.counted_once import content_hash
 from zebro_lab.runs.folder import exclude_run
 
 START = datetime(2026, 3, 4, 5, 6, 7, tzinfo=UTC)
-
-
-class Nobody:
-    """Follows nothing."""
-
-    def step(self, what: str, fraction: float | None) -> None:
-        pass
-
-    def stop_requested(self) -> bool:
-        return False
 
 
 @pytest.fixture

@@ -117,8 +117,8 @@ SETTINGS = {
     "unknown column": ('[columns]\ntheta7 = "x"', "columns.theta7: unknown key; did you mean 'the"),
     "unknown key": ('[columns.t]\nnam = "x"', "columns.t.nam: unknown key; did you mean 'name'"),
     "frequency": ('[columns.theta1]\nunit = "Hz"', "columns.theta1.unit: unit 'Hz' cannot be conv"),
-    "sign": ("[columns.theta1]\nsign = 0", "columns.theta1.sign: 0 is neither 1 nor -1"),
-    "a number": ("[columns]\nt = 1", "columns.t: expected a table"),
+    "sign": ("[columns.theta1]\nsign = 0", "columns.theta1.sign: found 0; expected 1 or -1"),
+    "a number": ("[columns]\nt = 1", "columns.t: found 1; expected a table"),
 }  # fmt: skip
 
 

@@ -7,6 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
+from support.watchers import Onlooker
 from zebro_lab.files.errors import NotFound, SettingsError
 from zebro_lab.recording.stage import RecordRequest, record
 from zebro_lab.runs.folder import exclude_run, read_slip_rig_run
@@ -16,14 +17,6 @@ from zebro_lab.runs.signals import Event, Panel, RunSignals, find_gaps, read_sig
 from zebro_lab.runs.slip_rig_decoding import averages_around
 
 T = np.arange(0.0, 10.0, 0.01)
-
-
-class Onlooker:
-    def show(self, status):
-        pass
-
-    def stop_reason(self):
-        return None
 
 
 @pytest.fixture(scope="module")

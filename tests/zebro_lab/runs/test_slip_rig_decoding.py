@@ -5,8 +5,8 @@ import pytest
 from rig.profile import shipped_file
 from rig.sample_columns import SampleColumns
 from zebro_lab.files.errors import DataError
-from zebro_lab.runs.manifest import profile_file
-from zebro_lab.runs.slip_rig_decoding import RIG, averages_around, derive_table
+from zebro_lab.runs.manifest import RIG, profile_file
+from zebro_lab.runs.slip_rig_decoding import averages_around, derive_table
 
 PROFILE = shipped_file("rig-odrive-netft.toml").read_text()
 

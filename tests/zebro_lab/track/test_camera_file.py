@@ -43,7 +43,7 @@ def test_a_lens_without_distortion_needs_none_stated(tmp_path):
 
 FAULTS = {
     "unknown key": (GOOD + "focall = 1", "did you mean 'focal'"),
-    "no focal length": ("size = [1280, 960]\ncentre = [640, 480]", "focal: missing"),
+    "no focal length": ("size = [1280, 960]\ncentre = [640, 480]", "focal: is missing"),
     "negative focal length": (GOOD.replace("1401", "-3"), "focal: is 1400, -3 px"),
     "half a pixel": (GOOD.replace("1280", "1280.5"), "whole numbers"),
     "too few numbers": (GOOD + "distortion = [0.1]", "expected a list of 5"),

@@ -48,8 +48,8 @@ def test_what_all_markers_share_is_said_once_and_one_may_differ(tmp_path):
 
 FAULTS = {
     "no marks": ('dictionary = "4x4_50"', "no marker and no point"),
-    "no side": ("[markers]\n10 = { x = 0, y = 0 }", r"markers\.10\.side: missing"),
-    "no place": ("side = 0.1\n[markers]\n10 = { x = 0 }", r"markers\.10\.y: missing"),
+    "no side": ("[markers]\n10 = { x = 0, y = 0 }", r"markers\.10\.side: is missing"),
+    "no place": ("side = 0.1\n[markers]\n10 = { x = 0 }", r"markers\.10\.y: is missing"),
     "negative side": ("side = -1\n[markers]\n10 = { x = 0, y = 0 }", "expected more than 0"),
     "no number": ("side = 0.1\n[markers]\nten = { x = 0, y = 0 }", "number in its dictionary"),
     "unknown key": ("side = 0.1\n[markers]\n10 = { x = 0, y = 0, yaw = 9 }", "yaw_deg"),

@@ -5,22 +5,13 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from support.watchers import Nobody
 from zebro_lab.validation.stage import ValidateRequest, validate
 
 pytest.importorskip("evo", reason="evo is an extra: pip install zebro-lab[evo]")
 from evo.core.metrics import APE, RPE, PoseRelation, StatisticsType, Unit
 from evo.core.sync import associate_trajectories
 from evo.tools.file_interface import read_tum_trajectory_file
-
-
-class Nobody:
-    """A watcher that does not look."""
-
-    def step(self, what: str, fraction: float | None) -> None:
-        pass
-
-    def stop_requested(self) -> bool:
-        return False
 
 
 @pytest.fixture(scope="module")

@@ -12,6 +12,7 @@ from model.gait import tetrapod_reference, tripod_angles, tripod_reference
 from model.robot import Robot
 from model.walk.ensemble import WalkDraw, planar_walk
 from model.walk.traction import VelocityCoulomb
+from support.watchers import Nobody
 from zebro_lab.files.errors import AlreadyExists, DataError, NotFound, SettingsError
 from zebro_lab.main import app
 from zebro_lab.runs.legs import read_leg_log
@@ -24,16 +25,6 @@ from zebro_lab.walk.walking import ModelRequest
 
 STEP = np.radians(3.6)
 DURATION = 12.0
-
-
-class Nobody:
-    """A watcher that does not look."""
-
-    def step(self, what: str, fraction: float | None) -> None:
-        pass
-
-    def stop_requested(self) -> bool:
-        return False
 
 
 def gait(steering):

@@ -10,6 +10,7 @@ import pytest
 from model.errors import DomainError
 from model.gait import tripod_angles, tripod_reference
 from model.walk_models import MODELS
+from support.watchers import Impatient, Nobody
 from zebro_lab.files.errors import AlreadyExists, SettingsError
 from zebro_lab.robot.gait_argument import GaitRequest
 from zebro_lab.robot.leg_log import ANGLES
@@ -20,26 +21,6 @@ from zebro_lab.walk.predict_stage import PredictRequest, predict
 from zebro_lab.walk.stage import WalkRequest, walk, write_robot
 from zebro_lab.walk.summary import summarise
 from zebro_lab.walk.walking import ModelRequest, WalkStopped
-
-
-class Nobody:
-    """A watcher that says nothing."""
-
-    def __init__(self) -> None:
-        self.seen: list[tuple[str, float | None]] = []
-
-    def step(self, what: str, fraction: float | None) -> None:
-        self.seen.append((what, fraction))
-
-    def stop_requested(self) -> bool:
-        return False
-
-
-class Impatient(Nobody):
-    """A watcher that wants to stop."""
-
-    def stop_requested(self) -> bool:
-        return True
 
 
 def request(out, **model) -> WalkRequest:

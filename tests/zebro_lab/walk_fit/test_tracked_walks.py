@@ -12,6 +12,7 @@ from model.bayes.walks.prior import WalkPrior
 from model.errors import ModelError
 from model.gait import tripod_angles, tripod_reference
 from model.gait.quantised import QuantisedLog
+from support.watchers import Nobody
 from zebro_lab.calibration.slip_argument import parse_slip
 from zebro_lab.exchange.import_stage import ImportRequest, import_run
 from zebro_lab.files.errors import DataError, NotFound, SettingsError
@@ -24,16 +25,6 @@ from zebro_lab.walk_fit.tracked_walks import read_walk_on_file, read_walks
 WALK = Path(__file__).parents[3] / "datasets" / "walk-sim"
 STEP = np.radians(3.6)
 SD = 0.002
-
-
-class Nobody:
-    """A watcher that does not look."""
-
-    def step(self, what: str, fraction: float | None) -> None:
-        pass
-
-    def stop_requested(self) -> bool:
-        return False
 
 
 def write_walk(folder, *, begin=5.0, late=0.0, covariance=True, yaw=True, robot=None, every=2.0):

@@ -4,9 +4,9 @@
 import numpy as np
 import pytest
 
+from rig.clock_watch import ClockWatch, sample_times
 from rig.device import Sample
 from rig.sample_columns import SampleColumns
-from zebro_lab.runs.clock_watch import ClockWatch, sample_times
 
 DRIFT = 5e-5
 

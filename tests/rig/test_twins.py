@@ -113,7 +113,7 @@ def test_samples_are_frozen(recorded):
 def test_a_replay_gives_what_was_recorded_but_the_host_time(recorded):
     name, _, samples = recorded
     clock = ManualClock(1000.0)
-    replay = ReplayStream(samples, name=name, origin="RUN", clock=clock)
+    replay = ReplayStream(samples, name=name, source="replay:RUN", clock=clock)
     with replay:
         again = list(iterate(replay, duration=1.0, clock=clock))
     assert [s[1:] for s in again] == [s[1:] for s in samples]

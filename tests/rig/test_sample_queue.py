@@ -5,7 +5,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from rig.device import Sample
-from zebro_lab.recording.sample_queue import LossyTap, SampleQueue
+from rig.sample_queue import LossyTap, SampleQueue
 
 
 def numbered(first, count):

@@ -1,21 +1,19 @@
 # SPDX-License-Identifier: MIT
-"""Reads devices, each from a thread of its own, and hands what they send to the recorder."""
+"""Read devices, each from a thread of its own, and hand their samples to a sink."""
 
 import threading
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
+from logging import WARNING
 from typing import Final, Protocol
 
 from rig.clock import SYSTEM_CLOCK, Clock
+from rig.clock_watch import ClockWatch
 from rig.device import Counters, Sample, Stream
 from rig.errors import RigTimeout
 from rig.safety import SilenceGuard
-from zebro_lab.mcap.ros_messages import WARNING
-from zebro_lab.mcap.stream_views import View
-from zebro_lab.recording.sample_queue import LossyTap
-from zebro_lab.recording.threads import needing_threads
-from zebro_lab.runs.clock_watch import ClockWatch
+from rig.sample_queue import LossyTap
 
 READ_WAIT: Final = 0.1
 """Longest single wait of a read [s]."""
@@ -24,15 +22,15 @@ SILENCE: Final = 1.0
 JOIN_LIMIT: Final = 5.0
 
 
-class Sink(Protocol):
-    """Who takes what devices send; never keeps them waiting."""
+class SampleSink(Protocol):
+    """Receives samples and events of devices, without making their readers wait."""
 
     def write(self, stream: str, samples: Sequence[Sample]) -> bool:
         """Take samples of a stream; tell whether there was room."""
         ...
 
     def event(self, text: str, *, level: int = ...) -> None:
-        """Take something that happened now."""
+        """Take something that happened now; levels are those of `logging`."""
         ...
 
 
@@ -42,7 +40,6 @@ class Device:
 
     Attributes:
         stream: Its driver, not yet entered.
-        view: How it shows in the log.
         check: Guards every read, in the thread that reads; raises where a limit is broken.
         command: Called before every read, in the same thread: set-points of a gait.
         at_end: Called once before the driver is left: stops what `command` moved.
@@ -51,7 +48,6 @@ class Device:
     """
 
     stream: Stream
-    view: View
     check: Callable[[Sequence[Sample]], None] | None = None
     command: Callable[[float], None] | None = None
     at_end: Callable[[], object] | None = None
@@ -80,7 +76,7 @@ class Acquisition:
     """
 
     def __init__(
-        self, device: Device, *, sink: Sink, start: float, clock: Clock = SYSTEM_CLOCK
+        self, device: Device, *, sink: SampleSink, start: float, clock: Clock = SYSTEM_CLOCK
     ) -> None:
         self.tap = LossyTap()
         self.clock_watch = ClockWatch(start=start)
@@ -109,10 +105,9 @@ class Acquisition:
         """Begin to read.
 
         Raises:
-            RecordingError: The system allows no more threads.
+            RuntimeError: The system allows no more threads.
         """
-        with needing_threads():
-            self._thread.start()
+        self._thread.start()
 
     def end_at(self, until: float) -> None:
         """Read until then by itself, however late whoever would say so is [host time, s]."""
@@ -185,7 +180,7 @@ class Acquisition:
 
 @contextmanager
 def acquiring(
-    devices: Sequence[Device], *, sink: Sink, start: float, clock: Clock = SYSTEM_CLOCK
+    devices: Sequence[Device], *, sink: SampleSink, start: float, clock: Clock = SYSTEM_CLOCK
 ) -> Iterator[Mapping[str, Acquisition]]:
     """Read devices, already entered, for as long as the body runs.
 
@@ -199,7 +194,7 @@ def acquiring(
         What reads each, by its name.
 
     Raises:
-        RecordingError: The system allows no more threads.
+        RuntimeError: The system allows no more threads.
     """
     readers = {d.name: Acquisition(d, sink=sink, start=start, clock=clock) for d in devices}
     with ExitStack() as stack:

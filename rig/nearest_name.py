@@ -1,0 +1,27 @@
+# SPDX-License-Identifier: MIT
+"""Find the known name nearest to one that is unknown, for error messages."""
+
+import difflib
+from collections.abc import Collection
+
+_LISTED = 15  # names a message lists before it says how many more there are
+
+
+def nearest(name: str, known: Collection[str]) -> str:
+    """Advise on a name that is not among the known ones.
+
+    Args:
+        name: The unknown name.
+        known: All names that would be understood.
+
+    Returns:
+        The nearest name, where one is similar, and the known ones.
+
+    >>> nearest("normal_froce", ["normal_force", "t"])
+    "did you mean 'normal_force'? known: 'normal_force', 't'"
+    """
+    folded = {candidate.casefold(): candidate for candidate in known}
+    near = difflib.get_close_matches(name.casefold(), folded, n=1, cutoff=0.5)
+    listing = ", ".join(f"'{candidate}'" for candidate in list(known)[:_LISTED])
+    listing += f" and {len(known) - _LISTED} more" if len(known) > _LISTED else ""
+    return (f"did you mean '{folded[near[0]]}'? " if near else "") + f"known: {listing}"

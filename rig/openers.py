@@ -1,0 +1,93 @@
+# SPDX-License-Identifier: MIT
+"""Open the device that an address names, at a port or as a simulated twin."""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Any, Final
+
+import numpy as np
+
+from model.gait.reference import LegReference
+from rig.backends import open_imu, open_legs
+from rig.errors import ProfileError
+from rig.imu.profile import load_imu_profile
+from rig.imu.stream import ImuStream
+from rig.profile import split_address
+from rig.twins import simulated_imu, simulated_legs
+from rig.zebro.profile import load_leg_profile
+
+SIMULATED: Final = "sim"
+"""In place of a port, or of PROFILE@PORT, this is a simulated twin."""
+REPLAY: Final = "replay:"
+"""Begin of an address that names a recorded run in place of a device."""
+LEGS_PROFILE: Final = "zebro-100-serial"
+IMU_PROFILE: Final = "imu-quaternion-serial"
+
+
+def resolve(address: str, *, default: str) -> tuple[str, str]:
+    """Split an address into profile and port; `sim` alone is the default profile's twin.
+
+    Args:
+        address: `PROFILE@PORT`, `PROFILE@sim` or `sim`.
+        default: Profile of `sim` alone.
+
+    Returns:
+        Profile and port.
+
+    Raises:
+        ProfileError: Profile or port is missing, or it is a replay, which has no port.
+
+    >>> resolve("sim", default="zebro-100-serial")
+    ('zebro-100-serial', 'sim')
+    """
+    if address.startswith(REPLAY):
+        raise ProfileError(
+            f"'{address}' only plays what was recorded; `record` takes it, what moves does not"
+        )
+    return (default, SIMULATED) if address == SIMULATED else split_address(address)
+
+
+@contextmanager
+def legs_at(address: str, gait: LegReference, *, rng: np.random.Generator) -> Iterator[Any]:
+    """Make the driver of the robot's legs at an address.
+
+    Args:
+        address: `PROFILE@PORT`, `PROFILE@sim` or `sim`.
+        gait: What a twin walks until it is told otherwise.
+        rng: Randomness of a twin.
+
+    Yields:
+        A `Stream` that also takes `LegCommands`, not yet entered.
+
+    Raises:
+        ProfileError: The address or the profile is not right.
+    """
+    name, port = resolve(address, default=LEGS_PROFILE)
+    if port == SIMULATED:
+        with simulated_legs(load_leg_profile(name), gait, rng=rng) as legs:
+            yield legs
+    else:
+        yield open_legs(address)
+
+
+@contextmanager
+def imu_at(address: str, *, name: str, rng: np.random.Generator) -> Iterator[ImuStream]:
+    """Make the driver of the inertial measurement unit at an address.
+
+    Args:
+        address: `PROFILE@PORT`, `PROFILE@sim` or `sim`.
+        name: Name of the stream.
+        rng: Randomness of a twin.
+
+    Yields:
+        The driver, not yet entered.
+
+    Raises:
+        ProfileError: The address or the profile is not right.
+    """
+    profile, port = resolve(address, default=IMU_PROFILE)
+    if port == SIMULATED:
+        with simulated_imu(load_imu_profile(profile), rng=rng, name=name) as unit:
+            yield unit
+    else:
+        yield open_imu(address, name=name)

@@ -1,0 +1,46 @@
+# SPDX-License-Identifier: MIT
+"""What a person is told about a run: its state, why, and which key does what."""
+
+import pytest
+
+from rig.experiment.condition import Condition, RigState, next_stop
+from rig.safety import StopCategory
+
+
+def test_each_ctrl_c_asks_for_a_harder_stop_up_to_the_hardest():
+    asked = [None]
+    for _ in range(4):
+        asked.append(next_stop(asked[-1]))
+    hardest = StopCategory.EMERGENCY
+    assert asked[1:] == [StopCategory.SOFT, StopCategory.SAFE, hardest, hardest]
+
+
+@pytest.mark.parametrize("state", [RigState.STOPPED, RigState.LATCHED])
+def test_no_key_acts_once_the_run_is_over(state):
+    assert Condition(state, False).keys == "no key does anything any more: the run is over"
+
+
+def test_only_stops_harder_than_the_one_obeyed_are_offered():
+    keys = Condition(RigState.STOPPING, True, pending=StopCategory.SOFT).keys
+    assert keys.startswith("Ctrl-C or ss: safe stop")
+    assert "soft stop" not in keys
+    assert "; e: emergency stop" in keys
+
+
+def test_a_held_run_can_go_on_and_says_how_long_it_waits():
+    keys = Condition(RigState.HOLDING, True, pending=StopCategory.SOFT, hold=5.0).keys
+    assert keys.startswith("r: go on; ")
+    assert keys.endswith("a safe stop follows after 5 s")
+
+
+def test_a_running_one_can_be_confirmed_paused_and_stopped():
+    keys = Condition(RigState.RUNNING, True).keys
+    assert keys.startswith("Enter: confirm a prompt; p: pause after this point; Ctrl-C or s: soft")
+
+
+@pytest.mark.parametrize(("energised", "why", "said"), [
+    (True, "", "RUNNING, discs energised"),
+    (False, "a fault", "RUNNING, discs de-energised: a fault"),
+])  # fmt: skip
+def test_the_headline_says_state_energy_and_reason(energised, why, said):
+    assert Condition(RigState.RUNNING, energised, why).headline == said

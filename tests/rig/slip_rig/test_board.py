@@ -1,0 +1,72 @@
+# SPDX-License-Identifier: MIT
+"""The driver of a board: limits, and discs that stop when it is left."""
+
+import numpy as np
+import pytest
+
+from rig.clock import ManualClock
+from rig.device import iterate
+from rig.errors import LimitExceeded
+from rig.links.memory import MemoryLink
+from rig.slip_rig.board import RigBoard
+from rig.slip_rig.decode import decode_board
+from rig.slip_rig.imperfections import RigImperfections
+from rig.slip_rig.profile import load_rig_profile
+from rig.slip_rig.simulated import TWIN_LAWS, RigDynamics, simulated_rig
+from rig.slip_rig.simulated_board import SimulatedBoard
+from rig.slip_rig.sweep import SweepPlan
+
+PROFILE = load_rig_profile("rig-board-serial")
+PERFECT = RigImperfections()
+
+
+def world(law="magic-formula", *, plan=None, imperfections=PERFECT, dynamics=None, seed=0):
+    return simulated_rig(
+        law,
+        plan=plan or SweepPlan(),
+        imperfections=imperfections,
+        dynamics=dynamics or RigDynamics(),
+        rng=np.random.default_rng(seed),
+    )
+
+
+def board(rig, **options):
+    clock = ManualClock()
+    twin = SimulatedBoard(rig, profile=PROFILE.board, rng=np.random.default_rng(0), **options)
+    stream = RigBoard(
+        MemoryLink(twin, clock=clock), profile=PROFILE.board, limits=PROFILE.limits, clock=clock
+    )
+    return stream, clock
+
+
+def test_a_board_turns_and_weighs():
+    stream, clock = board(world())
+    with stream:
+        stream.leg.arm(1.0)
+        stream.ground.arm(1.0)
+        stream.leg.set_speed(12.0)
+        stream.ground.set_speed(3.0)
+        samples = list(iterate(stream, duration=1.0, clock=clock))
+    forces, speeds = decode_board(PROFILE.board, samples)
+    assert speeds.leg[-1] == pytest.approx(12.0, rel=1e-3)
+    assert speeds.ground[-1] == pytest.approx(3.0, rel=1e-3)
+    law, values = TWIN_LAWS["magic-formula"]
+    expected = law.force(speeds.slip(PROFILE)[-1], forces.normal[-1], values)
+    assert forces.traction[-1] == pytest.approx(float(expected), rel=1e-2)
+
+
+def test_leaving_a_board_stops_the_discs():
+    rig = world()
+    stream, clock = board(rig)
+    with stream:
+        stream.leg.arm(1.0)
+        stream.leg.set_speed(12.0)
+        list(iterate(stream, duration=0.5, clock=clock))
+    rig.advance(clock.now() + 0.5)
+    assert abs(rig.speeds()["leg"][1]) < 0.01
+
+
+def test_a_board_refuses_a_speed_beyond_the_limit():
+    stream, _ = board(world())
+    with stream, pytest.raises(LimitExceeded, match="ground disc is 99 rad/s"):
+        stream.ground.set_speed(99.0)

@@ -1,0 +1,37 @@
+# SPDX-License-Identifier: MIT
+"""Zeros of a load cell, and their drift."""
+
+import numpy as np
+import pytest
+
+from rig.device import Sample
+from rig.errors import LimitExceeded, ProtocolError
+from rig.slip_rig.decode import Forces, Zero, decode_forces, require_zero, tare
+from rig.slip_rig.profile import load_rig_profile
+
+PROFILE = load_rig_profile("rig-odrive-netft").load_cell
+
+
+def forces(normal, traction, n=1000, sd=0.01, seed=0):
+    noise = np.random.default_rng(seed).normal(0, sd, (2, n))
+    return Forces(np.arange(n) / 1000.0, normal + noise[0], traction + noise[1])
+
+
+def test_a_tare_finds_the_zero_within_its_own_error():
+    zero = tare(forces(0.3, -0.1))
+    assert abs(zero.normal - 0.3) < 5 * zero.standard_error
+    assert abs(zero.traction + 0.1) < 5 * zero.standard_error
+    assert zero.standard_error == pytest.approx(0.01 / np.sqrt(1000), rel=0.6)
+
+
+def test_a_zero_that_moved_is_refused_and_one_that_stayed_is_not():
+    before, after = tare(forces(0.0, 0.0)), tare(forces(0.0, 0.2, seed=1))
+    require_zero(before, tare(forces(0.0, 0.0, seed=2)), limit=0.05)
+    with pytest.raises(LimitExceeded, match=r"traction force's zero is 0\.\d+ N; its limit"):
+        require_zero(before, after, limit=0.05)
+    require_zero(Zero(0, 0, 0.1), Zero(0.2, 0, 0.1), limit=0.05)
+
+
+def test_too_few_readings_are_no_zero():
+    with pytest.raises(ProtocolError, match="at least 10"):
+        tare(decode_forces(PROFILE, [Sample(0.0, 0.0, 0, (0,) * 6)] * 9))

@@ -1,0 +1,73 @@
+# SPDX-License-Identifier: MIT
+"""The simulated board stops by itself, and its bad line passes nothing wrong."""
+
+import numpy as np
+import pytest
+
+from rig.clock import ManualClock
+from rig.device import iterate
+from rig.errors import DeviceFault
+from rig.links.faults import Faults
+from rig.links.memory import MemoryLink
+from rig.slip_rig.board import RigBoard
+from rig.slip_rig.imperfections import RigImperfections
+from rig.slip_rig.profile import load_rig_profile
+from rig.slip_rig.simulated import RigDynamics, simulated_rig
+from rig.slip_rig.simulated_board import SimulatedBoard
+from rig.slip_rig.sweep import SweepPlan
+
+PROFILE = load_rig_profile("rig-board-serial")
+PERFECT = RigImperfections()
+
+
+def world(law="magic-formula", *, plan=None, imperfections=PERFECT, dynamics=None, seed=0):
+    return simulated_rig(
+        law,
+        plan=plan or SweepPlan(),
+        imperfections=imperfections,
+        dynamics=dynamics or RigDynamics(),
+        rng=np.random.default_rng(seed),
+    )
+
+
+def board(rig, **options):
+    clock = ManualClock()
+    twin = SimulatedBoard(rig, profile=PROFILE.board, rng=np.random.default_rng(0), **options)
+    stream = RigBoard(
+        MemoryLink(twin, clock=clock), profile=PROFILE.board, limits=PROFILE.limits, clock=clock
+    )
+    return stream, clock
+
+
+def test_a_board_that_hears_nothing_stops_and_stays_stopped_until_it_is_armed_again():
+    rig = world()
+    stream, clock = board(rig)
+    with stream:
+        stream.leg.arm(1.0)
+        stream.leg.set_speed(12.0)
+        list(iterate(stream, duration=1.0, clock=clock))
+        stream.require_healthy()
+        assert rig.speeds()["leg"][1] > 11
+        clock.sleep(0.5)  # the host is held up, and comes back
+        list(iterate(stream, duration=0.5, clock=clock))
+        assert abs(rig.speeds()["leg"][1]) < 0.01
+        with pytest.raises(DeviceFault, match="watchdog"):
+            stream.require_healthy()
+        stream.leg.disarm()
+        stream.leg.arm(1.0)
+        stream.leg.set_speed(12.0)
+        list(iterate(stream, duration=0.5, clock=clock))
+        stream.require_healthy()
+        assert rig.speeds()["leg"][1] > 11
+
+
+def test_a_board_on_a_bad_line_hands_on_nothing_wrong():
+    stream, clock = board(world(), faults=Faults(flip=1e-3, drop=0.02, duplicate=0.02, delay=0.02))
+    with stream:
+        samples = list(iterate(stream, duration=5.0, clock=clock))
+    numbers = [sample.sequence for sample in samples]
+    counters = stream.counters
+    assert counters.received + counters.lost == numbers[-1] - numbers[0] + 1
+    assert counters.damaged > 100
+    limit = 25.0 * PROFILE.board.counts_per_force
+    assert all(abs(sample.counts[0]) < limit for sample in samples)

@@ -1,0 +1,34 @@
+# SPDX-License-Identifier: MIT
+"""Simulated robots restart and report their own counts."""
+
+import numpy as np
+
+from model.gait.reference import SampledReference
+from rig.backends import leg_driver
+from rig.clock import ManualClock
+from rig.device import iterate
+from rig.links.faults import Faults
+from rig.links.memory import MemoryLink
+from rig.twins import robot_twin
+from rig.zebro.profile import load_leg_profile
+
+TIMES = np.linspace(0, 200, 4001)
+GAIT = SampledReference(TIMES, np.outer(TIMES, np.full(6, 4.0)) + np.arange(6))
+SERIAL = load_leg_profile("zebro-100-serial")
+
+
+def stream_of(profile, faults, seed=0, twin=None):
+    clock = ManualClock()
+    twin = twin or robot_twin(profile, GAIT, faults=faults, rng=np.random.default_rng(seed))
+    return leg_driver(profile, MemoryLink(twin, clock=clock), clock=clock), clock, twin
+
+
+def test_a_robot_that_restarts_is_noticed_and_read_on():
+    stream, clock, twin = stream_of(SERIAL, Faults())
+    with stream:
+        before = list(iterate(stream, duration=5.0, clock=clock))
+        twin.legs.restart()
+        after = list(iterate(stream, duration=1.0, clock=clock))
+    assert stream.counters.restarted == 1
+    assert len(after) >= 99
+    assert before[-1].sequence < after[0].sequence

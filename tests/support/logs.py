@@ -1,0 +1,60 @@
+# SPDX-License-Identifier: MIT
+"""Logs of a few samples of each kind of device, and what public tools read in them."""
+
+import io
+
+from mcap.reader import make_reader
+from mcap_ros2.decoder import DecoderFactory
+
+from rig.device import Counters, Sample
+from rig.imu.profile import load_imu_profile
+from rig.slip_rig.profile import load_rig_profile
+from rig.zebro.profile import load_leg_profile
+from zebro_lab.mcap.log_writer import LogWriter
+from zebro_lab.mcap.stream_views import DrivesView, ImuView, LegsView, LoadCellView, RigBoardView
+
+START = 100.0
+RIG = load_rig_profile("rig-odrive-netft")
+BOARD = load_rig_profile("rig-board-serial")
+LEGS = load_leg_profile("zebro-100-serial")
+VIEWS = {
+    "legs": LegsView("legs", profile=LEGS),
+    "imu": ImuView("imu", profile=load_imu_profile("imu-quaternion-serial")),
+    "drives": DrivesView("drives", profile=RIG.drives),
+    "load_cell": LoadCellView("load_cell", profile=RIG.load_cell),
+    "board": RigBoardView("board", profile=BOARD.board),
+}
+COUNTS = {
+    "legs": (99, 1, 2, 3, 4, 5),
+    "imu": (16384, 0, 0, 0, 90, 0, 0, 0, 0, 981),
+    "drives": (1.25, 0.5),
+    "load_cell": (1_000_000, 0, -6_000_000, 0, 0, 0),
+    "board": (600_000, 100_000, 120_000, 30_000),
+}
+
+
+def log_of(stream, rows=3):
+    """Return a log with a few samples of one stream, and those samples."""
+    given_samples = [
+        Sample(START + 0.01 * n, 0.01 * n, n, COUNTS[stream], 0, 1 if stream == "drives" else 0)
+        for n in range(rows)
+    ]
+    file = io.BytesIO()
+    writer = LogWriter(
+        file, views={stream: VIEWS[stream]}, attachments={"profiles/x.toml": "schema = 1"},
+        start=START, start_ns=10**18,
+    )  # fmt: skip
+    writer.write(stream, given_samples)
+    writer.event(START, "hello")
+    writer.count(START, stream, Counters(received=3, lost=1), dropped=2)
+    writer.finish()
+    file.seek(0)
+    return file, given_samples
+
+
+def by_topic(file):
+    reader = make_reader(file, decoder_factories=[DecoderFactory()])
+    found = {}
+    for _, channel, message, decoded in reader.iter_decoded_messages():
+        found.setdefault(channel.topic, []).append((message, decoded))
+    return found

@@ -1,0 +1,112 @@
+# SPDX-License-Identifier: MIT
+"""What a person sees of an experiment, on a terminal and in a pipe."""
+
+import contextlib
+import io
+import os
+from pathlib import Path
+
+import pytest
+from rich.console import Console
+
+from rig.experiment.control import Control
+from rig.experiment.steps import Point
+from rig.experiment.verdict import PointVerdict
+from rig.safety import StopCategory
+from zebro_lab.experiment.screen import ExperimentScreen, experiment_screen, slip_chart
+from zebro_lab.experiment.stage import RigRunRequest, run_experiment
+
+SOURCE_PLAN = Path(__file__).parents[3] / "examples" / "plan-source.toml"
+
+
+@pytest.fixture(name="plan")
+def _plan(tmp_path):
+    text = SOURCE_PLAN.read_text()
+    for old, new in {
+        "loads = [2.13, 6.63, 8.13, 12.75]": "loads = [8.0]",
+        "slips = { first = 0.0, last = 1.0, count = 62 }": "slips = [0.05, 0.6]",
+        "duration = 1.0": "duration = 0.3",
+        "tare_duration = 10.0": "tare_duration = 0.3",
+        "check_every = 62": "check_every = 0",
+        # A busy machine may hold a process up.
+        "silence = 0.25": "silence = 3.0\nreading_age = 3.0\nguards_off = "
+        '["silence", "reading_age", "speed_error_time"]',
+        "speed_error_time = 0.2": "speed_error_time = 2.0",
+    }.items():
+        assert old in text
+        text = text.replace(old, new)
+    file = tmp_path / "plan.toml"
+    file.write_text(text)
+    return file
+
+
+def test_the_chart_puts_the_largest_friction_on_top():
+    chart = slip_chart([(4.0, 0.0, 0.0), (4.0, 0.5, 0.4), (8.0, 1.0, 0.3)])
+    rows = chart.splitlines()
+    assert rows[0].endswith("o 4 N, x 8 N")
+    assert "o" in rows[1]
+    assert rows[-1].startswith("o")
+
+
+def test_a_terminal_sees_progress_prompt_and_curve():
+    console = Console(file=io.StringIO(), force_terminal=True, width=100)
+    with experiment_screen(console, Control()) as screen:
+        screen.doing("point-0001", done=1, of=4, left=75.0)
+        screen.prompt("set it", normal=3.2)
+        verdict = PointVerdict((), 100, 0.1, 0.3, 4.0)
+        screen.judged(Point(1, 4.0, (0.1,)), verdict, attempt=1)
+    shown = console.file.getvalue()
+    assert "1 of 4 points, 1:15 left" in shown
+    assert "set it; now 3.20 N" in shown
+    assert "friction 0.00 to 0.30" in shown
+
+
+def test_without_a_terminal_a_prompt_is_one_line():
+    console = Console(file=io.StringIO())
+    screen = ExperimentScreen(console, None)
+    for normal in (1.0, 2.0, 3.0):
+        screen.prompt("set it", normal=normal)
+    screen.draw()
+    assert console.file.getvalue() == "set it\n"
+
+
+def test_text_of_a_plan_cannot_command_the_terminal():
+    console = Console(file=io.StringIO())
+    screen = ExperimentScreen(console, None)
+    screen.notice("a [red]label\x1b[2J\ncompleted")
+    screen.draw()
+    assert console.file.getvalue() == "a [red]label\\x1b[2J\\ncompleted\n"
+
+
+def test_a_pipe_that_nobody_reads_is_named(monkeypatch):
+    # Rich puts /dev/null in the place of the standard output, which here is the tests' own.
+    monkeypatch.setattr(os, "dup2", lambda *_: None)
+    read, write = os.pipe()
+    os.close(read)
+    with contextlib.suppress(BrokenPipeError), os.fdopen(write, "w") as pipe:
+        screen = ExperimentScreen(Console(file=pipe), None)
+        screen.notice("begin")
+        screen.close()
+        with pytest.raises(BrokenPipeError, match="nobody reads"):
+            screen.draw_on()
+
+
+def test_a_hold_is_visible_and_says_which_key_goes_on(plan, tmp_path):
+    control = Control()
+
+    class Holding(ExperimentScreen):
+        def judged(self, point, verdict, *, attempt):
+            super().judged(point, verdict, attempt=attempt)
+            control.stop.request(StopCategory.SOFT, "Ctrl-C, time 1")
+
+    plan.write_text(plan.read_text().replace("hold = 600.0", "hold = 1.0"))
+    console = Console(file=io.StringIO(), width=200)
+    request = RigRunRequest(plan, "sim", tmp_path / "data", fast=True)
+    screen = Holding(console, None)
+    run_experiment(request, screen, control)
+    screen.draw()
+    shown = console.file.getvalue()
+    assert "HOLDING" in shown
+    assert "discs energised" in shown
+    assert "r: go on" in shown
+    assert "safe stop" in shown

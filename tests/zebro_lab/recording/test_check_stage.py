@@ -1,0 +1,60 @@
+# SPDX-License-Identifier: MIT
+"""A robot and a person who watches it in, a profile out."""
+
+import pytest
+
+from rig.clock import SYSTEM_CLOCK
+from rig.errors import ProfileError
+from rig.zebro.check import MovedLeg
+from rig.zebro.profile import load_leg_profile
+from zebro_lab.files.errors import AlreadyExists
+from zebro_lab.recording.check_stage import CheckRequest, check_zebro, latest_counts_as_targets
+
+
+class Person:
+    """Says that channels are wired in reverse, and that every leg turned backwards."""
+
+    def __init__(self):
+        self.held = 0
+
+    def watch(self, channel):
+        return MovedLeg(6 - channel, forward=False)
+
+    def hold_toes_ahead(self):
+        self.held += 1
+
+
+def test_what_the_person_saw_is_in_the_profile(tmp_path):
+    person, file = Person(), tmp_path / "mine.toml"
+    checked = check_zebro(CheckRequest("sim", file), person)
+    assert checked.profile.legs == (6, 5, 4, 3, 2, 1)
+    assert checked.profile.sign == (-1,) * 6
+    assert person.held == 1
+    assert checked.lift_off is None
+    assert load_leg_profile(str(file)) == checked.profile
+
+
+def test_a_profile_that_is_there_is_kept_and_no_robot_moved(tmp_path):
+    file = tmp_path / "mine.toml"
+    file.write_text("mine")
+    with pytest.raises(AlreadyExists, match="name another --save"):
+        check_zebro(CheckRequest("sim", file), Person(), clock=SYSTEM_CLOCK)
+    assert file.read_text() == "mine"
+
+
+def test_a_replay_is_no_robot(tmp_path):
+    with pytest.raises(ProfileError, match="only plays what was recorded"):
+        check_zebro(CheckRequest("replay:RUN", tmp_path / "mine.toml"), Person())
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_counts_of_a_full_turn_are_the_set_point_of_none():
+    class Robot:
+        profile = load_leg_profile("zebro-100-serial")
+
+        def read(self, timeout):
+            from rig.device import Sample
+
+            return [Sample(0.0, None, 0, (self.profile.counts_per_revolution, 1, 2, 3, 4, 5))]
+
+    assert latest_counts_as_targets(Robot()) == (0, 1, 2, 3, 4, 5)

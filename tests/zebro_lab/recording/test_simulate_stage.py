@@ -1,0 +1,67 @@
+# SPDX-License-Identifier: MIT
+"""Twins at ports that the drivers of their profile open."""
+
+import numpy as np
+import pytest
+
+from rig.backends import open_imu, open_rig
+from rig.clock import ManualClock
+from rig.openers import legs_at
+from zebro_lab.files.errors import SettingsError
+from zebro_lab.recording.devices import default_gait
+from zebro_lab.recording.simulate_stage import (
+    TwinRequest,
+    serve_imu,
+    serve_rig,
+    serve_zebro,
+    wait_until,
+)
+
+
+def first(stream):
+    with stream:
+        for _ in range(400):
+            if samples := stream.read(0.05):
+                return samples
+    raise AssertionError("no sample")
+
+
+def test_an_imu_is_read_at_its_address():
+    with serve_imu(TwinRequest("imu-quaternion-serial")) as served:
+        assert served.source == "sim:imu"
+        assert first(open_imu(served.address))
+
+
+@pytest.mark.parametrize("profile", ["zebro-100-serial", "zebro-100-can"])
+def test_a_robot_is_read_at_its_address_and_on_can_behind_an_adapter(profile):
+    with serve_zebro(TwinRequest(profile)) as served:
+        assert ("slcan:" in served.address) == profile.endswith("can")
+        rng = np.random.default_rng(0)
+        with legs_at(served.address, default_gait(), rng=rng) as legs:
+            assert first(legs)
+
+
+@pytest.mark.parametrize("profile", ["rig-board-serial", "rig-odrive-netft"])
+def test_every_device_of_a_rig_is_read_at_its_address(profile):
+    with serve_rig(TwinRequest(profile)) as served:
+        assert served.source == "sim:rig"
+        for stream in open_rig(served.address).streams:
+            assert first(stream)
+
+
+def test_a_bus_that_cannot_be_opened_is_named():
+    request = TwinRequest("zebro-100-can", can="nosuch:bus")
+    with pytest.raises(SettingsError, match="cannot open nosuch:bus"), serve_zebro(request):
+        pass
+
+
+@pytest.mark.parametrize(("looks", "duration", "expected"), [(3, None, 0.15), (99, 0.5, 0.5)])
+def test_a_twin_runs_until_it_is_stopped_or_its_time_is_up(looks, duration, expected):
+    clock, asked = ManualClock(), []
+
+    def stop_requested():
+        asked.append(None)
+        return len(asked) > looks
+
+    wait_until(stop_requested, duration=duration, clock=clock)
+    assert clock.now() == pytest.approx(expected, abs=0.051)

@@ -1,0 +1,99 @@
+# SPDX-License-Identifier: MIT
+"""A table of a settings file: TOML with numbers that may carry a unit."""
+
+import math
+from pathlib import Path
+from typing import Final
+
+from rig.toml_table import TomlTable
+from zebro_lab.files.documents import read_toml_document
+from zebro_lab.files.errors import SettingsError, UnitError
+from zebro_lab.files.units import factor_to_si, quantity_to_si
+
+_NO_UNIT: Final = "dimensionless"
+
+
+class SettingsTable(TomlTable):
+    """One table of a settings file; what cannot be followed is a `SettingsError`.
+
+    Arguments as `TomlTable`.
+    """
+
+    def fault(self, problem: str, key: str | None = None) -> SettingsError:
+        """Make an error that names the file and the key."""
+        return SettingsError(problem, file=self.file, key=self.dotted(key))
+
+    def quantity(self, key: str, unit: str, *, default: float | None = None,
+                 above: float = -math.inf, least: float = -math.inf) -> float:  # fmt: skip
+        """Take a number in SI, or a text such as "30 mm".
+
+        Args:
+            key: Its key.
+            unit: Its SI unit.
+            default: What to return where it is missing.
+            above: What it must exceed.
+            least: What it must not fall below.
+
+        Returns:
+            The number in SI.
+
+        Raises:
+            SettingsError: It is missing without a default, no number, or too small.
+        """
+        number = self._to_si(key, self.value(key, default), unit)
+        if number <= above:
+            raise self.fault(f"is {_said(number, unit)}; expected more than {above:g}", key)
+        if number < least:
+            raise self.fault(f"is {_said(number, unit)}; expected {least:g} or more", key)
+        return number
+
+    def quantities(self, key: str, count: int, unit: str) -> tuple[float, ...]:
+        """Take a list of numbers, each as `quantity` takes one.
+
+        Raises:
+            SettingsError: It is missing, of another length, or holds something else.
+        """
+        found = self._list(key, count)
+        return tuple(self._to_si(f"{key}[{i}]", each, unit) for i, each in enumerate(found))
+
+    def factor(self, key: str, unit: str) -> tuple[str, float]:
+        """Take the name of a unit, and compute the factor from it to an SI unit, its default.
+
+        Raises:
+            SettingsError: It is unknown or measures something else.
+        """
+        name = self.text(key, unit)
+        try:
+            return name, factor_to_si(name, unit)
+        except UnitError as error:
+            raise self.fault(str(error), key) from error
+
+    def _to_si(self, key: str, found: object, unit: str) -> float:
+        if isinstance(found, bool) or not isinstance(found, (int, float, str)):
+            named = "" if unit == _NO_UNIT else f" in {unit} or a text such as '1 {unit}'"
+            raise self.fault(f"found {found!r}; expected a number{named}", key)
+        try:
+            return quantity_to_si(found, unit)
+        except UnitError as error:
+            raise self.fault(str(error), key) from error
+
+
+def _said(number: float, unit: str) -> str:
+    return f"{number:g}" if unit == _NO_UNIT else f"{number:g} {unit}"
+
+
+def read_settings(file: Path, *, advice: str) -> SettingsTable:
+    """Read a settings file.
+
+    Args:
+        file: TOML.
+        advice: What to do where there is none.
+
+    Returns:
+        The whole file as a table.
+
+    Raises:
+        NotFound: There is no such file.
+        SettingsError: It cannot be read as TOML.
+    """
+    return SettingsTable(read_toml_document(file, advice=advice), file=file)

@@ -1,0 +1,109 @@
+# SPDX-License-Identifier: MIT
+"""`replay:RUN` in place of a device: the streams of a recorded run, at their recorded pace."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Final
+
+from rig.imu.profile import load_imu_profile
+from rig.openers import REPLAY
+from rig.replay import ReplayStream
+from rig.slip_rig.profile import load_rig_profile
+from rig.zebro.profile import load_leg_profile
+from zebro_lab.files.errors import DataError, NotFound
+from zebro_lab.mcap.raw_log import read_raw_log
+from zebro_lab.mcap.stream_views import ImuView, LegsView, StreamView, rig_views
+from zebro_lab.runs.folder import LOG_FILE, read_manifest
+from zebro_lab.runs.manifest import RIG, RunManifest, profile_file
+from zebro_lab.runs.recorded_legs import LEGS
+
+IMU: Final = "imu"
+_RIG_STREAMS: Final = ("drives", "load_cell", "board")
+_MARGIN: Final = 1e-3  # so that rounding loses no last sample [s]
+
+
+@dataclass(frozen=True)
+class Replayed:
+    """Streams of a run that are to be played again.
+
+    Attributes:
+        streams: Each stream, not yet entered.
+        views: How each shows in a log, by its name.
+        profile: Name and text of their profile.
+        manifest: Of the run.
+        lasts: Time from the first to the last sample [s].
+    """
+
+    streams: tuple[ReplayStream, ...]
+    views: Mapping[str, StreamView]
+    profile: tuple[str, str]
+    manifest: RunManifest
+    lasts: float
+
+
+def read_replay(address: str, what: str, *, name: str | None = None) -> Replayed:
+    """Read a run whose streams are to stand in for devices.
+
+    Args:
+        address: `replay:RUN`, with the run folder.
+        what: Kind of device: `legs`, `imu` or `rig`.
+        name: Name of the stream of an IMU; that of the run where it has the same.
+
+    Returns:
+        Its streams. Their source is `replay:RUN`, or `sim:replay:RUN` where it was simulated.
+
+    Raises:
+        NotFound: There is no such run, or its profile is missing.
+        DataError: The run has no such stream, or cannot be read.
+        RigError: Its profile cannot be followed.
+    """
+    folder = Path(address.removeprefix(REPLAY))
+    manifest = read_manifest(folder)
+    found = read_raw_log(folder / LOG_FILE).streams
+    names = {topic.split("/")[1]: topic for topic in found}
+    chosen = _chosen(what, name, tuple(names))
+    if not chosen:
+        has = ", ".join(names) or "none"
+        raise DataError(f"has no samples of {what} to replay; its streams: {has}", file=folder)
+    kept = chosen[0] if what == IMU else what
+    file = profile_file(folder, kept)
+    if not file.is_file():
+        raise NotFound(f"{file}: missing; restore it from where the run was recorded")
+    views = _views(what, name or kept, file)
+    streams = {name or each: (each, found[names[each]]) for each in chosen}
+    for each in streams:
+        if each not in views:
+            raise DataError(f"describes no {each}, of which the log has samples", file=file)
+    return Replayed(
+        tuple(
+            ReplayStream(samples, name=each, source=_source(folder, manifest, own))
+            for each, (own, samples) in streams.items()
+        ),
+        views,
+        (manifest.profiles.get(kept, file.stem), file.read_text(encoding="utf-8")),
+        manifest,
+        max(float(s.host_time[-1] - s.host_time[0]) for _, s in streams.values()) + _MARGIN,
+    )
+
+
+def _chosen(what: str, name: str | None, found: tuple[str, ...]) -> tuple[str, ...]:
+    if what == LEGS:
+        return tuple(each for each in found if each == LEGS)
+    if what == IMU:
+        imus = [each for each in found if each.startswith(IMU)]
+        return (name,) if name in imus else tuple(imus[:1])
+    return tuple(each for each in found if each in _RIG_STREAMS)
+
+
+def _source(folder: Path, manifest: RunManifest, stream: str) -> str:
+    simulated = "sim:" in manifest.sources.get(stream, manifest.source)
+    return f"{'sim:' * simulated}{REPLAY}{folder.absolute().name}"
+
+
+def _views(what: str, name: str, file: Path) -> Mapping[str, StreamView]:
+    if what == LEGS:
+        return {LEGS: LegsView(LEGS, profile=load_leg_profile(str(file)))}
+    if what == RIG:
+        return rig_views(load_rig_profile(str(file)))
+    return {name: ImuView(name, profile=load_imu_profile(str(file)))}

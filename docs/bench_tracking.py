@@ -6,8 +6,10 @@ markers on the floor, the robot 0.1 m farther on in each. Both are timed in turn
 decoded, in one process; seconds are the processor's, summed over threads, and wall time.
 """
 
+import sys
 import time
 from collections.abc import Callable, Sequence
+from pathlib import Path
 from typing import Any
 
 import cv2
@@ -19,16 +21,18 @@ from tracking.detect import Detection, Robot, detect, observe
 from tracking.floor import FloorMap, FloorMarker, refine_floor
 from tracking.path import assemble_track
 from tracking.pose import BodyPrior, RobotMarker
-from tracking.synthetic import (
-    BodyPose,
+
+sys.path.append(str(Path(__file__).parents[1] / "tests"))
+from support.synthetic import (
     Conditions,
+    DrawnFloorMarker,
+    DrawnPose,
+    DrawnScene,
     RobotState,
-    Scene,
     look_at,
     render_background,
     take_photo,
 )
-from tracking.synthetic import FloorMarker as DrawnFloorMarker
 
 SIZE = (4000, 3000)
 PHOTOS = 8
@@ -45,11 +49,11 @@ ROBOT = Robot(RobotMarker(0, 0.12, "4x4_50", (0.0, 0.0, 0.0385)), BodyPrior(0.06
 
 def photographs() -> list[np.ndarray]:
     drawn = (DrawnFloorMarker(10 + k, (x, y), 0.12, yaw) for k, (x, y, yaw) in enumerate(PLACES))
-    scene = Scene(CAMERA, tuple(drawn))
+    scene = DrawnScene(CAMERA, tuple(drawn))
     background, rng = render_background(scene), np.random.default_rng(0)
     return [
         take_photo(
-            scene, RobotState(BodyPose(0.25 + 0.1 * n, 0.3 + 0.03 * n, 0.3 + 0.02 * n)),
+            scene, RobotState(DrawnPose(0.25 + 0.1 * n, 0.3 + 0.03 * n, 0.3 + 0.02 * n)),
             conditions=Conditions(defocus_sd_px=1.0), rng=rng, background=background,
         ).pixels
         for n in range(PHOTOS)

@@ -14,26 +14,26 @@ import cv2
 import numpy as np
 import pytest
 
+from support.synthetic import (
+    CompositeKind,
+    Conditions,
+    DrawnFloorMarker,
+    DrawnPose,
+    DrawnRobotMarker,
+    DrawnScene,
+    RobotLook,
+    RobotState,
+    composite,
+    look_at,
+    render_background,
+    take_photo,
+)
 from tracking.body import TopPlate, marker_template
 from tracking.camera import Camera, CameraPose, project
 from tracking.composite import find_exposures, find_exposures_like, order_exposures
 from tracking.errors import CompositeError
 from tracking.pose import BodyPose as FoundPose
 from tracking.pose import BodyPrior, RobotMarker
-from tracking.synthetic import (
-    BodyPose,
-    CompositeKind,
-    Conditions,
-    FloorMarker,
-    RobotLook,
-    RobotState,
-    Scene,
-    composite,
-    look_at,
-    render_background,
-    take_photo,
-)
-from tracking.synthetic import RobotMarker as DrawnMarker
 
 pytestmark = pytest.mark.long
 
@@ -78,16 +78,18 @@ KINDS = tuple(CompositeKind)
 
 
 @cache
-def stage() -> tuple[Scene, np.ndarray, np.ndarray]:
+def stage() -> tuple[DrawnScene, np.ndarray, np.ndarray]:
     """Return the scene, its picture without a robot and the pixels of its markers."""
     camera = look_at((0.8, -1.2, 1.8), (0.8, 0.6, 0.0))
-    markers = tuple(FloorMarker(10 + k, (x, y), 0.12, yaw) for k, (x, y, yaw) in enumerate(PLACES))
+    markers = tuple(
+        DrawnFloorMarker(10 + k, (x, y), 0.12, yaw) for k, (x, y, yaw) in enumerate(PLACES)
+    )
     hidden = np.zeros((camera.height, camera.width), np.uint8)
     for marker in markers:
         corners = camera.project(marker.corners)
         outline = corners.mean(axis=0) + 1.5 * (corners - corners.mean(axis=0))
         cv2.fillConvexPoly(hidden, np.round(outline).astype(np.int32), (1,))
-    scene = Scene(camera, markers)
+    scene = DrawnScene(camera, markers)
     return scene, render_background(scene), hidden.astype(bool)
 
 
@@ -108,7 +110,7 @@ def draw_walk(case: Case, rng: np.random.Generator) -> np.ndarray:
 class Window:
     """The part of the scene with a walk in it, a body's length around: the rest is floor."""
 
-    scene: Scene
+    scene: DrawnScene
     background: np.ndarray
     hidden: np.ndarray
 
@@ -131,10 +133,10 @@ class Window:
         return cls(replace(scene, camera=part), background[cut], hidden[cut])
 
     def photographs(self, walk: np.ndarray, rng: np.random.Generator, *, marked: bool) -> list:
-        look, photos = RobotLook(DrawnMarker() if marked else None), []
+        look, photos = RobotLook(DrawnRobotMarker() if marked else None), []
         for count, (x, y, yaw) in enumerate(walk):
             tilt = rng.normal(0, TILT_SD, 2)
-            pose = BodyPose(x, y, yaw, HEIGHT + rng.normal(0, HEIGHT_SD), *tilt)
+            pose = DrawnPose(x, y, yaw, HEIGHT + rng.normal(0, HEIGHT_SD), *tilt)
             legs = tuple(np.mod(STANDING + LEG_TURN * count, 2 * np.pi))
             photos.append(
                 take_photo(self.scene, RobotState(pose, legs), look=look, conditions=GOOD, rng=rng,
@@ -169,7 +171,7 @@ def ordered(
     """Find the exposures of a picture, in order: poses, then their deviations, shape (2, n, 3)."""
     try:
         if clicked is None:
-            marker = DrawnMarker()
+            marker = DrawnRobotMarker()
             robot = RobotMarker(0, marker.side, "4x4_50", (0.0, 0.0, marker.height))
             found = find_exposures(
                 picture, lens, view, template=marker_template(robot), prior=prior, body_size=body,

@@ -10,10 +10,10 @@ import numpy as np
 import PIL.Image
 import pytest
 
+from support.synthetic.stamp import with_time_stamp
 from tracking.camera import Camera
 from tracking.errors import TimesError
 from tracking.images import PhotoTimes, clock_picture
-from tracking.synthetic.stamp import with_time_stamp
 from zebro_lab.files.errors import DataError, NotFound, SettingsError
 from zebro_lab.runs.manifest import RunManifest
 from zebro_lab.track.clock import counted_from

@@ -5,13 +5,13 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from tracking.synthetic.lens import Array
+from support.synthetic.lens import Array
 
 PLATE_TOP = 0.0385  # of the top plate above the body's centre [m]
 
 
 @dataclass(frozen=True)
-class BodyPose:
+class DrawnPose:
     """Where the body's centre is and how it is turned, R = Rz(yaw) Ry(pitch) Rx(roll).
 
     Attributes:
@@ -59,12 +59,12 @@ class RobotState:
         yaw_rate: [rad/s].
     """
 
-    pose: BodyPose
+    pose: DrawnPose
     leg_angles: tuple[float, ...] = (1.2, 4.4, 4.4, 1.2, 1.2, 4.4)
     velocity_xy: tuple[float, float] = (0.0, 0.0)
     yaw_rate: float = 0.0
 
-    def pose_at(self, time: float) -> BodyPose:
+    def pose_at(self, time: float) -> DrawnPose:
         """Return the pose some time after the middle of the exposure [s]."""
         return replace(
             self.pose,
@@ -75,7 +75,7 @@ class RobotState:
 
 
 @dataclass(frozen=True)
-class RobotMarker:
+class DrawnRobotMarker:
     """A square marker on the robot, its top towards the head, its border one cell wide.
 
     Attributes:
@@ -112,11 +112,11 @@ class RobotLook:
         parts: Number of parts on its top plate; 0 leaves it plain.
     """
 
-    marker: RobotMarker | None = field(default_factory=RobotMarker)
+    marker: DrawnRobotMarker | None = field(default_factory=DrawnRobotMarker)
     plate_seed: int = 7
     parts: int = 18
 
 
-def marker_corners(state: RobotState, marker: RobotMarker) -> Array:
+def marker_corners(state: RobotState, marker: DrawnRobotMarker) -> Array:
     """Compute the inertial corners of a marker in the middle of the exposure, shape (4, 3) [m]."""
     return marker.corners_body @ state.pose.rotation.T + state.pose.position

@@ -9,10 +9,10 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from tracking.synthetic.lens import Array, SyntheticCamera
-from tracking.synthetic.patterns import Grid, look_up, marker_cells, plate_cells
-from tracking.synthetic.robot import PLATE_TOP, BodyPose, RobotLook, RobotState
-from tracking.synthetic.sampling import (
+from support.synthetic.lens import Array, SyntheticCamera
+from support.synthetic.patterns import Grid, look_up, marker_cells, plate_cells
+from support.synthetic.robot import PLATE_TOP, DrawnPose, RobotLook, RobotState
+from support.synthetic.sampling import (
     CORNERS,
     DISC,
     MOMENTS,
@@ -22,8 +22,8 @@ from tracking.synthetic.sampling import (
     patch_around,
     ray_field,
 )
-from tracking.synthetic.scene import Light, Picture
-from tracking.synthetic.surfaces import (
+from support.synthetic.scene import Light, Picture
+from support.synthetic.surfaces import (
     Components,
     box_hit,
     half_circle_hit,
@@ -169,7 +169,7 @@ def _paint_print(
 class _Seen:
     """A robot at one moment, as rays find it."""
 
-    pose: BodyPose
+    pose: DrawnPose
     leg_angles: tuple[float, ...]
     look: RobotLook
     light: Light

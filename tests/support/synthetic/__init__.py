@@ -5,10 +5,10 @@ Rendered by inverse mapping: each pixel is the mean over rays through its square
 through the lens to the floor, a print or the robot.
 """
 
-from tracking.synthetic.composite import CompositeKind, composite
-from tracking.synthetic.lens import SyntheticCamera, look_at
-from tracking.synthetic.patterns import charuco_cells, checkerboard_cells, marker_cells
-from tracking.synthetic.photograph import (
+from support.synthetic.composite import CompositeKind, composite
+from support.synthetic.lens import SyntheticCamera, look_at
+from support.synthetic.patterns import charuco_cells, checkerboard_cells, marker_cells
+from support.synthetic.photograph import (
     HARSH,
     IDEAL,
     Conditions,
@@ -18,36 +18,36 @@ from tracking.synthetic.photograph import (
     develop,
     take_photo,
 )
-from tracking.synthetic.robot import (
-    BodyPose,
+from support.synthetic.robot import (
+    DrawnPose,
+    DrawnRobotMarker,
     RobotLook,
-    RobotMarker,
     RobotState,
     marker_corners,
 )
-from tracking.synthetic.scene import (
-    FloorMarker,
+from support.synthetic.scene import (
+    DrawnFloorMarker,
+    DrawnScene,
     Light,
-    Scene,
     Sheet,
     paint_sheets,
     render_background,
 )
-from tracking.synthetic.stamp import with_time_stamp
+from support.synthetic.stamp import with_time_stamp
 
 __all__ = [
     "HARSH",
     "IDEAL",
-    "BodyPose",
     "CompositeKind",
     "Conditions",
-    "FloorMarker",
+    "DrawnFloorMarker",
+    "DrawnPose",
+    "DrawnRobotMarker",
+    "DrawnScene",
     "Glare",
     "Light",
     "RobotLook",
-    "RobotMarker",
     "RobotState",
-    "Scene",
     "Shade",
     "Sheet",
     "SyntheticCamera",

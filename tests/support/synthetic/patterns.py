@@ -9,8 +9,6 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from tracking.errors import MarkerError
-
 Grid = NDArray[np.float32]
 
 INK, PAPER = 0.04, 0.88  # albedo of print [-]
@@ -31,14 +29,14 @@ def marker_cells(marker_id: int, *, dictionary: str = "DICT_4X4_50", quiet: int 
         Albedo, shape (n, n).
 
     Raises:
-        MarkerError: There is no such dictionary, or no such marker in it.
+        ValueError: There is no such dictionary, or no such marker in it.
 
     >>> marker_cells(0).shape
     (8, 8)
     """
     known = _dictionary(dictionary)
     if not 0 <= marker_id < len(known.bytesList):
-        raise MarkerError(
+        raise ValueError(
             f"marker {marker_id} is not in {dictionary}; expected 0 to {len(known.bytesList) - 1}"
         )
     bits = cv2.aruco.generateImageMarker(known, marker_id, known.markerSize + 2)
@@ -154,5 +152,5 @@ def _printed(white: NDArray) -> Grid:
 def _dictionary(name: str) -> cv2.aruco.Dictionary:
     number = getattr(cv2.aruco, name, None) if name.startswith("DICT_") else None
     if number is None:
-        raise MarkerError(f"no dictionary {name!r} in cv2.aruco; expected one such as DICT_4X4_50")
+        raise ValueError(f"no dictionary {name!r} in cv2.aruco; expected one such as DICT_4X4_50")
     return cv2.aruco.getPredefinedDictionary(number)

@@ -8,16 +8,16 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from tracking.synthetic.lens import Array, SyntheticCamera
-from tracking.synthetic.patterns import (
+from support.synthetic.lens import Array, SyntheticCamera
+from support.synthetic.patterns import (
     FLOOR_TEXTURE_SIDE,
     Grid,
     floor_texture,
     look_up,
     marker_cells,
 )
-from tracking.synthetic.sampling import SAMPLES, Patch, patch_around, ray_field
-from tracking.synthetic.surfaces import rectangle_hit
+from support.synthetic.sampling import SAMPLES, Patch, patch_around, ray_field
+from support.synthetic.surfaces import rectangle_hit
 
 Picture = NDArray[np.float32]
 
@@ -88,7 +88,7 @@ class Sheet:
 
 
 @dataclass(frozen=True)
-class FloorMarker:
+class DrawnFloorMarker:
     """A square marker on the floor, its white border one cell wide.
 
     Attributes:
@@ -124,7 +124,7 @@ class FloorMarker:
 
 
 @dataclass(frozen=True)
-class Scene:
+class DrawnScene:
     """A camera, its light and a floor with markers on it.
 
     Attributes:
@@ -135,12 +135,12 @@ class Scene:
     """
 
     camera: SyntheticCamera
-    markers: tuple[FloorMarker, ...] = ()
+    markers: tuple[DrawnFloorMarker, ...] = ()
     light: Light = field(default_factory=Light)
     floor_seed: int = 0
 
 
-def render_background(scene: Scene) -> Picture:
+def render_background(scene: DrawnScene) -> Picture:
     """Draw the scene without a robot.
 
     Returns:
@@ -201,7 +201,7 @@ def _sheet_samples(
     return seen * each, share * each
 
 
-def _floor(scene: Scene) -> Picture:
+def _floor(scene: DrawnScene) -> Picture:
     camera = scene.camera
     texture = floor_texture(np.random.default_rng(scene.floor_seed))
     scale = len(texture) / FLOOR_TEXTURE_SIDE

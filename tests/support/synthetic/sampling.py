@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from tracking.synthetic.lens import Array, SyntheticCamera
+from support.synthetic.lens import Array, SyntheticCamera
 
 SAMPLES = 55
 # Of the lattices whose rows are closest together.

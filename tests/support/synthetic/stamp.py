@@ -24,7 +24,7 @@ def with_time_stamp(jpeg: bytes, taken: datetime, *, subseconds: bool = True) ->
         The file with the stamp. It names a simulated camera.
     """
     exif = Exif()
-    exif[Base.Make], exif[Base.Model] = "simulated", "tracking.synthetic"
+    exif[Base.Make], exif[Base.Model] = "simulated", "support.synthetic"
     details = exif.get_ifd(IFD.Exif)
     details[Base.DateTimeOriginal] = taken.strftime("%Y:%m:%d %H:%M:%S")
     if subseconds:

@@ -7,9 +7,9 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from tracking.synthetic.robot import RobotLook, RobotState
-from tracking.synthetic.robot_picture import paint_robot
-from tracking.synthetic.scene import Picture, Scene, render_background
+from support.synthetic.robot import RobotLook, RobotState
+from support.synthetic.robot_picture import paint_robot
+from support.synthetic.scene import DrawnScene, Picture, render_background
 
 Pixels = NDArray[np.uint8]
 
@@ -99,7 +99,7 @@ class SyntheticPhoto:
 
 
 def take_photo(
-    scene: Scene,
+    scene: DrawnScene,
     state: RobotState | None,
     *,
     look: RobotLook | None = None,

@@ -7,8 +7,7 @@ from enum import StrEnum
 import cv2
 import numpy as np
 
-from tracking.errors import CompositeError
-from tracking.synthetic.photograph import Pixels, SyntheticPhoto
+from support.synthetic.photograph import Pixels, SyntheticPhoto
 
 _CUT_MARGIN_PX = 5  # what a person with scissors leaves around the robot
 _FEATHER_PX = 1.5
@@ -36,14 +35,14 @@ def composite(photos: Sequence[SyntheticPhoto], kind: CompositeKind | str) -> Pi
         One picture, shape (height, width, 3).
 
     Raises:
-        CompositeError: There is no photograph, or they differ in size.
+        ValueError: There is no photograph, or they differ in size.
     """
     if not photos:
-        raise CompositeError("no photographs to merge; expected one or more")
+        raise ValueError("no photographs to merge; expected one or more")
     sizes = {photo.pixels.shape[:2] for photo in photos}
     if len(sizes) > 1:
         found = ", ".join(f"{width}x{height}" for height, width in sorted(sizes))
-        raise CompositeError(f"photographs of sizes {found} px; expected one size")
+        raise ValueError(f"photographs of sizes {found} px; expected one size")
     pictures = [photo.pixels for photo in photos]
     match CompositeKind(kind):
         case CompositeKind.AVERAGED:

@@ -30,7 +30,7 @@ from support.synthetic import (
 )
 from tracking.body import TopPlate, marker_template
 from tracking.camera import Camera, CameraPose, project
-from tracking.composite import find_exposures, find_exposures_like, order_exposures
+from tracking.composite import Merged, find_exposures, find_exposures_like, order_exposures
 from tracking.errors import CompositeError
 from tracking.pose import BodyPose as FoundPose
 from tracking.pose import BodyPrior, RobotMarker
@@ -144,13 +144,17 @@ class Window:
             )  # fmt: skip
         return photos
 
-    def exposures_in(self, picture: np.ndarray, clicked: np.ndarray | None) -> np.ndarray:
+    def exposures_in(
+        self, picture: np.ndarray, kind: str, clicked: np.ndarray | None
+    ) -> np.ndarray:
         """Find exposures by their marker, or as one looks whose top was clicked on."""
         camera = self.scene.camera
         lens = Camera((camera.width, camera.height), camera.matrix, np.array(camera.distortion))
         view = CameraPose.from_matrix(camera.rotation, camera.translation)
         prior = BodyPrior(HEIGHT, HEIGHT_SD, TILT_SD)
-        return ordered(picture, lens, view, prior, self.hidden, clicked=clicked)
+        return ordered(
+            picture, lens, view, prior, self.hidden, merged=Merged(kind), clicked=clicked
+        )
 
 
 def one_walk(task: tuple[int, int, int]) -> tuple[np.ndarray, np.ndarray]:
@@ -161,12 +165,13 @@ def one_walk(task: tuple[int, int, int]) -> tuple[np.ndarray, np.ndarray]:
     window = Window.around(walk)
     picture = composite(window.photographs(walk, rng, marked=case.marked), kind)
     # The last of pasted exposures hides the others and is hidden by none.
-    return walk, window.exposures_in(picture, None if case.marked else walk[-1])
+    return walk, window.exposures_in(picture, Merged(kind), None if case.marked else walk[-1])
 
 
 def ordered(
     picture: np.ndarray, lens: Camera, view: CameraPose, prior: BodyPrior, hidden: np.ndarray,
-    *, body: tuple[float, float] = BODY, plate: TopPlate = PLATE, clicked: np.ndarray | None = None,
+    *, merged: Merged, body: tuple[float, float] = BODY, plate: TopPlate = PLATE,
+    clicked: np.ndarray | None = None,
 ) -> np.ndarray:  # fmt: skip
     """Find the exposures of a picture, in order: poses, then their deviations, shape (2, n, 3)."""
     try:
@@ -174,15 +179,15 @@ def ordered(
             marker = DrawnRobotMarker()
             robot = RobotMarker(0, marker.side, "4x4_50", (0.0, 0.0, marker.height))
             found = find_exposures(
-                picture, lens, view, template=marker_template(robot), prior=prior, body_size=body,
-                hidden=hidden,
+                picture, lens, view, template=marker_template(robot), prior=prior, merged=merged,
+                body_size=body, hidden=hidden,
             )  # fmt: skip
         else:
             state = np.array([clicked[0], clicked[1], prior.height, 0, 0, clicked[2]])
             known = FoundPose(state, np.zeros((6, 6)), np.zeros((6, 6)), 0.0, 0.0)
             found = find_exposures_like(
-                picture, lens, view, known=known, plate=plate, prior=prior, body_size=body,
-                hidden=hidden,
+                picture, lens, view, known=known, plate=plate, prior=prior, merged=merged,
+                body_size=body, hidden=hidden,
             )  # fmt: skip
     except CompositeError:
         return np.zeros((2, 0, 3))
@@ -347,7 +352,7 @@ class World:
         return cls(photos, np.array(truth), lens, view, hidden.astype(bool))
 
     def merged(self, photos: list[np.ndarray], kind: str) -> np.ndarray:
-        if kind == "averaged":
+        if kind == "mean":
             return np.rint(np.mean(photos, axis=0)).astype(np.uint8)
         if kind == "darkest":
             return np.min(photos, axis=0)
@@ -370,7 +375,7 @@ def with_shadow(photo: np.ndarray, empty: np.ndarray) -> np.ndarray:
 
 
 @pytest.mark.reference
-@pytest.mark.parametrize("kind", ["pasted", "averaged", "darkest"])
+@pytest.mark.parametrize("kind", ["pasted", "mean", "darkest"])
 @pytest.mark.parametrize("stride", [2, 1])
 @pytest.mark.parametrize("walk", ["s1.10_A", "s1.10_B"])
 def test_exposures_of_the_virtual_world_are_found(shared, walk, kind, stride):
@@ -378,8 +383,8 @@ def test_exposures_of_the_virtual_world_are_found(shared, walk, kind, stride):
     truth, prior = world.truth[::stride], BodyPrior(0.0615, 1e-3, 0.01)
     picture = world.merged(world.photos[::stride], kind)
     found = ordered(
-        picture, world.lens, world.view, prior, world.hidden, body=WORLD_BODY,
-        plate=WORLD_PLATE, clicked=None if marked else truth[-1],
+        picture, world.lens, world.view, prior, world.hidden, merged=Merged(kind),
+        body=WORLD_BODY, plate=WORLD_PLATE, clicked=None if marked else truth[-1],
     )  # fmt: skip
     row = Row.of([truth], [found])
     step = np.median(np.hypot(*np.diff(truth[:, :2], axis=0).T)) / WORLD_BODY[0]

@@ -492,7 +492,7 @@ def test_a_pasted_composite_shows_every_exposure_as_it_was(series):
 
 def test_an_averaged_composite_is_the_mean_and_the_darkest_the_least(series):
     pictures = np.array([shot.pixels for shot in series])
-    np.testing.assert_allclose(composite(series, "averaged"), pictures.mean(axis=0), atol=0.5)
+    np.testing.assert_allclose(composite(series, "mean"), pictures.mean(axis=0), atol=0.5)
     np.testing.assert_array_equal(composite(series, "darkest"), pictures.min(axis=0))
 
 
@@ -510,7 +510,7 @@ def test_a_composite_of_nothing_or_of_two_sizes_is_refused(series):
         composite([], "pasted")
     small = replace(series[0], pixels=series[0].pixels[:100])
     with pytest.raises(ValueError, match="480x100, 480x360"):
-        composite([series[0], small], "averaged")
+        composite([series[0], small], "mean")
 
 
 # time stamps

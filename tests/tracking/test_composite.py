@@ -9,13 +9,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tracking.body import Alignment, marker_template
+from tracking.body import marker_template
 from tracking.camera import Camera, CameraPose, project
-from tracking.composite import find_exposures, order_exposures
-from tracking.composite.exposure import Exposure, is_more
+from tracking.composite import Merged, find_exposures, order_exposures
 from tracking.errors import CompositeError
 from tracking.markers import marker_picture, square_homography
-from tracking.pose import BodyPose, BodyPrior, RobotMarker, rotation_with_derivatives
+from tracking.pose import BodyPrior, RobotMarker, rotation_with_derivatives
 
 LENS = Camera((800, 500), np.array([[900.0, 0, 400], [0, 900, 250], [0, 0, 1]]), np.zeros(5))
 _TURN = np.linalg.svd([[1.0, 0, 0], [0, -0.85, -0.53], [0, 0.53, -0.85]])
@@ -58,7 +57,7 @@ def exposures():
 
 def merged(pairs, kind):
     stack = np.stack([picture for picture, _ in pairs])
-    if kind == "averaged":
+    if kind == "mean":
         whole = stack.mean(axis=0)
     elif kind == "darkest":
         whole = stack.min(axis=0)
@@ -69,12 +68,12 @@ def merged(pairs, kind):
     return np.repeat(whole.astype(np.uint8)[:, :, None], 3, axis=2)
 
 
-@pytest.mark.parametrize("kind", ["pasted", "averaged", "darkest"])
+@pytest.mark.parametrize("kind", ["pasted", "mean", "darkest"])
 def test_exposures_apart_are_all_found_and_in_order(exposures, kind):
     picture = merged(exposures, kind)
     found = find_exposures(
-        picture, LENS, VIEW, template=marker_template(MARKER), prior=PRIOR, near=(-0.1, 0.0),
-        reach=0.5,
+        picture, LENS, VIEW, template=marker_template(MARKER), prior=PRIOR, merged=Merged(kind),
+        near=(-0.1, 0.0), reach=0.5,
     )  # fmt: skip
     poses = np.array([exposure.alignment.pose.planar for exposure in found])
     assert len(poses) == len(WALK)
@@ -87,8 +86,8 @@ def test_an_exposure_under_its_successor_is_found_and_none_is_made_up():
     walk = np.array([[-0.2, 0.0, 0.0], [-0.105, 0.0, 0.0], [0.2, 0.0, 0.0]])
     picture = composite_of(walk, "pasted", np.random.default_rng(1))
     found = find_exposures(
-        picture, LENS, VIEW, template=marker_template(MARKER), prior=PRIOR, body_size=(0.16, 0.16),
-        near=(0, 0), reach=0.3,
+        picture, LENS, VIEW, template=marker_template(MARKER), prior=PRIOR, merged=Merged.PASTED,
+        body_size=(0.16, 0.16), near=(0, 0), reach=0.3,
     )  # fmt: skip
     poses = np.array([exposure.alignment.pose.planar for exposure in found])
     distances = np.hypot(*(poses[:, None, :2] - walk[None, :, :2]).transpose(2, 0, 1))
@@ -97,34 +96,22 @@ def test_an_exposure_under_its_successor_is_found_and_none_is_made_up():
     assert min(exposure.visible for exposure in found) < 0.95
 
 
-def exposures_at(*places):
-    poses = [BodyPose(np.array([x, 0, 0.1, 0, 0, 0]), *np.zeros((2, 6, 6)), 0, 0) for x in places]
-    return [Exposure(Alignment(pose, 0.9, 0.0), 1.0) for pose in poses]
-
-
-def test_a_reading_that_misses_an_exposure_must_find_more_to_be_taken():
-    through = exposures_at(0.0, 0.3, 0.6)
-    assert is_more(exposures_at(0.0, 0.3, 0.6), through, same=0.05)
-    assert is_more(exposures_at(0.01, 0.29, 0.45, 0.6), through, same=0.05)
-    assert not is_more(exposures_at(0.0, 0.3), through, same=0.05)
-    assert not is_more(exposures_at(0.0, 0.3, 0.45), through, same=0.05)  # misses one
-    assert not is_more(exposures_at(0.0, 0.3, 0.4, 0.5), through, same=0.05)
-    assert is_more(exposures_at(0.0, 0.3, 0.4, 0.5, 0.7), through, same=0.05)
-
-
 def test_an_empty_floor_has_no_exposure():
     picture = composite_of(np.array([[9.0, 9.0, 0.0]]), "pasted", np.random.default_rng(2))
     with pytest.raises(CompositeError, match="no exposure"):
         find_exposures(
             picture, LENS, VIEW, template=marker_template(MARKER), prior=PRIOR,
-            near=(0, 0), reach=0.3,
+            merged=Merged.PASTED, near=(0, 0), reach=0.3,
         )  # fmt: skip
 
 
 def test_a_marker_of_the_floor_is_no_exposure_where_it_is_known_to_lie():
     picture, board = exposure_of([0.0, 0.0, 0.3], np.random.default_rng(3), number=43)
     pixels = np.repeat(picture.astype(np.uint8)[:, :, None], 3, axis=2)
-    asked = {"template": marker_template(MARKER), "prior": PRIOR, "near": (0, 0), "reach": 0.3}
+    asked = {
+        "template": marker_template(MARKER), "prior": PRIOR, "merged": Merged.PASTED,
+        "near": (0, 0), "reach": 0.3,
+    }  # fmt: skip
     assert len(find_exposures(pixels, LENS, VIEW, **asked)) == 1  # number 43 looks like number 3
     with pytest.raises(CompositeError, match="no exposure"):
         find_exposures(pixels, LENS, VIEW, hidden=board, **asked)

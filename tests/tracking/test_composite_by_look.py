@@ -9,9 +9,8 @@ from hypothesis import strategies as st
 
 from tracking.body import Alignment, TopPlate, floor_in_view
 from tracking.camera import Camera, CameraPose, project
-from tracking.composite import find_exposures_like, order_exposures
+from tracking.composite import Merged, find_exposures_like, order_exposures
 from tracking.composite.body_raster import BodyRaster
-from tracking.composite.by_look import Likeness
 from tracking.composite.candidates import headed
 from tracking.composite.chain import (
     steady_chain,
@@ -21,9 +20,10 @@ from tracking.composite.chain import (
     unsteadiness,
 )
 from tracking.composite.colours import FloorColours
-from tracking.composite.darkest import DarkestReading
-from tracking.composite.mean import Fit, MeanReading
+from tracking.composite.known import KnownExposure
+from tracking.composite.mean import Fit, MeanSearch
 from tracking.composite.mean_alignment import MeanAlignment, floor_pattern
+from tracking.composite.pasted_alignment import PastedReading
 from tracking.composite.plane import Plane
 from tracking.errors import CompositeError
 from tracking.markers import square_homography
@@ -81,7 +81,7 @@ def composite(walk, kind, seed=0, lights=None, around_px=0):
         *(exposure(planar, rng, ground, light) for planar, light in zip(walk, lights, strict=True)),
         strict=True,
     )
-    if kind == "averaged":
+    if kind == "mean":
         return np.rint(np.mean(pictures, axis=0)).astype(np.uint8)
     if kind == "darkest":
         return np.min(pictures, axis=0).astype(np.uint8)
@@ -98,10 +98,10 @@ def known_at(planar):
     return BodyPose(state, np.zeros((6, 6)), np.zeros((6, 6)), 0.0, 0.0)
 
 
-def found_in(picture, planar, **other):
+def found_in(picture, planar, merged, **other):
     found = find_exposures_like(
         picture, LENS, VIEW, known=known_at(planar), plate=PLATE, body_size=SIZE, prior=PRIOR,
-        **other,
+        merged=Merged(merged), **other,
     )  # fmt: skip
     poses = np.array([each.alignment.pose.planar for each in found])
     return poses[list(order_exposures(poses))]
@@ -111,14 +111,14 @@ def likeness(picture, planar, *, reach):
     """Take a picture in which one exposure is known, to look around the middle."""
     area = floor_in_view(LENS, VIEW, PRIOR.height + TOP, (0.0, 0.0), reach)
     hidden = np.zeros(picture.shape[:2], dtype=bool)
-    return Likeness(picture, LENS, VIEW, PRIOR, known_at(planar), PLATE, SIZE, hidden, area)
+    return KnownExposure(picture, LENS, VIEW, PRIOR, known_at(planar), PLATE, SIZE, hidden, area)
 
 
-@pytest.mark.parametrize("kind", ["pasted", "averaged", "darkest"])
+@pytest.mark.parametrize("kind", ["pasted", "mean", "darkest"])
 def test_exposures_that_overlap_are_found_in_order_and_none_is_made_up(kind):
     step = np.array([0.11, 0.0, 0.12])
     walk = steady_chain(np.array([-0.22, -0.1, 0.15]), step, 0.0, 4, 0)
-    poses = found_in(composite(walk, kind), walk[-1], near=(0.0, 0.0), reach=0.35)
+    poses = found_in(composite(walk, kind), walk[-1], kind, near=(0.0, 0.0), reach=0.35)
     assert len(poses) == len(walk)
     assert np.abs(poses[:, :2] - walk[:, :2]).max() < 5e-3
     assert np.degrees(np.abs(poses[:, 2] - walk[:, 2]).max()) < 2.5
@@ -131,7 +131,8 @@ def test_pasted_exposures_are_found_in_light_that_changes_and_cut_out_with_floor
     step = np.array([0.15, 0.0, 0.08])
     walk = steady_chain(np.array([-0.3, -0.1, 0.1]), step, 0.0, 4, 0)
     picture = likeness(composite(walk, "pasted", **how), walk[-1], reach=0.45)
-    found = picture.aligned_in_pasted(*picture.find_pasted())
+    reading = PastedReading(picture)
+    found = reading.align(reading.find())
     poses = np.array([each.alignment.pose.planar for each in found])[::-1]
     assert len(poses) == len(walk)
     assert np.abs(poses[:, :2] - walk[:, :2]).max() < 3e-3
@@ -139,18 +140,7 @@ def test_pasted_exposures_are_found_in_light_that_changes_and_cut_out_with_floor
 
 def test_exposures_beyond_reach_of_each_other_are_found_in_a_mean():
     walk = np.array([[-0.4, -0.12, 0.2], [-0.05, -0.03, 0.3], [0.3, 0.08, 0.4]])
-    poses = found_in(composite(walk, "averaged"), walk[1])
-    assert len(poses) == 3
-    assert np.abs(poses[:, :2] - walk[:, :2]).max() < 3e-3
-
-
-def test_a_mean_in_which_more_dark_places_are_found_than_look_like_the_robot_stays_a_mean(
-    monkeypatch,
-):
-    walk = np.array([[-0.3, -0.1, 0.2], [0.0, 0.0, 0.3], [0.3, 0.1, 0.4]])
-    dark = np.array([[x, y, 0.3] for x in (-0.3, 0.3) for y in (-0.25, 0.25)])
-    monkeypatch.setattr(DarkestReading, "find", lambda _, anchor: np.vstack((anchor, dark)))
-    poses = found_in(composite(walk, "averaged"), walk[1], near=(0.0, 0.0), reach=0.45)
+    poses = found_in(composite(walk, "mean"), walk[1], "mean")
     assert len(poses) == 3
     assert np.abs(poses[:, :2] - walk[:, :2]).max() < 3e-3
 
@@ -158,7 +148,7 @@ def test_a_mean_in_which_more_dark_places_are_found_than_look_like_the_robot_sta
 @pytest.mark.parametrize("count", [2, 3])
 def test_places_of_few_exposures_in_a_mean_do_not_depend_on_where_they_were_first_seen(count):
     walk = np.array([[-0.3, -0.1, 0.2], [0.0, 0.0, 0.3], [0.3, 0.1, 0.4]])[:count]
-    picture = likeness(composite(walk, "averaged"), walk[0], reach=0.45)
+    picture = likeness(composite(walk, "mean"), walk[0], reach=0.45)
     started = walk + np.outer(np.arange(count) > 0, [0.004, -0.002, 0.02])
     pattern = floor_pattern(picture, picture.pixels.astype(np.float32), walk)
     flat = pattern.flat(picture.pixels.astype(np.float32))
@@ -206,16 +196,17 @@ def test_a_floor_in_shadow_is_still_the_floor_and_the_robot_is_not():
     assert look.shows(picture)[mask].mean() < 0.1
 
 
-def test_one_exposure_alone_is_no_composite():
+@pytest.mark.parametrize("kind", ["pasted", "mean"])
+def test_one_exposure_alone_is_no_composite(kind):
     planar = np.array([0.0, 0.0, 0.3])
     with pytest.raises(CompositeError, match="but the one whose top was marked"):
-        found_in(composite(planar[None], "pasted"), planar, near=(0, 0), reach=0.15)
+        found_in(composite(planar[None], "pasted"), planar, kind, near=(0, 0), reach=0.15)
 
 
 def test_a_known_exposure_cut_by_the_edge_is_refused():
     picture = composite(np.array([[0.0, 0.0, 0.3]]), "pasted")
     with pytest.raises(CompositeError, match="edge"):
-        found_in(picture, np.array([0.66, 0.0, 0.0]), near=(0.5, 0), reach=0.4)
+        found_in(picture, np.array([0.66, 0.0, 0.0]), "pasted", near=(0.5, 0), reach=0.4)
 
 
 @given(pose=POSES, step=STEPS)
@@ -271,7 +262,7 @@ def test_a_robot_is_told_from_a_sum_of_itself():
     rng = np.random.default_rng(2)
     shape = (*plane.seen_px.shape[:2], 3)
     picture, used = rng.normal(100, 5, shape).astype(np.float32), np.ones(shape[:2], bool)
-    reading = MeanReading(plane, picture, used, body, SIZE[0], TOP)
+    reading = MeanSearch(plane, picture, used, body, SIZE[0], TOP)
     own = cv2.GaussianBlur(rng.normal(0, 60, (*body.x.shape, 3)).astype(np.float32), (0, 0), 2)
     poses = steady_chain(np.array([-0.25, 0.0, 0.0]), np.array([0.1, 0.0, 0.1]), 0.0, 4, 0)
     change = reading.sum_of(poses, own)
@@ -284,15 +275,15 @@ def test_a_robot_is_told_from_a_sum_of_itself():
 def test_of_a_mean_what_is_weaker_or_less_like_the_robot_than_is_usual_is_dropped():
     body, plane = BodyRaster.over(SIZE, 0.006, margin=4), level_plane()
     picture = np.zeros((*plane.seen_px.shape[:2], 3), np.float32)
-    reading = MeanReading(plane, picture, np.ones(picture.shape[:2], bool), body, SIZE[0], TOP)
+    reading = MeanSearch(plane, picture, np.ones(picture.shape[:2], bool), body, SIZE[0], TOP)
     poses = steady_chain(np.array([-0.4, 0.0, 0.0]), np.array([0.1, 0.0, 0.0]), 0.0, 6, 0)
     scores = np.array([0.1, 0.9, 0.9, 0.65, 0.9, 0.9, 0.7])
     strengths = np.array([0.1, 1.0, 1.0, 1.0, 0.4, 1.0, 1.0])
     held = reading.held(Fit(poses, picture, scores, strengths, 0.0, 0.0))
-    np.testing.assert_array_equal(held.poses, poses[[0, 1, 2, 5, 6]])
+    np.testing.assert_array_equal(held, poses[[0, 1, 2, 5, 6]])
     faint = np.full(len(poses), 0.55)
-    assert len(reading.held(Fit(poses, picture, faint, np.ones(len(poses)), 0.0, 0.0)).poses) == 7
-    assert len(reading.held(Fit(poses, picture, 0.9 * faint, strengths, 0.0, 0.0)).poses) == 1
+    assert len(reading.held(Fit(poses, picture, faint, np.ones(len(poses)), 0.0, 0.0))) == 7
+    assert len(reading.held(Fit(poses, picture, 0.9 * faint, strengths, 0.0, 0.0))) == 1
 
 
 @given(count=st.integers(2, 20), own=st.floats(0.01, 0.2), grown=st.floats(0.6, 1.6))

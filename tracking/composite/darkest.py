@@ -46,7 +46,7 @@ from tracking.composite.chain import (
 )
 from tracking.composite.colours import NOISE, ColourDensity, FloorColours, robot_density
 from tracking.composite.order import order_exposures
-from tracking.composite.reading import Reading
+from tracking.composite.reading import PictureRaster
 
 LEAST_ODDS = 0.25
 """Least log odds of an exposure, mean over what it claims [-]."""
@@ -131,7 +131,7 @@ class Chain:
 
 
 @dataclass(frozen=True)
-class DarkestReading(Reading):
+class DarkestSearch(PictureRaster):
     """A picture of the darkest values, on a raster.
 
     Attributes:
@@ -336,7 +336,7 @@ class DarkestReading(Reading):
         gain = (part.cover(poses, look).log_density - part.bare)[part.used]
         return float(gain.sum()) / self.body.x.size
 
-    def part(self, rows: slice, columns: slice) -> "DarkestReading":
+    def part(self, rows: slice, columns: slice) -> "DarkestSearch":
         """Cut a part out; the floor and the colours of dark things are those of the whole."""
         window = (rows, columns)
         part = replace(

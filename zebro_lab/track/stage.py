@@ -6,7 +6,8 @@ from dataclasses import dataclass, field, replace
 from datetime import datetime
 from pathlib import Path
 
-from tracking.images import read_pixels
+from tracking.composite import Merged
+from tracking.images import open_picture, read_pixels
 from zebro_lab.files.errors import SettingsError
 from zebro_lab.files.provenance import file_hashes
 from zebro_lab.files.result_folder import require_replaceable
@@ -26,6 +27,7 @@ from zebro_lab.track.floor_file import FLOOR_FILE, read_floor_file, render_floor
 from zebro_lab.track.folder import KIND, TRACKED, track_folder
 from zebro_lab.track.photo_search import Photo, Watcher
 from zebro_lab.track.photo_sequence import (
+    VIDEOS,
     PhotoSequence,
     TimeRequest,
     by_name,
@@ -37,6 +39,16 @@ from zebro_lab.track.pictures import draw_track
 from zebro_lab.track.robot import WALKING_HEIGHT_SD, body_prior, tracked_robot
 from zebro_lab.track.tracker import Scene, Tracked, track_marker
 from zebro_lab.track.tracker_body import track_body, track_composite
+
+_HOW_MERGED = """\
+needed: a picture does not tell how its exposures were merged. Look at the robots:
+pasted: all are solid; where two overlap, one hides the other (cut out and laid on each other).
+darkest: dark parts are solid, bright ones vanish; where two overlap, the darker of both shows.
+mean: all are faint, and the floor shows through them (the average of all photographs)."""
+
+
+class HowMergedUnknown(SettingsError):
+    """Nobody said how the exposures of a composite picture were merged."""
 
 
 @dataclass(frozen=True)
@@ -55,6 +67,7 @@ class TrackRequest:
         marker: What is printed on the robot: dictionary, number and side; None for what the robot's
             file says.
         without_marker: Track the robot by its own picture, annotated in one photograph.
+        merged: How the exposures of a composite picture were merged; None of other photographs.
         annotations: What a person said about the photographs.
         body_height: Height of the body's origin while the robot stands; None to take the marker's
             [m].
@@ -74,12 +87,18 @@ class TrackRequest:
     start: datetime | None = None
     marker: str | None = None
     without_marker: bool = False
+    merged: Merged | None = None
     annotations: Path | None = None
     body_height: float | None = None
     height_sd: float = WALKING_HEIGHT_SD
     gap: float | None = None
     source: str | None = None
     workers: int = 1
+
+    def __post_init__(self) -> None:
+        is_picture = self.photos.is_file() and self.photos.suffix.lower() not in VIDEOS
+        if self.merged is not None and self.photos.exists() and not is_picture:
+            raise SettingsError("only with one composite picture", key="--merged")
 
     @property
     def folder(self) -> Path:
@@ -190,9 +209,10 @@ def _tracked(
     photos = [Photo(name, path) for name, path in zip(sequence.names, sequence.paths, strict=True)]
     if sequence.times is None:
         length, width = described.robot.body_size[:2]
+        merged = require_merged(request, sequence)
         tracked = track_composite(
             scene, photos[0], times_of=lambda names: exposure_times(names, request.times),
-            body_size=(length, width), watcher=watcher, gap=request.gap,
+            merged=merged, body_size=(length, width), watcher=watcher, gap=request.gap,
         )  # fmt: skip
         notes = ()
         if manifest is not None and request.times.table is None:
@@ -210,6 +230,19 @@ def _tracked(
             scene, scene.robot, photos, times=times, watcher=watcher, gap=request.gap
         )
     return _noted(tracked, counted.notes), counted.said
+
+
+def require_merged(request: TrackRequest, sequence: PhotoSequence) -> Merged:
+    """Return how exposures were merged.
+
+    Raises:
+        HowMergedUnknown: Nobody said.
+    """
+    if request.merged is not None:
+        return request.merged
+    with open_picture(sequence.paths[0]):
+        pass  # what is no picture is told of as such
+    raise HowMergedUnknown(_HOW_MERGED, key="--merged")
 
 
 def _noted(tracked: Tracked, notes: tuple[str, ...]) -> Tracked:
@@ -280,4 +313,5 @@ def _settings(request: TrackRequest, scene: Scene) -> Mapping[str, object]:
         "body_height": request.body_height,
         "height_sd": request.height_sd,
         "gap": request.gap,
+        **({"merged": request.merged.value} if request.merged is not None else {}),
     }

@@ -19,7 +19,13 @@ from tracking.body import (
 )
 from tracking.camera import Camera, CameraPose
 from tracking.camera.lens import Array
-from tracking.composite import Exposure, find_exposures, find_exposures_like, order_exposures
+from tracking.composite import (
+    Exposure,
+    Merged,
+    find_exposures,
+    find_exposures_like,
+    order_exposures,
+)
 from tracking.errors import PhotoError
 from tracking.images import PhotoTimes, read_pixels
 from tracking.path import Observation
@@ -97,7 +103,7 @@ def track_body(
 
 def track_composite(
     scene: Scene, photo: Photo, *, times_of: Callable[[tuple[str, ...]], PhotoTimes],
-    body_size: tuple[float, float], watcher: Watcher, gap: float | None = None,
+    merged: Merged, body_size: tuple[float, float], watcher: Watcher, gap: float | None = None,
 ) -> Tracked:  # fmt: skip
     """Track a robot through the exposures of one composite picture.
 
@@ -107,6 +113,7 @@ def track_composite(
         scene: What is known; the robot's marker, or its annotated template, is what is looked for.
         photo: The picture.
         times_of: Gives the times of the exposures, by their names in order.
+        merged: How the exposures were merged.
         body_size: Length and width of the robot's body [m].
         watcher: Who follows.
         gap: Interval longer than which the path is interrupted; None for the tracker's own [s].
@@ -121,7 +128,7 @@ def track_composite(
     by_floor = Scene(scene.camera, scene.floor, scene.prior, None, scene.said)
     seen = see_floor(by_floor, [photo], watcher)
     watcher.step("exposures", None)
-    exposures = _exposures(scene, seen, photo, body_size)
+    exposures = _exposures(scene, seen, photo, merged, body_size)
     poses = np.array([each.alignment.pose.planar for each in exposures])
     order = order_exposures(poses)
     source = "body" if scene.robot is None else "marker"
@@ -148,7 +155,7 @@ def _rough_note(exposures: Sequence[Exposure]) -> list[str]:
 
 
 def _exposures(
-    scene: Scene, seen: FloorSeen, photo: Photo, body_size: tuple[float, float]
+    scene: Scene, seen: FloorSeen, photo: Photo, merged: Merged, body_size: tuple[float, float]
 ) -> tuple[Exposure, ...]:
     """Find exposures by the robot's marker, or by the one whose top was clicked on."""
     pixels = read_pixels(photo.path, size=scene.camera.size)
@@ -157,12 +164,13 @@ def _exposures(
     if scene.robot is not None:
         return find_exposures(
             pixels, scene.camera, view, template=marker_template(scene.robot.marker),
-            prior=scene.prior, body_size=body_size, hidden=hidden,
+            prior=scene.prior, merged=merged, body_size=body_size, hidden=hidden,
         )  # fmt: skip
     clicks = _clicks(scene, seen, [photo])
     return find_exposures_like(
         pixels, scene.camera, view, known=pose_from_clicks(clicks, scene, view),
-        plate=clicks.plate, prior=scene.prior, body_size=body_size, hidden=hidden,
+        plate=clicks.plate, prior=scene.prior, merged=merged, body_size=body_size,
+        hidden=hidden,
     )  # fmt: skip
 
 

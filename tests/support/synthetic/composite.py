@@ -18,7 +18,7 @@ class CompositeKind(StrEnum):
 
     PASTED = "pasted"
     """Each robot cut out with a margin and pasted over the first picture, later ones on top."""
-    AVERAGED = "averaged"
+    MEAN = "mean"
     """The mean of all: n exposures leave ghosts of 1/n contrast."""
     DARKEST = "darkest"
     """The darkest value of each pixel and colour; bright parts vanish in a brighter floor."""
@@ -45,7 +45,7 @@ def composite(photos: Sequence[SyntheticPhoto], kind: CompositeKind | str) -> Pi
         raise ValueError(f"photographs of sizes {found} px; expected one size")
     pictures = [photo.pixels for photo in photos]
     match CompositeKind(kind):
-        case CompositeKind.AVERAGED:
+        case CompositeKind.MEAN:
             return np.rint(np.mean(pictures, axis=0)).astype(np.uint8)
         case CompositeKind.DARKEST:
             return np.min(pictures, axis=0)

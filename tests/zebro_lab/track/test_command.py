@@ -15,6 +15,7 @@ from zebro_lab.main import app
 from zebro_lab.terminal.ending import run as run_app
 from zebro_lab.track.annotations import read_annotations
 from zebro_lab.track.camera.clock_screen import code_lines
+from zebro_lab.track.command import MergedAs
 
 COMMAND = str(Path(sys.executable).with_name("zebro-lab"))
 WALK = Path(__file__).parents[3] / "datasets/walk-sim"
@@ -135,6 +136,25 @@ def test_nowhere_to_write_and_nothing_to_say_are_wrong_usage(run, bench):
     code, _, err = run("annotate", PHOTOS, "--out", bench / "said.toml")
     assert code == 2
     assert "nothing is said" in err
+
+
+def test_how_a_composite_was_merged_is_asked_for_with_a_line_for_each_way(run, bench):
+    composite = WALK / "composite/simulated_pasted.jpg"
+    code, _, err = run(
+        "track", composite, "--camera", bench / "camera.toml", "--floor", bench / "floor.toml",
+        "--robot", WALK / "robot.toml", "--interval", "4", "--out", bench / "out",
+    )  # fmt: skip
+    assert code == 2
+    assert "'--merged'" in err
+    for kind in MergedAs:
+        assert f"\n{kind.value}: " in err
+    assert not (bench / "out").exists()
+
+
+def test_the_option_knows_all_ways_to_merge():
+    from tracking.composite import Merged
+
+    assert {kind.value for kind in MergedAs} == {kind.value for kind in Merged}
 
 
 def test_annotations_are_added_to_those_before(run, tmp_path):

@@ -12,7 +12,7 @@ import pandas as pd
 import pytest
 
 from tracking.body import Alignment
-from tracking.composite import Exposure
+from tracking.composite import Exposure, Merged
 from tracking.errors import TrackingError
 from tracking.path import TRACK_COLUMNS
 from tracking.pose import BodyPose
@@ -24,7 +24,7 @@ from zebro_lab.track.folder import TRACKED
 from zebro_lab.track.photo_search import TrackStopped
 from zebro_lab.track.photo_sequence import TimeRequest
 from zebro_lab.track.preview_stage import preview
-from zebro_lab.track.stage import TrackRequest, track
+from zebro_lab.track.stage import HowMergedUnknown, TrackRequest, track
 
 WALK = Path(__file__).parents[3] / "datasets/walk-sim"
 SOME = ("00", "02", "03", "04", "05", "06")
@@ -161,7 +161,7 @@ def walk_of_the_composite() -> pd.DataFrame:
 
 @pytest.mark.long
 def test_exposures_of_a_composite_picture_are_found(request_, undrawn):
-    asked = replace(request_, photos=COMPOSITE, times=TimeRequest(interval=4.0))
+    asked = replace(request_, photos=COMPOSITE, merged=Merged.PASTED, times=TimeRequest(4.0))
     result = track(asked, Nobody())
     assert result.source == "sim:photographs"
     true = walk_of_the_composite()
@@ -187,7 +187,7 @@ def exposures(monkeypatch, request) -> pd.DataFrame:
 
 
 def test_exposures_of_a_composite_picture_come_in_order(request_, undrawn, exposures):
-    asked = replace(request_, photos=COMPOSITE, times=TimeRequest(interval=4.0))
+    asked = replace(request_, photos=COMPOSITE, merged=Merged.PASTED, times=TimeRequest(4.0))
     result = track(asked, Nobody())
     observations = result.tracked.track.observations
     assert [seen.photo for seen in observations] == [
@@ -202,14 +202,26 @@ def test_exposures_of_a_composite_picture_come_in_order(request_, undrawn, expos
     ("exposures", "warned"), [(0.9, False), (0.0, True)], indirect=["exposures"]
 )
 def test_exposures_that_could_not_be_aligned_are_told_of(request_, undrawn, exposures, warned):
-    asked = replace(request_, photos=COMPOSITE, times=TimeRequest(interval=4.0))
+    asked = replace(request_, photos=COMPOSITE, merged=Merged.PASTED, times=TimeRequest(4.0))
     notes = track(asked, Nobody()).tracked.notes
     assert any("only roughly" in note for note in notes) == warned
 
 
 def test_a_composite_picture_without_times_asks_for_the_interval(request_, undrawn, exposures):
     with pytest.raises(SettingsError, match="--interval"):
-        track(replace(request_, photos=COMPOSITE), Nobody())
+        track(replace(request_, photos=COMPOSITE, merged=Merged.PASTED), Nobody())
+
+
+def test_a_composite_picture_is_not_guessed_to_be_merged_in_one_way(request_, undrawn):
+    with pytest.raises(HowMergedUnknown) as asked:
+        track(replace(request_, photos=COMPOSITE, times=TimeRequest(4.0)), Nobody())
+    for kind in Merged:
+        assert f"\n{kind}: " in asked.value.problem
+
+
+def test_photographs_of_a_folder_are_not_merged(request_):
+    with pytest.raises(SettingsError, match="only with one composite picture"):
+        replace(request_, merged=Merged.MEAN)
 
 
 def test_the_preview_compares_tape_and_photograph(request_, tmp_path):

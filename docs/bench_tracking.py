@@ -17,7 +17,7 @@ import numpy as np
 from bench import machine, table
 
 from tracking.camera import Camera
-from tracking.detect import Detection, Robot, detect, observe
+from tracking.detect import Detection, MarkedRobot, detect, observe
 from tracking.floor import FloorMap, FloorMarker, refine_floor
 from tracking.path import assemble_track
 from tracking.pose import BodyPrior, RobotMarker
@@ -44,7 +44,7 @@ LENS = Camera(SIZE, CAMERA.matrix, np.array(CAMERA.distortion))
 FLOOR = FloorMap("4x4_50", tuple(
     FloorMarker(10 + k, 0.12, x, y, yaw=yaw) for k, (x, y, yaw) in enumerate(PLACES)
 ))  # fmt: skip
-ROBOT = Robot(RobotMarker(0, 0.12, "4x4_50", (0.0, 0.0, 0.0385)), BodyPrior(0.0645))
+ROBOT = MarkedRobot(RobotMarker(0, 0.12, "4x4_50", (0.0, 0.0, 0.0385)), BodyPrior(0.0645))
 
 
 def photographs() -> list[np.ndarray]:

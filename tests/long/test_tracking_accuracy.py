@@ -26,7 +26,7 @@ from support.synthetic import (
     take_photo,
 )
 from tracking.camera import Camera
-from tracking.detect import Robot, detect, observe
+from tracking.detect import MarkedRobot, detect, observe
 from tracking.errors import PhotoError
 from tracking.floor import FloorMap, FloorMarker, refine_floor
 from tracking.markers import find_markers
@@ -101,7 +101,7 @@ def tracked(pixels: np.ndarray, case: Case, truth: DrawnPose) -> np.ndarray | No
     camera = scene_of(case.size)[0].camera
     lens = Camera((camera.width, camera.height), camera.matrix, np.array(camera.distortion))
     marker = RobotMarker(0, SIDE, "4x4_50", (0.0, 0.0, DrawnRobotMarker().height))
-    robot = Robot(marker, BodyPrior(HEIGHT, max(case.bounce, 5e-4), max(case.tilt, 2e-3)))
+    robot = MarkedRobot(marker, BodyPrior(HEIGHT, max(case.bounce, 5e-4), max(case.tilt, 2e-3)))
     try:
         seen = detect("photo", pixels, floor=FLOOR, robot=robot)
     except PhotoError:

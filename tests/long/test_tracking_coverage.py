@@ -36,7 +36,7 @@ from support.synthetic import (
 )
 from tracking.body import BodyTemplate, TopPlate, find_body, make_template
 from tracking.camera import Camera
-from tracking.detect import Detection, Robot, observe
+from tracking.detect import Detection, MarkedRobot, observe
 from tracking.floor import FloorFit, FloorMap, FloorMarker, FloorView, refine_floor
 from tracking.markers import Sighting, find_markers
 from tracking.pose import PLANAR, BodyPose, BodyPrior, RobotMarker
@@ -177,7 +177,7 @@ def by_marker(
         0, SIDE + rng.normal(0, SIDE_SD), "4x4_50", (0.0, 0.0, DrawnRobotMarker().height),
         side_sd=SIDE_SD,
     )  # fmt: skip
-    robot = Robot(marker, BodyPrior(HEIGHT, kind.height_sd, kind.tilt_sd))
+    robot = MarkedRobot(marker, BodyPrior(HEIGHT, kind.height_sd, kind.tilt_sd))
     detection = Detection("photo", FloorView.of("photo"), _shifted(found[0], window))
     seen = observe(stage().lens, fit, [detection], robot=robot, times={"photo": (0.0, 0.0)})[0]
     return seen.planar, seen.covariance + seen.camera_covariance

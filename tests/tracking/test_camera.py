@@ -8,18 +8,16 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tracking.camera import (
-    BoardView,
     Camera,
     CameraPose,
     CharucoBoard,
     Checkerboard,
+    SeenBoard,
     calibrate,
     find_board,
-    plane_homography,
     project,
     project_with_derivatives,
     to_floor,
-    undistort,
 )
 from tracking.dictionaries import dictionary_named
 from tracking.errors import CalibrationError
@@ -40,7 +38,7 @@ def looking_down(x: float = 1.0, y: float = -1.6, z: float = 2.6) -> CameraPose:
     return CameraPose.from_matrix(rotation, -rotation @ eye)
 
 
-def board_views(lens: Camera, noise_px: float, rng: np.random.Generator) -> list[BoardView]:
+def board_views(lens: Camera, noise_px: float, rng: np.random.Generator) -> list[SeenBoard]:
     column, row = np.meshgrid(np.arange(9), np.arange(6))
     points = np.column_stack((column.ravel(), row.ravel(), np.zeros(54))) * 0.03
     views = []
@@ -49,7 +47,7 @@ def board_views(lens: Camera, noise_px: float, rng: np.random.Generator) -> list
         shift = np.array([rng.uniform(-0.25, 0.1), rng.uniform(-0.2, 0.1), rng.uniform(0.55, 0.8)])
         corners = project(lens, CameraPose(tilt, shift, np.zeros((6, 6))), points)
         corners += noise_px * rng.standard_normal(corners.shape)
-        views.append(BoardView(f"view {index}", points, corners))
+        views.append(SeenBoard(f"view {index}", points, corners))
     return views
 
 
@@ -63,14 +61,6 @@ def test_a_plane_comes_back_from_its_own_picture(x, y, height):
 def test_a_pixel_above_the_horizon_shows_no_floor():
     straight = Camera(LENS.size, LENS.matrix, np.zeros(5))
     assert np.isnan(to_floor(straight, looking_down(), [[600.0, -4000.0]])).all()
-
-
-@given(x=st.floats(0.0, 2.0), y=st.floats(0.0, 1.5))
-def test_the_homography_of_a_plane_agrees_with_projection(x, y):
-    pose = looking_down()
-    u = plane_homography(LENS, pose, 0.1) @ [x, y, 1.0]
-    expected = undistort(LENS, project(LENS, pose, [[x, y, 0.1]]))
-    np.testing.assert_allclose(u[:2] / u[2], expected[0], atol=5e-4)
 
 
 def test_derivatives_agree_with_finite_differences():
@@ -125,7 +115,7 @@ def test_a_straight_lens_is_not_given_a_distortion():
 
 def test_boards_in_the_middle_only_are_reported():
     views = [
-        BoardView(view.name, view.points, (view.corners_px - [640, 480]) * 0.4 + [640, 480])
+        SeenBoard(view.name, view.points, (view.corners_px - [640, 480]) * 0.4 + [640, 480])
         for view in board_views(LENS, 0.05, np.random.default_rng(5))
     ]
     fit = calibrate(views, LENS.size)
@@ -136,7 +126,7 @@ def test_boards_in_the_middle_only_are_reported():
 def test_a_picture_that_does_not_fit_is_named():
     views = board_views(LENS, 0.05, np.random.default_rng(6))
     spoilt = views[3].corners_px + np.random.default_rng(0).normal(0, 2.0, (54, 2))
-    views[3] = BoardView("view 3", views[3].points, spoilt)
+    views[3] = SeenBoard("view 3", views[3].points, spoilt)
     assert any(message.startswith("view 3") for message in calibrate(views, LENS.size).warnings)
 
 

@@ -107,13 +107,13 @@ def test_clicked_points_place_the_camera():
     floor = FloorMap("4x4_50", points=tuple(FloorPoint(n, x, y) for n, (x, y) in corners.items()))
     truth = camera_pose()
     clicked = {p.name: tuple(project(LENS, truth, p.points)[0]) for p in floor.points}
-    found = locate_camera(LENS, floor, FloorView.of("a.jpg", clicked=clicked))
+    found = locate_camera(LENS, floor, FloorView.of("a.jpg").with_clicked(clicked))
     np.testing.assert_allclose(found.position, truth.position, atol=1e-6)
 
 
 def test_three_points_are_too_few():
     floor = FloorMap("4x4_50", points=(FloorPoint("a", 0, 0), FloorPoint("b", 1, 0)))
-    view = FloorView.of("p7.jpg", clicked={"a": (100, 100), "b": (300, 120)})
+    view = FloorView.of("p7.jpg").with_clicked({"a": (100, 100), "b": (300, 120)})
     with pytest.raises(FloorError, match=r"p7\.jpg: 2 points"):
         locate_camera(LENS, floor, view)
 
@@ -133,7 +133,7 @@ def test_a_mirrored_map_of_clicked_points_is_told():
     floor = FloorMap("4x4_50", points=tuple(FloorPoint(n, x, y) for n, (x, y) in corners.items()))
     clicked = {p.name: tuple(project(LENS, camera_pose(), p.points)[0]) for p in floor.points}
     with pytest.raises(FloorError, match="mirrored"):
-        locate_camera(LENS, floor.mirrored(), FloorView.of("a.jpg", clicked=clicked))
+        locate_camera(LENS, floor.mirrored(), FloorView.of("a.jpg").with_clicked(clicked))
 
 
 def test_no_mark_of_the_floor_is_named_with_what_was_expected():

@@ -12,30 +12,15 @@ from typing import Any
 from tracking.body import TopPlate
 from tracking.corrections import Correction, correction_from, plain
 from tracking.errors import TrackingError
+from tracking.photos.scene import Click, MarkedTop
 from zebro_lab.files.errors import SettingsError
 from zebro_lab.files.toml_table import TomlTable, listed, quoted, read_toml, spelled
 
 ANNOTATIONS_FILE = "annotations.toml"
-Click = tuple[float, float]
 _TOP = ("template", "clicks", "correction")
 _TEMPLATE = (
     "photo", "corners_px", "length", "width", "height", "centre_x", "margin", "front_margin",
 )  # fmt: skip
-
-
-@dataclass(frozen=True)
-class TemplateClicks:
-    """The robot's top, clicked on in one photograph.
-
-    Attributes:
-        photo: Name of the photograph.
-        corners_px: Front left, front right, rear right and rear left corner, four pairs [px].
-        plate: The top.
-    """
-
-    photo: str
-    corners_px: tuple[Click, ...]
-    plate: TopPlate
 
 
 @dataclass(frozen=True)
@@ -48,7 +33,7 @@ class Annotations:
         corrections: What is wrong in what the tracker finds, in the order in which it was said.
     """
 
-    template: TemplateClicks | None = None
+    template: MarkedTop | None = None
     clicks: Mapping[str, Mapping[str, Click]] = field(default_factory=dict)
     corrections: tuple[Correction, ...] = ()
 
@@ -81,7 +66,7 @@ def read_annotations(file: Path) -> Annotations:
     return Annotations(template, by_photo, _corrections(table))
 
 
-def _template(table: TomlTable) -> TemplateClicks:
+def _template(table: TomlTable) -> MarkedTop:
     table.require_known(_TEMPLATE)
     found = table.values.get("corners_px")
     if not isinstance(found, list) or len(found) != 4:
@@ -100,7 +85,7 @@ def _template(table: TomlTable) -> TemplateClicks:
         )  # fmt: skip
     except TrackingError as error:
         raise SettingsError(str(error), file=table.file, key="template") from error
-    return TemplateClicks(table.text("photo"), corners, plate)
+    return MarkedTop(table.text("photo"), corners, plate)
 
 
 def _clicks(table: TomlTable) -> dict[str, Click]:
@@ -143,7 +128,7 @@ _HEADING = """\
 # Pixels: the centre of the first one is (0, 0). Lengths in m, angles in rad."""
 
 
-def _template_section(template: TemplateClicks) -> str:
+def _template_section(template: MarkedTop) -> str:
     plate = template.plate
     corners = ", ".join(listed(corner) for corner in template.corners_px)
     sizes = {

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from tracking.camera import Calibration, Camera
+from tracking.camera import Camera, CameraCalibration
 from zebro_lab.files.toml_table import TomlTable, listed, quoted, read_toml, spelled
 
 CAMERA_FILE = "camera.toml"
@@ -56,7 +56,7 @@ def _size(table: TomlTable) -> tuple[int, int]:
     return int(width), int(height)
 
 
-def render_camera_file(fit: Calibration, *, photos: Mapping[str, str]) -> str:
+def render_camera_file(fit: CameraCalibration, *, photos: Mapping[str, str]) -> str:
     """Write a calibration as commented TOML that `read_camera_file` reads back.
 
     Args:

@@ -13,7 +13,8 @@ from zebro_lab.terminal.messages import say
 
 if TYPE_CHECKING:
     from zebro_lab.track.preview_stage import Preview
-    from zebro_lab.track.stage import TrackRequest, TrackResult
+    from zebro_lab.track.request import TrackRequest
+    from zebro_lab.track.stage import TrackResult
 
 INTERRUPTED = 130
 _MOST_LISTED = 10
@@ -133,7 +134,7 @@ def track(
     from tracking.composite import Merged
     from zebro_lab.files.units import quantity_to_si
     from zebro_lab.track.photo_sequence import FRAME_STEP, TimeRequest
-    from zebro_lab.track.stage import TrackRequest
+    from zebro_lab.track.request import TrackRequest
 
     request = TrackRequest(
         photos,
@@ -184,9 +185,9 @@ def _moment(text: str) -> datetime:
 def _track(request: "TrackRequest") -> None:
     from rich.console import Console
 
+    from tracking.errors import TrackStopped
     from zebro_lab.terminal.progress import progress_bar
-    from zebro_lab.track.photo_search import TrackStopped
-    from zebro_lab.track.stage import HowMergedUnknown
+    from zebro_lab.track.inputs import HowMergedUnknown
     from zebro_lab.track.stage import track as run_stage
 
     try:

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from model.slip.law import Array
 from tracking.errors import TrackingError
-from zebro_lab.track.photographs import TrackedPhotos, View
+from zebro_lab.track.photographs import PlacedPhoto, TrackedPhotos
 from zebro_lab.validation.judgement import Prediction, RunJudged, TiltJudged, WalkedPath
 
 if TYPE_CHECKING:
@@ -102,7 +102,7 @@ def _instants(run: RunJudged, photos: TrackedPhotos, time_offset: float) -> NDAr
     return np.unique(scored[np.linspace(0, len(scored) - 1, SHOTS).round().astype(int)])
 
 
-def _shot(run: RunJudged, walk: WalkedPath, view: View, t: float) -> "Shot":
+def _shot(run: RunJudged, walk: WalkedPath, view: PlacedPhoto, t: float) -> "Shot":
     from zebro_lab.plots.photo_poses import Shot
 
     tracked, predicted = run.track.at([t]), run.rows[0].path.at([t])
@@ -123,7 +123,7 @@ def _shot(run: RunJudged, walk: WalkedPath, view: View, t: float) -> "Shot":
     )
 
 
-def _draw_floor(file: Path, run: RunJudged, view: View, simulated_photos: bool) -> None:
+def _draw_floor(file: Path, run: RunJudged, view: PlacedPhoto, simulated_photos: bool) -> None:
     from zebro_lab.plots import save
     from zebro_lab.plots.photo_poses import band_over_floor
 

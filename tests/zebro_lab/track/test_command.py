@@ -118,8 +118,6 @@ def test_an_error_is_one_line_and_exit_1_and_nothing_is_written(
     robot = () if "--robot" in arguments else ("--robot", WALK / "robot.toml")
     camera = () if "--camera" in arguments else ("--camera", "camera.toml")
     given = ("track", *arguments, *robot, *camera, "--floor", "floor.toml", "--out", "out")
-    if "--without-marker" in arguments:
-        monkeypatch.setattr("zebro_lab.track.tracker_body.see_floor", lambda *_: None)
     code, out, err = run(*given)
     assert (code, out) == (1, "")
     assert err.startswith("error: ")

@@ -13,18 +13,19 @@ import pytest
 
 from tracking.body import Alignment
 from tracking.composite import Exposure, Merged
-from tracking.errors import TrackingError
+from tracking.errors import NoUsablePhoto, TrackingError, TrackStopped
 from tracking.path import TRACK_COLUMNS
+from tracking.photos import search
 from tracking.pose import BodyPose
-from zebro_lab.files.errors import AlreadyExists, DataError, SettingsError
+from zebro_lab.files.errors import AlreadyExists, SettingsError
 from zebro_lab.files.result_folder import MANIFEST
-from zebro_lab.track import photo_search
 from zebro_lab.track.annotate_stage import AnnotateRequest, annotate
 from zebro_lab.track.folder import TRACKED
-from zebro_lab.track.photo_search import TrackStopped
+from zebro_lab.track.inputs import HowMergedUnknown
 from zebro_lab.track.photo_sequence import TimeRequest
 from zebro_lab.track.preview_stage import preview
-from zebro_lab.track.stage import HowMergedUnknown, TrackRequest, track
+from zebro_lab.track.request import TrackRequest
+from zebro_lab.track.stage import track
 
 WALK = Path(__file__).parents[3] / "datasets/walk-sim"
 SOME = ("00", "02", "03", "04", "05", "06")
@@ -113,7 +114,7 @@ def test_a_second_track_replaces_the_first_and_another_commands_result_is_safe(r
 
 
 def test_several_processes_find_what_one_finds(request_, monkeypatch, tmp_path, undrawn):
-    monkeypatch.setattr(photo_search, "WORTH_WORKERS", 0.0)
+    monkeypatch.setattr(search, "WORTH_WORKERS", 0.0)
     one = track(request_, Nobody())
     two = track(replace(request_, workers=2, out=tmp_path / "two"), Nobody())
     # Not to the last digit: a stretch begins by looking at the whole photograph.
@@ -182,7 +183,7 @@ def exposures(monkeypatch, request) -> pd.DataFrame:
     ]
     shuffled = np.random.default_rng(0).permutation(len(poses))
     found = tuple(Exposure(Alignment(poses[k], score, 0.0), 1.0) for k in shuffled)
-    monkeypatch.setattr("zebro_lab.track.tracker_body.find_exposures", lambda *_, **__: found)
+    monkeypatch.setattr("tracking.photos.exposures.find_exposures", lambda *_, **__: found)
     return true
 
 
@@ -248,7 +249,7 @@ def edited(request: TrackRequest, tmp_path: Path, name: str, old: str, new: str)
 
 def test_a_floor_of_another_dictionary_says_which_is_seen(request_, tmp_path):
     asked = edited(request_, tmp_path, "floor.toml", "side", 'dictionary = "5x5_50"\nside')
-    with pytest.raises(DataError, match="markers of '4x4_50'"):
+    with pytest.raises(NoUsablePhoto, match="markers of '4x4_50'"):
         track(asked, Nobody())
 
 

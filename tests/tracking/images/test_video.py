@@ -12,12 +12,52 @@ import cv2
 import numpy as np
 import pytest
 
-from tracking.images import video_frames
+from tracking.errors import PhotoError
+from tracking.images import (
+    video_frames,
+)
+
+
+def write_video(path, count, rate=10.0):
+    writer = cv2.VideoWriter(str(path), cv2.VideoWriter.fourcc(*"MJPG"), rate, (64, 48))
+    for index in range(count):
+        writer.write(np.full((48, 64, 3), 10 * index, np.uint8))
+    writer.release()
+    return path
+
+
+def test_frames_come_with_their_own_times(tmp_path):
+    frames = list(video_frames(write_video(tmp_path / "a.avi", 12)))
+    np.testing.assert_allclose([frame.t for frame in frames], 0.1 * np.arange(12), atol=1e-3)
+    assert frames[3].name == "a.avi#3"
+    thinned = list(video_frames(tmp_path / "a.avi", every=0.3))
+    np.testing.assert_allclose([frame.t for frame in thinned], [0, 0.3, 0.6, 0.9], atol=1e-3)
+    assert thinned[1].pixels.mean() == pytest.approx(30, abs=3)
+
+
+@pytest.mark.parametrize("kind", ["empty", "text", "no frames"])
+def test_a_video_without_frames_is_named(tmp_path, kind, capfd):
+    path = tmp_path / "v.avi"
+    if kind == "no frames":
+        write_video(path, 0)
+    else:
+        path.write_text("" if kind == "empty" else "hello")
+    with pytest.raises(PhotoError, match=r"v\.avi"):
+        list(video_frames(path))
+
 
 WIDTH, HEIGHT = 64, 48
+
+
 CONTAINERS = {b"moov", b"trak", b"edts", b"mdia", b"minf", b"stbl"}
+
+
 DURATIONS = {b"mvhd": 16, b"tkhd": 20, b"elst": 8, b"mdhd": 16}  # where the whole duration stands
+
+
 TURNS = {0: (1, 0, 0, 1), 90: (0, 1, -1, 0), 180: (-1, 0, 0, -1), 270: (0, -1, 1, 0)}
+
+
 STEPS = (1, 2, 1, 5, 3, 1, 1, 8, 1, 1)  # how long each frame is shown, in ticks of the file
 
 
@@ -105,3 +145,16 @@ def test_a_frame_that_is_decoded_to_nothing_is_left_out(tmp_path, monkeypatch):
     monkeypatch.setattr(cv2, "VideoCapture", Damaged)
     names = [image.name for image in video_frames(file)]
     assert names == [f"a.mp4#{number}" for number in range(len(STEPS)) if number != 3]
+
+
+def test_a_playlist_is_no_video(tmp_path):
+    writer = cv2.VideoWriter(
+        str(tmp_path / "secret.avi"), cv2.VideoWriter.fourcc(*"MJPG"), 10.0, (64, 64)
+    )
+    for _ in range(3):
+        writer.write(np.zeros((64, 64, 3), np.uint8))
+    writer.release()
+    playlist = tmp_path / "x.mp4"
+    playlist.write_text("ffconcat version 1.0\nfile secret.avi\n")
+    with pytest.raises(PhotoError):
+        list(video_frames(playlist))

@@ -1,13 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""Exposures of one picture are found and put in the order of the walk, and none is made up."""
-
-from pathlib import Path
+"""Exposures of a marked robot are found, and none is made up."""
 
 import cv2
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
 from tracking.body import marker_template
 from tracking.camera import Camera, CameraPose, project
@@ -17,10 +13,20 @@ from tracking.markers import marker_picture, square_homography
 from tracking.pose import BodyPrior, RobotMarker, rotation_with_derivatives
 
 LENS = Camera((800, 500), np.array([[900.0, 0, 400], [0, 900, 250], [0, 0, 1]]), np.zeros(5))
+
+
 _TURN = np.linalg.svd([[1.0, 0, 0], [0, -0.85, -0.53], [0, 0.53, -0.85]])
+
+
 VIEW = CameraPose.from_matrix(_TURN[0] @ _TURN[2], [0.0, 0.15, 1.8])
+
+
 MARKER = RobotMarker(3, 0.12, "4x4_50", (0.0, 0.0, 0.03))
+
+
 PRIOR = BodyPrior(0.1)
+
+
 WALK = np.array([[-0.5, -0.15, 0.2], [-0.2, -0.08, 0.3], [0.08, 0.03, 0.45], [0.33, 0.18, 0.6]])
 
 
@@ -115,34 +121,3 @@ def test_a_marker_of_the_floor_is_no_exposure_where_it_is_known_to_lie():
     assert len(find_exposures(pixels, LENS, VIEW, **asked)) == 1  # number 43 looks like number 3
     with pytest.raises(CompositeError, match="no exposure"):
         find_exposures(pixels, LENS, VIEW, hidden=board, **asked)
-
-
-@given(
-    turning=st.floats(-0.55, 0.55), step=st.floats(0.1, 0.4), n=st.integers(3, 14),
-    seed=st.integers(0, 999),
-)  # fmt: skip
-def test_an_arc_is_put_in_order_whatever_order_it_came_in(turning, step, n, seed):
-    yaw = turning * np.arange(n)
-    middle = yaw + turning / 2
-    xy = np.cumsum(step * np.column_stack((np.cos(middle), np.sin(middle))), axis=0)
-    shuffled = np.random.default_rng(seed).permutation(n)
-    order = order_exposures(np.column_stack((xy, yaw))[shuffled])
-    # Past a full turn an arc lies on itself and no picture tells the laps apart.
-    if abs(turning) * n < 2 * np.pi:
-        assert [int(shuffled[k]) for k in order] == list(range(n))
-
-
-def test_two_exposures_are_ordered_by_their_headings():
-    assert order_exposures([[1.0, 0, 0], [0.0, 0, 0]]) == (1, 0)
-
-
-@pytest.mark.reference
-def test_a_walk_of_the_virtual_world_is_ordered(shared):
-    lines = Path(shared / "virtual-world/photos/s1.10_A/truth.csv").read_text().splitlines()
-    names = lines[0].split(",")
-    rows = np.array([line.split(",") for line in lines[1:]], dtype=float)
-    poses = rows[:, [names.index(name) for name in ("x", "y", "yaw")]]
-    for seed in range(20):
-        shuffled = np.random.default_rng(seed).permutation(len(poses))
-        order = order_exposures(poses[shuffled])
-        assert [int(shuffled[k]) for k in order] == list(range(len(poses)))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A floor's pattern is foretold from beside, and what is left tells where a faint robot is."""
+"""A top fainter than the floor's grain is aligned, with its error."""
 
 from dataclasses import replace
 
@@ -7,6 +7,7 @@ import cv2
 import numpy as np
 import pytest
 
+from support.drawn_grain import WIDTH, grain
 from tracking.body import BodyTemplate, TopPlate
 from tracking.camera import Camera, CameraPose
 from tracking.composite.floor_pattern import FloorPattern
@@ -15,25 +16,21 @@ from tracking.composite.pattern_alignment import AROUND, PatternAlignment
 from tracking.pose import BodyPose, BodyPrior
 
 LENS = Camera((480, 400), np.array([[900.0, 0, 240], [0, 900, 200], [0, 0, 1]]), np.zeros(5))
+
+
 VIEW = CameraPose.from_matrix(np.diag([1.0, -1.0, -1.0]), [0.0, 0.0, 1.2])
+
+
 PLATE = TopPlate(0.1, 0.1, 0.02)
+
+
 PRIOR = BodyPrior(0.05, 1e-3, 5e-3)
-WIDTH = 30.0  # px
+
+
 ONE = np.pad(np.ones((3, 1, 1), np.float32), ((0, 0), (3, 3), (3, 3)))
+
+
 AS_IT_IS = FloorPattern(WIDTH, ONE)  # foretells nothing
-
-
-def grain(rng, shape=(400, 480)):
-    """Draw planks: noise that repeats itself far along a row and little across."""
-    noise = rng.normal(0, 1, (*shape, 3)).astype(np.float32)
-    long = cv2.GaussianBlur(noise, (0, 0), sigmaX=12, sigmaY=0.8)
-    return 10 * long / long.std() + rng.normal(0, 0.5, noise.shape).astype(np.float32)
-
-
-def correlation(picture, dy, dx):
-    """Correlate a picture with itself so many pixels away."""
-    here, there = picture[: -dy or None, : -dx or None], picture[dy:, dx:]
-    return float(np.corrcoef(here.ravel(), there.ravel())[0, 1])
 
 
 def known_exposure(planar, picture):
@@ -62,39 +59,6 @@ def with_top(picture, template, planar):
     laid = picture.copy()
     laid[job.window[0]] += job.drawn(job.body_at(np.array(planar)))
     return laid
-
-
-def test_what_is_left_of_a_floor_is_white():
-    floor, other = grain(np.random.default_rng(0)), grain(np.random.default_rng(1))
-    pattern = FloorPattern.of(floor, np.ones(floor.shape[:2], bool), width=WIDTH)
-    left = pattern.new_in(pattern.flat(other))[10:-10, 10:-10]
-    assert correlation(other, 0, 1) > 0.9
-    for dy, dx in ((0, 1), (1, 0), (1, 1), (0, 2), (2, 0)):
-        assert abs(correlation(left, dy, dx)) < 0.1
-    assert left.std() == pytest.approx(1.0, rel=0.1)
-
-
-def test_layers_are_foretold_as_each_picture_alone():
-    floor = grain(np.random.default_rng(2))
-    pattern = FloorPattern.of(floor, np.ones(floor.shape[:2], bool), width=WIDTH)
-    layers = np.stack((floor, 2 * floor, floor[::-1]), axis=-1)
-    together = pattern.new_in(layers)
-    for k in range(3):
-        np.testing.assert_allclose(
-            together[..., k], pattern.new_in(np.ascontiguousarray(layers[..., k])), atol=1e-4
-        )
-
-
-def test_pixels_that_may_show_the_robot_do_not_count_to_the_floor():
-    floor = grain(np.random.default_rng(3))
-    shown = np.ones(floor.shape[:2], bool)
-    shown[100:200, 100:200] = False
-    robot = floor.copy()
-    robot[110:190, 110:190] += 200 * np.sign(np.sin(np.arange(80)))[:, None, None]
-    flat = FloorPattern.of(floor, shown, width=5.0)
-    np.testing.assert_allclose(
-        FloorPattern.of(robot, shown, width=5.0).filters, flat.filters, atol=0.05
-    )
 
 
 def errors_of_faint_tops(pattern, count=12):

@@ -14,23 +14,11 @@ from tracking.markers import square_homography
 from tracking.pose import BodyPose, BodyPrior
 
 LENS = Camera((640, 400), np.array([[760.0, 0, 320], [0, 760, 200], [0, 0, 1]]), np.zeros(5))
-
-
 _TURN = np.linalg.svd([[1.0, 0, 0], [0, -0.85, -0.53], [0, 0.53, -0.85]])
-
-
 VIEW = CameraPose.from_matrix(_TURN[0] @ _TURN[2], [0.0, 0.15, 1.6])
-
-
 SIZE, TOP = (0.20, 0.20), 0.03  # m
-
-
 PLATE = TopPlate(0.19, 0.19, TOP)
-
-
 PRIOR = BodyPrior(0.06, 1e-3, 5e-3)
-
-
 STEPS = st.tuples(st.floats(0.05, 0.4), st.floats(-0.1, 0.1), st.floats(-0.6, 0.6)).map(np.array)
 
 

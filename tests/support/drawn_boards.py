@@ -3,9 +3,7 @@
 
 import numpy as np
 
-from tracking.camera import (
-    Camera,
-)
+from tracking.camera import Camera
 
 LENS = Camera(
     (1280, 960),

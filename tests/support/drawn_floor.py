@@ -4,16 +4,10 @@
 import numpy as np
 
 from tracking.camera import Camera, CameraPose, project
-from tracking.floor import (
-    FloorMap,
-    FloorMarker,
-    FloorView,
-)
+from tracking.floor import FloorMap, FloorMarker, FloorView
 from tracking.markers import Sighting
 
 LENS = Camera((1280, 960), np.array([[1400.0, 0, 640], [0, 1400, 480], [0, 0, 1]]), np.zeros(5))
-
-
 FLOOR = FloorMap(
     "4x4_50",
     tuple(

@@ -4,10 +4,7 @@
 import cv2
 import numpy as np
 
-from tracking.markers import (
-    marker_picture,
-    square_homography,
-)
+from tracking.markers import marker_picture, square_homography
 from tracking.markers.square import UNIT_SQUARE
 
 SIZE = 200

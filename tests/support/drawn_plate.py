@@ -4,24 +4,14 @@
 import cv2
 import numpy as np
 
-from tracking.body import (
-    TopPlate,
-)
+from tracking.body import TopPlate
 from tracking.camera import Camera, CameraPose, project
 from tracking.pose import BodyPrior, fit_pose, rotation_with_derivatives
 
 LENS = Camera((640, 480), np.array([[700.0, 0, 320], [0, 700, 240], [0, 0, 1]]), np.zeros(5))
-
-
 _TURN = np.linalg.svd([[1.0, 0, 0], [0, -0.85, -0.53], [0, 0.53, -0.85]])
-
-
 VIEW = CameraPose.from_matrix(_TURN[0] @ _TURN[2], [0.0, 0.2, 2.0])
-
-
 PLATE = TopPlate(0.24, 0.16, 0.03, margin=0.01, front_margin=0.01)
-
-
 PRIOR = BodyPrior(0.1)
 
 

@@ -6,11 +6,7 @@ import numpy as np
 import pytest
 
 from tracking.errors import MarkerError
-from tracking.markers import (
-    DICTIONARIES,
-    dictionary_named,
-    guess_dictionary,
-)
+from tracking.markers import DICTIONARIES, dictionary_named, guess_dictionary
 
 
 def test_the_family_of_markers_is_guessed_for_the_message():

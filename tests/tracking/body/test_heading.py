@@ -4,11 +4,7 @@
 import numpy as np
 import pytest
 
-from tracking.body import (
-    Alignment,
-    BodyCandidates,
-    resolve_headings,
-)
+from tracking.body import Alignment, BodyCandidates, resolve_headings
 from tracking.errors import AmbiguousHeading
 from tracking.pose import BodyPose
 

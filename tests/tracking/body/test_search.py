@@ -5,10 +5,7 @@ import numpy as np
 import pytest
 
 from support.drawn_plate import LENS, PLATE, PRIOR, VIEW, annotated, picture_of
-from tracking.body import (
-    find_body,
-    make_template,
-)
+from tracking.body import find_body, make_template
 
 
 @pytest.fixture(scope="module")

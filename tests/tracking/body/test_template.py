@@ -5,10 +5,7 @@ import numpy as np
 import pytest
 
 from support.drawn_plate import LENS, PLATE, VIEW, annotated, picture_of
-from tracking.body import (
-    TopPlate,
-    make_template,
-)
+from tracking.body import TopPlate, make_template
 from tracking.errors import BodyError
 
 

@@ -4,11 +4,7 @@
 import cv2
 import numpy as np
 
-from tracking.camera import (
-    CharucoBoard,
-    Checkerboard,
-    find_board,
-)
+from tracking.camera import CharucoBoard, Checkerboard, find_board
 from tracking.dictionaries import dictionary_named
 
 

@@ -7,13 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from support.drawn_boards import LENS
-from tracking.camera import (
-    Camera,
-    CameraPose,
-    project,
-    project_with_derivatives,
-    to_floor,
-)
+from tracking.camera import Camera, CameraPose, project, project_with_derivatives, to_floor
 
 
 def looking_down(x: float = 1.0, y: float = -1.6, z: float = 2.6) -> CameraPose:

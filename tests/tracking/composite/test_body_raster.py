@@ -4,10 +4,7 @@
 import cv2
 import numpy as np
 
-from support.drawn_board import (
-    SIZE,
-    level_plane,
-)
+from support.drawn_board import SIZE, level_plane
 from tracking.composite.body_raster import BodyRaster
 
 

@@ -6,16 +6,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from support.drawn_board import (
-    STEPS,
-)
-from tracking.composite.chain import (
-    steady_chain,
-    step_between,
-    stepped,
-    stepped_back,
-    unsteadiness,
-)
+from support.drawn_board import STEPS
+from tracking.composite.chain import steady_chain, step_between, stepped, stepped_back, unsteadiness
 
 POSES = st.tuples(st.floats(-1, 1), st.floats(-1, 1), st.floats(-3, 3)).map(np.array)
 

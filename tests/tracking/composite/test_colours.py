@@ -5,11 +5,7 @@ import cv2
 import numpy as np
 import pytest
 
-from support.drawn_board import (
-    composite,
-    exposure,
-    floor,
-)
+from support.drawn_board import composite, exposure, floor
 from tracking.composite.colours import FloorColours
 
 

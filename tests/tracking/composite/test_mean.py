@@ -7,17 +7,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from support.drawn_board import (
-    SIZE,
-    TOP,
-    composite,
-    found_in,
-    level_plane,
-)
+from support.drawn_board import SIZE, TOP, composite, found_in, level_plane
 from tracking.composite.body_raster import BodyRaster
-from tracking.composite.chain import (
-    steady_chain,
-)
+from tracking.composite.chain import steady_chain
 from tracking.composite.mean import Fit, MeanSearch
 
 

@@ -4,16 +4,9 @@
 import numpy as np
 import pytest
 
-from support.drawn_board import (
-    composite,
-    known_at,
-    likeness,
-)
+from support.drawn_board import composite, known_at, likeness
 from tracking.body import Alignment
-from tracking.composite.chain import (
-    steady_chain,
-    stepped,
-)
+from tracking.composite.chain import steady_chain, stepped
 from tracking.composite.mean_alignment import MeanAlignment, floor_pattern
 
 

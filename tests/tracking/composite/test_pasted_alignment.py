@@ -5,9 +5,7 @@ import numpy as np
 import pytest
 
 from support.drawn_board import composite, likeness
-from tracking.composite.chain import (
-    steady_chain,
-)
+from tracking.composite.chain import steady_chain
 from tracking.composite.pasted_alignment import PastedReading
 
 

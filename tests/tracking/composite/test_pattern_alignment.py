@@ -16,20 +16,10 @@ from tracking.composite.pattern_alignment import AROUND, PatternAlignment
 from tracking.pose import BodyPose, BodyPrior
 
 LENS = Camera((480, 400), np.array([[900.0, 0, 240], [0, 900, 200], [0, 0, 1]]), np.zeros(5))
-
-
 VIEW = CameraPose.from_matrix(np.diag([1.0, -1.0, -1.0]), [0.0, 0.0, 1.2])
-
-
 PLATE = TopPlate(0.1, 0.1, 0.02)
-
-
 PRIOR = BodyPrior(0.05, 1e-3, 5e-3)
-
-
 ONE = np.pad(np.ones((3, 1, 1), np.float32), ((0, 0), (3, 3), (3, 3)))
-
-
 AS_IT_IS = FloorPattern(WIDTH, ONE)  # foretells nothing
 
 

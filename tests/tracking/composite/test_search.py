@@ -13,20 +13,10 @@ from tracking.markers import marker_picture, square_homography
 from tracking.pose import BodyPrior, RobotMarker, rotation_with_derivatives
 
 LENS = Camera((800, 500), np.array([[900.0, 0, 400], [0, 900, 250], [0, 0, 1]]), np.zeros(5))
-
-
 _TURN = np.linalg.svd([[1.0, 0, 0], [0, -0.85, -0.53], [0, 0.53, -0.85]])
-
-
 VIEW = CameraPose.from_matrix(_TURN[0] @ _TURN[2], [0.0, 0.15, 1.8])
-
-
 MARKER = RobotMarker(3, 0.12, "4x4_50", (0.0, 0.0, 0.03))
-
-
 PRIOR = BodyPrior(0.1)
-
-
 WALK = np.array([[-0.5, -0.15, 0.2], [-0.2, -0.08, 0.3], [0.08, 0.03, 0.45], [0.33, 0.18, 0.6]])
 
 

@@ -8,13 +8,7 @@ import pytest
 from support.drawn_floor import FLOOR, LENS, camera_pose, see
 from tracking.camera import CameraPose, project
 from tracking.errors import FloorError
-from tracking.floor import (
-    FloorMap,
-    FloorMarker,
-    FloorPoint,
-    FloorView,
-    locate_camera,
-)
+from tracking.floor import FloorMap, FloorMarker, FloorPoint, FloorView, locate_camera
 from tracking.markers import Sighting
 
 

@@ -8,12 +8,7 @@ import pytest
 
 from support.drawn_floor import FLOOR, LENS, camera_pose, see
 from tracking.errors import FloorError
-from tracking.floor import (
-    FloorMap,
-    FloorMarker,
-    FloorView,
-    refine_floor,
-)
+from tracking.floor import FloorMap, FloorMarker, FloorView, refine_floor
 
 
 def test_a_photograph_without_marks_is_named_and_the_others_go_on():

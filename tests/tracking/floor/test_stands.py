@@ -5,10 +5,7 @@ import numpy as np
 import pytest
 
 from support.drawn_floor import FLOOR, LENS, camera_pose, see
-from tracking.floor import (
-    refine_floor,
-    split_stands,
-)
+from tracking.floor import refine_floor, split_stands
 
 
 @pytest.mark.parametrize("degrees", [0.05, 0.3])

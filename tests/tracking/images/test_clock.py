@@ -7,12 +7,7 @@ import pytest
 
 from support.written_photos import write_photo
 from tracking.errors import PhotoError
-from tracking.images import (
-    clock_offset,
-    clock_picture,
-    clock_text,
-    read_clock,
-)
+from tracking.images import clock_offset, clock_picture, clock_text, read_clock
 
 
 def test_the_clock_is_read_from_its_own_picture_and_ties_exif(tmp_path):

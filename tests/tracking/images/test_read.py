@@ -14,11 +14,7 @@ import pytest
 from support.hostile_files import within_two_seconds
 from support.written_photos import write_photo
 from tracking.errors import PhotoError, TrackingError
-from tracking.images import (
-    exif_time,
-    find_photos,
-    read_pixels,
-)
+from tracking.images import exif_time, find_photos, read_pixels
 from zebro_lab.track.photo_sequence import TimeRequest, open_photos, upright_size
 
 

@@ -6,9 +6,7 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from tracking.images import (
-    fit_interval,
-)
+from tracking.images import fit_interval
 
 
 @given(

@@ -10,12 +10,7 @@ import pytest
 from support.hostile_files import within_two_seconds
 from support.written_photos import write_photo
 from tracking.errors import TimesError
-from tracking.images import (
-    exif_time,
-    times_from_exif,
-    times_from_interval,
-    times_from_table,
-)
+from tracking.images import exif_time, times_from_exif, times_from_interval, times_from_table
 
 
 def test_exif_time_has_its_fraction(tmp_path):

@@ -13,9 +13,7 @@ import numpy as np
 import pytest
 
 from tracking.errors import PhotoError
-from tracking.images import (
-    video_frames,
-)
+from tracking.images import video_frames
 
 
 def write_video(path, count, rate=10.0):
@@ -47,17 +45,9 @@ def test_a_video_without_frames_is_named(tmp_path, kind, capfd):
 
 
 WIDTH, HEIGHT = 64, 48
-
-
 CONTAINERS = {b"moov", b"trak", b"edts", b"mdia", b"minf", b"stbl"}
-
-
 DURATIONS = {b"mvhd": 16, b"tkhd": 20, b"elst": 8, b"mdhd": 16}  # where the whole duration stands
-
-
 TURNS = {0: (1, 0, 0, 1), 90: (0, 1, -1, 0), 180: (-1, 0, 0, -1), 270: (0, -1, 1, 0)}
-
-
 STEPS = (1, 2, 1, 5, 3, 1, 1, 8, 1, 1)  # how long each frame is shown, in ticks of the file
 
 

@@ -6,12 +6,7 @@ import numpy as np
 import pytest
 
 from support.drawn_markers import SIZE, photograph, random_quad
-from tracking.markers import (
-    Region,
-    dictionary_named,
-    find_markers,
-    neighbourhood,
-)
+from tracking.markers import Region, dictionary_named, find_markers, neighbourhood
 
 
 def test_dark_blurred_coded_markers_are_found_where_plain_detection_fails():

@@ -10,9 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from support.drawn_markers import photograph, random_quad
-from tracking.markers import (
-    find_markers,
-)
+from tracking.markers import find_markers
 
 
 @given(seed=st.integers(0, 10_000), side=st.floats(25, 90))

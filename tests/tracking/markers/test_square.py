@@ -5,10 +5,7 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tracking.markers import (
-    marker_corners,
-    square_homography,
-)
+from tracking.markers import marker_corners, square_homography
 from tracking.markers.square import UNIT_SQUARE, apply_homography
 
 

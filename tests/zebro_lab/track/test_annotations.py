@@ -7,11 +7,7 @@ from tracking.body import TopPlate
 from tracking.corrections import Delete, Flip, Move, Order
 from tracking.photos.scene import MarkedTop
 from zebro_lab.files.errors import SettingsError
-from zebro_lab.track.annotations import (
-    Annotations,
-    read_annotations,
-    render_annotations,
-)
+from zebro_lab.track.annotations import Annotations, read_annotations, render_annotations
 
 CORNERS = ((1.5, 2.0), (3.0, 2.5), (3.0, 8.0), (1.25, 8.0))
 SAID = Annotations(

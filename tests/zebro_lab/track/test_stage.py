@@ -3,7 +3,6 @@
 
 import json
 import shutil
-import tomllib
 from dataclasses import replace
 from pathlib import Path
 
@@ -11,6 +10,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from support.bundled_walk import COMPOSITE, SOME, Nobody, truth
 from tracking.body import Alignment
 from tracking.composite import Exposure, Merged
 from tracking.errors import NoUsablePhoto, TrackingError, TrackStopped
@@ -21,67 +21,9 @@ from zebro_lab.files.errors import AlreadyExists, SettingsError
 from zebro_lab.files.result_folder import MANIFEST
 from zebro_lab.track.annotate_stage import AnnotateRequest, annotate
 from zebro_lab.track.folder import TRACKED
-from zebro_lab.track.inputs import HowMergedUnknown
 from zebro_lab.track.photo_sequence import TimeRequest
-from zebro_lab.track.preview_stage import preview
 from zebro_lab.track.request import TrackRequest
 from zebro_lab.track.stage import track
-
-WALK = Path(__file__).parents[3] / "datasets/walk-sim"
-SOME = ("00", "02", "03", "04", "05", "06")
-
-
-class Nobody:
-    """Follows without a word, and asks to stop where told to."""
-
-    def __init__(self, stops: bool = False) -> None:
-        self.stops = stops
-
-    def step(self, what: str, fraction: float | None) -> None:
-        """Hear nothing."""
-
-    def stop_requested(self) -> bool:
-        """Ask to stop."""
-        return self.stops
-
-
-@pytest.fixture(scope="module")
-def bench(tmp_path_factory) -> Path:
-    """Return a folder with camera.toml and floor.toml of the true camera, and some photographs."""
-    folder = tmp_path_factory.mktemp("bench")
-    truth = tomllib.loads((WALK / "truth.toml").read_text())
-    camera = truth["camera"]
-    (folder / "camera.toml").write_text(
-        "".join(f"{key} = {camera[key]}\n" for key in ("size", "focal", "centre", "distortion"))
-    )
-    lines = ["side = 0.15", "[markers]"]
-    for marker in truth["floor_markers"]:
-        x, y, _ = np.mean(marker["corners"], axis=0)
-        lines.append(f"{marker['id']} = {{ x = {x}, y = {y} }}")
-    (folder / "floor.toml").write_text("\n".join(lines))
-    (folder / "photos").mkdir()
-    for number in SOME:
-        shutil.copy(WALK / f"photos/simulated_{number}.jpg", folder / "photos")
-    return folder
-
-
-@pytest.fixture
-def request_(bench, tmp_path) -> TrackRequest:
-    """Return what is asked of the bundled photographs, with an empty folder to write."""
-    return TrackRequest(
-        bench / "photos", bench / "camera.toml", bench / "floor.toml",
-        robot=WALK / "robot.toml", out=tmp_path / "track",
-    )  # fmt: skip
-
-
-@pytest.fixture
-def undrawn(monkeypatch):
-    """Leave out the pictures, which take longer than the tracking of so few photographs."""
-    monkeypatch.setattr("zebro_lab.track.stage.draw_track", lambda *_, **__: None)
-
-
-def truth(photos) -> pd.DataFrame:
-    return pd.read_csv(WALK / "photos.csv").set_index("photo").loc[list(photos)]
 
 
 def test_a_track_is_the_walk_within_its_own_error_and_says_it_is_simulated(request_):
@@ -153,9 +95,6 @@ def test_corrections_are_replayed_and_kept(request_, tmp_path, undrawn):
     assert 'kind = "move"' in (result.folder / "annotations.toml").read_text()
 
 
-COMPOSITE = WALK / "composite/simulated_pasted.jpg"
-
-
 def walk_of_the_composite() -> pd.DataFrame:
     return truth(f"simulated_{number:02d}.jpg" for number in range(1, 14, 2))
 
@@ -211,29 +150,6 @@ def test_exposures_that_could_not_be_aligned_are_told_of(request_, undrawn, expo
 def test_a_composite_picture_without_times_asks_for_the_interval(request_, undrawn, exposures):
     with pytest.raises(SettingsError, match="--interval"):
         track(replace(request_, photos=COMPOSITE, merged=Merged.PASTED), Nobody())
-
-
-def test_a_composite_picture_is_not_guessed_to_be_merged_in_one_way(request_, undrawn):
-    with pytest.raises(HowMergedUnknown) as asked:
-        track(replace(request_, photos=COMPOSITE, times=TimeRequest(4.0)), Nobody())
-    for kind in Merged:
-        assert f"\n{kind}: " in asked.value.problem
-
-
-def test_photographs_of_a_folder_are_not_merged(request_):
-    with pytest.raises(SettingsError, match="only with one composite picture"):
-        replace(request_, merged=Merged.MEAN)
-
-
-def test_the_preview_compares_tape_and_photograph(request_, tmp_path):
-    file = tmp_path / "preview.png"
-    seen = preview(request_, file)
-    assert file.read_bytes()[:4] == b"\x89PNG"
-    assert seen.marks == ("10", "11", "12", "13")
-    assert len(seen.tape) == 6
-    assert not any(check.is_off for check in seen.tape)
-    assert seen.robot == pytest.approx((0, 0, 0), abs=3e-3)
-    assert 1e-3 < seen.scale < 4e-3
 
 
 def test_a_marker_of_another_side_is_noticed(request_, undrawn):

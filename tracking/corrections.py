@@ -13,7 +13,7 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from tracking.errors import CorrectionError
-from tracking.path import Observation
+from tracking.path import PoseObservation
 
 
 @dataclass(frozen=True)
@@ -77,9 +77,9 @@ _KINDS: dict[str, type[Correction]] = {
 
 
 def replay(
-    observations: Sequence[Observation], corrections: Iterable[Correction], *,
+    observations: Sequence[PoseObservation], corrections: Iterable[Correction], *,
     times: Mapping[str, tuple[float, float]] | None = None, z: float = 0.0,
-) -> tuple[Observation, ...]:  # fmt: skip
+) -> tuple[PoseObservation, ...]:  # fmt: skip
     """Apply corrections to observations.
 
     Args:
@@ -148,7 +148,7 @@ def plain(correction: Correction) -> dict[str, Any]:
     return {"kind": kind, **values}
 
 
-def _known(found: Mapping[str, Observation], photo: str) -> Observation:
+def _known(found: Mapping[str, PoseObservation], photo: str) -> PoseObservation:
     if photo not in found:
         near = difflib.get_close_matches(photo, found, n=1)
         hint = f"; did you mean '{near[0]}'?" if near else ""
@@ -156,15 +156,18 @@ def _known(found: Mapping[str, Observation], photo: str) -> Observation:
     return found[photo]
 
 
-def _flipped(seen: Observation) -> Observation:
+def _flipped(seen: PoseObservation) -> PoseObservation:
     # The middle of the robot stays; only its ends change places.
     yaw = np.angle(np.exp(1j * (seen.planar[2] + np.pi)))
     return replace(seen, planar=np.array([*seen.planar[:2], float(yaw)]))
 
 
 def _moved(
-    found: Mapping[str, Observation], move: Move, times: Mapping[str, tuple[float, float]], z: float
-) -> Observation:
+    found: Mapping[str, PoseObservation],
+    move: Move,
+    times: Mapping[str, tuple[float, float]],
+    z: float,
+) -> PoseObservation:
     planar = np.array([move.x, move.y, move.yaw])
     covariance = np.diag([move.position_sd, move.position_sd, move.yaw_sd]) ** 2
     if move.photo in found:
@@ -174,10 +177,10 @@ def _moved(
         _known(found, move.photo)
     t, t_sd = times[move.photo]
     none = np.zeros((3, 3))
-    return Observation(move.photo, t, t_sd, planar, covariance, none, z, 1.0, "hand")
+    return PoseObservation(move.photo, t, t_sd, planar, covariance, none, z, 1.0, "hand")
 
 
-def _ordered(found: Mapping[str, Observation], order: Order) -> dict[str, Observation]:
+def _ordered(found: Mapping[str, PoseObservation], order: Order) -> dict[str, PoseObservation]:
     if len(set(order.photos)) < len(order.photos):
         raise CorrectionError("an order names a photograph twice; each can be taken only once")
     named = [_known(found, photo) for photo in order.photos]

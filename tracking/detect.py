@@ -12,16 +12,16 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from tracking.camera.lens import Array, Camera, project_with_derivatives
+from tracking.camera.lens import Camera
 from tracking.errors import PhotoError
 from tracking.floor import FloorFit, FloorMap, FloorView
 from tracking.markers import Sighting, find_markers, guess_dictionary, neighbourhood
-from tracking.path import Observation
+from tracking.path import PoseObservation
 from tracking.pose import BodyPrior, RobotMarker, fit_pose
 
 
 @dataclass(frozen=True)
-class Robot:
+class MarkedRobot:
     """The robot as the tracker knows it.
 
     Attributes:
@@ -49,7 +49,7 @@ class Detection:
 
 
 def detect(
-    photo: str, pixels: NDArray[np.uint8], *, floor: FloorMap, robot: Robot,
+    photo: str, pixels: NDArray[np.uint8], *, floor: FloorMap, robot: MarkedRobot,
     hint: Detection | None = None, reach: float = 1.5,
 ) -> Detection:  # fmt: skip
     """Find the floor's markers and the robot's in one photograph.
@@ -87,7 +87,9 @@ def detect(
     return Detection(photo, FloorView.of(photo, on_floor), robots[0] if robots else None)
 
 
-def _missing(floor: FloorMap, robot: Robot, found: Sequence[Sighting]) -> dict[str, list[int]]:
+def _missing(
+    floor: FloorMap, robot: MarkedRobot, found: Sequence[Sighting]
+) -> dict[str, list[int]]:
     numbers = {sighting.marker_id for sighting in found}
     missing: dict[str, list[int]] = {}
     for number in floor.marker_ids:
@@ -99,7 +101,7 @@ def _missing(floor: FloorMap, robot: Robot, found: Sequence[Sighting]) -> dict[s
 
 
 def _near(
-    pixels: NDArray[np.uint8], floor: FloorMap, robot: Robot, hint: Detection, reach: float
+    pixels: NDArray[np.uint8], floor: FloorMap, robot: MarkedRobot, hint: Detection, reach: float
 ) -> list[Sighting]:
     """Look where the marks were in a neighbouring photograph."""
     size = (pixels.shape[1], pixels.shape[0])
@@ -126,9 +128,9 @@ def _no_floor(pixels: NDArray[np.uint8], floor: FloorMap) -> str:
 
 
 def observe(
-    camera: Camera, fit: FloorFit, detections: Sequence[Detection], *, robot: Robot,
+    camera: Camera, fit: FloorFit, detections: Sequence[Detection], *, robot: MarkedRobot,
     times: Mapping[str, tuple[float, float]],
-) -> tuple[Observation, ...]:  # fmt: skip
+) -> tuple[PoseObservation, ...]:  # fmt: skip
     """Place the robot in every photograph that shows it.
 
     Args:
@@ -149,9 +151,9 @@ def observe(
 
 
 def _observation(
-    camera: Camera, fit: FloorFit, photo: str, sighting: Sighting, robot: Robot,
+    camera: Camera, fit: FloorFit, photo: str, sighting: Sighting, robot: MarkedRobot,
     times: Mapping[str, tuple[float, float]],
-) -> Observation:  # fmt: skip
+) -> PoseObservation:  # fmt: skip
     marker = robot.marker
     pose = fit_pose(
         camera,
@@ -163,11 +165,4 @@ def _observation(
         scale_sd=marker.side_sd / marker.side,
     )
     t, t_sd = times[photo]
-    return Observation.of(photo, pose, t=t, t_sd=t_sd, score=sighting.score, source="marker")
-
-
-def size_at(camera: Camera, fit: FloorFit, observation: Observation) -> Array:
-    """Compute how many pixels a metre is at an observation, along x and y, shape (2,) [px/m]."""
-    place = [[*observation.planar[:2], observation.z]]
-    _, by_point, _ = project_with_derivatives(camera, fit.pose_of(observation.photo), place)
-    return np.linalg.norm(by_point[0, :, :2], axis=0)
+    return PoseObservation.of(photo, pose, t=t, t_sd=t_sd, score=sighting.score, source="marker")

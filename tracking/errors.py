@@ -24,6 +24,14 @@ class PhotoError(TrackingError, ValueError):
         self.reason = reason
 
 
+class NoUsablePhoto(TrackingError, ValueError):
+    """No photograph can be used, or none shows the robot."""
+
+
+class TrackStopped(TrackingError):
+    """Tracking was stopped on request; nothing was written."""
+
+
 class CalibrationError(TrackingError, ValueError):
     """The boards seen do not determine the lens."""
 

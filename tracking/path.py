@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from tracking.camera.lens import Array
 from tracking.errors import PathError
@@ -20,7 +20,7 @@ TRACK_COLUMNS = (
 
 
 @dataclass(frozen=True)
-class Observation:
+class PoseObservation:
     """The robot in one photograph.
 
     Attributes:
@@ -49,12 +49,12 @@ class Observation:
     @classmethod
     def of(
         cls, photo: str, pose: BodyPose, *, t: float, t_sd: float, score: float, source: str
-    ) -> "Observation":
+    ) -> "PoseObservation":
         """Take what a path needs out of a pose."""
-        block = np.ix_(PLANAR, PLANAR)
+        shared = pose.camera_covariance[np.ix_(PLANAR, PLANAR)]
         return cls(
-            photo, t, t_sd, pose.planar, pose.covariance[block], pose.camera_covariance[block],
-            float(pose.state[2]), score, source,
+            photo, t, t_sd, pose.planar, pose.planar_covariance, shared, float(pose.state[2]),
+            score, source,
         )  # fmt: skip
 
 
@@ -68,7 +68,7 @@ class Track:
         covariance: Of the smoothed x, y and yaw with the camera's share, shape (n, 3, 3).
     """
 
-    observations: tuple[Observation, ...]
+    observations: tuple[PoseObservation, ...]
     smoothed: SmoothPath
     covariance: Array
 
@@ -121,7 +121,10 @@ class Track:
 
 
 def assemble_track(
-    observations: Sequence[Observation], *, gap: float | None = None, process: Process | None = None
+    observations: Sequence[PoseObservation],
+    *,
+    gap: float | None = None,
+    process: Process | None = None,
 ) -> Track:
     """Order observations by time and smooth them.
 
@@ -150,19 +153,3 @@ def assemble_track(
     )
     shared = np.array([seen.camera_covariance for seen in ordered])
     return Track(ordered, path, path.covariance + shared)
-
-
-def tape_check(track_xy: ArrayLike, measured: float) -> float:
-    """Compare the distance between first and last point with a tape.
-
-    Args:
-        track_xy: Points, shape (n, 2) [m].
-        measured: What the tape says [m].
-
-    Returns:
-        Tracked over measured distance, 1 when both agree [-].
-    """
-    points = np.asarray(track_xy, dtype=float)
-    if not measured > 0:
-        raise PathError(f"the tape says {measured} m; expected more than 0")
-    return float(np.hypot(*(points[-1] - points[0]))) / measured

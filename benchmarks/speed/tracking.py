@@ -7,6 +7,7 @@ decoded, in one process; seconds are the processor's, summed over threads, and w
 is timed beside scipy's splines.
 """
 
+import sys
 import time
 from collections.abc import Callable, Sequence
 from functools import partial
@@ -19,21 +20,21 @@ from scipy.interpolate import make_smoothing_spline
 from benchmarks.machine import describe_machine
 from benchmarks.tables import print_table
 from tracking.camera import Camera
-from tracking.detect import Detection, Robot, detect, observe
+from tracking.detect import Detection, MarkedRobot, detect, observe
 from tracking.floor import FloorMap, FloorMarker, refine_floor
 from tracking.path import assemble_track
 from tracking.pose import BodyPrior, RobotMarker
 from tracking.smooth import Process, smooth
-from tracking.synthetic import (
-    BodyPose,
+from support.synthetic import (
     Conditions,
+    DrawnFloorMarker,
+    DrawnPose,
+    DrawnScene,
     RobotState,
-    Scene,
     look_at,
     render_background,
     take_photo,
 )
-from tracking.synthetic import FloorMarker as DrawnFloorMarker
 
 SIZE = (4000, 3000)
 PHOTOS = 8
@@ -47,17 +48,17 @@ LENS = Camera(SIZE, CAMERA.matrix, np.array(CAMERA.distortion))
 FLOOR = FloorMap("4x4_50", tuple(
     FloorMarker(10 + k, 0.12, x, y, yaw=yaw) for k, (x, y, yaw) in enumerate(PLACES)
 ))  # fmt: skip
-ROBOT = Robot(RobotMarker(0, 0.12, "4x4_50", (0.0, 0.0, 0.0385)), BodyPrior(0.0645))
+ROBOT = MarkedRobot(RobotMarker(0, 0.12, "4x4_50", (0.0, 0.0, 0.0385)), BodyPrior(0.0645))
 
 
 def photographs() -> list[np.ndarray]:
     """Draw the photographs."""
     drawn = (DrawnFloorMarker(10 + k, (x, y), 0.12, yaw) for k, (x, y, yaw) in enumerate(PLACES))
-    scene = Scene(CAMERA, tuple(drawn))
+    scene = DrawnScene(CAMERA, tuple(drawn))
     background, rng = render_background(scene), np.random.default_rng(0)
     return [
         take_photo(
-            scene, RobotState(BodyPose(0.25 + 0.1 * n, 0.3 + 0.03 * n, 0.3 + 0.02 * n)),
+            scene, RobotState(DrawnPose(0.25 + 0.1 * n, 0.3 + 0.03 * n, 0.3 + 0.02 * n)),
             conditions=Conditions(defocus_sd_px=1.0), rng=rng, background=background,
         ).pixels
         for n in range(PHOTOS)

@@ -18,14 +18,19 @@ import numpy as np
 
 from tracking.floor import FloorMap
 from tracking.floor import FloorMarker as MeasuredMarker
-from tracking.synthetic import (
-    BodyPose,
+from zebro_lab.track.camera.command import calibrate
+from zebro_lab.track.camera_file import CAMERA_FILE
+from zebro_lab.track.floor_file import FLOOR_FILE, render_floor_file
+
+sys.path.append(str(Path(__file__).parents[2] / "tests"))
+from support.synthetic import (
     Conditions,
-    FloorMarker,
+    DrawnFloorMarker,
+    DrawnPose,
+    DrawnRobotMarker,
+    DrawnScene,
     RobotLook,
-    RobotMarker,
     RobotState,
-    Scene,
     Sheet,
     SyntheticPhoto,
     charuco_cells,
@@ -37,9 +42,6 @@ from tracking.synthetic import (
     take_photo,
     with_time_stamp,
 )
-from zebro_lab.track.camera.command import calibrate
-from zebro_lab.track.camera_file import CAMERA_FILE
-from zebro_lab.track.floor_file import FLOOR_FILE, render_floor_file
 
 SEED = 2023
 SOURCE = "sim:mujoco-walk"
@@ -54,18 +56,18 @@ IMU_ANGLE_NOISE, IMU_RATE_NOISE, IMU_RATE_BIAS = 0.002, 0.005, 0.001  # rad, rad
 
 PHOTO_STEP, PHOTO_JITTER, N_PHOTOS = 2.0, 0.02, 16  # s, s, -
 COMPOSITE_PHOTOS = range(1, 14, 2)  # walking; 0.39 m apart, where the body has 0.25 m
-MARKER = RobotMarker(0, 0.12)
+MARKER = DrawnRobotMarker(0, 0.12)
 CONDITIONS = Conditions(
     exposure_time=1 / 60, defocus_sd_px=0.6, read_noise_counts=1.0, shot_noise_counts=1.5,
     jpeg_quality=85,
 )  # fmt: skip
-SCENE = Scene(
+SCENE = DrawnScene(
     look_at(
         (1.0, -1.6, 2.4), (0.85, 0.55, 0.0), width=1600, height=1200,
         field_of_view=np.radians(56.0), distortion=(-0.12, 0.03, 0.0005, -0.0004, 0.0),
     ),
     tuple(
-        FloorMarker(number, centre, 0.15)
+        DrawnFloorMarker(number, centre, 0.15)
         for number, centre in ((10, (0.1, -0.6)), (11, (1.8, -0.6)), (12, (2.2, 1.6)),
                                (13, (-0.5, 1.5)))
     ),
@@ -103,7 +105,7 @@ class Truth:
         x, y, z, roll, pitch, yaw = self.at(self.pose, time)
         change = (self.at(self.pose, time + 0.01) - self.at(self.pose, time - 0.01)) / 0.02
         return RobotState(
-            BodyPose(x, y, yaw, z, roll, pitch), tuple(self.at(self.theta, time)),
+            DrawnPose(x, y, yaw, z, roll, pitch), tuple(self.at(self.theta, time)),
             (change[0], change[1]), change[5],
         )  # fmt: skip
 
@@ -218,7 +220,7 @@ def boards(rng: np.random.Generator) -> list[Sheet]:
         depth = rng.uniform(0.6, 0.95)
         place = depth * camera.rays(pixel)
         tilt = rng.uniform(-0.6, 0.6, 3) * (1.0, 1.0, 0.5)
-        turn = BodyPose(0.0, 0.0, tilt[2], 0.0, tilt[0], tilt[1]).rotation
+        turn = DrawnPose(0.0, 0.0, tilt[2], 0.0, tilt[0], tilt[1]).rotation
         facing = turn @ np.diag([1.0, -1.0, -1.0])
         centre = camera.rotation.T @ (place - camera.translation)
         held.append(Sheet(grid, size, centre, camera.rotation.T @ facing))

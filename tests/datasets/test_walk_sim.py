@@ -13,7 +13,13 @@ import pytest
 from PIL import Image
 from PIL.ExifTags import IFD, Base
 
-from tracking.synthetic import BodyPose, RobotMarker, RobotState, SyntheticCamera, marker_corners
+from support.synthetic import (
+    DrawnPose,
+    DrawnRobotMarker,
+    RobotState,
+    SyntheticCamera,
+    marker_corners,
+)
 from zebro_lab.robot.robot_file import read_robot_file
 from zebro_lab.runs.legs import read_leg_log
 from zebro_lab.track.camera_file import read_camera_file
@@ -62,7 +68,7 @@ def camera(truth):
 
 
 def state_of(row):
-    return RobotState(BodyPose(row.x, row.y, row.yaw, row.z, row.roll, row.pitch))
+    return RobotState(DrawnPose(row.x, row.y, row.yaw, row.z, row.roll, row.pitch))
 
 
 def strides(walk):
@@ -193,7 +199,7 @@ def test_every_photograph_shows_each_marker_where_the_truth_projects_it(truth, s
 
 def told_marker(truth):
     told = truth["robot_marker"]
-    marker = RobotMarker(told["id"], told["side"])
+    marker = DrawnRobotMarker(told["id"], told["side"])
     np.testing.assert_allclose(marker.corners_body, told["corners_body"])
     return marker
 

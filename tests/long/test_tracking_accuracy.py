@@ -13,24 +13,24 @@ import cv2
 import numpy as np
 import pytest
 
-from tracking.camera import Camera
-from tracking.detect import Robot, detect, observe
-from tracking.errors import PhotoError
-from tracking.floor import FloorMap, FloorMarker, refine_floor
-from tracking.markers import find_markers
-from tracking.pose import BodyPrior, RobotMarker
-from tracking.synthetic import (
+from support.synthetic import (
     HARSH,
-    BodyPose,
     Conditions,
+    DrawnFloorMarker,
+    DrawnPose,
+    DrawnRobotMarker,
+    DrawnScene,
     RobotState,
-    Scene,
     look_at,
     render_background,
     take_photo,
 )
-from tracking.synthetic import FloorMarker as DrawnFloorMarker
-from tracking.synthetic import RobotMarker as DrawnMarker
+from tracking.camera import Camera
+from tracking.detect import MarkedRobot, detect, observe
+from tracking.errors import PhotoError
+from tracking.floor import FloorMap, FloorMarker, refine_floor
+from tracking.markers import find_markers
+from tracking.pose import BodyPrior, RobotMarker
 
 pytestmark = pytest.mark.long
 
@@ -68,10 +68,10 @@ CASES = (
 
 
 @cache
-def scene_of(size: tuple[int, int]) -> tuple[Scene, np.ndarray]:
+def scene_of(size: tuple[int, int]) -> tuple[DrawnScene, np.ndarray]:
     camera = look_at((0.8, -1.2, 1.8), (0.8, 0.6, 0.0), width=size[0], height=size[1])
     markers = (DrawnFloorMarker(10 + k, (x, y), SIDE, yaw) for k, (x, y, yaw) in enumerate(PLACES))
-    scene = Scene(camera, tuple(markers))
+    scene = DrawnScene(camera, tuple(markers))
     return scene, render_background(scene)
 
 
@@ -86,7 +86,7 @@ def one_photo(task: tuple[int, int]) -> tuple[np.ndarray | None, bool]:
     cv2.setNumThreads(1)
     case, rng = CASES[task[0]], np.random.default_rng(task)
     scene, background = scene_of(case.size)
-    truth = BodyPose(
+    truth = DrawnPose(
         rng.uniform(0.2, 1.4), rng.uniform(0.1, 1.0), rng.uniform(-np.pi, np.pi),
         HEIGHT + rng.normal(0, case.bounce), *rng.normal(0, case.tilt, 2),
     )  # fmt: skip
@@ -97,11 +97,11 @@ def one_photo(task: tuple[int, int]) -> tuple[np.ndarray | None, bool]:
     return tracked(pixels, case, truth), plain
 
 
-def tracked(pixels: np.ndarray, case: Case, truth: BodyPose) -> np.ndarray | None:
+def tracked(pixels: np.ndarray, case: Case, truth: DrawnPose) -> np.ndarray | None:
     camera = scene_of(case.size)[0].camera
     lens = Camera((camera.width, camera.height), camera.matrix, np.array(camera.distortion))
-    marker = RobotMarker(0, SIDE, "4x4_50", (0.0, 0.0, DrawnMarker().height))
-    robot = Robot(marker, BodyPrior(HEIGHT, max(case.bounce, 5e-4), max(case.tilt, 2e-3)))
+    marker = RobotMarker(0, SIDE, "4x4_50", (0.0, 0.0, DrawnRobotMarker().height))
+    robot = MarkedRobot(marker, BodyPrior(HEIGHT, max(case.bounce, 5e-4), max(case.tilt, 2e-3)))
     try:
         seen = detect("photo", pixels, floor=FLOOR, robot=robot)
     except PhotoError:

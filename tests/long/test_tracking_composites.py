@@ -14,26 +14,26 @@ import cv2
 import numpy as np
 import pytest
 
-from tracking.body import TopPlate, marker_template
-from tracking.camera import Camera, CameraPose, project
-from tracking.composite import find_exposures, find_exposures_like, order_exposures
-from tracking.errors import CompositeError
-from tracking.pose import BodyPose as FoundPose
-from tracking.pose import BodyPrior, RobotMarker
-from tracking.synthetic import (
-    BodyPose,
+from support.synthetic import (
     CompositeKind,
     Conditions,
-    FloorMarker,
+    DrawnFloorMarker,
+    DrawnPose,
+    DrawnRobotMarker,
+    DrawnScene,
     RobotLook,
     RobotState,
-    Scene,
     composite,
     look_at,
     render_background,
     take_photo,
 )
-from tracking.synthetic import RobotMarker as DrawnMarker
+from tracking.body import TopPlate, marker_template
+from tracking.camera import Camera, CameraPose, project
+from tracking.composite import Merged, find_exposures, find_exposures_like, order_exposures
+from tracking.errors import CompositeError
+from tracking.pose import BodyPose as FoundPose
+from tracking.pose import BodyPrior, RobotMarker
 
 pytestmark = pytest.mark.long
 
@@ -78,16 +78,18 @@ KINDS = tuple(CompositeKind)
 
 
 @cache
-def stage() -> tuple[Scene, np.ndarray, np.ndarray]:
+def stage() -> tuple[DrawnScene, np.ndarray, np.ndarray]:
     """Return the scene, its picture without a robot and the pixels of its markers."""
     camera = look_at((0.8, -1.2, 1.8), (0.8, 0.6, 0.0))
-    markers = tuple(FloorMarker(10 + k, (x, y), 0.12, yaw) for k, (x, y, yaw) in enumerate(PLACES))
+    markers = tuple(
+        DrawnFloorMarker(10 + k, (x, y), 0.12, yaw) for k, (x, y, yaw) in enumerate(PLACES)
+    )
     hidden = np.zeros((camera.height, camera.width), np.uint8)
     for marker in markers:
         corners = camera.project(marker.corners)
         outline = corners.mean(axis=0) + 1.5 * (corners - corners.mean(axis=0))
         cv2.fillConvexPoly(hidden, np.round(outline).astype(np.int32), (1,))
-    scene = Scene(camera, markers)
+    scene = DrawnScene(camera, markers)
     return scene, render_background(scene), hidden.astype(bool)
 
 
@@ -108,7 +110,7 @@ def draw_walk(case: Case, rng: np.random.Generator) -> np.ndarray:
 class Window:
     """The part of the scene with a walk in it, a body's length around: the rest is floor."""
 
-    scene: Scene
+    scene: DrawnScene
     background: np.ndarray
     hidden: np.ndarray
 
@@ -131,10 +133,10 @@ class Window:
         return cls(replace(scene, camera=part), background[cut], hidden[cut])
 
     def photographs(self, walk: np.ndarray, rng: np.random.Generator, *, marked: bool) -> list:
-        look, photos = RobotLook(DrawnMarker() if marked else None), []
+        look, photos = RobotLook(DrawnRobotMarker() if marked else None), []
         for count, (x, y, yaw) in enumerate(walk):
             tilt = rng.normal(0, TILT_SD, 2)
-            pose = BodyPose(x, y, yaw, HEIGHT + rng.normal(0, HEIGHT_SD), *tilt)
+            pose = DrawnPose(x, y, yaw, HEIGHT + rng.normal(0, HEIGHT_SD), *tilt)
             legs = tuple(np.mod(STANDING + LEG_TURN * count, 2 * np.pi))
             photos.append(
                 take_photo(self.scene, RobotState(pose, legs), look=look, conditions=GOOD, rng=rng,
@@ -142,13 +144,17 @@ class Window:
             )  # fmt: skip
         return photos
 
-    def exposures_in(self, picture: np.ndarray, clicked: np.ndarray | None) -> np.ndarray:
+    def exposures_in(
+        self, picture: np.ndarray, kind: str, clicked: np.ndarray | None
+    ) -> np.ndarray:
         """Find exposures by their marker, or as one looks whose top was clicked on."""
         camera = self.scene.camera
         lens = Camera((camera.width, camera.height), camera.matrix, np.array(camera.distortion))
         view = CameraPose.from_matrix(camera.rotation, camera.translation)
         prior = BodyPrior(HEIGHT, HEIGHT_SD, TILT_SD)
-        return ordered(picture, lens, view, prior, self.hidden, clicked=clicked)
+        return ordered(
+            picture, lens, view, prior, self.hidden, merged=Merged(kind), clicked=clicked
+        )
 
 
 def one_walk(task: tuple[int, int, int]) -> tuple[np.ndarray, np.ndarray]:
@@ -159,28 +165,29 @@ def one_walk(task: tuple[int, int, int]) -> tuple[np.ndarray, np.ndarray]:
     window = Window.around(walk)
     picture = composite(window.photographs(walk, rng, marked=case.marked), kind)
     # The last of pasted exposures hides the others and is hidden by none.
-    return walk, window.exposures_in(picture, None if case.marked else walk[-1])
+    return walk, window.exposures_in(picture, Merged(kind), None if case.marked else walk[-1])
 
 
 def ordered(
     picture: np.ndarray, lens: Camera, view: CameraPose, prior: BodyPrior, hidden: np.ndarray,
-    *, body: tuple[float, float] = BODY, plate: TopPlate = PLATE, clicked: np.ndarray | None = None,
+    *, merged: Merged, body: tuple[float, float] = BODY, plate: TopPlate = PLATE,
+    clicked: np.ndarray | None = None,
 ) -> np.ndarray:  # fmt: skip
     """Find the exposures of a picture, in order: poses, then their deviations, shape (2, n, 3)."""
     try:
         if clicked is None:
-            marker = DrawnMarker()
+            marker = DrawnRobotMarker()
             robot = RobotMarker(0, marker.side, "4x4_50", (0.0, 0.0, marker.height))
             found = find_exposures(
-                picture, lens, view, template=marker_template(robot), prior=prior, body_size=body,
-                hidden=hidden,
+                picture, lens, view, template=marker_template(robot), prior=prior, merged=merged,
+                body_size=body, hidden=hidden,
             )  # fmt: skip
         else:
             state = np.array([clicked[0], clicked[1], prior.height, 0, 0, clicked[2]])
             known = FoundPose(state, np.zeros((6, 6)), np.zeros((6, 6)), 0.0, 0.0)
             found = find_exposures_like(
-                picture, lens, view, known=known, plate=plate, prior=prior, body_size=body,
-                hidden=hidden,
+                picture, lens, view, known=known, plate=plate, prior=prior, merged=merged,
+                body_size=body, hidden=hidden,
             )  # fmt: skip
     except CompositeError:
         return np.zeros((2, 0, 3))
@@ -345,7 +352,7 @@ class World:
         return cls(photos, np.array(truth), lens, view, hidden.astype(bool))
 
     def merged(self, photos: list[np.ndarray], kind: str) -> np.ndarray:
-        if kind == "averaged":
+        if kind == "mean":
             return np.rint(np.mean(photos, axis=0)).astype(np.uint8)
         if kind == "darkest":
             return np.min(photos, axis=0)
@@ -368,7 +375,7 @@ def with_shadow(photo: np.ndarray, empty: np.ndarray) -> np.ndarray:
 
 
 @pytest.mark.reference
-@pytest.mark.parametrize("kind", ["pasted", "averaged", "darkest"])
+@pytest.mark.parametrize("kind", ["pasted", "mean", "darkest"])
 @pytest.mark.parametrize("stride", [2, 1])
 @pytest.mark.parametrize("walk", ["s1.10_A", "s1.10_B"])
 def test_exposures_of_the_virtual_world_are_found(shared, walk, kind, stride):
@@ -376,8 +383,8 @@ def test_exposures_of_the_virtual_world_are_found(shared, walk, kind, stride):
     truth, prior = world.truth[::stride], BodyPrior(0.0615, 1e-3, 0.01)
     picture = world.merged(world.photos[::stride], kind)
     found = ordered(
-        picture, world.lens, world.view, prior, world.hidden, body=WORLD_BODY,
-        plate=WORLD_PLATE, clicked=None if marked else truth[-1],
+        picture, world.lens, world.view, prior, world.hidden, merged=Merged(kind),
+        body=WORLD_BODY, plate=WORLD_PLATE, clicked=None if marked else truth[-1],
     )  # fmt: skip
     row = Row.of([truth], [found])
     step = np.median(np.hypot(*np.diff(truth[:, :2], axis=0).T)) / WORLD_BODY[0]

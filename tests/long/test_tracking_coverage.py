@@ -19,27 +19,27 @@ from functools import cache
 import numpy as np
 import pytest
 
-from tracking.body import BodyTemplate, TopPlate, find_body, make_template
-from tracking.camera import Camera
-from tracking.detect import Detection, Robot, observe
-from tracking.floor import FloorFit, FloorMap, FloorMarker, FloorView, refine_floor
-from tracking.markers import Sighting, find_markers
-from tracking.pose import PLANAR, BodyPose, BodyPrior, RobotMarker
-from tracking.synthetic import (
+from support.synthetic import (
     HARSH,
     Conditions,
+    DrawnFloorMarker,
+    DrawnPose,
+    DrawnRobotMarker,
+    DrawnScene,
     RobotLook,
     RobotState,
-    Scene,
     SyntheticCamera,
     develop,
     look_at,
     render_background,
     take_photo,
 )
-from tracking.synthetic import BodyPose as TruePose
-from tracking.synthetic import FloorMarker as DrawnFloorMarker
-from tracking.synthetic import RobotMarker as DrawnMarker
+from tracking.body import BodyTemplate, TopPlate, find_body, make_template
+from tracking.camera import Camera
+from tracking.detect import Detection, MarkedRobot, observe
+from tracking.floor import FloorFit, FloorMap, FloorMarker, FloorView, refine_floor
+from tracking.markers import Sighting, find_markers
+from tracking.pose import PLANAR, BodyPose, BodyPrior, RobotMarker
 
 pytestmark = pytest.mark.long
 
@@ -81,7 +81,7 @@ KINDS = (
 class Stage:
     """The scene without a robot, and what is the same in every photograph of it."""
 
-    scene: Scene
+    scene: DrawnScene
     background: np.ndarray
     lens: Camera
 
@@ -92,7 +92,7 @@ class Stage:
         high = np.ceil((points_px.max(axis=0) + reach) / 16).astype(int) * 16
         return slice(low[1], min(high[1], height)), slice(low[0], min(high[0], width))
 
-    def part(self, window: tuple[slice, slice]) -> Scene:
+    def part(self, window: tuple[slice, slice]) -> DrawnScene:
         return replace(self.scene, camera=_cropped(self.scene.camera, window))
 
 
@@ -110,7 +110,7 @@ def stage() -> Stage:
     markers = tuple(
         DrawnFloorMarker(10 + k, (x, y), SIDE, yaw) for k, (x, y, yaw) in enumerate(PLACES)
     )
-    scene = Scene(camera, markers)
+    scene = DrawnScene(camera, markers)
     lens = Camera((camera.width, camera.height), camera.matrix, np.array(camera.distortion))
     return Stage(scene, render_background(scene), lens)
 
@@ -143,15 +143,15 @@ def _shifted(sighting: Sighting, window: tuple[slice, slice]) -> Sighting:
     return replace(sighting, corners_px=np.add(sighting.corners_px, (columns.start, rows.start)))
 
 
-def draw_pose(kind: Kind, rng: np.random.Generator) -> TruePose:
-    return TruePose(
+def draw_pose(kind: Kind, rng: np.random.Generator) -> DrawnPose:
+    return DrawnPose(
         rng.uniform(0.2, 1.4), rng.uniform(0.1, 1.0), rng.uniform(-np.pi, np.pi),
         HEIGHT + rng.normal(0, kind.height_sd), *rng.normal(0, kind.tilt_sd, 2),
     )  # fmt: skip
 
 
 def photograph(
-    truth: TruePose, kind: Kind, rng: np.random.Generator
+    truth: DrawnPose, kind: Kind, rng: np.random.Generator
 ) -> tuple[np.ndarray, tuple[slice, slice]]:
     """Photograph the robot; return the pixels around it and where they are."""
     place = stage()
@@ -159,14 +159,14 @@ def photograph(
     window = place.window(place.scene.camera.project(truth.position[None]), reach)
     photo = take_photo(
         place.part(window), RobotState(truth), conditions=kind.conditions, rng=rng,
-        look=RobotLook(DrawnMarker(side=SIDE) if kind.marked else None),
+        look=RobotLook(DrawnRobotMarker(side=SIDE) if kind.marked else None),
         background=place.background[window],
     )  # fmt: skip
     return photo.pixels, window
 
 
 def by_marker(
-    truth: TruePose, kind: Kind, fit: FloorFit, rng: np.random.Generator
+    truth: DrawnPose, kind: Kind, fit: FloorFit, rng: np.random.Generator
 ) -> tuple[np.ndarray, np.ndarray] | None:
     """Find the robot by its marker; return x, y, yaw and their covariance."""
     pixels, window = photograph(truth, kind, rng)
@@ -174,10 +174,10 @@ def by_marker(
     if len(found) != 1:
         return None
     marker = RobotMarker(
-        0, SIDE + rng.normal(0, SIDE_SD), "4x4_50", (0.0, 0.0, DrawnMarker().height),
+        0, SIDE + rng.normal(0, SIDE_SD), "4x4_50", (0.0, 0.0, DrawnRobotMarker().height),
         side_sd=SIDE_SD,
     )  # fmt: skip
-    robot = Robot(marker, BodyPrior(HEIGHT, kind.height_sd, kind.tilt_sd))
+    robot = MarkedRobot(marker, BodyPrior(HEIGHT, kind.height_sd, kind.tilt_sd))
     detection = Detection("photo", FloorView.of("photo"), _shifted(found[0], window))
     seen = observe(stage().lens, fit, [detection], robot=robot, times={"photo": (0.0, 0.0)})[0]
     return seen.planar, seen.covariance + seen.camera_covariance
@@ -211,7 +211,7 @@ def pasted(pixels: np.ndarray, window: tuple[slice, slice]) -> np.ndarray:
 
 
 def by_picture(
-    truth: TruePose, kind: Kind, fit: FloorFit, rng: np.random.Generator
+    truth: DrawnPose, kind: Kind, fit: FloorFit, rng: np.random.Generator
 ) -> tuple[np.ndarray, np.ndarray] | None:
     """Find the robot by its own picture; return x, y, yaw and their covariance."""
     pixels, window = photograph(truth, kind, rng)

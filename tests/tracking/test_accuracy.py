@@ -7,22 +7,22 @@ from functools import cache
 import numpy as np
 import pytest
 
-from tracking.camera import Camera, CameraPose
-from tracking.floor import FloorMap, FloorMarker, FloorView, refine_floor
-from tracking.markers import find_markers
-from tracking.pose import PLANAR, BodyPrior, RobotMarker, fit_pose
-from tracking.synthetic import (
+from support.synthetic import (
     HARSH,
-    BodyPose,
     Conditions,
+    DrawnFloorMarker,
+    DrawnPose,
+    DrawnRobotMarker,
+    DrawnScene,
     RobotState,
-    Scene,
     look_at,
     render_background,
     take_photo,
 )
-from tracking.synthetic import FloorMarker as SyntheticFloorMarker
-from tracking.synthetic import RobotMarker as SyntheticRobotMarker
+from tracking.camera import Camera, CameraPose
+from tracking.floor import FloorMap, FloorMarker, FloorView, refine_floor
+from tracking.markers import find_markers
+from tracking.pose import PLANAR, BodyPrior, RobotMarker, fit_pose
 
 PLACES = [(0.1, -0.1), (1.5, -0.1), (1.6, 1.2), (0.0, 1.3)]
 GOOD = Conditions(defocus_sd_px=0.6)
@@ -50,11 +50,11 @@ CASES = [
 
 
 @cache
-def empty_scene(size: tuple[int, int]) -> tuple[Scene, np.ndarray]:
+def empty_scene(size: tuple[int, int]) -> tuple[DrawnScene, np.ndarray]:
     """Return the scene and its picture without a robot."""
     taken = look_at((0.8, -1.2, 1.8), (0.8, 0.6, 0.0), width=size[0], height=size[1])
-    markers = (SyntheticFloorMarker(10 + k, place, 0.12) for k, place in enumerate(PLACES))
-    scene = Scene(taken, tuple(markers))
+    markers = (DrawnFloorMarker(10 + k, place, 0.12) for k, place in enumerate(PLACES))
+    scene = DrawnScene(taken, tuple(markers))
     return scene, render_background(scene)
 
 
@@ -72,12 +72,12 @@ def run(case: Case, count: int, seed: int):
     floor = FloorMap("4x4_50", tuple(
         FloorMarker(10 + k, 0.12, *place, position_sd=1e-4) for k, place in enumerate(PLACES)
     ))  # fmt: skip
-    mark = SyntheticRobotMarker()
+    mark = DrawnRobotMarker()
     robot = RobotMarker(0, mark.side, "4x4_50", (0.0, 0.0, mark.height))
     prior = BodyPrior(0.0645, max(case.bounce, 5e-4), max(case.tilt, 2e-3))
     errors, z, view = [], [], CameraPose.from_matrix(taken.rotation, taken.translation)
     for index in range(count):
-        truth = BodyPose(
+        truth = DrawnPose(
             rng.uniform(0.2, 1.4), rng.uniform(0.1, 1.0), rng.uniform(-np.pi, np.pi),
             0.0645 + rng.normal(0, case.bounce), *rng.normal(0, case.tilt, 2),
         )  # fmt: skip

@@ -8,12 +8,12 @@ from hypothesis import strategies as st
 
 from tracking.corrections import Delete, Flip, Move, Order, correction_from, plain, replay
 from tracking.errors import CorrectionError
-from tracking.path import Observation
+from tracking.path import PoseObservation
 
 
-def seen(index: int) -> Observation:
+def seen(index: int) -> PoseObservation:
     planar, cov = np.array([0.1 * index, 0.0, 0.2]), 1e-6 * np.eye(3)
-    return Observation(f"p{index}.jpg", 2.0 * index, 0.01, planar, cov, cov, 0.1, 0.9, "marker")
+    return PoseObservation(f"p{index}.jpg", 2.0 * index, 0.01, planar, cov, cov, 0.1, 0.9, "marker")
 
 
 WALK = tuple(seen(index) for index in range(4))

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from tracking.errors import PathError
-from tracking.path import TRACK_COLUMNS, Observation, assemble_track, tape_check
+from tracking.path import TRACK_COLUMNS, PoseObservation, assemble_track
 from tracking.smooth import Process
 
 PROCESS = Process(1e-5, 1e-4)
@@ -14,7 +14,7 @@ PROCESS = Process(1e-5, 1e-4)
 def walk(times, shared=1e-6):
     cov = np.diag([1e-6, 1e-6, 1e-5])
     return [
-        Observation(f"p{k}.jpg", t, 0.0, np.array([0.1 * t, 0.0, 0.01 * t]), cov,
+        PoseObservation(f"p{k}.jpg", t, 0.0, np.array([0.1 * t, 0.0, 0.01 * t]), cov,
                     shared * np.eye(3), 0.1, 0.9, "marker")
         for k, t in enumerate(times)
     ]  # fmt: skip
@@ -55,9 +55,3 @@ def test_nothing_seen_and_one_time_twice_are_refused():
         assemble_track([])
     with pytest.raises(PathError, match="times must increase"):
         assemble_track(walk([0, 2, 2]))
-
-
-def test_a_tape_is_compared_with_the_distance():
-    assert tape_check([[0, 0], [0.5, 0.9], [3, 4]], 5.0) == pytest.approx(1.0)
-    with pytest.raises(PathError, match="tape"):
-        tape_check([[0, 0], [1, 0]], 0.0)

@@ -1,12 +1,11 @@
 # SPDX-License-Identifier: MIT
 """The camera: its lens, where it stands, and how the lens is calibrated."""
 
-from tracking.camera.boards import Board, BoardView, CharucoBoard, Checkerboard, find_board
-from tracking.camera.calibration import Calibration, calibrate
+from tracking.camera.boards import Board, CharucoBoard, Checkerboard, SeenBoard, find_board
+from tracking.camera.calibration import CameraCalibration, calibrate
 from tracking.camera.lens import (
     Camera,
     CameraPose,
-    plane_homography,
     project,
     project_with_derivatives,
     rays,
@@ -16,15 +15,14 @@ from tracking.camera.lens import (
 
 __all__ = [
     "Board",
-    "BoardView",
-    "Calibration",
     "Camera",
+    "CameraCalibration",
     "CameraPose",
     "CharucoBoard",
     "Checkerboard",
+    "SeenBoard",
     "calibrate",
     "find_board",
-    "plane_homography",
     "project",
     "project_with_derivatives",
     "rays",

@@ -52,7 +52,7 @@ Board: TypeAlias = Checkerboard | CharucoBoard
 
 
 @dataclass(frozen=True)
-class BoardView:
+class SeenBoard:
     """The corners of a board that one picture shows.
 
     Attributes:
@@ -66,7 +66,7 @@ class BoardView:
     corners_px: Array
 
 
-def find_board(pixels: NDArray[np.uint8], board: Board, *, name: str = "") -> BoardView | None:
+def find_board(pixels: NDArray[np.uint8], board: Board, *, name: str = "") -> SeenBoard | None:
     """Find a board's corners to a fraction of a pixel.
 
     Args:
@@ -83,7 +83,7 @@ def find_board(pixels: NDArray[np.uint8], board: Board, *, name: str = "") -> Bo
     return _find_charuco(grey, board, name)
 
 
-def _find_checkerboard(grey: NDArray, board: Checkerboard, name: str) -> BoardView | None:
+def _find_checkerboard(grey: NDArray, board: Checkerboard, name: str) -> SeenBoard | None:
     shape = (board.columns, board.rows)
     found, corners = cv2.findChessboardCorners(grey, shape)
     if not found:
@@ -97,7 +97,7 @@ def _find_checkerboard(grey: NDArray, board: Checkerboard, name: str) -> BoardVi
     corners_px = cv2.cornerSubPix(grey, corners_px, (reach, reach), (-1, -1), stop)
     row, column = np.divmod(np.arange(board.rows * board.columns), board.columns)
     points = np.column_stack((column, row, np.zeros(len(row)))) * board.square
-    return BoardView(name, points, np.asarray(corners_px, dtype=float).reshape(-1, 2))
+    return SeenBoard(name, points, np.asarray(corners_px, dtype=float).reshape(-1, 2))
 
 
 def _refinement_reach(grid: NDArray) -> int:
@@ -107,7 +107,7 @@ def _refinement_reach(grid: NDArray) -> int:
     return int(np.clip(0.4 * min(steps), 2, 11))
 
 
-def _find_charuco(grey: NDArray, board: CharucoBoard, name: str) -> BoardView | None:
+def _find_charuco(grey: NDArray, board: CharucoBoard, name: str) -> SeenBoard | None:
     target = cv2.aruco.CharucoBoard(
         (board.columns, board.rows), board.square, board.marker, dictionary_named(board.dictionary)
     )
@@ -116,4 +116,4 @@ def _find_charuco(grey: NDArray, board: CharucoBoard, name: str) -> BoardView | 
     if ids is None or len(ids) < 6:
         return None
     points = np.array(target.getChessboardCorners(), dtype=float)[np.array(ids, dtype=int).ravel()]
-    return BoardView(name, points, np.asarray(corners, dtype=float).reshape(-1, 2))
+    return SeenBoard(name, points, np.asarray(corners, dtype=float).reshape(-1, 2))

@@ -9,7 +9,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from tracking.camera.boards import BoardView
+from tracking.camera.boards import SeenBoard
 from tracking.camera.lens import Array, Camera
 from tracking.errors import CalibrationError
 
@@ -26,7 +26,7 @@ _GRID = (8, 6)
 
 
 @dataclass(frozen=True)
-class Calibration:
+class CameraCalibration:
     """A calibrated lens and the evidence for it.
 
     Attributes:
@@ -57,8 +57,8 @@ class Calibration:
 
 
 def calibrate(
-    views: Sequence[BoardView], size: tuple[int, int], *, lens_model: str = "auto"
-) -> Calibration:
+    views: Sequence[SeenBoard], size: tuple[int, int], *, lens_model: str = "auto"
+) -> CameraCalibration:
     """Calibrate a lens.
 
     Args:
@@ -89,7 +89,7 @@ def calibrate(
     return best
 
 
-def _fit(views: Sequence[BoardView], size: tuple[int, int], lens_model: str) -> Calibration:
+def _fit(views: Sequence[SeenBoard], size: tuple[int, int], lens_model: str) -> CameraCalibration:
     points = [view.points.astype(np.float32) for view in views]
     corners = [view.corners_px.astype(np.float32) for view in views]
     try:
@@ -103,7 +103,7 @@ def _fit(views: Sequence[BoardView], size: tuple[int, int], lens_model: str) -> 
         ) from error
     camera = Camera(size, np.asarray(matrix, dtype=float), np.ravel(distortion)[:5].astype(float))
     seen = _corners_seen(views, size)
-    return Calibration(
+    return CameraCalibration(
         camera,
         lens_model,
         np.ravel(sd)[:9].astype(float),
@@ -115,20 +115,20 @@ def _fit(views: Sequence[BoardView], size: tuple[int, int], lens_model: str) -> 
     )
 
 
-def _information(fit: Calibration, views: Sequence[BoardView]) -> float:
+def _information(fit: CameraCalibration, views: Sequence[SeenBoard]) -> float:
     # Bayesian information criterion; the views' own poses are common to all models.
     numbers = 2 * sum(len(view.points) for view in views)
     return numbers * math.log(fit.rms**2) + _FREE_TERMS[fit.lens_model] * math.log(numbers)
 
 
-def _corners_seen(views: Sequence[BoardView], size: tuple[int, int]) -> NDArray[np.int64]:
+def _corners_seen(views: Sequence[SeenBoard], size: tuple[int, int]) -> NDArray[np.int64]:
     corners = np.concatenate([view.corners_px for view in views]) + 0.5
     edges = [np.linspace(0, length, cells + 1) for length, cells in zip(size, _GRID, strict=True)]
     counts, _, _ = np.histogram2d(corners[:, 0], corners[:, 1], bins=edges)
     return counts.T.astype(np.int64)
 
 
-def _check_determined(fit: Calibration) -> None:
+def _check_determined(fit: CameraCalibration) -> None:
     focal, sd = fit.camera.matrix[0, 0], fit.sd[0]
     if not np.isfinite(fit.camera.matrix).all() or not 0 < sd < 0.05 * focal:
         raise CalibrationError(
@@ -137,7 +137,7 @@ def _check_determined(fit: Calibration) -> None:
         )
 
 
-def _warnings(fit: Calibration) -> list[str]:
+def _warnings(fit: CameraCalibration) -> list[str]:
     messages = []
     if fit.coverage < 0.6:
         messages.append(

@@ -168,18 +168,3 @@ def to_floor(camera: Camera, pose: CameraPose, corners_px: ArrayLike, height: fl
         reach = (height - eye[2]) / directions[:, 2]
     reach[~(reach > 0)] = np.nan
     return eye[:2] + reach[:, None] * directions[:, :2]
-
-
-def plane_homography(camera: Camera, pose: CameraPose, height: float) -> Array:
-    """Compute the homography from a horizontal plane to *undistorted* pixels.
-
-    Args:
-        camera: The lens; its distortion plays no part.
-        pose: Where it stands.
-        height: Height of the plane over the floor [m].
-
-    Returns:
-        H with (u, v, 1) ~ H (x, y, 1), shape (3, 3).
-    """
-    R, t = pose.rotation, pose.translation
-    return camera.matrix @ np.column_stack((R[:, 0], R[:, 1], R[:, 2] * height + t))

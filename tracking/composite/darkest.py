@@ -46,7 +46,7 @@ from tracking.composite.chain import (
 )
 from tracking.composite.colours import NOISE, ColourDensity, FloorColours, robot_density
 from tracking.composite.order import order_exposures
-from tracking.composite.reading import Reading
+from tracking.composite.reading import PictureRaster
 
 LEAST_ODDS = 0.25
 """Least log odds of an exposure, mean over what it claims [-]."""
@@ -73,15 +73,15 @@ _FIRST_STEPS = 10
 _POLISH = (0.006, 0.006, 0.05)
 
 
-class Look(NamedTuple):
+class TopColours(NamedTuple):
     """How the robot's top looks: by the known exposure, and by the brightest seen of each point."""
 
     own: NDArray[np.float32]
     brightest: NDArray[np.float32]
 
-    def thinned(self) -> "Look":
+    def thinned(self) -> "TopColours":
         """Take every second point, as `BodyRaster.thinned` does."""
-        return Look(self.own[1::2, 1::2], self.brightest[1::2, 1::2])
+        return TopColours(self.own[1::2, 1::2], self.brightest[1::2, 1::2])
 
 
 class Cover(NamedTuple):
@@ -131,7 +131,7 @@ class Chain:
 
 
 @dataclass(frozen=True)
-class DarkestReading(Reading):
+class DarkestSearch(PictureRaster):
     """A picture of the darkest values, on a raster.
 
     Attributes:
@@ -208,7 +208,7 @@ class DarkestReading(Reading):
             poses.append(new)
         return poses
 
-    def best_of(self, tried: Array, look: Look, cover: Cover, *, most: int) -> list[Array]:
+    def best_of(self, tried: Array, look: TopColours, cover: Cover, *, most: int) -> list[Array]:
         """Improve the best of many places; return those that hold, the best first."""
         odds = self.odds(tried, look.thinned(), cover, self.body.thinned())
         starts = apart(tried, odds, 0.19 * self.length, most=most)
@@ -252,7 +252,7 @@ class DarkestReading(Reading):
         return poses[self.own_odds(poses) >= LEAST_ODDS]
 
     def settled(self, poses: Array, k: int, step: float, order: list[int]) -> Array:
-        """Look for a better place of one exposure around its own, and improve the best.
+        """TopColours for a better place of one exposure around its own, and improve the best.
 
         Sides and legs of one darken the tops of others, and look like a rim a little off its
         place: steps that differ from their neighbours are held against a place, too.
@@ -279,7 +279,7 @@ class DarkestReading(Reading):
             odds.append(float(self.odds(poses[k][None], look, cover, self.body)[0]))
         return np.array(odds)
 
-    def look(self, poses: Array) -> Look:
+    def look(self, poses: Array) -> TopColours:
         """Learn how the robot looks from all exposures, the known one first.
 
         Where it looks like the floor it may be brighter than that, and nothing is known of it.
@@ -288,9 +288,9 @@ class DarkestReading(Reading):
         odd = np.array([self.body.read(self.oddness, self.plane, pose) for pose in poses])
         own = np.where((odd[0] < _LIKE_FLOOR)[..., None], _OPEN, seen[0])
         brightest = np.where((odd.min(axis=0) < _LIKE_FLOOR)[..., None], _OPEN, seen.max(axis=0))
-        return Look(own.astype(np.float32), brightest.astype(np.float32))
+        return TopColours(own.astype(np.float32), brightest.astype(np.float32))
 
-    def cover(self, poses: Array, look: Look) -> Cover:
+    def cover(self, poses: Array, look: TopColours) -> Cover:
         """Lay exposures over each other."""
         own, brightest = (np.full_like(self.picture, _OPEN) for _ in range(2))
         for pose in poses:
@@ -319,7 +319,7 @@ class DarkestReading(Reading):
         darkest = ((_OPEN - own) <= others + _CLAIM).all(axis=-1)
         return same & (clear > 0.9) & darkest & self.used
 
-    def clear(self, poses: Array, look: Look) -> NDArray[np.float32]:
+    def clear(self, poses: Array, look: TopColours) -> NDArray[np.float32]:
         """Mark the points of the robot that the first exposure shows as they are."""
         others = self.cover(poses[1:], look).brightest
         around = self.body.read(others, self.plane, poses[0])
@@ -336,7 +336,7 @@ class DarkestReading(Reading):
         gain = (part.cover(poses, look).log_density - part.bare)[part.used]
         return float(gain.sum()) / self.body.x.size
 
-    def part(self, rows: slice, columns: slice) -> "DarkestReading":
+    def part(self, rows: slice, columns: slice) -> "DarkestSearch":
         """Cut a part out; the floor and the colours of dark things are those of the whole."""
         window = (rows, columns)
         part = replace(
@@ -347,14 +347,14 @@ class DarkestReading(Reading):
         part.__dict__.update({name: layer[window] for name, layer in known.items()})
         return part
 
-    def odds(self, poses: Array, look: Look, cover: Cover, body: BodyRaster) -> Array:
+    def odds(self, poses: Array, look: TopColours, cover: Cover, body: BodyRaster) -> Array:
         """Compute the log odds of exposures, mean over what each claims; -inf where too little."""
         gain, claim, inside = self.gains(poses, look, cover, body)
         enough = (claim >= LEAST_CLAIM) & (inside >= _LEAST_SEEN)
         return np.where(enough, gain / np.maximum(claim, LEAST_CLAIM), -np.inf)
 
     def gains(
-        self, poses: Array, look: Look, cover: Cover, body: BodyRaster
+        self, poses: Array, look: TopColours, cover: Cover, body: BodyRaster
     ) -> tuple[Array, Array, Array]:
         """Compute what one exposure more would change, for each of many places, shape (n,).
 

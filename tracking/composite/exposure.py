@@ -31,12 +31,3 @@ def is_new(exposure: Exposure, known: Sequence[Exposure], same: float) -> bool:
     """Tell whether an exposure is farther than so many metres from all that are known."""
     here = exposure.alignment.pose.planar
     return all(np.hypot(*(here - each.alignment.pose.planar)[:2]) > same for each in known)
-
-
-def is_more(some: Sequence[Exposure], others: Sequence[Exposure], same: float) -> bool:
-    """Tell whether one reading of a picture finds as many exposures as another, or more.
-
-    An exposure of the other that it misses counts against it as much as one more counts for it.
-    """
-    missed = sum(is_new(each, some, same) for each in others)
-    return len(some) - missed >= len(others) + missed

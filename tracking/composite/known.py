@@ -24,6 +24,9 @@ from tracking.composite.plane import Plane
 from tracking.errors import BodyError, CompositeError
 from tracking.pose import BodyPose, BodyPrior
 
+LEAST_SCORE = 0.75
+"""Least correlation of what is visible of an exposure with the known one [-]."""
+
 LEVER = 0.7
 """How far from the robot's middle that much off turns it, in lengths of the robot [-]."""
 

@@ -31,7 +31,7 @@ from tracking.composite.chain import continued, distances, improved, usual_step
 from tracking.composite.colours import FloorColours, smooth
 from tracking.composite.match import Match, match_whole
 from tracking.composite.order import order_exposures
-from tracking.composite.reading import Reading
+from tracking.composite.reading import PictureRaster
 
 LONELY_SCORE = 0.6
 """Least correlation of an exposure beside no other, or the wrong way round, when only one is known
@@ -57,8 +57,6 @@ SCALE = 8.0
 """Grey levels a standard deviation of the floor's pattern is made to be."""
 
 _TURN = np.radians(32.0)
-_OFF = 6.0  # grey levels by which what shows of a robot may be off
-_NO_COLOUR = 0.2  # of the robot: more than this would have no colour
 _DAMPING = 0.02
 _ROUNDS = 30
 _TRIED = 3
@@ -71,7 +69,7 @@ class Fit(NamedTuple):
 
     Attributes:
         poses: Shape (n, 3), the known one first.
-        robot: The robot's picture, in change, shape (rows, columns, 3).
+        robot: The robot's picture, in detail, shape (rows, columns, 3).
         scores: Correlation of each with it, in detail, where the others are taken away, shape (n,).
         strengths: How strong each is beside all, shape (n,).
         explained: Share of the detail's power that they explain.
@@ -96,7 +94,7 @@ class Fit(NamedTuple):
 
 
 @dataclass(frozen=True)
-class MeanReading(Reading):
+class MeanSearch(PictureRaster):
     """A mean of exposures, on a raster.
 
     `body` reaches beyond the robot's top, over what its sides and legs cover.
@@ -142,14 +140,14 @@ class MeanReading(Reading):
         """Sum of the squared detail."""
         return float((self.detail**2).sum())
 
-    def find(self, anchor: Array) -> Fit:
+    def find(self, anchor: Array) -> Array:
         """Find all exposures.
 
         Args:
             anchor: x, y [m] and yaw [rad] of an exposure that shows how the robot looks.
 
         Returns:
-            The exposures, that one first, whatever its score.
+            Poses, that one first, whatever its score, shape (n, 3).
         """
         best = self.fitted(self.alike(anchor), rounds=2)
         for _ in range(_ROUNDS):
@@ -158,17 +156,15 @@ class MeanReading(Reading):
             if new.gain(best) <= _BETTER:
                 break
             best = self.fitted(new.poses, rounds=1)
-        held = self.held(self.fitted(best.poses, rounds=3))
-        return held._replace(robot=self.robot_at(held.poses, self.change))
+        return self.held(self.fitted(best.poses, rounds=3))
 
-    def held(self, fit: Fit) -> Fit:
+    def held(self, fit: Fit) -> Array:
         """Drop exposures that are too weak or too unlike the others."""
         usual = float(np.median(fit.scores[1:])) if len(fit.scores) > 1 else 0.0
         least = max(LEAST_SCORE, LEAST_OF_USUAL * usual)
         good = (fit.scores >= least) & (fit.strengths >= LEAST_STRENGTH)
         good[0] = True
-        poses, scores, strengths = fit.poses[good], fit.scores[good], fit.strengths[good]
-        return fit._replace(poses=poses, scores=scores, strengths=strengths)
+        return fit.poses[good]
 
     def alike(self, anchor: Array) -> Array:
         """Find exposures that look like the known one as it is, others and floor in it."""
@@ -329,18 +325,6 @@ class MeanReading(Reading):
         operator = LinearOperator((seen.size, seen.size), matvec=repeated, dtype=float)  # pyright: ignore[reportCallIssue] # SciPy's documented arguments
         solved, _ = cg(operator, seen.ravel().astype(float), rtol=2e-3, maxiter=40)
         return solved.reshape(shape).astype(np.float32)
-
-    def is_possible(self, fit: Fit) -> bool:
-        """Tell whether a robot so many times as strong as what shows of it has colours at all.
-
-        Of n exposures a robot shows as 1/n of its difference from the floor. Where exposures lie
-        on each other, or the darkest is shown, it shows whole, and n times that is no colour.
-        """
-        faint = fit.robot[self.body.body] @ np.linalg.inv(self.weighing)
-        light = np.median(self.floor.light[self.used], axis=0)
-        colours = light + len(fit.poses) * faint
-        beyond = max(40.0, _OFF * len(fit.poses))
-        return float(np.mean((colours < -beyond) | (colours > 255 + beyond))) < _NO_COLOUR
 
 
 def _shifted(poses: Array) -> list[Array]:

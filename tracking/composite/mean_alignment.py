@@ -9,6 +9,7 @@ to be.
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,7 +22,7 @@ from tracking.composite.colours import FloorColours
 from tracking.composite.exposure import Exposure
 from tracking.composite.floor_pattern import FloorPattern
 from tracking.composite.known import LEVER, KnownExposure
-from tracking.composite.mean import SCALE, Fit, MeanReading
+from tracking.composite.mean import SCALE, MeanSearch
 from tracking.composite.pattern_alignment import AROUND, PatternAlignment
 from tracking.pose import PLANAR, BodyPose, rotation_with_derivatives
 
@@ -32,9 +33,11 @@ LEAST_NEW_SCORE = 0.1
 """Least correlation of what the floor does not foretell of an exposure [-]."""
 
 MEAN_SD, MEAN_OVERLAP_SD = 1 / 1200, 1 / 220
-"""Error of a place, as `tracking.composite.by_look.DARKEST_SD`, of exposures that are apart and of
-those that overlap [-]."""
+"""Error of a place, as `tracking.composite.pasted_alignment.PASTED_SD`, of exposures that are apart
+and of those that overlap [-]."""
 
+_CELLS = 32  # points of the raster along the robot
+_AROUND = 0.28  # of the length: how far sides, legs and shadow reach
 _ROUNDS = 2
 _FLOOR_LEFT = 0.15  # of the length: farther from all exposures is the floor
 _EVERY_PIXEL = 250_000  # points: of a robot of 500 x 500 px
@@ -43,32 +46,63 @@ _PATTERN_WIDTH = 0.25  # of the length: what changes over more is no pattern
 _HALF_LEVER = 0.5  # of the length: that much off there turns it
 
 
-def exposures_in_mean(
-    picture: KnownExposure, reading: MeanReading, fit: Fit
-) -> tuple[Exposure, ...]:
-    """Align each exposure of a mean with what the others leave of the picture.
+@dataclass(frozen=True)
+class MeanReading:
+    """A picture that is the mean of several exposures.
 
-    Args:
+    Attributes:
         picture: The picture and the known exposure.
-        reading: The picture on a raster.
-        fit: Places on that raster, the known one first, and how the robot looks.
-
-    Returns:
-        The exposures, the known one first; where they overlap, without those that are unclear.
     """
-    fine = fine_weighing(picture)
-    weighed = (picture.pixels @ fine).astype(np.float32)
-    weighed_again = np.linalg.inv(reading.weighing) @ fine
-    alones = []
-    for k, pose in enumerate(fit.poses):
-        others = reading.sum_of(np.delete(fit.poses, k, axis=0), fit.robot)
-        seen = picture.on_photo(others, reading.plane, pose)
-        alones.append((weighed - seen @ weighed_again).astype(np.float32))
-    if usual_step(fit.poses) < picture.size[0]:
-        return MeanAlignment(picture, alones, fit.poses).exposures()
-    pattern = floor_pattern(picture, weighed, fit.poses)
-    flat = [pattern.flat(alone) for alone in alones]
-    return MeanAlignment(picture, flat, fit.poses, pattern).exposures()
+
+    picture: KnownExposure
+
+    @cached_property
+    def search(self) -> MeanSearch:
+        """The picture on a raster that reaches over what sides and legs cover."""
+        length = self.picture.size[0]
+        raster = self.picture.raster(length / _CELLS, round(_AROUND * _CELLS))
+        return MeanSearch(*raster, length, self.picture.plate.height)
+
+    def find(self) -> Array:
+        """Find all exposures, the known one first, shape (n, 3)."""
+        return self.search.find(self.picture.known.planar)
+
+    def align(self, poses: Array) -> tuple[Exposure, ...]:
+        """Align each exposure with what the others leave of the picture.
+
+        Args:
+            poses: Places on the raster, the known one first, shape (n, 3).
+
+        Returns:
+            The exposures, the known one first; where they overlap, without those that are unclear.
+        """
+        picture, search = self.picture, self.search
+        fine = fine_weighing(picture)
+        weighed = (picture.pixels @ fine).astype(np.float32)
+        alones = self.alone(poses, weighed, np.linalg.inv(search.weighing) @ fine)
+        if usual_step(poses) < picture.size[0]:
+            return MeanAlignment(picture, alones, poses).exposures()
+        pattern = floor_pattern(picture, weighed, poses)
+        flat = [pattern.flat(alone) for alone in alones]
+        return MeanAlignment(picture, flat, poses, pattern).exposures()
+
+    def alone(
+        self, poses: Array, weighed: NDArray[np.float32], weighed_again: Array
+    ) -> list[NDArray[np.float32]]:
+        """Subtract from the picture around each exposure what the others show of the robot.
+
+        Args:
+            poses: The exposures, shape (n, 3).
+            weighed: The picture in weighed colours, shape (height, width, 3).
+            weighed_again: From the raster's weighed colours to those, shape (3, 3).
+        """
+        robot = self.search.robot_at(poses, self.search.change)
+        alones = []
+        for k, pose in enumerate(poses):
+            others = self.search.sum_of(np.delete(poses, k, axis=0), robot)
+            seen = self.picture.on_photo(others, self.search.plane, pose)
+            alones.append((weighed - seen @ weighed_again).astype(np.float32))
+        return alones
 
 
 def floor_pattern(

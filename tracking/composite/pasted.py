@@ -28,7 +28,7 @@ from tracking.composite.candidates import CLIMB, LEAST_STEP, REACH, apart, besid
 from tracking.composite.chain import distances, improved, usual_step
 from tracking.composite.colours import NOISE, ColourDensity, FloorColours, robot_density
 from tracking.composite.match import Match, match_whole
-from tracking.composite.reading import Reading
+from tracking.composite.reading import PictureRaster
 
 LEAST_GAIN = 0.05
 """Least log odds of an exposure, mean over all points of its top, hidden or not [-]."""
@@ -57,7 +57,7 @@ class Pasted(NamedTuple):
 
 
 @dataclass(frozen=True)
-class PastedReading(Reading):
+class PastedSearch(PictureRaster):
     """A picture of pasted exposures, on a raster.
 
     Attributes:

@@ -33,7 +33,7 @@ _ALL, _CAMERA = list(range(12)), slice(6, 12)  # of a state, then of the camera'
 
 
 @dataclass(frozen=True)
-class Look:
+class PatternResidual:
     """Photograph and picture where a pose puts the top, as n values.
 
     Attributes:
@@ -127,7 +127,7 @@ class PatternAlignment:
         side = 2 * REACH_PX + 1
         return cv2.dilate(hidden, np.ones((side, side), np.uint8)) == 0
 
-    def look(self, pose: Array, by: list[int]) -> Look | None:
+    def look(self, pose: Array, by: list[int]) -> PatternResidual | None:
         """Compare photograph and picture for a pose; None where little is visible.
 
         Args:
@@ -143,7 +143,7 @@ class PatternAlignment:
         drawn = self.drawn(body)
         expected = self.pattern.new_in(drawn)[used]
         slopes = self.pattern.new_in(self.slopes(drawn, body, pose)[..., by])[used]
-        return Look(
+        return PatternResidual(
             self.seen[used].ravel().astype(float),
             expected.ravel().astype(float),
             slopes.reshape(-1, slopes.shape[-1]).astype(float),
@@ -175,7 +175,7 @@ class PatternAlignment:
         slope = np.stack(along, axis=-1)
         return -slope @ moved.reshape(*body.shape[:2], 2, 12)
 
-    def concluded(self, pose: Array, look: Look) -> Alignment:
+    def concluded(self, pose: Array, look: PatternResidual) -> Alignment:
         """Put the pose and its covariance together."""
         J, prior = look.slopes[:, PLANAR], self.picture.prior
         weighed = look.weight[:, None] * J / look.noise**2

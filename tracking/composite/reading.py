@@ -1,17 +1,56 @@
 # SPDX-License-Identifier: MIT
-"""What every reading of a composite picture begins with."""
+"""How exposures were merged into one picture, and what a reading of such a picture does."""
 
 from dataclasses import dataclass
+from enum import StrEnum
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
+from tracking.camera.lens import Array
 from tracking.composite.body_raster import BodyRaster
+from tracking.composite.exposure import Exposure
 from tracking.composite.plane import Plane
 
 
+class Merged(StrEnum):
+    """How exposures were merged into one picture."""
+
+    PASTED = "pasted"
+    """The robot was cut out of each photograph and pasted on the others: it shows whole, or is
+    hidden by another."""
+    DARKEST = "darkest"
+    """Each pixel has the darkest value of all photographs."""
+    MEAN = "mean"
+    """Each pixel has the mean of all photographs: of n exposures each is as faint as 1/n."""
+
+
+class Reading(Protocol):
+    """Find the exposures of a picture in which one is known, by how that one looks."""
+
+    def find(self) -> Array:
+        """Find all exposures on a raster.
+
+        Returns:
+            x, y [m] and yaw [rad] of each, the known one first, shape (n, 3).
+        """
+        ...
+
+    def align(self, poses: Array) -> tuple[Exposure, ...]:
+        """Align exposures with the photograph.
+
+        Args:
+            poses: What `find` returned, shape (n, 3), n at least 2.
+
+        Returns:
+            The exposures, the known one first; without those that turn out to be none.
+        """
+        ...
+
+
 @dataclass(frozen=True)
-class Reading:
+class PictureRaster:
     """A picture on a raster, and a raster of the robot to compare with it.
 
     Attributes:

@@ -1,18 +1,11 @@
 # SPDX-License-Identifier: MIT
 """Find every exposure of a robot with a marker in one merged picture.
 
-A picture may have been merged in two ways, and nothing in it says in which:
-
-* exposures shine through each other (mean or darkest value of each pixel): each is there as a
-  whole, among what is seen of the others;
-* exposures lie on each other (cut out and pasted): each is there as far as no other hides it.
-
-It is read in both ways, and the reading that finds more is taken; a marker that the other one
-misses counts against it. Of exposures that shine through, all of the robot's picture is compared,
-with a threshold that is lower beside a clearer exposure with nearly the same heading than alone. Of
-exposures that hide each other those that show whole are found first; the others are found by how
-the whole body looks in the clearest of them, as without a marker (`by_look`). Nothing is accepted
-by its place alone.
+Where the picture is a mean or has the darkest value of each pixel, exposures shine through each
+other: all of the robot's picture is compared, with a threshold that is lower beside a clearer
+exposure with nearly the same heading than alone. Pasted exposures hide each other: those that show
+whole are found first; the others are found by how the whole body looks in the clearest of them, as
+without a marker (`by_look`). Nothing is accepted by its place alone.
 """
 
 from collections.abc import Sequence
@@ -23,10 +16,12 @@ from numpy.typing import ArrayLike, NDArray
 
 from tracking.body import Alignment, BodyTemplate, TopPlate, align, floor_in_view
 from tracking.camera.lens import Array, Camera, CameraPose
-from tracking.composite.by_look import Likeness
-from tracking.composite.exposure import Exposure, is_more, is_new
+from tracking.composite.exposure import Exposure, is_new
+from tracking.composite.known import KnownExposure
 from tracking.composite.match import CELLS, Match, match_whole
+from tracking.composite.pasted_alignment import PastedReading
 from tracking.composite.plane import Plane
+from tracking.composite.reading import Merged
 from tracking.errors import CompositeError
 from tracking.pose import BodyPrior
 
@@ -63,7 +58,7 @@ _HOPE = 0.8  # of the least correlation: less after a few steps is given up
 
 def find_exposures(
     pixels: NDArray[np.uint8], camera: Camera, view: CameraPose, *, template: BodyTemplate,
-    prior: BodyPrior, body_size: tuple[float, float] | None = None,
+    prior: BodyPrior, merged: Merged, body_size: tuple[float, float] | None = None,
     hidden: NDArray[np.bool_] | None = None, near: ArrayLike | None = None, reach: float = np.inf,
 ) -> tuple[Exposure, ...]:  # fmt: skip
     """Find all exposures of the robot in one picture.
@@ -74,6 +69,7 @@ def find_exposures(
         view: Where the camera stood.
         template: The picture of the robot's marker (`tracking.body.marker_template`).
         prior: Height and tilt.
+        merged: How the exposures were merged.
         body_size: Length and width of the robot's body, which hides others where it was cut out and
             pasted, and is compared there; the template's plate when None [m].
         hidden: Pixels that do not show the robot, as those of the floor's markers, shape
@@ -91,13 +87,14 @@ def find_exposures(
     area = floor_in_view(camera, view, prior.height + template.plate.height, near, reach)
     hidden = np.zeros(pixels.shape[:2], dtype=bool) if hidden is None else hidden
     search = _Search(_without(pixels, hidden), hidden, camera, view, template, prior, size, area)
-    through = search.shining_through()
-    layers = search.layers(through)
-    found = layers if is_more(layers, through, search.same_body) else through
+    found = search.shining_through()
+    if merged is Merged.PASTED:
+        found = search.layers(found)
     if not found:
         raise CompositeError(
             "no exposure of the robot is found in the composite picture; check the marker's number "
-            "and dictionary, or mark the top of one exposure and go without"
+            f"and dictionary and that the picture is '{merged}', or mark the top of one exposure "
+            "and go without"
         )
     return tuple(found)
 
@@ -220,10 +217,15 @@ class _Search:
         )
 
     def layers(self, whole: Sequence[Exposure]) -> list[Exposure]:
-        """Find exposures that hide each other, beginning with those that show whole."""
+        """Find exposures that hide each other, beginning with those that show whole.
+
+        Where none is clear, as in a blurred picture, none is sought by how a clear one looks.
+        """
         best = max((each.alignment.score for each in whole), default=0.0)
         least = max(CLEAR_SCORE, best - CLEAR_SPREAD)
         clear = [each for each in whole if each.alignment.score >= least]
+        if not clear:
+            return list(whole)
         hidden = [self.by_marker(each, whole) for each in self.hidden_by(clear)]
         return [*clear, *(each for each in hidden if each is not None)]
 
@@ -237,7 +239,7 @@ class _Search:
         """Find exposures that others hide, by how the clearest of these looks."""
         top = TopPlate(*self.body, self.template.plate.height, 0.0, 0.0, 0.0)
         for exposure in clear:
-            picture = Likeness(
+            picture = KnownExposure(
                 self.pixels, self.camera, self.view, self.prior, exposure.alignment.pose, top,
                 self.body, self.hidden, self.area,
             )  # fmt: skip
@@ -245,6 +247,7 @@ class _Search:
                 picture.body_template(self.pixels)
             except CompositeError:
                 continue  # cut by the picture's edge, too small or too faint: the next may not be
-            found = picture.aligned_in_pasted(*picture.find_pasted())
+            reading = PastedReading(picture)
+            found = reading.align(reading.find())
             return [each for each in found if is_new(each, clear, self.same_body)]
         return []

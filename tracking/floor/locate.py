@@ -31,27 +31,34 @@ class FloorView:
     covariances: Mapping[int | str, Array]
 
     @classmethod
-    def of(
-        cls, photo: str, sightings: Sequence[Sighting] = (), *,
-        clicked: Mapping[str, tuple[float, float]] | None = None, click_sd: float = 0.7,
-    ) -> "FloorView":  # fmt: skip
-        """Collect markers found and points clicked on.
+    def of(cls, photo: str, sightings: Sequence[Sighting] = ()) -> "FloorView":
+        """Collect markers found in a photograph.
 
         Args:
             photo: Name of the photograph.
             sightings: Markers found in it; those of a number seen twice are left out, since one
                 of them is something else.
-            clicked: Points by name, where they were clicked [px].
-            click_sd: Standard deviation of a click [px].
         """
         numbers = [sighting.marker_id for sighting in sightings]
         single = [s for s in sightings if numbers.count(s.marker_id) == 1]
-        pixels: dict[int | str, Array] = {s.marker_id: s.corners_px for s in single}
-        covariances: dict[int | str, Array] = {s.marker_id: s.covariance for s in single}
-        for name, pixel in (clicked or {}).items():
-            pixels[name] = np.array([pixel], dtype=float)
-            covariances[name] = click_sd**2 * np.eye(2)
-        return cls(photo, pixels, covariances)
+        return cls(
+            photo,
+            {s.marker_id: s.corners_px for s in single},
+            {s.marker_id: s.covariance for s in single},
+        )
+
+    def with_clicked(
+        self, clicked: Mapping[str, tuple[float, float]], *, click_sd: float = 0.7
+    ) -> "FloorView":
+        """Add points of the floor that a person clicked on.
+
+        Args:
+            clicked: Points by name, where they were clicked on [px].
+            click_sd: Standard deviation of a click [px].
+        """
+        pixels = {name: np.array([pixel], dtype=float) for name, pixel in clicked.items()}
+        covariances = {name: click_sd**2 * np.eye(2) for name in clicked}
+        return FloorView(self.photo, {**self.pixels, **pixels}, {**self.covariances, **covariances})
 
 
 def locate_camera(camera: Camera, floor: FloorMap, view: FloorView) -> CameraPose:

@@ -1,7 +1,13 @@
 # SPDX-License-Identifier: MIT
 """Photographs and video frames, and when they were taken."""
 
-from tracking.images.clock import ClockOffset, clock_offset, clock_picture, clock_text, read_clock
+from tracking.images.clock import (
+    CameraClockOffset,
+    clock_offset,
+    clock_picture,
+    clock_text,
+    read_clock,
+)
 from tracking.images.read import Image, find_photos, open_picture, read_pixels
 from tracking.images.stamps import IntervalFit, fit_interval
 from tracking.images.times import (
@@ -14,7 +20,7 @@ from tracking.images.times import (
 from tracking.images.video import video_frames
 
 __all__ = [
-    "ClockOffset",
+    "CameraClockOffset",
     "Image",
     "IntervalFit",
     "PhotoTimes",

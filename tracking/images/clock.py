@@ -16,7 +16,7 @@ _PREFIX = "zebro-clock:"
 
 
 @dataclass(frozen=True)
-class ClockOffset:
+class CameraClockOffset:
     """How far the camera's clock is ahead of the computer's.
 
     Attributes:
@@ -67,7 +67,7 @@ def read_clock(pixels: NDArray[np.uint8]) -> float | None:
         return None
 
 
-def clock_offset(path: Path, *, renewal: float = 0.1) -> ClockOffset:
+def clock_offset(path: Path, *, renewal: float = 0.1) -> CameraClockOffset:
     """Compare the code in a photograph with the photograph's EXIF time.
 
     Args:
@@ -87,4 +87,4 @@ def clock_offset(path: Path, *, renewal: float = 0.1) -> ClockOffset:
         raise PhotoError(path.name, "no EXIF time; the photograph must come as the camera wrote it")
     taken, step = stamp
     sd = float(np.sqrt((step**2 + renewal**2) / 12))
-    return ClockOffset(taken + step / 2 - (shown + renewal / 2), sd)
+    return CameraClockOffset(taken + step / 2 - (shown + renewal / 2), sd)

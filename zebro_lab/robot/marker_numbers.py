@@ -3,13 +3,10 @@
 
 from collections.abc import Iterable
 
-import numpy as np
-from numpy.typing import NDArray
-
-from tracking.detect import Robot
+from tracking.detect import MarkedRobot
 from tracking.errors import MarkerError
 from tracking.floor import FloorMap
-from tracking.markers import dictionary_named, find_markers, guess_dictionary
+from tracking.markers import dictionary_named
 
 
 def require_in_dictionary(dictionary: str, numbers: Iterable[int]) -> None:
@@ -30,7 +27,7 @@ def require_in_dictionary(dictionary: str, numbers: Iterable[int]) -> None:
             )
 
 
-def require_apart(robot: Robot, floor: FloorMap) -> None:
+def require_apart(robot: MarkedRobot, floor: FloorMap) -> None:
     """Refuse a robot whose marker has the number of one of the floor's.
 
     Raises:
@@ -42,25 +39,3 @@ def require_apart(robot: Robot, floor: FloorMap) -> None:
             f"marker {number} is the robot's and one of the floor's; take the one that is not laid "
             "out of floor.toml, or correct the robot's number (id in robot.toml, --marker)"
         )
-
-
-def strangers(pixels: NDArray[np.uint8], robot: Robot, floor: FloorMap) -> str | None:
-    """Say which markers a photograph shows that are not the floor's.
-
-    For the message when the robot's is nowhere: another number or dictionary is the commonest
-    reason.
-
-    Args:
-        pixels: The photograph.
-        robot: The robot.
-        floor: The floor's marks.
-    """
-    names = (robot.marker.dictionary, floor.dictionary, guess_dictionary(pixels))
-    for dictionary in dict.fromkeys(name for name in names if name is not None):
-        numbers = range(len(dictionary_named(dictionary).bytesList))
-        found = {s.marker_id for s in find_markers(pixels, dictionary, wanted=numbers, effort=0)}
-        if dictionary == floor.dictionary:
-            found -= set(floor.marker_ids)
-        if found:
-            return f"{', '.join(map(str, sorted(found)))} of '{dictionary}'"
-    return None

@@ -15,6 +15,7 @@ from pathlib import Path
 from tracking.body import TopPlate
 from tracking.corrections import Correction, Delete, Flip, Move, Order
 from tracking.images import find_photos, read_pixels
+from tracking.photos.scene import Click, MarkedTop
 from zebro_lab.files.atomic import atomic_write_bytes, atomic_write_text
 from zebro_lab.files.errors import AlreadyExists, NotFound, SettingsError
 from zebro_lab.files.own_file import picture, require_own
@@ -22,8 +23,6 @@ from zebro_lab.files.units import quantity_to_si
 from zebro_lab.robot.robot_file import RobotFile, read_robot_file
 from zebro_lab.track.annotations import (
     Annotations,
-    Click,
-    TemplateClicks,
     read_annotations,
     render_annotations,
 )
@@ -143,7 +142,7 @@ def draw_grid(origin: Path, photo: str, file: Path, *, around: str | None = None
     atomic_write_bytes(target, drawn.getvalue())
 
 
-def _template(request: AnnotateRequest, names: Sequence[str]) -> TemplateClicks | None:
+def _template(request: AnnotateRequest, names: Sequence[str]) -> MarkedTop | None:
     if request.corners is None:
         return None
     if request.photo is None:
@@ -156,7 +155,7 @@ def _template(request: AnnotateRequest, names: Sequence[str]) -> TemplateClicks 
             "rear right, rear left",
             key="--corners",
         )
-    return TemplateClicks(request.photo, corners, _plate(request))
+    return MarkedTop(request.photo, corners, _plate(request))
 
 
 def _plate(request: AnnotateRequest) -> TopPlate:

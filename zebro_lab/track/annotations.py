@@ -12,26 +12,11 @@ from typing import Any
 from tracking.body import TopPlate
 from tracking.corrections import Correction, correction_from, plain
 from tracking.errors import TrackingError
+from tracking.photos.scene import Click, MarkedTop
 from zebro_lab.files.settings_table import SettingsTable, read_settings
 from zebro_lab.files.settings_text import fill_in
 
 ANNOTATIONS_FILE = "annotations.toml"
-Click = tuple[float, float]
-
-
-@dataclass(frozen=True)
-class TemplateClicks:
-    """The robot's top, clicked on in one photograph.
-
-    Attributes:
-        photo: Name of the photograph.
-        corners_px: Front left, front right, rear right and rear left corner, four pairs [px].
-        plate: The top.
-    """
-
-    photo: str
-    corners_px: tuple[Click, ...]
-    plate: TopPlate
 
 
 @dataclass(frozen=True)
@@ -44,7 +29,7 @@ class Annotations:
         corrections: What is wrong in what the tracker finds, in the order in which it was said.
     """
 
-    template: TemplateClicks | None = None
+    template: MarkedTop | None = None
     clicks: Mapping[str, Mapping[str, Click]] = field(default_factory=dict)
     corrections: tuple[Correction, ...] = ()
 
@@ -78,7 +63,7 @@ def read_annotations(file: Path) -> Annotations:
     return said
 
 
-def _template(table: SettingsTable) -> TemplateClicks:
+def _template(table: SettingsTable) -> MarkedTop:
     found = table.value("corners_px", [])
     if not isinstance(found, list) or len(found) != 4:
         raise table.fault("expected four pixels: front left, front right, rear right, rear left "
@@ -95,7 +80,7 @@ def _template(table: SettingsTable) -> TemplateClicks:
         )
     except TrackingError as error:
         raise table.fault(str(error)) from error
-    return TemplateClicks(table.text("photo", least=1), corners, plate)
+    return MarkedTop(table.text("photo", least=1), corners, plate)
 
 
 def _clicks(table: SettingsTable) -> dict[str, Click]:
@@ -147,7 +132,7 @@ corners_px = []  # front left, front right, rear right, rear left
 """
 
 
-def _template_values(template: TemplateClicks) -> Mapping[str, Any]:
+def _template_values(template: MarkedTop) -> Mapping[str, Any]:
     plate = template.plate
     return {
         "photo": template.photo, "corners_px": template.corners_px,

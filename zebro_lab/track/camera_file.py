@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from tracking.camera import Calibration, Camera
+from tracking.camera import Camera, CameraCalibration
 from zebro_lab.files.settings_table import SettingsTable, read_settings
 from zebro_lab.files.settings_text import fill_in
 
@@ -62,7 +62,7 @@ def _size(table: SettingsTable) -> tuple[int, int]:
     return int(width), int(height)
 
 
-def render_camera_file(fit: Calibration, *, photos: Mapping[str, str]) -> str:
+def render_camera_file(fit: CameraCalibration, *, photos: Mapping[str, str]) -> str:
     """Write a calibration as commented TOML that `read_camera_file` reads back.
 
     Args:

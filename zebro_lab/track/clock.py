@@ -19,12 +19,12 @@ class CountedTimes:
     """Times of photographs as the track has them.
 
     Attributes:
-        times: Times and their standard deviations.
+        times: Times and their standard deviations; None of exposures that are not found yet.
         said: In words, where they are from.
         notes: For a person, one line each.
     """
 
-    times: PhotoTimes
+    times: PhotoTimes | None
     said: str
     notes: tuple[str, ...] = ()
 
@@ -58,6 +58,14 @@ def counted_from(
     if manifest is not None and not notes:
         notes = _beside(counted, manifest)
     return CountedTimes(counted, f"{times.source}; counted from {what}", notes)
+
+
+def counted_later(*, manifest: RunManifest | None, asked: TimeRequest) -> CountedTimes:
+    """Say how the exposures of a composite picture will get their times, once they are found."""
+    notes = ()
+    if manifest is not None and asked.table is None:
+        notes = (untied(f"give seconds since the run's start as --times, or {LATER}"),)
+    return CountedTimes(None, "times of exposures as given", notes)
 
 
 LATER = "bring it to the run's clock with `validate --time-offset`"

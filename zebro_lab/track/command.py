@@ -3,6 +3,7 @@
 
 import sys
 from datetime import datetime
+from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -12,7 +13,8 @@ from zebro_lab.terminal.messages import say
 
 if TYPE_CHECKING:
     from zebro_lab.track.preview_stage import Preview
-    from zebro_lab.track.stage import TrackRequest, TrackResult
+    from zebro_lab.track.request import TrackRequest
+    from zebro_lab.track.stage import TrackResult
 
 INTERRUPTED = 130
 _MOST_LISTED = 10
@@ -30,8 +32,17 @@ zebro-lab track photos --camera camera.toml --floor floor.toml --robot robot.tom
 --without-marker --annotations annotations.toml --out track
 
 zebro-lab track composite.jpg --camera camera.toml --floor floor.toml --robot robot.toml
---interval 4 --out track
+--merged pasted --interval 4 --out track
 """
+
+
+class MergedAs(StrEnum):
+    """How the exposures of a composite picture were merged."""
+
+    PASTED = "pasted"
+    DARKEST = "darkest"
+    MEAN = "mean"
+
 
 Photos = Annotated[
     Path, typer.Argument(help="Folder of photographs, a video, or one composite picture.")
@@ -68,6 +79,10 @@ Marker = Annotated[
 ]
 WithoutMarker = Annotated[
     bool, typer.Option("--without-marker", help="Track the robot by its own annotated picture.")
+]
+HowMerged = Annotated[
+    MergedAs | None,
+    typer.Option("--merged", help="How one composite picture was made of its exposures."),
 ]
 AnnotationsToml = Annotated[
     Path | None, typer.Option("--annotations", help="What `zebro-lab annotate` wrote.")
@@ -106,6 +121,7 @@ def track(
     start: Start = None,
     marker: Marker = None,
     without_marker: WithoutMarker = False,
+    merged: HowMerged = None,
     annotations: AnnotationsToml = None,
     body_height: BodyHeight = None,
     height_sd: HeightSd = "5mm",
@@ -115,9 +131,10 @@ def track(
     preview: PreviewPng = None,
 ) -> None:
     """Track the robot in photographs: track.csv with covariance, TUM, pictures."""
+    from tracking.composite import Merged
     from zebro_lab.files.units import quantity_to_si
     from zebro_lab.track.photo_sequence import FRAME_STEP, TimeRequest
-    from zebro_lab.track.stage import TrackRequest
+    from zebro_lab.track.request import TrackRequest
 
     request = TrackRequest(
         photos,
@@ -130,6 +147,7 @@ def track(
         start=None if start is None else _moment(start),
         marker=marker,
         without_marker=without_marker,
+        merged=None if merged is None else Merged(merged.value),
         annotations=annotations,
         body_height=None if body_height is None else quantity_to_si(body_height, "m"),
         height_sd=quantity_to_si(height_sd, "m"),
@@ -167,8 +185,9 @@ def _moment(text: str) -> datetime:
 def _track(request: "TrackRequest") -> None:
     from rich.console import Console
 
+    from tracking.errors import TrackStopped
     from zebro_lab.terminal.progress import progress_bar
-    from zebro_lab.track.photo_search import TrackStopped
+    from zebro_lab.track.inputs import HowMergedUnknown
     from zebro_lab.track.stage import track as run_stage
 
     try:
@@ -177,6 +196,8 @@ def _track(request: "TrackRequest") -> None:
     except TrackStopped as stopped:
         say(str(stopped), err=True)
         raise typer.Exit(INTERRUPTED) from None
+    except HowMergedUnknown as unknown:
+        raise typer.BadParameter(unknown.problem, param_hint="'--merged'") from unknown
     for line in track_lines(result):
         say(line)
 

@@ -2,7 +2,7 @@
 """What is to be tracked: photographs of a folder, frames of a video, or one composite picture."""
 
 from collections import Counter
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from itertools import islice
@@ -25,8 +25,9 @@ from tracking.images import (
     times_from_table,
     video_frames,
 )
+from tracking.photos.scene import Photo
+from tracking.photos.workers import Progress, report_step
 from zebro_lab.files.errors import DataError, NotFound, SettingsError
-from zebro_lab.track.photo_search import Watcher, follow
 
 VIDEOS = (".mp4", ".mov", ".m4v", ".avi", ".mkv", ".webm")
 FRAME_STEP = 0.5
@@ -78,6 +79,11 @@ class PhotoSequence:
     left_out: Mapping[str, str] = field(default_factory=dict)
 
     @property
+    def photos(self) -> tuple[Photo, ...]:
+        """The photographs as `tracking` takes them."""
+        return tuple(map(Photo, self.names, self.paths))
+
+    @property
     def is_composite(self) -> bool:
         """Tell one picture with many exposures from photographs."""
         return self.times is None
@@ -85,7 +91,11 @@ class PhotoSequence:
 
 @contextmanager
 def open_photos(
-    origin: Path, request: TimeRequest, *, watcher: Watcher | None = None, frames: int | None = None
+    origin: Path,
+    request: TimeRequest,
+    *,
+    progress: Progress | None = None,
+    frames: int | None = None,
 ) -> Iterator[PhotoSequence]:
     """Find the photographs and their times.
 
@@ -94,7 +104,7 @@ def open_photos(
     Args:
         origin: Folder of photographs, video, or one composite picture.
         request: How they get their times.
-        watcher: Who follows while a video is read; None for nobody.
+        progress: Where it is reported while a video is read; None for nowhere.
         frames: Most frames of a video that are wanted; None for all.
 
     Yields:
@@ -113,7 +123,7 @@ def open_photos(
     elif origin.suffix.lower() in VIDEOS:
         _require_no_times(request)
         with TemporaryDirectory(prefix="zebro-lab-") as folder:
-            yield _of_video(origin, Path(folder), request.every, frames, watcher)
+            yield _of_video(origin, Path(folder), request.every, frames, progress)
     else:
         yield PhotoSequence((origin.name,), (origin,), None, _simulated(origin), origin)
 
@@ -144,7 +154,7 @@ def upright_size(path: Path) -> tuple[int, int] | None:
     return (height, width) if lying else (width, height)
 
 
-def exposure_times(names: tuple[str, ...], request: TimeRequest) -> PhotoTimes:
+def exposure_times(names: Sequence[str], request: TimeRequest) -> PhotoTimes:
     """Find the times of a composite picture's exposures, already in order.
 
     Raises:
@@ -222,12 +232,12 @@ def _by_computer(times: PhotoTimes, clock: Path) -> PhotoTimes:
 
 
 def _of_video(
-    video: Path, folder: Path, every: float, most: int | None, watcher: Watcher | None
+    video: Path, folder: Path, every: float, most: int | None, progress: Progress | None
 ) -> PhotoSequence:
     names, paths, t, sd = [], [], [], []
     for frame in islice(video_frames(video, every=every), most):
-        if watcher is not None:
-            follow(watcher, "frames", None)
+        if progress is not None:
+            report_step(progress, "frames", None)
         path = folder / f"{len(paths):06d}.png"
         if not cv2.imwrite(str(path), frame.pixels, [cv2.IMWRITE_PNG_COMPRESSION, 1]):
             raise DataError(

@@ -11,8 +11,10 @@ from numpy.typing import NDArray
 from model.slip.law import Array
 from tracking.camera import Camera, CameraPose
 from tracking.errors import TrackingError
-from tracking.floor import FloorMap, FloorView, locate_camera
+from tracking.floor import FloorMap, locate_camera
 from tracking.images import read_pixels
+from tracking.photos.scene import Photo
+from tracking.photos.search import Wanted, look_at
 from tracking.pictures import rectify_floor
 from zebro_lab.files.errors import DataError, NotFound, SettingsError
 from zebro_lab.files.provenance import file_hash
@@ -21,12 +23,11 @@ from zebro_lab.track.annotations import ANNOTATIONS_FILE, Annotations, read_anno
 from zebro_lab.track.camera_file import read_camera_file
 from zebro_lab.track.floor_file import FLOOR_FILE, read_floor_file
 from zebro_lab.track.folder import TRACK_CSV, read_track_manifest
-from zebro_lab.track.photo_search import Photo, Wanted, look_at
 from zebro_lab.track.photo_sequence import VIDEOS, upright_size
 
 
 @dataclass(frozen=True)
-class View:
+class PlacedPhoto:
     """A photograph, and where the camera stood.
 
     Attributes:
@@ -71,7 +72,7 @@ class TrackedPhotos:
     said: Annotations = field(default_factory=Annotations)
     simulated: bool = False
 
-    def view(self, name: str) -> View:
+    def view(self, name: str) -> PlacedPhoto:
         """Read a photograph and find where the camera stood.
 
         Raises:
@@ -83,15 +84,9 @@ class TrackedPhotos:
         look = look_at(Photo(name, file), Wanted(size, self.floor, None))
         if look.seen is None:
             raise TrackingError(f"{name}: {look.problem}")
-        seen, clicks = look.seen.floor, self.said.clicks.get(name, {})
-        clicked = FloorView.of(name, (), clicked=clicks)
-        view = FloorView(
-            name,
-            {**seen.pixels, **clicked.pixels},
-            {**seen.covariances, **clicked.covariances},
-        )
+        view = look.seen.floor.with_clicked(self.said.clicks.get(name, {}))
         pose = locate_camera(camera, self.floor, view)
-        return View(read_pixels(file, size=size), camera, pose)
+        return PlacedPhoto(read_pixels(file, size=size), camera, pose)
 
 
 def photos_of_track(track: Path) -> TrackedPhotos:

@@ -8,20 +8,20 @@ from pathlib import Path
 
 import numpy as np
 
+from tracking import Scene
 from tracking.camera import CameraPose, to_floor
 from tracking.detect import Detection
 from tracking.floor import FloorFit, FloorView, refine_floor
 from tracking.images import read_pixels
+from tracking.photos.search import Wanted, look_at
 from tracking.pose import fit_pose
 from zebro_lab.files.atomic import atomic_write_bytes
 from zebro_lab.files.errors import DataError
 from zebro_lab.files.own_file import picture, require_own
-from zebro_lab.runs.manifest import read_manifest
-from zebro_lab.track.photo_search import Photo, Wanted, look_at
+from zebro_lab.track.inputs import read_inputs
 from zebro_lab.track.photo_sequence import open_photos
 from zebro_lab.track.pictures import draw_preview
-from zebro_lab.track.stage import TrackRequest, described_robot, scene_of, source_of
-from zebro_lab.track.tracker import Scene, with_clicks
+from zebro_lab.track.request import TrackRequest
 
 PREVIEW = picture("track --preview")
 _FAR = 4e-3  # disagreement of tape and picture worth a warning [m]
@@ -88,22 +88,21 @@ def preview(request: TrackRequest, file: Path) -> Preview:
         TrackingError: The floor's map does not fit.
     """
     target = require_own(file, PREVIEW, inputs=request.inputs)
-    manifest = None if request.run is None else read_manifest(request.run)
+    inputs = read_inputs(request)
     with open_photos(request.photos, request.times, frames=1) as sequence:
-        scene = scene_of(request, described_robot(request), sequence)
-        photo = Photo(sequence.names[0], sequence.paths[0])
+        scene = inputs.scene_of(sequence)
+        photo = sequence.photos[0]
         robot = None if sequence.is_composite else scene.robot
         look = look_at(photo, Wanted(scene.camera.size, scene.floor, robot))
         if look.seen is None:
             raise DataError(f"{photo.name}: {look.problem}")
-        view = with_clicks(look.seen.floor, scene)
+        view = scene.with_clicks(look.seen.floor)
         fit = refine_floor(scene.camera, scene.floor, [view])
-        source = source_of(request, manifest, sequence)
         drawn = BytesIO()
         draw_preview(
             drawn, read_pixels(photo.path), camera=scene.camera, view=fit.stands[0].pose,
             floor=scene.floor, detection=look.seen, title=f"Preview: {photo.name}",
-            simulated=source.startswith("sim:"), command=PREVIEW.command,
+            simulated=inputs.source_of(sequence).startswith("sim:"), command=PREVIEW.command,
         )  # fmt: skip
         atomic_write_bytes(target, drawn.getvalue())
         return _preview(file, scene, look.seen, view, fit)

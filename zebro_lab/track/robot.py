@@ -3,7 +3,7 @@
 
 import numpy as np
 
-from tracking.detect import Robot
+from tracking.detect import MarkedRobot
 from tracking.errors import TrackingError
 from tracking.pose import BodyPrior, RobotMarker
 from zebro_lab.files.errors import SettingsError
@@ -18,7 +18,9 @@ STEEPEST = 0.05
 """Roll or pitch beyond which a marker on the robot is not level [rad]."""
 
 
-def tracked_robot(described: RobotFile, marker: str | None = None, *, prior: BodyPrior) -> Robot:
+def tracked_robot(
+    described: RobotFile, marker: str | None = None, *, prior: BodyPrior
+) -> MarkedRobot:
     """Put together what is known of a robot that carries a marker.
 
     The marker's frame in `robot.toml` has its x along the print's upward direction: a print whose
@@ -56,7 +58,7 @@ def tracked_robot(described: RobotFile, marker: str | None = None, *, prior: Bod
     except TrackingError as error:
         file, key = (_file(described), "marker") if marker is None else (None, "--marker")
         raise SettingsError(str(error), file=file, key=key) from error
-    return Robot(on_robot, prior)
+    return MarkedRobot(on_robot, prior)
 
 
 def body_prior(

@@ -1,110 +1,29 @@
 # SPDX-License-Identifier: MIT
 """Photographs in, track folder out."""
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
-from datetime import datetime
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 
-from tracking.images import read_pixels
-from zebro_lab.files.errors import SettingsError
+from tracking import Scene, Tracked, track_photos
+from tracking.images import PhotoTimes, read_pixels
+from tracking.photos.workers import Progress
 from zebro_lab.files.provenance import file_hashes
 from zebro_lab.files.result_folder import require_replaceable
-from zebro_lab.robot.marker_numbers import require_apart
 from zebro_lab.robot.marker_print import MarkerPrint
-from zebro_lab.robot.robot_file import RobotFile, read_robot_file
-from zebro_lab.runs.manifest import RunManifest, read_manifest
-from zebro_lab.track.annotations import (
-    ANNOTATIONS_FILE,
-    Annotations,
-    read_annotations,
-    render_annotations,
-)
-from zebro_lab.track.camera_file import read_camera_file
-from zebro_lab.track.clock import LATER, counted_from, untied
-from zebro_lab.track.floor_file import FLOOR_FILE, read_floor_file, render_floor_file
-from zebro_lab.track.folder import KIND, TRACKED, track_folder
-from zebro_lab.track.photo_search import Photo, Watcher
+from zebro_lab.track.annotations import ANNOTATIONS_FILE, render_annotations
+from zebro_lab.track.clock import CountedTimes
+from zebro_lab.track.floor_file import FLOOR_FILE, render_floor_file
+from zebro_lab.track.folder import TRACKED, track_folder
+from zebro_lab.track.inputs import TrackInputs, read_inputs
 from zebro_lab.track.photo_sequence import (
     PhotoSequence,
-    TimeRequest,
     by_name,
-    calibrated_for,
     exposure_times,
     open_photos,
 )
 from zebro_lab.track.pictures import draw_track
-from zebro_lab.track.robot import WALKING_HEIGHT_SD, body_prior, tracked_robot
-from zebro_lab.track.tracker import Scene, Tracked, track_marker
-from zebro_lab.track.tracker_body import track_body, track_composite
-
-
-@dataclass(frozen=True)
-class TrackRequest:
-    """What is asked of a track.
-
-    Attributes:
-        photos: Folder of photographs, video, or one composite picture.
-        camera: The `camera.toml`.
-        floor: The `floor.toml`.
-        robot: The `robot.toml`; the source's robot when None.
-        out: Folder to write; None for the run's own `track/`.
-        run: Run folder the photographs belong to.
-        times: How the photographs get their times.
-        start: Moment from which time is counted; None for the run's start or the first photograph.
-        marker: What is printed on the robot: dictionary, number and side; None for what the robot's
-            file says.
-        without_marker: Track the robot by its own picture, annotated in one photograph.
-        annotations: What a person said about the photographs.
-        body_height: Height of the body's origin while the robot stands; None to take the marker's
-            [m].
-        height_sd: Standard deviation of that height over a walk [m].
-        gap: Interval longer than which the path is interrupted; None for 3.5 usual ones [s].
-        source: Where the photographs are from; None to take the files' word or the run's.
-        workers: Processes to use.
-    """
-
-    photos: Path
-    camera: Path
-    floor: Path
-    robot: Path | None = None
-    out: Path | None = None
-    run: Path | None = None
-    times: TimeRequest = field(default_factory=TimeRequest)
-    start: datetime | None = None
-    marker: str | None = None
-    without_marker: bool = False
-    annotations: Path | None = None
-    body_height: float | None = None
-    height_sd: float = WALKING_HEIGHT_SD
-    gap: float | None = None
-    source: str | None = None
-    workers: int = 1
-
-    @property
-    def folder(self) -> Path:
-        """The track folder to write.
-
-        Raises:
-            SettingsError: Neither a run nor a folder is named.
-        """
-        if self.out is not None:
-            return self.out
-        if self.run is None:
-            raise SettingsError("needed: --run RUN, to write RUN/track, or --out FOLDER")
-        return self.run / KIND
-
-    @property
-    def named(self) -> tuple[Path, ...]:
-        """Files that were named, beside the photographs."""
-        files = (self.camera, self.floor, self.robot, self.annotations,
-                 self.times.table, self.times.clock)  # fmt: skip
-        return tuple(file for file in files if file is not None)
-
-    @property
-    def inputs(self) -> tuple[Path, ...]:
-        """What is read, as it was named."""
-        return (self.photos, *self.named, *((self.run,) if self.run is not None else ()))
+from zebro_lab.track.request import TrackRequest
 
 
 @dataclass(frozen=True)
@@ -128,7 +47,7 @@ class TrackResult:
     is_composite: bool = False
 
 
-def track(request: TrackRequest, watcher: Watcher) -> TrackResult:
+def track(request: TrackRequest, watcher: Progress) -> TrackResult:
     """Track a walk and write the track folder.
 
     Raises:
@@ -136,110 +55,61 @@ def track(request: TrackRequest, watcher: Watcher) -> TrackResult:
         TrackingError: The photographs do not give a track.
         TrackStopped: Somebody asked to stop.
     """
-    folder = request.folder
-    require_replaceable(folder, TRACKED, inputs=request.inputs)
-    manifest = None if request.run is None else read_manifest(request.run)
-    described = described_robot(request)
-    with open_photos(request.photos, request.times, watcher=watcher) as sequence:
-        scene = scene_of(request, described, sequence)
-        source = source_of(request, manifest, sequence)
-        tracked, said = _tracked(request, described, scene, sequence, manifest, watcher)
-        tracked = replace(tracked, lost={**sequence.left_out, **tracked.lost})
-        count = _count(tracked, sequence)
-        result = TrackResult(folder, tracked, count, source, said, sequence.is_composite)
+    require_replaceable(request.folder, TRACKED, inputs=request.inputs)
+    inputs = read_inputs(request)
+    with open_photos(request.photos, request.times, progress=watcher) as sequence:
+        inputs.require_complete(sequence)
+        counted = inputs.counted_times(sequence)
+        tracked = track_photos(
+            inputs.scene_of(sequence), sequence.photos, times_of=_times_of(counted, request),
+            gap=request.gap, workers=request.workers, progress=watcher,
+        )  # fmt: skip
+        result = _result(inputs, sequence, tracked, counted)
         watcher.step("pictures", None)
-        _write(request, result, scene, sequence)
+        _write(inputs, sequence, result)
     return result
 
 
-def described_robot(request: TrackRequest) -> RobotFile:
-    """Read the robot that was named, or take the source's."""
-    return RobotFile() if request.robot is None else read_robot_file(request.robot)
+def _times_of(
+    counted: CountedTimes, request: TrackRequest
+) -> Callable[[Sequence[str]], PhotoTimes]:
+    times = counted.times
+    if times is None:
+        return lambda names: exposure_times(names, request.times)
+    return lambda _: times
 
 
-def scene_of(request: TrackRequest, described: RobotFile, sequence: PhotoSequence) -> Scene:
-    """Read what is known before looking.
-
-    Raises:
-        ZebroLabError: A file says what cannot be followed.
-    """
-    camera = calibrated_for(read_camera_file(request.camera).camera, sequence)
-    floor = read_floor_file(request.floor)
-    said = Annotations() if request.annotations is None else read_annotations(request.annotations)
-    prior = body_prior(described, height=request.body_height, height_sd=request.height_sd)
-    robot = None
-    if not request.without_marker:
-        robot = tracked_robot(described, request.marker, prior=prior)
-        require_apart(robot, floor)
-    return Scene(camera, floor, prior, robot, said, request.workers)
-
-
-def source_of(request: TrackRequest, manifest: RunManifest | None, sequence: PhotoSequence) -> str:
-    """Say where the photographs are from: as told, as the files say, or as the run has it."""
-    if request.source is not None:
-        return request.source
-    if sequence.source is not None or manifest is None:
-        return sequence.source or "unknown"
-    return manifest.source
-
-
-def _tracked(
-    request: TrackRequest, described: RobotFile, scene: Scene, sequence: PhotoSequence,
-    manifest: RunManifest | None, watcher: Watcher,
-) -> tuple[Tracked, str]:  # fmt: skip
-    photos = [Photo(name, path) for name, path in zip(sequence.names, sequence.paths, strict=True)]
-    if sequence.times is None:
-        length, width = described.robot.body_size[:2]
-        tracked = track_composite(
-            scene, photos[0], times_of=lambda names: exposure_times(names, request.times),
-            body_size=(length, width), watcher=watcher, gap=request.gap,
-        )  # fmt: skip
-        notes = ()
-        if manifest is not None and request.times.table is None:
-            notes = (untied(f"give seconds since the run's start as --times, or {LATER}"),)
-        return _noted(tracked, notes), "times of exposures as given"
-    counted = counted_from(
-        sequence.times, start=request.start, manifest=manifest, asked=request.times
-    )
-    pairs = zip(counted.times.t.tolist(), counted.times.sd.tolist(), strict=True)
-    times = dict(zip(sequence.names, pairs, strict=True))
-    if scene.robot is None:
-        tracked = track_body(scene, photos, times=times, watcher=watcher, gap=request.gap)
-    else:
-        tracked = track_marker(
-            scene, scene.robot, photos, times=times, watcher=watcher, gap=request.gap
-        )
-    return _noted(tracked, counted.notes), counted.said
-
-
-def _noted(tracked: Tracked, notes: tuple[str, ...]) -> Tracked:
-    return replace(tracked, notes=(*notes, *tracked.notes))
-
-
-def _count(tracked: Tracked, sequence: PhotoSequence) -> int:
+def _result(
+    inputs: TrackInputs, sequence: PhotoSequence, tracked: Tracked, counted: CountedTimes
+) -> TrackResult:
+    """Add what was known before the photographs were looked at."""
+    lost = {**sequence.left_out, **tracked.lost}
+    tracked = replace(tracked, lost=lost, notes=(*counted.notes, *tracked.notes))
+    count = len(sequence.names) + len(sequence.left_out)
     if sequence.is_composite:
-        return len(tracked.track.observations)
-    return len(sequence.names) + len(sequence.left_out)
+        count = len(tracked.track.observations)
+    source = inputs.source_of(sequence)
+    return TrackResult(
+        inputs.request.folder, tracked, count, source, counted.said, sequence.is_composite
+    )
 
 
-def _write(
-    request: TrackRequest, result: TrackResult, scene: Scene, sequence: PhotoSequence
-) -> None:
-    seen = result.tracked.floor
+def _write(inputs: TrackInputs, sequence: PhotoSequence, result: TrackResult) -> None:
+    request, seen = inputs.request, result.tracked.floor
     videos = [sequence.origin] if sequence.origin.is_file() else list(sequence.paths)
     with track_folder(
         result.folder,
         result.tracked.track,
         source=result.source,
-        settings=_settings(request, scene),
+        settings=_settings(inputs),
         inputs=file_hashes([*request.named, *videos]),
         report=_report(result),
     ) as draft:
         heading = f"The floor of {request.floor.name}, refined with the photographs."
         (draft / FLOOR_FILE).write_text(render_floor_file(seen.fit.floor, heading=heading))
         if request.annotations is not None:
-            (draft / ANNOTATIONS_FILE).write_text(render_annotations(scene.said))
-        _draw(draft, result, scene, sequence)
+            (draft / ANNOTATIONS_FILE).write_text(render_annotations(inputs.annotations))
+        _draw(draft, result, inputs.scene_of(sequence), sequence)
 
 
 def _draw(draft: Path, result: TrackResult, scene: Scene, sequence: PhotoSequence) -> None:
@@ -269,8 +139,9 @@ def _report(result: TrackResult) -> Mapping[str, object]:
     }
 
 
-def _settings(request: TrackRequest, scene: Scene) -> Mapping[str, object]:
-    marker = None if scene.robot is None else scene.robot.marker
+def _settings(inputs: TrackInputs) -> Mapping[str, object]:
+    request, robot = inputs.request, inputs.scene.robot
+    marker = None if robot is None else robot.marker
     return {
         "photos": request.photos.name,
         "marker": marker and MarkerPrint(marker.dictionary, marker.marker_id, marker.side).text,
@@ -280,4 +151,5 @@ def _settings(request: TrackRequest, scene: Scene) -> Mapping[str, object]:
         "body_height": request.body_height,
         "height_sd": request.height_sd,
         "gap": request.gap,
+        **({"merged": request.merged.value} if request.merged is not None else {}),
     }

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from model.judgement import TiltJudged
 from model.slip.law import Array
 from tracking.errors import TrackingError
-from zebro_lab.track.photographs import TrackedPhotos, View
+from zebro_lab.track.photographs import PlacedPhoto, TrackedPhotos
 from zebro_lab.validation.judged_run import JudgedRun
 from zebro_lab.walk.prediction_file import PredictionFile, WalkedPath
 
@@ -104,7 +104,7 @@ def _instants(run: JudgedRun, photos: TrackedPhotos, time_offset: float) -> NDAr
     return np.unique(scored[np.linspace(0, len(scored) - 1, SHOTS).round().astype(int)])
 
 
-def _shot(run: JudgedRun, walk: WalkedPath, view: View, t: float) -> "Shot":
+def _shot(run: JudgedRun, walk: WalkedPath, view: PlacedPhoto, t: float) -> "Shot":
     from zebro_lab.plots.photo_poses import Shot
 
     tracked, predicted = run.track.at([t]), run.rows[0].path.at([t])
@@ -125,7 +125,7 @@ def _shot(run: JudgedRun, walk: WalkedPath, view: View, t: float) -> "Shot":
     )
 
 
-def _draw_floor(file: Path, run: JudgedRun, view: View, simulated_photos: bool) -> None:
+def _draw_floor(file: Path, run: JudgedRun, view: PlacedPhoto, simulated_photos: bool) -> None:
     from zebro_lab.plots import save
     from zebro_lab.plots.photo_poses import band_over_floor
 

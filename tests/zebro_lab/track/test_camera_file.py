@@ -6,18 +6,18 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tracking.camera import Calibration, Camera
+from tracking.camera import Camera, CameraCalibration
 from zebro_lab.files.errors import NotFound, SettingsError
 from zebro_lab.track.camera_file import read_camera_file, render_camera_file
 
 GOOD = "size = [1280, 960]\nfocal = [1400, 1401]\ncentre = [640, 480]\n"
 
 
-def calibration(numbers, distortion) -> Calibration:
+def calibration(numbers, distortion) -> CameraCalibration:
     fx, fy, cx, cy = numbers
     matrix = np.array([[fx, 0, cx], [0, fy, cy], [0, 0, 1.0]])
     camera = Camera((1600, 1200), matrix, np.array(distortion))
-    return Calibration(
+    return CameraCalibration(
         camera, "full", np.full(9, 0.1), 0.2, ("a.jpg",), np.array([0.2]), 0.9, np.ones((6, 8), int)
     )
 

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Photographs come in order of time, from wherever their times are; frames of a video too."""
 
-from dataclasses import replace
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
 
@@ -10,13 +9,11 @@ import numpy as np
 import PIL.Image
 import pytest
 
+from support.synthetic.stamp import with_time_stamp
 from tracking.camera import Camera
 from tracking.errors import TimesError
-from tracking.images import PhotoTimes, clock_picture
-from tracking.synthetic.stamp import with_time_stamp
+from tracking.images import clock_picture
 from zebro_lab.files.errors import DataError, NotFound, SettingsError
-from zebro_lab.runs.manifest import RunManifest
-from zebro_lab.track.clock import counted_from
 from zebro_lab.track.photo_sequence import TimeRequest, calibrated_for, exposure_times, open_photos
 
 START = datetime(2020, 6, 1, 12, 0, 0, tzinfo=UTC)
@@ -128,36 +125,3 @@ def test_a_lens_fits_photographs_of_its_shape_alone(tmp_path):
 def test_nothing_of_the_name_is_said_so(tmp_path):
     with pytest.raises(NotFound, match="nowhere"), open_photos(tmp_path / "nowhere", TimeRequest()):
         pass
-
-
-def run_starting(start: str) -> RunManifest:
-    return RunManifest(
-        kind="walk", label="w", material="", operator="", source="real", start=start, stop=None,
-        exit_status="completed", software={}, constants={}, streams={}, log_sha256=None,
-    )  # fmt: skip
-
-
-def test_time_is_counted_from_the_run_only_where_the_clocks_are_tied():
-    times = PhotoTimes(STARTED + np.array([3.0, 5.0]), np.zeros(2), "EXIF")
-    manifest = run_starting(START.isoformat())
-
-    def counted(start=None, manifest=None, clock=None):
-        return counted_from(times, start=start, manifest=manifest, asked=TimeRequest(clock=clock))
-
-    tied = counted(manifest=manifest, clock=Path("clock.jpg"))
-    np.testing.assert_allclose(tied.times.t, [3, 5])
-    assert "the run's start" in tied.said
-    assert tied.notes == ()
-    loose = counted(manifest=manifest)
-    np.testing.assert_allclose(loose.times.t, [0, 2])
-    assert "nothing tells when" in loose.notes[0]
-    np.testing.assert_allclose(counted(START - timedelta(seconds=1)).times.t, [4, 6])
-    with pytest.raises(TimesError, match=r"7203\.0 to 7205\.0 s after the run's start"):
-        counted(START - timedelta(hours=2), replace(manifest, stop=START.isoformat()))
-
-
-def test_times_as_given_are_left_as_given_and_have_no_moment():
-    times, asked = PhotoTimes(np.array([3.0, 5.0]), np.zeros(2), "interval"), TimeRequest(2.0)
-    assert counted_from(times, start=None, manifest=None, asked=asked).times is times
-    with pytest.raises(SettingsError, match="--start"):
-        counted_from(times, start=START, manifest=None, asked=asked)

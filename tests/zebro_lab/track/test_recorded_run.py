@@ -15,8 +15,8 @@ import pytest
 from rig.clock import ManualClock
 from rig.device import Sample
 from rig.zebro.profile import load_leg_profile
+from support.synthetic import with_time_stamp
 from tracking.images import clock_picture
-from tracking.synthetic import with_time_stamp
 from zebro_lab.main import app
 from zebro_lab.mcap.stream_views import LegsView
 from zebro_lab.recording.devices import profile_text

@@ -3,7 +3,6 @@
 
 import json
 import shutil
-import tomllib
 from dataclasses import replace
 from pathlib import Path
 
@@ -11,76 +10,20 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from support.bundled_walk import COMPOSITE, SOME, Nobody, truth
 from tracking.body import Alignment
-from tracking.composite import Exposure
-from tracking.errors import TrackingError
+from tracking.composite import Exposure, Merged
+from tracking.errors import NoUsablePhoto, TrackingError, TrackStopped
 from tracking.path import TRACK_COLUMNS
+from tracking.photos import search
 from tracking.pose import BodyPose
-from zebro_lab.files.errors import AlreadyExists, DataError, SettingsError
+from zebro_lab.files.errors import AlreadyExists, SettingsError
 from zebro_lab.files.result_folder import MANIFEST
-from zebro_lab.track import photo_search
 from zebro_lab.track.annotate_stage import AnnotateRequest, annotate
 from zebro_lab.track.folder import TRACKED
-from zebro_lab.track.photo_search import TrackStopped
 from zebro_lab.track.photo_sequence import TimeRequest
-from zebro_lab.track.preview_stage import preview
-from zebro_lab.track.stage import TrackRequest, track
-
-WALK = Path(__file__).parents[3] / "datasets/walk-sim"
-SOME = ("00", "02", "03", "04", "05", "06")
-
-
-class Nobody:
-    """Follows without a word, and asks to stop where told to."""
-
-    def __init__(self, stops: bool = False) -> None:
-        self.stops = stops
-
-    def step(self, what: str, fraction: float | None) -> None:
-        """Hear nothing."""
-
-    def stop_requested(self) -> bool:
-        """Ask to stop."""
-        return self.stops
-
-
-@pytest.fixture(scope="module")
-def bench(tmp_path_factory) -> Path:
-    """Return a folder with camera.toml and floor.toml of the true camera, and some photographs."""
-    folder = tmp_path_factory.mktemp("bench")
-    truth = tomllib.loads((WALK / "truth.toml").read_text())
-    camera = truth["camera"]
-    (folder / "camera.toml").write_text(
-        "".join(f"{key} = {camera[key]}\n" for key in ("size", "focal", "centre", "distortion"))
-    )
-    lines = ["side = 0.15", "[markers]"]
-    for marker in truth["floor_markers"]:
-        x, y, _ = np.mean(marker["corners"], axis=0)
-        lines.append(f"{marker['id']} = {{ x = {x}, y = {y} }}")
-    (folder / "floor.toml").write_text("\n".join(lines))
-    (folder / "photos").mkdir()
-    for number in SOME:
-        shutil.copy(WALK / f"photos/simulated_{number}.jpg", folder / "photos")
-    return folder
-
-
-@pytest.fixture
-def request_(bench, tmp_path) -> TrackRequest:
-    """Return what is asked of the bundled photographs, with an empty folder to write."""
-    return TrackRequest(
-        bench / "photos", bench / "camera.toml", bench / "floor.toml",
-        robot=WALK / "robot.toml", out=tmp_path / "track",
-    )  # fmt: skip
-
-
-@pytest.fixture
-def undrawn(monkeypatch):
-    """Leave out the pictures, which take longer than the tracking of so few photographs."""
-    monkeypatch.setattr("zebro_lab.track.stage.draw_track", lambda *_, **__: None)
-
-
-def truth(photos) -> pd.DataFrame:
-    return pd.read_csv(WALK / "photos.csv").set_index("photo").loc[list(photos)]
+from zebro_lab.track.request import TrackRequest
+from zebro_lab.track.stage import track
 
 
 def test_a_track_is_the_walk_within_its_own_error_and_says_it_is_simulated(request_):
@@ -113,7 +56,7 @@ def test_a_second_track_replaces_the_first_and_another_commands_result_is_safe(r
 
 
 def test_several_processes_find_what_one_finds(request_, monkeypatch, tmp_path, undrawn):
-    monkeypatch.setattr(photo_search, "WORTH_WORKERS", 0.0)
+    monkeypatch.setattr(search, "WORTH_WORKERS", 0.0)
     one = track(request_, Nobody())
     two = track(replace(request_, workers=2, out=tmp_path / "two"), Nobody())
     # Not to the last digit: a stretch begins by looking at the whole photograph.
@@ -152,16 +95,13 @@ def test_corrections_are_replayed_and_kept(request_, tmp_path, undrawn):
     assert 'kind = "move"' in (result.folder / "annotations.toml").read_text()
 
 
-COMPOSITE = WALK / "composite/simulated_pasted.jpg"
-
-
 def walk_of_the_composite() -> pd.DataFrame:
     return truth(f"simulated_{number:02d}.jpg" for number in range(1, 14, 2))
 
 
 @pytest.mark.long
 def test_exposures_of_a_composite_picture_are_found(request_, undrawn):
-    asked = replace(request_, photos=COMPOSITE, times=TimeRequest(interval=4.0))
+    asked = replace(request_, photos=COMPOSITE, merged=Merged.PASTED, times=TimeRequest(4.0))
     result = track(asked, Nobody())
     assert result.source == "sim:photographs"
     true = walk_of_the_composite()
@@ -182,12 +122,12 @@ def exposures(monkeypatch, request) -> pd.DataFrame:
     ]
     shuffled = np.random.default_rng(0).permutation(len(poses))
     found = tuple(Exposure(Alignment(poses[k], score, 0.0), 1.0) for k in shuffled)
-    monkeypatch.setattr("zebro_lab.track.tracker_body.find_exposures", lambda *_, **__: found)
+    monkeypatch.setattr("tracking.photos.exposures.find_exposures", lambda *_, **__: found)
     return true
 
 
 def test_exposures_of_a_composite_picture_come_in_order(request_, undrawn, exposures):
-    asked = replace(request_, photos=COMPOSITE, times=TimeRequest(interval=4.0))
+    asked = replace(request_, photos=COMPOSITE, merged=Merged.PASTED, times=TimeRequest(4.0))
     result = track(asked, Nobody())
     observations = result.tracked.track.observations
     assert [seen.photo for seen in observations] == [
@@ -202,25 +142,14 @@ def test_exposures_of_a_composite_picture_come_in_order(request_, undrawn, expos
     ("exposures", "warned"), [(0.9, False), (0.0, True)], indirect=["exposures"]
 )
 def test_exposures_that_could_not_be_aligned_are_told_of(request_, undrawn, exposures, warned):
-    asked = replace(request_, photos=COMPOSITE, times=TimeRequest(interval=4.0))
+    asked = replace(request_, photos=COMPOSITE, merged=Merged.PASTED, times=TimeRequest(4.0))
     notes = track(asked, Nobody()).tracked.notes
     assert any("only roughly" in note for note in notes) == warned
 
 
 def test_a_composite_picture_without_times_asks_for_the_interval(request_, undrawn, exposures):
     with pytest.raises(SettingsError, match="--interval"):
-        track(replace(request_, photos=COMPOSITE), Nobody())
-
-
-def test_the_preview_compares_tape_and_photograph(request_, tmp_path):
-    file = tmp_path / "preview.png"
-    seen = preview(request_, file)
-    assert file.read_bytes()[:4] == b"\x89PNG"
-    assert seen.marks == ("10", "11", "12", "13")
-    assert len(seen.tape) == 6
-    assert not any(check.is_off for check in seen.tape)
-    assert seen.robot == pytest.approx((0, 0, 0), abs=3e-3)
-    assert 1e-3 < seen.scale < 4e-3
+        track(replace(request_, photos=COMPOSITE, merged=Merged.PASTED), Nobody())
 
 
 def test_a_marker_of_another_side_is_noticed(request_, undrawn):
@@ -236,7 +165,7 @@ def edited(request: TrackRequest, tmp_path: Path, name: str, old: str, new: str)
 
 def test_a_floor_of_another_dictionary_says_which_is_seen(request_, tmp_path):
     asked = edited(request_, tmp_path, "floor.toml", "side", 'dictionary = "5x5_50"\nside')
-    with pytest.raises(DataError, match="markers of '4x4_50'"):
+    with pytest.raises(NoUsablePhoto, match="markers of '4x4_50'"):
         track(asked, Nobody())
 
 

@@ -7,9 +7,10 @@ from dataclasses import dataclass
 from io import BytesIO
 from pathlib import Path
 
-from tracking.camera import Board, BoardView, Calibration, calibrate, find_board
+from tracking.camera import Board, CameraCalibration, SeenBoard, calibrate, find_board
 from tracking.errors import CalibrationError, PhotoError
 from tracking.images import find_photos, read_pixels
+from tracking.photos.workers import WORTH_WORKERS, Progress, run_batches
 from zebro_lab.files.atomic import atomic_folder, atomic_write_bytes, atomic_write_text
 from zebro_lab.files.errors import AlreadyExists
 from zebro_lab.files.own_file import require_own, text_file
@@ -18,7 +19,6 @@ from zebro_lab.track.camera.board_argument import parse_board
 from zebro_lab.track.camera.kit import kit_pages, starter_floor
 from zebro_lab.track.camera_file import HEADING, render_camera_file
 from zebro_lab.track.floor_file import FLOOR_FILE, render_floor_file
-from zebro_lab.track.photo_search import WORTH_WORKERS, Watcher, run_batches
 from zebro_lab.track.photo_sequence import upright_size
 
 KIT_FILE = "kit.pdf"
@@ -55,11 +55,11 @@ class CameraResult:
     """
 
     file: Path
-    fit: Calibration
+    fit: CameraCalibration
     left_out: dict[str, str]
 
 
-def calibrate_camera(request: CameraRequest, watcher: Watcher) -> CameraResult:
+def calibrate_camera(request: CameraRequest, progress: Progress) -> CameraResult:
     """Calibrate the lens and write `camera.toml`.
 
     Raises:
@@ -76,21 +76,21 @@ def calibrate_camera(request: CameraRequest, watcher: Watcher) -> CameraResult:
     size = sizes.most_common(1)[0][0]
     workers = request.workers if len(paths) * size[0] * size[1] > WORTH_WORKERS else 1
     jobs = [(path, board, size) for path in paths]
-    looks = run_batches(_look, jobs, workers=workers, watcher=watcher, what="boards")
-    views = [view for view in looks if isinstance(view, BoardView)]
+    looks = run_batches(_look, jobs, workers=workers, progress=progress, what="boards")
+    views = [view for view in looks if isinstance(view, SeenBoard)]
     left_out = {
         path.name: look for path, look in zip(paths, looks, strict=True) if isinstance(look, str)
     }
     if not views:
         raise CalibrationError(_why_none(request, left_out))
-    watcher.step("lens", None)
+    progress.step("lens", None)
     fit = calibrate(views, size, lens_model=request.lens_model)
     used = {path.name: file_hash(path) for path in paths if path.name not in left_out}
     atomic_write_text(target, render_camera_file(fit, photos=used))
     return CameraResult(request.out, fit, left_out)
 
 
-def _look(job: tuple[Path, Board, tuple[int, int]]) -> BoardView | str:
+def _look(job: tuple[Path, Board, tuple[int, int]]) -> SeenBoard | str:
     path, board, size = job
     try:
         view = find_board(read_pixels(path, size=size), board, name=path.name)

@@ -8,8 +8,7 @@ from pathlib import Path
 import pytest
 
 from tracking.errors import CalibrationError
-from zebro_lab.files.errors import AlreadyExists, SettingsError
-from zebro_lab.track.camera.board_argument import parse_board
+from zebro_lab.files.errors import AlreadyExists
 from zebro_lab.track.camera.stage import CameraRequest, calibrate_camera, write_kit
 from zebro_lab.track.camera_file import read_camera_file
 from zebro_lab.track.floor_file import read_floor_file
@@ -52,15 +51,6 @@ def test_another_board_is_an_error_that_says_so_and_writes_nothing(tmp_path):
     with pytest.raises(CalibrationError, match="--board"):
         calibrate_camera(CameraRequest(photos, tmp_path / "camera.toml"), Nobody())
     assert not (tmp_path / "camera.toml").exists()
-
-
-@pytest.mark.parametrize(
-    "text", ["9x6", "checkerboard:9:25mm", "charuco:7x5:26mm:35mm:4x4_50", "checkerboard:9x6:25",
-             "charuco:7x5:35mm:26mm:4x4_51", "kit:a4"],
-)  # fmt: skip
-def test_what_is_no_board_is_refused(text):
-    with pytest.raises(SettingsError, match="--board"):
-        parse_board(text)
 
 
 def test_the_kit_comes_with_a_floor_to_edit_and_never_over_an_edited_one(tmp_path):

@@ -1,0 +1,549 @@
+# SPDX-License-Identifier: MIT
+import ast
+import io
+from dataclasses import replace
+from datetime import datetime, timedelta, timezone
+from pathlib import Path
+
+import cv2
+import numpy as np
+import pytest
+from hypothesis import example, given, settings
+from hypothesis import strategies as st
+from PIL import Image
+from PIL.ExifTags import IFD, Base
+
+from support.synthetic import (
+    HARSH,
+    IDEAL,
+    Conditions,
+    DrawnFloorMarker,
+    DrawnPose,
+    DrawnRobotMarker,
+    DrawnScene,
+    Glare,
+    Light,
+    RobotLook,
+    RobotState,
+    Shade,
+    Sheet,
+    charuco_cells,
+    checkerboard_cells,
+    composite,
+    develop,
+    look_at,
+    marker_cells,
+    marker_corners,
+    paint_sheets,
+    render_background,
+    take_photo,
+    with_time_stamp,
+)
+from support.synthetic.lens import distort, undistort
+from support.synthetic.patterns import INK, PAPER, floor_texture
+from support.synthetic.surfaces import box_hit, half_circle_hit
+
+DISTORTION = (-0.2, 0.05, 0.001, -0.0015, 0.01)
+CAMERA = look_at((0.6, -0.9, 1.2), (0.3, 0.2, 0.0), width=480, height=360, distortion=DISTORTION)
+SCENE = DrawnScene(
+    CAMERA, (DrawnFloorMarker(10, (0.0, 0.0), 0.1), DrawnFloorMarker(11, (0.6, 0.4), 0.1, 0.7))
+)
+STATE = RobotState(DrawnPose(0.3, 0.15, 0.5, 0.065, 0.03, -0.02))
+FLAT_LIGHT = Light(ambient=1.0, lamp=0.0)
+
+
+@pytest.fixture(scope="module")
+def background():
+    return render_background(SCENE)
+
+
+@pytest.fixture(scope="module")
+def photo(background):
+    return take_photo(SCENE, STATE, rng=np.random.default_rng(0), background=background)
+
+
+def detector(dictionary=cv2.aruco.DICT_4X4_50):
+    parameters = cv2.aruco.DetectorParameters()
+    parameters.cornerRefinementMethod = cv2.aruco.CORNER_REFINE_APRILTAG
+    return cv2.aruco.ArucoDetector(cv2.aruco.getPredefinedDictionary(dictionary), parameters)
+
+
+def found_corners(pixels):
+    corners, ids, _ = detector().detectMarkers(pixels)
+    return {int(number): found[0] for number, found in zip(np.ravel(ids), corners, strict=True)}
+
+
+def outline_moments(polygon):
+    """Area and centroid of a closed polygon, shape (n, 2)."""
+    x, y = polygon.T
+    cross = x * np.roll(y, -1) - y * np.roll(x, -1)
+    area = cross.sum() / 2
+    centroid = [((c + np.roll(c, -1)) * cross).sum() / (6 * area) for c in (x, y)]
+    return abs(area), np.array(centroid)
+
+
+def white_quad(sheet):
+    """Draw a sheet alone, in even light, on black."""
+    black = np.zeros((CAMERA.height, CAMERA.width, 3), np.float32)
+    return paint_sheets(black, [sheet], camera=CAMERA, light=FLAT_LIGHT)[..., 0]
+
+
+def edge_lines(points):
+    """Fit a line to each of four edges; return where each meets the one before."""
+    lines = []
+    for edge in points:
+        middle = edge.mean(axis=0)
+        along = np.linalg.svd(edge - middle)[2][0]
+        lines.append(np.cross([*middle, 1.0], [*(middle + along), 1.0]))
+    crossings = [np.cross(lines[i - 1], lines[i]) for i in range(4)]
+    return np.array([crossing[:2] / crossing[2] for crossing in crossings])
+
+
+# the lens
+
+
+@settings(max_examples=50)
+@given(
+    st.lists(st.floats(-2, 3), min_size=3, max_size=3),
+    st.floats(-0.25, 0.1), st.floats(-0.02, 0.05), st.floats(-0.003, 0.003),
+)  # fmt: skip
+def test_projection_is_that_of_opencv(point, k1, k2, p1):
+    camera = replace(CAMERA, distortion=(k1, k2, p1, -p1, 0.01))
+    if (camera.rotation @ point + camera.translation)[2] < 0.3:
+        return
+    rotation, _ = cv2.Rodrigues(camera.rotation)
+    expected, _ = cv2.projectPoints(
+        np.array([point]), rotation, camera.translation, camera.matrix,
+        np.array(camera.distortion),
+    )  # fmt: skip
+    np.testing.assert_allclose(camera.project(point), expected[0, 0], rtol=1e-9, atol=1e-8)
+
+
+@settings(max_examples=50)
+@given(st.floats(0, 479), st.floats(0, 359), st.floats(0.2, 5.0))
+def test_a_ray_leads_back_to_its_pixel(u, v, distance):
+    seen = distance * CAMERA.rays((u, v))
+    point = CAMERA.rotation.T @ (seen - CAMERA.translation)
+    np.testing.assert_allclose(CAMERA.project(point), (u, v), atol=1e-7)
+
+
+def test_undistortion_inverts_distortion():
+    points = np.random.default_rng(1).uniform(-0.5, 0.5, (200, 2))
+    np.testing.assert_allclose(undistort(distort(points, DISTORTION), DISTORTION), points,
+                               atol=1e-10)  # fmt: skip
+
+
+def test_what_is_behind_the_camera_has_no_pixel():
+    assert np.isnan(CAMERA.project(CAMERA.position - CAMERA.rotation[2])).all()
+
+
+def test_the_camera_looks_at_its_target_and_stands_upright():
+    camera = look_at((1.0, -2.0, 1.5), (0.2, 0.4, 0.0))
+    np.testing.assert_allclose(camera.project((0.2, 0.4, 0.0)), (639.5, 479.5), atol=1e-9)
+    assert camera.project((0.2, 0.4, 0.1))[1] < 479.5
+    np.testing.assert_allclose(camera.position, (1.0, -2.0, 1.5))
+
+
+# sub-pixel geometry
+
+ROUGH = 0.017  # standard deviation of how far an edge is misplaced in each pixel [px]
+
+
+@settings(max_examples=15)
+@given(
+    st.floats(0.1, 0.5), st.floats(0.0, 0.4), st.floats(0.0, 0.08), st.floats(-np.pi, np.pi),
+    st.floats(-0.4, 0.4),
+)  # fmt: skip
+# Along the rows of three of the lattices: with one lattice in all pixels, 7 to 12 deviations off.
+@example(0.4375, 0.1875, 0.0, 1.874, 0.0)
+@example(0.4375, 0.1875, 0.0, 3.0381, 0.0)
+@example(0.4375, 0.1875, 0.0, 0.374, 0.0)
+def test_a_prints_area_and_centroid_are_those_of_its_projected_outline(x, y, z, yaw, tilt):
+    rotation = DrawnPose(0, 0, yaw, 0, tilt, -tilt).rotation
+    sheet = Sheet(np.ones((1, 1), np.float32), (0.11, 0.07), np.array([x, y, z]), rotation)
+    along, one = np.linspace(-0.5, 0.5, 200, endpoint=False), np.ones(200)
+    edges = [(along, -0.5 * one), (0.5 * one, along), (-along, 0.5 * one), (-0.5 * one, -along)]
+    across, up = (np.concatenate(part) for part in zip(*edges, strict=True))
+    polygon = CAMERA.project(sheet.at(0.11 * across, 0.07 * up))
+    area, centroid = outline_moments(polygon)
+    drawn = white_quad(sheet)
+    v, u = np.indices(drawn.shape)
+    share = drawn.sum()
+    length = np.linalg.norm(np.roll(polygon, -1, axis=0) - polygon, axis=1)
+    lever = np.sqrt(length @ (polygon - centroid) ** 2)
+    assert share == pytest.approx(area, abs=4 * ROUGH * np.sqrt(length.sum()))
+    error = np.array([(u * drawn).sum(), (v * drawn).sum()]) / share - centroid
+    assert (np.abs(error) < 4 * ROUGH * lever / area).all()
+
+
+@pytest.mark.parametrize("yaw", [0.0, 0.3, 0.785, 1.2])
+def test_corners_land_where_they_are_projected_to_within_a_fiftieth_of_a_pixel(yaw):
+    camera = look_at((0.3, -0.8, 0.9), (0.3, 0.2, 0.0), width=640, height=480)
+    rotation = DrawnPose(0, 0, yaw, 0, 0.1, 0.05).rotation
+    sheet = Sheet(np.ones((1, 1), np.float32), (0.2, 0.2), np.array([0.3, 0.2, 0.05]), rotation)
+    drawn = paint_sheets(
+        np.zeros((480, 640, 3), np.float32), [sheet], camera=camera, light=FLAT_LIGHT
+    )[..., 0]  # fmt: skip
+    half = np.array([-1, 1, 1, -1]) * 0.1
+    corners = camera.project(sheet.at(half, np.roll(half, -1)))
+    edges = []
+    for start, end in zip(corners, np.roll(corners, -1, axis=0), strict=True):
+        edges.append(edge_points(drawn, start, end))
+    np.testing.assert_allclose(edge_lines(edges), corners, atol=0.02)
+
+
+def edge_points(drawn, start, end):
+    """Find the edge between two corners by how much of each row, or column, it leaves white."""
+    if abs(end[0] - start[0]) > abs(end[1] - start[1]):  # a level edge: look down the columns
+        swapped = edge_points(drawn.T, start[::-1], end[::-1])
+        return swapped[:, ::-1]
+    points = []
+    low, high = sorted((start[1], end[1]))
+    for row in np.arange(np.ceil(low + 4), np.floor(high - 4)).astype(int):
+        expected = start[0] + (row - start[1]) / (end[1] - start[1]) * (end[0] - start[0])
+        left, right = int(expected) - 5, int(expected) + 6
+        window = drawn[row, left : right + 1]
+        white_left = window[0] > 0.5
+        covered = window.sum() if white_left else len(window) - window.sum()
+        points.append((left - 0.5 + covered, row))
+    return np.array(points, float)
+
+
+def test_checkerboard_corners_are_found_where_they_are():
+    grid = checkerboard_cells(7, 5)
+    rotation = DrawnPose(0, 0, 0.2, 0, 0.1, 0.0).rotation
+    sheet = Sheet(grid, (0.45, 0.35), np.array([0.3, 0.2, 0.05]), rotation)
+    picture = paint_sheets(
+        np.zeros((360, 480, 3), np.float32), [sheet], camera=CAMERA, light=FLAT_LIGHT
+    )  # fmt: skip
+    pixels, _ = develop(picture, replace(IDEAL, defocus_sd_px=1.2), rng=np.random.default_rng(0))
+    x, y = np.meshgrid(np.arange(-2.5, 3) * 0.05, np.arange(1.5, -2, -1) * 0.05)
+    true = CAMERA.project(sheet.at(x, y)).reshape(-1, 1, 2)
+    stop = (cv2.TERM_CRITERIA_EPS + cv2.TERM_CRITERIA_COUNT, 100, 1e-4)
+    found = cv2.cornerSubPix(
+        np.ascontiguousarray(pixels[..., 0]), true.astype(np.float32) + 0.4, (7, 7), (-1, -1), stop
+    )
+    error = found - true  # of the finder, mostly: it falls as the picture gets smoother
+    assert np.sqrt(np.mean(error**2)) < 0.02
+    assert np.abs(error.mean(axis=0)).max() < 0.005
+
+
+def test_the_robots_marker_is_the_same_print_as_a_sheet_would_be(background, photo):
+    marker = DrawnRobotMarker()
+    rotation = STATE.pose.rotation @ np.array([[0, 1, 0], [-1, 0, 0], [0, 0, 1.0]])
+    centre = STATE.pose.position + STATE.pose.rotation @ (0, 0, marker.height)
+    sheet = Sheet(marker_cells(0), (0.16, 0.16), centre, rotation)
+    half = np.array([-1, 1, 1, -1]) * marker.side / 2
+    np.testing.assert_allclose(
+        sheet.at(half, [half[1], half[1], half[0], half[0]]), marker_corners(STATE, marker),
+        atol=1e-12,
+    )  # fmt: skip
+    picture = paint_sheets(background, [sheet], camera=CAMERA, light=SCENE.light)
+    pixels, _ = develop(picture, IDEAL, rng=np.random.default_rng(0))
+    inside = cv2.fillConvexPoly(
+        np.zeros(pixels.shape[:2], np.uint8),
+        np.rint(CAMERA.project(marker_corners(STATE, marker))).astype(np.int32), 1,
+    )  # fmt: skip
+    difference = np.abs(pixels.astype(int) - photo.pixels)[inside > 0]
+    # a leg that stands higher than the plate may hide a few pixels
+    assert np.mean(difference > 2) < 0.01
+
+
+@pytest.mark.parametrize("height", [0.0385, 0.12])
+def test_markers_are_decoded_near_their_true_corners(background, height):
+    look = RobotLook(DrawnRobotMarker(5, 0.12, height))
+    drawn = take_photo(
+        SCENE, STATE, look=look, rng=np.random.default_rng(0), background=background
+    )  # fmt: skip
+    found = found_corners(drawn.pixels)
+    assert set(found) == {5, 10, 11}
+    true = {5: marker_corners(STATE, look.marker)}
+    true |= {marker.marker_id: marker.corners for marker in SCENE.markers}
+    for number, corners in true.items():
+        np.testing.assert_allclose(found[number], CAMERA.project(corners), atol=1.0)
+
+
+# patterns
+
+
+def test_marker_cells_are_those_of_the_dictionary():
+    dictionary = cv2.aruco.getPredefinedDictionary(cv2.aruco.DICT_5X5_100)
+    bits = cv2.aruco.generateImageMarker(dictionary, 42, 7)
+    cells = marker_cells(42, dictionary="DICT_5X5_100", quiet=2)
+    np.testing.assert_array_equal(cells[2:-2, 2:-2] > 0.5, bits > 127)
+    assert (cells[:2] == np.float32(PAPER)).all()
+    assert cells.min() == np.float32(INK)
+
+
+def test_unknown_markers_are_refused():
+    with pytest.raises(ValueError, match="DICT_9X9"):
+        marker_cells(0, dictionary="DICT_9X9")
+    with pytest.raises(ValueError, match="0 to 49"):
+        marker_cells(50)
+
+
+def test_charuco_cells_are_opencvs_board():
+    dictionary = cv2.aruco.getPredefinedDictionary(cv2.aruco.DICT_4X4_50)
+    board = cv2.aruco.CharucoBoard((5, 4), 0.04, 0.03, dictionary)
+    expected = board.generateImage((5 * 32, 4 * 32), marginSize=0) > 127
+    drawn = np.kron(charuco_cells(5, 4), np.ones((4, 4))) > 0.5
+    assert np.mean(drawn != expected) < 0.01  # it rounds some of its edges by a pixel
+
+
+def test_the_floor_repeats_without_a_seam():
+    texture = floor_texture(np.random.default_rng(3))[..., 0]
+    seam = np.abs(texture[0] - texture[-1]).mean()
+    within = np.abs(np.diff(texture, axis=0)).mean()
+    assert seam < 1.3 * within
+
+
+# the robot
+
+
+def test_pose_and_state_follow_the_conventions():
+    nose_down = DrawnPose(0, 0, 0, pitch=0.1).rotation @ (1, 0, 0)
+    left_up = DrawnPose(0, 0, 0, roll=0.1).rotation @ (0, 1, 0)
+    left_turn = DrawnPose(0, 0, np.pi / 2).rotation @ (1, 0, 0)
+    assert nose_down[2] < 0 < left_up[2]
+    np.testing.assert_allclose(left_turn, (0, 1, 0), atol=1e-12)
+    moved = RobotState(DrawnPose(1, 2, 0.1), velocity_xy=(0.5, -0.2), yaw_rate=0.3).pose_at(0.1)
+    np.testing.assert_allclose((moved.x, moved.y, moved.yaw), (1.05, 1.98, 0.13))
+
+
+def test_a_leg_is_hit_behind_its_hip_when_its_toe_points_down():
+    leg = {"hip": (0.0, 0.0, 0.0), "radius": 0.035, "width": 0.02, "angle": np.pi / 2}
+    behind = half_circle_hit((-1.0, 0.0, -0.035), (1.0, 0.0, 0.0), **leg)
+    ahead = half_circle_hit((1.0, 0.0, -0.035), (-1.0, 0.0, 0.0), **leg)
+    assert behind == pytest.approx(1 - 0.035)  # the outside of the arc
+    assert ahead == pytest.approx(1 + 0.035)  # its inside, through the open half
+    assert half_circle_hit((-1.0, 0.02, -0.035), (1.0, 0.0, 0.0), **leg) == np.inf
+    assert half_circle_hit((0.0, 0.0, 1.0), (0.0, 1.0, 0.0), **leg) == np.inf
+
+
+@settings(max_examples=50)
+@given(st.lists(st.floats(-1, 1), min_size=3, max_size=3),
+       st.lists(st.floats(-3, 3), min_size=3, max_size=3))  # fmt: skip
+def test_a_ray_towards_the_inside_of_a_box_meets_its_surface(target, start):
+    box = {"low": (-1.0, -1.0, -1.0), "high": (1.0, 1.0, 1.0)}
+    target, start = 0.9 * np.array(target), np.array(start)
+    if np.abs(start).max() < 1.01:
+        return
+    hit = box_hit(tuple(start), tuple(target - start), **box)
+    place = start + hit.distance * (target - start)
+    assert 0 < hit.distance < 1
+    assert np.abs(place).max() == pytest.approx(1.0)
+    assert abs(place[hit.axis]) == pytest.approx(1.0)
+
+
+def test_cover_is_the_robot_and_the_shadow_darkens_only_the_floor(background, photo):
+    clean, _ = develop(background, IDEAL, rng=np.random.default_rng(0))
+    changed = np.abs(photo.pixels.astype(int) - clean).sum(axis=-1) > 0
+    shadow = changed & (photo.cover == 0)
+    assert (photo.pixels[shadow] <= clean[shadow]).all()
+    assert shadow.sum() > 0.1 * (photo.cover > 0).sum()
+    v, u = np.nonzero(photo.cover > 0)
+    centre = CAMERA.project(STATE.pose.position)
+    np.testing.assert_allclose((u.mean(), v.mean()), centre, atol=6)
+
+
+def test_all_six_legs_are_visible_from_above():
+    camera = look_at((0.0, -0.01, 1.5), (0.0, 0.0, 0.0), width=320, height=240,
+                     field_of_view=0.4)  # fmt: skip
+    state = RobotState(DrawnPose(0.0, 0.0, 0.0))
+    picture = take_photo(DrawnScene(camera, light=FLAT_LIGHT), state, rng=np.random.default_rng(0))
+    for x in (0.097, 0.0, -0.097):
+        for side in (1, -1):
+            u, v = camera.project((x, side * 0.1156, 0.08))
+            around = picture.cover[int(v) - 12 : int(v) + 12, int(u) - 4 : int(u) + 4]
+            assert around.max() == 1.0, (x, side)
+
+
+def test_without_a_marker_none_is_found_and_head_differs_from_tail(background):
+    look = RobotLook(None)
+    pictures = [
+        take_photo(SCENE, replace(STATE, pose=replace(STATE.pose, yaw=yaw)), look=look,
+                   rng=np.random.default_rng(0), background=background)
+        for yaw in (0.5, 0.5 + np.pi)
+    ]  # fmt: skip
+    assert set(found_corners(pictures[0].pixels)) == {10, 11}
+    both = (pictures[0].cover > 0.9) & (pictures[1].cover > 0.9)
+    difference = np.abs(pictures[0].pixels[both].astype(int) - pictures[1].pixels[both])
+    assert difference.mean() > 10
+
+
+def test_motion_smears_about_the_middle_of_the_exposure(background):
+    moving = replace(STATE, velocity_xy=(0.4, 0.1), yaw_rate=0.5)
+    blurred = take_photo(
+        SCENE, moving, conditions=replace(IDEAL, exposure_time=0.1),
+        rng=np.random.default_rng(0), background=background,
+    )  # fmt: skip
+    still = take_photo(SCENE, STATE, rng=np.random.default_rng(0), background=background)
+    assert (blurred.cover > 0).sum() > 1.1 * (still.cover > 0).sum()
+    v, u = np.indices(still.cover.shape)
+    for axis in (u, v):
+        means = [(axis * shot.cover).sum() / shot.cover.sum() for shot in (blurred, still)]
+        assert means[0] == pytest.approx(means[1], abs=0.1)
+
+
+@pytest.mark.parametrize("marker", [DrawnRobotMarker(), None])
+def test_a_robot_at_rest_is_drawn_as_if_every_pixel_were_sampled_in_full(background, marker):
+    crawling = replace(STATE, velocity_xy=(1e-9, 0.0))  # sampled in full, since it moves
+    conditions = replace(IDEAL, exposure_time=1e-3)
+    at_rest, moving = (
+        take_photo(SCENE, state, look=RobotLook(marker), conditions=conditions,
+                   rng=np.random.default_rng(0), background=background)
+        for state in (STATE, crawling)
+    )  # fmt: skip
+    assert np.abs(at_rest.pixels.astype(int) - moving.pixels).max() <= 1
+    assert np.abs(at_rest.cover - moving.cover).max() < 1e-6
+
+
+def test_a_robot_outside_the_picture_leaves_it_alone(background):
+    away = RobotState(DrawnPose(0.3, 5.0, 0.0))
+    shot = take_photo(SCENE, away, rng=np.random.default_rng(0), background=background)
+    clean, _ = develop(background, IDEAL, rng=np.random.default_rng(0))
+    np.testing.assert_array_equal(shot.pixels, clean)
+
+
+# the photograph
+
+
+def test_the_same_seed_gives_the_same_bytes_and_another_does_not(background):
+    shots = [
+        take_photo(SCENE, STATE, conditions=HARSH, rng=np.random.default_rng(seed),
+                   background=background)
+        for seed in (4, 4, 5)
+    ]  # fmt: skip
+    assert shots[0].jpeg == shots[1].jpeg != shots[2].jpeg
+
+
+def test_noise_has_the_promised_spread():
+    flat = np.full((200, 300, 3), 0.5, np.float32)
+    kind = Conditions(exposure=1.0, read_noise_counts=2.0, shot_noise_counts=3.0, jpeg_quality=None)
+    pixels, _ = develop(flat, kind, rng=np.random.default_rng(0))
+    assert pixels.std() == pytest.approx(np.sqrt(4 + 9 * 0.5 + 1 / 12), rel=0.02)
+    assert pixels.mean() == pytest.approx(127.5, abs=0.1)
+
+
+@pytest.mark.parametrize("blur", [{"defocus_sd_px": 2.0}, {"shake_px": (9.0, 4.5)}])
+def test_blur_keeps_light_and_place(blur):
+    dot = np.zeros((41, 41, 3), np.float32)
+    dot[18:23, 20:25] = 0.8
+    kind = replace(IDEAL, exposure=1.0, **blur)
+    pixels, _ = develop(dot, kind, rng=np.random.default_rng(0))
+    spread = pixels[..., 0].astype(float)
+    v, u = np.indices(spread.shape)
+    assert spread.sum() == pytest.approx(25 * 0.8 * 255, rel=0.01)
+    centre = [(axis * spread).sum() / spread.sum() for axis in (u, v)]
+    np.testing.assert_allclose(centre, (22, 20), atol=0.05)
+    assert spread.max() < 204
+
+
+def test_shake_spreads_along_its_direction():
+    dot = np.zeros((41, 41, 3), np.float32)
+    dot[20, 20] = 1.0
+    kind = replace(IDEAL, exposure=1.0, shake_px=(8.0, 0.0))
+    pixels, _ = develop(dot, kind, rng=np.random.default_rng(0))
+    v, u = np.nonzero(pixels[..., 0])
+    assert set(v) == {20}
+    assert np.ptp(u) == 8
+
+
+def test_glare_adds_light_and_shade_takes_it():
+    flat = np.full((60, 80, 3), 0.4, np.float32)
+    kind = replace(
+        IDEAL, exposure=1.0, glare=(Glare((20, 30), 5.0, 0.9),), shade=(Shade((50.0, 0.0), 0.0, 4),)
+    )
+    pixels, _ = develop(flat, kind, rng=np.random.default_rng(0))
+    grey = pixels[..., 0].astype(float)
+    assert grey[30, 20] == 255
+    assert grey[30, 75] == pytest.approx(0.4 * grey[5, 45], abs=1)
+    assert grey[5, 45] == 102
+
+
+def test_a_harsh_photograph_is_dark_and_compressed(background):
+    shot = take_photo(
+        SCENE, STATE, conditions=HARSH, rng=np.random.default_rng(0), background=background
+    )
+    assert shot.pixels.mean() < 50
+    decoded = cv2.imdecode(np.frombuffer(shot.jpeg, np.uint8), cv2.IMREAD_COLOR)
+    np.testing.assert_array_equal(decoded, shot.pixels)
+
+
+# composites
+
+
+@pytest.fixture(scope="module")
+def series(background):
+    states = [replace(STATE, pose=DrawnPose(x, 0.15, 0.0)) for x in (0.05, 0.35, 0.65)]
+    return [
+        take_photo(SCENE, state, rng=np.random.default_rng(0), background=background)
+        for state in states
+    ]
+
+
+def test_a_pasted_composite_shows_every_exposure_as_it_was(series):
+    merged = composite(series, "pasted")
+    for shot in series:
+        robot = cv2.erode((shot.cover > 0.99).astype(np.uint8), np.ones((3, 3))) > 0
+        difference = np.abs(merged[robot].astype(int) - shot.pixels[robot])
+        assert np.mean(difference > 3) < 0.02
+
+
+def test_an_averaged_composite_is_the_mean_and_the_darkest_the_least(series):
+    pictures = np.array([shot.pixels for shot in series])
+    np.testing.assert_allclose(composite(series, "mean"), pictures.mean(axis=0), atol=0.5)
+    np.testing.assert_array_equal(composite(series, "darkest"), pictures.min(axis=0))
+
+
+def test_later_exposures_are_pasted_on_top(series):
+    near = replace(STATE, pose=DrawnPose(0.1, 0.15, 0.0))
+    later = take_photo(SCENE, near, rng=np.random.default_rng(0),
+                       background=render_background(SCENE))  # fmt: skip
+    merged = composite([series[0], later], "pasted")
+    robot = cv2.erode((later.cover > 0.99).astype(np.uint8), np.ones((3, 3))) > 0
+    assert np.abs(merged[robot].astype(int) - later.pixels[robot]).max() <= 3
+
+
+def test_a_composite_of_nothing_or_of_two_sizes_is_refused(series):
+    with pytest.raises(ValueError, match="one or more"):
+        composite([], "pasted")
+    small = replace(series[0], pixels=series[0].pixels[:100])
+    with pytest.raises(ValueError, match="480x100, 480x360"):
+        composite([series[0], small], "mean")
+
+
+# time stamps
+
+
+@pytest.mark.parametrize("subseconds", [True, False])
+def test_a_time_stamp_leaves_the_pixels_alone(photo, subseconds):
+    taken = datetime(2020, 6, 1, 12, 0, 3, 987_654, tzinfo=timezone(timedelta(hours=2)))
+    _, encoded = cv2.imencode(".jpg", photo.pixels)
+    stamped = with_time_stamp(encoded.tobytes(), taken, subseconds=subseconds)
+    picture = Image.open(io.BytesIO(stamped))
+    details = picture.getexif().get_ifd(IFD.Exif)
+    assert picture.getexif()[Base.Make] == "simulated"
+    assert details[Base.DateTimeOriginal] == "2020:06:01 12:00:03"
+    assert details.get(Base.SubsecTimeOriginal) == ("987" if subseconds else None)
+    assert details[Base.OffsetTimeOriginal] == "+02:00"
+    before, after = (
+        cv2.imdecode(np.frombuffer(file, np.uint8), cv2.IMREAD_COLOR)
+        for file in (encoded.tobytes(), stamped)
+    )
+    np.testing.assert_array_equal(before, after)
+
+
+def imported_by(file: Path) -> set[str]:
+    """List the packages that a file imports, wherever in it."""
+    nodes = list(ast.walk(ast.parse(file.read_text())))
+    names = [alias.name for node in nodes if isinstance(node, ast.Import) for alias in node.names]
+    names += [str(node.module) for node in nodes if isinstance(node, ast.ImportFrom)]
+    return {name.partition(".")[0] for name in names}
+
+
+@pytest.mark.parametrize(
+    "file", sorted((Path(__file__).parent / "synthetic").glob("*.py")), ids=lambda file: file.name
+)
+def test_synthetic_photographs_share_no_code_with_the_tracker(file):
+    assert not imported_by(file) & {"model", "rig", "tracking", "zebro_lab"}

@@ -1,0 +1,113 @@
+# SPDX-License-Identifier: MIT
+"""Exposures of a marked robot are found, and none is made up."""
+
+import cv2
+import numpy as np
+import pytest
+
+from tracking.body import marker_template
+from tracking.camera import Camera, CameraPose, project
+from tracking.composite import Merged, find_exposures, order_exposures
+from tracking.errors import CompositeError
+from tracking.markers import marker_picture, square_homography
+from tracking.pose import BodyPrior, RobotMarker, rotation_with_derivatives
+
+LENS = Camera((800, 500), np.array([[900.0, 0, 400], [0, 900, 250], [0, 0, 1]]), np.zeros(5))
+_TURN = np.linalg.svd([[1.0, 0, 0], [0, -0.85, -0.53], [0, 0.53, -0.85]])
+VIEW = CameraPose.from_matrix(_TURN[0] @ _TURN[2], [0.0, 0.15, 1.8])
+MARKER = RobotMarker(3, 0.12, "4x4_50", (0.0, 0.0, 0.03))
+PRIOR = BodyPrior(0.1)
+WALK = np.array([[-0.5, -0.15, 0.2], [-0.2, -0.08, 0.3], [0.08, 0.03, 0.45], [0.33, 0.18, 0.6]])
+
+
+def exposure_of(planar, rng, number=3):
+    """Draw one exposure: a board with a marker on a level floor."""
+    u = np.arange(800.0)[None, :] + 0 * np.arange(500.0)[:, None]
+    picture = 140 + 8 * np.sin(0.21 * u) + 6 * np.sin(0.05 * u + 0.3 * np.arange(500.0)[:, None])
+    R, _ = rotation_with_derivatives(0, 0, planar[2])
+    corners = project(LENS, VIEW, MARKER.points_body @ R.T + [planar[0], planar[1], PRIOR.height])
+    drawn = marker_picture("4x4_50", number, 32)
+    own = np.array([[1, 0, 0.5 - 32], [0, 1, 0.5 - 32], [0, 0, 192]]) / 192
+    H = square_homography(corners) @ own
+    fine = np.array([[4, 0, 1.5], [0, 4, 1.5], [0, 0, 1.0]])
+    layers = [
+        cv2.resize(cv2.warpPerspective(layer, fine @ H, (3200, 2000)), (800, 500),
+                   interpolation=cv2.INTER_AREA)
+        for layer in (200 * drawn + 20, np.ones_like(drawn))
+    ]  # fmt: skip
+    picture = picture * (1 - layers[1]) + layers[0] * layers[1]
+    picture = cv2.GaussianBlur(picture, (0, 0), 0.7) + rng.normal(0, 1.5, picture.shape)
+    return np.clip(picture, 0, 255), layers[1] > 0.05
+
+
+def composite_of(walk, kind, rng):
+    return merged([exposure_of(planar, rng) for planar in walk], kind)
+
+
+@pytest.fixture(scope="module")
+def exposures():
+    """Return the exposures of a walk, each with where it shows the robot."""
+    rng = np.random.default_rng(0)
+    return [exposure_of(planar, rng) for planar in WALK]
+
+
+def merged(pairs, kind):
+    stack = np.stack([picture for picture, _ in pairs])
+    if kind == "mean":
+        whole = stack.mean(axis=0)
+    elif kind == "darkest":
+        whole = stack.min(axis=0)
+    else:
+        whole = pairs[0][0].copy()
+        for picture, mask in pairs:
+            whole[mask] = picture[mask]
+    return np.repeat(whole.astype(np.uint8)[:, :, None], 3, axis=2)
+
+
+@pytest.mark.parametrize("kind", ["pasted", "mean", "darkest"])
+def test_exposures_apart_are_all_found_and_in_order(exposures, kind):
+    picture = merged(exposures, kind)
+    found = find_exposures(
+        picture, LENS, VIEW, template=marker_template(MARKER), prior=PRIOR, merged=Merged(kind),
+        near=(-0.1, 0.0), reach=0.5,
+    )  # fmt: skip
+    poses = np.array([exposure.alignment.pose.planar for exposure in found])
+    assert len(poses) == len(WALK)
+    error = poses[list(order_exposures(poses))] - WALK
+    assert np.abs(error[:, :2]).max() < 5e-3
+    assert np.degrees(np.abs(error[:, 2]).max()) < 1.0
+
+
+def test_an_exposure_under_its_successor_is_found_and_none_is_made_up():
+    walk = np.array([[-0.2, 0.0, 0.0], [-0.105, 0.0, 0.0], [0.2, 0.0, 0.0]])
+    picture = composite_of(walk, "pasted", np.random.default_rng(1))
+    found = find_exposures(
+        picture, LENS, VIEW, template=marker_template(MARKER), prior=PRIOR, merged=Merged.PASTED,
+        body_size=(0.16, 0.16), near=(0, 0), reach=0.3,
+    )  # fmt: skip
+    poses = np.array([exposure.alignment.pose.planar for exposure in found])
+    distances = np.hypot(*(poses[:, None, :2] - walk[None, :, :2]).transpose(2, 0, 1))
+    assert sorted(distances.argmin(axis=1)) == [0, 1, 2]
+    assert distances.min(axis=1).max() < 5e-3
+    assert min(exposure.visible for exposure in found) < 0.95
+
+
+def test_an_empty_floor_has_no_exposure():
+    picture = composite_of(np.array([[9.0, 9.0, 0.0]]), "pasted", np.random.default_rng(2))
+    with pytest.raises(CompositeError, match="no exposure"):
+        find_exposures(
+            picture, LENS, VIEW, template=marker_template(MARKER), prior=PRIOR,
+            merged=Merged.PASTED, near=(0, 0), reach=0.3,
+        )  # fmt: skip
+
+
+def test_a_marker_of_the_floor_is_no_exposure_where_it_is_known_to_lie():
+    picture, board = exposure_of([0.0, 0.0, 0.3], np.random.default_rng(3), number=43)
+    pixels = np.repeat(picture.astype(np.uint8)[:, :, None], 3, axis=2)
+    asked = {
+        "template": marker_template(MARKER), "prior": PRIOR, "merged": Merged.PASTED,
+        "near": (0, 0), "reach": 0.3,
+    }  # fmt: skip
+    assert len(find_exposures(pixels, LENS, VIEW, **asked)) == 1  # number 43 looks like number 3
+    with pytest.raises(CompositeError, match="no exposure"):
+        find_exposures(pixels, LENS, VIEW, hidden=board, **asked)

@@ -1,0 +1,35 @@
+# SPDX-License-Identifier: MIT
+"""One call takes photographs to a track, in whichever way the robot is known."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from tracking import track_photos
+from tracking.composite import Merged
+from tracking.errors import CompositeError
+from tracking.images import PhotoTimes
+
+
+def every_two_seconds(names):
+    return PhotoTimes(2.0 * np.arange(len(names)), np.zeros(len(names)), "an interval")
+
+
+def test_a_marked_walk_is_tracked(scene, photos, walk):
+    tracked = track_photos(scene, photos, times_of=every_two_seconds)
+    assert tracked.lost == {}
+    np.testing.assert_allclose(tracked.track.t, [0, 2, 4])
+    np.testing.assert_allclose(tracked.track.poses, walk, atol=2e-3)
+    assert {seen.source for seen in tracked.track.observations} == {"marker"}
+
+
+def test_without_a_marker_the_marked_top_is_tracked(scene, photos, walk, top):
+    tracked = track_photos(replace(scene, robot=None, top=top), photos, times_of=every_two_seconds)
+    np.testing.assert_allclose(tracked.track.poses[:, :2], walk[:, :2], atol=4e-3)
+    assert {seen.source for seen in tracked.track.observations} == {"body"}
+
+
+def test_one_picture_that_is_merged_is_no_photograph(scene, photos):
+    with pytest.raises(CompositeError, match="length and width"):
+        track_photos(replace(scene, merged=Merged.MEAN), photos, times_of=every_two_seconds)

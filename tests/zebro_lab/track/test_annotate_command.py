@@ -1,0 +1,58 @@
+# SPDX-License-Identifier: MIT
+"""`zebro-lab annotate` as its user meets it."""
+
+import cv2
+import pytest
+
+from support.bundled_walk import PHOTOS
+from zebro_lab.track.annotations import read_annotations
+
+
+def test_annotations_are_added_to_those_before(run, tmp_path):
+    file = tmp_path / "said.toml"
+    code, _, _ = run(
+        "annotate", PHOTOS, "--out", file, "--photo", "simulated_01.jpg", "--corners",
+        "1,2 3,2 3,8 1,8", "--plate", "150mmx140mm@40mm", "--flip", "simulated_02.jpg",
+    )  # fmt: skip
+    assert code == 0
+    code, out, _ = run(
+        "annotate", PHOTOS, "--out", file, "--click", "simulated_03.jpg:door=10,20", "--order",
+        "simulated_05.jpg,simulated_04.jpg", "--delete", "simulated_06.jpg",
+    )  # fmt: skip
+    assert code == 0
+    assert "robot marked in simulated_01.jpg, 1 points of the floor, 3 corrections" in out
+    said = read_annotations(file)
+    assert said.template is not None
+    assert said.template.plate.width == 0.14
+    assert len(said.corrections) == 3
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        (("--flip", "simulated_2.jpg"), "did you mean 'simulated_"),
+        (("--photo", "simulated_01.jpg", "--corners", "1,2 3,4"), "2 corners; expected four"),
+        (("--corners", "1,2 3,4 5,6 7,8"), "--photo: needed"),
+        (("--click", "simulated_01.jpg:door=1"), "expected two pixels"),
+        (("--click", "door=1,2"), "expected PHOTO:NAME=U,V"),
+        (("--move", "simulated_01.jpg:1,2"), "expected PHOTO:X,Y,YAW"),
+        (("--move", "simulated_01.jpg:a,b,c"), "no number"),
+        (("--from", "nothing.toml"), "nothing.toml: no such file"),
+    ],
+)
+def test_what_cannot_be_understood_is_one_line(options, message, run, tmp_path):
+    file = tmp_path / "said.toml"
+    code, _, err = run("annotate", PHOTOS, "--out", file, *options)
+    assert code == 1
+    assert message in err
+    assert err.count("\n") == 1
+    assert not file.exists()
+
+
+def test_pixels_can_be_read_in_a_picture(run, tmp_path):
+    file = tmp_path / "grid.png"
+    code, _, _ = run(
+        "annotate", PHOTOS, "--photo", "simulated_01.jpg", "--grid", file, "--around", "300,800"
+    )
+    assert code == 0
+    assert cv2.imread(str(file)) is not None

@@ -1,0 +1,33 @@
+# SPDX-License-Identifier: MIT
+"""What is asked of a track agrees with itself."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from support.bundled_walk import COMPOSITE
+from tracking.composite import Merged
+from zebro_lab.files.errors import SettingsError
+from zebro_lab.track.photo_sequence import TimeRequest
+from zebro_lab.track.request import TrackRequest
+
+ASKED = TrackRequest(Path("photos"), Path("camera.toml"), Path("floor.toml"))
+
+
+def test_a_track_is_written_where_told_or_into_its_run():
+    assert replace(ASKED, run=Path("run")).folder == Path("run/track")
+    assert replace(ASKED, run=Path("run"), out=Path("out")).folder == Path("out")
+    with pytest.raises(SettingsError, match="--run RUN"):
+        _ = ASKED.folder
+
+
+def test_every_file_that_is_named_is_an_input():
+    asked = replace(ASKED, run=Path("run"), times=TimeRequest(table=Path("t.csv")))
+    assert set(map(str, asked.inputs)) == {"photos", "camera.toml", "floor.toml", "t.csv", "run"}
+
+
+def test_photographs_of_a_folder_are_not_merged(request_):
+    with pytest.raises(SettingsError, match="only with one composite picture"):
+        replace(request_, merged=Merged.MEAN)
+    assert replace(request_, photos=COMPOSITE, merged=Merged.MEAN).merged is Merged.MEAN

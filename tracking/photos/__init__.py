@@ -1,0 +1,8 @@
+# SPDX-License-Identifier: MIT
+"""Photographs of a walk to its track."""
+
+from tracking.photos.result import Tracked
+from tracking.photos.scene import MarkedTop, Photo, Scene
+from tracking.photos.track import track_photos
+
+__all__ = ["MarkedTop", "Photo", "Scene", "Tracked", "track_photos"]

@@ -1,0 +1,157 @@
+# SPDX-License-Identifier: MIT
+"""Track a robot without a marker, by its own picture."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from tracking.body import (
+    BodyCandidates,
+    BodyTemplate,
+    find_body,
+    make_template,
+    resolve_headings,
+)
+from tracking.camera import Camera, CameraPose
+from tracking.camera.lens import Array
+from tracking.errors import BodyError, NoUsablePhoto, PhotoError
+from tracking.images import read_pixels
+from tracking.photos.floor_seen import FloorSeen, see_floor
+from tracking.photos.result import Times, Tracked, finish, observation_of
+from tracking.photos.scene import MarkedTop, Photo, Scene
+from tracking.photos.workers import Progress, batches_of, run_batches
+from tracking.pose import BodyPose, BodyPrior, fit_pose
+
+CLICK_SD = 1.0
+"""Standard deviation of a click on a corner of the robot's top [px]."""
+
+_REACH = 0.6  # how far from where it was the robot is looked for first [m]
+_WORTH_WORKERS = 6  # photographs: rotating and matching takes a second each
+
+
+@dataclass(frozen=True)
+class _Search:
+    """A stretch of photographs to find the robot in."""
+
+    camera: Camera
+    template: BodyTemplate
+    prior: BodyPrior
+    photos: Sequence[tuple[Photo, CameraPose]]
+
+
+def track_by_look(
+    scene: Scene, photos: Sequence[Photo], *, times: Times, gap: float | None, workers: int,
+    progress: Progress,
+) -> Tracked:  # fmt: skip
+    """Track a robot by its own picture, its top marked in one photograph.
+
+    Args:
+        scene: What is known, with the robot's top.
+        photos: The photographs, in order of time.
+        times: By photograph, time and its standard deviation [s].
+        gap: As of `finish` [s].
+        workers: Processes to use.
+        progress: Where progress is reported.
+
+    Returns:
+        The track.
+
+    Raises:
+        NoUsablePhoto: No photograph can be used, or not that in which the top is marked.
+        TrackingError: The floor's map does not fit, head and tail cannot be told apart, or a
+            correction cannot be replayed.
+        TrackStopped: Somebody asked to stop.
+    """
+    seen = see_floor(scene, photos, robot=None, workers=workers, progress=progress)
+    template = _template(scene, seen, photos)
+    usable = [photo for photo in photos if photo.name not in seen.lost]
+    found = _found(scene, seen, template, usable, workers=workers, progress=progress)
+    known = [(photo, each) for photo, each in zip(usable, found, strict=True) if each is not None]
+    chosen = resolve_headings([each for _, each in known], length=template.plate.length)
+    observations = [
+        observation_of(photo.name, alignment, times[photo.name], source="body")
+        for (photo, _), alignment in zip(known, chosen, strict=True)
+    ]
+    unseen = {
+        photo.name: "nothing looks like the robot"
+        for photo, each in zip(usable, found, strict=True)
+        if each is None
+    }
+    return finish(scene, seen, observations, unseen=unseen, times=times, gap=gap)
+
+
+def _found(
+    scene: Scene, seen: FloorSeen, template: BodyTemplate, photos: Sequence[Photo], *,
+    workers: int, progress: Progress,
+) -> list[BodyCandidates | None]:  # fmt: skip
+    """Find the robot in each photograph, on several cores."""
+    workers = workers if len(photos) >= _WORTH_WORKERS else 1
+    jobs = [
+        _Search(scene.camera, template, scene.prior,
+                [(photo, seen.fit.pose_of(photo.name)) for photo in batch])
+        for batch in batches_of(photos, workers)
+    ]  # fmt: skip
+    batches = run_batches(_find_batch, jobs, workers=workers, progress=progress, what="robot")
+    return [found for batch in batches for found in batch]
+
+
+def marked_top(scene: Scene, seen: FloorSeen, photos: Sequence[Photo]) -> MarkedTop:
+    """Return the robot's top where it was marked, in a photograph that can be used.
+
+    Raises:
+        BodyError: Nobody marked it.
+        NoUsablePhoto: That photograph is not among them, or cannot be used.
+    """
+    top = scene.top
+    if top is None:
+        raise BodyError("a robot without a marker is known by its top, and nobody marked that")
+    if top.photo not in {photo.name for photo in photos}:
+        raise NoUsablePhoto(f"the template's photograph '{top.photo}' is not among the photographs")
+    if top.photo in seen.lost:
+        raise NoUsablePhoto(f"the template's photograph {top.photo}: {seen.lost[top.photo]}")
+    return top
+
+
+def _template(scene: Scene, seen: FloorSeen, photos: Sequence[Photo]) -> BodyTemplate:
+    """Take the robot's picture out of the photograph in which its top was marked."""
+    top = marked_top(scene, seen, photos)
+    view = seen.fit.pose_of(top.photo)
+    files = {photo.name: photo.path for photo in photos}
+    pixels = read_pixels(files[top.photo], size=scene.camera.size)
+    pose = pose_of_top(top, scene, view)
+    return make_template(pixels, scene.camera, view, pose=pose, plate=top.plate)
+
+
+def pose_of_top(top: MarkedTop, scene: Scene, view: CameraPose) -> BodyPose:
+    """Fit the robot's pose to clicks on the corners of its top."""
+    return fit_pose(
+        scene.camera, view, points_body=top.plate.corners_body, corners_px=top.corners_px,
+        covariance=CLICK_SD**2 * np.eye(8), prior=scene.prior,
+    )  # fmt: skip
+
+
+def _find_batch(job: _Search) -> list[BodyCandidates | None]:
+    found: list[BodyCandidates | None] = []
+    near = None
+    for photo, view in job.photos:
+        candidates = _find_one(job, photo, view, near)
+        if candidates is not None:
+            near = candidates.best.pose.planar[:2]
+        found.append(candidates)
+    return found
+
+
+def _find_one(
+    job: _Search, photo: Photo, view: CameraPose, near: Array | None
+) -> BodyCandidates | None:
+    try:
+        pixels = read_pixels(photo.path, size=job.camera.size)
+    except PhotoError:
+        return None  # was readable a moment ago: the file went away
+    if near is not None:
+        found = find_body(pixels, job.camera, view, template=job.template, prior=job.prior,
+                          near=near, reach=_REACH)  # fmt: skip
+        if found is not None:
+            return found
+    return find_body(pixels, job.camera, view, template=job.template, prior=job.prior)

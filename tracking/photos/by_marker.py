@@ -1,0 +1,92 @@
+# SPDX-License-Identifier: MIT
+"""Track a robot by the marker on its back."""
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tracking.detect import MarkedRobot, observe
+from tracking.errors import NoUsablePhoto
+from tracking.floor import FloorMap
+from tracking.images import read_pixels
+from tracking.markers import dictionary_named, find_markers, guess_dictionary
+from tracking.photos.floor_seen import FloorSeen, see_floor
+from tracking.photos.result import Times, Tracked, finish
+from tracking.photos.scene import Photo, Scene
+from tracking.photos.workers import Progress
+
+
+def track_by_marker(
+    scene: Scene, robot: MarkedRobot, photos: Sequence[Photo], *, times: Times,
+    gap: float | None, workers: int, progress: Progress,
+) -> Tracked:  # fmt: skip
+    """Track a robot by the marker on its back.
+
+    Args:
+        scene: What is known.
+        robot: The robot.
+        photos: The photographs, in order of time.
+        times: By photograph, time and its standard deviation [s].
+        gap: As of `finish` [s].
+        workers: Processes to use.
+        progress: Where progress is reported.
+
+    Returns:
+        The track.
+
+    Raises:
+        NoUsablePhoto: No photograph can be used, or none shows the marker.
+        TrackingError: The floor's map does not fit, or a correction cannot be replayed.
+        TrackStopped: Somebody asked to stop.
+    """
+    seen = see_floor(scene, photos, robot=robot, workers=workers, progress=progress)
+    observations = observe(scene.camera, seen.fit, seen.detections, robot=robot, times=times)
+    if not observations and not scene.corrections:
+        raise NoUsablePhoto(_robot_unseen(scene, robot, photos, seen))
+    unseen = {
+        detection.photo: f"the robot's marker {robot.marker.marker_id} is not seen"
+        for detection in seen.detections
+        if detection.robot is None
+    }
+    return finish(scene, seen, observations, unseen=unseen, times=times, gap=gap)
+
+
+def _robot_unseen(
+    scene: Scene, robot: MarkedRobot, photos: Sequence[Photo], seen: FloorSeen
+) -> str:
+    first = next(photo for photo in photos if photo.name == seen.detections[0].photo)
+    other = other_markers(read_pixels(first.path), robot, scene.floor)
+    advice = f"look at {first.name} with --preview"
+    if other is not None:
+        advice = f"{first.name} shows {other}: correct [marker] of robot.toml, or --marker"
+    marker = robot.marker
+    return (
+        f"the robot's marker {marker.marker_id} of '{marker.dictionary}' is seen in none of "
+        f"{len(seen.detections)} photographs; {advice}"
+    )
+
+
+def other_markers(pixels: NDArray[np.uint8], robot: MarkedRobot, floor: FloorMap) -> str | None:
+    """Name the markers in a photograph that are not the floor's.
+
+    For the message when the robot's is nowhere: another number or dictionary is the commonest
+    reason.
+
+    Args:
+        pixels: The photograph, grey or BGR.
+        robot: The robot.
+        floor: The floor's marks.
+
+    Returns:
+        Such as "3, 7 of '4x4_50'"; None where there is none.
+    """
+    names = (robot.marker.dictionary, floor.dictionary, guess_dictionary(pixels))
+    for dictionary in dict.fromkeys(name for name in names if name is not None):
+        numbers = range(len(dictionary_named(dictionary).bytesList))
+        found = {s.marker_id for s in find_markers(pixels, dictionary, wanted=numbers, effort=0)}
+        if dictionary == floor.dictionary:
+            found -= set(floor.marker_ids)
+        if found:
+            return f"{', '.join(map(str, sorted(found)))} of '{dictionary}'"
+    return None

@@ -1,0 +1,96 @@
+# SPDX-License-Identifier: MIT
+"""Track a robot through the exposures of one composite picture."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from tracking.body import marker_template
+from tracking.composite import (
+    Exposure,
+    Merged,
+    find_exposures,
+    find_exposures_like,
+    order_exposures,
+)
+from tracking.errors import CompositeError
+from tracking.images import PhotoTimes, read_pixels
+from tracking.photos.by_look import marked_top, pose_of_top
+from tracking.photos.floor_seen import FloorSeen, see_floor
+from tracking.photos.result import Tracked, finish, observation_of, times_by_name
+from tracking.photos.scene import Photo, Scene
+from tracking.photos.workers import Progress
+
+_MANY_ROUGH = 1 / 3  # of a composite's exposures
+
+
+def track_exposures(
+    scene: Scene, photo: Photo, merged: Merged, *,
+    times_of: Callable[[Sequence[str]], PhotoTimes], gap: float | None, progress: Progress,
+) -> Tracked:  # fmt: skip
+    """Track a robot through the exposures of one composite picture.
+
+    Exposures are called after the picture: `walk.jpg#1` is the first.
+
+    Args:
+        scene: What is known; the robot's marker, or its marked top, is what is looked for.
+        photo: The picture.
+        merged: How the exposures were merged.
+        times_of: Gives the times of the exposures, by their names in order.
+        gap: As of `finish` [s].
+        progress: Where progress is reported.
+
+    Returns:
+        The track.
+
+    Raises:
+        NoUsablePhoto: The picture cannot be used.
+        TrackingError: The floor's map does not fit, or no exposure is found.
+        TrackStopped: Somebody asked to stop.
+    """
+    seen = see_floor(scene, [photo], robot=None, workers=1, progress=progress)
+    progress.step("exposures", None)
+    exposures = _exposures(scene, seen, photo, merged)
+    order = order_exposures(np.array([each.alignment.pose.planar for each in exposures]))
+    names = tuple(f"{photo.name}#{number}" for number in range(1, len(order) + 1))
+    times = times_by_name(names, times_of(names))
+    source = "body" if scene.robot is None else "marker"
+    observations = [
+        observation_of(name, exposures[k].alignment, times[name], source=source)
+        for name, k in zip(names, order, strict=True)
+    ]
+    tracked = finish(scene, seen, observations, unseen={}, times=times, gap=gap)
+    return replace(tracked, notes=(*tracked.notes, *_rough_note(exposures)))
+
+
+def _exposures(scene: Scene, seen: FloorSeen, photo: Photo, merged: Merged) -> tuple[Exposure, ...]:
+    """Find exposures by the robot's marker, or by the one whose top was marked."""
+    size = scene.body_size
+    if size is None:
+        raise CompositeError("the length and width of the robot's body are not known")
+    pixels = read_pixels(photo.path, size=scene.camera.size)
+    view = seen.fit.pose_of(photo.name)
+    # The floor's markers look like the robot's.
+    hidden = seen.marks_in(photo.name, pixels.shape[:2])
+    if scene.robot is not None:
+        return find_exposures(
+            pixels, scene.camera, view, template=marker_template(scene.robot.marker),
+            prior=scene.prior, merged=merged, body_size=size, hidden=hidden,
+        )  # fmt: skip
+    top = marked_top(scene, seen, [photo])
+    return find_exposures_like(
+        pixels, scene.camera, view, known=pose_of_top(top, scene, view), plate=top.plate,
+        prior=scene.prior, merged=merged, body_size=size, hidden=hidden,
+    )  # fmt: skip
+
+
+def _rough_note(exposures: Sequence[Exposure]) -> list[str]:
+    rough = sum(exposure.is_rough for exposure in exposures)
+    if rough < _MANY_ROUGH * len(exposures):
+        return []
+    return [
+        f"{rough} of {len(exposures)} exposures are placed only roughly, if they are exposures at "
+        "all: look at overlay.png; the exposure whose top is marked must show whole, and body_size "
+        "in robot.toml must be the robot's"
+    ]

@@ -1,0 +1,83 @@
+# SPDX-License-Identifier: MIT
+"""The floor and the camera, fitted to what all photographs show."""
+
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from tracking.detect import Detection, MarkedRobot
+from tracking.errors import NoUsablePhoto
+from tracking.floor import FloorFit, refine_floor
+from tracking.photos.scene import Photo, Scene
+from tracking.photos.search import PhotoResult, Wanted, search_photos
+from tracking.photos.workers import Progress
+
+_MARK_MARGIN = 1.5  # by how much a floor marker and its margin are larger than its black square
+
+
+@dataclass(frozen=True)
+class FloorSeen:
+    """The floor and the camera, and what each photograph shows.
+
+    Attributes:
+        fit: Floor and camera.
+        detections: What the photographs show, in order of time.
+        lost: Photographs that cannot be used, with the reason.
+    """
+
+    fit: FloorFit
+    detections: tuple[Detection, ...]
+    lost: Mapping[str, str]
+
+    def marks_in(self, photo: str, shape: tuple[int, ...]) -> NDArray[np.bool_]:
+        """Mark the pixels of the floor's markers with their margin, shape (height, width)."""
+        hidden = np.zeros(shape, dtype=np.uint8)
+        for detection in self.detections:
+            for corners in detection.floor.pixels.values() if detection.photo == photo else ():
+                middle = corners.mean(axis=0)
+                outline = middle + _MARK_MARGIN * (corners - middle)
+                cv2.fillConvexPoly(hidden, np.round(outline).astype(np.int32), (1,))
+        return hidden.astype(bool)
+
+
+def see_floor(
+    scene: Scene, photos: Sequence[Photo], *, robot: MarkedRobot | None, workers: int,
+    progress: Progress,
+) -> FloorSeen:  # fmt: skip
+    """Look at all photographs and fit floor and camera to them.
+
+    Args:
+        scene: What is known.
+        photos: The photographs, in order of time.
+        robot: The robot whose marker is looked for, too; None for none.
+        workers: Processes to use.
+        progress: Where progress is reported.
+
+    Returns:
+        Floor and camera, and what each photograph shows.
+
+    Raises:
+        NoUsablePhoto: No photograph can be used.
+        TrackingError: The floor's map does not fit.
+        TrackStopped: Somebody asked to stop.
+    """
+    wanted = Wanted(scene.camera.size, scene.floor, robot)
+    results = search_photos(photos, wanted, workers=workers, progress=progress)
+    detections = tuple(result.seen for result in results if result.seen is not None)
+    if not detections:
+        raise NoUsablePhoto(_why_none(results))
+    lost = {result.photo: result.problem for result in results if result.problem is not None}
+    views = [scene.with_clicks(seen.floor) for seen in detections]
+    fit = refine_floor(scene.camera, scene.floor, views)
+    return FloorSeen(fit, detections, lost | dict(fit.unused))
+
+
+def _why_none(results: Sequence[PhotoResult]) -> str:
+    first = results[0]
+    common, count = Counter(result.problem for result in results).most_common(1)[0]
+    so = f" ({count} of them so)" if common == first.problem and count > 1 else ""
+    return f"none of {len(results)} photographs can be used; {first.photo}: {first.problem}{so}"

@@ -1,0 +1,122 @@
+# SPDX-License-Identifier: MIT
+"""From the robot's places in photographs to a track, with what a person should know of it."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from tracking.body import Alignment
+from tracking.corrections import Correction, Move, replay
+from tracking.images import PhotoTimes
+from tracking.path import PoseObservation, Track, assemble_track
+from tracking.photos.floor_seen import FloorSeen
+from tracking.photos.scene import Scene
+from tracking.pose import BodyPrior
+
+Times = Mapping[str, tuple[float, float]]
+"""By photograph, its time and the standard deviation of that [s]."""
+
+_HIGH = 3.0  # standard deviations by which the body may seem higher than robot.toml has it
+
+
+@dataclass(frozen=True)
+class Tracked:
+    """A finished track.
+
+    Attributes:
+        track: The path.
+        floor: Floor, camera and photographs behind it.
+        lost: Photographs that gave no pose, with the reason.
+        notes: For a person, one line each.
+    """
+
+    track: Track
+    floor: FloorSeen
+    lost: Mapping[str, str]
+    notes: tuple[str, ...]
+
+
+def times_by_name(names: Sequence[str], times: PhotoTimes) -> Times:
+    """Return times and their standard deviations by the photographs' names."""
+    return dict(zip(names, zip(times.t.tolist(), times.sd.tolist(), strict=True), strict=True))
+
+
+def observation_of(
+    photo: str, alignment: Alignment, time: tuple[float, float], *, source: str
+) -> PoseObservation:
+    """Take the robot's place in a photograph from how its picture was aligned.
+
+    Args:
+        photo: Name of the photograph or exposure.
+        alignment: Where the robot is.
+        time: Time and its standard deviation [s].
+        source: "marker" or "body".
+    """
+    t, t_sd = time
+    return PoseObservation.of(
+        photo, alignment.pose, t=t, t_sd=t_sd, score=alignment.score, source=source
+    )
+
+
+def finish(
+    scene: Scene, seen: FloorSeen, observations: Sequence[PoseObservation], *,
+    unseen: Mapping[str, str], times: Times, gap: float | None,
+) -> Tracked:  # fmt: skip
+    """Replay corrections, smooth, and say what a person should know.
+
+    Args:
+        scene: What is known.
+        seen: Floor and camera.
+        observations: Where the robot was found.
+        unseen: Photographs in which it was not, with the reason.
+        times: By photograph, time and its standard deviation [s].
+        gap: Interval longer than which the path is interrupted; None for 3.5 usual ones [s].
+
+    Returns:
+        The track.
+
+    Raises:
+        TrackingError: The robot is nowhere seen, or a correction cannot be replayed.
+    """
+    kept = replay(observations, scene.corrections, times=times, z=scene.prior.height)
+    track = assemble_track(kept, gap=gap)
+    tracked = {seen.photo for seen in track.observations}
+    deleted = {o.photo: "deleted by a correction" for o in observations if o.photo not in tracked}
+    lost = {**seen.lost, **unseen, **deleted}
+    lost = {photo: reason for photo, reason in lost.items() if photo not in tracked}
+    notes = (*seen.fit.warnings, *_track_notes(track), *_height_note(track, scene.prior),
+             *_correction_note(scene.corrections))  # fmt: skip
+    return Tracked(track, seen, lost, notes)
+
+
+def _track_notes(track: Track) -> list[str]:
+    of = track.observations
+    notes = [
+        f"nothing is seen for {of[k].t - of[k - 1].t:.1f} s before {of[k].photo}: the path is "
+        "interrupted there"
+        for k in np.flatnonzero(track.gap_before)
+    ]
+    notes += [
+        f"{of[k].photo}: far from the path through its neighbours; look at it, and correct it "
+        "with `zebro-lab annotate`"
+        for k in np.flatnonzero(track.smoothed.suspect)
+    ]
+    return notes
+
+
+def _height_note(track: Track, prior: BodyPrior) -> list[str]:
+    higher = float(np.median([seen.z for seen in track.observations])) - prior.height
+    if abs(higher) < _HIGH * prior.height_sd:
+        return []
+    return [
+        f"the body seems {1e3 * abs(higher):.0f} mm {'higher' if higher > 0 else 'lower'} than "
+        "stated; check marker.height in robot.toml, and the side of the marker (--marker)"
+    ]
+
+
+def _correction_note(corrections: Sequence[Correction]) -> list[str]:
+    if not corrections:
+        return []
+    moved = sum(isinstance(correction, Move) for correction in corrections)
+    return [f"{len(corrections)} corrections replayed, {moved} of them positions by hand"]

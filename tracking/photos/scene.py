@@ -1,0 +1,86 @@
+# SPDX-License-Identifier: MIT
+"""What is known of a walk before its photographs are looked at."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from tracking.body import TopPlate
+from tracking.camera import Camera
+from tracking.composite import Merged
+from tracking.corrections import Correction
+from tracking.detect import MarkedRobot
+from tracking.floor import FloorMap, FloorView
+from tracking.pose import BodyPrior
+
+Click = tuple[float, float]
+"""A pixel that a person pointed at: u, v [px]."""
+
+
+@dataclass(frozen=True)
+class Photo:
+    """A photograph to look at.
+
+    Attributes:
+        name: What the results call it.
+        path: Its file.
+    """
+
+    name: str
+    path: Path
+
+
+@dataclass(frozen=True)
+class MarkedTop:
+    """The robot's top, clicked on in one photograph.
+
+    Attributes:
+        photo: Name of the photograph.
+        corners_px: Front left, front right, rear right and rear left corner, four pairs [px].
+        plate: The top.
+    """
+
+    photo: str
+    corners_px: tuple[Click, ...]
+    plate: TopPlate
+
+
+@dataclass(frozen=True)
+class Scene:
+    """What is known before looking.
+
+    Attributes:
+        camera: The lens, at the size of the photographs.
+        floor: The floor as measured.
+        prior: Height and tilt of the body.
+        robot: The robot with its marker; None where it is tracked by its own picture.
+        top: The robot's top in one photograph, to track it by its own picture.
+        clicks: By photograph, points of the floor by name, where they were clicked on [px].
+        corrections: What a person corrects in what is found, in the order in which it was said.
+        merged: How the exposures of one composite picture were merged; None of photographs.
+        body_size: Length and width of the robot's body, needed for a composite picture [m].
+    """
+
+    camera: Camera
+    floor: FloorMap
+    prior: BodyPrior
+    robot: MarkedRobot | None
+    top: MarkedTop | None = None
+    clicks: Mapping[str, Mapping[str, Click]] = field(default_factory=dict)
+    corrections: tuple[Correction, ...] = ()
+    merged: Merged | None = None
+    body_size: tuple[float, float] | None = None
+
+    def with_clicks(self, view: FloorView) -> FloorView:
+        """Add the points of the floor that a person clicked on to what a photograph shows."""
+        clicks = self._clicks_for(view.photo)
+        return view if not clicks else view.with_clicked(clicks)
+
+    def _clicks_for(self, photo: str) -> Mapping[str, Click]:
+        """Return a photograph's clicks; on a tripod those of one photograph hold for all.
+
+        Where the floor has markers these place the camera in the other photographs.
+        """
+        if photo in self.clicks or self.floor.markers or not self.clicks:
+            return self.clicks.get(photo, {})
+        return next(iter(self.clicks.values()))

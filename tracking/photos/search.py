@@ -1,0 +1,131 @@
+# SPDX-License-Identifier: MIT
+"""Markers in many photographs, on several cores; a bad photograph does not lose the others.
+
+The camera stands still and the robot moves a little between two photographs, so after the first
+one each marker is looked for where it was. The whole photograph is searched again only where the
+robot is not found there, or most of the floor is not.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from tracking.detect import Detection, MarkedRobot, detect
+from tracking.errors import PhotoError
+from tracking.floor import FloorMap, FloorView
+from tracking.images import read_pixels
+from tracking.markers import find_markers
+from tracking.photos.scene import Photo
+from tracking.photos.workers import WORTH_WORKERS, Progress, batches_of, run_batches
+
+
+@dataclass(frozen=True)
+class Wanted:
+    """What to look for.
+
+    Attributes:
+        size: Width and height photographs must have [px].
+        floor: The floor's marks.
+        robot: The robot; None where its marker is not to be looked for.
+    """
+
+    size: tuple[int, int]
+    floor: FloorMap
+    robot: MarkedRobot | None
+
+
+@dataclass(frozen=True)
+class PhotoResult:
+    """What looking at a photograph gave.
+
+    Attributes:
+        photo: Its name.
+        seen: What it shows; None where it cannot be used.
+        problem: Why not; None where it can.
+    """
+
+    photo: str
+    seen: Detection | None
+    problem: str | None = None
+
+
+def search_photos(
+    photos: Sequence[Photo], wanted: Wanted, *, workers: int, progress: Progress
+) -> tuple[PhotoResult, ...]:
+    """Look for markers in photographs.
+
+    Args:
+        photos: The photographs, in order of time.
+        wanted: What to look for.
+        workers: Processes to use.
+        progress: Where progress is reported.
+
+    Returns:
+        What each shows, in the same order.
+
+    Raises:
+        TrackStopped: Somebody asked to stop.
+    """
+    if len(photos) * wanted.size[0] * wanted.size[1] < WORTH_WORKERS:
+        workers = 1
+    batches = [(wanted, batch) for batch in batches_of(photos, workers)]
+    done = run_batches(_search_batch, batches, workers=workers, progress=progress, what="markers")
+    return tuple(look for batch in done for look in batch)
+
+
+def _search_batch(job: tuple[Wanted, Sequence[Photo]]) -> list[PhotoResult]:
+    wanted, photos = job
+    looks: list[PhotoResult] = []
+    hint: Detection | None = None
+    for photo in photos:
+        look = look_at(photo, wanted, hint)
+        # A photograph without the robot must not make the next one forget where the floor is.
+        hint = look.seen or hint
+        looks.append(look)
+    return looks
+
+
+def look_at(photo: Photo, wanted: Wanted, hint: Detection | None = None) -> PhotoResult:
+    """Look for markers in one photograph.
+
+    Args:
+        photo: The photograph.
+        wanted: What to look for.
+        hint: What one taken shortly before shows.
+
+    Returns:
+        What it shows, or why it cannot be used.
+    """
+    try:
+        pixels = read_pixels(photo.path, size=wanted.size)
+        return PhotoResult(photo.name, _detected(photo.name, pixels, wanted, hint))
+    except PhotoError as error:
+        return PhotoResult(photo.name, None, error.reason)
+
+
+def _detected(
+    name: str, pixels: NDArray[np.uint8], wanted: Wanted, hint: Detection | None
+) -> Detection:
+    robot = wanted.robot
+    if robot is None:
+        return _floor_alone(name, pixels, wanted.floor)
+    if hint is not None and hint.floor.pixels:
+        # Marks out of the picture are not sought in the whole of it again and again.
+        seen = FloorMap(
+            wanted.floor.dictionary,
+            tuple(m for m in wanted.floor.markers if m.marker_id in hint.floor.pixels),
+        )
+        try:
+            return detect(name, pixels, floor=seen, robot=robot, hint=hint)
+        except PhotoError:
+            if wanted.floor.markers == seen.markers:
+                raise
+    return detect(name, pixels, floor=wanted.floor, robot=robot, hint=hint)
+
+
+def _floor_alone(name: str, pixels: NDArray[np.uint8], floor: FloorMap) -> Detection:
+    """Look for the floor's marks where the robot has no marker."""
+    found = find_markers(pixels, floor.dictionary, wanted=floor.marker_ids) if floor.markers else ()
+    return Detection(name, FloorView.of(name, found), None)

@@ -1,0 +1,53 @@
+# SPDX-License-Identifier: MIT
+"""Photographs, or one composite picture, to the track of a walk."""
+
+from collections.abc import Callable, Sequence
+
+from tracking.images import PhotoTimes
+from tracking.photos.by_look import track_by_look
+from tracking.photos.by_marker import track_by_marker
+from tracking.photos.exposures import track_exposures
+from tracking.photos.result import Tracked, times_by_name
+from tracking.photos.scene import Photo, Scene
+from tracking.photos.workers import NoProgress, Progress
+
+
+def track_photos(
+    scene: Scene, photos: Sequence[Photo], *, times_of: Callable[[Sequence[str]], PhotoTimes],
+    gap: float | None = None, workers: int = 1, progress: Progress | None = None,
+) -> Tracked:  # fmt: skip
+    """Track a robot in photographs: by its marker, by its own picture, or in a composite picture.
+
+    Args:
+        scene: What is known: camera, floor, robot, and what a person pointed at or corrects.
+            `scene.merged` says that there is one picture, with many exposures.
+        photos: The photographs in order of time, or the one composite picture.
+        times_of: Gives the times of photographs by their names in order; of a composite picture,
+            of its exposures `walk.jpg#1`, `walk.jpg#2` and so on, once it is known how many.
+        gap: Interval longer than which the path is interrupted; None for 3.5 usual ones [s].
+        workers: Processes to use.
+        progress: Where progress is reported; None for nowhere.
+
+    Returns:
+        The path with covariance, the fitted floor and camera, and what was left out and why.
+
+    Raises:
+        NoUsablePhoto: No photograph can be used, or none shows the robot.
+        TrackingError: The floor's map does not fit, head and tail cannot be told apart, no
+            exposure is found, or a correction cannot be replayed.
+        TrackStopped: Somebody asked to stop.
+    """
+    progress = NoProgress() if progress is None else progress
+    if scene.merged is not None:
+        return track_exposures(
+            scene, photos[0], scene.merged, times_of=times_of, gap=gap, progress=progress
+        )
+    names = [photo.name for photo in photos]
+    times = times_by_name(names, times_of(names))
+    if scene.robot is None:
+        return track_by_look(
+            scene, photos, times=times, gap=gap, workers=workers, progress=progress
+        )
+    return track_by_marker(
+        scene, scene.robot, photos, times=times, gap=gap, workers=workers, progress=progress
+    )

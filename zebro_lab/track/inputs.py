@@ -1,0 +1,113 @@
+# SPDX-License-Identifier: MIT
+"""What is read before photographs are tracked: camera, floor, robot, annotations, the run."""
+
+from dataclasses import dataclass, replace
+
+from tracking import Scene
+from tracking.images import open_picture
+from zebro_lab.files.errors import SettingsError
+from zebro_lab.robot.marker_numbers import require_apart
+from zebro_lab.robot.robot_file import RobotFile, read_robot_file
+from zebro_lab.runs.manifest import RunManifest, read_manifest
+from zebro_lab.track.annotations import Annotations, read_annotations
+from zebro_lab.track.camera_file import read_camera_file
+from zebro_lab.track.clock import CountedTimes, counted_from, counted_later
+from zebro_lab.track.floor_file import read_floor_file
+from zebro_lab.track.photo_sequence import PhotoSequence, calibrated_for
+from zebro_lab.track.request import TrackRequest
+from zebro_lab.track.robot import body_prior, tracked_robot
+
+_HOW_MERGED = """\
+needed: a picture does not tell how its exposures were merged. Look at the robots:
+pasted: all are solid; where two overlap, one hides the other (cut out and laid on each other).
+darkest: dark parts are solid, bright ones vanish; where two overlap, the darker of both shows.
+mean: all are faint, and the floor shows through them (the average of all photographs)."""
+
+
+class HowMergedUnknown(SettingsError):
+    """Nobody said how the exposures of a composite picture were merged."""
+
+
+@dataclass(frozen=True)
+class TrackInputs:
+    """What was read.
+
+    Attributes:
+        request: What is asked.
+        scene: What is known before looking, with the lens as it was calibrated.
+        annotations: What a person said about the photographs.
+        manifest: The run they belong to; None for none.
+    """
+
+    request: TrackRequest
+    scene: Scene
+    annotations: Annotations
+    manifest: RunManifest | None
+
+    def scene_of(self, sequence: PhotoSequence) -> Scene:
+        """Return what is known of photographs, with the lens at their size.
+
+        Raises:
+            DataError: They have another shape than those the camera was calibrated with.
+        """
+        return replace(self.scene, camera=calibrated_for(self.scene.camera, sequence))
+
+    def source_of(self, sequence: PhotoSequence) -> str:
+        """Say where photographs are from: as told, as the files say, or as the run has it."""
+        if self.request.source is not None:
+            return self.request.source
+        if sequence.source is not None or self.manifest is None:
+            return sequence.source or "unknown"
+        return self.manifest.source
+
+    def require_complete(self, sequence: PhotoSequence) -> None:
+        """Raise where something is missing without which photographs cannot be tracked.
+
+        Raises:
+            HowMergedUnknown: Nobody said how the exposures of a composite picture were merged.
+            SettingsError: The robot carries no marker and its top is not marked.
+        """
+        if sequence.is_composite and self.request.merged is None:
+            with open_picture(sequence.paths[0]):
+                pass  # what is no picture is told of as such
+            raise HowMergedUnknown(_HOW_MERGED, key="--merged")
+        if self.scene.robot is None and self.scene.top is None:
+            raise SettingsError(
+                "needed: without a marker the robot is known by its picture; mark its top in one "
+                "photograph with `zebro-lab annotate PHOTOS --photo NAME --corners ...`",
+                key="--annotations",
+            )
+
+    def counted_times(self, sequence: PhotoSequence) -> CountedTimes:
+        """Count photographs' times from a moment; exposures get theirs once they are found."""
+        times, asked = sequence.times, self.request.times
+        if times is None:
+            return counted_later(manifest=self.manifest, asked=asked)
+        return counted_from(times, start=self.request.start, manifest=self.manifest, asked=asked)
+
+
+def read_inputs(request: TrackRequest) -> TrackInputs:
+    """Read what is known before looking at photographs.
+
+    Args:
+        request: What is asked.
+
+    Raises:
+        ZebroLabError: A file says what cannot be followed.
+        TrackingError: A marker is the robot's and one of the floor's.
+    """
+    manifest = None if request.run is None else read_manifest(request.run)
+    described = RobotFile() if request.robot is None else read_robot_file(request.robot)
+    camera, floor = read_camera_file(request.camera).camera, read_floor_file(request.floor)
+    said = Annotations() if request.annotations is None else read_annotations(request.annotations)
+    prior = body_prior(described, height=request.body_height, height_sd=request.height_sd)
+    robot = None
+    if not request.without_marker:
+        robot = tracked_robot(described, request.marker, prior=prior)
+        require_apart(robot, floor)
+    length, width = described.robot.body_size[:2]
+    scene = Scene(
+        camera, floor, prior, robot, top=said.template, clicks=said.clicks,
+        corrections=said.corrections, merged=request.merged, body_size=(length, width),
+    )  # fmt: skip
+    return TrackInputs(request, scene, said, manifest)

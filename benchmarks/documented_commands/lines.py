@@ -18,7 +18,7 @@ COMMENT = re.compile(r"(?<=\S)\s{2,}#.*$")
 
 LEFT_OUT = (
     (r"^make ", "installs, or runs tests; the lines of make demo are run one by one"),
-    (r"pytest|benchmarks\.", "a long test or a measurement of time"),
+    (r"pytest|benchmarks\.|docs/\S+\.py", "a long test or a measurement of time"),
     (r"rig say ", "needs an experiment that is under way"),
     (r"rig weigh ", "asks a person to hang up masses"),
     (r"CALIBRATION|PROFILE@|<\w+>|…", "has a placeholder"),

@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""The twin of `stop_latency.py`: a rig that breaks on order, and dates what comes on its wire.
+"""A rig that breaks on order and dates what comes on its wire, for `stop_latency.py`.
 
-It runs in a process of its own. Times are of the machine's monotonic clock. A
-command is dated when the device handles it, up to a poll (2 ms) after its last byte.
+Its process has the monotonic clock. Commands are dated up to a poll (2 ms) after their last byte.
 """
 
 import contextlib

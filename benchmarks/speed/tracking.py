@@ -7,7 +7,6 @@ decoded, in one process; seconds are the processor's, summed over threads, and w
 is timed beside scipy's splines.
 """
 
-import sys
 import time
 from collections.abc import Callable, Sequence
 from functools import partial
@@ -19,12 +18,6 @@ from scipy.interpolate import make_smoothing_spline
 
 from benchmarks.machine import describe_machine
 from benchmarks.tables import print_table
-from tracking.camera import Camera
-from tracking.detect import Detection, MarkedRobot, detect, observe
-from tracking.floor import FloorMap, FloorMarker, refine_floor
-from tracking.path import assemble_track
-from tracking.pose import BodyPrior, RobotMarker
-from tracking.smooth import Process, smooth
 from support.synthetic import (
     Conditions,
     DrawnFloorMarker,
@@ -35,6 +28,12 @@ from support.synthetic import (
     render_background,
     take_photo,
 )
+from tracking.camera import Camera
+from tracking.detect import Detection, MarkedRobot, detect, observe
+from tracking.floor import FloorMap, FloorMarker, refine_floor
+from tracking.path import assemble_track
+from tracking.pose import BodyPrior, RobotMarker
+from tracking.smooth import Process, smooth
 
 SIZE = (4000, 3000)
 PHOTOS = 8

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from benchmarks.speed import tracking
+from support.synthetic import look_at
 from tracking.camera import Camera
-from tracking.synthetic import look_at
 
 
 @pytest.fixture(autouse=True)

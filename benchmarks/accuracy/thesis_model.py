@@ -8,6 +8,8 @@ from typing import Any
 
 import numpy as np
 
+from benchmarks.accuracy.chatter import sign_changes_per_second
+from benchmarks.accuracy.wobble import wobble
 from model.gait.cyclic import CyclicReference
 from model.gait.direction import Direction
 from model.gait.reference import SampledReference
@@ -21,11 +23,9 @@ from model.walk.thesis import (
     SOURCE_TRACTION,
     SwitchedLegs,
     ThesisOptions,
-    sign_changes_per_second,
     walk_thesis,
 )
 from model.walk.thesis.traction import Traction
-from model.walk.wobble import wobble
 
 ROBOT = Robot()
 SLIPPERY = SOURCE_TRACTION._replace(friction=SOURCE_TRACTION.friction / 5)

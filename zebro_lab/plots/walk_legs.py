@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from model.robot import LEFT, N_LEGS
 from model.slip.law import Array
 from model.walk.path import WalkPath
-from model.walk.thesis.chatter import paired_sum
+from model.walk.thesis.traction import paired_sum
 from zebro_lab.plots.sheet import BLUE, RED, legend_below, new_figure, styled
 
 _NAMES = ("left front", "right front", "left middle", "right middle", "left rear", "right rear")

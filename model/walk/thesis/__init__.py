@@ -1,9 +1,14 @@
 # SPDX-License-Identifier: MIT
 """The source's hybrid dynamic model of tripod walking, as printed, with its faults."""
 
-from model.walk.thesis.chatter import largest_stable_step, paired_sum, sign_changes_per_second
 from model.walk.thesis.legs import SwitchedLegs
-from model.walk.thesis.traction import SOURCE_TRACTION, Traction, law_traction, table_traction
+from model.walk.thesis.traction import (
+    SOURCE_TRACTION,
+    Traction,
+    law_traction,
+    paired_sum,
+    table_traction,
+)
 from model.walk.thesis.walk import ThesisOptions, walk_thesis
 
 __all__ = [
@@ -11,10 +16,8 @@ __all__ = [
     "SwitchedLegs",
     "ThesisOptions",
     "Traction",
-    "largest_stable_step",
     "law_traction",
     "paired_sum",
-    "sign_changes_per_second",
     "table_traction",
     "walk_thesis",
 ]

@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from model.compiled import compiled
-from model.slip.law import SlipLaw, Values
+from model.slip.law import Array, SlipLaw, Values
 from model.slip.magic_formula import MagicFormula
 from model.walk.kernel import table_value
 from model.walk.traction import TractionTable, VelocityCoulomb, law_table
@@ -96,3 +96,20 @@ def load_derivative(traction, kappa, load, force):
     """Compute the derivative of `traction_force` with respect to load, by a difference [-]."""
     step = 1e-6 * load + 1e-9
     return (traction_force(traction, kappa, load + step) - force) / step
+
+
+def paired_sum(traction_force: Array) -> Array:
+    """Add every sample to the next, first and second, third and fourth: Fig. 5-19.
+
+    The thesis's traction changes sign at every step; the sum of a pair is what it calls the net
+    force. It is twice the mean. As in the listing, the first sample is left out and pairs start
+    with the second.
+
+    Args:
+        traction_force: Traction forces over time, shape (n, ...) [N].
+
+    Returns:
+        Sums of pairs, shape ((n - 1) // 2, ...) [N].
+    """
+    pairs = (len(traction_force) - 1) // 2
+    return traction_force[1 : 2 * pairs : 2] + traction_force[2 : 2 * pairs + 1 : 2]

@@ -4,14 +4,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from benchmarks.accuracy.chatter import largest_stable_step, sign_changes_per_second
 from model.gait.tripod import tripod_angles, tripod_reference
 from model.robot import GRAVITY, Robot
 from model.walk.thesis import (
     SwitchedLegs,
     ThesisOptions,
-    largest_stable_step,
     paired_sum,
-    sign_changes_per_second,
     walk_thesis,
 )
 

@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""What the explicit step makes of a stiff slip law, and the source's way of averaging it out."""
+"""Oscillation of the slip ratio when an explicit step meets a stiff slip law."""
 
 import numpy as np
 
-from model.slip.law import Array
 from model.walk.path import WalkPath
 
 
@@ -40,20 +39,3 @@ def sign_changes_per_second(path: WalkPath) -> float:
     sign = np.sign(np.nan_to_num(path.slip_ratio))
     changes = np.count_nonzero((sign[1:] != sign[:-1]) & both)
     return changes / (np.count_nonzero(path.contact) * float(path.t[1] - path.t[0]))
-
-
-def paired_sum(traction_force: Array) -> Array:
-    """Add every sample to the next, first and second, third and fourth: Fig. 5-19.
-
-    The source's traction changes sign at every step; the sum of a pair is what it calls the net
-    force. It is twice the mean. As in the listing, the first sample is left out and pairs start
-    with the second.
-
-    Args:
-        traction_force: Traction forces over time, shape (n, ...) [N].
-
-    Returns:
-        Sums of pairs, shape ((n - 1) // 2, ...) [N].
-    """
-    pairs = (len(traction_force) - 1) // 2
-    return traction_force[1 : 2 * pairs : 2] + traction_force[2 : 2 * pairs + 1 : 2]

@@ -2,10 +2,10 @@
 import numpy as np
 import pytest
 
+from benchmarks.accuracy.wobble import wobble
 from model.errors import DomainError
 from model.gait.tetrapod import tetrapod_reference
 from model.robot import Robot
-from model.walk.wobble import wobble
 
 GAIT = tetrapod_reference(np.radians(45.0), np.radians(135.0), cycle_time=3.0)
 START = (1, 4, 5)  # legs 2, 5 and 6, section 5-5-2

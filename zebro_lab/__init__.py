@@ -56,6 +56,7 @@ def __getattr__(name: str) -> Any:
 
         return version("zebro-lab")
     if name in __all__:
+        import_module("zebro_lab.start").require_own_packages()
         return getattr(import_module("zebro_lab.api"), name)
     raise AttributeError(f"module 'zebro_lab' has no attribute '{name}'")
 

@@ -1,0 +1,54 @@
+# SPDX-License-Identifier: MIT
+"""Entry points of the commands; they first check that packages are zebro-lab's own."""
+
+import sys
+from importlib.util import find_spec
+from pathlib import Path
+from typing import Final
+
+PACKAGES: Final = ("model", "rig", "tracking")
+
+
+def require_own_packages() -> None:
+    """Check that `model`, `rig` and `tracking` are those that were installed with `zebro_lab`.
+
+    Their names are common words: a `model.py` in the working folder, or in PYTHONPATH, is found
+    before them.
+
+    Raises:
+        ImportError: Another file or folder is found in place of one; the message names both.
+    """
+    home = Path(__file__).parents[1]
+    for package in PACKAGES:
+        spec = find_spec(package)
+        if spec is None:
+            raise ImportError(f"the package '{package}' of zebro-lab is missing; install it again")
+        places = [spec.origin or "", *(spec.submodule_search_locations or ())]
+        if home / package not in {Path(place) for place in places}:
+            raise ImportError(
+                f"{spec.origin or places[-1]} shadows the package '{package}' of zebro-lab; rename "
+                "it, or start Python where it is not found first"
+            )
+
+
+def zebro_lab() -> None:
+    """Run `zebro-lab`."""
+    _check_or_exit()
+    from zebro_lab.main import main
+
+    main()
+
+
+def calibrate_slip() -> None:
+    """Run `calibrate-slip`."""
+    _check_or_exit()
+    from zebro_lab.main import calibrate_slip
+
+    calibrate_slip()
+
+
+def _check_or_exit() -> None:
+    try:
+        require_own_packages()
+    except ImportError as error:
+        sys.exit(f"error: {error}")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Draw the source's slip curve at the four loads of its rig.
+"""Draw the thesis's slip curve at the four loads of its rig.
 
 Usage: .venv/bin/python examples/plot_slip_curve.py [PICTURE]
 """

@@ -34,8 +34,8 @@ def attitude(roll: ArrayLike, pitch: ArrayLike, yaw: ArrayLike) -> Array:
     return rotation_z(yaw) @ rotation_y(pitch) @ rotation_x(roll)
 
 
-def source_attitude(roll: ArrayLike, pitch: ArrayLike, yaw: ArrayLike) -> Array:
-    """Return the source's rotation, Rx(roll) Ry(pitch) Rz(yaw), Eq. (3-7).
+def thesis_attitude(roll: ArrayLike, pitch: ArrayLike, yaw: ArrayLike) -> Array:
+    """Return the thesis's rotation, Rx(roll) Ry(pitch) Rz(yaw), Eq. (3-7).
 
     Its roll turns the robot about an axis fixed to the ground: of a robot that heads along y it is
     a pitch. Only a robot that heads along x has the angles of `attitude`, to first order.

@@ -6,7 +6,7 @@ Points of the leg's full circle, Eq. (3-17), are named by an angle phi, in the h
 .. math::
     L(\varphi) = (r + r\cos\varphi,\ 0,\ -r\sin\varphi) .
 
-The hip is at phi = pi; the arc ends in its toe at phi = -(arc - pi), which is 0 for the source's
+The hip is at phi = pi; the arc ends in its toe at phi = -(arc - pi), which is 0 for the thesis's
 half circle. The lowest point of the full circle is at `phi`; the lowest point of the leg, its
 potential contact, at `contact_angle(phi)`, which differs where phi lies beyond the toe or the hip.
 
@@ -28,8 +28,8 @@ def wrap_angle(angle: Numbers) -> Numbers:
     return np.pi - (np.pi - angle) % (2 * np.pi)
 
 
-def source_tilt(roll: Numbers, pitch: Numbers, yaw: Numbers) -> Numbers:
-    r"""Compute the slope of the legs' planes along the heading, as the source has it [-].
+def thesis_tilt(roll: Numbers, pitch: Numbers, yaw: Numbers) -> Numbers:
+    r"""Compute the slope of the legs' planes along the heading, as the thesis has it [-].
 
     .. math::
         X = \frac{\tan\theta_r \sin\theta_y}{\cos\theta_p} - \tan\theta_p \cos\theta_y
@@ -41,7 +41,7 @@ def source_tilt(roll: Numbers, pitch: Numbers, yaw: Numbers) -> Numbers:
     return np.tan(roll) * np.sin(yaw) / np.cos(pitch) - np.tan(pitch) * np.cos(yaw)
 
 
-def source_tilt_rate(
+def thesis_tilt_rate(
     roll: Numbers,
     pitch: Numbers,
     yaw: Numbers,
@@ -49,7 +49,7 @@ def source_tilt_rate(
     pitch_rate: Numbers,
     yaw_rate: Numbers,
 ) -> Numbers:
-    r"""Compute the rate of `source_tilt`, the numerator of Eq. (3-24) [1/s].
+    r"""Compute the rate of `thesis_tilt`, the numerator of Eq. (3-24) [1/s].
 
     .. math::
         \dot X = \dot\theta_r \frac{\sin\theta_y}{\cos\theta_p} (1 + \tan^2\theta_r)
@@ -69,7 +69,7 @@ def source_tilt_rate(
     )
 
 
-def source_lowest_angle(theta: Numbers, tilt: Numbers) -> Numbers:
+def thesis_lowest_angle(theta: Numbers, tilt: Numbers) -> Numbers:
     r"""Compute phi_min, Eq. (3-21) with the root that Eq. (3-23) picks [rad].
 
     .. math::
@@ -82,7 +82,7 @@ def source_lowest_angle(theta: Numbers, tilt: Numbers) -> Numbers:
 
     Args:
         theta: Leg angle [rad].
-        tilt: X of `source_tilt` [-].
+        tilt: X of `thesis_tilt` [-].
 
     Returns:
         phi_min in (-pi, pi].
@@ -90,7 +90,7 @@ def source_lowest_angle(theta: Numbers, tilt: Numbers) -> Numbers:
     return wrap_angle(np.pi / 2 - theta + np.arctan(tilt))
 
 
-def source_lowest_angle_rate(leg_speed: Numbers, tilt: Numbers, tilt_rate: Numbers) -> Numbers:
+def thesis_lowest_angle_rate(leg_speed: Numbers, tilt: Numbers, tilt_rate: Numbers) -> Numbers:
     r"""Compute the rate of phi_min, Eq. (3-24) [rad/s].
 
     .. math::
@@ -105,7 +105,7 @@ def lowest_angle(theta: Numbers, roll: Numbers, pitch: Numbers) -> Numbers:
     .. math::
         \varphi = \frac{\pi}{2} - \theta - \arctan\frac{\tan\theta_p}{\cos\theta_r}
 
-    It does not depend on the heading, as the source's does (`source_lowest_angle`): there the roll
+    It does not depend on the heading, as the thesis's does (`thesis_lowest_angle`): there the roll
     angle turns about an axis fixed to the ground. Written with the arctangent of two arguments, it
     holds upside down too; with the leg's plane level no point is lowest.
 
@@ -127,7 +127,7 @@ def plane_cosine(roll: Numbers, pitch: Numbers) -> Numbers:
     .. math::
         \sqrt{\sin^2\theta_p + \cos^2\theta_p \cos^2\theta_r}
 
-    Heights measured in a leg's plane are to be multiplied by it. The source takes
+    Heights measured in a leg's plane are to be multiplied by it. The thesis takes
     :math:`\cos\theta_r`, which is the same without pitch.
     """
     return np.sqrt(np.sin(pitch) ** 2 + (np.cos(pitch) * np.cos(roll)) ** 2)
@@ -136,7 +136,7 @@ def plane_cosine(roll: Numbers, pitch: Numbers) -> Numbers:
 def leg_state(phi: Numbers, toe_beyond: float = 0.0) -> NDArray[np.int_] | int:
     """Tell what a leg would touch the ground with, section 3-4-1: HIP, ROLLING or TOE.
 
-    Beyond the arc's ends the nearer one is the lower one; for the source's half circle that is the
+    Beyond the arc's ends the nearer one is the lower one; for the thesis's half circle that is the
     toe for phi from -pi/2 to 0.
 
     Args:
@@ -234,10 +234,10 @@ def hip_height_acceleration(
 
 for _function in (
     wrap_angle,
-    source_tilt,
-    source_tilt_rate,
-    source_lowest_angle,
-    source_lowest_angle_rate,
+    thesis_tilt,
+    thesis_tilt_rate,
+    thesis_lowest_angle,
+    thesis_lowest_angle_rate,
     lowest_angle,
     plane_cosine,
     leg_state,

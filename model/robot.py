@@ -25,12 +25,12 @@ def _source_hips() -> Array:
 class Robot:
     """A rigid body on six massless legs, each an arc of a circle from its hip to its toe.
 
-    The defaults are the source's robot, Listing A.1.
+    The defaults are the thesis's robot, Listing A.1.
 
     Attributes:
         hips: Hip positions in the body frame by leg, shape (6, 3) [m].
         leg_radius: Radius of the arc [m].
-        leg_arc: Angle of the arc; pi in the source's model, about 200 degrees on its robot [rad].
+        leg_arc: Angle of the arc; pi in the thesis's model, about 200 degrees on its robot [rad].
         mass: Mass of the body [kg].
         body_size: Length, width and height of the body, shape (3,) [m].
         inertia: Principal moments of inertia about x, y and z; those of a uniform cuboid of
@@ -105,7 +105,7 @@ def cuboid_inertia(mass: float, size: tuple[float, float, float]) -> Array:
     >>> cuboid_inertia(2.17, (0.194, 0.2512, 0.069)).round(5).tolist()
     [0.01227, 0.00767, 0.01822]
     """
-    l, w, h = size  # noqa: E741 the source's symbol
+    l, w, h = size  # noqa: E741 the thesis's symbol
     return mass / 12 * np.array([w**2 + h**2, l**2 + h**2, w**2 + l**2])
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The source's whole plan on a simulated rig, then `calibrate-slip`, as commands, for many seeds.
+"""The thesis's whole plan on a simulated rig, then `calibrate-slip`, as commands, for many seeds.
 
 python -m benchmarks.accuracy.calibrated_experiments [SEEDS]
 
@@ -16,12 +16,12 @@ from pathlib import Path
 import numpy as np
 from scipy.stats import chi2
 
-from rig.slip_rig.sweep import SOURCE_LAW, SOURCE_VALUES
+from model.slip.thesis import THESIS_LAW, THESIS_VALUES
 from zebro_lab.calibration.folder import read_slip
 
 PLAN = Path(__file__).parents[2] / "examples" / "plan-source.toml"
 BIN = Path(sys.executable).parent
-NAMES = [parameter.name for parameter in SOURCE_LAW.parameters]
+NAMES = [parameter.name for parameter in THESIS_LAW.parameters]
 
 
 def run(*command: object) -> int:
@@ -43,10 +43,10 @@ def calibrate(seed: int, folder: Path) -> tuple[np.ndarray, np.ndarray, str]:
     )  # fmt: skip
     fitted = run(BIN / "calibrate-slip", data, "--curvature", "peak", "--out", out)
     curve = read_slip(out)
-    miss = curve.values - SOURCE_VALUES
+    miss = curve.values - THESIS_VALUES
     square = float(miss @ np.linalg.solve(curve.covariance, miss))
     sd = np.sqrt(np.diag(curve.covariance))
-    return np.append(miss / sd, square), sd / np.abs(SOURCE_VALUES), f"{measured}, {fitted}"
+    return np.append(miss / sd, square), sd / np.abs(THESIS_VALUES), f"{measured}, {fitted}"
 
 
 def main(seeds: int) -> None:

@@ -20,7 +20,7 @@ def largest_stable_step(speed: float, stiffness: float) -> float:
 
     Args:
         speed: Walking speed v [m/s].
-        stiffness: Traction over mass for each unit of slip, s; about 200 for the source's robot
+        stiffness: Traction over mass for each unit of slip, s; about 200 for the thesis's robot
             [m/s2].
 
     >>> from model.robot import GRAVITY

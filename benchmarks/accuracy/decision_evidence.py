@@ -25,18 +25,12 @@ from model.bayes.blocks import SlipBlocks
 from model.bayes.laplace import find_mode
 from model.bayes.posterior import LoadCell, SlipPosterior, default_priors
 from model.slip.law import Array, SlipLaw
+from model.slip.thesis import THESIS_LAW, THESIS_VALUES
 from rig.slip_rig.imperfections import TYPICAL_RIG, lag_one_correlation
-from rig.slip_rig.sweep import (
-    SOURCE_LAW,
-    SOURCE_VALUES,
-    RigImperfections,
-    SweepPlan,
-    draw_imperfections,
-    simulate_sweep,
-)
+from rig.slip_rig.sweep import RigImperfections, SweepPlan, draw_imperfections, simulate_sweep
 
 BLOCK_LENGTH = 21  # samples; `calibrate-slip datasets/rig-sim` chooses as much
-JUDGED = (*(p.name for p in SOURCE_LAW.parameters),
+JUDGED = (*(p.name for p in THESIS_LAW.parameters),
           "gain_traction", "gain_normal", "bias_normal", "crosstalk")  # fmt: skip
 
 
@@ -92,12 +86,12 @@ def bump(seeds: int) -> None:
         for seed in range(seeds):
             rng = np.random.default_rng(seed)
             sweep = simulate_sweep(
-                SOURCE_LAW, SOURCE_VALUES, plan=plan, imperfections=truth, rng=rng
+                THESIS_LAW, THESIS_VALUES, plan=plan, imperfections=truth, rng=rng
             )
             blocks = block_module.block_means(sweep.samples, length)
-            priors = default_priors(SOURCE_LAW, blocks, LoadCell())
-            posterior = SlipPosterior(blocks, SOURCE_LAW, priors, known)
-            values = dict(zip(JUDGED, SOURCE_VALUES, strict=False))
+            priors = default_priors(THESIS_LAW, blocks, LoadCell())
+            posterior = SlipPosterior(blocks, THESIS_LAW, priors, known)
+            values = dict(zip(JUDGED, THESIS_VALUES, strict=False))
             start = posterior.coordinates({**values, "noise_floor": 0.01, "offset_spread": 0.1})
             laplace = find_mode(posterior.log_density, start[None])
             spread = np.sqrt(np.diag(laplace.covariance))
@@ -122,14 +116,14 @@ def _scores(
     rng = np.random.default_rng(seed)
     truth = draw_imperfections(rng)
     sweep = simulate_sweep(
-        SOURCE_LAW, SOURCE_VALUES, plan=SweepPlan(), imperfections=truth, rng=rng
+        THESIS_LAW, THESIS_VALUES, plan=SweepPlan(), imperfections=truth, rng=rng
     )
     slip = sweep.slip_true if true_slip else sweep.samples.slip
     blocks = block_module.block_means(replace(sweep.samples, slip=slip), BLOCK_LENGTH)
-    priors = default_priors(SOURCE_LAW, blocks, LoadCell(zero_stability=0.1))
+    priors = default_priors(THESIS_LAW, blocks, LoadCell(zero_stability=0.1))
     noise = _block_noise(truth)
-    posterior = SlipPosterior(blocks, SOURCE_LAW, priors, noise if true_noise else {})
-    true_values = dict(zip(JUDGED, SOURCE_VALUES, strict=False))
+    posterior = SlipPosterior(blocks, THESIS_LAW, priors, noise if true_noise else {})
+    true_values = dict(zip(JUDGED, THESIS_VALUES, strict=False))
     true_values |= {name: getattr(truth, name) for name in JUDGED[4:]}
     start = posterior.coordinates({**true_values, **noise})
     laplace = find_mode(posterior.log_density, start[None])

@@ -83,7 +83,7 @@ def by_dynamics(one: EngineWalk, options: DynamicsOptions = DEFAULT_OPTIONS) -> 
 
 
 def by_thesis(one: EngineWalk) -> WalkPath:
-    """Walk by the source's model with the same friction."""
+    """Walk by the thesis's model with the same friction."""
     table = VelocityCoulomb(one.friction).table(weight=one.robot.mass * GRAVITY)
     options = ThesisOptions(direction="left" if one.left else "right")
     return walk_thesis(
@@ -160,7 +160,7 @@ def heights_match(one: EngineWalk) -> bool:
 
 
 def figures(one: EngineWalk, model: Callable[[EngineWalk], WalkPath]) -> str:
-    """Say the path's error and the radius's; the source's model walks tripods only."""
+    """Say the path's error and the radius's; the thesis's model walks tripods only."""
     try:
         path = model(one)
     except DomainError:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Print the numbers that docs/source-model.md quotes.
+"""Print the numbers that docs/thesis-model.md quotes.
 
 Usage: python -m benchmarks.accuracy.thesis_model
 """
@@ -20,7 +20,7 @@ from model.slip.magic_formula import curvature_from_peak
 from model.walk.no_slip import walk_no_slip, walk_wheels
 from model.walk.path import WalkPath, turning_radius
 from model.walk.thesis import (
-    SOURCE_TRACTION,
+    THESIS_TRACTION,
     SwitchedLegs,
     ThesisOptions,
     walk_thesis,
@@ -28,7 +28,7 @@ from model.walk.thesis import (
 from model.walk.thesis.traction import Traction
 
 ROBOT = Robot()
-SLIPPERY = SOURCE_TRACTION._replace(friction=SOURCE_TRACTION.friction / 5)
+SLIPPERY = THESIS_TRACTION._replace(friction=THESIS_TRACTION.friction / 5)
 
 
 def gait(
@@ -43,10 +43,10 @@ def walk(
     reference: CyclicReference,
     duration: float,
     *,
-    traction: Traction = SOURCE_TRACTION,
+    traction: Traction = THESIS_TRACTION,
     **options: Any,
 ) -> WalkPath:
-    """Walk by the source's model, kept at 1 ms."""
+    """Walk by the thesis's model, kept at 1 ms."""
     settings = ThesisOptions(**options)
     legs = SwitchedLegs.of(reference)
     return walk_thesis(ROBOT, legs, duration=duration, traction=traction, options=settings)
@@ -75,7 +75,7 @@ def radii() -> None:
         coarse = radius(walk(reference, 12.0))
         full, fifth = (
             walk(reference, 12.0, dt=0.0001, every=10, traction=traction)
-            for traction in (SOURCE_TRACTION, SLIPPERY)
+            for traction in (THESIS_TRACTION, SLIPPERY)
         )
         change = 100 * (fifth.yaw[-1] / full.yaw[-1] - 1)
         print(f"s = {s}: wheels {wheels:.3f}, no-slip {rolling:.3f}, source {coarse:.3f} at 1 ms, "

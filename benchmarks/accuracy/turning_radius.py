@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Why the source's circles are too tight, what a leg angle is worth, and a left turn to the right.
+"""Why the thesis's circles are too tight, what a leg angle is worth, and a left turn to the right.
 
 Prints the tables of `docs/theory.md`, chapter 3, and draws its figures. Everything is simulated.
 
@@ -42,13 +42,13 @@ HALF, LONG = Robot(), Robot(leg_arc=np.radians(200.0))
 
 @cache
 def slip_table(mu: float = 0.3798, toe: ToeLaw = "saturated") -> TractionTable:
-    """Tabulate the source's law, its friction replaced and its shape kept."""
+    """Tabulate the thesis's law, its friction replaced and its shape kept."""
     values = SOURCE * [mu / 0.3798, 1.0, mu / 0.3798, 1.0]
     return law_table(MagicFormula("peak"), values, weight=HALF.mass * 9.81, toe=toe)
 
 
 def measured_angles(factor: float) -> TripodAngles:
-    """Return the angles the source found on its robot."""
+    """Return the angles the thesis found on its robot."""
     up, outer_down, outer_up = MEASURED[factor]
     return TripodAngles(*np.radians([INNER, up, outer_down, outer_up]))
 
@@ -110,8 +110,8 @@ def radius_against_steering() -> None:
     figure, axes = plt.subplots(figsize=(7, 4.5), layout="constrained")
     axes.plot(FACTORS, wheels, ":", color="0.6", label="wheels, 2rθ̇ (the predecessor's)")
     axes.plot(FACTORS, kinematic, "--", color="0.4", label="no slip, exact leg kinematics")
-    axes.plot(FACTORS, source, "s-", ms=4, color="C1", label="the source's model")
-    axes.plot(FACTORS, ours, "o-", ms=4, color="C0", label="ours, the source's angles")
+    axes.plot(FACTORS, source, "s-", ms=4, color="C1", label="the thesis's model")
+    axes.plot(FACTORS, ours, "o-", ms=4, color="C0", label="ours, the thesis's angles")
     axes.plot(list(found), list(found.values()), "D-", ms=5, color="C3",
               label="ours, angles measured on the robot, 200° legs")  # fmt: skip
     axes.set(

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""How a gait rocks the body, by geometry alone: the source's tetrapod, section 5-5-2."""
+"""How a gait rocks the body, by geometry alone: the thesis's tetrapod, section 5-5-2."""
 
 from dataclasses import dataclass
 

@@ -4,7 +4,7 @@
 python -m benchmarks.faults.frozen_sensors [--seeds N] [--points N] [--trials N] [--rows N]
 
 Prints a table of experiments.md. Each seed is a simulated rig of its own, read by a board whose
-force and speed counts are as coarse as the row says. The plan is the source's, its time passes at
+force and speed counts are as coarse as the row says. The plan is the thesis's, its time passes at
 once. Then forces, and in a new start the leg disc's speed, freeze after 3 s of steady turning.
 """
 
@@ -36,7 +36,7 @@ from support.memory_sink import MemorySink
 from zebro_lab.experiment.plan_file import read_plan
 
 PERIOD = 0.02
-SOURCE_PLAN = Path(__file__).parents[2] / "examples" / "plan-source.toml"
+THESIS_PLAN = Path(__file__).parents[2] / "examples" / "plan-source.toml"
 RESOLUTIONS = ((1e-5, 1e-4), (0.001, 0.001), (0.01, 0.01), (0.02, 0.02), (0.1, 0.05), (0.1, 0.1),
                (0.5, 0.2))  # fmt: skip
 """Newtons and rad/s of one count; the first are those of the shipped profile."""
@@ -138,7 +138,7 @@ def main(report: Callable[[str], None] = print) -> None:
     parser.add_argument("--trials", type=int, default=20, help="frozen sensors of a row")
     parser.add_argument("--rows", type=int, default=len(RESOLUTIONS))
     wanted = parser.parse_args()
-    plan = read_plan(SOURCE_PLAN)
+    plan = read_plan(THESIS_PLAN)
     slips = tuple(np.linspace(0.0, 1.0, wanted.points).tolist())
     plan = replace(plan, points=replace(plan.points, slips=slips))
     report("| a count is | plans | false stops | frozen forces seen | frozen speed seen |")

@@ -92,7 +92,7 @@ def folder_for(row: Row) -> Iterator[Path]:
 
 
 def write_plan(file: Path, row: Row) -> None:
-    """Write the source's plan with one long point."""
+    """Write the thesis's plan with one long point."""
     text = (PROJECT / "examples" / "plan-source.toml").read_text(encoding="utf-8")
     changes = {
         "loads": f"[{LOAD}]", "slips": "[0.3]", "duration": "60.0", "tare_duration": "0.2",

@@ -28,14 +28,8 @@ from model.bayes.likelihood import log_likelihood, predict_blocks
 from model.bayes.posterior import LoadCell, SlipPosterior
 from model.bayes.samples import SlipSamples
 from model.slip.law import Array
-from rig.slip_rig.sweep import (
-    SOURCE_LAW,
-    SOURCE_VALUES,
-    SimulatedSweep,
-    SweepPlan,
-    draw_imperfections,
-    simulate_sweep,
-)
+from model.slip.thesis import THESIS_LAW, THESIS_VALUES
+from rig.slip_rig.sweep import SimulatedSweep, SweepPlan, draw_imperfections, simulate_sweep
 from zebro_lab.calibration.rig_data import read_rig_data
 
 SEED = 2020
@@ -58,7 +52,7 @@ def simulate(plan: SweepPlan) -> SimulatedSweep:
     """Simulate a sweep of the rig with errors of its own."""
     rng = np.random.default_rng(SEED)
     errors = draw_imperfections(rng)
-    return simulate_sweep(SOURCE_LAW, SOURCE_VALUES, plan=plan, imperfections=errors, rng=rng)
+    return simulate_sweep(THESIS_LAW, THESIS_VALUES, plan=plan, imperfections=errors, rng=rng)
 
 
 def rate(evaluate: Callable[[], Any], *, each: int, seconds: float = 3.0) -> float:
@@ -95,7 +89,7 @@ def dense_log_likelihood(posterior: SlipPosterior, values: Array) -> float:
 
 def independent_log_likelihood(samples: SlipSamples, values: Array) -> float:
     """Compute the likelihood that takes every sample for independent, as a first script would."""
-    force = SOURCE_LAW.force(samples.slip, samples.normal_force, values[:4])
+    force = THESIS_LAW.force(samples.slip, samples.normal_force, values[:4])
     noise = values[8] + values[9] * np.abs(force)
     return float(norm.logpdf(samples.traction_force, force, noise).sum())
 
@@ -231,7 +225,7 @@ def main(plan: SweepPlan = SWEEP, read: SweepPlan = READ) -> None:
     print(f"Machine: {describe_machine()}.\n")
     samples = simulate(plan).samples
     rng = np.random.default_rng(SEED)
-    fit = prepare_fit(samples, SOURCE_LAW, load_cell=LOAD_CELL, rng=rng, validate=False)
+    fit = prepare_fit(samples, THESIS_LAW, load_cell=LOAD_CELL, rng=rng, validate=False)
     z = rng.multivariate_normal(fit.laplace.mode, fit.laplace.covariance, size=BATCH)
     print("## Likelihood\n")
     time_likelihoods(fit.posterior, samples, z)

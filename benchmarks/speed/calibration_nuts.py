@@ -42,7 +42,7 @@ def jax_value(prior: Prior, z: Any) -> Any:
 def jax_log_density(posterior: SlipPosterior) -> Callable[[Any], Any]:
     """Write the posterior in JAX: the same blocks and model, a dense covariance a run.
 
-    Runs must have the same number of blocks, and the law must be `SOURCE_LAW`.
+    Runs must have the same number of blocks, and the law must be `THESIS_LAW`.
     """
     import jax.numpy as jnp
     from jax.scipy.linalg import solve_triangular

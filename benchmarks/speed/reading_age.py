@@ -206,7 +206,7 @@ def make_devices(place: dict[str, object]) -> RigDevices:
 
 
 def limits(seconds: float) -> RunLimits:
-    """Return the source plan's limits with a slow ramp, and patient where the load may hold up."""
+    """Return the thesis plan's limits with a slow ramp, and patient where the load may hold up."""
     plan = read_plan(PROJECT / "examples" / "plan-source.toml")
     return replace(
         plan.limits, acceleration=TOP_SPEED / seconds, silence=1.0, reading_age=1.0,

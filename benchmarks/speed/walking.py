@@ -31,7 +31,7 @@ SEED = 2020
 ROBOT = Robot()
 WEIGHT = ROBOT.mass * GRAVITY
 FRICTION = 0.38
-SOURCE_VALUES = np.array([34.34 * 1.564 * 0.3798, 1.564, 0.3798, 0.0066])  # K, C, mu, x
+THESIS_VALUES = np.array([34.34 * 1.564 * 0.3798, 1.564, 0.3798, 0.0066])  # K, C, mu, x
 CYCLE = 2.0  # s
 DURATION = 30.0  # s
 SMALL_STEP = 0.00025  # s: the radius that others are compared with
@@ -86,9 +86,9 @@ def gait() -> LegReference:
 
 def laws() -> dict[str, TractionTable]:
     """Tabulate both friction laws."""
-    magic_formula = law_table(MagicFormula("peak"), SOURCE_VALUES, weight=WEIGHT)
+    magic_formula = law_table(MagicFormula("peak"), THESIS_VALUES, weight=WEIGHT)
     coulomb = VelocityCoulomb(FRICTION).table(weight=WEIGHT)
-    return {f"Coulomb, mu {FRICTION}": coulomb, "Magic Formula of the source": magic_formula}
+    return {f"Coulomb, mu {FRICTION}": coulomb, "Magic Formula of the thesis": magic_formula}
 
 
 def radius(law: TractionTable, dt: float) -> float:
@@ -212,7 +212,7 @@ def time_mujoco(our_rates: dict[float, float]) -> None:
 
 def draw_values(n: int, rng: np.random.Generator) -> tuple[Array, Array]:
     """Draw parameters of the law, shape (n, 4), and leg offsets, shape (n, 6) [rad]."""
-    values = SOURCE_VALUES * np.exp(LAW_SPREAD * rng.standard_normal((n, 4)))
+    values = THESIS_VALUES * np.exp(LAW_SPREAD * rng.standard_normal((n, 4)))
     return values, LEG_OFFSET * rng.standard_normal((n, 6))
 
 

@@ -14,9 +14,8 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
 
+from model.slip.thesis import THESIS_LAW, THESIS_VALUES
 from rig.slip_rig.sweep import (
-    SOURCE_LAW,
-    SOURCE_VALUES,
     RigImperfections,
     SimulatedSweep,
     SweepPlan,
@@ -55,7 +54,7 @@ def simulate() -> tuple[SimulatedSweep, RigImperfections]:
     rng = np.random.default_rng(SEED)
     imperfections = draw_imperfections(rng)
     sweep = simulate_sweep(
-        SOURCE_LAW, SOURCE_VALUES, plan=PLAN, imperfections=imperfections, rng=rng
+        THESIS_LAW, THESIS_VALUES, plan=PLAN, imperfections=imperfections, rng=rng
     )
     return sweep, imperfections
 
@@ -74,10 +73,10 @@ def tables(sweep: SimulatedSweep) -> dict[str, pa.Table]:
 
 def truth(imperfections: RigImperfections) -> str:
     """Write the true values as TOML: those of the law, and those of the rig."""
-    law = {p.name: v for p, v in zip(SOURCE_LAW.parameters, SOURCE_VALUES, strict=True)}
+    law = {p.name: v for p, v in zip(THESIS_LAW.parameters, THESIS_VALUES, strict=True)}
     lines = ["# The true values behind this simulated sweep; written by generate.py."]
     lines += [f'source = "{SOURCE}"', f"seed = {SEED}"]
-    lines += ["", f"[{SOURCE_LAW.name}]", *(f"{name} = {value!r}" for name, value in law.items())]
+    lines += ["", f"[{THESIS_LAW.name}]", *(f"{name} = {value!r}" for name, value in law.items())]
     errors = asdict(imperfections)
     lines += ["", "[rig]", *(f"{name} = {value!r}" for name, value in errors.items())]
     return "\n".join(lines) + "\n"

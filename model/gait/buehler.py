@@ -16,7 +16,7 @@ def centred_time(t: ArrayLike, cycle_time: float) -> Array:
     .. math::
         \bar t = (t + \tau_c/2) \bmod \tau_c - \tau_c/2
 
-    The source puts the result into (-tau_c/2, tau_c/2]; its formula, and this, into
+    The thesis puts the result into (-tau_c/2, tau_c/2]; its formula, and this, into
     [-tau_c/2, tau_c/2). The clock is continuous there up to whole turns.
 
     Args:
@@ -46,7 +46,7 @@ def buehler_clock(
 
     The right tripod is the left one half a cycle later, Eq. (2-6).
 
-    The source has Theta = pi in place of 2 pi: its legs turn by half a turn in a cycle and jump by
+    The thesis has Theta = pi in place of 2 pi: its legs turn by half a turn in a cycle and jump by
     pi between cycles. It also lost a sign in the condition of its third case. With `turn` left
     alone the clock closes on a whole turn.
 

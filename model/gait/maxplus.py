@@ -25,7 +25,7 @@ def oplus(a: ArrayLike, b: ArrayLike) -> Array:
     .. math::
         [A \oplus B]_{ij} = \max(a_{ij}, b_{ij})
 
-    The source prints + in place of the comma.
+    The thesis prints + in place of the comma.
 
     >>> oplus([1.0, EPSILON], [0.0, 2.0]).tolist()
     [1.0, 2.0]

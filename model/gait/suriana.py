@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The source's emulation of turning by stance times, without max-plus algebra."""
+"""The thesis's emulation of turning by stance times, without max-plus algebra."""
 
 import numpy as np
 

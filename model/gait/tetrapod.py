@@ -22,7 +22,7 @@ def tetrapod_reference(
         \theta_{3,6}(0) = \theta_{TD}, \qquad \tau_g = 2\tau_c/3, \quad \tau_f = \tau_c/3
 
     Legs 1 and 4 fly first, then 2 and 5, then 3 and 6. Each pair touches down as the next lifts off
-    if pi/2 lies halfway between touchdown and lift-off, as it does in the source's simulation, pi/4
+    if pi/2 lies halfway between touchdown and lift-off, as it does in the thesis's simulation, pi/4
     and 3 pi/4. The angles set on its robot, 38 and 117 degrees, do not: there legs 2 and 5 would
     run ahead of the rhythm by a tenth of a cycle and fly while 1 and 4 still do. `middle_start`
     None puts them back into it.

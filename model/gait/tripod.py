@@ -60,7 +60,7 @@ def ideal_liftoff(touchdown: ArrayLike, leg_arc: float = np.pi) -> Array:
     .. math::
         \theta_{LO} = \pi - \arcsin\frac{\sin\theta_{TD} + 1}{2}
 
-    is the source's, for a half circle, from equal heights in Eq. (2-16). A leg whose arc A is
+    is the thesis's, for a half circle, from equal heights in Eq. (2-16). A leg whose arc A is
     longer or shorter stands on its arc up to the angle A - pi/2 and on its toe beyond, with hip
     heights
 
@@ -185,7 +185,7 @@ def tripod_angles(
     """Compute the angles of a tripod from a touchdown angle and a steering factor, 2-6-2.
 
     Angles that are given stand; what is left is computed. The outer touchdown follows from the
-    ideal lift-off angles even where other ones are given, as on the source's robot (Tables 5-3 to
+    ideal lift-off angles even where other ones are given, as on the thesis's robot (Tables 5-3 to
     5-5). A missing outer lift-off is the ideal one, or, where the inner one is given, that which
     keeps the steering factor, Eq. (2-18).
 

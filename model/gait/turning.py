@@ -27,7 +27,7 @@ def turning_system(
                \begin{bmatrix} E & \mathcal{E} \\ \tau_g \otimes N \oplus T & E \end{bmatrix}
                \otimes x(k-1)
 
-    The source gives the four event equations of 2-3-3 and leaves the matrices to its predecessor's
+    The thesis gives the four event equations of 2-3-3 and leaves the matrices to its predecessor's
     report. They follow from two demands.
 
     *Stance and flight.* With superscripts i and o for inner and outer legs,

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Lateral slip as the source has it: a slip angle, scaled to stand in for a slip ratio."""
+"""Lateral slip as the thesis has it: a slip angle, scaled to stand in for a slip ratio."""
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -8,7 +8,7 @@ from model.slip.law import Array
 
 
 def slip_angle(velocity_x: ArrayLike, velocity_y: ArrayLike) -> Array:
-    r"""Compute the slip angle of Eq. (4-41), with the sign of the source's listing.
+    r"""Compute the slip angle of Eq. (4-41), with the sign of the thesis's listing.
 
     .. math::
         \tan\alpha = -\frac{{}^C\dot y}{{}^C\dot x}
@@ -16,7 +16,7 @@ def slip_angle(velocity_x: ArrayLike, velocity_y: ArrayLike) -> Array:
     The text prints Eq. (4-41) without the minus; its own Eq. (4-30) and its listing have it, and
     only with it does a force D·sin(…alpha…) oppose the sliding. An arctangent of the quotient
     cannot tell forwards from backwards: for a contact moving backwards the force points along the
-    sliding. That fault is the source's and is kept.
+    sliding. That fault is the thesis's and is kept.
 
     Args:
         velocity_x: Velocity along the heading, in the contact frame [m/s]. The text takes the
@@ -41,7 +41,7 @@ def lateral_slip(alpha: ArrayLike) -> Array:
     .. math::
         \kappa_\alpha = \frac{\alpha}{\pi/2}
 
-    The source's heuristic, never measured: sideways sliding (pi/2) is to count as much as
+    The thesis's heuristic, never measured: sideways sliding (pi/2) is to count as much as
     spinning on the spot (1). It is neither tan(alpha), Pacejka's lateral slip, nor alpha, what
     Eq. (4-24) takes.
 

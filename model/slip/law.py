@@ -18,7 +18,7 @@ class Parameter:
 
     Attributes:
         name: Spelled-out name, unique within the law.
-        symbol: The source's symbol.
+        symbol: The thesis's symbol.
         unit: Unit as pint spells it; "dimensionless" where there is none.
         lower: Greatest lower bound of the support (excluded).
         upper: Least upper bound of the support (excluded).

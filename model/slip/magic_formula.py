@@ -19,7 +19,7 @@ def magic_formula(
     .. math::
         f = D \sin\bigl(C \arctan(B\kappa - E (B\kappa - \arctan B\kappa))\bigr)
 
-    The source's text lost the two pairs of brackets; its listing has them. Odd in `kappa` and
+    The thesis's text lost the two pairs of brackets; its listing has them. Odd in `kappa` and
     `D`; slope B·C·D at the origin. For E <= 1 the arctangent's argument grows with slip and
     |f| <= |D|; above, the curve turns over and changes sign at large slip.
 
@@ -65,7 +65,7 @@ def curvature_from_peak(B: ArrayLike, C: ArrayLike, x_m: ArrayLike) -> Array:
 
     Holds for C > 1 (below, the curve has no peak). E tends to minus infinity as x_m tends to 0.
     E <= 1, so that x_m is the only peak, needs tan(pi/2C) >= arctan(B x_m): at every x_m only if
-    C < 1.56472; the source's 1.564 is 0.0007 below.
+    C < 1.56472; the thesis's 1.564 is 0.0007 below.
 
     >>> float(curvature_from_peak(34.34, 1.564, 0.0066 * 6.63).round(3))
     -0.134

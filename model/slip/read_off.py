@@ -54,7 +54,7 @@ def shape_factor(y_a: ArrayLike, D: ArrayLike, *, has_peak: bool = True) -> Arra
     .. math::
         C = 1 \pm \Bigl(1 - \frac{2}{\pi} \arcsin\frac{y_a}{D}\Bigr)
 
-    The source's text lost the leading 1 (Pacejka has it): without it C would be below one and the
+    The thesis's text lost the leading 1 (Pacejka has it): without it C would be below one and the
     curve without a peak. Inverts y_a = D sin(pi C/2), which Eq. (4-23) tends to for E < 1.
 
     Args:
@@ -152,7 +152,7 @@ def curve_features(slip: ArrayLike, force: ArrayLike) -> CurveFeatures:
 def read_off(slip: ArrayLike, force: ArrayLike) -> Coefficients:
     """Read the Magic Formula's coefficients off a slip curve at one load.
 
-    The source's way, and a start for a fit; it knows no uncertainty. See `curve_features` for
+    The thesis's way, and a start for a fit; it knows no uncertainty. See `curve_features` for
     what it asks of the curve.
 
     Args:

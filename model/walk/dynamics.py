@@ -3,7 +3,7 @@
 
 Leg angles are inputs. Each leg touches the ground at its lowest point, with a stiff and damped
 normal force and a traction vector against the slip vector of the material contact point; force
-alone decides what is in contact. Where this departs from the source's model, and why, is in
+alone decides what is in contact. Where this departs from the thesis's model, and why, is in
 `docs/theory.md`.
 """
 

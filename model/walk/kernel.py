@@ -11,7 +11,7 @@ and traction of every contact are taken there, linear in them,
 with gap g, normal n, contact Jacobian J, the leg's own velocity u at its contact, and the secant
 G of the slip law. That leaves a symmetric positive definite 6x6 system; a few rounds settle which
 contacts press and what G is. No contact pulls, and traction opposes slip whatever the step, so the
-step is stable at any length: what the explicit step of the source is not.
+step is stable at any length: what the explicit step of the thesis is not.
 """
 
 import numpy as np

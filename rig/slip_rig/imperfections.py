@@ -70,7 +70,7 @@ TYPICAL_RIG = RigImperfections(
     slip_wander_time=0.15,
     bump_height=0.6,
 )
-"""A rig like the source's under a perfectly calibrated load cell."""
+"""A rig like the thesis's under a perfectly calibrated load cell."""
 
 
 def draw_imperfections(

@@ -17,6 +17,7 @@ from model.slip.brush import Brush
 from model.slip.coulomb import CoulombStribeck
 from model.slip.definition import SlipDefinition, slip_ratio
 from model.slip.law import Array, SlipLaw, Values
+from model.slip.thesis import THESIS_LAW, THESIS_VALUES
 from rig.errors import ProtocolError
 from rig.slip_rig.imperfections import (
     RigImperfections,
@@ -24,7 +25,7 @@ from rig.slip_rig.imperfections import (
     lag_one_correlation,
     measured_load,
 )
-from rig.slip_rig.sweep import SOURCE_LAW, SOURCE_VALUES, SweepPlan
+from rig.slip_rig.sweep import SweepPlan
 
 GRID: Final = 1 / 7000
 """Step of the simulation: a load cell's fastest rate [s]."""
@@ -34,7 +35,7 @@ SLOWEST: Final = 1e-3
 """Surface speed below which the leg disc is taken to stand: it carries no force [m/s]."""
 
 TWIN_LAWS: Final[dict[str, tuple[SlipLaw, Values]]] = {
-    "magic-formula": (SOURCE_LAW, SOURCE_VALUES),
+    "magic-formula": (THESIS_LAW, THESIS_VALUES),
     "coulomb-stribeck": (CoulombStribeck(), (12.0, 0.38, 0.75, 0.15)),
     "brush": (Brush(kinetic=True), (12.0, 0.38, 0.8)),
 }
@@ -109,8 +110,8 @@ class SimulatedRig:
 
     def __init__(
         self,
-        law: SlipLaw = SOURCE_LAW,
-        values: Values = SOURCE_VALUES,
+        law: SlipLaw = THESIS_LAW,
+        values: Values = THESIS_VALUES,
         *,
         plan: SweepPlan,
         imperfections: RigImperfections,

@@ -17,8 +17,6 @@ from model.bayes.samples import SlipSamples
 from model.errors import DomainError
 from model.slip.definition import SlipDefinition, slip_ratio
 from model.slip.law import Array, SlipLaw, Values
-from model.slip.thesis import THESIS_LAW as SOURCE_LAW
-from model.slip.thesis import THESIS_VALUES as SOURCE_VALUES
 from rig.slip_rig.imperfections import (
     RigImperfections,
     bump_rise,
@@ -28,8 +26,6 @@ from rig.slip_rig.imperfections import (
 )
 
 __all__ = [
-    "SOURCE_LAW",
-    "SOURCE_VALUES",
     "RigImperfections",
     "SimulatedSweep",
     "SweepPlan",
@@ -50,7 +46,7 @@ def _require(holds: bool, name: str, value: float, expected: str) -> None:
 class SweepPlan:
     """What is commanded: each slip ratio at each load, the loads outermost, one run a point.
 
-    The defaults are the source's rig (section 4-6): 62 slip ratios, four loads.
+    The defaults are the thesis's rig (section 4-6): 62 slip ratios, four loads.
 
     Attributes:
         slips: Material slip ratios, Eq. (4-44) [-].

@@ -176,7 +176,7 @@ def find_lift_off(
     Past the vertical a leg's hip only sinks, so that the angle is found by halving, among the
     angles that the robot can count. A half-circular leg would have it at
     :math:`2\sin\theta_{LO} = 1 + \sin\theta_{TD}`, Eq. (2-17); real ones are longer than that,
-    and the source measured 130° where that equation gives 118°.
+    and the thesis measured 130° where that equation gives 118°.
 
     Args:
         hip_height: Turns a standing leg to an angle [rad] and measures the height of its hip [m].

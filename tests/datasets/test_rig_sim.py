@@ -10,7 +10,7 @@ import pyarrow.parquet as pq
 import pytest
 
 from model.slip.definition import slip_ratio
-from rig.slip_rig.sweep import SOURCE_LAW, SOURCE_VALUES
+from model.slip.thesis import THESIS_LAW, THESIS_VALUES
 
 FOLDER = Path(__file__).parents[2] / "datasets" / "rig-sim"
 COMMITTED = sorted(FOLDER.glob("*.parquet"))
@@ -113,8 +113,8 @@ def test_columns_toml_states_the_plans_radii(generator):
 
 def test_truth_toml_states_the_law_and_the_rig(generator, truth):
     _, rig = generator.simulate()
-    assert list(truth[SOURCE_LAW.name].values()) == list(SOURCE_VALUES)
-    assert list(truth[SOURCE_LAW.name]) == [p.name for p in SOURCE_LAW.parameters]
+    assert list(truth[THESIS_LAW.name].values()) == list(THESIS_VALUES)
+    assert list(truth[THESIS_LAW.name]) == [p.name for p in THESIS_LAW.parameters]
     for name, value in truth["rig"].items():
         assert getattr(rig, name) == value
 
@@ -122,7 +122,7 @@ def test_truth_toml_states_the_law_and_the_rig(generator, truth):
 def test_the_readme_tabulates_the_true_values(truth):
     text = (FOLDER / "README.md").read_text(encoding="utf-8")
     rows = re.findall(r"^\|[^|]*\|[^|]*\|\s*(-?[\d.]+)[^|]*\|$", text, flags=re.MULTILINE)
-    promised = [*truth[SOURCE_LAW.name].values(), *truth["rig"].values()]
+    promised = [*truth[THESIS_LAW.name].values(), *truth["rig"].values()]
     np.testing.assert_allclose([float(value) for value in rows], promised, atol=5.1e-7)
 
 
@@ -133,7 +133,7 @@ def test_the_committed_log_follows_the_true_law(truth):
         committed_column("omega_leg") * 0.035, committed_column("omega_ground") * 0.12, "material"
     )
     load = (1 + rig["gain_normal"]) * Fn - rig["bias_normal"] + rig["crosstalk"] * Ft
-    force = (1 + rig["gain_traction"]) * SOURCE_LAW.force(slip, load, SOURCE_VALUES)
+    force = (1 + rig["gain_traction"]) * THESIS_LAW.force(slip, load, THESIS_VALUES)
     late = slip > 0.3  # where the blur of the measured slip hardly moves the force
     residual = (Ft - force)[late]
     noise = rig["noise_sd0"] + rig["noise_sd1"] * np.abs(force[late])

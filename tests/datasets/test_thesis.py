@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The identities that the source's published numbers must satisfy, to their printed digits."""
+"""The identities that the thesis's published numbers must satisfy, to their printed digits."""
 
 import math
 import tomllib

@@ -32,13 +32,8 @@ from model.bayes.laplace import LaplaceMixture, find_mode, importance_draws
 from model.bayes.posterior import LoadCell, SlipPosterior
 from model.bayes.samples import SlipSamples
 from model.slip.law import Array
-from rig.slip_rig.sweep import (
-    SOURCE_LAW,
-    SOURCE_VALUES,
-    SweepPlan,
-    draw_imperfections,
-    simulate_sweep,
-)
+from model.slip.thesis import THESIS_LAW, THESIS_VALUES
+from rig.slip_rig.sweep import SweepPlan, draw_imperfections, simulate_sweep
 
 pytestmark = pytest.mark.long
 
@@ -63,17 +58,17 @@ N_IID_DRAWS = 300
 N_INTERVAL_DRAWS = 8000
 CHUNK = 2  # parameter vectors at once
 
-LAW_SYMBOLS = tuple(parameter.symbol for parameter in SOURCE_LAW.parameters)
+LAW_SYMBOLS = tuple(parameter.symbol for parameter in THESIS_LAW.parameters)
 
 
 def quantities(law_values: Array) -> dict[str, Array]:
     """Read the law's parameters and the plain B and D off values of shape (n, k)."""
     columns = law_values.T
-    B, _, D, _ = SOURCE_LAW.coefficients(LOAD, columns)
+    B, _, D, _ = THESIS_LAW.coefficients(LOAD, columns)
     return {**dict(zip(LAW_SYMBOLS, columns, strict=True)), "B": B, "D": D}
 
 
-TRUTH = {name: float(x[0]) for name, x in quantities(np.array([SOURCE_VALUES])).items()}
+TRUTH = {name: float(x[0]) for name, x in quantities(np.array([THESIS_VALUES])).items()}
 
 
 @dataclass(frozen=True)
@@ -134,7 +129,7 @@ def conclude(
 
 def calibrate(samples: SlipSamples, rng: np.random.Generator) -> tuple[SlipPosterior, Fit]:
     began = time.perf_counter()
-    fit = prepare_fit(samples, SOURCE_LAW, load_cell=LOAD_CELL, rng=rng, validate=False)
+    fit = prepare_fit(samples, THESIS_LAW, load_cell=LOAD_CELL, rng=rng, validate=False)
     posterior = fit.posterior
     return posterior, conclude(posterior, fit.approximation, n=N_DRAWS, rng=rng, began=began)
 
@@ -159,7 +154,7 @@ def replicate(seed: int) -> dict[str, Fit]:
     truth = replace(
         draw_imperfections(rng), offset_sd=0.1, noise_correlation_time=-0.001 / np.log(RHO)
     )
-    sweep = simulate_sweep(SOURCE_LAW, SOURCE_VALUES, plan=PLAN, imperfections=truth, rng=rng)
+    sweep = simulate_sweep(THESIS_LAW, THESIS_VALUES, plan=PLAN, imperfections=truth, rng=rng)
     posterior, calibration = calibrate(sweep.samples, rng)
     errors = {name: getattr(truth, name) for name in LOAD_CELL_ERRORS}
     known = replace(posterior, fixed={**posterior.fixed, **errors})

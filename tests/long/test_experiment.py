@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""The source's whole plan on the twin, seed after seed: is the truth found, and by which slip?
+"""The thesis's whole plan on the twin, seed after seed: is the truth found, and by which slip?
 
 The same data are fitted twice: with the slip ratio that was measured at every instant, and with the
-commanded one, which is all that the source had.
+commanded one, which is all that the thesis had.
 """
 
 from dataclasses import dataclass, replace
@@ -17,11 +17,11 @@ from model.bayes.laplace import importance_draws
 from model.bayes.posterior import LoadCell
 from model.bayes.samples import SlipSamples
 from model.slip.definition import SlipDefinition
+from model.slip.thesis import THESIS_LAW, THESIS_VALUES
 from rig.experiment.control import Control
 from rig.experiment.run import run_plan
 from rig.experiment.verdict import measured_slip
 from rig.slip_rig.imperfections import draw_imperfections
-from rig.slip_rig.sweep import SOURCE_LAW, SOURCE_VALUES
 from support.memory_sink import MemorySink
 from zebro_lab.experiment.plan_file import read_plan
 from zebro_lab.experiment.rig_at_hand import rig_at_hand
@@ -31,8 +31,8 @@ pytestmark = pytest.mark.long
 N_SEEDS = 20
 PLAN = Path(__file__).parents[2] / "examples" / "plan-source.toml"
 LOAD_CELL = LoadCell(zero_stability=0.1, gain_sd=0.005, bias_sd=0.05, crosstalk_sd=0.005)
-TRUTH = np.array(SOURCE_VALUES)
-SYMBOLS = [parameter.symbol for parameter in SOURCE_LAW.parameters]
+TRUTH = np.array(THESIS_VALUES)
+SYMBOLS = [parameter.symbol for parameter in THESIS_LAW.parameters]
 DRAWS = 20_000
 
 
@@ -78,7 +78,7 @@ def measure(seed: int) -> tuple[SlipSamples, SlipSamples]:
 
 def fit(samples: SlipSamples, seed: int) -> Fitted:
     rng = np.random.default_rng(seed)
-    found = prepare_fit(samples, SOURCE_LAW, load_cell=LOAD_CELL, rng=rng, validate=False)
+    found = prepare_fit(samples, THESIS_LAW, load_cell=LOAD_CELL, rng=rng, validate=False)
     weighted = importance_draws(found.posterior.log_density, found.approximation, n=DRAWS, rng=rng)
     draws = found.posterior.values(weighted.resample(DRAWS, rng=rng))[:, : len(TRUTH)]
     miss = np.log(draws).mean(axis=0) - np.log(TRUTH)

@@ -26,7 +26,7 @@ from zebro_lab.runs.folder import find_runs, read_manifest
 
 pytestmark = pytest.mark.long
 
-SOURCE_PLAN = Path(__file__).parents[2] / "examples" / "plan-source.toml"
+THESIS_PLAN = Path(__file__).parents[2] / "examples" / "plan-source.toml"
 WATCHDOG = 1.0
 """Five times a real one's [s]: a busy machine holds a process up for longer than that."""
 SMALL = {
@@ -152,7 +152,7 @@ def come_to_rest(rig):
 def test_after_a_fault_the_discs_rest_the_reason_is_kept_and_resume_ends_the_plan(
     tmp_path, monkeypatch, twins, plant, error, said
 ):
-    text = SOURCE_PLAN.read_text()
+    text = THESIS_PLAN.read_text()
     for old, new in SMALL.items():
         assert old in text
         text = text.replace(old, new)

@@ -15,10 +15,10 @@ import pandas as pd
 import pytest
 
 from benchmarks.speed.recording import measure, report
+from model.slip.thesis import THESIS_LAW, THESIS_VALUES
 from rig.backends import open_rig
 from rig.slip_rig.can_simple import describe_error
 from rig.slip_rig.decode import decode_board, decode_speeds
-from rig.slip_rig.sweep import SOURCE_LAW, SOURCE_VALUES
 from zebro_lab.mcap.raw_log import read_raw_log
 from zebro_lab.runs.folder import read_slip_rig_run
 from zebro_lab.runs.stage import list_runs
@@ -111,7 +111,7 @@ def test_a_recorded_sweep_gives_the_law_that_the_simulated_rig_obeys(tmp_path):
     assert fitted.returncode == 0, fitted.stderr
     assert "converged and trustworthy" in fitted.stdout
     found = pd.read_csv(out / "summary.csv").set_index("parameter")
-    true = dict(zip((p.name for p in SOURCE_LAW.parameters), SOURCE_VALUES, strict=True))
+    true = dict(zip((p.name for p in THESIS_LAW.parameters), THESIS_VALUES, strict=True))
     for name, value in true.items():
         row = found.loc[name]
         tell(

@@ -23,21 +23,16 @@ from model.bayes.laplace import importance_draws
 from model.bayes.posterior import LoadCell
 from model.bayes.sampler import Chains, advance, start_chains
 from model.slip.law import Array
-from rig.slip_rig.sweep import (
-    SOURCE_LAW,
-    SOURCE_VALUES,
-    SweepPlan,
-    draw_imperfections,
-    simulate_sweep,
-)
+from model.slip.thesis import THESIS_LAW, THESIS_VALUES
+from rig.slip_rig.sweep import SweepPlan, draw_imperfections, simulate_sweep
 
 pytestmark = pytest.mark.long
 
 N_SEEDS = 20
 N_SAMPLED = 2
 LOAD_CELL = LoadCell(zero_stability=0.1, gain_sd=0.005, bias_sd=0.05, crosstalk_sd=0.005)
-TRUTH = np.array(SOURCE_VALUES)
-LAW = SOURCE_LAW.parameters
+TRUTH = np.array(THESIS_VALUES)
+LAW = THESIS_LAW.parameters
 
 ENOUGH_ESS = 5000.0
 """The engines are to agree to 5 % in spread over the sampled seeds times 12 parameters, of which
@@ -124,10 +119,10 @@ def walk(fit: PreparedFit, rng: np.random.Generator) -> tuple[Chains, Convergenc
 def recover(seed: int) -> Recovery:
     rng = np.random.default_rng(seed)
     sweep = simulate_sweep(
-        SOURCE_LAW, SOURCE_VALUES, plan=SweepPlan(), imperfections=draw_imperfections(rng), rng=rng
+        THESIS_LAW, THESIS_VALUES, plan=SweepPlan(), imperfections=draw_imperfections(rng), rng=rng
     )
     began = time.perf_counter()
-    fit = prepare_fit(sweep.samples, SOURCE_LAW, load_cell=LOAD_CELL, rng=rng, validate=False)
+    fit = prepare_fit(sweep.samples, THESIS_LAW, load_cell=LOAD_CELL, rng=rng, validate=False)
     posterior = fit.posterior
     weighted = importance_draws(
         posterior.log_density, fit.approximation, n=IMPORTANCE_DRAWS, rng=rng

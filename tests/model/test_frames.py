@@ -12,10 +12,10 @@ from model.frames import (
     rotation_x,
     rotation_y,
     rotation_z,
-    source_attitude,
+    thesis_attitude,
     transform,
 )
-from model.leg import contact_angle, source_lowest_angle, source_tilt
+from model.leg import contact_angle, thesis_lowest_angle, thesis_tilt
 
 ANGLE = st.floats(-3.0, 3.0)
 TILT = st.floats(-0.4, 0.4)
@@ -23,7 +23,7 @@ TILT = st.floats(-0.4, 0.4)
 
 @given(ANGLE, ANGLE, ANGLE)
 def test_attitudes_are_rotations(roll, pitch, yaw):
-    for R in (attitude(roll, pitch, yaw), source_attitude(roll, pitch, yaw)):
+    for R in (attitude(roll, pitch, yaw), thesis_attitude(roll, pitch, yaw)):
         np.testing.assert_allclose(R @ R.T, np.eye(3), atol=1e-14)
         assert np.linalg.det(R) == pytest.approx(1.0)
 
@@ -38,7 +38,7 @@ def test_angles_of_an_attitude_come_back(roll, pitch, yaw):
 @given(ANGLE)
 def test_the_two_orders_agree_about_one_axis(angle):
     for angles in ((angle, 0.0, 0.0), (0.0, angle, 0.0), (0.0, 0.0, angle)):
-        np.testing.assert_allclose(source_attitude(*angles), attitude(*angles), atol=1e-15)
+        np.testing.assert_allclose(thesis_attitude(*angles), attitude(*angles), atol=1e-15)
 
 
 def test_roll_lifts_the_left_and_pitch_lowers_the_nose():
@@ -49,7 +49,7 @@ def test_roll_lifts_the_left_and_pitch_lowers_the_nose():
 
 @given(TILT)
 def test_the_sources_roll_is_a_pitch_for_a_robot_that_heads_along_y(roll):
-    ours = roll_pitch_yaw(source_attitude(roll, 0.0, np.pi / 2))
+    ours = roll_pitch_yaw(thesis_attitude(roll, 0.0, np.pi / 2))
     np.testing.assert_allclose(ours, [0.0, -roll, np.pi / 2], atol=1e-12)
 
 
@@ -62,11 +62,11 @@ def test_rotations_take_arrays():
 
 @given(TILT, TILT, st.floats(0.6, 2.4))
 def test_the_chain_of_transforms_ends_at_the_lowest_point_in_a_level_frame(roll, pitch, theta):
-    tilt = source_tilt(roll, pitch, 0.0)
-    phi = source_lowest_angle(theta, tilt)
+    tilt = thesis_tilt(roll, pitch, 0.0)
+    phi = thesis_lowest_angle(theta, tilt)
     contact = contact_angle(phi)
     hip, r = np.array([0.097, 0.1156, 0.0]), 0.035
-    inertial_from_body = transform(source_attitude(roll, pitch, 0.0), [0.3, 0.1, 0.06])
+    inertial_from_body = transform(thesis_attitude(roll, pitch, 0.0), [0.3, 0.1, 0.06])
     leg_from_contact = hip_from_contact(phi, contact, roll=roll, radius=r)
     chain = inertial_from_body @ body_from_hip(theta, hip) @ leg_from_contact
     np.testing.assert_allclose(chain[:3, :3], np.eye(3), atol=1e-12)

@@ -5,7 +5,7 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from model.compiled import compiled
-from model.frames import attitude, rotation_y, source_attitude
+from model.frames import attitude, rotation_y, thesis_attitude
 from model.leg import (
     HIP,
     ROLLING,
@@ -18,10 +18,10 @@ from model.leg import (
     leg_state,
     lowest_angle,
     plane_cosine,
-    source_lowest_angle,
-    source_lowest_angle_rate,
-    source_tilt,
-    source_tilt_rate,
+    thesis_lowest_angle,
+    thesis_lowest_angle_rate,
+    thesis_tilt,
+    thesis_tilt_rate,
     wrap_angle,
 )
 
@@ -42,8 +42,8 @@ def arc_heights(theta, rotation, toe_beyond=0.0, n=4001):
 
 @given(THETA, TILT, TILT, YAW)
 def test_phi_min_satisfies_eq_3_21_and_3_23(theta, roll, pitch, yaw):
-    rotation = source_attitude(roll, pitch, yaw) @ rotation_y(theta)
-    phi = source_lowest_angle(theta, source_tilt(roll, pitch, yaw))
+    rotation = thesis_attitude(roll, pitch, yaw) @ rotation_y(theta)
+    phi = thesis_lowest_angle(theta, thesis_tilt(roll, pitch, yaw))
     slope = rotation[2] @ [-np.sin(phi), 0.0, -np.cos(phi)]
     curvature = rotation[2] @ [-np.cos(phi), 0.0, np.sin(phi)]
     assert slope == pytest.approx(0.0, abs=1e-12)
@@ -52,7 +52,7 @@ def test_phi_min_satisfies_eq_3_21_and_3_23(theta, roll, pitch, yaw):
 
 @given(THETA, TILT, YAW)
 def test_without_pitch_phi_min_is_that_of_the_printed_tangent(theta, roll, yaw):
-    phi = source_lowest_angle(theta, source_tilt(roll, 0.0, yaw))
+    phi = thesis_lowest_angle(theta, thesis_tilt(roll, 0.0, yaw))
     X = np.tan(roll) * np.sin(yaw)
     rise, run = 1 + np.tan(theta) * X, np.tan(theta) - X
     assert np.sin(phi) * run == pytest.approx(np.cos(phi) * rise, rel=1e-6, abs=1e-6)
@@ -62,7 +62,7 @@ def test_without_pitch_phi_min_is_that_of_the_printed_tangent(theta, roll, yaw):
 def test_without_pitch_the_rate_is_the_printed_one(roll, yaw, roll_rate, yaw_rate):
     printed = roll_rate * np.sin(yaw) * (1 + np.tan(roll) ** 2)
     printed += yaw_rate * np.tan(roll) * np.cos(yaw)
-    rate = source_tilt_rate(roll, 0.0, yaw, roll_rate, 0.0, yaw_rate)
+    rate = thesis_tilt_rate(roll, 0.0, yaw, roll_rate, 0.0, yaw_rate)
     assert rate == pytest.approx(printed, abs=1e-12)
 
 
@@ -71,11 +71,11 @@ def test_the_rate_of_phi_min_is_its_derivative(theta, roll, pitch, yaw, rates):
     h = 1e-6
 
     def phi(t):
-        tilt = source_tilt(roll + rates[0] * t, pitch + rates[1] * t, yaw + rates[2] * t)
-        return source_lowest_angle(theta + rates[3] * t, tilt)
+        tilt = thesis_tilt(roll + rates[0] * t, pitch + rates[1] * t, yaw + rates[2] * t)
+        return thesis_lowest_angle(theta + rates[3] * t, tilt)
 
-    tilt_rate = source_tilt_rate(roll, pitch, yaw, *rates[:3])
-    rate = source_lowest_angle_rate(rates[3], source_tilt(roll, pitch, yaw), tilt_rate)
+    tilt_rate = thesis_tilt_rate(roll, pitch, yaw, *rates[:3])
+    rate = thesis_lowest_angle_rate(rates[3], thesis_tilt(roll, pitch, yaw), tilt_rate)
     assert wrap_angle(phi(h) - phi(-h)) / (2 * h) == pytest.approx(rate, abs=1e-6)
 
 
@@ -92,14 +92,14 @@ def test_the_lowest_angle_is_the_circles_lowest_point_at_any_heading(theta, roll
 @given(THETA, TILT, YAW)
 def test_without_roll_at_heading_zero_the_source_finds_the_same_point(theta, pitch, yaw):
     ours = lowest_angle(theta, 0.0, pitch)
-    at_zero = source_lowest_angle(theta, source_tilt(0.0, pitch, 0.0))
+    at_zero = thesis_lowest_angle(theta, thesis_tilt(0.0, pitch, 0.0))
     assert wrap_angle(ours - at_zero) == pytest.approx(0.0, abs=1e-12)
 
 
 def test_the_sources_lowest_point_depends_on_the_heading():
     roll, theta = 0.05, np.pi / 2
-    along_x = source_lowest_angle(theta, source_tilt(roll, 0.0, 0.0))
-    along_y = source_lowest_angle(theta, source_tilt(roll, 0.0, np.pi / 2))
+    along_x = thesis_lowest_angle(theta, thesis_tilt(roll, 0.0, 0.0))
+    along_y = thesis_lowest_angle(theta, thesis_tilt(roll, 0.0, np.pi / 2))
     assert along_x == pytest.approx(0.0, abs=1e-12)
     assert along_y == pytest.approx(roll, rel=1e-3)
 

@@ -7,9 +7,10 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from model.slip.thesis import THESIS_LAW, THESIS_VALUES
 from model.walk.path import WalkPath
 from rig.slip_rig.imperfections import TYPICAL_RIG
-from rig.slip_rig.sweep import SOURCE_LAW, SOURCE_VALUES, SweepPlan, simulate_sweep
+from rig.slip_rig.sweep import SweepPlan, simulate_sweep
 
 COLUMNS = """
 source = "sim:rig-sweep"
@@ -22,12 +23,12 @@ load_cell.zero_stability = "0.1 N"
 def sweep(tmp_path_factory) -> Path:
     """Return a folder with one CSV of 24 runs, 3,600 samples, and its columns.toml.
 
-    The truth behind it is `SOURCE_VALUES` of `SOURCE_LAW`.
+    The truth behind it is `THESIS_VALUES` of `THESIS_LAW`.
     """
     plan = SweepPlan(slips=tuple(np.linspace(0.005, 0.9, 12) ** 1.5), loads=(4.0, 12.0), rate=150.0)
     rng = np.random.default_rng(1)
     simulated = simulate_sweep(
-        SOURCE_LAW, SOURCE_VALUES, plan=plan, imperfections=TYPICAL_RIG, rng=rng
+        THESIS_LAW, THESIS_VALUES, plan=plan, imperfections=TYPICAL_RIG, rng=rng
     )
     folder = tmp_path_factory.mktemp("sweep")
     table = pd.DataFrame(simulated.table).assign(

@@ -55,7 +55,7 @@ class ImportedWalk:
         legs: Leg angles.
         imu: Orientation of the body.
         track: Its path; None without one.
-        robot: The robot; the source's where it has no file.
+        robot: The robot; the thesis's where it has no file.
         material: Leg and ground material.
         operator: Who recorded it.
     """

@@ -85,7 +85,7 @@ def traction_forces(path: WalkPath, *, title: str, simulated: bool) -> Figure:
 def paired_traction(path: WalkPath, *, title: str, simulated: bool) -> Figure:
     """Draw the sums of consecutive pairs of traction forces of each leg over time (Fig. 5-19).
 
-    The source's traction changes sign from step to step; this is what it calls the net force.
+    The thesis's traction changes sign from step to step; this is what it calls the net force.
 
     Args:
         path: The stretch of walk to draw.

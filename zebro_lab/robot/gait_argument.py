@@ -142,13 +142,13 @@ def _tripod_name(angles: TripodAngles, side: Direction) -> str:
 
 def _suriana(request: GaitRequest, _: float) -> Gait:
     times = _turn_times(request)
-    reference = suriana_reference(*_stance(request, *_SOURCE_TURN), direction=request.side, **times)
+    reference = suriana_reference(*_stance(request, *_THESIS_TURN), direction=request.side, **times)
     return Gait(reference, _turn_name("suriana", request, times), request.side)
 
 
 def _maxplus(request: GaitRequest, _: float) -> Gait:
     times, inner = _turn_times(request), inner_legs(request.side)
-    touchdown, liftoff = _stance(request, *_SOURCE_TURN)
+    touchdown, liftoff = _stance(request, *_THESIS_TURN)
     system = turning_system(TRIPOD, inner=inner, **times)
     reference = scheduled_reference(
         system, touchdown, liftoff=liftoff, inner=inner if times["turn_time"] else ()
@@ -170,8 +170,8 @@ def _turn_name(name: str, request: GaitRequest, times: Mapping[str, float]) -> s
 
 
 def _tetrapod(request: GaitRequest, _: float) -> Gait:
-    touchdown, liftoff = _stance(request, 45.0, 135.0)  # 5-5-1 of the source
-    # Other angles than the source's put legs 2 and 5 out of rhythm if they start at 90 degrees.
+    touchdown, liftoff = _stance(request, 45.0, 135.0)  # 5-5-1 of the thesis
+    # Other angles than the thesis's put legs 2 and 5 out of rhythm if they start at 90 degrees.
     reference = tetrapod_reference(
         touchdown, liftoff, cycle_time=_or(request.cycle, 3.0), middle_start=None
     )
@@ -188,7 +188,7 @@ def _buehler(request: GaitRequest, _: float) -> Gait:
     return Gait(reference, "Buehler clock")
 
 
-_SOURCE_TURN = (35.0, 130.0)  # touchdown and lift-off of 5-2-4 [deg]
+_THESIS_TURN = (35.0, 130.0)  # touchdown and lift-off of 5-2-4 [deg]
 _ANGLES = ("touchdown_deg", "liftoff_deg")
 _TIMES = ("tau_ground", "tau_flight", "tau_turn")
 GAITS: Mapping[str, _Kind] = MappingProxyType({

@@ -45,7 +45,7 @@ class RobotFile:
         leg_sign: For each leg 1 where its reported angle grows as it walks forward, else -1,
             shape (6,).
         marker: Its marker; None where it has none.
-        file: The file; None for the source's robot.
+        file: The file; None for the thesis's robot.
     """
 
     robot: Robot = field(default_factory=Robot)
@@ -55,7 +55,7 @@ class RobotFile:
 
 
 def read_robot_file(file: Path) -> RobotFile:
-    """Read and check a `robot.toml`; what it leaves out is the source's robot's.
+    """Read and check a `robot.toml`; what it leaves out is the thesis's robot's.
 
     Raises:
         NotFound: There is no such file.
@@ -143,7 +143,7 @@ def _marker_section(marker: Marker | None) -> str:
 
 
 def _robot(top: SettingsTable, legs: SettingsTable) -> Robot:
-    """Take the robot's numbers; what is absent is the source's robot's."""
+    """Take the robot's numbers; what is absent is the thesis's robot's."""
     given: dict[str, Any] = {}
     if "mass" in top:
         given["mass"] = top.quantity("mass", "kg")

@@ -44,7 +44,7 @@ Margin = Annotated[
     str, typer.Option(metavar="LENGTH", help="How much around it belongs to its picture.")
 ]
 RobotToml = Annotated[
-    Path | None, typer.Option("--robot", help="robot.toml; the source's robot without it.")
+    Path | None, typer.Option("--robot", help="robot.toml; the thesis's robot without it.")
 ]
 Clicks = Annotated[
     list[str] | None,

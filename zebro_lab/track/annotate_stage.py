@@ -44,7 +44,7 @@ class AnnotateRequest:
         plate: "LENGTHxWIDTH@HEIGHT" of the top, height over the body's centre; None for the robot's
             body.
         margin: How much around the top belongs to its picture [m].
-        robot: A `robot.toml`; the source's robot when None.
+        robot: A `robot.toml`; the thesis's robot when None.
         clicks: Points of the floor, each "PHOTO:NAME=U,V" [px].
         moves: Where the robot is, each "PHOTO:X,Y,YAW" [m, m, deg].
         flips: Photographs in which head and tail are exchanged.

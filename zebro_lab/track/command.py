@@ -50,7 +50,7 @@ Photos = Annotated[
 CameraToml = Annotated[Path, typer.Option("--camera", help="camera.toml.")]
 FloorToml = Annotated[Path, typer.Option("--floor", help="floor.toml.")]
 RobotToml = Annotated[
-    Path | None, typer.Option("--robot", help="robot.toml; the source's robot without it.")
+    Path | None, typer.Option("--robot", help="robot.toml; the thesis's robot without it.")
 ]
 Out = Annotated[Path | None, typer.Option(help="Folder to write; RUN/track without it.")]
 Run = Annotated[Path | None, typer.Option(metavar="RUN", help="Run folder they belong to.")]

@@ -20,7 +20,7 @@ class TrackRequest:
         photos: Folder of photographs, video, or one composite picture.
         camera: The `camera.toml`.
         floor: The `floor.toml`.
-        robot: The `robot.toml`; the source's robot when None.
+        robot: The `robot.toml`; the thesis's robot when None.
         out: Folder to write; None for the run's own `track/`.
         run: Run folder the photographs belong to.
         times: How the photographs get their times.

@@ -90,4 +90,4 @@ def body_prior(
 
 
 def _file(described: RobotFile) -> str:
-    return str(described.file or "the source's robot (--robot names another)")
+    return str(described.file or "the thesis's robot (--robot names another)")

@@ -44,7 +44,7 @@ Slip = Annotated[
 ModelName = Annotated[
     Model,
     typer.Option(
-        help="dynamics: ours; thesis: the source's, with its faults; no-slip: exact kinematics; "
+        help="dynamics: ours; thesis: the thesis's, with its faults; no-slip: exact kinematics; "
         "no-slip-simple: wheels."
     ),
 ]
@@ -52,7 +52,7 @@ ToeName = Annotated[
     Toe, typer.Option(help="Traction of a leg on its toe, for dynamics: no rig measures it.")
 ]
 RobotFile = Annotated[
-    Path | None, typer.Option("--robot", help="robot.toml; the source's robot without it.")
+    Path | None, typer.Option("--robot", help="robot.toml; the thesis's robot without it.")
 ]
 ArcDeg = Annotated[
     float | None, typer.Option(help="Arc of the legs, 180 to 200, in place of the robot's [deg].")

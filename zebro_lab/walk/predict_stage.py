@@ -33,7 +33,7 @@ class PredictRequest:
         log: Leg angles: CSV, Parquet, or a walk folder.
         model: Which model, on what, and what to write.
         columns: A `columns.toml` in place of the one beside the log.
-        direction: Side the gait turns to; only the source's model asks.
+        direction: Side the gait turns to; only the thesis's model asks.
         band: What band to predict; None for the path alone.
     """
 

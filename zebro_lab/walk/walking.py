@@ -44,7 +44,7 @@ class ModelRequest:
         slip: What `--slip` names; None for a model without slip.
         model: Name of the model.
         toe: Traction of a leg on its toe.
-        robot: A `robot.toml`; the source's robot when None.
+        robot: A `robot.toml`; the thesis's robot when None.
         arc_deg: Angle of the legs' arc in place of the robot's [deg].
         dt: Length of a step; the model's own when None [s].
         figures: Draw the pictures.
@@ -96,7 +96,7 @@ class Walked:
 
 
 def robot_of(request: ModelRequest) -> RobotFile:
-    """Return the robot asked for: from its file or the source's, with the arc asked for.
+    """Return the robot asked for: from its file or the thesis's, with the arc asked for.
 
     Raises:
         NotFound: There is no such file.

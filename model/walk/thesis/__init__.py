@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""The source's hybrid dynamic model of tripod walking, as printed, with its faults."""
+"""The thesis's hybrid dynamic model of tripod walking, as printed, with its faults."""
 
 from model.walk.thesis.legs import SwitchedLegs
 from model.walk.thesis.traction import (
-    SOURCE_TRACTION,
+    THESIS_TRACTION,
     Traction,
     law_traction,
     paired_sum,
@@ -12,7 +12,7 @@ from model.walk.thesis.traction import (
 from model.walk.thesis.walk import ThesisOptions, walk_thesis
 
 __all__ = [
-    "SOURCE_TRACTION",
+    "THESIS_TRACTION",
     "SwitchedLegs",
     "ThesisOptions",
     "Traction",

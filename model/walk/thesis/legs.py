@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Leg angles step by step, switching speed by angle as the source's legs do."""
+"""Leg angles step by step, switching speed by angle as the thesis's legs do."""
 
 from dataclasses import dataclass, fields
 from typing import NamedTuple

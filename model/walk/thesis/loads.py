@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 r"""Normal forces of a tripod, Eq. (4-15) to (4-22).
 
-The source looks for normal forces f that give the pitch and roll rates its kinematics asks for,
+The thesis looks for normal forces f that give the pitch and roll rates its kinematics asks for,
 
 .. math::
     \min_f\ (\dot\theta_p - 0)^2 + (\dot\theta_r - \dot\theta_r^{kin})^2 \quad\text{such that}\quad

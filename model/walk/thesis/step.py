@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""The source's main loop, Listing A.4, compiled.
+"""The thesis's main loop, Listing A.4, compiled.
 
-State: q = (x, y, z, roll, pitch, yaw) and its rates v, with the angles of Eq. (3-7). The source
+State: q = (x, y, z, roll, pitch, yaw) and its rates v, with the angles of Eq. (3-7). The thesis
 takes the rates of these angles for the components of the angular velocity, and does not turn the
 inertia with the body; both are kept.
 """
@@ -21,10 +21,10 @@ from model.leg import (
     hip_height_acceleration,
     hip_height_rate,
     leg_state,
-    source_lowest_angle,
-    source_lowest_angle_rate,
-    source_tilt,
-    source_tilt_rate,
+    thesis_lowest_angle,
+    thesis_lowest_angle_rate,
+    thesis_tilt,
+    thesis_tilt_rate,
 )
 from model.robot import GRAVITY
 from model.slip.law import Array
@@ -99,12 +99,12 @@ def place_legs(machine, q, v, theta, speed, stance_speed, centre_before, legs):
     is set after its use.
     """
     r, beyond = machine.radius, machine.toe_beyond
-    tilt = source_tilt(q[3], q[4], q[5])
-    tilt_rate = source_tilt_rate(q[3], q[4], q[5], v[3], v[4], v[5])
+    tilt = thesis_tilt(q[3], q[4], q[5])
+    tilt_rate = thesis_tilt_rate(q[3], q[4], q[5], v[3], v[4], v[5])
     vector = np.empty(3)
     for i in range(6):
-        phi = source_lowest_angle(theta[i], tilt)
-        phi_rate = source_lowest_angle_rate(speed[i], tilt, tilt_rate)
+        phi = thesis_lowest_angle(theta[i], tilt)
+        phi_rate = thesis_lowest_angle_rate(speed[i], tilt, tilt_rate)
         legs.phi[i], legs.phi_rate[i] = phi, phi_rate
         legs.height[i] = hip_height(phi, r, beyond)
         legs.height_rate[i] = hip_height_rate(phi, -stance_speed[i], r, beyond)
@@ -291,7 +291,7 @@ def demands(machine, manner, legs, sides, q, v, spin, balance):
     """Fill what normal forces must balance; return their sum, Eq. (4-22) [N].
 
     No ground pulls: where the kinematic acceleration asks for less than nothing (a leg that meets
-    the ground at flight speed), the sum is zero. The source's problem has no solution there.
+    the ground at flight speed), the sum is zero. The thesis's problem has no solution there.
     """
     balance.wanted[0] = (roll_rate(machine, manner, legs, sides, q[3]) - v[3]) / manner.dt + spin[0]
     balance.wanted[1] = -v[4] / manner.dt + spin[1]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Traction by the walk's slip ratio: the source's Magic Formula, or any other law as a table."""
+"""Traction by the walk's slip ratio: the thesis's Magic Formula, or any other law as a table."""
 
 from typing import NamedTuple
 
@@ -34,17 +34,17 @@ class Traction(NamedTuple):
 
 _NO_TABLE = VelocityCoulomb(1.0).table(weight=1.0)._replace(by_velocity=False)
 
-SOURCE_TRACTION = Traction(True, 34.34, 1.564, 0.3798, 0.0066, _NO_TABLE)  # Listing A.20
+THESIS_TRACTION = Traction(True, 34.34, 1.564, 0.3798, 0.0066, _NO_TABLE)  # Listing A.20
 
 
 def law_traction(law: SlipLaw, values: Values, *, weight: float) -> Traction:
-    """Prepare a slip law for the source's model.
+    """Prepare a slip law for the thesis's model.
 
-    The source hands its walk's slip ratio, Eq. (4-31), to a curve fitted to the rig's, Eq. (4-44),
-    without conversion, and so does this model: see `docs/source-model.md`.
+    The thesis hands its walk's slip ratio, Eq. (4-31), to a curve fitted to the rig's, Eq. (4-44),
+    without conversion, and so does this model: see `docs/thesis-model.md`.
 
     Args:
-        law: The slip law. A Magic Formula as the source has it is evaluated exactly, others are
+        law: The slip law. A Magic Formula as the thesis has it is evaluated exactly, others are
             tabulated.
         values: Its parameter values, shape (k,).
         weight: Weight of the robot, which sets the range of tabulated loads [N].

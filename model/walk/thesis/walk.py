@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Walk by the source's model."""
+"""Walk by the thesis's model."""
 
 from dataclasses import dataclass
 
@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from model.contact.tripod import AUTOMATA, Automaton
 from model.errors import DomainError, WalkError
-from model.frames import roll_pitch_yaw, source_attitude
+from model.frames import roll_pitch_yaw, thesis_attitude
 from model.gait.direction import Direction, inner_legs
 from model.gait.reference import LegReference
 from model.leg import hip_height, wrap_angle
@@ -18,7 +18,7 @@ from model.walk.dynamics import step_times
 from model.walk.path import WalkPath
 from model.walk.thesis.legs import LegMotion, SwitchedLegs, leg_motion
 from model.walk.thesis.step import Machine, Manner, Record, run
-from model.walk.thesis.traction import SOURCE_TRACTION, Traction
+from model.walk.thesis.traction import THESIS_TRACTION, Traction
 
 TRIPODS = ((0, 3, 4), (1, 2, 5))
 SAME_SIDE = ((0, 4), (1, 5))  # legs of one tripod on one side, which turn alike
@@ -27,7 +27,7 @@ APART = np.radians(45.0)  # where they are further apart, the gait is no tripod 
 
 @dataclass(frozen=True)
 class ThesisOptions:
-    """How the source's model walks.
+    """How the thesis's model walks.
 
     Attributes:
         dt: Length of a step [s].
@@ -35,7 +35,7 @@ class ThesisOptions:
         automaton: What changes contacts: the listing's rule or Table 3-1.
         reset_height: Set the body's height at every change of contacts, as the listing does; the
             text's figures were made without, and sink.
-        mend_roll: Roll to the right side in right turns; the source's height difference is inner
+        mend_roll: Roll to the right side in right turns; the thesis's height difference is inner
             less outer for both, which leans a right turn the wrong way.
         heading: Yaw at the start; this model's walk depends on it [rad].
         every: Keep every so many steps.
@@ -82,14 +82,14 @@ def walk_thesis(
     reference: LegReference | SwitchedLegs,
     *,
     duration: float,
-    traction: Traction = SOURCE_TRACTION,
+    traction: Traction = THESIS_TRACTION,
     options: ThesisOptions = AS_PRINTED,
 ) -> WalkPath:
-    """Walk by the source's hybrid dynamic model, Listing A.4, for tripod gaits.
+    """Walk by the thesis's hybrid dynamic model, Listing A.4, for tripod gaits.
 
     Args:
-        robot: The robot; the source's has half-circle legs.
-        reference: Its legs. The source's switch speed by angle, `SwitchedLegs`; a gait or a
+        robot: The robot; the thesis's has half-circle legs.
+        reference: Its legs. The thesis's switch speed by angle, `SwitchedLegs`; a gait or a
             measured log is followed by the clock.
         duration: Time walked [s].
         traction: The slip law; see `model.walk.thesis.traction`.
@@ -97,7 +97,7 @@ def walk_thesis(
 
     Returns:
         The path from t = 0 on; forces of a sample are those of the step that begins there.
-        `slip_ratio` is the source's, Eq. (4-31), or slip velocity over its scale for a law by
+        `slip_ratio` is the thesis's, Eq. (4-31), or slip velocity over its scale for a law by
         velocity; the model has no velocity of the material contact point, so that is NaN on
         the ground.
 
@@ -133,7 +133,7 @@ def _require_tripod(motion: LegMotion, dt: float) -> None:
         if apart[worst] > APART:
             raise DomainError(
                 f"legs {first + 1} and {other + 1} are {np.degrees(apart[worst]):.3g} degrees "
-                f"apart at t = {worst * dt:.4g} s; the source's model walks tripods only, "
+                f"apart at t = {worst * dt:.4g} s; the thesis's model walks tripods only, "
                 "{1,4,5} and {2,3,6}: use the dynamics model for other gaits"
             )
 
@@ -175,7 +175,7 @@ def _empty_record(rows: int) -> Record:
 
 def _path(record: Record, motion: LegMotion, t: Array, options: ThesisOptions) -> WalkPath:
     angles = record.state[:, 3:]
-    ours = roll_pitch_yaw(source_attitude(*angles.T))
+    ours = roll_pitch_yaw(thesis_attitude(*angles.T))
     ours[:, 2] = angles[:, 2] + wrap_angle(ours[:, 2] - angles[:, 2])  # keeps count of full turns
     on_ground = np.where(record.contact, np.nan, 0.0)
     return WalkPath(

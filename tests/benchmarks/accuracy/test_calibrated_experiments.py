@@ -3,9 +3,9 @@ import numpy as np
 import pytest
 
 from benchmarks.accuracy import calibrated_experiments
-from rig.slip_rig.sweep import SOURCE_VALUES
+from model.slip.thesis import THESIS_VALUES
 
-TRUTH = np.array(SOURCE_VALUES)
+TRUTH = np.array(THESIS_VALUES)
 SD = 0.01 * TRUTH
 
 

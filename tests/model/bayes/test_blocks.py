@@ -10,8 +10,9 @@ from scipy.signal import lfilter
 from model.bayes.blocks import SlipBlocks, block_means, slip_noise_variance
 from model.bayes.samples import SlipSamples
 from model.slip import SlipDefinition
+from model.slip.thesis import THESIS_LAW, THESIS_VALUES
 from rig.slip_rig.imperfections import TYPICAL_RIG
-from rig.slip_rig.sweep import SOURCE_LAW, SOURCE_VALUES, SweepPlan, simulate_sweep
+from rig.slip_rig.sweep import SweepPlan, simulate_sweep
 
 NOISE = 0.01
 RUN_LENGTHS = st.lists(st.integers(1, 60), min_size=1, max_size=8)
@@ -253,7 +254,7 @@ def calibrated(rig, seed, *, length=20):
     """Return the blocks of a simulated sweep, their mean true slip and their mean measured slip."""
     plan = SweepPlan(slips=tuple(np.linspace(0.0, 0.9, 40)), loads=(6.0,), duration=1.2)
     rng = np.random.default_rng(seed)
-    log = simulate_sweep(SOURCE_LAW, SOURCE_VALUES, plan=plan, imperfections=rig, rng=rng)
+    log = simulate_sweep(THESIS_LAW, THESIS_VALUES, plan=plan, imperfections=rig, rng=rng)
     blocks = block_means(log.samples, length)
     true, measured = (mean_of_blocks(x, blocks.count) for x in (log.slip_true, log.samples.slip))
     return blocks, true, measured

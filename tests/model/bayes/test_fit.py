@@ -12,10 +12,11 @@ from model.bayes.posterior import LoadCell, SlipPosterior
 from model.bayes.preliminary import BlockChoice
 from model.errors import DomainError, InsufficientData
 from model.slip import MagicFormula
+from model.slip.thesis import THESIS_LAW, THESIS_VALUES
 from rig.slip_rig.imperfections import TYPICAL_RIG, RigImperfections
-from rig.slip_rig.sweep import SOURCE_LAW, SOURCE_VALUES, SweepPlan, simulate_sweep
+from rig.slip_rig.sweep import SweepPlan, simulate_sweep
 
-STIFFNESS = SOURCE_VALUES[0]
+STIFFNESS = THESIS_VALUES[0]
 SMALL = SweepPlan(slips=(0.01, 0.03, 0.06, 0.12, 0.3, 0.7), loads=(2.13, 12.75), duration=0.4)
 TEN = BlockChoice(10, None, "the length of this test")
 
@@ -23,11 +24,11 @@ TEN = BlockChoice(10, None, "the length of this test")
 def simulated(imperfections=TYPICAL_RIG, *, plan=SMALL, seed=0):
     rng = np.random.default_rng(seed)
     return simulate_sweep(
-        SOURCE_LAW, SOURCE_VALUES, plan=plan, imperfections=imperfections, rng=rng
+        THESIS_LAW, THESIS_VALUES, plan=plan, imperfections=imperfections, rng=rng
     ).samples
 
 
-def prepared(samples, law=SOURCE_LAW, *, choice=None, validate=False, load_cell=None):
+def prepared(samples, law=THESIS_LAW, *, choice=None, validate=False, load_cell=None):
     return prepare_fit(
         samples,
         law,
@@ -68,7 +69,7 @@ def naive_fit(samples, length, fit, **fixed):
         slip_load_covariance=nothing,
         run_slip_error=np.zeros(blocks.n_runs),
     )
-    posterior = SlipPosterior(naive, SOURCE_LAW, fit.posterior.priors, fixed)
+    posterior = SlipPosterior(naive, THESIS_LAW, fit.posterior.priors, fixed)
     start = posterior.coordinates(mode_values(fit.posterior, fit.laplace))
     return mode_values(posterior, find_mode(posterior.log_density, start[None]))
 
@@ -152,7 +153,7 @@ def test_what_is_known_of_the_load_cell_is_kept_with_the_fit():
 
 def test_the_mode_is_higher_than_the_truth():
     fit = prepared(simulated(), choice=TEN)
-    truth = dict(zip((p.name for p in SOURCE_LAW.parameters), SOURCE_VALUES, strict=True))
+    truth = dict(zip((p.name for p in THESIS_LAW.parameters), THESIS_VALUES, strict=True))
     truth |= {"noise_floor": 0.03, "noise_slope": 0.02, "offset_spread": 0.05}
     at_truth = fit.posterior.log_density(fit.posterior.coordinates(truth)[None])[0]
     assert np.isfinite(at_truth)
@@ -261,7 +262,7 @@ def peak_law_data():
     slips = (0.005, 0.01, 0.015, 0.02, 0.03, 0.04, 0.05, 0.06, 0.08, 0.1, 0.12, 0.2, 0.4, 0.7)
     plan = replace(SMALL, slips=slips, duration=0.6)
     samples = simulated(plan=plan)
-    laws = (MagicFormula(curvature=0.0), SOURCE_LAW)
+    laws = (MagicFormula(curvature=0.0), THESIS_LAW)
     return [prepared(samples, law, choice=TEN, validate=True) for law in laws]
 
 

@@ -12,14 +12,15 @@ from model.bayes.posterior import LoadCell, SlipPosterior, default_priors
 from model.bayes.priors import HalfNormal, Normal
 from model.slip import Brush, CoulombStribeck, MagicFormula
 from model.slip.law import Parameter, inside_support
+from model.slip.thesis import THESIS_LAW, THESIS_VALUES
 from rig.slip_rig.imperfections import TYPICAL_RIG
-from rig.slip_rig.sweep import SOURCE_LAW, SOURCE_VALUES, SweepPlan, simulate_sweep
+from rig.slip_rig.sweep import SweepPlan, simulate_sweep
 
 PLAN = SweepPlan(slips=(0.0, 0.05, 0.2, 0.6), loads=(2.13, 12.75), duration=0.4)
 BLOCKS = block_means(
     simulate_sweep(
-        SOURCE_LAW,
-        SOURCE_VALUES,
+        THESIS_LAW,
+        THESIS_VALUES,
         plan=PLAN,
         imperfections=TYPICAL_RIG,
         rng=np.random.default_rng(0),
@@ -27,7 +28,7 @@ BLOCKS = block_means(
     20,
 )
 LAWS = (
-    SOURCE_LAW,
+    THESIS_LAW,
     MagicFormula(curvature="constant", load_sensitivity=True, reference_load=6.63),
     CoulombStribeck(),
     Brush(kinetic=True),
@@ -35,12 +36,12 @@ LAWS = (
 every_law = pytest.mark.parametrize("law", LAWS, ids=lambda law: law.name)
 
 
-def posterior(law=SOURCE_LAW, **fixed):
+def posterior(law=THESIS_LAW, **fixed):
     return SlipPosterior(BLOCKS, law, default_priors(law, BLOCKS, LoadCell()), fixed)
 
 
 def truth():
-    law_values = {p.name: v for p, v in zip(SOURCE_LAW.parameters, SOURCE_VALUES, strict=True)}
+    law_values = {p.name: v for p, v in zip(THESIS_LAW.parameters, THESIS_VALUES, strict=True)}
     return {**law_values, "noise_floor": 0.01, "noise_correlation": 0.2, "offset_spread": 0.05}
 
 
@@ -184,7 +185,7 @@ def test_every_parameter_gets_a_prior(law):
 
 def test_a_load_cells_certificate_sets_its_priors():
     cell = LoadCell(zero_stability=0.3, gain_sd=0.01, bias_sd=0.2, crosstalk_sd=0.02)
-    priors = default_priors(SOURCE_LAW, BLOCKS, cell)
+    priors = default_priors(THESIS_LAW, BLOCKS, cell)
     assert priors["offset_spread"] == HalfNormal(0.3)
     assert priors["gain_traction"] == priors["gain_normal"] == Normal(0.0, 0.01)
     assert priors["bias_normal"] == Normal(0.0, 0.2)

@@ -18,28 +18,29 @@ from model.bayes.preliminary import (
 )
 from model.bayes.samples import SlipSamples
 from model.slip import SlipDefinition
+from model.slip.thesis import THESIS_LAW, THESIS_VALUES
 from rig.slip_rig.imperfections import TYPICAL_RIG, RigImperfections
-from rig.slip_rig.sweep import SOURCE_LAW, SOURCE_VALUES, SweepPlan, simulate_sweep
+from rig.slip_rig.sweep import SweepPlan, simulate_sweep
 
 PERFECT = RigImperfections()
 PLAN = SweepPlan(slips=tuple(np.linspace(0, 0.8, 20)), loads=(2.13, 12.75), duration=0.8)
-SLIP_SCALE = SOURCE_VALUES[2] / SOURCE_VALUES[0]
+SLIP_SCALE = THESIS_VALUES[2] / THESIS_VALUES[0]
 
 
 def sweep(imperfections, *, plan=PLAN, seed=0):
     rng = np.random.default_rng(seed)
-    log = simulate_sweep(SOURCE_LAW, SOURCE_VALUES, plan=plan, imperfections=imperfections, rng=rng)
+    log = simulate_sweep(THESIS_LAW, THESIS_VALUES, plan=plan, imperfections=imperfections, rng=rng)
     return log.samples
 
 
 def priors_of(samples):
-    return default_priors(SOURCE_LAW, block_means(samples, 10), LoadCell())
+    return default_priors(THESIS_LAW, block_means(samples, 10), LoadCell())
 
 
 def fitted(samples, *, length=10, seed=0):
     return least_squares_values(
         block_means(samples, length),
-        SOURCE_LAW,
+        THESIS_LAW,
         priors=priors_of(samples),
         rng=np.random.default_rng(seed),
     )
@@ -47,7 +48,7 @@ def fitted(samples, *, length=10, seed=0):
 
 def choice(samples):
     rng = np.random.default_rng(0)
-    return choose_block_length(samples, SOURCE_LAW, priors=priors_of(samples), rng=rng)
+    return choose_block_length(samples, THESIS_LAW, priors=priors_of(samples), rng=rng)
 
 
 def ar1(rho, shape, seed=0):
@@ -60,7 +61,7 @@ def ar1(rho, shape, seed=0):
 
 
 def test_a_perfect_rigs_law_is_read_back():
-    np.testing.assert_allclose(fitted(sweep(PERFECT)), SOURCE_VALUES, rtol=0.03)
+    np.testing.assert_allclose(fitted(sweep(PERFECT)), THESIS_VALUES, rtol=0.03)
 
 
 def test_different_random_starts_lead_to_the_same_fit():
@@ -72,7 +73,7 @@ def test_a_spoilt_run_hardly_moves_the_fit():
     samples = sweep(TYPICAL_RIG)
     spoilt = samples.traction_force + 5.0 * (samples.run == 25)
     moved = fitted(replace(samples, traction_force=spoilt))
-    assert moved[2] == pytest.approx(SOURCE_VALUES[2], rel=0.03)
+    assert moved[2] == pytest.approx(THESIS_VALUES[2], rel=0.03)
 
 
 # --- correlation time
@@ -170,7 +171,7 @@ def swept(seconds, *, rate=500, correlation=0.98):
     return SlipSamples(
         slip=slip,
         normal_force=load,
-        traction_force=SOURCE_LAW.force(slip, load, SOURCE_VALUES) + noise,
+        traction_force=THESIS_LAW.force(slip, load, THESIS_VALUES) + noise,
         run=np.repeat(np.arange(4), n),
         run_names=("a", "b", "c", "d"),
         definition=SlipDefinition.MATERIAL,

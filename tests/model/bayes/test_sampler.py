@@ -14,7 +14,7 @@ from model.bayes.sampler import (
 )
 from model.errors import DomainError, FitError
 
-D = 12  # as many as the source's law and its measurement have
+D = 12  # as many as the thesis's law and its measurement have
 
 
 def correlated_gaussian(d=D):

@@ -16,8 +16,9 @@ from model.bayes.residuals import Residuals, analyse_residuals
 from model.bayes.verdict import Check, Verdict, judge, slip_reach
 from model.slip import Brush, MagicFormula
 from model.slip.definition import SlipDefinition
+from model.slip.thesis import THESIS_LAW, THESIS_VALUES
 from rig.slip_rig.imperfections import TYPICAL_RIG
-from rig.slip_rig.sweep import SOURCE_LAW, SOURCE_VALUES, SweepPlan, simulate_sweep
+from rig.slip_rig.sweep import SweepPlan, simulate_sweep
 
 CONVERGED = Convergence(
     burn_in=50, length=1000, autocorrelation_time=np.full(10, 10.0), r_hat=np.full(10, 1.001),
@@ -204,9 +205,9 @@ def verdict_on_sweep(*, offset_sd: float, zero_stability: float, seed: int = 1) 
     rng = np.random.default_rng(seed)
     plan = SweepPlan(slips=tuple(np.linspace(0.005, 0.9, 12) ** 1.5), loads=(4.0, 12.0), rate=100.0)
     rig = replace(TYPICAL_RIG, offset_sd=offset_sd)
-    sweep = simulate_sweep(SOURCE_LAW, SOURCE_VALUES, plan=plan, imperfections=rig, rng=rng)
+    sweep = simulate_sweep(THESIS_LAW, THESIS_VALUES, plan=plan, imperfections=rig, rng=rng)
     fit = prepare_fit(
-        sweep.samples, SOURCE_LAW, load_cell=LoadCell(zero_stability=zero_stability), rng=rng,
+        sweep.samples, THESIS_LAW, load_cell=LoadCell(zero_stability=zero_stability), rng=rng,
         block_choice=BlockChoice(20, None, "as planned"), threads=1,
     )  # fmt: skip
     weighted = importance_draws(fit.posterior.log_density, fit.approximation, n=1000, rng=rng)
@@ -215,11 +216,11 @@ def verdict_on_sweep(*, offset_sd: float, zero_stability: float, seed: int = 1) 
     names = [parameter.name for parameter in fit.posterior.free]
     return judge(
         blocks=fit.posterior.blocks,
-        law=SOURCE_LAW,
+        law=THESIS_LAW,
         values=values,
         contraction=dict(zip(names, 1 - z.var(axis=0), strict=True)),
         convergence=CONVERGED,
-        residuals=analyse_residuals(fit.posterior.blocks, SOURCE_LAW, values),
+        residuals=analyse_residuals(fit.posterior.blocks, THESIS_LAW, values),
         offset_scale=zero_stability,
     )
 

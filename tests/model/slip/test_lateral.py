@@ -48,5 +48,5 @@ def test_lateral_slip_maps_a_right_angle_to_one():
 
 @given(SPEED, SPEED)
 def test_for_a_contact_moving_backwards_the_force_points_along_the_sliding(v_x, v_y):
-    """The source's fault, kept: its arctangent cannot tell forwards from backwards."""
+    """The thesis's fault, kept: its arctangent cannot tell forwards from backwards."""
     assert slip_angle(-v_x, v_y) > 0

@@ -15,13 +15,13 @@ from model.slip.magic_formula import (
 )
 
 SOURCE = {"B": 34.34, "C": 1.564}  # Eq. (4-45)
-SOURCE_LOADS = (2.13, 6.63, 8.13, 12.75)
-SOURCE_FRICTION, SOURCE_PEAK_PER_LOAD = 0.3798, 0.0066  # Listing A.20
-SOURCE_VALUES = (
-    SOURCE["B"] * SOURCE["C"] * SOURCE_FRICTION,
+THESIS_LOADS = (2.13, 6.63, 8.13, 12.75)
+THESIS_FRICTION, THESIS_PEAK_PER_LOAD = 0.3798, 0.0066  # Listing A.20
+THESIS_VALUES = (
+    SOURCE["B"] * SOURCE["C"] * THESIS_FRICTION,
     SOURCE["C"],
-    SOURCE_FRICTION,
-    SOURCE_PEAK_PER_LOAD,
+    THESIS_FRICTION,
+    THESIS_PEAK_PER_LOAD,
 )
 
 B_RANGE, C_RANGE, E_RANGE = st.floats(1, 100), st.floats(1.02, 1.98), st.floats(-50, 0.99)
@@ -69,21 +69,21 @@ def test_curvature_above_one_turns_the_force_round():
     assert magic_formula(10.0, 34.34, 1.564, 1.0, 1.2) < 0
 
 
-@pytest.mark.parametrize("load", SOURCE_LOADS)
+@pytest.mark.parametrize("load", THESIS_LOADS)
 def test_source_curve_peaks_where_its_listing_says(load):
     law = MagicFormula()
-    assert law.peak_slip(load, SOURCE_VALUES) == pytest.approx(SOURCE_PEAK_PER_LOAD * load)
-    found = law.coefficients(load, SOURCE_VALUES)[:3]
-    np.testing.assert_allclose(found, (SOURCE["B"], SOURCE["C"], SOURCE_FRICTION * load))
+    assert law.peak_slip(load, THESIS_VALUES) == pytest.approx(THESIS_PEAK_PER_LOAD * load)
+    found = law.coefficients(load, THESIS_VALUES)[:3]
+    np.testing.assert_allclose(found, (SOURCE["B"], SOURCE["C"], THESIS_FRICTION * load))
 
 
 @given(st.floats(1e-3, 1e4))
 def test_source_shape_keeps_curvature_below_one_at_every_load(load):
-    assert MagicFormula().valid(load, SOURCE_VALUES)
+    assert MagicFormula().valid(load, THESIS_VALUES)
 
 
 def test_shape_just_above_the_source_lets_curvature_pass_one_at_high_load():
-    K, _, mu, x_m = SOURCE_VALUES
+    K, _, mu, x_m = THESIS_VALUES
     limit = math.pi / (2 * math.atan(math.pi / 2))
     assert limit == pytest.approx(1.56472, abs=1e-5)
     assert MagicFormula().valid(1e6, (K, limit - 1e-5, mu, x_m))
@@ -91,7 +91,7 @@ def test_shape_just_above_the_source_lets_curvature_pass_one_at_high_load():
 
 
 def test_curvature_falls_without_bound_as_load_vanishes():
-    E = MagicFormula().coefficients(np.array([1.0, 1e-2, 1e-4]), SOURCE_VALUES)[3]
+    E = MagicFormula().coefficients(np.array([1.0, 1e-2, 1e-4]), THESIS_VALUES)[3]
     assert np.all(np.diff(E) < 0)
     assert E[-1] < -1e12
 

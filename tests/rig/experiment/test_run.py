@@ -4,12 +4,12 @@
 import numpy as np
 import pytest
 
+from model.slip.thesis import THESIS_LAW, THESIS_VALUES
 from rig.errors import DeviceFault, LimitExceeded, ProtocolError, RigTimeout
 from rig.experiment.sink import SinkFailed
 from rig.experiment.verdict import measured_slip
 from rig.experiment.watcher import NobodyWatches
 from rig.safety import StopCategory
-from rig.slip_rig.sweep import SOURCE_LAW, SOURCE_VALUES
 from support.memory_sink import MemorySink
 
 
@@ -26,7 +26,7 @@ def test_a_plan_runs_to_its_end_and_every_point_obeys_the_law(lab):
     assert reasons(twin.sink) == ["completed"]
     for run in twin.sink.accepted:
         slip = measured_slip(run.readings, twin.bench.profile)
-        expected = SOURCE_LAW.force(slip, run.readings.normal_force, SOURCE_VALUES)
+        expected = THESIS_LAW.force(slip, run.readings.normal_force, THESIS_VALUES)
         assert run.readings.traction_force.mean() == pytest.approx(expected.mean(), abs=0.25)
         assert np.all(np.diff(run.readings.t) > 0)
 

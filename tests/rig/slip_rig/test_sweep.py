@@ -7,25 +7,19 @@ import pytest
 from model.errors import DomainError
 from model.slip.definition import SlipDefinition
 from model.slip.magic_formula import MagicFormula
+from model.slip.thesis import THESIS_LAW, THESIS_VALUES
 from rig.slip_rig.imperfections import (
     TYPICAL_RIG,
     lag_one_correlation,
     true_load,
 )
-from rig.slip_rig.sweep import (
-    SOURCE_LAW,
-    SOURCE_VALUES,
-    RigImperfections,
-    SweepPlan,
-    draw_imperfections,
-    simulate_sweep,
-)
+from rig.slip_rig.sweep import RigImperfections, SweepPlan, draw_imperfections, simulate_sweep
 
 PERFECT = RigImperfections()
 RADII = SweepPlan().radius_leg / SweepPlan().radius_ground
 
 
-def sweep(imperfections=PERFECT, seed=0, *, plan=None, law=SOURCE_LAW, values=SOURCE_VALUES):
+def sweep(imperfections=PERFECT, seed=0, *, plan=None, law=THESIS_LAW, values=THESIS_VALUES):
     rng = np.random.default_rng(seed)
     return simulate_sweep(
         law, values, plan=plan or SweepPlan(), imperfections=imperfections, rng=rng
@@ -80,7 +74,7 @@ def test_an_impossible_plan_is_refused_by_name_and_value(fault, named):
 
 @pytest.mark.parametrize(
     ("law", "values"),
-    [(SOURCE_LAW, SOURCE_VALUES), (MagicFormula(curvature=0.0), (12.0, 1.3, 0.7))],
+    [(THESIS_LAW, THESIS_VALUES), (MagicFormula(curvature=0.0), (12.0, 1.3, 0.7))],
 )
 def test_a_perfect_rig_logs_the_law_itself(law, values):
     log = sweep(law=law, values=values).samples
@@ -99,11 +93,11 @@ def test_a_perfect_rig_logs_the_commanded_slip_and_load():
 
 
 def test_source_values_carry_the_sources_stiffness_factor():
-    B, C, D, _ = SOURCE_LAW.coefficients(6.63, SOURCE_VALUES)
+    B, C, D, _ = THESIS_LAW.coefficients(6.63, THESIS_VALUES)
     np.testing.assert_allclose([B, C, D], [34.34, 1.564, 0.3798 * 6.63])
-    peak = SOURCE_LAW.peak_slip(6.63, SOURCE_VALUES)
+    peak = THESIS_LAW.peak_slip(6.63, THESIS_VALUES)
     np.testing.assert_allclose(peak, 0.0066 * 6.63, rtol=1e-9)
-    assert np.all(SOURCE_LAW.valid(np.array([2.13, 12.75 * 1.6]), SOURCE_VALUES))
+    assert np.all(THESIS_LAW.valid(np.array([2.13, 12.75 * 1.6]), THESIS_VALUES))
 
 
 # --- the log
@@ -154,7 +148,7 @@ def test_gain_error_scales_the_traction_and_nothing_else():
 
 def standardised_noise(log, rig, plan):
     """Traction less the law and the offsets, over the promised marginal spread."""
-    force = SOURCE_LAW.force(log.slip_true, log.load_true, SOURCE_VALUES)
+    force = THESIS_LAW.force(log.slip_true, log.load_true, THESIS_VALUES)
     force = (1 + rig.gain_traction) * force
     noise = by_run(log.table["traction_force"] - force, plan) - log.offset_true[:, None]
     return noise / by_run(rig.noise_sd0 + rig.noise_sd1 * np.abs(force), plan)
@@ -163,7 +157,7 @@ def standardised_noise(log, rig, plan):
 def test_run_offsets_shift_whole_runs_by_the_promised_spread():
     plan = SweepPlan(slips=tuple(np.linspace(0, 1, 500)), duration=0.02)
     log = sweep(RigImperfections(offset_sd=0.05), plan=plan)
-    noise_free = SOURCE_LAW.force(log.slip_true, log.load_true, SOURCE_VALUES)
+    noise_free = THESIS_LAW.force(log.slip_true, log.load_true, THESIS_VALUES)
     shift = by_run(log.table["traction_force"] - noise_free, plan)
     np.testing.assert_allclose(shift - log.offset_true[:, None], 0, atol=1e-12)
     assert log.offset_true.std() == pytest.approx(0.05, rel=0.1)
@@ -250,14 +244,14 @@ def test_force_and_sensors_both_see_the_wander():
     rig = RigImperfections(slip_wander_sd=0.003, slip_wander_time=0.15)
     log = sweep(rig)
     np.testing.assert_allclose(log.samples.slip, log.slip_true, atol=1e-15)
-    expected = SOURCE_LAW.force(log.slip_true, log.load_true, SOURCE_VALUES)
+    expected = THESIS_LAW.force(log.slip_true, log.load_true, THESIS_VALUES)
     np.testing.assert_allclose(log.samples.traction_force, expected, rtol=1e-11)
 
 
 def test_sensor_noise_blurs_measured_slip_but_not_the_force():
     plan = SweepPlan()
     log = sweep(RigImperfections(speed_noise=0.02), plan=plan)
-    expected = SOURCE_LAW.force(log.slip_true, log.load_true, SOURCE_VALUES)
+    expected = THESIS_LAW.force(log.slip_true, log.load_true, THESIS_VALUES)
     np.testing.assert_allclose(log.samples.traction_force, expected, rtol=1e-11)
     error = by_run(log.samples.slip - log.slip_true, plan)
     slip = plan.set_points()[1]

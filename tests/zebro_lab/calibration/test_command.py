@@ -15,7 +15,7 @@ import pandas as pd
 import pytest
 from scipy.stats import chi2
 
-from rig.slip_rig.sweep import SOURCE_VALUES
+from model.slip.thesis import THESIS_VALUES
 from zebro_lab.calibration.folder import read_slip
 from zebro_lab.main import slip_app as app
 from zebro_lab.terminal.ending import run as run_app
@@ -112,7 +112,7 @@ def test_slip_toml_says_converged(converged):
 
 def test_truth_lies_in_the_joint_region_of_99_9_percent(converged):
     curve = read_slip(converged[1])
-    error = np.subtract(curve.values, SOURCE_VALUES)
+    error = np.subtract(curve.values, THESIS_VALUES)
     assert error @ np.linalg.solve(curve.covariance, error) < chi2.ppf(0.999, len(error))
 
 

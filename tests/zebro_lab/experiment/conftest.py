@@ -12,7 +12,7 @@ from rig.experiment.watcher import NobodyWatches
 from zebro_lab.experiment.journal import JOURNAL_FILE
 from zebro_lab.experiment.stage import RigRunRequest, run_experiment
 
-SOURCE_PLAN = Path(__file__).parents[3] / "examples" / "plan-source.toml"
+THESIS_PLAN = Path(__file__).parents[3] / "examples" / "plan-source.toml"
 SMALL = {
     "loads = [2.13, 6.63, 8.13, 12.75]": "loads = [4.0, 8.0]",
     "slips = { first = 0.0, last = 1.0, count = 62 }": "slips = [0.02, 0.1, 0.6]",
@@ -32,7 +32,7 @@ SMALL = {
 
 @pytest.fixture(name="plan")
 def _plan(tmp_path):
-    text = SOURCE_PLAN.read_text()
+    text = THESIS_PLAN.read_text()
     for old, new in SMALL.items():
         assert old in text
         text = text.replace(old, new)

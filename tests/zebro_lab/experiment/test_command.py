@@ -13,7 +13,7 @@ from typer.testing import CliRunner
 from rig.twins import simulated_rig_devices
 from zebro_lab.main import app
 
-SOURCE_PLAN = Path(__file__).parents[3] / "examples" / "plan-source.toml"
+THESIS_PLAN = Path(__file__).parents[3] / "examples" / "plan-source.toml"
 
 
 def zebro_lab(*arguments):
@@ -22,7 +22,7 @@ def zebro_lab(*arguments):
 
 @pytest.fixture(name="plan")
 def _plan(tmp_path):
-    text = SOURCE_PLAN.read_text()
+    text = THESIS_PLAN.read_text()
     for old, new in {
         "loads = [2.13, 6.63, 8.13, 12.75]": "loads = [8.0]",
         "slips = { first = 0.0, last = 1.0, count = 62 }": "slips = [0.05, 0.6]",

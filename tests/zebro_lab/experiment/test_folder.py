@@ -5,9 +5,9 @@ import json
 
 import pytest
 
+from model.slip.thesis import THESIS_LAW, THESIS_VALUES
 from rig.errors import RigError
 from rig.experiment.sink import SinkFailed
-from rig.slip_rig.sweep import SOURCE_LAW, SOURCE_VALUES
 from zebro_lab.calibration.rig_data import read_rig_data
 from zebro_lab.experiment.folder import ExperimentFolder
 from zebro_lab.runs.folder import find_runs, read_manifest
@@ -22,8 +22,8 @@ def test_each_point_is_a_run_that_a_calibration_reads(lab, plan, tmp_path):
     assert found.source == "sim:rig"
     for index in range(6):
         chosen = found.samples.run == index
-        expected = SOURCE_LAW.force(
-            found.samples.slip[chosen], found.samples.normal_force[chosen], SOURCE_VALUES
+        expected = THESIS_LAW.force(
+            found.samples.slip[chosen], found.samples.normal_force[chosen], THESIS_VALUES
         )
         assert found.samples.traction_force[chosen].mean() == pytest.approx(
             expected.mean(), abs=0.3

@@ -8,7 +8,7 @@ from typer.testing import CliRunner
 
 from zebro_lab.main import app
 
-SOURCE_PLAN = Path(__file__).parents[3] / "examples" / "plan-source.toml"
+THESIS_PLAN = Path(__file__).parents[3] / "examples" / "plan-source.toml"
 
 
 def zebro_lab(*arguments):
@@ -17,7 +17,7 @@ def zebro_lab(*arguments):
 
 @pytest.fixture(name="plan")
 def _plan(tmp_path):
-    text = SOURCE_PLAN.read_text()
+    text = THESIS_PLAN.read_text()
     for old, new in {
         "loads = [2.13, 6.63, 8.13, 12.75]": "loads = [8.0]",
         "slips = { first = 0.0, last = 1.0, count = 62 }": "slips = [0.05, 0.6]",
@@ -37,7 +37,7 @@ def _plan(tmp_path):
 
 
 def test_the_sources_plan_is_foreseen():
-    result = zebro_lab("plan", SOURCE_PLAN)
+    result = zebro_lab("plan", THESIS_PLAN)
     assert result.exit_code == 0, result.output
     assert "4 loads x 62 slip ratios" in result.output
     assert "takes about 10 min" in result.output
@@ -47,7 +47,7 @@ def test_the_sources_plan_is_foreseen():
 def test_guards_that_are_off_are_named(plan):
     said = "guards that are off, as the plan wants: silence (3 s), reading_age (3 s), speed_error_t"
     assert said in zebro_lab("plan", plan).output
-    assert "guards that are off" not in zebro_lab("plan", SOURCE_PLAN).output
+    assert "guards that are off" not in zebro_lab("plan", THESIS_PLAN).output
 
 
 def test_every_step_is_listed_where_asked(plan):

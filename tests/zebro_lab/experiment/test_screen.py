@@ -16,12 +16,12 @@ from rig.safety import StopCategory
 from zebro_lab.experiment.screen import ExperimentScreen, experiment_screen, slip_chart
 from zebro_lab.experiment.stage import RigRunRequest, run_experiment
 
-SOURCE_PLAN = Path(__file__).parents[3] / "examples" / "plan-source.toml"
+THESIS_PLAN = Path(__file__).parents[3] / "examples" / "plan-source.toml"
 
 
 @pytest.fixture(name="plan")
 def _plan(tmp_path):
-    text = SOURCE_PLAN.read_text()
+    text = THESIS_PLAN.read_text()
     for old, new in {
         "loads = [2.13, 6.63, 8.13, 12.75]": "loads = [8.0]",
         "slips = { first = 0.0, last = 1.0, count = 62 }": "slips = [0.05, 0.6]",

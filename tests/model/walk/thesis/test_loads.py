@@ -5,7 +5,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.optimize import minimize
 
-from model.walk.thesis import SOURCE_TRACTION
+from model.walk.thesis import THESIS_TRACTION
 from model.walk.thesis.loads import Balance, accelerations, normal_forces, static_loads
 
 WEIGHT = 2.17 * 9.81
@@ -30,13 +30,13 @@ def balance(arms, slip=(0.0,) * 6, wanted=(0.0, 0.0)):
 
 def solve(task, total, most=WEIGHT):
     loads = np.full(3, total / 3)
-    normal_forces(task, SOURCE_TRACTION, total, most, loads)
+    normal_forces(task, THESIS_TRACTION, total, most, loads)
     return loads
 
 
 def misfit(task, loads):
     excess, slopes = np.empty(2), np.empty((2, 3))
-    accelerations(task, SOURCE_TRACTION, np.ascontiguousarray(loads), excess, slopes)
+    accelerations(task, THESIS_TRACTION, np.ascontiguousarray(loads), excess, slopes)
     return float(excess @ excess)
 
 

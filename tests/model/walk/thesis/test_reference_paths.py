@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The source's listing, rebuilt and run elsewhere: paths to be reproduced."""
+"""The thesis's listing, rebuilt and run elsewhere: paths to be reproduced."""
 
 import numpy as np
 import pandas as pd

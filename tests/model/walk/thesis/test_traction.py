@@ -5,7 +5,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from model.slip import CoulombStribeck, MagicFormula
-from model.walk.thesis import SOURCE_TRACTION, law_traction, table_traction
+from model.walk.thesis import THESIS_TRACTION, law_traction, table_traction
 from model.walk.thesis.traction import load_derivative, traction_force
 from model.walk.traction import VelocityCoulomb
 
@@ -19,18 +19,18 @@ LOAD = st.floats(1e-12, 2 * WEIGHT)
 @given(SLIP, LOAD)
 def test_the_sources_law_is_the_magic_formula_of_the_slip_package(kappa, load):
     expected = MagicFormula("peak").force(kappa, load, VALUES)
-    assert traction_force(SOURCE_TRACTION, kappa, load) == pytest.approx(expected, rel=1e-9)
+    assert traction_force(THESIS_TRACTION, kappa, load) == pytest.approx(expected, rel=1e-9)
 
 
 def test_a_magic_formula_with_the_sources_values_is_the_sources_law():
     prepared = law_traction(MagicFormula("peak"), VALUES, weight=WEIGHT)
-    assert prepared[:5] == pytest.approx(SOURCE_TRACTION[:5])
+    assert prepared[:5] == pytest.approx(THESIS_TRACTION[:5])
 
 
 @given(SLIP)
 def test_force_vanishes_with_load_though_the_curvature_runs_away(kappa):
     for load in (1e-3, 1e-9, 1e-30, 1e-150, 0.0):
-        force = traction_force(SOURCE_TRACTION, kappa, load)
+        force = traction_force(THESIS_TRACTION, kappa, load)
         assert abs(force) <= MU * load
 
 
@@ -53,7 +53,7 @@ def test_coulomb_friction_by_velocity_keeps_its_scale():
 @given(st.floats(-2.0, 2.0), st.floats(0.1, WEIGHT))
 def test_the_derivative_with_respect_to_load_is_one(kappa, load):
     h = 1e-4 * load
-    ahead, behind = (traction_force(SOURCE_TRACTION, kappa, load + d) for d in (h, -h))
-    force = traction_force(SOURCE_TRACTION, kappa, load)
-    slope = load_derivative(SOURCE_TRACTION, kappa, load, force)
+    ahead, behind = (traction_force(THESIS_TRACTION, kappa, load + d) for d in (h, -h))
+    force = traction_force(THESIS_TRACTION, kappa, load)
+    slope = load_derivative(THESIS_TRACTION, kappa, load, force)
     assert slope == pytest.approx((ahead - behind) / (2 * h), abs=1e-4)

@@ -14,7 +14,7 @@ from model.slip import CoulombStribeck
 from model.walk.no_slip import walk_no_slip
 from model.walk.path import turning_radius
 from model.walk.thesis import (
-    SOURCE_TRACTION,
+    THESIS_TRACTION,
     SwitchedLegs,
     ThesisOptions,
     law_traction,
@@ -32,7 +32,7 @@ def gait(steering, *, cycle=1.0, inner_deg=45.0, direction="left"):
     return tripod_reference(angles, cycle, direction=direction)
 
 
-def walk(steering=1.2, *, duration=4.0, traction=SOURCE_TRACTION, cycle=1.0, **options):
+def walk(steering=1.2, *, duration=4.0, traction=THESIS_TRACTION, cycle=1.0, **options):
     legs = SwitchedLegs.of(gait(steering, cycle=cycle))
     settings = ThesisOptions(**options)
     return walk_thesis(ROBOT, legs, duration=duration, traction=traction, options=settings)
@@ -67,7 +67,7 @@ def test_three_legs_carry_and_only_they_pull():
 def test_traction_of_one_direction_stays_within_the_peak():
     path = walk()
     share = np.abs(path.traction_force) / np.maximum(path.normal_force, 1e-12)[..., None]
-    assert share.max() <= SOURCE_TRACTION.friction + 1e-9
+    assert share.max() <= THESIS_TRACTION.friction + 1e-9
 
 
 def test_walks_are_deterministic():
@@ -99,8 +99,8 @@ def test_its_path_is_nearly_no_slip_kinematics():
 
 
 def test_a_fifth_of_the_grip_hardly_changes_its_turn():
-    slippery = SOURCE_TRACTION._replace(friction=SOURCE_TRACTION.friction / 5)
-    grippy, icy = (walk(cycle=2.0, duration=10.0, traction=t) for t in (SOURCE_TRACTION, slippery))
+    slippery = THESIS_TRACTION._replace(friction=THESIS_TRACTION.friction / 5)
+    grippy, icy = (walk(cycle=2.0, duration=10.0, traction=t) for t in (THESIS_TRACTION, slippery))
     assert icy.yaw[-1] == pytest.approx(grippy.yaw[-1], rel=0.01)
 
 

@@ -36,6 +36,7 @@ from zebro_lab.runs.legs import read_leg_log
 from zebro_lab.runs.manifest import RunManifest
 from zebro_lab.track.file import TrackFile
 from zebro_lab.track.file import read_track as read_track_file
+from zebro_lab.track.photo_sequence import TimeRequest
 from zebro_lab.track.request import TrackRequest
 from zebro_lab.track.stage import TrackResult, track
 from zebro_lab.validation.stage import Validated, ValidateRequest, pairs_of_run, validate
@@ -359,6 +360,8 @@ def track_photos(
     camera: PathLike,
     floor: PathLike,
     robot: PathLike | None = None,
+    times: PathLike | None = None,
+    start: datetime | None = None,
     annotations: PathLike | None = None,
     without_marker: bool = False,
     merged: "Merged | None" = None,
@@ -371,6 +374,9 @@ def track_photos(
         camera: The `camera.toml`.
         floor: The `floor.toml`.
         robot: The `robot.toml`; the thesis's robot when None.
+        times: CSV with columns `photo` and `t_s`; None to take the photographs' own times.
+        start: Moment from which time is counted, with its time zone; None for the first
+            photograph.
         annotations: What a person said about the photographs.
         without_marker: Track the robot by its own picture, annotated in one photograph.
         merged: How the exposures of a composite picture were merged: "pasted", "darkest" or
@@ -382,7 +388,8 @@ def track_photos(
     """
     request = TrackRequest(
         Path(photos), Path(camera), Path(floor), robot=_path(robot), out=Path(out),
-        annotations=_path(annotations), without_marker=without_marker, merged=merged,
+        times=TimeRequest(table=_path(times)), start=start, annotations=_path(annotations),
+        without_marker=without_marker, merged=merged,
     )  # fmt: skip
     return track(request, Silent())
 

@@ -8,6 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from model.errors import DefinitionMismatch
 from model.slip import SlipDefinition
 from model.walk.path import WalkPath
 from model.walk.traction import VelocityCoulomb
@@ -98,7 +99,7 @@ def test_other_definition_is_converted_or_refused(calibration):
     assert slip.law.definition is SlipDefinition.TRAVEL
     assert "converted" in slip.notes[0]
     assert np.isfinite(slip.traction_table(weight=21.0).phi).all()
-    with pytest.raises(SettingsError, match="--slip-definition material"):
+    with pytest.raises(DefinitionMismatch):
         slip.thesis_traction(weight=21.0)
 
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Fit the slip law to the bundled, SIMULATED rig data and draw it with its uncertainty.
 
-Usage: .venv/bin/python examples/calibrate.py [STEPS [PICTURE]]
+Usage: .venv/bin/python examples/calibrate.py [DATA [PICTURE [STEPS]]]
 """
 
 import sys
@@ -15,10 +15,12 @@ import zebro_lab as zl
 mpl.use("Agg")  # no window: the picture is a file
 import matplotlib.pyplot as plt
 
-steps = int(sys.argv[1]) if len(sys.argv) > 1 else 30_000
+bundled = Path(__file__).parents[1] / "datasets" / "rig-sim"
+data = sys.argv[1] if len(sys.argv) > 1 else bundled
 picture = sys.argv[2] if len(sys.argv) > 2 else "slip_curve.png"
+steps = int(sys.argv[3]) if len(sys.argv) > 3 else 30_000
 
-result = zl.calibrate(Path(__file__).parents[1] / "datasets" / "rig-sim", max_steps=steps)
+result = zl.calibrate(data, max_steps=steps)
 print(result.verdict.headline())
 print(result.summary[["median", "q05", "q95"]])
 

@@ -8,7 +8,8 @@ from pathlib import Path
 import pytest
 
 EXAMPLES = sorted((Path(__file__).parents[2] / "examples").glob("*.py"))
-ARGUMENTS = {"calibrate.py": ["500"]}
+ONE_LOAD = Path(__file__).parents[2] / "datasets" / "rig-sim" / "simulated_load_02.13N.parquet"
+ARGUMENTS = {"calibrate.py": [ONE_LOAD, "slip_curve.png", "500"]}
 SAYS = {
     "calibrate.py": "wrote slip_curve.png",
     "track.py": "poses in",

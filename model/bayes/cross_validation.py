@@ -71,7 +71,12 @@ def measured_force(law: SlipLaw, values: Array, slip: Array, normal_force: Array
 
 
 def r_squared(measured: Array, predicted: Array) -> float:
-    """Compute the fraction of the variance of `measured` that `predicted` explains [-]."""
+    """Compute the fraction of the variance of `measured` that `predicted` explains [-].
+
+    Args:
+        measured: Measured values, shape (n,).
+        predicted: Predictions of them, in the same unit, shape (n,).
+    """
     return float(
         1 - np.sum((measured - predicted) ** 2) / np.sum((measured - measured.mean()) ** 2)
     )

@@ -77,10 +77,14 @@ class Estimate:
 
 
 def estimate(parameter: Parameter, draws: Array) -> Estimate:
-    """Summarise draws of one quantity, shape (n,).
+    """Summarise draws of one quantity by mean, standard deviation and quantiles.
 
-    Draws may be infinite, as the peak's slip of a curve without a peak; then so is the mean, and
-    there is no standard deviation (NaN).
+    Draws may be infinite, for example the peak slip of a curve without a peak. The mean is then
+    infinite too, and the standard deviation is NaN.
+
+    Args:
+        parameter: The quantity: name, unit and meaning.
+        draws: Its posterior draws, shape (n,).
     """
     # Order statistics themselves: between infinite ones there is nothing to interpolate.
     low, median, high = np.quantile(draws, [0.05, 0.5, 0.95], method="inverted_cdf")
@@ -90,7 +94,15 @@ def estimate(parameter: Parameter, draws: Array) -> Estimate:
 
 
 def contraction(posterior: SlipPosterior, draws: Draws) -> dict[str, float]:
-    """Compute how far the data narrowed each prior: 1 - posterior over prior variance of z."""
+    """Compute the contraction of each parameter: 1 - posterior variance over prior variance of z.
+
+    Args:
+        posterior: The posterior, with its free parameters in the order of the coordinates z.
+        draws: Posterior draws.
+
+    Returns:
+        Contraction by the parameter's name [-].
+    """
     variances = draws.z.reshape(-1, draws.z.shape[-1]).var(axis=0)
     return {p.name: float(1 - v) for p, v in zip(posterior.free, variances, strict=True)}
 
@@ -143,7 +155,12 @@ class Agreement:
 
 
 def agreement(draws: Draws, weighted: WeightedDraws) -> Agreement:
-    """Compare the sampler's draws with weighted draws of the Laplace approximation."""
+    """Compare the sampler's draws with weighted draws of the Laplace approximation.
+
+    Args:
+        draws: Draws of the sampler.
+        weighted: Draws of the Laplace approximation with importance weights.
+    """
     z = draws.z.reshape(-1, draws.z.shape[-1])
     mean = weighted.weights @ weighted.z
     sd = np.sqrt(weighted.weights @ (weighted.z - mean) ** 2)

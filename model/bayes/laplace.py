@@ -71,7 +71,15 @@ class LaplaceMixture:
         return [frozen(laplace.mode, laplace.covariance, df=8) for laplace in self.modes]
 
     def draw(self, n: int, *, rng: np.random.Generator) -> Array:
-        """Draw n coordinates, shape (n, d)."""
+        """Draw coordinates from the mixture.
+
+        Args:
+            n: Number of draws.
+            rng: Source of randomness.
+
+        Returns:
+            Coordinates in random order, shape (n, d).
+        """
         counts = rng.multinomial(n, self.weights)
         parts = [
             np.reshape(part.rvs(size=count, random_state=rng), (count, -1))
@@ -87,7 +95,15 @@ class LaplaceMixture:
 
 
 def gradient(log_density: LogDensity, z: Array) -> Array:
-    """Compute the gradient by central differences, in one batched call, shape (d,)."""
+    """Compute the gradient by central differences, in one batched call.
+
+    Args:
+        log_density: Log density of points, shape (m, d) to (m,).
+        z: Coordinates of the point, shape (d,).
+
+    Returns:
+        Gradient, shape (d,).
+    """
     return _value_and_gradient(log_density, z)[1]
 
 
@@ -100,7 +116,16 @@ def _value_and_gradient(log_density: LogDensity, z: Array) -> tuple[float, Array
 
 
 def hessian(log_density: LogDensity, z: Array, *, step: float = 1e-3) -> Array:
-    """Compute the Hessian by central differences, in one batched call, shape (d, d)."""
+    """Compute the Hessian by central differences, in one batched call.
+
+    Args:
+        log_density: Log density of points, shape (m, d) to (m,).
+        z: Coordinates of the point, shape (d,).
+        step: Step of the differences, in coordinates.
+
+    Returns:
+        Hessian, shape (d, d); not finite where a step leaves the support.
+    """
     d = len(z)
     rows, columns = np.triu_indices(d)
     e = step * np.eye(d)
@@ -239,7 +264,15 @@ class WeightedDraws:
     pareto_k: float
 
     def resample(self, n: int, *, rng: np.random.Generator) -> Array:
-        """Draw n equally weighted coordinates, shape (n, d)."""
+        """Resample equally weighted draws, with replacement, by the importance weights.
+
+        Args:
+            n: Number of draws.
+            rng: Source of randomness.
+
+        Returns:
+            Coordinates, shape (n, d).
+        """
         return self.z[rng.choice(len(self.z), size=n, p=self.weights)]
 
 

@@ -159,7 +159,16 @@ def run_log_likelihood(blocks: SlipBlocks, law: SlipLaw, values: Array) -> Array
 
 
 def log_likelihood(blocks: SlipBlocks, law: SlipLaw, values: Array) -> Array:
-    """Compute the log density of all block means, shape (w,); see `run_log_likelihood`."""
+    """Compute the log likelihood of all block means; see `run_log_likelihood`.
+
+    Args:
+        blocks: The block means.
+        law: The slip law.
+        values: Parameter vectors as in `run_log_likelihood`, one a row, shape (w, k).
+
+    Returns:
+        Log likelihood of each parameter vector, shape (w,).
+    """
     return run_log_likelihood(blocks, law, values).sum(axis=1)
 
 

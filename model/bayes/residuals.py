@@ -144,7 +144,15 @@ def load_levels(blocks: SlipBlocks) -> Array:
 
 
 def nearest_level(load: Array, levels: Array) -> Array:
-    """Return the index of the level nearest to each load, in ratio."""
+    """Find the load level nearest to each load, by the ratio of the two.
+
+    Args:
+        load: Loads, shape (n,) [N].
+        levels: Load levels, shape (m,) [N].
+
+    Returns:
+        Index of the level, shape (n,).
+    """
     return np.argmin(np.abs(np.log(load[:, None] / levels)), axis=1)
 
 

@@ -87,6 +87,11 @@ def _stances(robot: Robot, theta: Array, triples: list[NDArray[np.intp]]) -> lis
 
 
 def spans(robot: Robot, legs: NDArray[np.intp]) -> bool:
-    """Tell whether three legs span a triangle: those of one side lie on a line."""
+    """Return whether three legs span a triangle; those of one side lie on a line.
+
+    Args:
+        robot: The robot.
+        legs: Indices of the legs, shape (3,).
+    """
     a, b, c = robot.hips[legs, :2]
     return abs((b - a)[0] * (c - a)[1] - (b - a)[1] * (c - a)[0]) > ON_GROUND

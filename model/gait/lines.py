@@ -200,9 +200,17 @@ def _room(lines, other, i, changes, first, half):
 
 @compiled
 def rests(lines: Lines, changes: Changes, first: NDArray[np.intp]) -> NDArray[np.bool_]:
-    """Tell whether a leg rested between each line and the next, shape (k - 1,).
+    """Detect whether a leg rested between each line and the next.
 
     It did where it reached its resting angle well before it left it again.
+
+    Args:
+        lines: The lines, k of them.
+        changes: The changes of count.
+        first: Index of each line's first change, and the number of changes, shape (k + 1,).
+
+    Returns:
+        Whether the leg rested, shape (k - 1,).
     """
     rested = np.zeros(len(lines.x) - 1, dtype=np.bool_)
     for i in range(len(rested)):

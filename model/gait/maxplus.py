@@ -27,6 +27,10 @@ def oplus(a: ArrayLike, b: ArrayLike) -> Array:
 
     The thesis prints + in place of the comma.
 
+    Args:
+        a: First array.
+        b: Second array, of a shape that broadcasts against the first.
+
     >>> oplus([1.0, EPSILON], [0.0, 2.0]).tolist()
     [1.0, 2.0]
     """
@@ -73,7 +77,12 @@ def diagonal(entries: ArrayLike) -> Array:
 
 
 def zeros(rows: int, columns: int) -> Array:
-    """Make the max-plus zero matrix, Eq. (2-10): epsilon everywhere."""
+    """Return the max-plus zero matrix, Eq. (2-10): epsilon everywhere.
+
+    Args:
+        rows: Number of rows.
+        columns: Number of columns.
+    """
     return np.full((rows, columns), EPSILON)
 
 

@@ -45,7 +45,16 @@ class CountedLeg:
 
     @classmethod
     def of(cls, t: Array, theta: Array, step: float) -> "CountedLeg | None":
-        """Find the fewest lines; None for a leg that never moves."""
+        """Fit the fewest straight lines that pass every change of count.
+
+        Args:
+            t: Times of the samples, shape (n,) [s].
+            theta: Counted angles, middles of their bins, shape (n,) [rad].
+            step: Angle of one count [rad].
+
+        Returns:
+            The lines; None for a leg that never moves.
+        """
         at = np.flatnonzero(np.abs(np.diff(theta)) > SAME)
         if len(at) == 0:
             return None
@@ -57,15 +66,19 @@ class CountedLeg:
         return cls(changes, first, lines, rests(lines, changes, first), log)
 
     def drawn(self, step: float, rng: np.random.Generator) -> Lines:
-        """Draw lines that still pass every change, from the middle ones outwards.
+        """Draw lines that still pass every change, by random deviations from the middle ones.
 
-        Twenty changes confine a line to a small polygon of offset and speed, far smaller than what
-        independent errors of as many would leave. So a direction is taken from changes that fall
-        anywhere between their samples, and along it a point that makes a polygon evenly filled.
+        Twenty changes confine a line to a small polygon of offset and speed, far smaller than
+        twenty independent errors would leave. A direction is therefore taken from changes that fall
+        anywhere between their samples, and along it a point such that the polygon is filled evenly.
 
         A gait whose cycle is a whole number of samples meets every count at the same phase again
-        and again: its errors repeat and do not average out. So a draw takes one place for each
-        count, and one distance for the leg.
+        and again, so its errors repeat and do not average out. A draw therefore takes one place for
+        each count, and one distance for the leg.
+
+        Args:
+            step: Angle of one count [rad].
+            rng: Source of randomness.
         """
         turn = max(round(2 * np.pi / step), 1)
         places = rng.uniform(0.0, 1.0, 2 * turn)
@@ -77,7 +90,17 @@ class CountedLeg:
         )  # fmt: skip
 
     def angles(self, t: Array, step: float, rng: np.random.Generator | None) -> Array:
-        """Follow the lines at times t, shape (n,) [rad]; `rng` draws one of those allowed."""
+        """Interpolate the leg angle along the fitted lines.
+
+        Args:
+            t: Times, shape (n,) [s].
+            step: Angle of one count [rad].
+            rng: Source of randomness, to draw lines that the counts allow; None for the middle
+                ones.
+
+        Returns:
+            Leg angles, shape (n,) [rad].
+        """
         lines = self.lines if rng is None else self.drawn(step, rng)
         rest = 0.0 if rng is None else float(rng.uniform(-0.4 * step, 0.4 * step))
         times, angles = knots(lines, self.changes, self.first, self.rested, rest, self.log)

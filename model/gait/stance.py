@@ -56,7 +56,15 @@ def event_intervals(touchdown: Array, liftoff: Array, span: tuple[float, float])
 
 
 def require_stance_angles(touchdown: Array, liftoff: Array) -> None:
-    """Raise DomainError unless each leg's stance angle lies between zero and a turn."""
+    """Check that each leg's stance angle lies between zero and a turn.
+
+    Args:
+        touchdown: Touchdown angles, shape (n,) [rad].
+        liftoff: Lift-off angles, shape (n,) [rad].
+
+    Raises:
+        DomainError: A stance angle is not between 0 and 2 pi.
+    """
     for leg, (down, up) in enumerate(zip(touchdown, liftoff, strict=True), start=1):
         if not 0 < up - down < 2 * np.pi:
             raise DomainError(

@@ -149,7 +149,14 @@ class WalkMisfit:
         return len(self.root) + (0.0 if self.tilt is None else self.tilt.count)
 
     def residuals(self, state: LegState, *, threads: int) -> Array:
-        """Compute residuals of unit covariance for m states of the legs, shape (m, size).
+        """Compute the whitened residuals of this walk for m states of the legs.
+
+        Args:
+            state: The m states.
+            threads: Number of threads that compute walks.
+
+        Returns:
+            Residuals of unit covariance, shape (m, size).
 
         Raises:
             WalkError: A walk diverged.

@@ -97,7 +97,15 @@ class ModeSearch:
         return self.scan(self._mode(None, rest, np.eye(WRONG + 1), -np.inf), J)
 
     def residuals(self, z: Array, case: Case) -> Array:
-        """Compute residuals of all walks at m points, shape (m, n)."""
+        """Compute the whitened residuals of all walks at m points.
+
+        Args:
+            z: Points in standard normal coordinates, shape (m, 14).
+            case: The leg that is mounted wrong, or None.
+
+        Returns:
+            Residuals, shape (m, n).
+        """
         values = z * self.prior.scale
         return np.concatenate(
             [
@@ -108,11 +116,20 @@ class ModeSearch:
         )
 
     def cost(self, z: Array, case: Case) -> float:
-        """Return twice the negative log posterior density at a point, but for a constant."""
+        """Compute twice the negative log posterior density at a point, up to a constant.
+
+        Args:
+            z: The point in standard normal coordinates, shape (14,).
+            case: The leg that is mounted wrong, or None.
+        """
         return float((self.residuals(z[None], case)[0] ** 2).sum() + z @ z)
 
     def climb(self, case: Case, z: Array) -> tuple[Mode, Array]:
-        """Climb to the mode of a case by Gauss-Newton, with steps shortened while they overshoot.
+        """Find the mode of a case by Gauss-Newton with a line search.
+
+        Args:
+            case: The leg that is mounted wrong, or None.
+            z: Starting point in standard normal coordinates, shape (14,).
 
         Returns:
             The mode, and the Jacobian of the residuals there, shape (n, 14).
@@ -137,7 +154,15 @@ class ModeSearch:
         return self._mode(case, z, covariance, float(evidence)), J
 
     def scan(self, plain: Mode, J: Array) -> list[Mode]:
-        """Return the mode of every case by moving one leg at a time; the first is `plain`."""
+        """Estimate the mode of every case by a scan over the offset of one leg at a time.
+
+        Args:
+            plain: Mode of the case without a wrong leg, about which the scan is made.
+            J: Jacobian of the residuals at that mode, shape (n, 14).
+
+        Returns:
+            The modes in the order of `all_cases`; the first is `plain`.
+        """
         z = plain.z
         follow = np.linalg.inv(np.eye(len(J)) + J @ J.T)
         at_rest = self.residuals(z[None], None)[0]

@@ -29,19 +29,19 @@ WALKED = [i for i in range(WRONG + 1) if i not in LINEAR]  # what a walk must be
 
 @dataclass(frozen=True)
 class WrongLeg:
-    """A leg that is off by a lot.
+    """A leg with a large constant offset.
 
     Attributes:
         leg: Its index.
-        walk: Index of the one walk in which it is, as after a knock; None for all of them, as
-            after an assembly.
+        walk: Index of the only walk in which it is off, as after a knock; None when it is off in
+            all of them, as after an assembly.
     """
 
     leg: int
     walk: int | None = None
 
     def concerns(self, walk: int | None) -> bool:
-        """Tell whether it is off in a walk; None asks for a walk to come."""
+        """Return whether the leg is off in a walk; None stands for a walk to come."""
         return self.walk is None or self.walk == walk
 
 
@@ -50,7 +50,7 @@ Case: TypeAlias = WrongLeg | None
 
 
 def wrong_legs(walks: int) -> tuple[WrongLeg, ...]:
-    """List what may be wrong in a number of walks: a leg, or a leg in one of them."""
+    """List the possible cases of one wrong leg: in all walks, or in one of them."""
     legs = range(N_LEGS)
     everywhere = tuple(WrongLeg(leg) for leg in legs)
     if walks < 2:  # one walk does not tell its own from all
@@ -94,7 +94,7 @@ class WalkPrior:
     spread: ModelSpread = field(default_factory=ModelSpread)
 
     def __post_init__(self) -> None:
-        """Refuse a prior that is none."""
+        """Check that standard deviations are positive and that `wrong` is a probability."""
         if not np.all(self.scale > 0):
             raise DomainError("a standard deviation of the prior is not above zero")
         if not 0 < self.wrong < 1:
@@ -109,7 +109,12 @@ class WalkPrior:
         ])  # fmt: skip
 
     def log_probability(self, case: Case, *, walks: int) -> float:
-        """Return the log of a case's probability among those of a number of walks."""
+        """Compute the log prior probability of a case.
+
+        Args:
+            case: The leg that is mounted wrong, or None.
+            walks: Number of walks.
+        """
         if case is None:
             return float(np.log(1 - self.wrong))
         if walks < 2:
@@ -153,7 +158,16 @@ def legs_of(values: Array, case: Case, *, walk: int | None = None) -> LegState:
 
 
 def leg_offsets(values: Array, case: Case, *, walk: int | None = None) -> Array:
-    """Return each leg's own offset, without the common one, shape (m, 6) [rad]."""
+    """Compute each leg's own offset, without the common one.
+
+    Args:
+        values: Parameter values in the order of `NAMES`, then that of a wrong leg, shape (m, 14).
+        case: The leg that is mounted wrong, or None.
+        walk: Index of the walk; None for a walk to come.
+
+    Returns:
+        Offsets, shape (m, 6) [rad].
+    """
     offset = values[:, :N_LEGS].copy()
     if case is not None and case.concerns(walk):
         offset[:, case.leg] += values[:, WRONG]

@@ -145,7 +145,14 @@ class Poses:
 
 
 def overlap(first: Poses, second: Poses) -> NDArray[np.bool_]:
-    """Tell which poses of `first` lie within the time of `second`, shape (len(first),).
+    """Find the poses of `first` that lie within the time range of `second`.
+
+    Args:
+        first: Poses to choose from.
+        second: Poses whose time range is used, by the same clock.
+
+    Returns:
+        Whether each pose lies inside, shape (len(first),).
 
     Raises:
         InsufficientData: Fewer than two do, so that there is no path to compare.

@@ -52,7 +52,7 @@ class ModelSpread:
     contacts: float = float(np.log(2.0))
 
     def __post_init__(self) -> None:
-        """Refuse spreads that are none."""
+        """Check that the standard deviations are finite and not negative."""
         for name in ("distance", "curvature", "contacts"):
             if not (getattr(self, name) >= 0 and np.isfinite(getattr(self, name))):
                 raise DomainError(f"{name} of the model's error is {getattr(self, name):g}")
@@ -60,15 +60,17 @@ class ModelSpread:
 
 @dataclass(frozen=True)
 class LegState:
-    """What is believed beyond the robot's and the law's description: draws of it, or a prior's.
+    """Draws of what differs from the description of the robot and the slip law.
+
+    They come from a prior or a posterior.
 
     Attributes:
         offset: Further offset of each leg, shape (m, 6) [rad].
         grip: Factor on traction, shape (m,) [-].
         stiffness: Factor on slip stiffness, shape (m,) [-].
-        fall: Factor on how far traction falls beyond its peak, shape (m,) [-].
+        fall: Factor on the post-peak drop, shape (m,) [-].
         arc: Further angle of the legs' arc, shape (m,) [rad].
-        steering: Turn that the robot takes whatever its legs do, shape (m,) [rad/m].
+        steering: Constant curvature added to the path, whatever the legs do, shape (m,) [rad/m].
         stride: Relative error of distance: legs that are longer or shorter, shape (m,) [-].
     """
 
@@ -86,9 +88,14 @@ class LegState:
 
     @staticmethod
     def of_prior(n: int, *, offset_sd: float, rng: np.random.Generator) -> "LegState":
-        """Draw uniform offsets of a standard deviation [rad], all else taken as described.
+        """Draw leg offsets from a uniform prior, with every other unknown at its described value.
 
         An encoder's zero known to one count is uniform over it: standard deviation count/sqrt(12).
+
+        Args:
+            n: Number of draws.
+            offset_sd: Standard deviation of an offset [rad].
+            rng: Source of randomness.
         """
         reach = np.sqrt(3.0) * offset_sd
         offset = rng.uniform(-reach, reach, (n, N_LEGS))
@@ -166,7 +173,13 @@ def _motions(
 
 
 def robot_in(robot: Robot, state: LegState, i: int) -> Robot:
-    """Return the robot as a draw of the legs' state has it."""
+    """Return the robot with the leg offsets and arc of one draw.
+
+    Args:
+        robot: The robot as described.
+        state: Draws of the legs' state.
+        i: Index of the draw.
+    """
     return replace(
         robot,
         leg_offset=robot.leg_offset + state.offset[i],
@@ -175,7 +188,13 @@ def robot_in(robot: Robot, state: LegState, i: int) -> Robot:
 
 
 def law_in(table: TractionTable, state: LegState, i: int) -> TractionTable:
-    """Return the slip law as a draw of the legs' state has it."""
+    """Return the slip law scaled by the grip, slip stiffness and post-peak drop of one draw.
+
+    Args:
+        table: The slip law as calibrated.
+        state: Draws of the legs' state.
+        i: Index of the draw.
+    """
     return scaled_table(
         table,
         grip=float(state.grip[i]),
@@ -256,7 +275,14 @@ def predict_paths(
 def with_contacts(
     draws: Sequence[WalkDraw], error: ModelSpread, *, rng: np.random.Generator
 ) -> list[WalkDraw]:
-    """Draw how hard the contacts of each draw are; as they are where the error has none of it."""
+    """Draw the stiffness and damping of the contacts of each draw, log-normal.
+
+    Args:
+        draws: The draws.
+        error: Error of the walking model; without spread of contacts the draws are returned as
+            they are.
+        rng: Source of randomness.
+    """
     if error.contacts == 0:
         return list(draws)
     factors = np.exp(error.contacts * rng.standard_normal((len(draws), 2)))
@@ -339,7 +365,15 @@ def anchored(
 
 
 def states_at(paths: Poses, t: Array) -> Array:
-    """Interpolate x, y and yaw of every draw at times, shape (draws, len(t), 3) [m, m, rad]."""
+    """Interpolate x, y and yaw of every draw linearly at given times.
+
+    Args:
+        paths: The draws.
+        t: Times, shape (k,) [s]; outside the paths the ends are extrapolated.
+
+    Returns:
+        States, shape (draws, k, 3) [m, m, rad].
+    """
     values = paths.states
     after = np.clip(np.searchsorted(paths.t, t, side="right"), 1, len(paths.t) - 1)
     share = (t - paths.t[after - 1]) / (paths.t[after] - paths.t[after - 1])
@@ -347,7 +381,15 @@ def states_at(paths: Poses, t: Array) -> Array:
 
 
 def quantiles(paths: Poses, levels: Sequence[float] = LEVELS) -> Array:
-    """Compute quantiles of x, y and yaw at every time, shape (levels, n, 3) [m, m, rad]."""
+    """Compute quantiles over the draws of x, y and yaw at every time.
+
+    Args:
+        paths: The draws.
+        levels: Levels of the quantiles, from 0 to 1 [-].
+
+    Returns:
+        Quantiles, shape (levels, n, 3) [m, m, rad].
+    """
     return np.quantile(paths.states, np.asarray(levels), axis=0)
 
 
@@ -357,5 +399,5 @@ def mean_path(paths: Poses) -> Poses:
 
 
 def _from_zero(steps: Array) -> Array:
-    """Add up steps from zero on."""
+    """Return the cumulative sum of steps along axis 1, starting at zero."""
     return np.concatenate([np.zeros((len(steps), 1)), np.cumsum(steps, axis=1)], axis=1)

@@ -42,6 +42,11 @@ def align(predicted: Poses, tracked: Poses) -> Motion:
 
 
 def aligned(predicted: Poses, tracked: Poses) -> Poses:
-    """Return the predicted poses laid onto the tracked ones; see `align`."""
+    """Return the predicted poses moved by the rigid motion that `align` fits to the tracked ones.
+
+    Args:
+        predicted: Predicted poses.
+        tracked: Tracked poses.
+    """
     motion = align(predicted, tracked)
     return predicted.moved(rotation=motion.rotation, translation=motion.translation)

@@ -106,7 +106,15 @@ def coulomb_stribeck_slope(
     .. math::
         \frac{f'}{F_n} = K (1 - u^2) - 2 \mu (1 - q) \frac{z}{\kappa_s} e^{-z^2}
 
-    The first term lives on the rise only, the second on the fall only; both vanish at kappa_c.
+    The first term is non-zero only below the peak, the second only beyond it; both vanish at
+    kappa_c.
+
+    Args:
+        kappa: Slip ratio [-].
+        K: Slip stiffness, slope at zero slip [-].
+        mu: Static friction, the peak [-].
+        q: Kinetic over static friction [-].
+        kappa_s: Stribeck slip [-].
     """
     kappa_c = breakaway_slip(K, mu)
     u = np.clip(np.asarray(kappa) / kappa_c, -1.0, 1.0)
@@ -155,19 +163,41 @@ class CoulombStribeck:
         return K, mu, np.asarray(values[2], dtype=float), np.asarray(values[3], dtype=float)
 
     def force(self, slip: ArrayLike, load: ArrayLike, values: Values) -> Array:
-        """Compute the traction force [N]; see `SlipLaw.force`."""
+        """Compute the traction force [N]; see `SlipLaw.force`.
+
+        Args:
+            slip: Slip ratio [-].
+            load: Normal force, positive [N].
+            values: Parameter values, one entry a parameter.
+        """
         return np.asarray(load) * coulomb_stribeck(slip, *self.coefficients(values))
 
     def slip_derivative(self, slip: ArrayLike, load: ArrayLike, values: Values) -> Array:
-        """Compute the derivative of the force with respect to slip ratio [N]."""
+        """Compute the derivative of the force with respect to slip ratio [N].
+
+        Args:
+            slip: Slip ratio [-].
+            load: Normal force, positive [N].
+            values: Parameter values, one entry a parameter.
+        """
         return np.asarray(load) * coulomb_stribeck_slope(slip, *self.coefficients(values))
 
     def valid(self, load: ArrayLike, values: Values) -> NDArray[np.bool_]:
-        """Tell where the curve has its shape: everywhere inside the support."""
+        """Return where the curve has its shape: everywhere inside the support.
+
+        Args:
+            load: Normal force, positive [N].
+            values: Parameter values, one entry a parameter.
+        """
         return np.ones(np.broadcast(load, *values).shape, dtype=bool)
 
     def peak_slip(self, load: ArrayLike, values: Values) -> Array:
-        """Compute the slip ratio at which the force peaks (inf where it never falls) [-]."""
+        """Compute the slip ratio at which the force peaks (inf where it never falls) [-].
+
+        Args:
+            load: Normal force, positive [N].
+            values: Parameter values, one entry a parameter.
+        """
         K, mu, _, _ = self.coefficients(values)
         peak = breakaway_slip(K, mu) if self.stribeck else np.array(math.inf)
         return np.broadcast_to(peak, np.broadcast(load, *values).shape)

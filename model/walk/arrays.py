@@ -138,7 +138,12 @@ def new_state():
 
 @inlined
 def copy_state(state, to):
-    """Copy a state into another."""
+    """Copy a state into another.
+
+    Args:
+        state: State to copy.
+        to: Overwritten with the copy.
+    """
     for i in range(3):
         to.p[i], to.v[i], to.w[i] = state.p[i], state.v[i], state.w[i]
     for i in range(4):

@@ -121,7 +121,18 @@ def walk(
 
 
 def step_times(duration: float, dt: float) -> Array:
-    """Return the times of all steps, as many whole ones as the duration holds [s]."""
+    """Compute the times of all steps: the nearest whole number of them in the duration.
+
+    Args:
+        duration: Time walked [s].
+        dt: Length of a step [s].
+
+    Returns:
+        Times from zero, shape (n + 1,) [s].
+
+    Raises:
+        DomainError: The duration is not finite or shorter than a step.
+    """
     n = round(duration / dt) if duration > 0 and np.isfinite(duration) else 0
     if n < 1:
         raise DomainError(f"duration is {duration:g} s; expected at least a step of {dt:g} s")
@@ -129,7 +140,12 @@ def step_times(duration: float, dt: float) -> Array:
 
 
 def diverged(t: float, pose: Array) -> WalkError:
-    """Return the error of a step that stopped being finite."""
+    """Return the error for a step whose state is not finite.
+
+    Args:
+        t: Time of the step [s].
+        pose: Last finite pose; the first three entries are the position [m].
+    """
     x, y, z = pose[:3]
     return WalkError(
         f"the walk diverged at t = {t:.4g} s, with the body at x {x:.4g}, y {y:.4g}, z {z:.4g} m; "

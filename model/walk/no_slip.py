@@ -81,8 +81,20 @@ def walk_wheels(
 ) -> WalkPath:
     r"""Walk as on wheels of radius 2r, each leg on the ground moving its hip by 2 r theta_dot.
 
-    Args, results and errors are those of `walk_no_slip`; the body stays level at 2r, and
-    `slip_velocity` is the sideways velocity of the hips, which the wheels ignore.
+    Args:
+        robot: The robot.
+        reference: Its leg angles over time; of any gait in which three legs hold the robot.
+        duration: Time walked [s].
+        dt: Length of a step [s].
+
+    Returns:
+        The path; the body stays level at 2r. `slip_velocity` is the sideways velocity of the hips,
+        which the wheels ignore, and what least squares leaves along the heading; forces and slip
+        ratio are unknown to this model, NaN on the ground.
+
+    Raises:
+        DomainError: The duration is shorter than a step.
+        WalkError: At some instant no three legs hold the robot; the message says when.
     """
     return _walk(robot, reference, duration, dt, wheels=True)
 
@@ -139,7 +151,18 @@ def _integrate(twist: Array, dt: float) -> tuple[Array, Array]:
 
 @compiled
 def move(skeleton, theta, speed, wheels, motion):
-    """Fill `motion` instant by instant; return how many had legs to stand on."""
+    """Compute the motion of the body at every instant from the leg angles.
+
+    Args:
+        skeleton: The robot's geometry.
+        theta: Leg angles, shape (n, 6) [rad].
+        speed: Leg speeds, shape (n, 6) [rad/s].
+        wheels: Whether to take the legs for wheels, as `walk_wheels` does.
+        motion: Filled: the motion.
+
+    Returns:
+        Number of instants computed: n, or fewer where no three legs hold the robot.
+    """
     hips, r, beyond = skeleton
     points, up, seen = np.empty((6, 3)), np.empty(3), np.empty((6, 2))
     legs = np.full(3, -1, np.intp)
@@ -176,9 +199,14 @@ def move(skeleton, theta, speed, wheels, motion):
 
 @compiled
 def leg_velocities(hips, points, up, speed, own):
-    """Fill `own` (6, 3) with the legs' material velocities at their lowest points [m/s].
+    """Compute the legs' material velocities at their lowest points, relative to the body.
 
-    Relative to the body, along forward, left and up.
+    Args:
+        hips: Hip positions in the body frame, shape (6, 3) [m].
+        points: Lowest points in the body frame, shape (6, 3) [m].
+        up: Vertical direction in the body frame, shape (3,) [-].
+        speed: Leg speeds, shape (6,) [rad/s].
+        own: Filled: velocities along forward, left and up, shape (6, 3) [m/s].
     """
     size = np.sqrt(1 - up[0] ** 2)
     for leg in range(6):
@@ -234,7 +262,16 @@ def stand_still(seen, below, own, up, legs, contact, twist, slip):
 
 @compiled
 def vertical_rates(seen, own, legs):
-    """Compute angular velocity about forward and left that keeps three legs on the ground."""
+    """Compute the angular velocity about forward and left that keeps three legs on the ground.
+
+    Args:
+        seen: Lowest points seen from above, shape (6, 2) [m].
+        own: Velocities of the legs relative to the body: forward, left, up, shape (6, 3) [m/s].
+        legs: Indices of the three legs, shape (3,).
+
+    Returns:
+        Angular velocity about forward and about left [rad/s].
+    """
     a, b, c = legs
     # v_z + w_x y - w_y x + own_z = 0 for each; differences leave w_x and w_y.
     x1, y1, d1 = seen[b, 0] - seen[a, 0], seen[b, 1] - seen[a, 1], own[a, 2] - own[b, 2]
@@ -245,7 +282,16 @@ def vertical_rates(seen, own, legs):
 
 @compiled
 def roll_wheels(hips, r, speed, contact, twist, slip):
-    """Fill the twist of wheels of radius 2r that do not steer, by least squares over them."""
+    """Compute the twist of wheels of radius 2r that do not steer, by least squares.
+
+    Args:
+        hips: Hip positions in the body frame, shape (6, 3) [m].
+        r: Radius of the legs' arcs [m].
+        speed: Leg speeds, shape (6,) [rad/s].
+        contact: Whether a leg is on the ground, 1 or 0, shape (6,).
+        twist: Filled: forward and leftward velocity [m/s] and yaw rate [rad/s], shape (3,).
+        slip: Filled for legs on the ground: velocity over the ground, shape (6, 2) [m/s].
+    """
     count, mean_y, mean_v = 0.0, 0.0, 0.0
     for leg in range(6):
         if contact[leg] > 0:

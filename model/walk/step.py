@@ -214,9 +214,22 @@ def add_contact_forces(table, contacts, state, work, n, speed, dt):
 
 @inlined
 def bristle_pull(table, contacts, stretch, load, x, y, z):
-    """Compute a bristle's force over its stretch after a further slip of (x, y, z) [N/m].
+    """Compute a bristle's force over its stretch after a further slip of (x, y, z).
 
-    Its stiffness, or what traction allows where that is less: then it slides at the limit.
+    It is the bristle's stiffness, or less where the force would exceed the largest traction: the
+    bristle then slides at that limit.
+
+    Args:
+        table: The slip law.
+        contacts: Stiffness and damping of contacts.
+        stretch: Stretch of the bristle before, shape (3,) [m].
+        load: Normal force of the contact [N].
+        x: Further slip along x [m].
+        y: Further slip along y [m].
+        z: Further slip along z [m].
+
+    Returns:
+        Force over stretch [N/m].
     """
     stiffness = BRISTLE_STIFFNESS * contacts.stiffness
     size = np.sqrt((stretch[0] + x) ** 2 + (stretch[1] + y) ** 2 + (stretch[2] + z) ** 2)
@@ -226,7 +239,14 @@ def bristle_pull(table, contacts, stretch, load, x, y, z):
 
 @inlined
 def contacts_agree(contacts, work, n, dt):
-    """Put the solved velocities' loads into `work`; tell whether the same contacts press."""
+    """Compute the loads of the solved velocities; return whether the same contacts press as before.
+
+    Args:
+        contacts: Stiffness and damping of contacts.
+        work: Arrays of the step with the solved velocities in `b`; loads are overwritten.
+        n: Number of contacts.
+        dt: Length of the step [s].
+    """
     k, c = contacts.stiffness, contacts.damping
     v, w, point = work.b[:3], work.b[3:], work.point
     agree = True
@@ -245,7 +265,17 @@ def contacts_agree(contacts, work, n, dt):
 
 @inlined
 def leg_turn(R, speed, w, i):
-    """Compute the speed at which leg i turns relative to the ground, about the body's y axis."""
+    """Compute the speed at which a leg turns relative to the ground, about the body's y axis.
+
+    Args:
+        R: Rotation of the body, body to world, shape (3, 3).
+        speed: Leg speeds relative to the body, shape (6,) [rad/s].
+        w: Angular velocity of the body in the world frame, shape (3,) [rad/s].
+        i: Index of the leg.
+
+    Returns:
+        Angular speed [rad/s].
+    """
     return speed[i] + R[0, 1] * w[0] + R[1, 1] * w[1] + R[2, 1] * w[2]
 
 

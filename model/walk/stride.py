@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
 """The stride map: once a constant gait repeats itself, every further stride is one planar step.
 
-On flat ground nothing depends on where the robot stands or which way it heads, so a settled stride
-moves the body by the same element of SE(2) each time; walking on is composing it with itself.
+On flat ground the motion does not depend on position or heading. A settled stride therefore
+moves the body by the same element of SE(2) each time, and the path is its repeated composition.
 """
 
 from typing import NamedTuple
@@ -48,7 +48,16 @@ class Planar(NamedTuple):
     yaw: float
 
     def then(self, x: Array, y: Array, yaw: Array) -> tuple[Array, Array, Array]:
-        """Place displacements, given in this pose's frame, in the frame this pose is given in."""
+        """Compose this pose with poses that are given in its frame (SE(2) composition).
+
+        Args:
+            x: Forward displacements in this pose's frame, shape (n,) [m].
+            y: Displacements to the left, shape (n,) [m].
+            yaw: Turns, shape (n,) [rad].
+
+        Returns:
+            x [m], y [m] and yaw [rad] in the frame that this pose is given in.
+        """
         c, s = np.cos(self.yaw), np.sin(self.yaw)
         return self.x + c * x - s * y, self.y + s * x + c * y, self.yaw + yaw
 

@@ -70,7 +70,7 @@ class VelocityCoulomb:
     speed_scale: float = 0.001
 
     def __post_init__(self) -> None:
-        """Refuse friction that is none."""
+        """Check that friction and velocity scale are positive."""
         if not (self.friction > 0 and self.speed_scale > 0):
             raise DomainError(
                 f"friction is {self.friction:g} and its velocity scale {self.speed_scale:g} m/s; "
@@ -78,7 +78,13 @@ class VelocityCoulomb:
             )
 
     def table(self, *, weight: float, toe: ToeLaw = "saturated") -> TractionTable:
-        """Tabulate the law; `weight` [N] only sets the range of loads, of which it is free."""
+        """Tabulate the law for the compiled loop.
+
+        Args:
+            weight: Weight of the robot; it only names the table's one row, as the law does not
+                depend on load [N].
+            toe: Traction of a leg on its toe.
+        """
         _require_toe(toe)
         scale, w = _grid(1.0)
         x = scale * np.sinh(w)
@@ -144,7 +150,13 @@ def law_table(
 
 
 def curve_table(curve: SlipCurve, *, weight: float, toe: ToeLaw = "saturated") -> TractionTable:
-    """Tabulate a calibrated slip curve at its posterior mean; see `law_table`."""
+    """Tabulate a calibrated slip curve at its posterior mean; see `law_table`.
+
+    Args:
+        curve: The slip curve.
+        weight: Weight of the robot, which sets the range of loads [N].
+        toe: Traction of a leg on its toe.
+    """
     return law_table(curve.law, curve.values, weight=weight, definition=curve.definition, toe=toe)
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""From rig samples to a calibration: choose a law, sample its posterior, judge the result."""
+"""Calibrate a slip law from rig samples: choose the law, sample its posterior, check the result."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -31,10 +31,10 @@ FEW_BLOCKS = 500  # below, numpy's calls are so short that threads only wait for
 
 
 class FitStopped(FitError):
-    """The watcher asked to stop.
+    """The fit was stopped on request of the watcher.
 
     Attributes:
-        chains: Where the sampler stands; None when sampling had not begun.
+        chains: The chains so far; None when sampling had not begun.
     """
 
     def __init__(self, chains: Chains | None) -> None:
@@ -44,14 +44,15 @@ class FitStopped(FitError):
 
 @dataclass(frozen=True)
 class SamplerSettings:
-    """How a posterior is sampled.
+    """Settings of the sampler.
 
     Attributes:
         ensembles: Independent ensembles of walkers.
-        max_steps: Sampler moves after which a fit that has not converged ends as such.
+        max_steps: Largest number of sampler moves; a fit that has not converged by then ends
+            unconverged.
         block_length: Samples in a block; chosen from the residuals when None.
-        threads: Ensembles advanced at once.
-        seed: Seed of everything random.
+        threads: Number of ensembles that are sampled at once.
+        seed: Seed of the random generators.
     """
 
     ensembles: int = 4
@@ -117,7 +118,7 @@ def _choose_law(
     rng: np.random.Generator,
     watcher: Watcher,
 ) -> tuple[PreparedFit, Comparison | None]:
-    """Prepare the fit of every law and choose the one that predicts left-out runs best."""
+    """Prepare the fit of every law and choose the one with the best cross-validation."""
     fits: list[PreparedFit] = []
     asked = settings.block_length
     choice = None if asked is None else BlockChoice(asked, None, "the length asked for")
@@ -171,13 +172,13 @@ def _sample(
 
 
 def next_look(n_steps: int) -> int:
-    """Return the first of the fixed steps, each a fifth beyond the last, at which to judge.
+    """Return the next step at which convergence is checked; each is a fifth beyond the last.
 
-    They are fixed, so that a fit that was stopped and resumed ends where one that was not would
-    have.
+    The steps are fixed, so that a fit that is stopped and resumed ends at the same step as one that
+    is not.
 
     Args:
-        n_steps: Kept steps after which to look.
+        n_steps: Kept steps; the result is this number or later.
 
     >>> [next_look(n) for n in (1, 101, 121)]
     [100, 120, 144]

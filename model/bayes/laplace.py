@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The Laplace approximation: a mode, the curvature there, and draws weighted to the posterior."""
+"""Laplace approximation: modes, covariances there, and importance sampling from them."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -138,7 +138,7 @@ def hessian(log_density: LogDensity, z: Array, *, step: float = 1e-3) -> Array:
 
 
 def find_mode(log_density: LogDensity, starts: Array) -> Laplace:
-    """Climb from several starting points and approximate the posterior at the highest mode.
+    """Maximise the log density from several starting points; approximate it at the highest mode.
 
     Args:
         log_density: Log density of coordinates (w, d), -inf out of support.
@@ -154,14 +154,14 @@ def find_mode(log_density: LogDensity, starts: Array) -> Laplace:
 
 
 def find_modes(log_density: LogDensity, starts: Array) -> tuple[Laplace, ...]:
-    """Climb from several starting points and approximate the posterior at every mode found.
+    """Maximise the log density from several starting points; approximate it at every mode found.
 
     Args:
         log_density: Log density of coordinates (w, d), -inf out of support.
         starts: Starting points, shape (m, d).
 
     Returns:
-        The distinct modes that hold a share of the posterior worth visiting, the highest first.
+        The distinct modes with a share of the posterior that is not negligible, the highest first.
 
     Raises:
         FitError: No start lies inside the support.
@@ -185,7 +185,7 @@ def _laplace(log_density: LogDensity, top: Array) -> Laplace:
 
 
 def climb(log_density: LogDensity, starts: Array) -> Array:
-    """Climb from several starting points and return the coordinates of the highest top.
+    """Maximise the log density from several starting points; return the coordinates of the best.
 
     Args:
         log_density: Log density of coordinates (w, d), -inf out of support.
@@ -201,7 +201,7 @@ def climb(log_density: LogDensity, starts: Array) -> Array:
 
 
 def _tops(log_density: LogDensity, starts: Array) -> list[Array]:
-    """Climb from every starting point inside the support; return the tops, the highest first."""
+    """Maximise from every starting point inside the support; return the maxima, best first."""
     inside = starts[np.isfinite(log_density(starts))]
     if len(inside) == 0:
         raise FitError(
@@ -223,7 +223,7 @@ def _climb(log_density: LogDensity, start: Array) -> Array:
 
 
 def _newton(log_density: LogDensity, z: Array, *, steps: int = 4) -> tuple[Array, Array]:
-    """Polish a mode by damped Newton steps; return it with the covariance there."""
+    """Refine a mode by damped Newton steps; return it with the covariance there."""
     covariance = _covariance(log_density, z)
     for _ in range(steps):
         slope = gradient(log_density, z)
@@ -240,8 +240,9 @@ def _newton(log_density: LogDensity, z: Array, *, steps: int = 4) -> tuple[Array
 def _covariance(log_density: LogDensity, z: Array) -> Array:
     """Invert the negative Hessian, with every variance within (0, 1].
 
-    Coordinates are standard normal a priori and data only narrow them, so an eigenvalue of the
-    precision below 1 is a fold of the density or a difference across the edge of the support.
+    Coordinates are standard normal a priori and data only narrow them. An eigenvalue of the
+    precision below 1 is therefore a non-convexity of the density or a difference across the edge of
+    the support.
     """
     precision = -hessian(log_density, z)
     precision = np.where(np.isfinite(precision), precision, 0.0)
@@ -279,13 +280,13 @@ class WeightedDraws:
 def importance_draws(
     log_density: LogDensity, proposal: LaplaceMixture, *, n: int, rng: np.random.Generator
 ) -> WeightedDraws:
-    """Draw from a mixture of Laplace approximations and weight by the posterior.
+    """Draw from a mixture of Laplace approximations and weight the draws by the posterior.
 
-    Pareto-smoothed importance sampling (Vehtari et al. 2024): the second engine.
+    Pareto-smoothed importance sampling (Vehtari et al. 2024), a check of the sampler.
 
     Args:
         log_density: Log density of coordinates (w, d).
-        proposal: What to draw from.
+        proposal: The mixture to draw from.
         n: Number of draws.
         rng: Source of randomness.
     """

@@ -43,10 +43,10 @@ NUISANCE = (
 
 @dataclass(frozen=True)
 class Prediction:
-    """What parameter vectors say of the blocks, each of shape (w, n).
+    """Predicted block means for parameter vectors, each of shape (w, n).
 
     Attributes:
-        force: Expected measured traction, run offset apart [N].
+        force: Expected measured traction, without run offset [N].
         slope: Derivative of `force` with respect to slip [N].
         noise: Marginal standard deviation of the correlated noise [N].
     """
@@ -63,12 +63,13 @@ def predict_blocks(blocks: SlipBlocks, law: SlipLaw, values: Array) -> Predictio
     what the spread of slip at one load adds to it, :math:`(f_+ - 2 f_0 + f_-)/6` at
     :math:`\kappa, \kappa \pm \sqrt{3}\,\omega` (three-point Gauss-Hermite, exact to fifth order in
     :math:`\omega`). The load's rule has two points and the mean, variance and skewness of the
-    block's loads: a bump on a disc is skewed, and the peak's place makes force bend in load.
+    block's loads: a bump on a disc makes the loads skewed, and because peak slip depends on load
+    the force is curved in load.
 
     Crosstalk puts the expected traction into the load, by the slope of force in load. With the
-    measured one there the density of the traction would have a Jacobian, and an error in that is
-    multiplied by the number of blocks. The two differ by :math:`c\,f_n`, a five-hundredth, of the
-    noise.
+    measured traction there, the density of the traction would have a Jacobian, and an error in that
+    is multiplied by the number of blocks. The two differ by :math:`c\,f_n`, a five-hundredth, of
+    the noise.
 
     Args:
         blocks: The block means, n of them.
@@ -163,8 +164,8 @@ def log_likelihood(blocks: SlipBlocks, law: SlipLaw, values: Array) -> Array:
 
     Args:
         blocks: The block means.
-        law: The slip law.
-        values: Parameter vectors as in `run_log_likelihood`, one a row, shape (w, k).
+        law: The slip law, of k parameters.
+        values: Law and measurement parameters, shape (w, k + 8).
 
     Returns:
         Log likelihood of each parameter vector, shape (w,).

@@ -81,8 +81,8 @@ class VelocityCoulomb:
         """Tabulate the law for the compiled loop.
 
         Args:
-            weight: Weight of the robot; it only names the table's one row, as the law does not
-                depend on load [N].
+            weight: Weight of the robot; the load of the table's only row, without effect on the
+                traction over load [N].
             toe: Traction of a leg on its toe.
         """
         _require_toe(toe)

@@ -1,16 +1,17 @@
 # SPDX-License-Identifier: MIT
-r"""Where the posterior of legs and floor lies, case by case: climbs and scans to Gaussians.
+r"""Modes of the posterior of legs and floor in every case, by Gauss-Newton and scans.
 
-All but a wrong leg's offset act nearly in proportion. So the case without a wrong leg is climbed
-first; there, and where all is as described, a scan moves one leg at a time through all it may be
-off by, with all else free to follow linearly,
+Residuals are nearly linear in all parameters but a wrong leg's offset. The case without a wrong
+leg is therefore maximised first. There, and at the prior mode, a scan changes the offset of one leg
+at a time over its whole range, while all other parameters follow linearly,
 
 .. math::
     -2 \log p(\delta) = r'^T (I + J J^T)^{-1} r' + (\delta / \sigma)^2, \quad
     r' = r(\delta) - J \hat z ,
 
-which finds the cases that matter wherever they are; the likeliest are then climbed themselves, from
-both scans: on kinks a climb ends early, and the better end counts.
+The scan finds every relevant case, however far its offset is from zero. The most probable cases are
+then maximised themselves, from both scans: at kinks an optimisation may end early, and the better
+of the two ends is taken.
 """
 
 from collections.abc import Callable, Sequence
@@ -43,13 +44,13 @@ def _evidence(mode: Mode) -> float:
 
 
 class ModeSearch:
-    """Residuals of all walks in standard normal coordinates, and the searches over them.
+    """Residuals of all walks in standard normal coordinates, and the searches for modes.
 
     Args:
         misfits: The walks.
-        prior: What is believed before.
-        threads: Walks computed at once.
-        numbers: How cases count these walks; in their order when None.
+        prior: The prior.
+        threads: Number of walks computed at once.
+        numbers: Indices by which cases refer to these walks; in their order when None.
     """
 
     def __init__(
@@ -67,7 +68,7 @@ class ModeSearch:
         """Find the mode of every case, in the order of `all_cases`.
 
         Args:
-            tell: Told the fraction done.
+            tell: Called with the fraction done.
 
         Raises:
             WalkError: A walk diverged.
@@ -88,9 +89,10 @@ class ModeSearch:
         return modes
 
     def _scan_at_rest(self) -> list[Mode]:
-        """Scan with all else where it was described to be.
+        """Scan about the prior mode.
 
-        At the mode without a wrong leg all else has already moved to do a wrong leg's work.
+        At the mode without a wrong leg the other parameters have already absorbed part of the
+        effect of a wrong leg.
         """
         rest = np.zeros(WRONG + 1)
         _, J = self._linearised(rest, None)
@@ -186,10 +188,10 @@ class ModeSearch:
         return np.stack([np.interp(FINE, SCANNED, column) for column in walked.T], axis=1)
 
     def _scanned(self, case: WrongLeg, r: Array, J: Array, follow: NDArray[np.floating]) -> Mode:
-        """Sum up one leg's scan as a Gaussian.
+        """Summarise one leg's scan as a Gaussian.
 
         Args:
-            case: Which leg.
+            case: The wrong leg.
             r: Residuals at each of the fine offsets, all else at zero by `J`, shape (241, n).
             J: Jacobian of the residuals, shape (n, 14).
             follow: Inverse of I + J J^T, shape (n, n).

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What is believed of legs and floor before any walk, and which legs may be mounted wrong."""
+"""Prior of leg offsets and floor, and the cases of one leg that is mounted wrong."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
@@ -60,7 +60,7 @@ def wrong_legs(walks: int) -> tuple[WrongLeg, ...]:
 
 @dataclass(frozen=True)
 class WalkPrior:
-    """What is believed before any walk.
+    """Prior before any walk.
 
     Attributes:
         offset_sd: Standard deviation of each leg's own offset [rad].
@@ -68,17 +68,18 @@ class WalkPrior:
             [rad].
         arc_sd: That of the legs' arc beyond the described one [rad].
         wrong_sd: That of the further offset of a leg that is mounted wrong [rad].
-        wrong: Probability that one leg is [-].
+        wrong: Probability that one leg is mounted wrong [-].
         grip_sd: Standard deviation of the logarithm of the factor on traction: floor and rig differ
             [-].
-        stiffness_sd: That of the factor on slip stiffness [-].
-        fall_sd: That of the factor on the fall beyond the peak, about `FALL` [-].
-        steering_sd: Standard deviation of the turn that is not the legs' [rad/m].
+        stiffness_sd: That of the logarithm of the factor on slip stiffness [-].
+        fall_sd: That of the factor on the post-peak drop, about `FALL` [-].
+        steering_sd: Standard deviation of the constant curvature that the legs do not explain
+            [rad/m].
         stride_sd: That of the relative error of distance [-].
-        spread: What the walking model gets wrong anew in each walk.
+        spread: Errors of the walking model, drawn anew in each walk.
 
     Raises:
-        DomainError: A standard deviation is not positive or `wrong` no probability.
+        DomainError: A standard deviation is not positive or `wrong` is not a probability.
     """
 
     offset_sd: float = float(np.radians(0.2))
@@ -137,11 +138,11 @@ def all_cases(walks: int) -> tuple[Case, ...]:
 
 
 def legs_of(values: Array, case: Case, *, walk: int | None = None) -> LegState:
-    """Turn parameters into the state of the legs in a walk.
+    """Convert parameters to the state of the legs in a walk.
 
     Args:
         values: Parameters in the order of `NAMES` and that of a wrong leg, shape (m, 14).
-        case: What is wrong.
+        case: The leg that is mounted wrong, or None.
         walk: The walk's index; None for a walk to come.
     """
     offset = leg_offsets(values, case, walk=walk)
@@ -175,7 +176,7 @@ def leg_offsets(values: Array, case: Case, *, walk: int | None = None) -> Array:
 
 
 def describe(case: Case, walks: Sequence[str]) -> str:
-    """Say what a case means.
+    """Describe a case as text.
 
     Args:
         case: The case.

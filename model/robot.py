@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The robot: where its hips are, the shape of its legs, and what it weighs."""
+"""The robot: hip positions, shape of the legs, mass and inertia."""
 
 from dataclasses import dataclass, field
 
@@ -51,7 +51,7 @@ class Robot:
     leg_offset: Array = field(default_factory=lambda: np.zeros(N_LEGS))
 
     def __post_init__(self) -> None:
-        """Refuse a robot that cannot be."""
+        """Check that masses and lengths are positive and that arrays have the expected shapes."""
         for name, shape in (("hips", (N_LEGS, 3)), ("leg_offset", (N_LEGS,))):
             values = np.ascontiguousarray(getattr(self, name), dtype=float)
             _require_shape(name, values, shape)

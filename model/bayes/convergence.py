@@ -78,7 +78,7 @@ class Convergence:
         return not self.failures()
 
     def fraction_done(self) -> float:
-        """Estimate the progress towards the required chain length and effective sizes, 0 to 1 [-]."""
+        """Estimate the progress towards the required length and effective sizes, 0 to 1 [-]."""
         lengths = self.length / self.autocorrelation_time
         return float(
             min(

@@ -120,7 +120,7 @@ def body_arrays(robot: Robot) -> Body:
 
 @compiled
 def new_work():
-    """Make room for what a step fills in; no contact presses."""
+    """Allocate the work arrays of a step, with all loads zero."""
     n = N_CONTACTS
     return Work(
         np.empty((n, 3)), np.empty((n, 3)), np.empty((n, 3)), np.empty(n), np.empty(n),
@@ -132,7 +132,7 @@ def new_work():
 
 @compiled
 def new_state():
-    """Make room for a state."""
+    """Allocate an uninitialised state."""
     return State(np.empty(3), np.empty(4), np.empty(3), np.empty(3), np.empty((N_CONTACTS, 3)))
 
 

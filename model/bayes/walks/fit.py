@@ -71,7 +71,7 @@ def fit_walks(
 
 
 class _Density:
-    """Posterior density with steering and stride integrated out; stores the terms it has computed."""
+    """Posterior density with steering and stride integrated out; stores the computed terms."""
 
     def __init__(self, misfits: Sequence[WalkMisfit], prior: WalkPrior, threads: int) -> None:
         self.misfits, self.prior, self.threads = misfits, prior, threads
@@ -154,7 +154,7 @@ class WalkFit:
         )
 
     def _values(self, z: Array, mean: Array, covariance: Array) -> Array:
-        """Draw steering and stride given all else; return all parameters in their units, (m, 14)."""
+        """Draw steering and stride given all else; return all parameters, shape (m, 14)."""
         noise = self._rng.standard_normal((len(z), 2, 1))
         scale = self._density.prior.scale
         values = np.zeros((len(z), WRONG + 1))

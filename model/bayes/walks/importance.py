@@ -143,7 +143,7 @@ def _around_draws(
     width: float,
     rng: np.random.Generator,
 ) -> list[_Bumps]:
-    """Return narrower proposals around some of the weighted draws, to follow a kink of any shape."""
+    """Return narrower proposals around some weighted draws, to follow a kink of any shape."""
     chosen = np.unique(rng.choice(len(z), size=CENTRES, p=weight))
     bumps = []
     for i in np.unique(case[chosen]):

@@ -167,7 +167,7 @@ class WalkMisfit:
         return self._with_tilt(self._difference(paths) @ self.root.T, walked)
 
     def terms(self, state: LegState, *, steering: float, stride: float, threads: int) -> Terms:
-        """Compute residuals for m states of the legs, with their derivatives by steering and stride.
+        """Compute residuals for m states of the legs, and their derivatives by steering and stride.
 
         Args:
             state: The legs; its own steering and stride are ignored.
@@ -215,7 +215,7 @@ class WalkMisfit:
         return np.linspace(0.0, end, max(round(end / step), 2) + 1)
 
     def _difference(self, paths: Poses) -> Array:
-        """Subtract the tracked poses from paths that start at the first one; shape (m, 3 (n - 1))."""
+        """Subtract the tracked poses from paths started at the first; shape (m, 3 (n - 1))."""
         states = from_first(states_at(paths, self.walk.t), self.walk.states[0])
         difference = states[:, 1:] - self.walk.states[1:]
         difference[..., 2] = wrap(difference[..., 2])

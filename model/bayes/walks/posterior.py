@@ -161,7 +161,7 @@ class WalkPosterior:
         return sorted(rows, key=lambda row: -row.probability)
 
     def of_floor_alone(self, *, rng: np.random.Generator) -> "WalkPosterior":
-        """Return draws for another robot on the same floor: leg parameters are drawn from the prior."""
+        """Return draws for another robot on the same floor, with leg parameters from the prior."""
         keep = [NAMES.index(name) for name in FLOOR]
         values = rng.standard_normal(self.values.shape) * self.prior.scale
         best = np.zeros_like(self.best)

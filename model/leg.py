@@ -24,7 +24,7 @@ HIP, ROLLING, TOE = 0, 1, 2  # leg states
 
 
 def wrap_angle(angle: Numbers) -> Numbers:
-    """Bring an angle into (-pi, pi] [rad]."""
+    """Wrap an angle into (-pi, pi] [rad]."""
     return np.pi - (np.pi - angle) % (2 * np.pi)
 
 
@@ -156,7 +156,7 @@ def plane_cosine(roll: Numbers, pitch: Numbers) -> Numbers:
 
 
 def leg_state(phi: Numbers, toe_beyond: float = 0.0) -> NDArray[np.int_] | int:
-    """Tell what a leg would touch the ground with, section 3-4-1: HIP, ROLLING or TOE.
+    """Classify the part of a leg that would touch the ground, section 3-4-1: HIP, ROLLING or TOE.
 
     Beyond the arc's ends the nearer one is the lower one; for the thesis's half circle that is the
     toe for phi from -pi/2 to 0.

@@ -35,7 +35,7 @@ class Poses:
     covariance: Array | None = None
 
     def __post_init__(self) -> None:
-        """Raise if this is no path."""
+        """Check that shapes match, that times increase and that positions are finite."""
         n = len(self.t)
         batch = self.yaw.shape[:-1]
         if (
@@ -74,7 +74,7 @@ class Poses:
 
     @property
     def states(self) -> Array:
-        """x, y and yaw side by side, shape (n, 3) or (draws, n, 3) [m, m, rad]."""
+        """x, y and yaw in one array, shape (n, 3) or (draws, n, 3) [m, m, rad]."""
         return np.concatenate([self.position, self.yaw[..., None]], axis=-1)
 
     def draws(self, keep: int | slice = slice(None)) -> "Poses":
@@ -115,7 +115,7 @@ class Poses:
         return replace(self, t=self.t + offset)
 
     def at(self, t: ArrayLike) -> "Poses":
-        """Interpolate one path linearly at times within it; yaw takes the unwrapped way.
+        """Interpolate one path linearly at times within it; yaw is interpolated unwrapped.
 
         Args:
             t: Times, shape (m,) [s].

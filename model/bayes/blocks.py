@@ -18,7 +18,7 @@ from model.bayes.samples import SlipSamples
 from model.slip.definition import SlipDefinition
 from model.slip.law import Array
 
-BY_CHANCE = 1e-6  # one block that falsely claims wander can cost hundreds of nats in a steep place
+BY_CHANCE = 1e-6  # probability; one false wander can cost hundreds of nats where the curve is steep
 
 
 @dataclass(frozen=True)

@@ -25,9 +25,9 @@ from model.progress import Watcher
 from model.slip.law import SlipLaw
 
 THIN = 5  # sampler moves a kept step
-CHUNK = 20  # kept steps between looks at the watcher
+CHUNK = 20  # kept steps between checks for a request to stop
 FIRST_LOOK = 100  # kept steps before convergence is judged for the first time
-FEW_BLOCKS = 500  # below, numpy's calls are so short that threads only wait for each other
+FEW_BLOCKS = 500  # below, numpy's calls are too short for threads to help
 
 
 class FitStopped(FitError):
@@ -79,13 +79,13 @@ def calibrate(
     Args:
         samples: The samples.
         laws: The laws to choose from, simplest first, by the name they are reported under.
-        load_cell: What is known of the load cell.
-        settings: How to sample.
+        load_cell: Prior knowledge of the load cell.
+        settings: Settings of the sampler.
         source: Where the samples come from, for the result.
         watcher: Follows the progress and may ask to stop.
         clock: Returns the time, to measure how long sampling takes [s].
-        earlier: Chains of a stopped fit of the same samples and settings, to go on from.
-        keep: Called with the chains as they grow, so that a fit that dies can go on.
+        earlier: Chains of a stopped fit of the same samples and settings, to resume from.
+        keep: Called with the chains as they grow, to save a checkpoint.
 
     Returns:
         The calibration, and the chains it was made from.

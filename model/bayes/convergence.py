@@ -21,11 +21,11 @@ BURN_IN = 5.0  # autocorrelation times; the starts are nearly posterior draws
 
 @dataclass(frozen=True)
 class Convergence:
-    """The evidence, each array of shape (d,).
+    """Convergence diagnostics, each array of shape (d,).
 
     Attributes:
         burn_in: Kept steps left out at the start.
-        length: Kept steps behind them.
+        length: Kept steps after the burn-in.
         autocorrelation_time: Integrated autocorrelation time [kept steps].
         r_hat: Rank-normalised split R-hat between ensembles (never between walkers, which are
             not independent) [-].
@@ -96,7 +96,7 @@ def assess(chains: Chains) -> Convergence:
     Args:
         chains: Chains of at least 8 steps.
     """
-    import arviz as az  # here, for it takes longer to import than most commands to run
+    import arviz as az  # imported late: it takes longer than most commands run
 
     times = autocorrelation_times(chains.z)
     burn_in = int(min(np.ceil(BURN_IN * times.max()), chains.n_steps // 2))

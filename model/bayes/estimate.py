@@ -86,7 +86,7 @@ def estimate(parameter: Parameter, draws: Array) -> Estimate:
         parameter: The quantity: name, unit and meaning.
         draws: Its posterior draws, shape (n,).
     """
-    # Order statistics themselves: between infinite ones there is nothing to interpolate.
+    # Order statistics without interpolation, which infinite draws do not allow.
     low, median, high = np.quantile(draws, [0.05, 0.5, 0.95], method="inverted_cdf")
     with np.errstate(invalid="ignore"):
         mean, sd = np.mean(draws), np.std(draws)

@@ -17,9 +17,9 @@ from model.errors import DomainError, FitError, InsufficientData
 from model.slip.law import SlipLaw
 
 FEW_BLOCKS = 500
-MOST_FORCE = 1e9  # beyond every rig, and far from where squares of forces overflow [N]
+MOST_FORCE = 1e9  # above any rig, and far below the overflow of squared forces [N]
 PRIOR_DRAWS = 400
-PRIOR_STARTS = 12  # of the draws, from the best to the worst, where to climb from as well
+PRIOR_STARTS = 12  # further starts of the optimisation, from the best of the draws to the worst
 CLEAR_WIN = 2.0  # standard errors by which a law must predict better to be preferred
 
 

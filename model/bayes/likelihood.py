@@ -87,7 +87,7 @@ def predict_blocks(blocks: SlipBlocks, law: SlipLaw, values: Array) -> Predictio
         return (1 + g_t) * law.force(slip, true_load, law_values)
 
     half_width = np.sqrt(3 * np.maximum(blocks.slip_variance() - rule.slip_variance, 1e-12))
-    offsets = np.array([1.0, 0.0, -1.0])[:, None, None]  # one call: the load's part is shared
+    offsets = np.array([1.0, 0.0, -1.0])[:, None, None]  # one call: loads are computed once
     above, centre, below = force_at(blocks.slip + offsets * half_width, blocks.normal_force)
     light = force_at(rule.slip_light, rule.light)
     heavy = force_at(rule.slip_heavy, rule.heavy)
@@ -123,7 +123,7 @@ class LoadRule:
 
 def load_rule(blocks: SlipBlocks) -> LoadRule:
     """Build the two-point rule of each block's loads, slip following load by regression."""
-    # A block at one load is given a little spread, so that the slope in load stays defined.
+    # A block at a single load gets a small spread, so that the slope in load is defined.
     spread = np.maximum(np.sqrt(blocks.load_variance), 1e-3 * blocks.normal_force)
     half = 0.5 * blocks.load_skewness
     root = np.sqrt(1 + half**2)
@@ -212,8 +212,8 @@ def _filter_runs(residual, noise, slope, slip_error, run_slip_error, starts, rho
             determinant = a * d - b * c
             x_1 = (d * d_1 * r1 - b * d_g * rg) / determinant
             x_g = (a * d_g * rg - c * d_1 * r1) / determinant
-            # Where noise is far below everything else, the difference cancels to its rounding
-            # errors, of either sign: it is taken for no less than they are.
+            # Where noise is far below everything else, the difference cancels to rounding
+            # errors of either sign; these are its lower bound.
             quadratic = max(rr - r1 * x_1 - rg * x_g, 1e-14 * rr)
             size = starts[i + 1] - starts[i]
             log_determinant += np.log(determinant)

@@ -63,7 +63,7 @@ def least_squares_values(
         climbs = [
             least_squares(misfit, z, loss="soft_l1", max_nfev=100).x for z in ranked[:N_CLIMBS]
         ]
-    except ValueError as error:  # scipy's, where a residual is beyond what floating point holds
+    except ValueError as error:  # raised by scipy where a residual overflows
         raise FitError(
             f"no curve of '{law.name}' comes near a traction force of up to "
             f"{np.abs(blocks.traction_force).max():.3g} N at loads of {loads[0]:.3g} to "

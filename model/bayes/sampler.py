@@ -23,7 +23,7 @@ MOVES = ((DEMove, 1.0),)
 """A quarter of the stretch move's autocorrelation time in 12 dimensions. No snooker move: emcee's,
 up to 3.1.6, misses half the exponent of its acceptance ratio and narrows every spread by 7 %."""
 
-JUMP_SHARE = 0.3  # of all moves: to a draw of the Laplace approximations, between modes if need be
+JUMP_SHARE = 0.3  # of all moves: to a draw of the Laplace approximations, possibly at another mode
 
 
 @dataclass(frozen=True)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The contact triangle: whether the robot stands in it, and which leg lifts if it does not."""
+"""The contact triangle: static stability, and the leg that lifts when the robot is unstable."""
 
 import numpy as np
 from numba.extending import register_jitable

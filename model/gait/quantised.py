@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: MIT
-"""Smooth leg angles out of an encoder's counts, and how far they may be off.
+"""Reconstruction of smooth leg angles from encoder counts, with their uncertainty.
 
-An encoder of few counts says little about an angle between two counts, but when the count changes
-the angle is the boundary between them, known to the time between samples. Legs turn at constant
-speeds for most of a cycle, so the angles here are the fewest straight lines that pass every
-boundary when the log says so. A line through twenty boundaries is known far better than one count:
-to about a tenth of a degree where the count is 3.6 degrees and the log 100 Hz.
+An encoder of few counts gives little information on an angle between two counts. When the count
+changes, however, the angle is the boundary between them, at a time known to one sample. Legs turn
+at constant speeds for most of a cycle, so the angles here are the fewest straight lines that pass
+every boundary at its time. A line through twenty boundaries is known far better than one count: to
+about a tenth of a degree where the count is 3.6 degrees and the log 100 Hz.
 """
 
 from dataclasses import dataclass
@@ -22,17 +22,17 @@ from model.slip.law import Array
 SAME = 1e-9  # rad: angles no further apart are one count
 LARGEST_STEP = np.radians(10.0)
 FEWEST_CHANGES = 8
-SLACK = 0.03  # of a count: corners are round, clocks jitter, and a line still goes on
+SLACK = 0.03  # of a count: tolerance of a line for rounded corners and clock jitter
 
 
 @dataclass(frozen=True)
 class CountedLeg:
-    """One leg's changes of count and the lines through their middles.
+    """Straight lines through one leg's changes of count.
 
     Attributes:
         changes: The changes, at least one.
         first: First change of each line, and the number of changes, shape (k + 1,).
-        lines: The lines.
+        lines: The lines, fitted with each change halfway between its two samples.
         rested: Whether the leg rested between each line and the next, shape (k - 1,).
         log: The log's ends.
     """
@@ -125,7 +125,7 @@ class QuantisedLog:
     step: float
 
     def __post_init__(self) -> None:
-        """Refuse a step that is none."""
+        """Check that the angle of a count is positive."""
         if not (self.step > 0 and np.isfinite(self.step)):
             raise DomainError(f"a count of {self.step:g} rad; expected more than zero")
 
@@ -137,10 +137,12 @@ class QuantisedLog:
         """Reconstruct the angles, at the log's times.
 
         Args:
-            rng: Draws one of the motions that the counts allow. None takes the middle one.
+            rng: Source of randomness, to draw one of the motions that the counts allow; None for
+                the middle one.
 
         Returns:
-            The angles. Whether bins are rounded or cut is not known here: that half count is a
+            The angles. Whether counts are rounded or truncated is not known here: that half count
+                is a
             constant offset of the leg.
         """
         columns = [
@@ -155,7 +157,7 @@ class QuantisedLog:
 
 
 def find_step(theta: Array) -> float | None:
-    """Find the angle of a count when angles look counted: all differences are multiples of it.
+    """Detect quantised angles: find the largest angle of which all differences are multiples.
 
     Args:
         theta: Unwrapped angles, shape (n, legs) [rad].

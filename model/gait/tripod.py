@@ -35,7 +35,7 @@ class TripodAngles:
     outer_liftoff: float
 
     def __post_init__(self) -> None:
-        """Refuse legs that lift off before they touch down."""
+        """Check that each side's lift-off angle exceeds its touchdown angle by less than a turn."""
         for side, down, up in (
             ("inner", self.inner_touchdown, self.inner_liftoff),
             ("outer", self.outer_touchdown, self.outer_liftoff),

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The brush model with parabolic pressure: bristles that stick, then slide."""
+"""Brush model with parabolic pressure distribution: bristles that stick, then slide."""
 
 import math
 from dataclasses import dataclass
@@ -16,8 +16,9 @@ def sliding_share(sigma: ArrayLike, K: ArrayLike, mu_s: ArrayLike) -> Array:
     .. math::
         \psi = \min\Bigl(\frac{K |\sigma|}{3 \mu_s},\ 1\Bigr)
 
-    A bristle sticks from the leading edge on, is bent in proportion to slip and way, and lets go
-    where its force meets static friction times the local pressure, a parabola over the patch.
+    A bristle sticks from the leading edge on and is bent in proportion to slip and distance. It
+    starts to slide where its force reaches static friction times the local pressure, a parabola
+    over the patch.
 
     Args:
         sigma: Material slip ratio [-].
@@ -103,8 +104,8 @@ def static_friction_from_peak(mu: ArrayLike, q: ArrayLike) -> Array:
 class Brush:
     """The brush model as a slip law, with bristle stiffness and friction proportional to load.
 
-    Derived for theoretical slip, the material slip of `SlipDefinition.MATERIAL`: convert other
-    definitions before evaluating, or its shape means nothing.
+    It is derived for theoretical slip, the material slip of `SlipDefinition.MATERIAL`. Slip of
+    another definition must be converted first.
 
     Attributes:
         kinetic: Let sliding bristles have less friction than sticking ones, which gives the curve

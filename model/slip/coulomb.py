@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Coulomb friction with Stribeck's fall from static to kinetic, smooth at zero slip."""
+"""Coulomb friction with a Stribeck drop from static to kinetic friction, smooth at zero slip."""
 
 import math
 from dataclasses import dataclass
@@ -48,7 +48,7 @@ def regularised_sign(kappa: ArrayLike, kappa_c: ArrayLike) -> Array:
 
 
 def stribeck_fall(kappa: ArrayLike, kappa_c: ArrayLike, kappa_s: ArrayLike, q: ArrayLike) -> Array:
-    r"""Compute the share of static friction left at a slip ratio.
+    r"""Compute the share of static friction left at a slip ratio (Stribeck curve).
 
     .. math::
         \beta(\kappa) = q + (1 - q)\,e^{-z^2}, \qquad
@@ -56,7 +56,7 @@ def stribeck_fall(kappa: ArrayLike, kappa_c: ArrayLike, kappa_s: ArrayLike, q: A
 
     Args:
         kappa: Slip ratio [-].
-        kappa_c: Slip ratio at which the fall begins [-].
+        kappa_c: Slip ratio at which the post-peak drop begins [-].
         kappa_s: Stribeck slip, over which 63 % of the static excess is lost [-].
         q: Kinetic over static friction [-].
 
@@ -124,7 +124,7 @@ def coulomb_stribeck_slope(
 
 
 def _slip_past_breakaway(kappa: ArrayLike, kappa_c: ArrayLike, kappa_s: ArrayLike) -> Array:
-    # 40 Stribeck slips out exp(-z²) is zero in double precision; the bound keeps infinite slip
+    # Beyond 40 Stribeck slips exp(-z²) is zero in double precision; the bound keeps infinite slip
     # (a locked leg by material slip) from giving inf·0.
     past = (np.abs(np.asarray(kappa)) - np.asarray(kappa_c)) / np.asarray(kappa_s)
     return np.clip(past, 0.0, 40.0)
@@ -149,7 +149,7 @@ class CoulombStribeck:
         return (*_COMMON, *(_STRIBECK if self.stribeck else ()))
 
     def coefficients(self, values: Values) -> tuple[Array, Array, Array, Array]:
-        """Spell out K, mu, q and kappa_s, with q = 1 where there is no fall.
+        """Return K, mu, q and kappa_s, with q = 1 without a post-peak drop.
 
         Args:
             values: Parameter values, one entry a parameter.

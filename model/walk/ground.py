@@ -40,7 +40,7 @@ def sample_ground(
     y: tuple[float, float],
     step: float = 0.005,
 ) -> Ground:
-    """Sample a height function; beyond the area the ground goes on as at its edge.
+    """Sample a height function; beyond the area the height of its edge continues.
 
     Args:
         height: Height at x and y, arrays of one shape [m].

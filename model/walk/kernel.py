@@ -9,9 +9,9 @@ and traction of every contact are taken there, linear in them,
     T_i' = -G_i (J_i v' + u_i)_t,
 
 with gap g, normal n, contact Jacobian J, the leg's own velocity u at its contact, and the secant
-G of the slip law. That leaves a symmetric positive definite 6x6 system; a few rounds settle which
-contacts press and what G is. No contact pulls, and traction opposes slip whatever the step, so the
-step is stable at any length: what the explicit step of the thesis is not.
+G of the slip law. This gives a symmetric positive definite 6x6 system. A few iterations determine
+which contacts press and what G is. No contact pulls, and traction opposes slip whatever the step.
+The step is therefore stable at any length, unlike the explicit step of the thesis.
 """
 
 import numpy as np
@@ -21,7 +21,7 @@ from model.leg import HIP, ROLLING, TOE
 from model.robot import N_LEGS
 
 N_CONTACTS = N_LEGS + 8  # legs, then the corners of the body
-NEAR = 0.01  # height over the ground below which the body's corners are looked at [m]
+NEAR = 0.01  # height over the ground below which the body's corners are computed [m]
 
 
 @inlined
@@ -122,7 +122,7 @@ def ground_at(ground, x, y):
     h = (1 - a) * ((1 - b) * h00 + b * h01) + a * ((1 - b) * h10 + b * h11)
     sx = ((1 - b) * (h10 - h00) + b * (h11 - h01)) / ground.step
     sy = ((1 - a) * (h01 - h00) + a * (h11 - h10)) / ground.step
-    if at_x < 0 or at_x > m - 1:  # the edge's height goes on, so its slope must not
+    if at_x < 0 or at_x > m - 1:  # beyond the edge its height continues, with zero slope
         sx = 0.0
     if at_y < 0 or at_y > n - 1:
         sy = 0.0
@@ -278,13 +278,13 @@ def solve_positive(A, b, n):
 
 @inlined
 def find_contacts(body, ground, p, R, theta, speed, place, velocity, normal, gap, state, flow):
-    """Find where each leg and each corner of the body would touch, and how far off the ground.
+    """Find the potential contact of each leg and body corner, and its distance from the ground.
 
     Args:
         body: Robot as arrays; see `Body`.
         ground: The ground.
-        p: Position of the body [m].
-        R: Its rotation, body to world.
+        p: Position of the body, shape (3,) [m].
+        R: Its rotation, body to world, shape (3, 3).
         theta: Leg angles at the end of the step, shape (6,) [rad].
         speed: Leg speeds in the step, shape (6,) [rad/s].
         place: Filled: contact from the body's centre, world frame, shape (14, 3) [m].
@@ -296,7 +296,7 @@ def find_contacts(body, ground, p, R, theta, speed, place, velocity, normal, gap
         flow: Filled: arc radius where a leg rolls, shape (14,) [m].
 
     Returns:
-        How many contacts were looked at: the corners only where the body comes near the ground.
+        Number of contacts computed: the corners only where the body comes near the ground.
     """
     for i in range(N_LEGS):
         hip = body.hips[i]

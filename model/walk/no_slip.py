@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-r"""Walking without slip: what the legs' geometry alone makes of leg angles.
+r"""Kinematic walking models without slip, from leg angles and the legs' geometry.
 
 `walk_no_slip` takes the legs as they are. The robot rests on the legs that hold it
 (`model.contact.stance`), and its body moves such that their material contact points stand still,
@@ -7,8 +7,8 @@ r"""Walking without slip: what the legs' geometry alone makes of leg angles.
 .. math::
     v + \omega \times q_i + \dot\theta_i\, e_y \times (p_i - h_i) = 0 .
 
-Vertically three legs determine height, roll and pitch rate exactly; horizontally two equations a
-leg for three unknowns cannot all hold when a robot turns, and least squares decides.
+Vertically three legs determine height, roll and pitch rate exactly. Horizontally two equations a
+leg for three unknowns cannot all hold when a robot turns, and are solved by least squares.
 
 `walk_wheels` is the predecessor's model, section 2-4: six wheels of radius 2r that do not steer.
 The text says 4r, but its hip speed is 2 r theta_dot, and with that its results follow.
@@ -66,12 +66,12 @@ def walk_no_slip(
         dt: Length of a step [s].
 
     Returns:
-        The path. `slip_velocity` is what the legs cannot avoid against each other; forces and slip
+        The path. `slip_velocity` is the residual of the least squares; forces and slip
         ratio are unknown to this model, NaN on the ground.
 
     Raises:
         DomainError: The duration is shorter than a step.
-        WalkError: At some instant no three legs hold the robot; says when.
+        WalkError: At some instant no three legs hold the robot; the message says when.
     """
     return _walk(robot, reference, duration, dt, wheels=False)
 
@@ -139,7 +139,7 @@ def _motion(robot: Robot, reference: LegReference, t: Array, *, wheels: bool) ->
 
 
 def _integrate(twist: Array, dt: float) -> tuple[Array, Array]:
-    """Add up steps of constant velocity and yaw rate; the chord points along the mean heading."""
+    """Integrate steps of constant velocity and yaw rate; chords point along the mean heading."""
     yaw = np.concatenate([[0.0], np.cumsum(twist[:, 2]) * dt])
     middle = 0.5 * (yaw[1:] + yaw[:-1])
     forward, left = twist[:, 0] * dt, twist[:, 1] * dt
@@ -168,7 +168,7 @@ def move(skeleton, theta, speed, wheels, motion):
     legs = np.full(3, -1, np.intp)
     level, own = np.empty(6), np.empty((6, 3))
     for k in range(len(theta)):
-        # The legs of the instant before, as long as they hold: among four legs in one plane any
+        # Keep the legs of the instant before while stable: among four legs in one plane any
         # three would do, and they should not alternate.
         kept = (
             legs[0] >= 0 and holds(theta[k], hips, r, beyond, legs, points, up, seen) >= -ON_GROUND
@@ -220,23 +220,23 @@ def leg_velocities(hips, points, up, speed, own):
 
 @compiled
 def stand_still(seen, below, own, up, legs, contact, twist, slip):
-    """Fill the body's twist that keeps contacts in place, and the slip that is left.
+    """Compute the twist that keeps contacts in place, by least squares, and the remaining slip.
 
     Args:
         seen: Contact points from the body's centre, forward and left, shape (6, 2) [m].
-        below: How far each lies below the centre, shape (6,) [m].
-        own: The legs' own velocities; see `leg_velocities`.
-        up: Vertical direction in the body frame, shape (3,).
-        legs: The three legs that determine height, roll and pitch.
+        below: Distance of each below the centre, shape (6,) [m].
+        own: The legs' own velocities; see `leg_velocities`, shape (6, 3) [m/s].
+        up: Vertical direction in the body frame, shape (3,) [-].
+        legs: The three legs that determine height, roll and pitch, shape (3,).
         contact: Legs on the ground, 1 or 0, shape (6,).
-        twist: Filled with forward and left velocity and yaw rate, shape (3,).
-        slip: Filled, shape (6, 2) [m/s].
+        twist: Filled: forward and left velocity [m/s] and yaw rate [rad/s], shape (3,).
+        slip: Filled: velocity over the ground, shape (6, 2) [m/s].
     """
     roll, pitch = vertical_rates(seen, own, legs)
     count, mean = 0.0, np.zeros(4)
     for leg in range(6):
         if contact[leg] > 0:
-            # What the body's horizontal motion has to be at this contact.
+            # Horizontal velocity that the body needs at this contact.
             slip[leg, 0] = -own[leg, 0] + pitch * below[leg]
             slip[leg, 1] = -own[leg, 1] - roll * below[leg]
             count += 1.0

@@ -25,18 +25,18 @@ from model.walk.kernel import (
 )
 from model.walk.traction import TractionTable
 
-ROUNDS = 2  # solves a step: one to settle which contacts press and how hard, one to go by it
-MOST_ROUNDS = 8  # until the contacts that were taken to press are those that do
-FINE_STEP = 0.0005  # s, where contacts change: two tripods on the ground at once is soon over
+ROUNDS = 2  # solves a step: one for the contacts that press and their loads, one to use them
+MOST_ROUNDS = 8  # largest number of solves until the assumed contacts are those that press
+FINE_STEP = 0.0005  # s, where contacts change: both tripods are on the ground only for a short time
 FINE_TIME = 0.005  # s, after a change
-BRISTLE_STIFFNESS = 0.1  # of the normal stiffness: a foot gives tenths of a millimetre, then slides
+BRISTLE_STIFFNESS = 0.1  # of the normal stiffness: a foot yields some tenths of a millimetre
 
 
 class Spare(NamedTuple):
-    """Arrays that the loop writes over.
+    """Preallocated work arrays of the loop.
 
     Attributes:
-        work: What a step fills in.
+        work: Work arrays of a step.
         before: State before a step.
         speed: Leg speeds in a step, shape (6,) [rad/s].
         angles: Leg angles at the end of a finer step, shape (6,) [rad].
@@ -62,17 +62,17 @@ def run_steps(
     pose: Array,
     legs: Array,
 ) -> int:
-    """Walk through leg angles at equal steps.
+    """Integrate a walk through leg angles at equal steps.
 
-    A step in which a contact begins or ends is taken again in finer ones, and so are those that
-    follow for a few milliseconds.
+    A step in which a contact begins or ends is repeated with finer steps. The steps of the next few
+    milliseconds are finer too.
 
     Args:
         body: The robot.
         table: The slip law.
         ground: The ground.
-        contacts: How hard contacts are.
-        state: Where to start; left where the walk ended.
+        contacts: Stiffness and damping of contacts.
+        state: Initial state, overwritten with the final one.
         theta: Leg angles at every step's start and the last one's end, shape (n + 1, 6) [rad].
         dt: Length of a step [s].
         pose: Filled at each step's end: position and quaternion, shape (n, 7).
@@ -89,7 +89,7 @@ def run_steps(
 
 @borrowing
 def _steps(body, table, ground, contacts, state, theta, dt, pose, legs, spare):
-    """Walk as `run_steps` does, in arrays that it made."""
+    """Integrate as `run_steps` does, with the arrays that it allocated."""
     work, before, speed, angles, loaded = spare
     parts = max(int(np.ceil(dt / FINE_STEP - 1e-9)), 1)
     fine_steps = int(np.ceil(FINE_TIME / dt))
@@ -121,15 +121,15 @@ def _steps(body, table, ground, contacts, state, theta, dt, pose, legs, spare):
 
 @inlined
 def one_step(body, table, ground, contacts, state, work, theta, speed, dt):
-    """Take one linearly implicit step; see `model.walk.kernel`.
+    """Integrate one linearly implicit step; see `model.walk.kernel`.
 
     Args:
         body: The robot.
         table: The slip law.
         ground: The ground.
-        contacts: How hard contacts are.
-        state: State at the start, left at the end.
-        work: Filled with what the contacts did.
+        contacts: Stiffness and damping of contacts.
+        state: State at the start, overwritten with that at the end.
+        work: Filled with the contacts of the step.
         theta: Leg angles at the end, shape (6,) [rad].
         speed: Leg speeds in the step, shape (6,) [rad/s].
         dt: Length of the step [s].
@@ -142,7 +142,7 @@ def one_step(body, table, ground, contacts, state, work, theta, speed, dt):
     for i in range(n, N_CONTACTS):
         work.load[i] = 0.0
     for i in range(n):
-        if work.load[i] == 0.0 or work.kind[i] == ROLLING:  # nothing that a bristle could hold
+        if work.load[i] == 0.0 or work.kind[i] == ROLLING:  # no bristle there
             state.stretch[i, 0] = state.stretch[i, 1] = state.stretch[i, 2] = 0.0
     for i in range(3):
         work.b[i], work.b[3 + i] = state.v[i], state.w[i]
@@ -168,14 +168,14 @@ def one_step(body, table, ground, contacts, state, work, theta, speed, dt):
 
 @inlined
 def add_contact_forces(table, contacts, state, work, n, speed, dt):
-    """Add the contacts' forces, linear in the final velocities about a guess, to a step's system.
+    """Add the contact forces, linearised in the final velocities about a guess, to a step's system.
 
     Args:
         table: The slip law.
-        contacts: How hard contacts are.
+        contacts: Stiffness and damping of contacts.
         state: State at the step's start.
         work: The contacts and the guess; load and secant of each contact are filled in.
-        n: How many contacts there are.
+        n: Number of contacts.
         speed: Leg speeds in the step, shape (6,) [rad/s].
         dt: Length of the step [s].
     """
@@ -295,7 +295,7 @@ def _inertial_part(mass, inertia, gyro, state, dt, A, b):
 
 @inlined
 def _stretch_bristle(table, contacts, state, work, i, dt):
-    """Stretch a bristle by the step's slip, and let it slide where traction is used up."""
+    """Stretch a bristle by the step's slip; let it slide where the largest traction is reached."""
     if work.load[i] == 0.0 or work.kind[i] == ROLLING:
         return
     point, m = work.point, work.normal[i]

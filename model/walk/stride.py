@@ -31,7 +31,7 @@ from model.walk.traction import TractionTable
 
 SETTLED = 1e-4  # of a stride's length: change from one stride to the next
 SETTLED_TURN = 1e-5  # change of its turn [rad]; n strides on, n/2 of it in the path's direction
-MAX_STRIDES = 12  # walked before the last is taken as settled; a tetrapod rocks for a few
+MAX_STRIDES = 12  # after which the last is taken as settled; a tetrapod rocks for a few strides
 
 
 class Planar(NamedTuple):
@@ -73,7 +73,7 @@ def walk_by_strides(
 ) -> Poses:
     """Walk a gait that repeats itself: step by step until settled, then stride by stride.
 
-    A gait that is not settled after `MAX_STRIDES` goes on by the last of them.
+    A gait that is not settled after `MAX_STRIDES` continues with the last of them.
 
     Args:
         robot: The robot.

@@ -25,12 +25,12 @@ DRAWS = 200  # a round
 MOST_ROUNDS = 10
 WANTED = 150.0  # effective draws
 TAIL = 5  # degrees of freedom of what is drawn from
-ENOUGH = 60.0  # effective draws that a round's Gaussians are taken from
-BEFORE = 2.0  # draws a dimension that a case's last covariance counts as beside weighted ones
-PATIENCE = 3  # rounds of Gaussians alone, which are the better where they do at all
+ENOUGH = 60.0  # effective draws from which a round's Gaussians are estimated
+BEFORE = 2.0  # draws a dimension by whose weight a case's last covariance enters the new one
+PATIENCE = 3  # rounds of Gaussians alone, which are more efficient where they suffice
 CENTRES = 50  # draws that a round's narrower bumps are put around
 WIDTHS = (0.6, 0.3)  # of them, in turn, in standard deviations of their case
-_LEAST = 1e-3  # of probability that every case is drawn with
+_LEAST = 1e-3  # least probability with which each case is drawn
 
 
 @dataclass(frozen=True)

@@ -37,10 +37,10 @@ from model.walk.dynamics import DynamicsOptions
 from model.walk.ensemble import PlanarWalk, WalkDraw, walk_ensemble
 from model.walk.traction import TractionTable
 
-RECONSTRUCTIONS = 16  # of counted angles, for the spread they leave; or walks by half the step
-LARGEST_STEP = 0.0025  # s; with a leg that is off 5 ms turn by 3 % more, for two thirds of the time
+RECONSTRUCTIONS = 16  # draws of counted angles, for their spread; or walks at half the step
+LARGEST_STEP = 0.0025  # s; with a wrong leg 5 ms turns by 3 % more and saves a third of the time
 OFFSETS_SD = np.radians(0.2)  # of the legs of those walks
-FEWEST_POSES = 3  # a start and two to compare
+FEWEST_POSES = 3  # one to start from and two to compare
 SAMPLING = 0.05  # s between the poses kept of a path
 FINE_SAMPLING = 0.02  # s, where roll and pitch are compared
 _BEND = 1e-3  # of distance and of curvature, to differentiate by
@@ -186,7 +186,7 @@ class WalkMisfit:
             self._difference(bent(walked.poses, distance=no + stride, curvature=no)) - here,
         ]
         residuals = self._with_tilt(here @ self.root.T, walked)
-        by_bend = np.zeros((*residuals.shape, len(bends)))  # roll and pitch do not bend
+        by_bend = np.zeros((*residuals.shape, len(bends)))  # roll and pitch do not depend on them
         for i, bend in enumerate(bends):
             by_bend[:, : len(self.root), i] = bend @ self.root.T
         return Terms.of(residuals, by_bend)
@@ -234,7 +234,7 @@ class WalkMisfit:
         total = self._of_tracker(self._difference(one)[0])
         total += self._of_model(one, spread) + 1e-12 * np.eye(len(total))
         total += self._of_contacts(spread, threads)
-        if len(several) > 1:  # the step moves each of them its own way, too
+        if len(several) > 1:  # their spread includes the error of the step
             return total + np.cov(self._difference(paths).T)
         return total + self._of_step(several[0], rng, threads)
 

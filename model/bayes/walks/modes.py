@@ -25,18 +25,18 @@ from model.bayes.walks.prior import WRONG, Case, WalkPrior, WrongLeg, legs_of, w
 from model.robot import N_LEGS
 from model.slip.law import Array
 
-# Offsets by a tenth of a degree, factors by 5 %: contacts are not smooth below.
+# Steps of differences: offsets 0.1 degree, factors 5 %. Below, contacts are not smooth.
 DIFFERENCE = np.array([
     *[np.radians(0.1)] * N_LEGS, 0.05, 0.05, 0.1, np.radians(0.1), np.radians(1.0), 1e-3, 1e-3,
     np.radians(0.2),
 ])  # fmt: skip
 MOST_MOVES = 8
 SETTLED = 0.05  # of a prior's standard deviation
-GAINED = 0.3  # of twice the log posterior density: a climb that gains less is at its end
-SCANNED = np.radians(np.linspace(-12.0, 12.0, 17))  # offsets that are walked
-FINE = np.radians(np.linspace(-12.0, 12.0, 241))  # offsets between them
-CLIMBED = 4  # cases, at most, that are climbed after the scans
-UNLIKELY = 8.0  # below the best log evidence: such a case is not climbed; scans err by some
+GAINED = 0.3  # of twice the log posterior density: a smaller gain ends the optimisation
+SCANNED = np.radians(np.linspace(-12.0, 12.0, 17))  # offsets at which walks are computed
+FINE = np.radians(np.linspace(-12.0, 12.0, 241))  # offsets to which residuals are interpolated
+CLIMBED = 4  # largest number of cases that are optimised after the scans
+UNLIKELY = 8.0  # below the best log evidence, with a margin for the scans: not optimised
 
 
 def _evidence(mode: Mode) -> float:

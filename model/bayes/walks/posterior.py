@@ -20,8 +20,8 @@ from model.predict import LegState
 from model.robot import N_LEGS
 from model.slip.law import Array
 
-UNINFORMED = 0.1  # contraction of variance below which walks said nothing
-FEW = 30  # effective draws; below, an answer hangs on a handful of them
+UNINFORMED = 0.1  # contraction of variance below which the walks do not inform a parameter
+FEW = 30  # effective draws; below, the posterior is not reliable
 
 
 @dataclass(frozen=True)

@@ -14,17 +14,17 @@ from model.slip.law import Array
 
 OFFSETS = tuple(f"leg_offset{leg}" for leg in range(1, N_LEGS + 1))
 FLOOR = ("grip", "slip_stiffness", "fall")
-# Whether a stepping leg's traction falls beyond its peak as under a rig's steady slip (1), or not
-# at all (0), as friction by velocity does, nobody has measured. Mean and standard deviation of both
-# views, equally likely:
+# Whether a stepping leg's traction has the post-peak drop of a rig's steady slip (1), or none
+# (0), as friction by velocity, has not been measured. Mean and standard deviation of the two,
+# equally likely:
 FALL, FALL_SD = 0.5, 0.5
-# Traction that rises from its peak on is none; that which falls more, unheard of.
+# Traction does not rise beyond its peak; a larger drop has not been observed.
 FALLS = (0.0, 1.5)
 NAMES = (*OFFSETS, *FLOOR, "common_offset", "leg_arc", "steering", "stride")
 UNITS = (*["rad"] * N_LEGS, "log", "log", "-", "rad", "rad", "rad/m", "-")
-WRONG = len(NAMES)  # index of the wrong leg's further offset, behind the others
-LINEAR = [NAMES.index("steering"), NAMES.index("stride")]  # of which residuals are linear
-WALKED = [i for i in range(WRONG + 1) if i not in LINEAR]  # what a walk must be walked for
+WRONG = len(NAMES)  # index of the wrong leg's further offset, after the others
+LINEAR = [NAMES.index("steering"), NAMES.index("stride")]  # residuals are linear in them
+WALKED = [i for i in range(WRONG + 1) if i not in LINEAR]  # parameters that need a new walk
 
 
 @dataclass(frozen=True)
@@ -53,7 +53,7 @@ def wrong_legs(walks: int) -> tuple[WrongLeg, ...]:
     """List the possible cases of one wrong leg: in all walks, or in one of them."""
     legs = range(N_LEGS)
     everywhere = tuple(WrongLeg(leg) for leg in legs)
-    if walks < 2:  # one walk does not tell its own from all
+    if walks < 2:  # with one walk both cases are the same
         return everywhere
     return (*everywhere, *(WrongLeg(leg, walk) for walk in range(walks) for leg in legs))
 

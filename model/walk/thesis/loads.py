@@ -25,7 +25,7 @@ _CONVERGED = 1e-11  # N
 
 
 class Balance(NamedTuple):
-    """What the normal forces of three legs have to balance.
+    """Contacts of three legs and the accelerations that their normal forces have to produce.
 
     Attributes:
         arms: Contact points from the body's centre, inertial frame, shape (3, 3) [m].
@@ -82,13 +82,13 @@ def leg_force(axes, forward, left, up, force):
 
 @compiled
 def accelerations(balance, traction, loads, excess, slopes):
-    """Fill `excess` (2,) with roll and pitch acceleration beyond those wanted, and its slopes.
+    """Compute the roll and pitch acceleration beyond those wanted, and their derivatives by load.
 
     Args:
         balance: The contacts; see `Balance`.
         traction: The slip law.
         loads: Normal forces, shape (3,) [N].
-        excess: Filled, shape (2,) [rad/s2].
+        excess: Filled: accelerations, shape (2,) [rad/s2].
         slopes: Filled with the derivatives with respect to loads, shape (2, 3) [rad/(s2 N)].
     """
     force, slope = np.empty(3), np.empty(3)
@@ -158,14 +158,14 @@ def solve_on_edges(c, slopes, total, most, loads):
 
 @compiled
 def normal_forces(balance, traction, total, most, loads):
-    """Solve Eq. (4-22), starting from and leaving its result in `loads` (3,) [N].
+    """Solve Eq. (4-22) for the normal forces by Gauss-Newton, in place.
 
     Args:
-        balance: What is to be balanced; see `Balance`.
+        balance: Contacts and wanted accelerations; see `Balance`.
         traction: The slip law.
         total: Sum of the forces; at least 0 and at most three times `most` [N].
         most: Largest force of a leg [N].
-        loads: First guess and result [N].
+        loads: First guess, overwritten with the result, shape (3,) [N].
     """
     excess, slopes, c, trial = np.empty(2), np.empty((2, 3)), np.empty(2), np.empty(3)
     for _ in range(_ROUNDS):

@@ -32,7 +32,7 @@ from model.walk.thesis.loads import Balance, leg_force, normal_forces, static_lo
 from model.walk.thesis.traction import traction_force
 
 LARGEST_SLIP = 100.0  # where Listing A.19 cuts the slip ratio off [-]
-RUNAWAY = 50.0  # no walking robot is as fast [m/s, rad/s]
+RUNAWAY = 50.0  # faster than any walking robot [m/s, rad/s]
 
 
 class Machine(NamedTuple):
@@ -59,7 +59,7 @@ class Manner(NamedTuple):
 
 
 class Legs(NamedTuple):
-    """Kinematics of the six legs at one instant, refilled at every step."""
+    """Kinematics of the six legs at one instant, overwritten at every step."""
 
     phi: Array
     phi_rate: Array

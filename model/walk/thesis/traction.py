@@ -117,7 +117,7 @@ def load_derivative(traction, kappa, load, force):
 
 
 def paired_sum(traction_force: Array) -> Array:
-    """Add every sample to the next, first and second, third and fourth: Fig. 5-19.
+    """Sum samples in pairs, as for the net force of Fig. 5-19.
 
     The thesis's traction changes sign at every step; the sum of a pair is what it calls the net
     force. It is twice the mean. As in the listing, the first sample is left out and pairs start

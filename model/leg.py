@@ -281,4 +281,4 @@ for _function in (
     hip_height_rate,
     hip_height_acceleration,
 ):
-    register_jitable(_function)  # a plain function here, inlined where a compiled loop calls it
+    register_jitable(_function)  # a plain function in Python, inlined where compiled code calls it

@@ -20,8 +20,8 @@ class Poses:
     Attributes:
         t: Times, strictly increasing, not necessarily evenly spaced, shape (n,) [s].
         position: Positions x, y, shape (n, 2), or (draws, n, 2) for several draws [m].
-        yaw: Unwrapped headings, shape (n,) or (draws, n) [rad]; NaN throughout where nobody
-            measured them.
+        yaw: Unwrapped headings, shape (n,) or (draws, n) [rad]; NaN throughout where not
+            measured.
         covariance: Covariance of x, y and yaw of each pose of one path, shape (n, 3, 3)
             [m, m, rad]; None where it is not known.
 

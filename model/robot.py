@@ -38,8 +38,8 @@ class Robot:
         leg_offset: Angle of each leg beyond the one it reports, shape (6,) [rad].
 
     Raises:
-        DomainError: A length, mass or inertia is not positive, the arc is no arc, or an array has
-            another shape or no finite numbers.
+        DomainError: A length, mass or inertia is not positive, the arc is out of range, or an array
+            has another shape or is not finite.
     """
 
     hips: Array = field(default_factory=_source_hips)

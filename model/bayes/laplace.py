@@ -16,7 +16,7 @@ from model.slip.law import Array
 
 LogDensity = Callable[[Array], Array]
 SAME_TOP = 0.05  # coordinates closer than this are the same mode
-NEGLIGIBLE = 10.0  # nats of evidence below the best mode's, at which another is left out
+NEGLIGIBLE = 10.0  # nats of evidence below the best mode's, beyond which a mode is left out
 STEP = 1e-4  # coordinates are of unit scale a priori; central differences err by about its square
 
 

@@ -169,7 +169,7 @@ def largest_slips(blocks: SlipBlocks) -> Array:
 def _structure(blocks: SlipBlocks, residual: Array) -> tuple[float, float]:
     """Split the residual into a part that repeats along the curve and the scatter between runs.
 
-    A one-way analysis of variance: the groups are bins of slip at each load, a group's replicates
+    One-way analysis of variance: the groups are bins of slip at each load, a group's replicates
     the means of the runs in it. Returns the standard deviation of the repeating part [N] and the
     p-value of the F test.
     """

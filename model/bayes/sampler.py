@@ -20,8 +20,11 @@ from model.errors import DomainError, FitError
 from model.slip.law import Array
 
 MOVES = ((DEMove, 1.0),)
-"""A quarter of the stretch move's autocorrelation time in 12 dimensions. No snooker move: emcee's,
-up to 3.1.6, misses half the exponent of its acceptance ratio and narrows every spread by 7 %."""
+"""The autocorrelation time is a quarter of the stretch move's in 12 dimensions.
+
+The snooker move is not used: emcee's, up to 3.1.6, lacks half of the exponent of its acceptance
+ratio and narrows every spread by 7 %.
+"""
 
 JUMP_SHARE = 0.3  # of all moves: to a draw of the Laplace approximations, possibly at another mode
 

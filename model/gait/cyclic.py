@@ -44,7 +44,7 @@ class CyclicReference:
             it a turn ahead, shape (n,) [-].
         inner: Indices of the legs on the inner side of a turn; empty for a straight walk.
         pause: How long a leg waits at lift-off before its flight, shape (n,) [s].
-        offset: Angle of each leg beyond the one asked of it, shape (n,) [rad].
+        offset: Angle of each leg beyond its commanded one, shape (n,) [rad].
 
     Raises:
         DomainError: Lift-off does not exceed touchdown, a time is not positive, legs differ in

@@ -89,7 +89,7 @@ class EventSystem:
         """Compute the events of some cycles.
 
         Args:
-            cycles: How many cycles after the start.
+            cycles: Number of cycles after the start.
             start: Touchdown and lift-off times of cycle 0, shape (2n,); all zero when None [s].
 
         Returns:

@@ -132,7 +132,7 @@ def _slip_past_breakaway(kappa: ArrayLike, kappa_c: ArrayLike, kappa_s: ArrayLik
 
 @dataclass(frozen=True)
 class CoulombStribeck:
-    """Coulomb friction, static at break-away and kinetic far out, as a slip law.
+    """Coulomb friction as a slip law, static at break-away and kinetic at large slip.
 
     Attributes:
         stribeck: Let the traction fall from static to kinetic friction. Without it the traction

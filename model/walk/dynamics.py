@@ -57,7 +57,7 @@ DEFAULT_OPTIONS = DynamicsOptions()
 
 @dataclass(frozen=True)
 class Start:
-    """Where a walk starts.
+    """Initial pose and velocity of a walk.
 
     Attributes:
         x: Position of the body's centre [m].

@@ -11,7 +11,7 @@ from model.slip.law import Array
 
 
 class Ground(NamedTuple):
-    """Heights on a square grid, bilinear between; one height everywhere if the grid has one.
+    """Heights on a square grid, with bilinear interpolation; constant if the grid has one height.
 
     A named tuple because numba takes one as it is.
 

@@ -345,7 +345,7 @@ def _world_inertia(R, principal, out):
 
 @inlined
 def _gyroscopic(inertia, w, out):
-    """Fill with -w × (I w), the moment that turns the axis of a turning body [N m]."""
+    """Compute the gyroscopic moment -w × (I w) [N m]."""
     L0 = inertia[0, 0] * w[0] + inertia[0, 1] * w[1] + inertia[0, 2] * w[2]
     L1 = inertia[1, 0] * w[0] + inertia[1, 1] * w[1] + inertia[1, 2] * w[2]
     L2 = inertia[2, 0] * w[0] + inertia[2, 1] * w[1] + inertia[2, 2] * w[2]

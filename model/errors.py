@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What can be wrong with numbers handed to the model."""
+"""Exceptions of the package `model`."""
 
 
 class ModelError(Exception):
@@ -7,11 +7,11 @@ class ModelError(Exception):
 
 
 class DomainError(ModelError, ValueError):
-    """A number lies where the equation that received it does not hold."""
+    """A number lies outside the domain of the equation that received it."""
 
 
 class DefinitionMismatch(ModelError, ValueError):
-    """Slip ratios of two definitions met in one computation.
+    """Slip ratios of two definitions were used in one computation.
 
     Attributes:
         found: Definition of the slip ratio that was handed in.
@@ -28,12 +28,12 @@ class DefinitionMismatch(ModelError, ValueError):
 
 
 class InsufficientData(ModelError, ValueError):
-    """The samples cannot determine what was asked of them."""
+    """The data cannot determine the requested quantity."""
 
 
 class FitError(ModelError, RuntimeError):
-    """An optimiser or sampler failed; the message carries its evidence."""
+    """An optimiser or sampler failed; the message contains the evidence."""
 
 
 class WalkError(ModelError, RuntimeError):
-    """A walk could not be computed to its end; the message says when and in what state."""
+    """A walk could not be computed to its end; the message states the time and the state."""

@@ -30,15 +30,27 @@ def rotation_z(angle: ArrayLike) -> Array:
 
 
 def attitude(roll: ArrayLike, pitch: ArrayLike, yaw: ArrayLike) -> Array:
-    """Return the body's rotation in the inertial frame, Rz(yaw) Ry(pitch) Rx(roll)."""
+    """Return the body's rotation in the inertial frame, Rz(yaw) Ry(pitch) Rx(roll).
+
+    Args:
+        roll: Roll [rad].
+        pitch: Pitch [rad].
+        yaw: Yaw [rad].
+    """
     return rotation_z(yaw) @ rotation_y(pitch) @ rotation_x(roll)
 
 
 def thesis_attitude(roll: ArrayLike, pitch: ArrayLike, yaw: ArrayLike) -> Array:
     """Return the thesis's rotation, Rx(roll) Ry(pitch) Rz(yaw), Eq. (3-7).
 
-    Its roll turns the robot about an axis fixed to the ground: of a robot that heads along y it is
-    a pitch. Only a robot that heads along x has the angles of `attitude`, to first order.
+    Its roll turns the robot about an axis fixed to the ground: for a robot that heads along y it is
+    a pitch. The angles agree with those of `attitude`, to first order, only for a robot that heads
+    along x.
+
+    Args:
+        roll: Roll [rad].
+        pitch: Pitch [rad].
+        yaw: Yaw [rad].
     """
     return rotation_x(roll) @ rotation_y(pitch) @ rotation_z(yaw)
 
@@ -64,7 +76,15 @@ def roll_pitch_yaw(rotation: Array) -> Array:
 
 
 def transform(rotation: Array, position: ArrayLike) -> Array:
-    """Return the homogeneous transform of a rotation and a position, Eq. (3-2), shape (4, 4)."""
+    """Return the homogeneous transform of a rotation and a position, Eq. (3-2).
+
+    Args:
+        rotation: Rotation matrix, shape (3, 3).
+        position: Position, shape (3,) [m].
+
+    Returns:
+        Transform, shape (4, 4).
+    """
     H = np.eye(4)
     H[:3, :3], H[:3, 3] = rotation, position
     return H

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Predicted against tracked paths: errors of the path, calibration of the band, and baselines."""
+"""Validation of predicted paths against tracked ones: path errors, coverage and baselines."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
@@ -24,8 +24,8 @@ class Prediction:
     """A predicted path.
 
     Attributes:
-        path: The single path: every unknown at its middle. The mean of an ensemble is no path; it
-            is shorter and less curved than any draw.
+        path: The single path, with every unknown at its central value. The mean of an ensemble is
+            not used: it is shorter and less curved than any draw.
         draws: Draws of the path; None for a path alone.
         baselines: Paths of the same leg angles by simpler models, by the models' names.
     """
@@ -37,7 +37,7 @@ class Prediction:
 
 @dataclass(frozen=True)
 class Judged:
-    """One path, or ensemble, judged against a track.
+    """Errors and scores of one path, or ensemble, against a track.
 
     Attributes:
         name: `PREDICTION`, `STAND_STILL` or a baseline's name.
@@ -56,12 +56,12 @@ class Judged:
 
 @dataclass(frozen=True)
 class Judgement:
-    """A prediction and its baselines, judged against a track.
+    """Errors and scores of a prediction and its baselines against a track.
 
     Attributes:
         track: The tracked poses that were scored; the first is left out when paths start from it.
         rows: The prediction first, then the baselines.
-        band: The draws as they were judged; None for a path alone.
+        band: The draws that were scored; None for a path alone.
     """
 
     track: Poses
@@ -71,10 +71,10 @@ class Judgement:
 
 @dataclass(frozen=True)
 class TiltJudged:
-    """Roll and pitch against an IMU's.
+    """Comparison of predicted roll and pitch with an IMU's.
 
     Attributes:
-        errors: How far they are apart.
+        errors: Summary of the differences.
         t: Times compared, shape (n,) [s].
         predicted: Roll and pitch of the prediction, shape (n, 2) [rad].
         measured: The IMU's, shape (n, 2) [rad].
@@ -89,12 +89,11 @@ class TiltJudged:
 def judge(
     prediction: Prediction, track: Poses, *, anchor: bool, rng: np.random.Generator
 ) -> Judgement:
-    """Judge a prediction and its baselines against a track.
+    """Compute errors and scores of a prediction and its baselines against a track.
 
     Args:
-        prediction: What was predicted.
-        track: What was tracked, by the prediction's clock; without a covariance it is taken as
-            exact.
+        prediction: The prediction.
+        track: The track, by the prediction's clock; without a covariance it is taken as exact.
         anchor: Start every path from the first tracked pose, which is then not scored.
         rng: Source of randomness.
 

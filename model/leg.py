@@ -24,7 +24,7 @@ HIP, ROLLING, TOE = 0, 1, 2  # leg states
 
 
 def wrap_angle(angle: Numbers) -> Numbers:
-    """Bring an angle into (-pi, pi] [rad]."""
+    """Wrap an angle into (-pi, pi] [rad]."""
     return np.pi - (np.pi - angle) % (2 * np.pi)
 
 
@@ -37,6 +37,11 @@ def thesis_tilt(roll: Numbers, pitch: Numbers, yaw: Numbers) -> Numbers:
     The brackets of Eq. (3-21), with angles of Eq. (3-7), R = Rx(roll) Ry(pitch) Rz(yaw). Listing
     A.22 computes this; the text lost the division by cos(pitch), without which phi is not at the
     lowest point while a robot pitches, rolls and does not head along x or y.
+
+    Args:
+        roll: Roll of Eq. (3-7) [rad].
+        pitch: Pitch of Eq. (3-7) [rad].
+        yaw: Yaw of Eq. (3-7) [rad].
     """
     return np.tan(roll) * np.sin(yaw) / np.cos(pitch) - np.tan(pitch) * np.cos(yaw)
 
@@ -59,6 +64,14 @@ def thesis_tilt_rate(
                    + \tan\theta_p \sin\theta_y)
 
     Eq. (3-24), and Listing A.23 with it, is the special case of no pitch (or no roll).
+
+    Args:
+        roll: Roll of Eq. (3-7) [rad].
+        pitch: Pitch of Eq. (3-7) [rad].
+        yaw: Yaw of Eq. (3-7) [rad].
+        roll_rate: Rate of the roll [rad/s].
+        pitch_rate: Rate of the pitch [rad/s].
+        yaw_rate: Rate of the yaw [rad/s].
     """
     slope, sine, cosine = np.tan(roll) / np.cos(pitch), np.sin(yaw), np.cos(yaw)
     tan_pitch = np.tan(pitch)
@@ -95,6 +108,11 @@ def thesis_lowest_angle_rate(leg_speed: Numbers, tilt: Numbers, tilt_rate: Numbe
 
     .. math::
         \dot\varphi = \frac{\dot X}{1 + X^2} - \dot\theta
+
+    Args:
+        leg_speed: Rate of the leg angle [rad/s].
+        tilt: Tilt X, `thesis_tilt` [-].
+        tilt_rate: Its rate, `thesis_tilt_rate` [1/s].
     """
     return tilt_rate / (1 + tilt**2) - leg_speed
 
@@ -129,12 +147,16 @@ def plane_cosine(roll: Numbers, pitch: Numbers) -> Numbers:
 
     Heights measured in a leg's plane are to be multiplied by it. The thesis takes
     :math:`\cos\theta_r`, which is the same without pitch.
+
+    Args:
+        roll: Roll [rad].
+        pitch: Pitch [rad].
     """
     return np.sqrt(np.sin(pitch) ** 2 + (np.cos(pitch) * np.cos(roll)) ** 2)
 
 
 def leg_state(phi: Numbers, toe_beyond: float = 0.0) -> NDArray[np.int_] | int:
-    """Tell what a leg would touch the ground with, section 3-4-1: HIP, ROLLING or TOE.
+    """Classify the part of a leg that would touch the ground, section 3-4-1: HIP, ROLLING or TOE.
 
     Beyond the arc's ends the nearer one is the lower one; for the thesis's half circle that is the
     toe for phi from -pi/2 to 0.
@@ -213,6 +235,12 @@ def hip_height_rate(
 
     .. math::
         \dot z_h = -r \dot\varphi\,(\sin\varphi + \sin(\varphi - \varphi_c))
+
+    Args:
+        phi: Angle of the lowest point of the leg's full circle [rad].
+        phi_rate: Its rate [rad/s].
+        radius: Radius of the leg's arc [m].
+        toe_beyond: Angle of the arc beyond a half circle [rad].
     """
     return -radius * phi_rate * (np.sin(phi) + np.sin(phi - contact_angle(phi, toe_beyond)))
 
@@ -225,7 +253,13 @@ def hip_height_acceleration(
     .. math::
         \ddot z_h = -r \dot\varphi^2\,(\cos\varphi + [\text{not rolling}]\cos(\varphi - \varphi_c))
 
-    While the leg rolls its contact moves along the arc with phi, so the second term stands still.
+    While the leg rolls its contact moves along the arc with phi, so the second term is zero.
+
+    Args:
+        phi: Angle of the lowest point of the leg's full circle [rad].
+        phi_rate: Its rate [rad/s].
+        radius: Radius of the leg's arc [m].
+        toe_beyond: Angle of the arc beyond a half circle [rad].
     """
     off_arc = phi < -toe_beyond
     turning = np.cos(phi) + off_arc * np.cos(phi - contact_angle(phi, toe_beyond))
@@ -247,4 +281,4 @@ for _function in (
     hip_height_rate,
     hip_height_acceleration,
 ):
-    register_jitable(_function)  # a plain function here, inlined where a compiled loop calls it
+    register_jitable(_function)  # a plain function in Python, inlined where compiled code calls it

@@ -20,8 +20,8 @@ class Poses:
     Attributes:
         t: Times, strictly increasing, not necessarily evenly spaced, shape (n,) [s].
         position: Positions x, y, shape (n, 2), or (draws, n, 2) for several draws [m].
-        yaw: Unwrapped headings, shape (n,) or (draws, n) [rad]; NaN throughout where nobody
-            measured them.
+        yaw: Unwrapped headings, shape (n,) or (draws, n) [rad]; NaN throughout where not
+            measured.
         covariance: Covariance of x, y and yaw of each pose of one path, shape (n, 3, 3)
             [m, m, rad]; None where it is not known.
 
@@ -35,7 +35,7 @@ class Poses:
     covariance: Array | None = None
 
     def __post_init__(self) -> None:
-        """Raise if this is no path."""
+        """Check that shapes match, that times increase and that positions are finite."""
         n = len(self.t)
         batch = self.yaw.shape[:-1]
         if (
@@ -74,7 +74,7 @@ class Poses:
 
     @property
     def states(self) -> Array:
-        """x, y and yaw side by side, shape (n, 3) or (draws, n, 3) [m, m, rad]."""
+        """x, y and yaw in one array, shape (n, 3) or (draws, n, 3) [m, m, rad]."""
         return np.concatenate([self.position, self.yaw[..., None]], axis=-1)
 
     def draws(self, keep: int | slice = slice(None)) -> "Poses":
@@ -115,7 +115,7 @@ class Poses:
         return replace(self, t=self.t + offset)
 
     def at(self, t: ArrayLike) -> "Poses":
-        """Interpolate one path linearly at times within it; yaw takes the unwrapped way.
+        """Interpolate one path linearly at times within it; yaw is interpolated unwrapped.
 
         Args:
             t: Times, shape (m,) [s].
@@ -145,7 +145,14 @@ class Poses:
 
 
 def overlap(first: Poses, second: Poses) -> NDArray[np.bool_]:
-    """Tell which poses of `first` lie within the time of `second`, shape (len(first),).
+    """Find the poses of `first` that lie within the time range of `second`.
+
+    Args:
+        first: Poses to choose from.
+        second: Poses whose time range is used, by the same clock.
+
+    Returns:
+        Whether each pose lies inside, shape (len(first),).
 
     Raises:
         InsufficientData: Fewer than two do, so that there is no path to compare.

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""From what is known of a robot, its legs' log and its slip to paths with honest bands.
+"""Predict paths with uncertainty from a robot, its leg log and its slip law.
 
-Four things spread a path: the slip law's posterior, the legs' angles (each leg's constant offset,
-and what an encoder of few counts leaves open), the pose it starts from, and what the walking model
-itself gets wrong, stated here as an error of distance and one of curvature.
+Four uncertainties spread a path: the slip law's posterior; the legs' angles (each leg's constant
+offset, and the angle between two counts of a coarse encoder); the pose it starts from; and the
+error of the walking model, stated here as an error of distance and one of curvature.
 """
 
 from collections.abc import Callable, Sequence
@@ -22,24 +22,24 @@ from model.walk.ensemble import WalkDraw, walk_ensemble
 from model.walk.path import WalkPath
 from model.walk.traction import TractionTable
 
-STEPS = (0.005, 0.0025, 0.00125)  # s, of which ensembles take the largest that is small enough
-SAME_PATH = 0.005  # of its length: mean ends of some paths by one step and by half of it
-COMPARED, COMPARED_TIMES = 8, 101  # draws, and their poses, by which the step is chosen
+STEPS = (0.005, 0.0025, 0.00125)  # s; an ensemble uses the largest that has converged
+SAME_PATH = 0.005  # of the path's length: mean distance of ends at one step and at half of it
+COMPARED, COMPARED_TIMES = 8, 101  # draws, and their poses, that are compared to choose the step
 LEVELS = (0.025, 0.05, 0.25, 0.5, 0.75, 0.95, 0.975)
 STATES = ("x", "y", "yaw")
-FINE = DynamicsOptions(dt=0.001)  # of the single path: a leg that is off turns by 1 % more or less
-MOST_MOTIONS = 300  # a motion costs as much as walking it, and is the least of what spreads paths
+FINE = DynamicsOptions(dt=0.001)  # of the single path; with a wrong leg its turn is within 1 %
+MOST_MOTIONS = 300  # a motion costs as much as its walk, and contributes least to the spread
 ARCS = (np.pi / 2, np.radians(359.0))  # a robot's legs are arcs of these angles
 
 
 @dataclass(frozen=True)
 class ModelSpread:
-    """What the walking model gets wrong, the same all along a walk.
+    """Error of the walking model, constant along a walk.
 
-    How hard contacts are decides where a gait leads that stands on more legs than statics can load,
-    or that lets go of them at unlike heights, and hardly matters elsewhere. So it is drawn;
-    `distance` and `curvature`, the same for every gait, are root mean squares of the differences
-    from an independent engine's walks.
+    Stiffness and damping of the contacts matter for gaits that stand on more legs than statics can
+    load, or whose legs take over at unequal heights, and hardly for others. They are therefore
+    drawn. `distance` and `curvature`, the same for every gait, are root mean squares of the
+    differences from an independent engine's walks.
 
     Attributes:
         distance: Relative error of distance, standard deviation [-].
@@ -52,7 +52,7 @@ class ModelSpread:
     contacts: float = float(np.log(2.0))
 
     def __post_init__(self) -> None:
-        """Refuse spreads that are none."""
+        """Check that the standard deviations are finite and not negative."""
         for name in ("distance", "curvature", "contacts"):
             if not (getattr(self, name) >= 0 and np.isfinite(getattr(self, name))):
                 raise DomainError(f"{name} of the model's error is {getattr(self, name):g}")
@@ -60,15 +60,17 @@ class ModelSpread:
 
 @dataclass(frozen=True)
 class LegState:
-    """What is believed beyond the robot's and the law's description: draws of it, or a prior's.
+    """Draws of what differs from the description of the robot and the slip law.
+
+    They come from a prior or a posterior.
 
     Attributes:
         offset: Further offset of each leg, shape (m, 6) [rad].
         grip: Factor on traction, shape (m,) [-].
         stiffness: Factor on slip stiffness, shape (m,) [-].
-        fall: Factor on how far traction falls beyond its peak, shape (m,) [-].
+        fall: Factor on the post-peak drop, shape (m,) [-].
         arc: Further angle of the legs' arc, shape (m,) [rad].
-        steering: Turn that the robot takes whatever its legs do, shape (m,) [rad/m].
+        steering: Constant curvature added to the path, whatever the legs do, shape (m,) [rad/m].
         stride: Relative error of distance: legs that are longer or shorter, shape (m,) [-].
     """
 
@@ -81,14 +83,19 @@ class LegState:
     stride: Array
 
     def __len__(self) -> int:
-        """Count the draws."""
+        """Return the number of draws."""
         return len(self.grip)
 
     @staticmethod
     def of_prior(n: int, *, offset_sd: float, rng: np.random.Generator) -> "LegState":
-        """Draw uniform offsets of a standard deviation [rad], all else taken as described.
+        """Draw leg offsets from a uniform prior, with every other unknown at its described value.
 
         An encoder's zero known to one count is uniform over it: standard deviation count/sqrt(12).
+
+        Args:
+            n: Number of draws.
+            offset_sd: Standard deviation of an offset [rad].
+            rng: Source of randomness.
         """
         reach = np.sqrt(3.0) * offset_sd
         offset = rng.uniform(-reach, reach, (n, N_LEGS))
@@ -99,17 +106,17 @@ class LegState:
 def scaled_table(
     table: TractionTable, *, grip: float, stiffness: float, fall: float = 1.0
 ) -> TractionTable:
-    """Scale a law's traction, and apart from it the slope at zero slip and the fall from the peak.
+    """Scale a law's traction and, independently, its slip stiffness and its post-peak drop.
 
-    A rig measures the fall under legs that slide for seconds. A walking leg has let go before, and
-    its slip is a velocity as much as a ratio; so the fall is the part of a law that a walk shares
-    least.
+    A rig measures the post-peak drop under legs that slide for seconds. A walking leg lifts off
+    earlier, and its slip is a velocity as much as a ratio. The post-peak drop is therefore the part
+    of a law that applies least to a walk.
 
     Args:
         table: The law.
         grip: Factor on traction at large slip [-].
         stiffness: Factor on traction per slip at zero slip [-].
-        fall: Factor on what traction loses from its peak on, at zero none [-].
+        fall: Factor on the post-peak drop; there is none at zero [-].
     """
     table = _with_fall(table, fall)
     shrink = stiffness / grip
@@ -166,7 +173,13 @@ def _motions(
 
 
 def robot_in(robot: Robot, state: LegState, i: int) -> Robot:
-    """Return the robot as a draw of the legs' state has it."""
+    """Return the robot with the leg offsets and arc of one draw.
+
+    Args:
+        robot: The robot as described.
+        state: Draws of the legs' state.
+        i: Index of the draw.
+    """
     return replace(
         robot,
         leg_offset=robot.leg_offset + state.offset[i],
@@ -175,7 +188,13 @@ def robot_in(robot: Robot, state: LegState, i: int) -> Robot:
 
 
 def law_in(table: TractionTable, state: LegState, i: int) -> TractionTable:
-    """Return the slip law as a draw of the legs' state has it."""
+    """Return the slip law scaled by the grip, slip stiffness and post-peak drop of one draw.
+
+    Args:
+        table: The slip law as calibrated.
+        state: Draws of the legs' state.
+        i: Index of the draw.
+    """
     return scaled_table(
         table,
         grip=float(state.grip[i]),
@@ -187,17 +206,17 @@ def law_in(table: TractionTable, state: LegState, i: int) -> TractionTable:
 def ensemble_step(
     draws: Sequence[WalkDraw], *, duration: float, threads: int = 2
 ) -> DynamicsOptions:
-    """Choose the step for an ensemble: the largest by which walks end where by half of it they do.
+    """Choose the largest time step at which the mean of the walks' ends has converged.
 
-    A step moves every path a little its own way, by 0.3 % of its length at 5 ms, which is lost in
-    what spreads them. It must not move all of them alike, so the means of some ends are compared. A
-    tripod's at 5 ms is within 0.2 % of the path; where four legs carry, so that loads pass back and
-    forth between them, 5 ms shifts it by 7 %.
+    The error of a step differs from path to path, 0.3 % of its length at 5 ms, which is small
+    against the spread of the draws. An error that all paths share is not, so the means of some ends
+    are compared with those at half the step. At 5 ms a tripod's is within 0.2 % of the path. Where
+    four legs are on the ground and loads oscillate between them, 5 ms shifts it by 7 %.
 
     Args:
         draws: The ensemble, of which the first `COMPARED` are walked.
         duration: Time walked [s].
-        threads: Draws walked at once.
+        threads: Number of draws walked at once.
 
     Raises:
         WalkError: A walk diverged.
@@ -226,17 +245,17 @@ def predict_paths(
     options: DynamicsOptions | None = None,
     progress: Callable[[float], None] | None = None,
 ) -> Poses:
-    """Walk every draw and add its steering and stride, and what the model gets wrong.
+    """Walk every draw and add its steering, its stride and a draw of the model's error.
 
     Args:
-        draws: What to walk.
-        t: Times wanted, increasing from zero, shape (n,) [s].
+        draws: The draws to walk.
+        t: Times of the poses, increasing from zero, shape (n,) [s].
         state: The legs' state of each draw.
-        error: The model's own error.
+        error: Error of the walking model.
         rng: Source of randomness.
-        threads: Draws walked at once.
-        options: How walks are computed; by the step that the draws need when None.
-        progress: Told the fraction done.
+        threads: Number of draws walked at once.
+        options: How walks are computed; when None the step is chosen by `ensemble_step`.
+        progress: Called with the fraction done.
 
     Raises:
         WalkError: A walk diverged.
@@ -256,7 +275,14 @@ def predict_paths(
 def with_contacts(
     draws: Sequence[WalkDraw], error: ModelSpread, *, rng: np.random.Generator
 ) -> list[WalkDraw]:
-    """Draw how hard the contacts of each draw are; as they are where the error has none of it."""
+    """Draw the stiffness and damping of the contacts of each draw, log-normal.
+
+    Args:
+        draws: The draws.
+        error: Error of the walking model; without spread of contacts the draws are returned as
+            they are.
+        rng: Source of randomness.
+    """
     if error.contacts == 0:
         return list(draws)
     factors = np.exp(error.contacts * rng.standard_normal((len(draws), 2)))
@@ -286,7 +312,7 @@ def bent(paths: Poses, *, distance: Array, curvature: Array) -> Poses:
 
 
 def bent_walk(path: WalkPath, *, distance: float, curvature: float) -> WalkPath:
-    """Stretch and bend one walked path as `bent` does; slip and forces keep to the heading.
+    """Stretch and bend one walked path as `bent` does; slip and forces in its heading frame stay.
 
     Args:
         path: The path.
@@ -310,7 +336,7 @@ def anchored(
     covariance: Array | None = None,
     rng: np.random.Generator,
 ) -> Poses:
-    """Move every path so that it passes a known pose, known with some uncertainty.
+    """Move every path rigidly so that it passes a known pose, or a draw of an uncertain one.
 
     Args:
         paths: Paths.
@@ -339,7 +365,15 @@ def anchored(
 
 
 def states_at(paths: Poses, t: Array) -> Array:
-    """Interpolate x, y and yaw of every draw at times, shape (draws, len(t), 3) [m, m, rad]."""
+    """Interpolate x, y and yaw of every draw linearly at given times.
+
+    Args:
+        paths: The draws.
+        t: Times, shape (k,) [s]; outside the paths the ends are extrapolated.
+
+    Returns:
+        States, shape (draws, k, 3) [m, m, rad].
+    """
     values = paths.states
     after = np.clip(np.searchsorted(paths.t, t, side="right"), 1, len(paths.t) - 1)
     share = (t - paths.t[after - 1]) / (paths.t[after] - paths.t[after - 1])
@@ -347,7 +381,15 @@ def states_at(paths: Poses, t: Array) -> Array:
 
 
 def quantiles(paths: Poses, levels: Sequence[float] = LEVELS) -> Array:
-    """Compute quantiles of x, y and yaw at every time, shape (levels, n, 3) [m, m, rad]."""
+    """Compute quantiles over the draws of x, y and yaw at every time.
+
+    Args:
+        paths: The draws.
+        levels: Levels of the quantiles, from 0 to 1 [-].
+
+    Returns:
+        Quantiles, shape (levels, n, 3) [m, m, rad].
+    """
     return np.quantile(paths.states, np.asarray(levels), axis=0)
 
 
@@ -357,5 +399,5 @@ def mean_path(paths: Poses) -> Poses:
 
 
 def _from_zero(steps: Array) -> Array:
-    """Add up steps from zero on."""
+    """Return the cumulative sum of steps along axis 1, starting at zero."""
     return np.concatenate([np.zeros((len(steps), 1)), np.cumsum(steps, axis=1)], axis=1)

@@ -5,10 +5,10 @@ from typing import Protocol
 
 
 class Watcher(Protocol):
-    """Follows a long computation: a progress bar, or nobody."""
+    """Receives progress of a long computation, for example a progress bar, and can stop it."""
 
     def step(self, what: str, fraction: float | None) -> None:
-        """Take note of the current step and of the fraction of it that is done.
+        """Report the current step and the fraction of it that is done.
 
         Args:
             what: Name of the step.
@@ -17,5 +17,5 @@ class Watcher(Protocol):
         ...
 
     def stop_requested(self) -> bool:
-        """Return whether the computation should stop at the next good moment."""
+        """Return whether the computation should stop at its next checkpoint."""
         ...

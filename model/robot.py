@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The robot: where its hips are, the shape of its legs, and what it weighs."""
+"""The robot: hip positions, shape of the legs, mass and inertia."""
 
 from dataclasses import dataclass, field
 
@@ -38,8 +38,8 @@ class Robot:
         leg_offset: Angle of each leg beyond the one it reports, shape (6,) [rad].
 
     Raises:
-        DomainError: A length, mass or inertia is not positive, the arc is no arc, or an array has
-            another shape or no finite numbers.
+        DomainError: A length, mass or inertia is not positive, the arc is out of range, or an array
+            has another shape or is not finite.
     """
 
     hips: Array = field(default_factory=_source_hips)
@@ -51,7 +51,7 @@ class Robot:
     leg_offset: Array = field(default_factory=lambda: np.zeros(N_LEGS))
 
     def __post_init__(self) -> None:
-        """Refuse a robot that cannot be."""
+        """Check that masses and lengths are positive and that arrays have the expected shapes."""
         for name, shape in (("hips", (N_LEGS, 3)), ("leg_offset", (N_LEGS,))):
             values = np.ascontiguousarray(getattr(self, name), dtype=float)
             _require_shape(name, values, shape)

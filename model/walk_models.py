@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The walking models by name, and the simpler ones that a prediction is compared with."""
+"""The walking models by name, and the baselines that a prediction is compared with."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -28,17 +28,17 @@ BASELINES = ("no-slip-simple", "no-slip", "thesis")
 
 @dataclass(frozen=True)
 class ModelRun:
-    """What a model is to walk.
+    """Inputs of a walking model.
 
     Attributes:
         robot: The robot.
         reference: Its leg angles over time, from time zero on.
-        slip: How its legs slip; None for a model without slip.
+        slip: The slip law; None for a model without slip.
         duration: Time walked [s].
         dt: Length of a step [s].
         toe: Traction of a leg on its toe.
         direction: Side to which the gait turns; only the thesis's model uses it.
-        legs: One draw of what is believed of legs and floor beyond the description; only the
+        legs: One draw of leg and floor parameters that differ from the description; only the
             model "dynamics" uses it.
     """
 
@@ -60,7 +60,7 @@ class WalkModel:
         name: Name under which it is chosen.
         slips: Whether it needs a slip law.
         dt: Default length of its step [s].
-        run: Computes the walk.
+        run: Function that computes the walk.
     """
 
     name: str
@@ -72,7 +72,7 @@ class WalkModel:
 def baseline_paths(
     robot: Robot, reference: SampledReference, *, direction: Direction = "left", start: float = 0.0
 ) -> tuple[dict[str, Poses], tuple[str, ...]]:
-    """Walk leg angles by every simpler model.
+    """Compute the paths of leg angles by every baseline model.
 
     Args:
         robot: The robot.
@@ -117,14 +117,17 @@ def _thesis(run: ModelRun) -> WalkPath:
     traction = _slip_of(run).thesis_traction(weight=run.robot.mass * GRAVITY)
     legs = _legs_of_the_thesis(run.reference)
     # The legs of a log stand still and turn back by fractions of a degree; by the listing's slip
-    # ratio such a leg would pull at full grip.
+    # ratio such a leg would have full traction.
     logged = not isinstance(run.reference, CyclicReference)
     options = ThesisOptions(dt=run.dt, direction=run.direction, mend_slip=logged)
     return walk_thesis(run.robot, legs, duration=run.duration, traction=traction, options=options)
 
 
 def _legs_of_the_thesis(reference: LegReference) -> "LegReference | SwitchedLegs":
-    """Let a gait's legs switch speed by angle, as the thesis's do; other legs follow the clock."""
+    """Convert a gait's legs to ones that switch speed by angle, as the thesis's do.
+
+    Other legs are returned as they are.
+    """
     from model.walk.thesis import SwitchedLegs
 
     if not isinstance(reference, CyclicReference):
@@ -161,4 +164,4 @@ MODELS: Mapping[str, WalkModel] = MappingProxyType({
         WalkModel("no-slip-simple", slips=False, dt=0.002, run=_wheels),
     )
 })  # fmt: skip
-"""Our own model, the thesis's, and the two baselines without slip."""
+"""The project's own model, the thesis's, and the two baselines without slip."""

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: MIT
-"""Means over blocks of successive samples, with what the averaging hides kept beside them.
+"""Block means of the samples, with the variances that averaging within a block would hide.
 
-Two things blur a measured slip ratio, and they bias a fit in opposite ways. Sensor noise is not in
-the true slip: a curve fitted through it is too flat (errors in variables). Wander is: the force
-answers to it, and a curve fitted to its mean is too blunt (averaging over a bent curve). Both are
-told apart by their correlation in time and handed on: the noise as a variance of each block's slip,
-the wander as a variance within the block.
+Two kinds of variation blur a measured slip ratio, and they bias a fit in opposite ways. Sensor
+noise is not in the true slip: a curve fitted through it is too flat (errors in variables). Slow
+wander is in the true slip and changes the force: a curve fitted to its mean has too low a peak
+(averaging over a bent curve). Their correlation in time separates the two. The noise is returned
+as a variance of each block's slip, the wander as a variance within the block.
 """
 
 from dataclasses import dataclass
@@ -18,7 +18,7 @@ from model.bayes.samples import SlipSamples
 from model.slip.definition import SlipDefinition
 from model.slip.law import Array
 
-BY_CHANCE = 1e-6  # one block that falsely claims wander can cost hundreds of nats in a steep place
+BY_CHANCE = 1e-6  # probability; one false wander can cost hundreds of nats where the curve is steep
 
 
 @dataclass(frozen=True)
@@ -56,18 +56,18 @@ class SlipBlocks:
     run_slip_error: Array
 
     def __len__(self) -> int:
-        """Count the blocks."""
+        """Return the number of blocks."""
         return len(self.slip)
 
     @property
     def n_runs(self) -> int:
-        """Count the runs."""
+        """Number of runs."""
         return len(self.run_names)
 
     def slip_variance(self) -> Array:
         """Return the variance of the true slip of a sample around `slip`, shape (n,) [-].
 
-        Wander and both errors together: what a bent curve must be averaged over.
+        It is the sum of the wander and both errors, over which a curved law has to be averaged.
         """
         return self.slip_wander + self.slip_error + self.run_slip_error[self.run]
 
@@ -107,10 +107,11 @@ class SlipBlocks:
 def slip_noise_variance(samples: SlipSamples) -> Array:
     r"""Estimate the variance of the slip sensors' white noise, for each run.
 
-    The nugget of the variogram: half the variance of the differences at lag 1 and 2, drawn on to
-    lag 0, :math:`2\gamma_1 - \gamma_2`. Slow wander and steady sweeps cancel in it. Its sampling
-    variance for white noise is :math:`7\sigma^4/n`; runs that differ by no more share one value.
-    Runs of fewer than 8 samples take it; where all are that short, slip counts as noise-free.
+    The estimate is the nugget of the variogram: half the variance of the differences at lag 1 and
+    2, extrapolated to lag 0, :math:`2\gamma_1 - \gamma_2`. Slow wander and steady sweeps cancel in
+    it. Its sampling variance for white noise is :math:`7\sigma^4/n`; runs that differ by no more
+    share one value. Runs of fewer than 8 samples take the shared value. Where all runs are that
+    short, the noise variance is zero.
 
     Args:
         samples: The samples.
@@ -138,22 +139,22 @@ def _nugget(slip: Array) -> float:
 
 
 def _median_variance(estimates: Array, freedom: Array) -> float:
-    """Return the median of variance estimates, each put right for the skew of its chi-square."""
+    """Return the median of variance estimates, corrected for the skewness of their chi-square."""
     if len(estimates) == 0:
         return 0.0
     return float(np.median(estimates * freedom / chi2.median(freedom)))
 
 
 def _shrink(estimates: Array, sampling_variance: Array, typical: float) -> Array:
-    """Pull estimates towards a typical one by as much as their scatter is sampling error.
+    """Shrink estimates towards a typical value in proportion to their sampling error.
 
-    Empirical Bayes: runs under the same conditions lend each other precision; runs that really
-    differ keep their own. The scatter is taken robustly, from the median absolute deviation.
+    Empirical Bayes: estimates of runs under the same conditions are pooled; estimates of runs that
+    differ significantly are kept. The scatter is the robust one of the median absolute deviation.
 
     Args:
         estimates: One estimate a run, shape (n_runs,).
         sampling_variance: Variance each would have if all runs were alike, shape (n_runs,).
-        typical: What to pull towards.
+        typical: Value to shrink towards.
     """
     scatter = (1.4826 * np.median(np.abs(estimates - typical))) ** 2
     if scatter == 0:
@@ -232,9 +233,9 @@ def _calibrate_slip(
     :math:`E[\kappa|\hat\kappa] = m + \lambda(\hat\kappa - m)`,
     :math:`\lambda = \omega^2/(\omega^2 + \sigma^2/n)`. Its error has a part of its own in each
     block, variance :math:`\lambda\sigma^2/n`, and one the run shares,
-    :math:`(1-\lambda)\sigma^2/N`, so that the run's mean errs by :math:`\sigma^2/N`. A likelihood
-    that took the measured slip at its word, or gave the true one a flat prior, would flatten the
-    curve.
+    :math:`(1-\lambda)\sigma^2/N`, so that the variance of the run's mean is :math:`\sigma^2/N`. A
+    likelihood that ignored the error of the measured slip, or gave the true slip a flat prior,
+    would flatten the curve.
     """
     n_blocks, n_samples = np.bincount(run), np.bincount(run, count)
     middle = np.bincount(run, slip * count) / n_samples
@@ -250,13 +251,14 @@ def _calibrate_slip(
 
 
 def _wander(spread: Array, count: NDArray[np.intp], run: NDArray[np.intp], noise: Array) -> Array:
-    r"""Return the variance of the true slip around its mean in each block.
+    r"""Estimate the variance of the true slip around its mean in each block.
 
-    Each block's own estimate, the spread s² less the noise :math:`\sigma^2`, is drawn towards the
-    mean :math:`\bar w` of its run, by as much as its sampling variance
-    :math:`(2\sigma^4 + 4\bar w\sigma^2)/(n-1)` outweighs the variance :math:`\bar w^2` that
-    slow wander has between blocks. Clipping each estimate at zero, or keeping only the large ones,
-    would invent wander where there is only noise. A block that stands out of all this had a jump.
+    Each block's own estimate, the spread s² less the noise :math:`\sigma^2`, is shrunk towards the
+    mean :math:`\bar w` of its run. The weights are its sampling variance
+    :math:`(2\sigma^4 + 4\bar w\sigma^2)/(n-1)` and the variance :math:`\bar w^2` that slow wander
+    has between blocks. Clipping each estimate at zero, or keeping only the large ones, would bias
+    the wander upwards where there is only noise. A block with a significantly larger spread
+    contains a jump and keeps its own estimate.
     """
     if not (count > 1).any():
         return np.zeros_like(spread)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""From rig samples to a calibration: choose a law, sample its posterior, judge the result."""
+"""Calibrate a slip law from rig samples: choose the law, sample its posterior, check the result."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -25,16 +25,16 @@ from model.progress import Watcher
 from model.slip.law import SlipLaw
 
 THIN = 5  # sampler moves a kept step
-CHUNK = 20  # kept steps between looks at the watcher
+CHUNK = 20  # kept steps between checks for a request to stop
 FIRST_LOOK = 100  # kept steps before convergence is judged for the first time
-FEW_BLOCKS = 500  # below, numpy's calls are so short that threads only wait for each other
+FEW_BLOCKS = 500  # below, numpy's calls are too short for threads to help
 
 
 class FitStopped(FitError):
-    """The watcher asked to stop.
+    """The fit was stopped on request of the watcher.
 
     Attributes:
-        chains: Where the sampler stands; None when sampling had not begun.
+        chains: The chains so far; None when sampling had not begun.
     """
 
     def __init__(self, chains: Chains | None) -> None:
@@ -44,14 +44,15 @@ class FitStopped(FitError):
 
 @dataclass(frozen=True)
 class SamplerSettings:
-    """How a posterior is sampled.
+    """Settings of the sampler.
 
     Attributes:
         ensembles: Independent ensembles of walkers.
-        max_steps: Sampler moves after which a fit that has not converged ends as such.
+        max_steps: Largest number of sampler moves; a fit that has not converged by then ends
+            unconverged.
         block_length: Samples in a block; chosen from the residuals when None.
-        threads: Ensembles advanced at once.
-        seed: Seed of everything random.
+        threads: Number of ensembles that are sampled at once.
+        seed: Seed of the random generators.
     """
 
     ensembles: int = 4
@@ -78,13 +79,13 @@ def calibrate(
     Args:
         samples: The samples.
         laws: The laws to choose from, simplest first, by the name they are reported under.
-        load_cell: What is known of the load cell.
-        settings: How to sample.
+        load_cell: Prior knowledge of the load cell.
+        settings: Settings of the sampler.
         source: Where the samples come from, for the result.
         watcher: Follows the progress and may ask to stop.
         clock: Returns the time, to measure how long sampling takes [s].
-        earlier: Chains of a stopped fit of the same samples and settings, to go on from.
-        keep: Called with the chains as they grow, so that a fit that dies can go on.
+        earlier: Chains of a stopped fit of the same samples and settings, to resume from.
+        keep: Called with the chains as they grow, to save a checkpoint.
 
     Returns:
         The calibration, and the chains it was made from.
@@ -117,7 +118,7 @@ def _choose_law(
     rng: np.random.Generator,
     watcher: Watcher,
 ) -> tuple[PreparedFit, Comparison | None]:
-    """Prepare the fit of every law and choose the one that predicts left-out runs best."""
+    """Prepare the fit of every law and choose the one with the best cross-validation."""
     fits: list[PreparedFit] = []
     asked = settings.block_length
     choice = None if asked is None else BlockChoice(asked, None, "the length asked for")
@@ -171,13 +172,13 @@ def _sample(
 
 
 def next_look(n_steps: int) -> int:
-    """Return the first of the fixed steps, each a fifth beyond the last, at which to judge.
+    """Return the next step at which convergence is checked; each is a fifth beyond the last.
 
-    They are fixed, so that a fit that was stopped and resumed ends where one that was not would
-    have.
+    The steps are fixed, so that a fit that is stopped and resumed ends at the same step as one that
+    is not.
 
     Args:
-        n_steps: Kept steps after which to look.
+        n_steps: Kept steps; the result is this number or later.
 
     >>> [next_look(n) for n in (1, 101, 121)]
     [100, 120, 144]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What a fit of a slip law concluded: estimates, curve, checks and verdict."""
+"""Result of the fit of a slip law: estimates, curve, checks and verdict."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -42,12 +42,13 @@ class Calibration:
         parameters: Posterior of every parameter.
         levels: Loads that were set, shape (m,) [N].
         curves: Posterior of the curve's features at each load level.
-        convergence: Evidence on the sampler.
-        residuals: What the fit leaves over.
-        agreement: How the second engine's answer compares.
-        verdict: What the fit is worth.
+        convergence: Convergence diagnostics of the sampler.
+        residuals: Analysis of the residuals.
+        agreement: Comparison with importance sampling.
+        verdict: Whether the fit converged and can be trusted.
         contraction: 1 - posterior over prior variance of each sampled parameter, by name.
-        r_squared: Variance of left-out samples explained; None for a single run [-].
+        r_squared: Fraction of the variance of left-out samples explained; None for a single run
+            [-].
         source: Where the data come from: "real", "sim:...", "unknown".
         seconds: Time the sampler took [s].
     """
@@ -95,7 +96,7 @@ def conclude(
         fit: The fit that was sampled.
         comparison: The laws that were compared; None where one was asked for.
         chains: The sampler's chains.
-        convergence: Evidence that they converged.
+        convergence: Convergence diagnostics of the chains.
         samples: The samples that were fitted.
         source: Where the samples come from.
         seconds: Time the sampler took [s].

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Has the sampler converged? R-hat between ensembles, effective sizes, chain length and error."""
+"""Convergence diagnostics: R-hat between ensembles, effective sample sizes, chain length, error."""
 
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
@@ -21,11 +21,11 @@ BURN_IN = 5.0  # autocorrelation times; the starts are nearly posterior draws
 
 @dataclass(frozen=True)
 class Convergence:
-    """The evidence, each array of shape (d,).
+    """Convergence diagnostics, each array of shape (d,).
 
     Attributes:
         burn_in: Kept steps left out at the start.
-        length: Kept steps behind them.
+        length: Kept steps after the burn-in.
         autocorrelation_time: Integrated autocorrelation time [kept steps].
         r_hat: Rank-normalised split R-hat between ensembles (never between walkers, which are
             not independent) [-].
@@ -43,7 +43,7 @@ class Convergence:
     mcse: Array
 
     def failures(self) -> list[str]:
-        """Name every rule that is broken, with its figure; empty when converged."""
+        """List every criterion that is not met, with its value; empty when converged."""
         length = float((self.length / self.autocorrelation_time).min())
         at_most = [
             ("R-hat between ensembles", float(self.r_hat.max()), MAX_R_HAT),
@@ -64,7 +64,7 @@ class Convergence:
         ]
 
     def summary(self) -> str:
-        """Say the figures in one line."""
+        """Format the diagnostics in one line."""
         length = float((self.length / self.autocorrelation_time).min())
         return (
             f"R-hat {self.r_hat.max():.3f}, bulk ESS {self.ess_bulk.min():.0f}, tail ESS "
@@ -74,11 +74,11 @@ class Convergence:
 
     @property
     def converged(self) -> bool:
-        """Tell whether every rule holds."""
+        """Whether every criterion is met."""
         return not self.failures()
 
     def fraction_done(self) -> float:
-        """Estimate how far the chains are on the way to the length and sizes asked for."""
+        """Estimate the progress towards the required length and effective sizes, 0 to 1 [-]."""
         lengths = self.length / self.autocorrelation_time
         return float(
             min(
@@ -91,12 +91,12 @@ class Convergence:
 
 
 def assess(chains: Chains) -> Convergence:
-    """Judge the chains.
+    """Compute the convergence diagnostics of the chains.
 
     Args:
         chains: Chains of at least 8 steps.
     """
-    import arviz as az  # here, for it takes longer to import than most commands to run
+    import arviz as az  # imported late: it takes longer than most commands run
 
     times = autocorrelation_times(chains.z)
     burn_in = int(min(np.ceil(BURN_IN * times.max()), chains.n_steps // 2))

@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""Leave runs out, fit the rest, predict what was left out: the run is the unit of replication."""
+"""Cross-validation over runs: fit without some runs, then predict them.
+
+The run is the unit of replication.
+"""
 
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
@@ -19,7 +22,7 @@ N_GROUPED_FOLDS = 10
 
 @dataclass(frozen=True)
 class CrossValidation:
-    """How well a law predicts runs it has not seen.
+    """Predictions of left-out runs by one law.
 
     Attributes:
         fold: Fold in which each run was left out, shape (n_runs,).
@@ -40,7 +43,7 @@ class CrossValidation:
         return f"leave out runs in {n_folds} interleaved groups of {len(self.fold)} runs"
 
     def predict(self, samples: SlipSamples, law: SlipLaw) -> Array:
-        """Predict every sample's traction from the fit that has not seen its run, shape (n,) [N].
+        """Predict every sample's traction from the fit without its run, shape (n,) [N].
 
         Args:
             samples: The samples, of the same runs.
@@ -56,7 +59,7 @@ class CrossValidation:
 
 
 def measured_force(law: SlipLaw, values: Array, slip: Array, normal_force: Array) -> Array:
-    """Predict measured traction from measured slip and load, run offset and crosstalk apart [N].
+    """Predict measured traction from measured slip and load, without run offset and crosstalk [N].
 
     Args:
         law: The slip law, of k parameters.
@@ -71,7 +74,12 @@ def measured_force(law: SlipLaw, values: Array, slip: Array, normal_force: Array
 
 
 def r_squared(measured: Array, predicted: Array) -> float:
-    """Compute the fraction of the variance of `measured` that `predicted` explains [-]."""
+    """Compute the fraction of the variance of `measured` that `predicted` explains [-].
+
+    Args:
+        measured: Measured values, shape (n,).
+        predicted: Predictions of them, in the same unit, shape (n,).
+    """
     return float(
         1 - np.sum((measured - predicted) ** 2) / np.sum((measured - measured.mean()) ** 2)
     )
@@ -85,7 +93,7 @@ def cross_validate(posterior: SlipPosterior, mode: Array, *, threads: int = 2) -
     Args:
         posterior: The posterior of all runs, at least two.
         mode: Coordinates of its mode, where each fit starts, shape (d,).
-        threads: Folds fitted at once.
+        threads: Number of folds that are fitted at once.
     """
     n_runs = posterior.blocks.n_runs
     n_folds = n_runs if n_runs <= MAX_SINGLE_FOLDS else N_GROUPED_FOLDS

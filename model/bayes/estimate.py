@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Posterior draws summarised: parameters, the plain coefficients, agreement of two engines."""
+"""Summaries of posterior draws: parameters, curve coefficients, agreement of two samplers."""
 
 from dataclasses import dataclass
 
@@ -31,20 +31,20 @@ class Draws:
 
     @property
     def flat(self) -> Array:
-        """All values without regard to ensemble, shape (ensembles · n, k + 8)."""
+        """All values with the ensembles joined, shape (ensembles · n, k + 8)."""
         return self.values.reshape(-1, self.values.shape[-1])
 
 
 def thin_draws(
     posterior: SlipPosterior, chains: Chains, convergence: Convergence, *, n: int
 ) -> Draws:
-    """Pick evenly spaced draws behind the burn-in.
+    """Thin the chains: take evenly spaced draws after the burn-in.
 
     Args:
         posterior: The posterior that was sampled.
         chains: The chains.
-        convergence: Says where the burn-in ends.
-        n: Draws wanted of each ensemble, at most.
+        convergence: Diagnostics with the length of the burn-in.
+        n: Largest number of draws of each ensemble.
     """
     kept = chains.z[:, convergence.burn_in :]
     ensembles, steps, walkers, d = kept.shape
@@ -77,12 +77,16 @@ class Estimate:
 
 
 def estimate(parameter: Parameter, draws: Array) -> Estimate:
-    """Summarise draws of one quantity, shape (n,).
+    """Summarise draws of one quantity by mean, standard deviation and quantiles.
 
-    Draws may be infinite, as the peak's slip of a curve without a peak; then so is the mean, and
-    there is no standard deviation (NaN).
+    Draws may be infinite, for example the peak slip of a curve without a peak. The mean is then
+    infinite too, and the standard deviation is NaN.
+
+    Args:
+        parameter: The quantity: name, unit and meaning.
+        draws: Its posterior draws, shape (n,).
     """
-    # Order statistics themselves: between infinite ones there is nothing to interpolate.
+    # Order statistics without interpolation, which infinite draws do not allow.
     low, median, high = np.quantile(draws, [0.05, 0.5, 0.95], method="inverted_cdf")
     with np.errstate(invalid="ignore"):
         mean, sd = np.mean(draws), np.std(draws)
@@ -90,7 +94,15 @@ def estimate(parameter: Parameter, draws: Array) -> Estimate:
 
 
 def contraction(posterior: SlipPosterior, draws: Draws) -> dict[str, float]:
-    """Compute how far the data narrowed each prior: 1 - posterior over prior variance of z."""
+    """Compute the contraction of each parameter: 1 - posterior variance over prior variance of z.
+
+    Args:
+        posterior: The posterior, with its free parameters in the order of the coordinates z.
+        draws: Posterior draws.
+
+    Returns:
+        Contraction by the parameter's name [-].
+    """
     variances = draws.z.reshape(-1, draws.z.shape[-1]).var(axis=0)
     return {p.name: float(1 - v) for p, v in zip(posterior.free, variances, strict=True)}
 
@@ -98,16 +110,16 @@ def contraction(posterior: SlipPosterior, draws: Draws) -> dict[str, float]:
 def curve_estimates(
     law: SlipLaw, values: Array, *, load: float, slip_limit: float
 ) -> list[Estimate]:
-    """Summarise the curve at one load: plain B, C, D, E where there are such, peak and slope.
+    """Summarise the curve at one load: B, C, D, E of a Magic Formula, peak and slope.
 
-    The largest force is taken within the tested slip, so that it stays known where the data end
+    The largest force is taken within the tested slip. It therefore stays known where the data end
     before the peak and D does not.
 
     Args:
         law: The slip law, of k parameters.
         values: Posterior draws of its parameters, shape (w, k).
         load: Normal force [N].
-        slip_limit: Largest slip ratio that was tested, in size [-].
+        slip_limit: Largest absolute slip ratio that was tested [-].
     """
     columns = values.T
     quantities: list[tuple[Parameter, Array]] = []
@@ -124,7 +136,7 @@ def curve_estimates(
 
 @dataclass(frozen=True)
 class Agreement:
-    """How two engines' answers to one posterior compare, over its free parameters.
+    """Difference between sampler and importance sampling, over the free parameters.
 
     Attributes:
         mean: Largest difference of means over the posterior standard deviation [-].
@@ -138,12 +150,17 @@ class Agreement:
 
     @property
     def comparable(self) -> bool:
-        """Tell whether importance sampling worked."""
+        """Whether the importance weights are reliable enough to compare."""
         return self.pareto_k < MAX_PARETO_K
 
 
 def agreement(draws: Draws, weighted: WeightedDraws) -> Agreement:
-    """Compare the sampler's draws with weighted draws of the Laplace approximation."""
+    """Compare the sampler's draws with weighted draws of the Laplace approximation.
+
+    Args:
+        draws: Draws of the sampler.
+        weighted: Draws of the Laplace approximation with importance weights.
+    """
     z = draws.z.reshape(-1, draws.z.shape[-1])
     mean = weighted.weights @ weighted.z
     sd = np.sqrt(weighted.weights @ (weighted.z - mean) ** 2)

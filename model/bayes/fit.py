@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""From samples to a posterior ready to sample: choose blocks, law and starting point."""
+"""From samples to a posterior ready to sample: block means, priors, modes, cross-validation."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
@@ -17,9 +17,9 @@ from model.errors import DomainError, FitError, InsufficientData
 from model.slip.law import SlipLaw
 
 FEW_BLOCKS = 500
-MOST_FORCE = 1e9  # beyond every rig, and far from where squares of forces overflow [N]
+MOST_FORCE = 1e9  # above any rig, and far below the overflow of squared forces [N]
 PRIOR_DRAWS = 400
-PRIOR_STARTS = 12  # of the draws, from the best to the worst, where to climb from as well
+PRIOR_STARTS = 12  # further starts of the optimisation, from the best of the draws to the worst
 CLEAR_WIN = 2.0  # standard errors by which a law must predict better to be preferred
 
 
@@ -31,8 +31,8 @@ class PreparedFit:
         posterior: Blocks, law and priors.
         approximation: Laplace approximations at the modes, the highest first.
         cross_validation: Prediction of left-out runs; None for a single run or where not asked for.
-        block_choice: The block length and why.
-        load_cell: What was taken as known of the load cell.
+        block_choice: The block length and the reason for it.
+        load_cell: Prior knowledge of the load cell.
     """
 
     posterior: SlipPosterior
@@ -74,21 +74,21 @@ def prepare_fit(
     validate: bool = True,
     threads: int = 2,
 ) -> PreparedFit:
-    """Average the samples, put the posterior together, find its mode and cross-validate it.
+    """Average the samples, build the posterior, find its modes and cross-validate it.
 
     Args:
         samples: The samples.
         law: The slip law.
-        load_cell: What is known of the load cell.
+        load_cell: Prior knowledge of the load cell.
         rng: Source of randomness of the starting points.
         block_choice: The block length; chosen from the residuals when None.
         validate: Whether to cross-validate; studies over many data sets do without.
         threads: Folds of the cross-validation fitted at once.
 
     Raises:
-        InsufficientData: There are no more samples than parameters of the law, or forces that say
-            nothing.
-        DomainError: Forces are beyond every rig.
+        InsufficientData: There are no more samples than parameters of the law, or the forces hold
+            no information.
+        DomainError: A force is larger than any rig can measure.
         FitError: No mode was found.
     """
     _require_enough(samples, law)
@@ -99,14 +99,14 @@ def prepare_fit(
 
 @contextmanager
 def breakdown_told(samples: SlipSamples, law: SlipLaw) -> Iterator[None]:
-    """Turn a breakdown of the linear algebra into an error that shows the data.
+    """Convert a failure of the linear algebra into an error that describes the data.
 
     Args:
-        samples: What is fitted.
+        samples: The samples that are fitted.
         law: The slip law.
 
     Raises:
-        FitError: A matrix was singular, or a number beyond what floating point holds.
+        FitError: A matrix was singular, or a number overflowed.
     """
     try:
         yield
@@ -160,15 +160,15 @@ def _require_enough(samples: SlipSamples, law: SlipLaw) -> None:
 
 
 def require_forces(samples: SlipSamples, cell: LoadCell) -> None:
-    """Refuse forces from which no curve follows, whatever the law.
+    """Check that the forces can determine a curve, whatever the law.
 
     Args:
         samples: The samples.
-        cell: What is known of the load cell.
+        cell: Prior knowledge of the load cell.
 
     Raises:
-        InsufficientData: Traction stands still, or no load is above the cell's own zero error.
-        DomainError: A force is beyond every rig.
+        InsufficientData: Traction is constant, or no load is above the cell's own zero error.
+        DomainError: A force is larger than any rig can measure.
     """
     loads, traction = samples.normal_force, samples.traction_force
     for name, force in (("normal", loads), ("traction", traction)):
@@ -192,7 +192,7 @@ def require_forces(samples: SlipSamples, cell: LoadCell) -> None:
 
 
 def _implausible(load: float, traction: float) -> str:
-    """Say which number cannot be where the largest load [N] is lost in the zero's error."""
+    """Return which value is implausible when the largest load [N] is below the zero's error."""
     if max(load, traction) < 1:
         return "are the forces in kN? Name their unit in columns.toml, or give the zero stability"
     if traction > 10 * load:
@@ -204,16 +204,16 @@ def _implausible(load: float, traction: float) -> str:
 
 
 def _not_identified(blocks: SlipBlocks) -> dict[str, float]:
-    """Fix what single-block runs cannot tell apart: an offset from noise, and its correlation."""
+    """Fix parameters that single-block runs cannot identify: run offsets and noise correlation."""
     if len(blocks) > blocks.n_runs:
         return {}
     return {"noise_correlation": 0.0, "offset_spread": 0.0}
 
 
 def _starting_points(posterior: SlipPosterior, rng: np.random.Generator) -> np.ndarray:
-    """Start from least squares and, where a climb costs little, from draws of the prior too.
+    """Choose starting points: least squares and, where optimisation is cheap, prior draws too.
 
-    Few data allow several shapes, each a mode of the posterior that one start would not see.
+    Few data allow several shapes. Each is a mode of the posterior, and one start would find one.
     """
     blocks, law = posterior.blocks, posterior.law
     values = least_squares_values(blocks, law, priors=dict(posterior.priors), rng=rng)
@@ -235,7 +235,7 @@ def _starting_points(posterior: SlipPosterior, rng: np.random.Generator) -> np.n
 
 @dataclass(frozen=True)
 class Comparison:
-    """Laws compared on runs they have not seen.
+    """Comparison of laws by cross-validation.
 
     Attributes:
         names: Name of each law.
@@ -253,7 +253,7 @@ class Comparison:
 
 
 def compare(names: Sequence[str], fits: Sequence[PreparedFit]) -> Comparison:
-    """Choose the law that predicts left-out runs best; the first unless another wins clearly.
+    """Choose the law with the best cross-validation; the first unless another is clearly better.
 
     All fits must have the same blocks. A single run cannot be left out: the first law is kept.
 
@@ -262,7 +262,7 @@ def compare(names: Sequence[str], fits: Sequence[PreparedFit]) -> Comparison:
         fits: A fit for each.
 
     Raises:
-        DomainError: The fits were made on different blocks, whose densities do not compare.
+        DomainError: The fits were made on different blocks, so their densities cannot be compared.
     """
     lengths = sorted({len(fit.posterior.blocks) for fit in fits})
     if len(lengths) > 1:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The Laplace approximation: a mode, the curvature there, and draws weighted to the posterior."""
+"""Laplace approximation: modes, covariances there, and importance sampling from them."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -15,8 +15,8 @@ from model.errors import FitError
 from model.slip.law import Array
 
 LogDensity = Callable[[Array], Array]
-SAME_TOP = 0.05  # coordinates closer than this are one top, reached twice
-NEGLIGIBLE = 10.0  # nats of evidence below the best mode's, at which another is left out
+SAME_TOP = 0.05  # coordinates closer than this are the same mode
+NEGLIGIBLE = 10.0  # nats of evidence below the best mode's, beyond which a mode is left out
 STEP = 1e-4  # coordinates are of unit scale a priori; central differences err by about its square
 
 
@@ -71,7 +71,15 @@ class LaplaceMixture:
         return [frozen(laplace.mode, laplace.covariance, df=8) for laplace in self.modes]
 
     def draw(self, n: int, *, rng: np.random.Generator) -> Array:
-        """Draw n coordinates, shape (n, d)."""
+        """Draw coordinates from the mixture.
+
+        Args:
+            n: Number of draws.
+            rng: Source of randomness.
+
+        Returns:
+            Coordinates in random order, shape (n, d).
+        """
         counts = rng.multinomial(n, self.weights)
         parts = [
             np.reshape(part.rvs(size=count, random_state=rng), (count, -1))
@@ -87,7 +95,15 @@ class LaplaceMixture:
 
 
 def gradient(log_density: LogDensity, z: Array) -> Array:
-    """Compute the gradient by central differences, in one batched call, shape (d,)."""
+    """Compute the gradient by central differences, in one batched call.
+
+    Args:
+        log_density: Log density of points, shape (m, d) to (m,).
+        z: Coordinates of the point, shape (d,).
+
+    Returns:
+        Gradient, shape (d,).
+    """
     return _value_and_gradient(log_density, z)[1]
 
 
@@ -100,7 +116,16 @@ def _value_and_gradient(log_density: LogDensity, z: Array) -> tuple[float, Array
 
 
 def hessian(log_density: LogDensity, z: Array, *, step: float = 1e-3) -> Array:
-    """Compute the Hessian by central differences, in one batched call, shape (d, d)."""
+    """Compute the Hessian by central differences, in one batched call.
+
+    Args:
+        log_density: Log density of points, shape (m, d) to (m,).
+        z: Coordinates of the point, shape (d,).
+        step: Step of the differences, in coordinates.
+
+    Returns:
+        Hessian, shape (d, d); not finite where a step leaves the support.
+    """
     d = len(z)
     rows, columns = np.triu_indices(d)
     e = step * np.eye(d)
@@ -113,7 +138,7 @@ def hessian(log_density: LogDensity, z: Array, *, step: float = 1e-3) -> Array:
 
 
 def find_mode(log_density: LogDensity, starts: Array) -> Laplace:
-    """Climb from several starting points and approximate the posterior at the highest mode.
+    """Maximise the log density from several starting points; approximate it at the highest mode.
 
     Args:
         log_density: Log density of coordinates (w, d), -inf out of support.
@@ -129,14 +154,14 @@ def find_mode(log_density: LogDensity, starts: Array) -> Laplace:
 
 
 def find_modes(log_density: LogDensity, starts: Array) -> tuple[Laplace, ...]:
-    """Climb from several starting points and approximate the posterior at every mode found.
+    """Maximise the log density from several starting points; approximate it at every mode found.
 
     Args:
         log_density: Log density of coordinates (w, d), -inf out of support.
         starts: Starting points, shape (m, d).
 
     Returns:
-        The distinct modes that hold a share of the posterior worth visiting, the highest first.
+        The distinct modes with a share of the posterior that is not negligible, the highest first.
 
     Raises:
         FitError: No start lies inside the support.
@@ -160,7 +185,7 @@ def _laplace(log_density: LogDensity, top: Array) -> Laplace:
 
 
 def climb(log_density: LogDensity, starts: Array) -> Array:
-    """Climb from several starting points and return the coordinates of the highest top.
+    """Maximise the log density from several starting points; return the coordinates of the best.
 
     Args:
         log_density: Log density of coordinates (w, d), -inf out of support.
@@ -176,7 +201,7 @@ def climb(log_density: LogDensity, starts: Array) -> Array:
 
 
 def _tops(log_density: LogDensity, starts: Array) -> list[Array]:
-    """Climb from every starting point inside the support; return the tops, the highest first."""
+    """Maximise from every starting point inside the support; return the maxima, best first."""
     inside = starts[np.isfinite(log_density(starts))]
     if len(inside) == 0:
         raise FitError(
@@ -198,7 +223,7 @@ def _climb(log_density: LogDensity, start: Array) -> Array:
 
 
 def _newton(log_density: LogDensity, z: Array, *, steps: int = 4) -> tuple[Array, Array]:
-    """Polish a mode by damped Newton steps; return it with the covariance there."""
+    """Refine a mode by damped Newton steps; return it with the covariance there."""
     covariance = _covariance(log_density, z)
     for _ in range(steps):
         slope = gradient(log_density, z)
@@ -215,8 +240,9 @@ def _newton(log_density: LogDensity, z: Array, *, steps: int = 4) -> tuple[Array
 def _covariance(log_density: LogDensity, z: Array) -> Array:
     """Invert the negative Hessian, with every variance within (0, 1].
 
-    Coordinates are standard normal a priori and data only narrow them, so an eigenvalue of the
-    precision below 1 is a fold of the density or a difference across the edge of the support.
+    Coordinates are standard normal a priori and data only narrow them. An eigenvalue of the
+    precision below 1 is therefore a non-convexity of the density or a difference across the edge of
+    the support.
     """
     precision = -hessian(log_density, z)
     precision = np.where(np.isfinite(precision), precision, 0.0)
@@ -239,20 +265,28 @@ class WeightedDraws:
     pareto_k: float
 
     def resample(self, n: int, *, rng: np.random.Generator) -> Array:
-        """Draw n equally weighted coordinates, shape (n, d)."""
+        """Resample equally weighted draws, with replacement, by the importance weights.
+
+        Args:
+            n: Number of draws.
+            rng: Source of randomness.
+
+        Returns:
+            Coordinates, shape (n, d).
+        """
         return self.z[rng.choice(len(self.z), size=n, p=self.weights)]
 
 
 def importance_draws(
     log_density: LogDensity, proposal: LaplaceMixture, *, n: int, rng: np.random.Generator
 ) -> WeightedDraws:
-    """Draw from a mixture of Laplace approximations and weight by the posterior.
+    """Draw from a mixture of Laplace approximations and weight the draws by the posterior.
 
-    Pareto-smoothed importance sampling (Vehtari et al. 2024): the second engine.
+    Pareto-smoothed importance sampling (Vehtari et al. 2024), a check of the sampler.
 
     Args:
         log_density: Log density of coordinates (w, d).
-        proposal: What to draw from.
+        proposal: The mixture to draw from.
         n: Number of draws.
         rng: Source of randomness.
     """

@@ -43,10 +43,10 @@ NUISANCE = (
 
 @dataclass(frozen=True)
 class Prediction:
-    """What parameter vectors say of the blocks, each of shape (w, n).
+    """Predicted block means for parameter vectors, each of shape (w, n).
 
     Attributes:
-        force: Expected measured traction, run offset apart [N].
+        force: Expected measured traction, without run offset [N].
         slope: Derivative of `force` with respect to slip [N].
         noise: Marginal standard deviation of the correlated noise [N].
     """
@@ -63,12 +63,13 @@ def predict_blocks(blocks: SlipBlocks, law: SlipLaw, values: Array) -> Predictio
     what the spread of slip at one load adds to it, :math:`(f_+ - 2 f_0 + f_-)/6` at
     :math:`\kappa, \kappa \pm \sqrt{3}\,\omega` (three-point Gauss-Hermite, exact to fifth order in
     :math:`\omega`). The load's rule has two points and the mean, variance and skewness of the
-    block's loads: a bump on a disc is skewed, and the peak's place makes force bend in load.
+    block's loads: a bump on a disc makes the loads skewed, and because peak slip depends on load
+    the force is curved in load.
 
     Crosstalk puts the expected traction into the load, by the slope of force in load. With the
-    measured one there the density of the traction would have a Jacobian, and an error in that is
-    multiplied by the number of blocks. The two differ by :math:`c\,f_n`, a five-hundredth, of the
-    noise.
+    measured traction there, the density of the traction would have a Jacobian, and an error in that
+    is multiplied by the number of blocks. The two differ by :math:`c\,f_n`, a five-hundredth, of
+    the noise.
 
     Args:
         blocks: The block means, n of them.
@@ -86,7 +87,7 @@ def predict_blocks(blocks: SlipBlocks, law: SlipLaw, values: Array) -> Predictio
         return (1 + g_t) * law.force(slip, true_load, law_values)
 
     half_width = np.sqrt(3 * np.maximum(blocks.slip_variance() - rule.slip_variance, 1e-12))
-    offsets = np.array([1.0, 0.0, -1.0])[:, None, None]  # one call: the load's part is shared
+    offsets = np.array([1.0, 0.0, -1.0])[:, None, None]  # one call: loads are computed once
     above, centre, below = force_at(blocks.slip + offsets * half_width, blocks.normal_force)
     light = force_at(rule.slip_light, rule.light)
     heavy = force_at(rule.slip_heavy, rule.heavy)
@@ -122,7 +123,7 @@ class LoadRule:
 
 def load_rule(blocks: SlipBlocks) -> LoadRule:
     """Build the two-point rule of each block's loads, slip following load by regression."""
-    # A block at one load is given a little spread, so that the slope in load stays defined.
+    # A block at a single load gets a small spread, so that the slope in load is defined.
     spread = np.maximum(np.sqrt(blocks.load_variance), 1e-3 * blocks.normal_force)
     half = 0.5 * blocks.load_skewness
     root = np.sqrt(1 + half**2)
@@ -159,7 +160,16 @@ def run_log_likelihood(blocks: SlipBlocks, law: SlipLaw, values: Array) -> Array
 
 
 def log_likelihood(blocks: SlipBlocks, law: SlipLaw, values: Array) -> Array:
-    """Compute the log density of all block means, shape (w,); see `run_log_likelihood`."""
+    """Compute the log likelihood of all block means; see `run_log_likelihood`.
+
+    Args:
+        blocks: The block means.
+        law: The slip law, of k parameters.
+        values: Law and measurement parameters, shape (w, k + 8).
+
+    Returns:
+        Log likelihood of each parameter vector, shape (w,).
+    """
     return run_log_likelihood(blocks, law, values).sum(axis=1)
 
 
@@ -202,8 +212,8 @@ def _filter_runs(residual, noise, slope, slip_error, run_slip_error, starts, rho
             determinant = a * d - b * c
             x_1 = (d * d_1 * r1 - b * d_g * rg) / determinant
             x_g = (a * d_g * rg - c * d_1 * r1) / determinant
-            # Where noise is far below everything else, the difference cancels to its rounding
-            # errors, of either sign: it is taken for no less than they are.
+            # Where noise is far below everything else, the difference cancels to rounding
+            # errors of either sign; these are its lower bound.
             quadratic = max(rr - r1 * x_1 - rg * x_g, 1e-14 * rr)
             size = starts[i + 1] - starts[i]
             log_determinant += np.log(determinant)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The posterior of a slip law: blocks, law and priors put together."""
+"""Posterior of a slip law, from block means, law and priors."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -16,7 +16,7 @@ from model.slip.law import Array, Parameter, SlipLaw
 
 @dataclass(frozen=True)
 class LoadCell:
-    """What is known of the load cell before the fit, from its certificate or a check with weights.
+    """Prior knowledge of the load cell, from its certificate or a check with weights.
 
     Attributes:
         zero_stability: Scale of the force offset between runs (half-normal) [N].
@@ -34,13 +34,13 @@ class LoadCell:
 def default_priors(law: SlipLaw, blocks: SlipBlocks, load_cell: LoadCell) -> dict[str, Prior]:
     """Choose a weakly informative prior for every parameter of a law and of the measurement.
 
-    Only scales come from the data: the median load (for the peak's place) and the largest force
-    (for the noise). What the load cell does is as informative as its certificate.
+    Only scales come from the data: the median load (for the peak slip) and the largest force (for
+    the noise). Priors of the load cell's errors are as informative as its certificate.
 
     Args:
         law: The slip law.
         blocks: The block means.
-        load_cell: What is known of the load cell.
+        load_cell: Prior knowledge of the load cell.
     """
     load_scale = float(np.median(blocks.normal_force))
     force_scale = float(np.abs(blocks.traction_force).max())
@@ -128,7 +128,7 @@ class SlipPosterior:
         )
 
     def log_prior(self, z: Array) -> Array:
-        """Compute the log prior density of z, shape (w,); -inf where the law loses its shape."""
+        """Compute the log prior density of z, shape (w,); -inf where the law is not valid."""
         k = len(self.law.parameters)
         with np.errstate(all="ignore"):  # an optimiser may try coordinates beyond any number
             law_values = self.values(z)[:, :k].T[:, :, None]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A quick least-squares fit: where to start, and how long the residuals remember."""
+"""Preliminary least-squares fit: starting points, and the correlation time of the residuals."""
 
 from dataclasses import dataclass
 
@@ -63,7 +63,7 @@ def least_squares_values(
         climbs = [
             least_squares(misfit, z, loss="soft_l1", max_nfev=100).x for z in ranked[:N_CLIMBS]
         ]
-    except ValueError as error:  # scipy's, where a residual is beyond what floating point holds
+    except ValueError as error:  # raised by scipy where a residual overflows
         raise FitError(
             f"no curve of '{law.name}' comes near a traction force of up to "
             f"{np.abs(blocks.traction_force).max():.3g} N at loads of {loads[0]:.3g} to "
@@ -99,7 +99,7 @@ def correlation_time(residual: Array, slices: list[slice]) -> float:
 
 @dataclass(frozen=True)
 class BlockChoice:
-    """The block length, and why.
+    """The block length and the reason for it.
 
     Attributes:
         length: Samples in a block.
@@ -158,7 +158,7 @@ def _slip_scale(law: SlipLaw, values: Array, load: float) -> float:
 
 
 def _steady_length(samples: SlipSamples, length: int, largest_spread: float) -> int:
-    """Shorten a block until slip stays within a spread in nine blocks of ten."""
+    """Shorten a block until the spread of slip within nine blocks of ten is below a limit."""
     while length > 1:
         wander = np.sqrt(block_means(samples, length).slip_wander)
         if np.quantile(wander, 0.9) <= largest_spread:

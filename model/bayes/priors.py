@@ -2,8 +2,8 @@
 """Prior distributions, each a map from a standard normal coordinate to the parameter's value.
 
 A parameter is sampled as z with p(z) = N(0, 1) and value = q(Phi(z)), q the prior's quantile
-function. Then every support is the whole real line for the sampler, no Jacobian is left to forget,
-and the prior-to-posterior contraction of every parameter is 1 - var(z).
+function. The support is then the whole real line, the density needs no Jacobian, and the
+prior-to-posterior contraction of every parameter is 1 - var(z).
 """
 
 import math
@@ -29,7 +29,7 @@ class Prior(Protocol):
         ...
 
     def describe(self) -> str:
-        """Spell the distribution out, for tables and files."""
+        """Format the distribution as text, for tables and files."""
         ...
 
 

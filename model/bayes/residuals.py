@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What the fit leaves over: whitened residuals, run means, and structure along the curve."""
+"""Analysis of the residuals: whitened residuals, run means, and structure along the curve."""
 
 from dataclasses import dataclass
 
@@ -19,7 +19,7 @@ MAX_LOAD_LEVELS = 8
 
 @dataclass(frozen=True)
 class Residuals:
-    """What the fit leaves over.
+    """Residuals of the fit, and tests on them.
 
     Attributes:
         whitened: Residual of each block divided by its predictive standard deviation given the
@@ -30,7 +30,7 @@ class Residuals:
         inside: Fraction of run means within their predictive 90 % interval [-].
         inside_p: Two-sided binomial p-value of that fraction against 90 %.
         misfit: Root-mean-square residual that is a function of slip and load, over the peak
-            force: what no repetition would average away [-].
+            force; repeated measurements do not average it away [-].
         misfit_p: p-value of that structure against the scatter between runs.
         r_squared: Fraction of the variance of the block means explained, in sample [-].
         rmse: Root-mean-square residual of block means [N].
@@ -50,7 +50,7 @@ class Residuals:
 
 
 def analyse_residuals(blocks: SlipBlocks, law: SlipLaw, values: Array) -> Residuals:
-    """Compute everything of `Residuals` from posterior draws.
+    """Compute residuals and the tests on them from posterior draws.
 
     Args:
         blocks: The block means.
@@ -82,7 +82,8 @@ def analyse_residuals(blocks: SlipBlocks, law: SlipLaw, values: Array) -> Residu
 def _covariance_factors(blocks: SlipBlocks, predicted: Prediction, values: Array) -> list[Array]:
     """Return the Cholesky factor of each run's covariance at the posterior mean, offset included.
 
-    Built densely from its definition, not by the likelihood's filter: one checks the other.
+    The covariance is built densely from its definition and not by the likelihood's filter, so that
+    each checks the other.
     """
     rho, tau = values[:, -2].mean(), values[:, -1].mean()
     noise, slope = predicted.noise.mean(axis=0), predicted.slope.mean(axis=0)
@@ -130,9 +131,9 @@ def load_levels(blocks: SlipBlocks) -> Array:
     """Find the loads that were set, shape (n_levels,) [N].
 
     A run's load is the lower quartile of its blocks' (a bump on a disc only adds to it). Runs whose
-    loads differ by less than 10 % were made at one; a level that fewer than one run in twenty
-    share (a disc that stood still on its bump) is none. Where more than 8 are left the load was
-    swept, and 8 quantiles stand for it.
+    loads differ by less than 10 % form one level. A level with fewer than one run in twenty is
+    dropped (a disc that stood still on its bump). With more than 8 levels left the load was swept,
+    and 8 quantiles replace them.
     """
     parts = np.split(blocks.normal_force, blocks.run_starts()[1:-1])
     ordered = np.sort([np.quantile(part, 0.25) for part in parts])
@@ -144,12 +145,20 @@ def load_levels(blocks: SlipBlocks) -> Array:
 
 
 def nearest_level(load: Array, levels: Array) -> Array:
-    """Return the index of the level nearest to each load, in ratio."""
+    """Find the load level nearest to each load, by the ratio of the two.
+
+    Args:
+        load: Loads, shape (n,) [N].
+        levels: Load levels, shape (m,) [N].
+
+    Returns:
+        Index of the level, shape (n,).
+    """
     return np.argmin(np.abs(np.log(load[:, None] / levels)), axis=1)
 
 
 def largest_slips(blocks: SlipBlocks) -> Array:
-    """Return the largest slip ratio tested at each of `load_levels`, in size, shape (n_levels,)."""
+    """Return the largest absolute slip ratio tested at each of `load_levels`, shape (n_levels,)."""
     levels = load_levels(blocks)
     nearest = nearest_level(np.maximum(blocks.normal_force, 1e-9), levels)
     return np.array(
@@ -160,7 +169,7 @@ def largest_slips(blocks: SlipBlocks) -> Array:
 def _structure(blocks: SlipBlocks, residual: Array) -> tuple[float, float]:
     """Split the residual into a part that repeats along the curve and the scatter between runs.
 
-    A one-way analysis of variance: the groups are bins of slip at each load, a group's replicates
+    One-way analysis of variance: the groups are bins of slip at each load, a group's replicates
     the means of the runs in it. Returns the standard deviation of the repeating part [N] and the
     p-value of the F test.
     """

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""Independent emcee ensembles that advance side by side; the only importer of emcee.
+"""Independent emcee ensembles that are sampled in parallel; the only importer of emcee.
 
-R-hat needs chains that share nothing. The walkers of one ensemble propose along each other's
-differences, so an ensemble is one chain; several are run, each with its own seed and start.
+R-hat needs independent chains. The walkers of one ensemble propose along each other's
+differences, so an ensemble is one chain. Several are run, each with its own seed and start.
 """
 
 from collections.abc import Callable
@@ -20,15 +20,18 @@ from model.errors import DomainError, FitError
 from model.slip.law import Array
 
 MOVES = ((DEMove, 1.0),)
-"""A quarter of the stretch move's autocorrelation time in 12 dimensions. No snooker move: emcee's,
-up to 3.1.6, misses half the exponent of its acceptance ratio and narrows every spread by 7 %."""
+"""The autocorrelation time is a quarter of the stretch move's in 12 dimensions.
 
-JUMP_SHARE = 0.3  # of all moves: to a draw of the Laplace approximations, between modes if need be
+The snooker move is not used: emcee's, up to 3.1.6, lacks half of the exponent of its acceptance
+ratio and narrows every spread by 7 %.
+"""
+
+JUMP_SHARE = 0.3  # of all moves: to a draw of the Laplace approximations, possibly at another mode
 
 
 @dataclass(frozen=True)
 class Chains:
-    """What the ensembles have walked so far, and all that is needed to walk on.
+    """History of the ensembles, with the state from which sampling can continue.
 
     Attributes:
         z: Kept coordinates, shape (ensembles, steps, walkers, d).
@@ -48,7 +51,7 @@ class Chains:
 
     @property
     def n_steps(self) -> int:
-        """Count the kept steps."""
+        """Number of kept steps."""
         return self.z.shape[1]
 
 
@@ -70,7 +73,7 @@ def start_chains(
     Args:
         log_density: Log density of coordinates (w, d).
         approximation: The approximation at the posterior's modes.
-        ensembles: How many independent ensembles.
+        ensembles: Number of independent ensembles.
         thin: Sampler moves for each kept step.
         rng: Source of randomness, of the starts and of each ensemble's seed.
 
@@ -111,23 +114,22 @@ def advance(
     approximation: LaplaceMixture | None = None,
     threads: int = 2,
 ) -> Chains:
-    """Walk every ensemble on, the ensembles shared among threads.
+    """Continue sampling every ensemble, the ensembles shared among threads.
 
-    The result depends on the chains alone: not on threads, nor on how many calls the walk is cut
-    into.
+    The result depends on the chains alone, not on the number of threads or of calls.
 
     Args:
         log_density: Log density of coordinates (w, d); numpy and numba release the GIL in it.
-        chains: Where the ensembles stand.
+        chains: Chains so far.
         steps: Kept steps to add.
-        approximation: Where to jump now and then; None for none.
-        threads: Ensembles to advance at once.
+        approximation: Proposal of occasional jumps between modes; None for none.
+        threads: Number of ensembles that are sampled at once.
 
     Returns:
         The longer chains.
 
     Raises:
-        DomainError: No step is asked for.
+        DomainError: The number of steps is below one.
     """
     if steps < 1:
         raise DomainError(f"steps is {steps}; expected 1 or more")
@@ -184,7 +186,7 @@ def _walk(
 def _jump_to(
     approximation: LaplaceMixture,
 ) -> Callable[[Array, np.random.RandomState], tuple[Array, Array]]:
-    """Return a proposal that forgets where a walker is: an independent draw, weighed by density."""
+    """Return an independence proposal: a draw of the approximation, weighted by its density."""
 
     def propose(z: Array, rng: np.random.RandomState) -> tuple[Array, Array]:
         # A generator of its own: RandomState hides half a pair of normals from its state array.

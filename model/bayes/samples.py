@@ -38,12 +38,12 @@ class SlipSamples:
     time: Array | None = None
 
     def __len__(self) -> int:
-        """Count the samples."""
+        """Return the number of samples."""
         return len(self.slip)
 
     @property
     def n_runs(self) -> int:
-        """Count the runs."""
+        """Number of runs."""
         return len(self.run_names)
 
     def slices(self) -> list[slice]:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""One verdict on a fit: did it converge, may it be trusted, and what to do next."""
+"""Verdict on a fit: whether it converged, whether it can be trusted, and what to do next."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -24,13 +24,13 @@ MIN_REACH = 2.5  # peak slips: where the curve has fallen clearly behind its pea
 
 @dataclass(frozen=True)
 class Check:
-    """One question asked of a fit.
+    """One check of a fit.
 
     Attributes:
-        name: What was asked.
-        passed: Whether the answer is good.
+        name: The claim that is checked.
+        passed: Whether it holds.
         evidence: The figure and its limit.
-        advice: What to do when it is not.
+        advice: What to do when it does not hold.
     """
 
     name: str
@@ -41,7 +41,7 @@ class Check:
 
 @dataclass(frozen=True)
 class Verdict:
-    """What a fit is worth.
+    """Result of all checks of a fit.
 
     Attributes:
         convergence: Checks of the sampler.
@@ -55,16 +55,16 @@ class Verdict:
 
     @property
     def converged(self) -> bool:
-        """Tell whether the sampler's answer is that of the posterior."""
+        """Whether the sampler has converged to the posterior."""
         return all(check.passed for check in self.convergence)
 
     @property
     def trustworthy(self) -> bool:
-        """Tell whether the posterior describes the data."""
+        """Whether the model describes the data."""
         return self.converged and all(check.passed for check in self.trust)
 
     def headline(self) -> str:
-        """Say it in one line."""
+        """Return the verdict in one line."""
         weak = f"; weakly identified: {', '.join(self.weak)}" if self.weak else ""
         if not self.converged:
             return "NOT CONVERGED: do not use these numbers"
@@ -73,7 +73,7 @@ class Verdict:
         return "converged and trustworthy" + weak
 
     def next_steps(self) -> tuple[str, ...]:
-        """Say what to do, most urgent first."""
+        """List what to do next, most urgent first."""
         failed = [c.advice for c in (*self.convergence, *self.trust) if not c.passed]
         return tuple(dict.fromkeys([*failed, *(reason for reason in self.weak.values())]))
 
@@ -88,7 +88,7 @@ def judge(
     residuals: Residuals,
     offset_scale: float,
 ) -> Verdict:
-    """Put the verdict together.
+    """Run all checks of a fit.
 
     Args:
         blocks: The block means.
@@ -96,8 +96,8 @@ def judge(
         values: Posterior draws of law and measurement parameters, shape (w, k + 8).
         contraction: 1 - posterior variance over prior variance of each sampled parameter, by
             name [-].
-        convergence: Evidence on the sampler.
-        residuals: What the fit leaves over.
+        convergence: Convergence diagnostics of the sampler.
+        residuals: Analysis of the residuals.
         offset_scale: Scale of the prior on the run offsets' spread [N].
     """
     return Verdict(
@@ -193,7 +193,7 @@ def _weak(
 
 
 def slip_reach(blocks: SlipBlocks, law: SlipLaw, values: Array) -> float:
-    """Compute how many times the peak's slip was reached, at the load where it is most [-].
+    """Compute the largest tested slip over peak slip, at the load where it is largest [-].
 
     Args:
         blocks: The block means.

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: MIT
-"""Which legs touch the ground, by geometry: the thesis's algorithms of section 3-5."""
+"""Geometric contact detection of the legs: the thesis's algorithms of section 3-5."""

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Touchdown and lift-off by trying contact states, section 3-5-2."""
+"""Touchdown and lift-off by a search over contact states, section 3-5-2."""
 
 from itertools import combinations
 
@@ -20,16 +20,17 @@ def next_stance(
     """Find the stance after the legs have turned, from the contact state before.
 
     A leg in flight that would be below the ground touches down, Eq. (3-27). The new contact state
-    is the one that includes it, leaves no leg below the ground and holds the centre of mass; the
-    legs it leaves out lift off. A leg that is no longer in one plane with the others lifts off too.
+    is the one that includes it, leaves no leg below the ground and has the centre of mass inside
+    its triangle; the legs it leaves out lift off. A leg that is no longer in one plane with the
+    others lifts off too.
 
     Args:
         robot: The robot.
         theta: Leg angles after the step, shape (6,) [rad].
         contact: Indices of the legs that touched the ground before, three or more.
-        always_balanced: Let the robot topple, too, when the centre of mass leaves the contact
+        always_balanced: Also let the robot topple when the centre of mass leaves the contact
             polygon while no leg touches down. The text describes both; its sequence, Eq. (3-33),
-            comes without.
+            is computed without.
 
     Returns:
         The stance; `Stance.standing` is the new contact state.
@@ -78,7 +79,7 @@ def _best(robot: Robot, theta: Array, triples: list[NDArray[np.intp]]) -> Stance
         )
     holding = [stance for stance in feasible if stance.depth >= -ON_GROUND]
     if holding:
-        return max(holding, key=lambda stance: stance.up[2])  # not on its nose
+        return max(holding, key=lambda stance: stance.up[2])  # the most level
     return max(feasible, key=lambda stance: stance.depth)
 
 
@@ -87,6 +88,11 @@ def _stances(robot: Robot, theta: Array, triples: list[NDArray[np.intp]]) -> lis
 
 
 def spans(robot: Robot, legs: NDArray[np.intp]) -> bool:
-    """Tell whether three legs span a triangle: those of one side lie on a line."""
+    """Return whether three legs span a triangle; those of one side lie on a line.
+
+    Args:
+        robot: The robot.
+        legs: Indices of the legs, shape (3,).
+    """
     a, b, c = robot.hips[legs, :2]
     return abs((b - a)[0] * (c - a)[1] - (b - a)[1] * (c - a)[0]) > ON_GROUND

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The contact triangle: whether the robot stands in it, and which leg lifts if it does not."""
+"""The contact triangle: static stability, and the leg that lifts when the robot is unstable."""
 
 import numpy as np
 from numba.extending import register_jitable
@@ -33,10 +33,16 @@ def side_products(point: Array, triangle: Array) -> Array:
 
 
 def depth_in_triangle(point: Array, triangle: Array) -> float:
-    """Compute how far a point lies inside a triangle, negative outside [m].
+    """Compute the signed distance of a point inside a triangle to its nearest side [m].
 
-    The distance to the nearest side's line, in metres what `side_products` tells by sign. Minus
-    infinity for three points on a line.
+    It is negative outside. `side_products` gives the same signs, in other units.
+
+    Args:
+        point: The point seen from above, shape (2,) [m].
+        triangle: The corners seen from above, shape (3, 2) [m].
+
+    Returns:
+        Distance to the line of the nearest side [m]; minus infinity when the corners lie on a line.
     """
     products = side_products(point, triangle)
     across = triangle[1] - triangle[0]
@@ -57,7 +63,11 @@ for _function in (side_products, depth_in_triangle):
 
 
 def contains(point: Array, triangle: Array) -> bool:
-    """Tell whether a point lies in a triangle or on its edge, Eq. (3-30) to (3-32).
+    """Return whether a point lies in a triangle or on its edge, Eq. (3-30) to (3-32).
+
+    Args:
+        point: The point seen from above, shape (2,) [m].
+        triangle: The corners seen from above, shape (3, 2) [m].
 
     >>> corners = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]])
     >>> contains(np.array([0.2, 0.2]), corners), contains(np.array([0.8, 0.8]), corners)
@@ -67,9 +77,17 @@ def contains(point: Array, triangle: Array) -> bool:
 
 
 def lifting_corner(point: Array, triangle: Array) -> int | None:
-    """Return the corner whose leg lifts because the point lies beyond the side across from it.
+    """Find the leg that lifts when the centre of mass is outside the contact triangle.
 
-    Beyond two sides it is the one further away; None while the triangle holds the point.
+    It is the corner opposite the side that the point lies beyond; beyond two sides, that of the
+    side with the most negative product of `side_products`.
+
+    Args:
+        point: Centre of mass seen from above, shape (2,) [m].
+        triangle: Contact points seen from above, shape (3, 2) [m].
+
+    Returns:
+        Index of the corner; None when the point is inside the triangle.
     """
     products = side_products(point, triangle)
     worst = int(np.argmin(products))

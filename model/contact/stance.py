@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""How the robot stands on three legs, and on which three it comes to rest."""
+"""Static stance of the robot on three legs, and the choice of the three on which it rests."""
 
 from dataclasses import dataclass
 from itertools import combinations
@@ -90,12 +90,17 @@ def stand(robot: Robot, theta: Array, *, legs: NDArray[np.intp] | tuple[int, ...
 
 
 def resting_stance(robot: Robot, theta: Array) -> Stance:
-    """Find the three legs on which the robot stands still, its weight inside their triangle.
+    """Find the three legs on which the robot rests, its centre of mass inside their triangle.
 
-    No leg is below the ground; of several such stances (it could lie on its nose) the most level.
+    No leg is below the ground. Of several such stances the most level one is taken; another may
+    lie on its nose.
+
+    Args:
+        robot: The robot.
+        theta: Leg angles, shape (6,) [rad].
 
     Raises:
-        DomainError: There is none: the legs do not surround the centre of mass.
+        DomainError: No three legs support the centre of mass.
     """
     three = np.empty(3, np.intp)
     rest(theta, robot.hips, robot.leg_radius, robot.toe_beyond, three)
@@ -110,7 +115,16 @@ def resting_stance(robot: Robot, theta: Array) -> Stance:
 
 @compiled
 def lowest_points(theta, hips, radius, toe_beyond, up, points):
-    """Fill `points` (6, 3) with every leg's lowest point in the body frame [m]."""
+    """Compute every leg's lowest point in the body frame.
+
+    Args:
+        theta: Leg angles, shape (6,) [rad].
+        hips: Hip positions in the body frame, shape (6, 3) [m].
+        radius: Radius of the legs' arcs [m].
+        toe_beyond: Angle of the arcs beyond a half circle [rad].
+        up: Vertical direction in the body frame, shape (3,) [-].
+        points: Filled: the lowest points, shape (6, 3) [m].
+    """
     roll, pitch = np.arctan2(up[1], up[2]), -np.arcsin(up[0])
     for leg in range(6):
         phi = lowest_angle(theta[leg], roll, pitch)
@@ -121,9 +135,16 @@ def lowest_points(theta, hips, radius, toe_beyond, up, points):
 
 @compiled
 def plane_normal(points, legs, up):
-    """Fill `up` with the normal of the plane through three points; return how far it turned.
+    """Compute the normal of the plane through three legs' points.
 
-    Infinity for three points on a line.
+    Args:
+        points: Lowest point of each leg in the body frame, shape (6, 3) [m].
+        legs: Indices of the three legs, shape (3,).
+        up: Overwritten with the unit normal, shape (3,) [-]; kept when the points lie on a line.
+
+    Returns:
+        Largest change of a component of `up` [-]; infinity when the points lie on a line seen from
+        above.
     """
     a, b, c = points[legs[0]], points[legs[1]], points[legs[2]]
     u0, u1, u2 = b[0] - a[0], b[1] - a[1], b[2] - a[2]
@@ -140,7 +161,13 @@ def plane_normal(points, legs, up):
 
 @compiled
 def seen_from_above(points, up, seen):
-    """Fill `seen` (6, 2) with points projected along the vertical, x along the heading [m]."""
+    """Project points along the vertical, with x along the heading and y to the left.
+
+    Args:
+        points: Points in the body frame, shape (6, 3) [m].
+        up: Vertical direction in the body frame, shape (3,) [-].
+        seen: Filled: the projected points, shape (6, 2) [m].
+    """
     size = np.sqrt(1 - up[0] ** 2)
     # Heading: the body's x axis made level. Left: across it, up x heading.
     h0, h1, h2 = size, -up[0] * up[1] / size, -up[0] * up[2] / size
@@ -153,10 +180,23 @@ def seen_from_above(points, up, seen):
 
 @compiled
 def on_three_legs(theta, hips, radius, toe_beyond, legs, points, up, seen):
-    """Stand on three legs, filling `points`, `up` and `seen`; False for legs on a line.
+    """Compute the orientation of the body that stands on three given legs.
 
-    Turning the body moves the lowest points along arcs that are level there, so finding points and
-    the plane through them in turn settles in a few rounds.
+    A turn of the body moves the lowest points along arcs that are level there. Fixed-point
+    iteration between the points and the plane through them therefore converges in a few rounds.
+
+    Args:
+        theta: Leg angles, shape (6,) [rad].
+        hips: Hip positions in the body frame, shape (6, 3) [m].
+        radius: Radius of the legs' arcs [m].
+        toe_beyond: Angle of the arcs beyond a half circle [rad].
+        legs: Indices of the three legs, shape (3,).
+        points: Filled: lowest point of every leg in the body frame, shape (6, 3) [m].
+        up: Filled: vertical direction in the body frame, shape (3,) [-].
+        seen: Filled: the points seen from above, shape (6, 2) [m].
+
+    Returns:
+        False when the three legs lie on a line, else True.
     """
     up[0], up[1], up[2] = 0.0, 0.0, 1.0
     for _ in range(_TURNS):
@@ -172,7 +212,22 @@ def on_three_legs(theta, hips, radius, toe_beyond, legs, points, up, seen):
 
 @compiled
 def holds(theta, hips, radius, toe_beyond, legs, points, up, seen):
-    """Return how far inside the weight is if three legs can stand, else minus infinity [m]."""
+    """Compute the static stability margin on three legs.
+
+    Args:
+        theta: Leg angles, shape (6,) [rad].
+        hips: Hip positions in the body frame, shape (6, 3) [m].
+        radius: Radius of the legs' arcs [m].
+        toe_beyond: Angle of the arcs beyond a half circle [rad].
+        legs: Indices of the three legs, shape (3,).
+        points: Filled: lowest point of every leg in the body frame, shape (6, 3) [m].
+        up: Filled: vertical direction in the body frame, shape (3,) [-].
+        seen: Filled: the points seen from above, shape (6, 2) [m].
+
+    Returns:
+        Distance of the centre of mass inside the legs' triangle, negative outside [m]; minus
+        infinity when the legs lie on a line or another leg would be below the ground.
+    """
     if not on_three_legs(theta, hips, radius, toe_beyond, legs, points, up, seen):
         return -np.inf
     ground = points[legs[0], 0] * up[0] + points[legs[0], 1] * up[1] + points[legs[0], 2] * up[2]
@@ -185,7 +240,15 @@ def holds(theta, hips, radius, toe_beyond, legs, points, up, seen):
 
 @compiled
 def rest(theta, hips, radius, toe_beyond, legs):
-    """Fill `legs` with the three on which the robot rests; -1 where no three can stand."""
+    """Find the three legs on which the robot rests: the most level of the stable stances.
+
+    Args:
+        theta: Leg angles, shape (6,) [rad].
+        hips: Hip positions in the body frame, shape (6, 3) [m].
+        radius: Radius of the legs' arcs [m].
+        toe_beyond: Angle of the arcs beyond a half circle [rad].
+        legs: Filled: indices of the legs, -1 when no three support the robot, shape (3,).
+    """
     points, up, seen = np.empty((6, 3)), np.empty(3), np.empty((6, 2))
     legs[:] = -1
     most_level = -np.inf

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The contact automaton of the tripod gait: which tripod stands, by hip heights."""
+"""Contact automaton of the tripod gait: the standing tripod, from hip heights."""
 
 from typing import Literal
 
@@ -47,12 +47,12 @@ def switch_by_table(heights: Array, contact: NDArray[np.bool_]) -> bool:
 
 
 def switch_by_listing(heights: Array, contact: NDArray[np.bool_], inner: int) -> bool:
-    """Apply Listing A.32: the inner legs alone decide, and one of them is enough.
+    """Apply Listing A.32: only the inner legs are compared, and one of them is enough.
 
     The inner legs in flight take over as soon as any of their hips is as high as any of the
     standing ones'; the outer side follows, so that always one whole tripod stands. In the listing a
-    tie goes to the legs in flight, and at the start of a matched gait, where heights tie but for
-    rounding, it is rounding that decides; here a tie changes nothing.
+    tie switches to the legs in flight. At the start of a matched gait, where heights are equal but
+    for rounding, the rounding then decides. Here a tie changes nothing.
 
     Args:
         heights: Hip heights above each leg's lowest point, shape (6,) [m].

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Gaits: which leg is where, when."""
+"""Gaits: leg angles, touchdown and lift-off over time."""
 
 from model.gait.buehler import buehler_clock, buehler_reference
 from model.gait.cyclic import CyclicReference

@@ -11,7 +11,7 @@ from model.slip.law import Array
 
 
 def centred_time(t: ArrayLike, cycle_time: float) -> Array:
-    r"""Bring times into the cycle around mid stance, Eq. (2-4).
+    r"""Wrap times into the cycle around mid stance, Eq. (2-4).
 
     .. math::
         \bar t = (t + \tau_c/2) \bmod \tau_c - \tau_c/2
@@ -47,15 +47,15 @@ def buehler_clock(
     The right tripod is the left one half a cycle later, Eq. (2-6).
 
     The thesis has Theta = pi in place of 2 pi: its legs turn by half a turn in a cycle and jump by
-    pi between cycles. It also lost a sign in the condition of its third case. With `turn` left
-    alone the clock closes on a whole turn.
+    pi between cycles. It also lost a sign in the condition of its third case. With the default
+    `turn` the clock closes on a whole turn.
 
     Args:
         t: Times from mid stance of the left tripod [s].
         stance_angle: theta_s, the angle covered on the ground [rad].
         ground_time: tau_g [s].
         cycle_time: tau_c [s].
-        turn: Theta, what a leg turns by in a cycle; pi as published [rad].
+        turn: Theta, the turn of a leg in a cycle; pi as published [rad].
 
     Returns:
         Angles in [-turn/2, turn/2], zero at mid stance [rad].

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Leg angles that repeat: two speeds, one on the ground and one in flight."""
+"""Periodic leg angles with two speeds, one on the ground and one in flight."""
 
 from dataclasses import dataclass, replace
 
@@ -44,7 +44,7 @@ class CyclicReference:
             it a turn ahead, shape (n,) [-].
         inner: Indices of the legs on the inner side of a turn; empty for a straight walk.
         pause: How long a leg waits at lift-off before its flight, shape (n,) [s].
-        offset: Angle of each leg beyond the one asked of it, shape (n,) [rad].
+        offset: Angle of each leg beyond its commanded one, shape (n,) [rad].
 
     Raises:
         DomainError: Lift-off does not exceed touchdown, a time is not positive, legs differ in
@@ -61,7 +61,7 @@ class CyclicReference:
     offset: Array | float = 0.0
 
     def __post_init__(self) -> None:
-        """Give every leg its numbers and refuse legs that cannot walk."""
+        """Broadcast numbers to all legs; check that angles and times describe a periodic gait."""
         values = [np.atleast_1d(np.asarray(getattr(self, name), dtype=float)) for name in _BY_LEG]
         try:
             full = np.broadcast_arrays(*values)
@@ -97,7 +97,7 @@ class CyclicReference:
 
     @property
     def n_legs(self) -> int:
-        """How many legs walk."""
+        """Number of legs."""
         return len(self.phase)
 
     @property

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Which legs are inner and which are outer in a turn."""
+"""Inner and outer legs in a turn."""
 
 from typing import Literal
 
@@ -28,5 +28,5 @@ def inner_legs(direction: Direction) -> tuple[int, ...]:
 
 
 def is_inner(direction: Direction) -> NDArray[np.bool_]:
-    """Tell for each leg whether it is inner, shape (6,)."""
+    """Return for each leg whether it is inner, shape (6,)."""
     return np.isin(np.arange(N_LEGS), inner_legs(direction))

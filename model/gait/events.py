@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Touchdown and lift-off events of a gait, the system that times them, and its leg angles."""
+"""Touchdown and lift-off events of a gait, their max-plus linear system, and its leg angles."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -20,7 +20,7 @@ _SAME_TIME = 1e-9  # s: events nearer than this are one knot of a leg reference
 
 @dataclass(frozen=True)
 class EventTimes:
-    """When each leg touches down and lifts off, cycle by cycle.
+    """Touchdown and lift-off times of each leg, cycle by cycle.
 
     Attributes:
         touchdown: Time of the k-th touchdown of each leg, shape (k, n) [s].
@@ -31,7 +31,7 @@ class EventTimes:
     liftoff: Array
 
     def stance_intervals(self, span: tuple[float, float]) -> Intervals:
-        """Find when each leg stands, from its first touchdown to its last lift-off.
+        """Find the stance intervals of each leg, from its first touchdown to its last lift-off.
 
         Args:
             span: Start and end; intervals are cut there [s].
@@ -53,8 +53,8 @@ class EventSystem:
     with the touchdown times t and lift-off times l of n legs in cycle k, Eq. (2-13) and (2-14).
 
     Attributes:
-        A0: What events wait for in their own cycle, shape (2n, 2n) [s].
-        A1: What they wait for in the cycle before, shape (2n, 2n) [s].
+        A0: Least delays after events of the same cycle, shape (2n, 2n) [s].
+        A1: Least delays after events of the cycle before, shape (2n, 2n) [s].
         gait: The groups of legs.
     """
 
@@ -64,7 +64,7 @@ class EventSystem:
 
     @property
     def n_legs(self) -> int:
-        """How many legs walk."""
+        """Number of legs."""
         return self.gait.n_legs
 
     @cached_property
@@ -74,19 +74,22 @@ class EventSystem:
 
     @cached_property
     def cycle_time(self) -> float:
-        """Time between cycles that the system settles on: its eigenvalue [s]."""
+        """Cycle time of the steady state: the eigenvalue of `matrix` [s]."""
         return eigenvalue(self.matrix)
 
     @cached_property
     def steady_state(self) -> EventTimes:
-        """Events of one settled cycle, each repeated every `cycle_time`, shape (1, n) [s]."""
+        """Event times of one cycle of the steady state, shape (1, n) each [s].
+
+        They repeat every `cycle_time`.
+        """
         return _events(eigenvector(self.matrix)[None])
 
     def events(self, cycles: int, *, start: ArrayLike | None = None) -> EventTimes:
         """Compute the events of some cycles.
 
         Args:
-            cycles: How many cycles after the start.
+            cycles: Number of cycles after the start.
             start: Touchdown and lift-off times of cycle 0, shape (2n,); all zero when None [s].
 
         Returns:
@@ -115,7 +118,7 @@ def _events(x: Array) -> EventTimes:
 def scheduled_reference(
     system: EventSystem, touchdown: ArrayLike, *, liftoff: ArrayLike, inner: tuple[int, ...] = ()
 ) -> CyclicReference:
-    """Compute the leg angles of a settled schedule: straight lines between its events.
+    """Compute the leg angles of the steady state of a schedule: straight lines between its events.
 
     At time zero the first group begins to touch down.
 
@@ -123,7 +126,7 @@ def scheduled_reference(
         system: The scheduler.
         touchdown: Touchdown angles, a number or shape (n,) [rad].
         liftoff: Lift-off angles, a number or shape (n,) [rad].
-        inner: Indices of the inner legs of a turn, for the record.
+        inner: Indices of the inner legs of a turn, which the result records.
 
     Returns:
         Leg angles; their period is the system's cycle time.
@@ -150,7 +153,7 @@ def scheduled_reference(
 def events_reference(
     events: EventTimes, touchdown: ArrayLike, *, liftoff: ArrayLike
 ) -> SampledReference:
-    """Compute the leg angles of given events, settled or not: straight lines between them.
+    """Interpolate leg angles linearly between given events, periodic or not.
 
     Legs rest at touchdown until the events begin, and again once they end.
 

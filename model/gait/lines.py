@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Straight lines through one leg's changes of count, compiled; see `model.gait.quantised`."""
+"""Piecewise linear fit of one leg's encoder counts, compiled; see `model.gait.quantised`."""
 
 from typing import NamedTuple
 
@@ -11,7 +11,7 @@ from model.slip.law import Array
 
 FASTEST = 60.0  # rad/s, beyond any leg
 HALVINGS = 60
-OWN = 6  # changes of a line, from which on its last ones may be the next line's
+OWN = 6  # changes of a line; of longer lines the last ones may belong to the next line
 
 
 class Changes(NamedTuple):
@@ -31,7 +31,7 @@ class Changes(NamedTuple):
 
 
 class Lines(NamedTuple):
-    """A leg at one constant speed after the other.
+    """Straight lines through a leg's angle: successive constant speeds.
 
     Attributes:
         x: A time on each line, shape (k,) [s].
@@ -45,14 +45,14 @@ class Lines(NamedTuple):
 
 
 class Log(NamedTuple):
-    """The ends of a log, and what counting leaves open.
+    """First and last sample of a log, and the tolerance of the counts.
 
     Attributes:
         begin: Time of the first sample [s].
         first: Angle counted there [rad].
         end: Time of the last sample [s].
         last: Angle counted there [rad].
-        half: Half a count, and what a line may miss it by [rad].
+        half: Half a count, with the tolerance of a line [rad].
     """
 
     begin: float
@@ -64,11 +64,14 @@ class Log(NamedTuple):
 
 @compiled
 def split(changes: Changes, half: float) -> NDArray[np.intp]:
-    """Return the first change of each of the fewest lines, and the number of changes.
+    """Split the changes of count into the fewest straight lines.
 
     Args:
         changes: The changes, at least one.
-        half: Half a count, and what a line may miss it by [rad].
+        half: Half a count, with the tolerance of a line [rad].
+
+    Returns:
+        Index of each line's first change, and the number of changes, shape (k + 1,).
     """
     n = len(changes.early)
     first = np.empty(n + 1, dtype=np.intp)
@@ -85,8 +88,8 @@ def split(changes: Changes, half: float) -> NDArray[np.intp]:
 def _reach(changes, start, half):
     """Return the first change that no line from the change `start` on still passes.
 
-    A line passes a change when it lies in the count before at the sample before, and in the count
-    after at the sample after.
+    A line passes a change when, at the sample before, it lies within the bin of the count before,
+    and at the sample after, within that of the count after.
     """
     early, late, before, after = changes
     n = len(early)
@@ -112,7 +115,7 @@ def _reach(changes, start, half):
             if floor <= ceiling:
                 fits = True
                 break
-            # The slope of the gap is ceiling_t - floor_t: go down it.
+            # The slope of the gap is ceiling_t - floor_t: move downhill.
             if ceiling_t > floor_t:
                 b = m
             else:
@@ -124,12 +127,12 @@ def _reach(changes, start, half):
 
 @compiled
 def fitted(changes: Changes, first: NDArray[np.intp], place: Array) -> Lines:
-    """Fit a line to each run of changes.
+    """Fit a line to each group of changes.
 
     Args:
         changes: The changes.
         first: From `split`.
-        place: Where between its samples each change fell, 0 to 1, shape (n,) [-].
+        place: Time of each change between its two samples, 0 to 1, shape (n,) [-].
     """
     n = len(first) - 1
     lines = Lines(np.empty(n), np.empty(n), np.empty(n))
@@ -156,15 +159,15 @@ def drawn(
     outwards: float,
     half: float,
 ) -> Lines:
-    """Go from lines towards those of other places of the changes, and still pass every change.
+    """Move lines towards those of other times of the changes, so that they still pass every change.
 
     Args:
         lines: Lines that pass the changes: from `fitted` at their middles.
         changes: The changes.
         first: From `split`.
-        place: Where between its samples each change fell, 0 to 1, shape (n,) [-].
-        outwards: How far to go, of what the changes leave room for [-].
-        half: Half a count, and what a line may miss it by [rad].
+        place: Time of each change between its two samples, 0 to 1, shape (n,) [-].
+        outwards: How far to move, as a share of the largest admissible distance [-].
+        half: Half a count, with the tolerance of a line [rad].
     """
     other = fitted(changes, first, place)
     moved = Lines(lines.x, np.empty(len(lines.x)), np.empty(len(lines.x)))
@@ -178,10 +181,10 @@ def drawn(
 
 @compiled
 def _room(lines, other, i, changes, first, half):
-    """Return how far towards another line one may go and still pass all changes, at most 1.
+    """Return the largest share of the way to another line that passes all changes, at most 1.
 
-    All the way, where not even the line itself passes them: then the leg went no straight line, and
-    nothing is known but each change on its own.
+    It is 1 where the line itself does not pass them: then the leg did not move along a straight
+    line, and each change is known only on its own.
     """
     room = 1.0
     for k in range(first[i], _own_end(first[i], first[i + 1])):
@@ -200,9 +203,17 @@ def _room(lines, other, i, changes, first, half):
 
 @compiled
 def rests(lines: Lines, changes: Changes, first: NDArray[np.intp]) -> NDArray[np.bool_]:
-    """Tell whether a leg rested between each line and the next, shape (k - 1,).
+    """Detect whether a leg rested between each line and the next.
 
     It did where it reached its resting angle well before it left it again.
+
+    Args:
+        lines: The lines, k of them.
+        changes: The changes of count.
+        first: Index of each line's first change, and the number of changes, shape (k + 1,).
+
+    Returns:
+        Whether the leg rested, shape (k - 1,).
     """
     rested = np.zeros(len(lines.x) - 1, dtype=np.bool_)
     for i in range(len(rested)):
@@ -224,7 +235,7 @@ def knots(
     rest: float,
     log: Log,
 ) -> Array:
-    """Let each line pass into the next where they meet; return times [s] and angles [rad], (2, m).
+    """Compute the knots of the piecewise linear angle, where each line passes into the next.
 
     Args:
         lines: The lines.
@@ -233,6 +244,9 @@ def knots(
         rested: From `rests`.
         rest: Angle within its count at which a leg rests [rad].
         log: The log's ends.
+
+    Returns:
+        Times [s] and angles [rad], shape (2, m).
     """
     found = np.empty((2, 2 * len(lines.x) + 2))
     n = _end(lines, 0, log.begin, log.first, rest, log.half, found, 0)
@@ -250,10 +264,10 @@ def knots(
 
 @compiled
 def _junction(lines, i, early, late, angle, rested, found, n):
-    """Add the knots at which a line passes into the next; return their number so far.
+    """Add the knots at which a line passes into the next; return the number of knots so far.
 
-    A plateau, if the leg rested between them; where they meet, if that is about where the count
-    stayed the same; else the ends of both.
+    They are a plateau, if the leg rested between the lines; the intersection, if that is about
+    where the count stayed the same; else the ends of both lines.
     """
     if rested:
         n = _add(found, n, _when(lines, i, angle), angle)
@@ -285,7 +299,7 @@ def _add(found, n, t, angle):
 
 @compiled
 def _stay(changes, change):
-    """Return from when to when the count stayed the same before a change, and its angle."""
+    """Return the interval in which the count stayed the same before a change, and its angle."""
     early = 0.5 * (changes.early[change - 1] + changes.late[change - 1])
     return early, 0.5 * (changes.early[change] + changes.late[change]), changes.after[change - 1]
 

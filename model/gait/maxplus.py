@@ -16,7 +16,7 @@ from model.slip.law import Array
 
 EPSILON = -np.inf
 ONE = 0.0
-_ROUNDING = 1e-9  # s: circuits whose means differ by less weigh the same
+_ROUNDING = 1e-9  # s: circuits whose means differ by less are equal
 
 
 def oplus(a: ArrayLike, b: ArrayLike) -> Array:
@@ -26,6 +26,10 @@ def oplus(a: ArrayLike, b: ArrayLike) -> Array:
         [A \oplus B]_{ij} = \max(a_{ij}, b_{ij})
 
     The thesis prints + in place of the comma.
+
+    Args:
+        a: First array.
+        b: Second array, of a shape that broadcasts against the first.
 
     >>> oplus([1.0, EPSILON], [0.0, 2.0]).tolist()
     [1.0, 2.0]
@@ -62,18 +66,23 @@ def otimes(a: ArrayLike, b: ArrayLike) -> Array:
 
 
 def identity(n: int) -> Array:
-    """Make E_n, Eq. (2-9): e on the diagonal, epsilon elsewhere."""
+    """Return E_n, Eq. (2-9): e on the diagonal, epsilon elsewhere."""
     return diagonal(np.full(n, ONE))
 
 
 def diagonal(entries: ArrayLike) -> Array:
-    """Make a matrix with these entries on the diagonal and epsilon elsewhere."""
+    """Return a matrix with these entries on the diagonal and epsilon elsewhere."""
     values = np.asarray(entries, dtype=float)
     return np.where(np.eye(len(values), dtype=bool), values, EPSILON)
 
 
 def zeros(rows: int, columns: int) -> Array:
-    """Make the max-plus zero matrix, Eq. (2-10): epsilon everywhere."""
+    """Return the max-plus zero matrix, Eq. (2-10): epsilon everywhere.
+
+    Args:
+        rows: Number of rows.
+        columns: Number of columns.
+    """
     return np.full((rows, columns), EPSILON)
 
 
@@ -84,7 +93,7 @@ def plus(A: Array) -> Array:
         A^+ = A \oplus A^{\otimes 2} \oplus A^{\otimes 3} \oplus \ldots
 
     Entry (i, j) is the greatest sum along any path from j to i. It exists if no circuit has a
-    positive sum; then n powers say all, and Floyd's and Warshall's loop finds them.
+    positive sum; then n powers suffice, and the Floyd-Warshall algorithm computes it.
 
     Args:
         A: Square matrix, shape (n, n).
@@ -159,7 +168,7 @@ def eigenvalue(A: Array) -> float:
 
 
 def eigenvector(A: Array) -> Array:
-    r"""Compute the eigenvector that x(k) = A ⊗ x(k - 1) settles on from x = 0.
+    r"""Compute the eigenvector that x(k) = A ⊗ x(k - 1) converges to from x = 0.
 
     .. math::
         A \otimes v = \lambda \otimes v, \qquad
@@ -167,7 +176,7 @@ def eigenvector(A: Array) -> Array:
 
     with A_lambda = A - lambda, over its critical nodes c, those on a circuit of mean lambda. Where
     the critical circuits are not connected the eigenvector is not unique; this one is the earliest
-    behind events that all begin at zero.
+    that follows events which all begin at zero.
 
     Args:
         A: Square matrix, shape (n, n).

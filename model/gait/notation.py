@@ -40,7 +40,7 @@ class Gait:
     groups: tuple[tuple[int, ...], ...]
 
     def __post_init__(self) -> None:
-        """Refuse what is no gait, and sort the legs within their groups."""
+        """Check that each leg is named once, and sort the legs within their groups."""
         if not self.groups:
             raise DomainError("a gait without groups; write one such as {1,4,5} < {2,3,6}")
         for number, group in enumerate(self.groups, start=1):
@@ -51,12 +51,12 @@ class Gait:
 
     @property
     def n_legs(self) -> int:
-        """How many legs walk."""
+        """Number of legs."""
         return sum(len(group) for group in self.groups)
 
     @property
     def group_of(self) -> NDArray[np.int_]:
-        """Which group, from 0, each leg belongs to, shape (n,)."""
+        """Index of the group, from 0, of each leg, shape (n,)."""
         found = np.empty(self.n_legs, dtype=int)
         for number, group in enumerate(self.groups):
             found[np.array(group) - 1] = number
@@ -92,17 +92,17 @@ def _require_each_leg_once(legs: list[int]) -> None:
 
 
 def parse_gait(text: str, n_legs: int | None = None) -> Gait:
-    """Read a gait in group notation.
+    """Parse a gait in group notation.
 
     Args:
         text: Groups of leg numbers in braces, with < or ≺ between them.
-        n_legs: How many legs the robot has; taken from the text when None.
+        n_legs: Number of legs of the robot; taken from the text when None.
 
     Returns:
         The gait, its groups in the order of the text.
 
     Raises:
-        DomainError: The text is no group notation, or its legs are not 1 to n, once each.
+        DomainError: The text is not in group notation, or its legs are not 1 to n, once each.
 
     >>> print(parse_gait("{1,4} < {2,5} < {3,6}"))
     {1,4} ≺ {2,5} ≺ {3,6}

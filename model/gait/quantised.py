@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: MIT
-"""Smooth leg angles out of an encoder's counts, and how far they may be off.
+"""Reconstruction of smooth leg angles from encoder counts, with their uncertainty.
 
-An encoder of few counts says little about an angle between two counts, but when the count changes
-the angle is the boundary between them, known to the time between samples. Legs turn at constant
-speeds for most of a cycle, so the angles here are the fewest straight lines that pass every
-boundary when the log says so. A line through twenty boundaries is known far better than one count:
-to about a tenth of a degree where the count is 3.6 degrees and the log 100 Hz.
+An encoder of few counts gives little information on an angle between two counts. When the count
+changes, however, the angle is the boundary between them, at a time known to one sample. Legs turn
+at constant speeds for most of a cycle, so the angles here are the fewest straight lines that pass
+every boundary at its time. A line through twenty boundaries is known far better than one count: to
+about a tenth of a degree where the count is 3.6 degrees and the log 100 Hz.
 """
 
 from dataclasses import dataclass
@@ -22,17 +22,17 @@ from model.slip.law import Array
 SAME = 1e-9  # rad: angles no further apart are one count
 LARGEST_STEP = np.radians(10.0)
 FEWEST_CHANGES = 8
-SLACK = 0.03  # of a count: corners are round, clocks jitter, and a line still goes on
+SLACK = 0.03  # of a count: tolerance of a line for rounded corners and clock jitter
 
 
 @dataclass(frozen=True)
 class CountedLeg:
-    """One leg's changes of count and the lines through their middles.
+    """Straight lines through one leg's changes of count.
 
     Attributes:
         changes: The changes, at least one.
         first: First change of each line, and the number of changes, shape (k + 1,).
-        lines: The lines.
+        lines: The lines, fitted with each change halfway between its two samples.
         rested: Whether the leg rested between each line and the next, shape (k - 1,).
         log: The log's ends.
     """
@@ -45,7 +45,16 @@ class CountedLeg:
 
     @classmethod
     def of(cls, t: Array, theta: Array, step: float) -> "CountedLeg | None":
-        """Find the fewest lines; None for a leg that never moves."""
+        """Fit the fewest straight lines that pass every change of count.
+
+        Args:
+            t: Times of the samples, shape (n,) [s].
+            theta: Counted angles, middles of their bins, shape (n,) [rad].
+            step: Angle of one count [rad].
+
+        Returns:
+            The lines; None for a leg that never moves.
+        """
         at = np.flatnonzero(np.abs(np.diff(theta)) > SAME)
         if len(at) == 0:
             return None
@@ -57,15 +66,19 @@ class CountedLeg:
         return cls(changes, first, lines, rests(lines, changes, first), log)
 
     def drawn(self, step: float, rng: np.random.Generator) -> Lines:
-        """Draw lines that still pass every change, from the middle ones outwards.
+        """Draw lines that still pass every change, by random deviations from the middle ones.
 
-        Twenty changes confine a line to a small polygon of offset and speed, far smaller than what
-        independent errors of as many would leave. So a direction is taken from changes that fall
-        anywhere between their samples, and along it a point that makes a polygon evenly filled.
+        Twenty changes confine a line to a small polygon of offset and speed, far smaller than
+        twenty independent errors would leave. A direction is therefore taken from changes that fall
+        anywhere between their samples, and along it a point such that the polygon is filled evenly.
 
         A gait whose cycle is a whole number of samples meets every count at the same phase again
-        and again: its errors repeat and do not average out. So a draw takes one place for each
-        count, and one distance for the leg.
+        and again, so its errors repeat and do not average out. A draw therefore takes one place for
+        each count, and one distance for the leg.
+
+        Args:
+            step: Angle of one count [rad].
+            rng: Source of randomness.
         """
         turn = max(round(2 * np.pi / step), 1)
         places = rng.uniform(0.0, 1.0, 2 * turn)
@@ -77,7 +90,17 @@ class CountedLeg:
         )  # fmt: skip
 
     def angles(self, t: Array, step: float, rng: np.random.Generator | None) -> Array:
-        """Follow the lines at times t, shape (n,) [rad]; `rng` draws one of those allowed."""
+        """Interpolate the leg angle along the fitted lines.
+
+        Args:
+            t: Times, shape (n,) [s].
+            step: Angle of one count [rad].
+            rng: Source of randomness, to draw lines that the counts allow; None for the middle
+                ones.
+
+        Returns:
+            Leg angles, shape (n,) [rad].
+        """
         lines = self.lines if rng is None else self.drawn(step, rng)
         rest = 0.0 if rng is None else float(rng.uniform(-0.4 * step, 0.4 * step))
         times, angles = knots(lines, self.changes, self.first, self.rested, rest, self.log)
@@ -102,7 +125,7 @@ class QuantisedLog:
     step: float
 
     def __post_init__(self) -> None:
-        """Refuse a step that is none."""
+        """Check that the angle of a count is positive."""
         if not (self.step > 0 and np.isfinite(self.step)):
             raise DomainError(f"a count of {self.step:g} rad; expected more than zero")
 
@@ -114,10 +137,12 @@ class QuantisedLog:
         """Reconstruct the angles, at the log's times.
 
         Args:
-            rng: Draws one of the motions that the counts allow. None takes the middle one.
+            rng: Source of randomness, to draw one of the motions that the counts allow; None for
+                the middle one.
 
         Returns:
-            The angles. Whether bins are rounded or cut is not known here: that half count is a
+            The angles. Whether counts are rounded or truncated is not known here: that half count
+                is a
             constant offset of the leg.
         """
         columns = [
@@ -132,7 +157,7 @@ class QuantisedLog:
 
 
 def find_step(theta: Array) -> float | None:
-    """Find the angle of a count when angles look counted: all differences are multiples of it.
+    """Detect quantised angles: find the largest angle of which all differences are multiples.
 
     Args:
         theta: Unwrapped angles, shape (n, legs) [rad].

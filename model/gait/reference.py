@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What every gait yields: leg angles as functions of time."""
+"""Interface of every gait: leg angles as functions of time."""
 
 from dataclasses import dataclass
 from typing import Protocol
@@ -20,7 +20,7 @@ class LegReference(Protocol):
 
     @property
     def period(self) -> float | None:
-        """Time after which every leg has turned by 2 pi and all begins anew; None if never [s]."""
+        """Period [s], in which every leg turns by 2 pi and the motion repeats; None if never."""
         ...
 
     def angles(self, t: ArrayLike) -> Array:
@@ -34,7 +34,7 @@ class LegReference(Protocol):
 
 @dataclass(frozen=True)
 class SampledReference:
-    """Leg angles given at instants, straight lines between them: a measured log, or any table.
+    """Leg angles at given times with linear interpolation: a measured log, or any table.
 
     Attributes:
         t: Times, strictly increasing, shape (m,) [s].
@@ -48,7 +48,7 @@ class SampledReference:
     theta: Array
 
     def __post_init__(self) -> None:
-        """Refuse samples that are no function of time."""
+        """Check that shapes match and that times increase."""
         if self.t.ndim != 1 or len(self.t) < 2 or self.theta.shape != (len(self.t), 6):
             raise DomainError(
                 f"times have shape {self.t.shape} and leg angles {self.theta.shape}; "
@@ -68,7 +68,7 @@ class SampledReference:
         return None
 
     def angles(self, t: ArrayLike) -> Array:
-        """Interpolate the leg angles; held still before the first and after the last sample."""
+        """Interpolate the leg angles linearly; constant outside the samples."""
         at = np.atleast_1d(np.asarray(t, dtype=float))
         t, theta, at = (np.ascontiguousarray(a, dtype=float) for a in (self.t, self.theta, at))
         return _between(t, theta, at)
@@ -84,7 +84,7 @@ class SampledReference:
 
 @compiled
 def _between(t, values, at):
-    """Interpolate columns at times, fast where these increase; the ends' values go on."""
+    """Interpolate columns linearly at times, fast where these increase; constant outside."""
     out = np.empty((len(at), values.shape[1]))
     last, j = len(t) - 1, 0
     for i in range(len(at)):

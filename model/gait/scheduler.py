@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Scheduling a straight walk by max-plus algebra."""
+"""Max-plus scheduler of a straight walk."""
 
 import numpy as np
 
@@ -11,7 +11,7 @@ from model.slip.law import Array
 
 
 def precedence(gait: Gait, double_stance: float) -> tuple[Array, Array]:
-    r"""Build P and Q: which lift-off waits for which touchdown, below Eq. (2-14).
+    r"""Build P and Q, the matrices of least delays between groups, below Eq. (2-14).
 
     .. math::
         [P]_{pq} = \tau_\Delta \text{ for } p \in \ell_{j+1},\ q \in \ell_j, \qquad
@@ -19,7 +19,7 @@ def precedence(gait: Gait, double_stance: float) -> tuple[Array, Array]:
 
     Args:
         gait: Groups l_1 to l_m.
-        double_stance: tau_Delta, how long a group and its successor stand together [s].
+        double_stance: tau_Delta, the time that a group and its successor stand together [s].
 
     Returns:
         P, for touchdowns of the same cycle, and Q, for those of the cycle before; (n, n) each [s].
@@ -69,7 +69,7 @@ def straight_system(
 
 
 def require_times(**times: float) -> None:
-    """Raise DomainError unless ground and flight times are positive and others not negative."""
+    """Check that ground and flight times are positive and other times not negative."""
     for name, value in times.items():
         least = "more than zero" if name in ("ground_time", "flight_time") else "zero or more"
         if not (np.isfinite(value) and (value > 0 or (value == 0 and least == "zero or more"))):

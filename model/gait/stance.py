@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""When each leg stands: the bars of a Gantt chart."""
+"""Stance intervals of each leg: the bars of a Gantt chart."""
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -13,7 +13,7 @@ Intervals = tuple[Array, ...]  # by leg; rows of start and end, shape (k, 2) [s]
 def stance_intervals(t: Array, theta: Array, touchdown: ArrayLike, liftoff: ArrayLike) -> Intervals:
     """Find when leg angles lie between touchdown and lift-off.
 
-    Angles are taken as straight lines between the samples; which way a leg turns does not matter.
+    Angles are interpolated linearly between the samples; the sense of rotation does not matter.
 
     Args:
         t: Times, increasing, shape (m,) [s].
@@ -56,7 +56,15 @@ def event_intervals(touchdown: Array, liftoff: Array, span: tuple[float, float])
 
 
 def require_stance_angles(touchdown: Array, liftoff: Array) -> None:
-    """Raise DomainError unless each leg's stance angle lies between zero and a turn."""
+    """Check that each leg's stance angle lies between zero and a turn.
+
+    Args:
+        touchdown: Touchdown angles, shape (n,) [rad].
+        liftoff: Lift-off angles, shape (n,) [rad].
+
+    Raises:
+        DomainError: A stance angle is not between 0 and 2 pi.
+    """
     for leg, (down, up) in enumerate(zip(touchdown, liftoff, strict=True), start=1):
         if not 0 < up - down < 2 * np.pi:
             raise DomainError(

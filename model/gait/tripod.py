@@ -35,7 +35,7 @@ class TripodAngles:
     outer_liftoff: float
 
     def __post_init__(self) -> None:
-        """Refuse legs that lift off before they touch down."""
+        """Check that each side's lift-off angle exceeds its touchdown angle by less than a turn."""
         for side, down, up in (
             ("inner", self.inner_touchdown, self.inner_liftoff),
             ("outer", self.outer_touchdown, self.outer_liftoff),
@@ -184,7 +184,7 @@ def tripod_angles(
 ) -> TripodAngles:
     """Compute the angles of a tripod from a touchdown angle and a steering factor, 2-6-2.
 
-    Angles that are given stand; what is left is computed. The outer touchdown follows from the
+    Given angles are kept and the others computed. The outer touchdown follows from the
     ideal lift-off angles even where other ones are given, as on the thesis's robot (Tables 5-3 to
     5-5). A missing outer lift-off is the ideal one, or, where the inner one is given, that which
     keeps the steering factor, Eq. (2-18).

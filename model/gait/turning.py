@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Scheduling a turn by max-plus algebra: longer stance for the inner legs."""
+"""Max-plus scheduler of a turn: longer stance for the inner legs."""
 
 import numpy as np
 

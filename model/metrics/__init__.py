@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: MIT
-"""How far a predicted path lies from a tracked one, and whether its band is honest."""
+"""Errors of a predicted path against a tracked one, and calibration of its uncertainty."""

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The rigid motion of the plane that lays one path best onto another."""
+"""Rigid alignment of one planar path to another."""
 
 from typing import NamedTuple
 
@@ -10,7 +10,7 @@ from model.slip.law import Array
 
 
 class Motion(NamedTuple):
-    """A rigid motion of the plane: turn about the origin, then shift.
+    """A rigid motion of the plane: rotation about the origin, then translation.
 
     Attributes:
         rotation: Angle [rad].
@@ -42,6 +42,11 @@ def align(predicted: Poses, tracked: Poses) -> Motion:
 
 
 def aligned(predicted: Poses, tracked: Poses) -> Poses:
-    """Return the predicted poses laid onto the tracked ones; see `align`."""
+    """Return the predicted poses moved by the rigid motion that `align` fits to the tracked ones.
+
+    Args:
+        predicted: Predicted poses.
+        tracked: Tracked poses.
+    """
     motion = align(predicted, tracked)
     return predicted.moved(rotation=motion.rotation, translation=motion.translation)

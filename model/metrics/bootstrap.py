@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Means over several walks with their uncertainty: whole walks are drawn again, never samples."""
+"""Bootstrap of means over several walks: whole walks are resampled, never samples."""
 
 from typing import NamedTuple
 
@@ -26,16 +26,16 @@ class Interval(NamedTuple):
 def bootstrap_mean(
     values: Array, *, rng: np.random.Generator, level: float = 0.9, draws: int = 4000
 ) -> Interval:
-    """Compute the mean over runs and the interval that drawing whole runs again gives.
+    """Compute the mean over runs and its bootstrap interval, resampling whole runs.
 
-    Poses of one walk share its errors, so they are never drawn apart. With three walks there are
-    ten different draws: the interval is then rough, and too narrow.
+    Poses of one walk share its errors, so they are never separated. With three walks there are
+    ten different resamples: the interval is then rough, and too narrow.
 
     Args:
         values: One value a run, shape (runs,).
         rng: Source of randomness.
         level: Level of the interval [-].
-        draws: How often runs are drawn again.
+        draws: Number of resamples.
 
     Raises:
         InsufficientData: There are fewer than two runs.

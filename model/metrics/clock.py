@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""How far apart the clocks of a track and of a path are, from the motion alone.
+"""Estimate the clock offset between a track and a path from the motion alone.
 
-Starts, stops and turns tell; a robot that goes evenly tells nothing, because a later clock then
-looks like a start further back, which nobody knows either.
+Starts, stops and turns determine it. Uniform motion does not, because a later clock is then
+equivalent to a starting point further back, which is unknown too.
 """
 
 from dataclasses import dataclass
@@ -18,14 +18,14 @@ STEP = 0.05  # s between offsets that are tried; refined by a parabola
 FEWEST = 6  # poses of a track
 BLOCKS = 5  # stretches of the track that are left out in turn
 SHARE = 0.5  # of the track's poses and of its length that must lie within the path
-LARGEST_SD = 0.25  # s beyond which an estimate helps nobody
+LARGEST_SD = 0.25  # s; a less certain estimate is refused
 AS_GOOD = 5.0  # times the least misfit: F of as many errors as there are blocks, two each, at 99 %
 NEAR = 7.0  # standard deviations within which a misfit of that size is the same minimum's
 
 
 @dataclass(frozen=True)
 class ClockOffset:
-    """What has to be added to a track's times to bring them to a path's clock.
+    """Offset to add to a track's times to convert them to a path's clock.
 
     Attributes:
         value: The offset [s].
@@ -37,23 +37,24 @@ class ClockOffset:
 
 
 def estimate_offset(track: Poses, path: Poses) -> ClockOffset:
-    r"""Find the offset at which the track, moved, turned and scaled, lies closest to the path.
+    r"""Estimate the clock offset at which the track, moved, turned and scaled, fits the path best.
 
     .. math::
         \hat\tau = \arg\min_\tau \min_{s, R, p}
             \frac{1}{2 n_\tau - 4} \sum_i |s R\,x(t_i + \tau) + p - y_i|^2
 
-    over the tracked poses :math:`y_i` (the scale s takes a wrong speed, which would else pass for a
-    wrong clock) whose shifted times lie within the path. The standard
-    deviation is the larger of two: that of least squares with as many independent errors as there
-    are blocks, since errors of a predicted path last, and that of leaving out each block.
+    over the tracked poses :math:`y_i` whose shifted times lie within the path. The scale s absorbs
+    a wrong speed, which would otherwise appear as a clock offset. The standard deviation is the
+    larger of two: that of least squares with as many independent errors as there are blocks, since
+    errors of a predicted path are correlated in time, and the jackknife's, which leaves out each
+    block.
 
     Args:
         track: The track.
         path: The path, sampled densely.
 
     Raises:
-        InsufficientData: There are too few poses, or the motion does not tell the offset.
+        InsufficientData: There are too few poses, or the motion does not determine the offset.
     """
     if len(track) < FEWEST:
         raise InsufficientData(
@@ -82,9 +83,9 @@ def estimate_offset(track: Poses, path: Poses) -> ClockOffset:
 
 
 def _require_one(offsets: Array, misfit: Array, value: float, least: float) -> None:
-    """Refuse an offset beside which another does as well, of at least as many poses.
+    """Check that no other offset fits as well with at least as many poses.
 
-    Photographs every two seconds miss whole strides.
+    Photographs every two seconds can miss whole strides.
     """
     if len(misfit) and misfit.min() < AS_GOOD * least:
         other = offsets[int(np.argmin(misfit))]
@@ -139,7 +140,7 @@ def _sd_of_blocks(track: Poses, path: Poses, offsets: Array) -> float:
     found = []
     for block in np.array_split(np.arange(len(track)), BLOCKS):
         rest = track.part(np.delete(np.arange(len(track)), block))
-        # Of all its poses: one that leaves the path's time would take its misfit along.
+        # Of all its poses: a pose outside the path's time would no longer add to the misfit.
         misfit = np.array([_misfit(rest, path, each, share=1.0) for each in offsets])
         best = int(np.argmin(misfit))
         if best in (0, len(offsets) - 1):

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""Whether a track could be one of an ensemble's own paths.
+"""Consistency of a track with an ensemble of paths.
 
 Errors of one walk are correlated in time, so the chi-square bands of independent errors reject
-perfect models. Here every statistic is compared with what the ensemble's own draws, seen through
-the tracker's noise, give: right for any correlation.
+perfect models. Here every statistic is compared with its distribution over the ensemble's own draws
+with the tracker's noise added, which is right for any correlation.
 """
 
 from dataclasses import dataclass
@@ -39,7 +39,7 @@ class Consistency:
 
     @property
     def plausible(self) -> bool:
-        """Tell whether the track's value lies within the ensemble's interval."""
+        """Whether the track's value lies within the ensemble's interval."""
         return self.low <= self.value <= self.high
 
 
@@ -51,12 +51,12 @@ def consistency(
     rng: np.random.Generator,
     level: float = 0.95,
 ) -> tuple[Consistency, ...]:
-    r"""Compare a track with draws seen through the tracker's noise.
+    r"""Compare statistics of a track with those of the ensemble's draws with tracker noise.
 
     Statistics: the mean over time of the normalised error squared
-    :math:`e_i^T P_i^{-1} e_i / k`, which is about 1, more where the ensemble is too sure of itself
-    and less where it is too wide; and the mean over time of the error along, across and of yaw,
-    signed, which tell a wrong speed from a wrong heading.
+    :math:`e_i^T P_i^{-1} e_i / k`, which is about 1, larger where the ensemble is too narrow and
+    smaller where it is too wide; and the signed mean over time of the error along, across and of
+    yaw, which distinguish a wrong speed from a wrong heading.
 
     Args:
         draws: x, y, yaw of every draw at the track's times, shape (m, n, 3) [m, m, rad].

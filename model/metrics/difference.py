@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""How far two quantities are apart, each known by its draws alone."""
+"""Difference of two quantities that are given by draws."""
 
 from dataclasses import dataclass
 
@@ -13,13 +13,13 @@ DRAWS = 4000  # of the difference
 
 @dataclass(frozen=True)
 class Difference:
-    """The difference of two quantities that were found independently: the second minus the first.
+    """Difference of two independently estimated quantities: the second minus the first.
 
     Attributes:
         median: Its median.
         low: Its 5 % quantile.
         high: Its 95 % quantile.
-        probability: That the second is the larger one [-].
+        probability: Probability that the second is the larger one [-].
     """
 
     median: float
@@ -29,12 +29,12 @@ class Difference:
 
     @property
     def clear(self) -> bool:
-        """Tell whether nine in ten draws have one sign on either side: zero is out of the 90 %."""
+        """Whether zero lies outside the 90 % interval of the difference."""
         return self.low > 0 or self.high < 0
 
 
 def difference(first: Array, second: Array, *, rng: np.random.Generator) -> Difference:
-    r"""Compare draws of two quantities.
+    r"""Compute the difference of two quantities from their draws.
 
     .. math::
         P(b > a) = \frac{1}{n m} \sum_{i, j} \left( [b_j > a_i] + \tfrac12 [b_j = a_i] \right)
@@ -47,7 +47,7 @@ def difference(first: Array, second: Array, *, rng: np.random.Generator) -> Diff
         rng: Source of randomness.
 
     Raises:
-        InsufficientData: One has no draws, or some that are no number.
+        InsufficientData: One has no draws, or draws that are not finite.
     """
     if not (len(first) and len(second)):
         raise InsufficientData("a quantity without draws has no difference")

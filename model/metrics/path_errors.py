@@ -43,11 +43,11 @@ class PoseErrors:
 
 @dataclass(frozen=True)
 class RelativeError:
-    """Error of the motion over a distance, whatever was wrong before.
+    """Relative pose error: error of the motion over a distance, independent of earlier errors.
 
     Attributes:
         distance: Distance travelled between the two poses of a pair [m].
-        pairs: How many pairs were found.
+        pairs: Number of pairs that were found.
         position: Root mean square error of position [m]; NaN without pairs or headings.
         yaw: Root mean square error of heading [rad].
     """
@@ -130,7 +130,7 @@ def pose_errors(predicted: Poses, tracked: Poses) -> PoseErrors:
 def path_errors(
     predicted: Poses, tracked: Poses, *, distances: ArrayLike = DISTANCES
 ) -> PathErrors:
-    """Summarise how far a predicted path lies from a tracked one.
+    """Compute summary errors of a predicted path against a tracked one.
 
     The predicted path, sampled densely, is interpolated at the track's times; tracked poses
     outside its time are left out.
@@ -174,7 +174,7 @@ def path_errors(
 
 
 def relative_error(predicted: Poses, tracked: Poses, *, distance: float) -> RelativeError:
-    r"""Compare the motions over a distance, from every pose on.
+    r"""Compute the relative pose error over a distance, from every pose on.
 
     For poses i and j of the track about that distance apart along it, the error is that of
     :math:`(T_i^{-1} T_j)^{-1} \hat T_i^{-1} \hat T_j`, T tracked and :math:`\hat T` predicted.
@@ -189,7 +189,7 @@ def relative_error(predicted: Poses, tracked: Poses, *, distance: float) -> Rela
         return RelativeError(distance, len(start), float("nan"), float("nan"))
     seen, seen_turn = _relative_motion(tracked, start, end)
     said, said_turn = _relative_motion(predicted, start, end)
-    error = np.linalg.norm(said - seen, axis=1)  # a turn of the frame leaves its size
+    error = np.linalg.norm(said - seen, axis=1)  # a rotation of the frame does not change the norm
     return RelativeError(distance, len(start), _rms(error), _rms(wrap(said_turn - seen_turn)))
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Scores of an ensemble of paths: how near, how sharp, and how often the band holds the track."""
+"""Scores of an ensemble of paths: energy score, CRPS, and coverage and width of intervals."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -17,7 +17,7 @@ STATES = ("x", "y", "yaw")
 
 @dataclass(frozen=True)
 class EnsembleScores:
-    """Scores over all scored poses; lower is better, but for coverage, which should be its level.
+    """Mean scores over all poses; lower is better, except coverage, which should be its level.
 
     Attributes:
         energy: Mean energy score of position [m].
@@ -49,7 +49,7 @@ def centred(draws: Array, observed: Array) -> Array:
 
 
 def with_tracker_noise(draws: Array, covariance: Array, *, rng: np.random.Generator) -> Array:
-    """Add the tracker's noise to predicted poses: what the tracker would say of each draw.
+    """Add random tracker noise to predicted poses.
 
     Args:
         draws: x, y, yaw of every draw at every time, shape (m, n, 3).
@@ -115,7 +115,7 @@ def crps(draws: Array, observed: Array) -> Array:
 
 
 def energy_score(draws: Array, observed: Array) -> Array:
-    r"""Compute the energy score :math:`E|X-y| - E|X-X'|/2` of points, the CRPS of a plane.
+    r"""Compute the energy score :math:`E|X-y| - E|X-X'|/2` of points, the multivariate CRPS.
 
     Args:
         draws: Points of every draw, shape (m, n, d).
@@ -133,7 +133,7 @@ def energy_score(draws: Array, observed: Array) -> Array:
 def interval_coverage(
     draws: Array, observed: Array, levels: Sequence[float]
 ) -> tuple[Array, Array]:
-    """Compute how often central intervals hold what was observed, and their mean width.
+    """Compute coverage and mean width of central intervals.
 
     Args:
         draws: Values of every draw, shape (m, n, k).

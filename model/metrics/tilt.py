@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Roll and pitch of a walk against an IMU's."""
+"""Errors of roll and pitch of a walk against an IMU's."""
 
 from dataclasses import dataclass
 
@@ -17,11 +17,11 @@ class TiltErrors:
     """Predicted minus measured roll and pitch; each array is of shape (2,), roll first [rad].
 
     Attributes:
-        samples: Samples compared.
-        bias: Mean difference: how the unit is mounted, as much as what the model gets wrong.
+        samples: Number of samples compared.
+        bias: Mean difference, of which the IMU's mounting angle is a part.
         rms: Root mean square difference, bias included.
         rms_unbiased: The same about the mean difference.
-        swing: Root mean square of what was measured, about its mean: what there is to predict.
+        swing: Standard deviation of the measurement over time, the scale of what is predicted.
     """
 
     samples: int

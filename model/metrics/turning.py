@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The circle a path follows and how fast it turns, from poses at any times."""
+"""Turning radius and yaw rate of a path, from poses at any times."""
 
 import numpy as np
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Slip laws, slip-ratio definitions and the curve that carries both."""
+"""Slip laws, slip-ratio definitions and the slip curve, a law with fitted values."""
 
 from model.slip.brush import Brush
 from model.slip.coulomb import CoulombStribeck

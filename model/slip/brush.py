@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The brush model with parabolic pressure: bristles that stick, then slide."""
+"""Brush model with parabolic pressure distribution: bristles that stick, then slide."""
 
 import math
 from dataclasses import dataclass
@@ -16,8 +16,9 @@ def sliding_share(sigma: ArrayLike, K: ArrayLike, mu_s: ArrayLike) -> Array:
     .. math::
         \psi = \min\Bigl(\frac{K |\sigma|}{3 \mu_s},\ 1\Bigr)
 
-    A bristle sticks from the leading edge on, is bent in proportion to slip and way, and lets go
-    where its force meets static friction times the local pressure, a parabola over the patch.
+    A bristle sticks from the leading edge on and is bent in proportion to slip and distance. It
+    starts to slide where its force reaches static friction times the local pressure, a parabola
+    over the patch.
 
     Args:
         sigma: Material slip ratio [-].
@@ -66,6 +67,12 @@ def brush_slope(sigma: ArrayLike, K: ArrayLike, mu_s: ArrayLike, q: ArrayLike = 
         \frac{f'}{F_n} = K (1 - \psi) \bigl(1 - (3 - 2q)\psi\bigr)
 
     Zero at the peak, psi = 1/(3 - 2q), and from full sliding, psi = 1, on.
+
+    Args:
+        sigma: Material slip ratio [-].
+        K: Slip stiffness [-].
+        mu_s: Static friction of a bristle [-].
+        q: Kinetic over static friction of a bristle [-].
     """
     psi = sliding_share(sigma, K, mu_s)
     return np.asarray(K) * (1 - psi) * (1 - (3 - 2 * np.asarray(q)) * psi)
@@ -97,8 +104,8 @@ def static_friction_from_peak(mu: ArrayLike, q: ArrayLike) -> Array:
 class Brush:
     """The brush model as a slip law, with bristle stiffness and friction proportional to load.
 
-    Derived for theoretical slip, the material slip of `SlipDefinition.MATERIAL`: convert other
-    definitions before evaluating, or its shape means nothing.
+    It is derived for theoretical slip, the material slip of `SlipDefinition.MATERIAL`. Slip of
+    another definition must be converted first.
 
     Attributes:
         kinetic: Let sliding bristles have less friction than sticking ones, which gives the curve
@@ -128,19 +135,41 @@ class Brush:
         return K, static_friction_from_peak(mu, q), q
 
     def force(self, slip: ArrayLike, load: ArrayLike, values: Values) -> Array:
-        """Compute the traction force [N]; see `SlipLaw.force`."""
+        """Compute the traction force [N]; see `SlipLaw.force`.
+
+        Args:
+            slip: Slip ratio [-].
+            load: Normal force, positive [N].
+            values: Parameter values, one entry a parameter.
+        """
         return np.asarray(load) * brush(slip, *self.coefficients(values))
 
     def slip_derivative(self, slip: ArrayLike, load: ArrayLike, values: Values) -> Array:
-        """Compute the derivative of the force with respect to slip ratio [N]."""
+        """Compute the derivative of the force with respect to slip ratio [N].
+
+        Args:
+            slip: Slip ratio [-].
+            load: Normal force, positive [N].
+            values: Parameter values, one entry a parameter.
+        """
         return np.asarray(load) * brush_slope(slip, *self.coefficients(values))
 
     def valid(self, load: ArrayLike, values: Values) -> NDArray[np.bool_]:
-        """Tell where the curve has its shape: everywhere inside the support."""
+        """Return where the curve has its shape: everywhere inside the support.
+
+        Args:
+            load: Normal force, positive [N].
+            values: Parameter values, one entry a parameter.
+        """
         return np.ones(np.broadcast(load, *values).shape, dtype=bool)
 
     def peak_slip(self, load: ArrayLike, values: Values) -> Array:
-        """Compute the slip ratio at which the force peaks (inf where it never falls) [-]."""
+        """Compute the slip ratio at which the force peaks (inf where it never falls) [-].
+
+        Args:
+            load: Normal force, positive [N].
+            values: Parameter values, one entry a parameter.
+        """
         K, mu_s, q = self.coefficients(values)
         peak = 3 * mu_s / (K * (3 - 2 * q)) if self.kinetic else np.array(math.inf)
         return np.broadcast_to(peak, np.broadcast(load, *values).shape)

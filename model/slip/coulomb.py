@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Coulomb friction with Stribeck's fall from static to kinetic, smooth at zero slip."""
+"""Coulomb friction with a Stribeck drop from static to kinetic friction, smooth at zero slip."""
 
 import math
 from dataclasses import dataclass
@@ -48,7 +48,7 @@ def regularised_sign(kappa: ArrayLike, kappa_c: ArrayLike) -> Array:
 
 
 def stribeck_fall(kappa: ArrayLike, kappa_c: ArrayLike, kappa_s: ArrayLike, q: ArrayLike) -> Array:
-    r"""Compute the share of static friction left at a slip ratio.
+    r"""Compute the share of static friction left at a slip ratio (Stribeck curve).
 
     .. math::
         \beta(\kappa) = q + (1 - q)\,e^{-z^2}, \qquad
@@ -56,7 +56,7 @@ def stribeck_fall(kappa: ArrayLike, kappa_c: ArrayLike, kappa_s: ArrayLike, q: A
 
     Args:
         kappa: Slip ratio [-].
-        kappa_c: Slip ratio at which the fall begins [-].
+        kappa_c: Slip ratio at which the post-peak drop begins [-].
         kappa_s: Stribeck slip, over which 63 % of the static excess is lost [-].
         q: Kinetic over static friction [-].
 
@@ -106,7 +106,15 @@ def coulomb_stribeck_slope(
     .. math::
         \frac{f'}{F_n} = K (1 - u^2) - 2 \mu (1 - q) \frac{z}{\kappa_s} e^{-z^2}
 
-    The first term lives on the rise only, the second on the fall only; both vanish at kappa_c.
+    The first term is non-zero only below the peak, the second only beyond it; both vanish at
+    kappa_c.
+
+    Args:
+        kappa: Slip ratio [-].
+        K: Slip stiffness, slope at zero slip [-].
+        mu: Static friction, the peak [-].
+        q: Kinetic over static friction [-].
+        kappa_s: Stribeck slip [-].
     """
     kappa_c = breakaway_slip(K, mu)
     u = np.clip(np.asarray(kappa) / kappa_c, -1.0, 1.0)
@@ -116,7 +124,7 @@ def coulomb_stribeck_slope(
 
 
 def _slip_past_breakaway(kappa: ArrayLike, kappa_c: ArrayLike, kappa_s: ArrayLike) -> Array:
-    # 40 Stribeck slips out exp(-z²) is zero in double precision; the bound keeps infinite slip
+    # Beyond 40 Stribeck slips exp(-z²) is zero in double precision; the bound keeps infinite slip
     # (a locked leg by material slip) from giving inf·0.
     past = (np.abs(np.asarray(kappa)) - np.asarray(kappa_c)) / np.asarray(kappa_s)
     return np.clip(past, 0.0, 40.0)
@@ -124,7 +132,7 @@ def _slip_past_breakaway(kappa: ArrayLike, kappa_c: ArrayLike, kappa_s: ArrayLik
 
 @dataclass(frozen=True)
 class CoulombStribeck:
-    """Coulomb friction, static at break-away and kinetic far out, as a slip law.
+    """Coulomb friction as a slip law, static at break-away and kinetic at large slip.
 
     Attributes:
         stribeck: Let the traction fall from static to kinetic friction. Without it the traction
@@ -141,7 +149,7 @@ class CoulombStribeck:
         return (*_COMMON, *(_STRIBECK if self.stribeck else ()))
 
     def coefficients(self, values: Values) -> tuple[Array, Array, Array, Array]:
-        """Spell out K, mu, q and kappa_s, with q = 1 where there is no fall.
+        """Return K, mu, q and kappa_s, with q = 1 without a post-peak drop.
 
         Args:
             values: Parameter values, one entry a parameter.
@@ -155,19 +163,41 @@ class CoulombStribeck:
         return K, mu, np.asarray(values[2], dtype=float), np.asarray(values[3], dtype=float)
 
     def force(self, slip: ArrayLike, load: ArrayLike, values: Values) -> Array:
-        """Compute the traction force [N]; see `SlipLaw.force`."""
+        """Compute the traction force [N]; see `SlipLaw.force`.
+
+        Args:
+            slip: Slip ratio [-].
+            load: Normal force, positive [N].
+            values: Parameter values, one entry a parameter.
+        """
         return np.asarray(load) * coulomb_stribeck(slip, *self.coefficients(values))
 
     def slip_derivative(self, slip: ArrayLike, load: ArrayLike, values: Values) -> Array:
-        """Compute the derivative of the force with respect to slip ratio [N]."""
+        """Compute the derivative of the force with respect to slip ratio [N].
+
+        Args:
+            slip: Slip ratio [-].
+            load: Normal force, positive [N].
+            values: Parameter values, one entry a parameter.
+        """
         return np.asarray(load) * coulomb_stribeck_slope(slip, *self.coefficients(values))
 
     def valid(self, load: ArrayLike, values: Values) -> NDArray[np.bool_]:
-        """Tell where the curve has its shape: everywhere inside the support."""
+        """Return where the curve has its shape: everywhere inside the support.
+
+        Args:
+            load: Normal force, positive [N].
+            values: Parameter values, one entry a parameter.
+        """
         return np.ones(np.broadcast(load, *values).shape, dtype=bool)
 
     def peak_slip(self, load: ArrayLike, values: Values) -> Array:
-        """Compute the slip ratio at which the force peaks (inf where it never falls) [-]."""
+        """Compute the slip ratio at which the force peaks (inf where it never falls) [-].
+
+        Args:
+            load: Normal force, positive [N].
+            values: Parameter values, one entry a parameter.
+        """
         K, mu, _, _ = self.coefficients(values)
         peak = breakaway_slip(K, mu) if self.stribeck else np.array(math.inf)
         return np.broadcast_to(peak, np.broadcast(load, *values).shape)

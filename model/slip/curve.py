@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A fitted slip curve: a law, its values, and what they are good for."""
+"""A fitted slip curve: a law, its parameter values and the range that was tested."""
 
 from dataclasses import dataclass
 
@@ -12,13 +12,13 @@ from model.slip.law import Array, SlipLaw
 
 @dataclass(frozen=True)
 class SlipCurve:
-    """A law with the values that data gave it.
+    """A slip law with fitted parameter values.
 
     Attributes:
         law: The slip law, of k parameters.
         values: Posterior mean of its parameters, shape (k,).
         covariance: Posterior covariance of its parameters, shape (k, k).
-        definition: What the slip ratios are divided by.
+        definition: Definition of the slip ratios.
         load_range: Smallest and largest load that was tested [N].
         slip_range: Smallest and largest slip ratio that was tested [-].
     """
@@ -48,6 +48,6 @@ class SlipCurve:
         return self.law.force(slip, load, self.values)
 
     def untested_loads(self, load: ArrayLike) -> NDArray[np.bool_]:
-        """Tell which loads lie outside the tested range."""
+        """Return which loads lie outside the tested range."""
         Fn = np.asarray(load, dtype=float)
         return (Fn < self.load_range[0]) | (Fn > self.load_range[1])

@@ -120,7 +120,11 @@ def walk_slip_from_material(slip: ArrayLike, leg_angle: ArrayLike) -> Array:
 
 
 def require_definition(found: SlipDefinition | str, expected: SlipDefinition | str) -> None:
-    """Refuse slip ratios of another definition.
+    """Check that slip ratios have the expected definition.
+
+    Args:
+        found: Definition of the slip ratios.
+        expected: Definition that the parameters were fitted with.
 
     Raises:
         DefinitionMismatch: The two differ.

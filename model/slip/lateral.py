@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Lateral slip as the thesis has it: a slip angle, scaled to stand in for a slip ratio."""
+"""Lateral slip of the thesis: a slip angle, scaled to replace a slip ratio."""
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -36,7 +36,7 @@ def slip_angle(velocity_x: ArrayLike, velocity_y: ArrayLike) -> Array:
 
 
 def lateral_slip(alpha: ArrayLike) -> Array:
-    r"""Compute the lateral slip ratio that stands in for kappa in Eq. (4-23), Eq. (4-42).
+    r"""Compute the lateral slip ratio that replaces kappa in Eq. (4-23), Eq. (4-42).
 
     .. math::
         \kappa_\alpha = \frac{\alpha}{\pi/2}

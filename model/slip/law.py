@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What every slip law is: traction force from slip ratio and normal force."""
+"""Interface of every slip law: traction force from slip ratio and normal force."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -68,20 +68,44 @@ class SlipLaw(Protocol):
         ...
 
     def slip_derivative(self, slip: ArrayLike, load: ArrayLike, values: Values) -> Array:
-        """Compute the derivative of the force with respect to slip ratio [N]."""
+        """Compute the derivative of the force with respect to slip ratio [N].
+
+        Args:
+            slip: Slip ratio [-].
+            load: Normal force, positive [N].
+            values: Parameter values, one entry a parameter.
+        """
         ...
 
     def valid(self, load: ArrayLike, values: Values) -> NDArray[np.bool_]:
-        """Tell where the curve has the shape the law promises (inside its support)."""
+        """Return where the curve has the shape that the law defines, for values inside its support.
+
+        Args:
+            load: Normal force, positive [N].
+            values: Parameter values, one entry a parameter.
+        """
         ...
 
     def peak_slip(self, load: ArrayLike, values: Values) -> Array:
-        """Compute the slip ratio at which the force is largest, infinite where it never falls."""
+        """Compute the slip ratio at which the force is largest, infinite where it never falls [-].
+
+        Args:
+            load: Normal force, positive [N].
+            values: Parameter values, one entry a parameter.
+        """
         ...
 
 
 def inside_support(law: SlipLaw, values: Values) -> NDArray[np.bool_]:
-    """Tell where every value lies inside its parameter's open support."""
+    """Return where every value lies inside its parameter's open support.
+
+    Args:
+        law: The slip law.
+        values: Parameter values, one entry a parameter.
+
+    Returns:
+        True inside, in the shape the values broadcast to.
+    """
     verdicts = [
         (parameter.lower < np.asarray(value)) & (np.asarray(value) < parameter.upper)
         for parameter, value in zip(law.parameters, values, strict=True)

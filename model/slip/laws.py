@@ -19,10 +19,10 @@ LAWS: Mapping[str, type[MagicFormula | CoulombStribeck | Brush]] = MappingProxyT
 
 
 def slip_law(name: str, **options: Any) -> SlipLaw:
-    """Make the slip law of a name.
+    """Create a slip law by name.
 
     A law is stored as its name and its fields: `slip_law(law.name, **dataclasses.asdict(law))`
-    gives it back.
+    restores it.
 
     Args:
         name: A key of `LAWS`.

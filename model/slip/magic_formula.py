@@ -49,6 +49,13 @@ def magic_formula_slope(
     .. math::
         f' = D \cos(C \arctan\varphi)\, \frac{C}{1+\varphi^2}\, \varphi', \qquad
         \varphi' = B\Bigl(1 - E\,\frac{(B\kappa)^2}{1+(B\kappa)^2}\Bigr)
+
+    Args:
+        kappa: Slip ratio [-].
+        B: Stiffness factor [-].
+        C: Shape factor [-].
+        D: Peak factor [N].
+        E: Curvature factor [-].
     """
     B, C, E = np.asarray(B), np.asarray(C), np.asarray(E)
     Bk = B * np.asarray(kappa)
@@ -66,6 +73,11 @@ def curvature_from_peak(B: ArrayLike, C: ArrayLike, x_m: ArrayLike) -> Array:
     Holds for C > 1 (below, the curve has no peak). E tends to minus infinity as x_m tends to 0.
     E <= 1, so that x_m is the only peak, needs tan(pi/2C) >= arctan(B x_m): at every x_m only if
     C < 1.56472; the thesis's 1.564 is 0.0007 below.
+
+    Args:
+        B: Stiffness factor [-].
+        C: Shape factor [-].
+        x_m: Slip ratio of the peak [-].
 
     >>> float(curvature_from_peak(34.34, 1.564, 0.0066 * 6.63).round(3))
     -0.134
@@ -140,19 +152,41 @@ class MagicFormula:
         return B, C, mu * Fn, E
 
     def force(self, slip: ArrayLike, load: ArrayLike, values: Values) -> Array:
-        """Compute the traction force, Eq. (4-23) [N]; see `SlipLaw.force`."""
+        """Compute the traction force, Eq. (4-23) [N]; see `SlipLaw.force`.
+
+        Args:
+            slip: Slip ratio [-].
+            load: Normal force, positive [N].
+            values: Parameter values, one entry a parameter.
+        """
         return magic_formula(slip, *self.coefficients(load, values))
 
     def slip_derivative(self, slip: ArrayLike, load: ArrayLike, values: Values) -> Array:
-        """Compute the derivative of the force with respect to slip ratio [N]."""
+        """Compute the derivative of the force with respect to slip ratio [N].
+
+        Args:
+            slip: Slip ratio [-].
+            load: Normal force, positive [N].
+            values: Parameter values, one entry a parameter.
+        """
         return magic_formula_slope(slip, *self.coefficients(load, values))
 
     def valid(self, load: ArrayLike, values: Values) -> NDArray[np.bool_]:
-        """Tell where E <= 1, so that the curve has one peak and keeps its sign."""
+        """Return where E <= 1, so that the curve has one peak and keeps its sign.
+
+        Args:
+            load: Normal force, positive [N].
+            values: Parameter values, one entry a parameter.
+        """
         return self.coefficients(load, values)[3] <= 1.0
 
     def peak_slip(self, load: ArrayLike, values: Values) -> Array:
-        """Compute the slip ratio at which the force peaks (inf where C <= 1: no peak) [-]."""
+        """Compute the slip ratio at which the force peaks (inf where C <= 1: no peak) [-].
+
+        Args:
+            load: Normal force, positive [N].
+            values: Parameter values, one entry a parameter.
+        """
         B, C, _, E = self.coefficients(load, values)
         return peak_slip(B, C, E)
 
@@ -162,6 +196,11 @@ def peak_slip(B: ArrayLike, C: ArrayLike, E: ArrayLike) -> Array:
 
     Solves Bx - E (Bx - arctan Bx) = tan(pi/2C) by bisection, since the left side grows with x for
     E <= 1. Infinite where C <= 1, or where E = 1 keeps the left side below the right.
+
+    Args:
+        B: Stiffness factor [-].
+        C: Shape factor [-].
+        E: Curvature factor [-].
 
     >>> float(peak_slip(34.34, 1.564, -0.1344).round(4))
     0.0438

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The Magic Formula's coefficients, read off a slip curve by four of its features."""
+"""Graphical estimate of the Magic Formula's coefficients from four features of a slip curve."""
 
 from dataclasses import dataclass
 
@@ -10,13 +10,13 @@ from model.errors import DomainError
 from model.slip.law import Array
 from model.slip.magic_formula import curvature_from_peak
 
-_UNSETTLED = 0.05  # of the peak: what a curve may still have to fall at its end
+_UNSETTLED = 0.05  # of the peak: largest drop that may remain at the end of a curve
 _RISE_TERMS = 3  # kappa, kappa³, kappa⁵: the slope is then within 0.1 % up to half the peak
 
 
 @dataclass(frozen=True)
 class CurveFeatures:
-    """What one reads off a slip curve at one load, Fig. 4-5.
+    """Features of a slip curve at one load, Fig. 4-5.
 
     Attributes:
         peak_force: D, greatest force [N].
@@ -128,7 +128,7 @@ def coefficients_from_features(features: CurveFeatures) -> Coefficients:
 def curve_features(slip: ArrayLike, force: ArrayLike) -> CurveFeatures:
     """Find the features of a slip curve at one load.
 
-    Takes the curve at its word: smooth a measured one first. The peak is the vertex of the
+    The samples are taken as exact: smooth a measured curve first. The peak is the vertex of the
     parabola through the highest sample and its neighbours; the slope that of an odd polynomial
     through the rise up to half the peak; the asymptote is extrapolated from the outer half of the
     slip range, where the Magic Formula falls as 1/slip.
@@ -150,10 +150,10 @@ def curve_features(slip: ArrayLike, force: ArrayLike) -> CurveFeatures:
 
 
 def read_off(slip: ArrayLike, force: ArrayLike) -> Coefficients:
-    """Read the Magic Formula's coefficients off a slip curve at one load.
+    """Estimate the Magic Formula's coefficients from the features of a slip curve at one load.
 
-    The thesis's way, and a start for a fit; it knows no uncertainty. See `curve_features` for
-    what it asks of the curve.
+    This is the thesis's method, and a starting point for a fit; it gives no uncertainty. See
+    `curve_features` for the requirements on the curve.
 
     Args:
         slip: Slip ratio, increasing from zero or above, shape (n,) [-].

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: MIT
-"""Walks: from leg angles to a path."""
+"""Walking models: from leg angles to a path."""

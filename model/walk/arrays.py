@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The arrays that the compiled loop of the walk works on."""
+"""Arrays of the compiled loop of the walk."""
 
 from typing import NamedTuple
 
@@ -13,7 +13,7 @@ from model.walk.kernel import N_CONTACTS
 
 
 class Body(NamedTuple):
-    """A robot as numba takes it; see `Robot`.
+    """A robot as arrays for numba; see `Robot`.
 
     Attributes:
         hips: Hip positions, shape (6, 3) [m].
@@ -35,7 +35,7 @@ class Body(NamedTuple):
 
 
 class Contacts(NamedTuple):
-    """How hard contacts are.
+    """Stiffness and damping of contacts.
 
     Attributes:
         stiffness: Normal force for each metre of sinkage [N/m].
@@ -47,7 +47,7 @@ class Contacts(NamedTuple):
 
 
 class State(NamedTuple):
-    """What a step starts from; every array is overwritten by the next one.
+    """State at the start of a step; every array is overwritten by the step.
 
     Attributes:
         p: Position of the body [m].
@@ -65,7 +65,7 @@ class State(NamedTuple):
 
 
 class Work(NamedTuple):
-    """What a step fills in, one row a contact: six legs, then eight corners of the body.
+    """Work arrays of a step, one row a contact: six legs, then eight corners of the body.
 
     Attributes:
         place: Contact from the body's centre, world frame, shape (14, 3) [m].
@@ -84,7 +84,7 @@ class Work(NamedTuple):
         w: Guess of the final angular velocity, shape (3,) [rad/s].
         force: Force of a contact, shape (3,) [N].
         point: Velocity of a material contact point, shape (3,) [m/s].
-        P: What a contact's force falls by with velocity, shape (3, 3) [N s/m].
+        P: Decrease of a contact's force per velocity, shape (3, 3) [N s/m].
         inertia: Inertia in the world frame, shape (3, 3) [kg m2].
         gyro: Gyroscopic moment, shape (3,) [N m].
     """
@@ -110,7 +110,7 @@ class Work(NamedTuple):
 
 
 def body_arrays(robot: Robot) -> Body:
-    """Put a robot into the arrays of the compiled loop."""
+    """Convert a robot to the arrays of the compiled loop."""
     return Body(
         robot.hips, robot.leg_radius, float(np.cos(robot.toe_beyond)),
         float(np.sin(robot.toe_beyond)), robot.mass,
@@ -120,7 +120,7 @@ def body_arrays(robot: Robot) -> Body:
 
 @compiled
 def new_work():
-    """Make room for what a step fills in; no contact presses."""
+    """Allocate the work arrays of a step, with all loads zero."""
     n = N_CONTACTS
     return Work(
         np.empty((n, 3)), np.empty((n, 3)), np.empty((n, 3)), np.empty(n), np.empty(n),
@@ -132,13 +132,18 @@ def new_work():
 
 @compiled
 def new_state():
-    """Make room for a state."""
+    """Allocate an uninitialised state."""
     return State(np.empty(3), np.empty(4), np.empty(3), np.empty(3), np.empty((N_CONTACTS, 3)))
 
 
 @inlined
 def copy_state(state, to):
-    """Copy a state into another."""
+    """Copy a state into another.
+
+    Args:
+        state: State to copy.
+        to: Overwritten with the copy.
+    """
     for i in range(3):
         to.p[i], to.v[i], to.w[i] = state.p[i], state.v[i], state.w[i]
     for i in range(4):

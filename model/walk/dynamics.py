@@ -3,7 +3,7 @@
 
 Leg angles are inputs. Each leg touches the ground at its lowest point, with a stiff and damped
 normal force and a traction vector against the slip vector of the material contact point; force
-alone decides what is in contact. Where this departs from the thesis's model, and why, is in
+alone decides which legs are in contact. Where this departs from the thesis's model, and why, is in
 `docs/theory.md`.
 """
 
@@ -24,7 +24,7 @@ from model.walk.step import run_steps
 from model.walk.traction import TractionTable, VelocityCoulomb
 
 SETTLE_STEP = 0.005  # s
-SETTLE_TIME = 1.0  # s; ten times the drop from where it is let go
+SETTLE_TIME = 1.0  # s; ten times the duration of the drop
 STICKY = VelocityCoulomb(3.0, 1e-4).table(weight=1.0)  # to settle on a slope without sliding down
 
 
@@ -45,7 +45,7 @@ class DynamicsOptions:
     damping: float = 200.0
 
     def __post_init__(self) -> None:
-        """Refuse a computation that cannot be."""
+        """Check that step, stiffness and damping are positive."""
         for name, unit in (("dt", "s"), ("stiffness", "N/m"), ("damping", "N s/m")):
             value = getattr(self, name)
             if not (value > 0 and np.isfinite(value)):
@@ -57,7 +57,7 @@ DEFAULT_OPTIONS = DynamicsOptions()
 
 @dataclass(frozen=True)
 class Start:
-    """Where a walk starts.
+    """Initial pose and velocity of a walk.
 
     Attributes:
         x: Position of the body's centre [m].
@@ -104,7 +104,7 @@ def walk(
 
     Raises:
         DomainError: The duration is shorter than a step.
-        WalkError: A step diverged; says when and in what state.
+        WalkError: A step diverged; the message says when and in what state.
     """
     t = step_times(duration, options.dt)
     theta = reference.angles(t) + robot.leg_offset
@@ -121,7 +121,18 @@ def walk(
 
 
 def step_times(duration: float, dt: float) -> Array:
-    """Return the times of all steps, as many whole ones as the duration holds [s]."""
+    """Compute the times of all steps: the nearest whole number of them in the duration.
+
+    Args:
+        duration: Time walked [s].
+        dt: Length of a step [s].
+
+    Returns:
+        Times from zero, shape (n + 1,) [s].
+
+    Raises:
+        DomainError: The duration is not finite or shorter than a step.
+    """
     n = round(duration / dt) if duration > 0 and np.isfinite(duration) else 0
     if n < 1:
         raise DomainError(f"duration is {duration:g} s; expected at least a step of {dt:g} s")
@@ -129,7 +140,12 @@ def step_times(duration: float, dt: float) -> Array:
 
 
 def diverged(t: float, pose: Array) -> WalkError:
-    """Return the error of a step that stopped being finite."""
+    """Return the error for a step whose state is not finite.
+
+    Args:
+        t: Time of the step [s].
+        pose: Pose to report, of which the first three entries are the position [m].
+    """
     x, y, z = pose[:3]
     return WalkError(
         f"the walk diverged at t = {t:.4g} s, with the body at x {x:.4g}, y {y:.4g}, z {z:.4g} m; "
@@ -144,7 +160,7 @@ def start_state(
     start: Start,
     options: DynamicsOptions,
 ) -> State:
-    """Stand the robot on its legs, or hold it above them, at the start's place and heading.
+    """Compute the initial state: the robot on its legs, or held above them, at the start's pose.
 
     Args:
         robot: The robot.
@@ -186,7 +202,7 @@ def _settled(
     state: State,
     options: DynamicsOptions,
 ) -> State:
-    """Let the robot down on legs that do not turn, and put it back where it was to start."""
+    """Simulate until the robot rests on motionless legs, then move it back to its start."""
     x, y = state.p[:2]
     yaw = 2 * np.arctan2(state.q[3], state.q[0])
     velocity = state.v.copy()
@@ -215,7 +231,7 @@ def _settled(
 
 
 def _turn(q: Array, yaw: float) -> Array:
-    """Turn an orientation about the vertical."""
+    """Rotate an orientation about the vertical."""
     c, s = np.cos(0.5 * yaw), np.sin(0.5 * yaw)
     w, x, y, z = q
     return np.array([c * w - s * z, c * x - s * y, c * y + s * x, c * z + s * w])
@@ -267,7 +283,7 @@ def _path(t: Array, pose: Array, theta: Array, legs: Array) -> WalkPath:
 
 
 def _to_heading(vectors: Array, yaw: Array) -> Array:
-    """Turn world vectors (n, 6, 2) into forward and left of the heading."""
+    """Rotate world vectors (n, 6, 2) to forward and left of the heading."""
     c, s = np.cos(yaw)[:, None], np.sin(yaw)[:, None]
     x, y = vectors[..., 0], vectors[..., 1]
     return np.stack([c * x + s * y, c * y - s * x], axis=-1)

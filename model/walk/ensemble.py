@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Many walks of one gait or log, each with its own law, robot and start: the spread of a path."""
+"""Ensembles of walks, each with its own law, robot and start, for the spread of a path."""
 
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
@@ -32,7 +32,7 @@ from model.walk.traction import TractionTable
 
 @dataclass(frozen=True)
 class WalkDraw:
-    """One draw of everything a path depends on.
+    """One draw of all inputs of a path.
 
     Attributes:
         robot: The robot, with its leg offsets.
@@ -61,7 +61,7 @@ class WalkDraw:
 
 @dataclass(frozen=True)
 class PlanarWalk:
-    """Where a walk, or each draw of one, leads over the ground.
+    """Planar path of a walk, or of each draw of one.
 
     Attributes:
         poses: The path, or one path for each draw.
@@ -82,22 +82,22 @@ def walk_ensemble(
     tilt: bool = False,
     progress: Callable[[float], None] | None = None,
 ) -> PlanarWalk:
-    """Walk every draw on flat ground; a gait with a period by its stride map.
+    """Walk every draw on flat ground; periodic gaits by their stride map.
 
     Args:
-        draws: What to walk.
-        t: Times wanted, increasing, none before zero, shape (n,) [s].
+        draws: The draws to walk.
+        t: Times of the poses, increasing, none before zero, shape (n,) [s].
         options: How the walks are computed.
-        threads: Draws walked at once.
-        tilt: Keep roll and pitch, of leg angles that are walked whole.
-        progress: Told the fraction done.
+        threads: Number of draws walked at once.
+        tilt: Return roll and pitch too; not available for periodic gaits.
+        progress: Called with the fraction done.
 
     Returns:
         The paths of all draws, interpolated at `t`.
 
     Raises:
         DomainError: There is no draw, or the times do not increase from zero.
-        WalkError: A walk diverged; says which.
+        WalkError: A walk diverged (the message says which), or `tilt` is asked of a periodic gait.
     """
     _require_draws(draws, t)
     duration = max(float(t[-1]), options.dt)
@@ -147,13 +147,13 @@ def planar_walk(
     options: DynamicsOptions = DEFAULT_OPTIONS,
     tilt: bool = False,
 ) -> PlanarWalk:
-    """Walk one draw on flat ground and keep where it led over the ground.
+    """Walk one draw on flat ground and return its planar path.
 
     Args:
-        draw: What to walk.
+        draw: The draw to walk.
         duration: Time walked [s].
         options: How it is computed.
-        tilt: Keep roll and pitch, of leg angles that are walked whole.
+        tilt: Return roll and pitch too; ignored for periodic gaits, which are walked by strides.
 
     Raises:
         DomainError: The duration is shorter than a step.

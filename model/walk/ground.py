@@ -11,7 +11,7 @@ from model.slip.law import Array
 
 
 class Ground(NamedTuple):
-    """Heights on a square grid, bilinear between; one height everywhere if the grid has one.
+    """Heights on a square grid, with bilinear interpolation; constant if the grid has one height.
 
     A named tuple because numba takes one as it is.
 
@@ -40,7 +40,7 @@ def sample_ground(
     y: tuple[float, float],
     step: float = 0.005,
 ) -> Ground:
-    """Sample a height function; beyond the area the ground goes on as at its edge.
+    """Sample a height function; beyond the area the height of its edge continues.
 
     Args:
         height: Height at x and y, arrays of one shape [m].

@@ -9,9 +9,9 @@ and traction of every contact are taken there, linear in them,
     T_i' = -G_i (J_i v' + u_i)_t,
 
 with gap g, normal n, contact Jacobian J, the leg's own velocity u at its contact, and the secant
-G of the slip law. That leaves a symmetric positive definite 6x6 system; a few rounds settle which
-contacts press and what G is. No contact pulls, and traction opposes slip whatever the step, so the
-step is stable at any length: what the explicit step of the thesis is not.
+G of the slip law. This gives a symmetric positive definite 6x6 system. A few iterations determine
+which contacts press and what G is. No contact pulls, and traction opposes slip whatever the step.
+The step is therefore stable at any length, unlike the explicit step of the thesis.
 """
 
 import numpy as np
@@ -21,12 +21,17 @@ from model.leg import HIP, ROLLING, TOE
 from model.robot import N_LEGS
 
 N_CONTACTS = N_LEGS + 8  # legs, then the corners of the body
-NEAR = 0.01  # height over the ground below which the body's corners are looked at [m]
+NEAR = 0.01  # height over the ground below which the body's corners are computed [m]
 
 
 @inlined
 def rotation_matrix(q, R):
-    """Fill R (3, 3) with the rotation of the unit quaternion q = (w, x, y, z), body to world."""
+    """Compute the rotation matrix of a unit quaternion, body to world.
+
+    Args:
+        q: Unit quaternion (w, x, y, z), shape (4,).
+        R: Filled: rotation matrix, shape (3, 3).
+    """
     w, x, y, z = q
     R[0, 0], R[0, 1], R[0, 2] = 1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)
     R[1, 0], R[1, 1], R[1, 2] = 2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)
@@ -35,7 +40,13 @@ def rotation_matrix(q, R):
 
 @inlined
 def rotate(q, w, dt):
-    """Turn the quaternion q by the rotation vector w·dt given in the world frame."""
+    """Integrate an orientation quaternion over one step at constant angular velocity.
+
+    Args:
+        q: Unit quaternion (w, x, y, z), updated in place, shape (4,).
+        w: Angular velocity in the world frame, shape (3,) [rad/s].
+        dt: Length of the step [s].
+    """
     angle = np.sqrt(w[0] ** 2 + w[1] ** 2 + w[2] ** 2) * dt
     half = 0.5 * angle
     s = 0.5 * dt * (1 - half * half / 6) if angle < 1e-4 else np.sin(half) / angle * dt
@@ -88,7 +99,16 @@ def lowest_point(theta, down_x, down_z, r, toe_cos, toe_sin):
 
 @inlined
 def ground_at(ground, x, y):
-    """Return height and unit normal (nx, ny, nz) of the ground at a place."""
+    """Interpolate height and unit normal of the ground at a place, bilinearly.
+
+    Args:
+        ground: The ground.
+        x: x of the place [m].
+        y: y of the place [m].
+
+    Returns:
+        Height [m] and the normal's components nx, ny, nz [-].
+    """
     height = ground.height
     if height.size == 1:
         return height[0, 0], 0.0, 0.0, 1.0
@@ -102,7 +122,7 @@ def ground_at(ground, x, y):
     h = (1 - a) * ((1 - b) * h00 + b * h01) + a * ((1 - b) * h10 + b * h11)
     sx = ((1 - b) * (h10 - h00) + b * (h11 - h01)) / ground.step
     sy = ((1 - a) * (h01 - h00) + a * (h11 - h10)) / ground.step
-    if at_x < 0 or at_x > m - 1:  # the edge's height goes on, so its slope must not
+    if at_x < 0 or at_x > m - 1:  # beyond the edge its height continues, with zero slope
         sx = 0.0
     if at_y < 0 or at_y > n - 1:
         sy = 0.0
@@ -112,9 +132,19 @@ def ground_at(ground, x, y):
 
 @inlined
 def plane_under(ground, x, y, reach):
-    """Return the unit normal of the ground's mean plane within reach of a place.
+    """Compute the unit normal of the mean plane of the ground within reach of a place.
 
-    A leg stands on what its arc spans: the ground at a point would tilt it at every edge.
+    A leg stands on what its arc spans. The normal at a single point would tilt the leg at every
+    edge of the ground.
+
+    Args:
+        ground: The ground.
+        x: x of the place [m].
+        y: y of the place [m].
+        reach: Distance to either side over which slopes are taken [m].
+
+    Returns:
+        Components nx, ny, nz of the normal [-].
     """
     if ground.height.size == 1:
         return 0.0, 0.0, 1.0
@@ -127,7 +157,16 @@ def plane_under(ground, x, y, reach):
 
 @inlined
 def table_value(table, load, x):
-    """Interpolate traction over load at slip x and a load; see `TractionTable`."""
+    """Interpolate traction over load in a table; see `TractionTable`.
+
+    Args:
+        table: The table.
+        load: Normal force, positive [N].
+        x: Slip ratio, or slip velocity over `speed_scale`; not negative [-].
+
+    Returns:
+        Traction over load [-].
+    """
     w = np.arcsinh(x / table.scale)
     place = min(w / table.step, table.phi.shape[1] - 1.000001)
     j = int(place)
@@ -142,7 +181,15 @@ def table_value(table, load, x):
 
 @inlined
 def load_row(table, load):
-    """Return the row of a table below a load, and how far the load is towards the next."""
+    """Find the table's row below a load, and the load's interpolation weight.
+
+    Args:
+        table: The table.
+        load: Normal force, positive [N].
+
+    Returns:
+        Index of the row, and weight of the next row, from 0 to 1 [-].
+    """
     m = len(table.log_load)
     if m == 1:
         return 0, 0.0
@@ -154,7 +201,15 @@ def load_row(table, load):
 
 @inlined
 def hermite(phi, slope, j, a, step):
-    """Interpolate between columns j and j + 1 by the cubic of their values and slopes."""
+    """Interpolate between columns j and j + 1 of a table's row by a cubic Hermite polynomial.
+
+    Args:
+        phi: Values of the columns, shape (n,).
+        slope: Their derivatives, shape (n,).
+        j: Index of the column to the left.
+        a: Position between the two columns, from 0 to 1 [-].
+        step: Distance of the columns.
+    """
     p0, p1, m0, m1 = phi[j], phi[j + 1], slope[j] * step, slope[j + 1] * step
     d = p1 - p0
     return p0 + a * (m0 + a * (3 * d - 2 * m0 - m1 + a * (m0 + m1 - 2 * d)))
@@ -181,7 +236,12 @@ def traction_secant(table, state, load, slip_speed, flow_speed):
 
 @inlined
 def toe_traction(table, load):
-    """Compute the largest traction over load of a leg on its toe [-]."""
+    """Compute the largest traction over load of a leg on its toe [-].
+
+    Args:
+        table: The slip law.
+        load: Normal force, positive [N].
+    """
     row, b = load_row(table, load)
     value = table.toe[row]
     if b > 0:
@@ -191,7 +251,13 @@ def toe_traction(table, load):
 
 @inlined
 def solve_positive(A, b, n):
-    """Solve the symmetric positive definite A x = b in place by LDL'; x is left in b."""
+    """Solve a symmetric positive definite system A x = b in place by LDL' factorisation.
+
+    Args:
+        A: Matrix, of which the lower half is used and overwritten, shape (n, n).
+        b: Right side, overwritten with x, shape (n,).
+        n: Number of unknowns.
+    """
     for j in range(n):
         for k in range(j):
             t = A[j, k] * A[k, k]
@@ -212,13 +278,13 @@ def solve_positive(A, b, n):
 
 @inlined
 def find_contacts(body, ground, p, R, theta, speed, place, velocity, normal, gap, state, flow):
-    """Find where each leg and each corner of the body would touch, and how far off the ground.
+    """Find the potential contact of each leg and body corner, and its distance from the ground.
 
     Args:
         body: Robot as arrays; see `Body`.
         ground: The ground.
-        p: Position of the body [m].
-        R: Its rotation, body to world.
+        p: Position of the body, shape (3,) [m].
+        R: Its rotation, body to world, shape (3, 3).
         theta: Leg angles at the end of the step, shape (6,) [rad].
         speed: Leg speeds in the step, shape (6,) [rad/s].
         place: Filled: contact from the body's centre, world frame, shape (14, 3) [m].
@@ -230,7 +296,7 @@ def find_contacts(body, ground, p, R, theta, speed, place, velocity, normal, gap
         flow: Filled: arc radius where a leg rolls, shape (14,) [m].
 
     Returns:
-        How many contacts were looked at: the corners only where the body comes near the ground.
+        Number of contacts computed: the corners only where the body comes near the ground.
     """
     for i in range(N_LEGS):
         hip = body.hips[i]
@@ -273,7 +339,15 @@ def _gap(ground, p, place, normal):
 
 @inlined
 def point_velocity(v, w, place, velocity, out):
-    """Fill `out` with the velocity of a material contact point: body, rotation and leg."""
+    """Compute the velocity of a material contact point from those of body and leg.
+
+    Args:
+        v: Velocity of the body, shape (3,) [m/s].
+        w: Angular velocity of the body in the world frame, shape (3,) [rad/s].
+        place: Contact from the body's centre, world frame, shape (3,) [m].
+        velocity: Velocity of the point relative to the body, world frame, shape (3,) [m/s].
+        out: Filled: velocity of the point, shape (3,) [m/s].
+    """
     out[0] = v[0] + w[1] * place[2] - w[2] * place[1] + velocity[0]
     out[1] = v[1] + w[2] * place[0] - w[0] * place[2] + velocity[1]
     out[2] = v[2] + w[0] * place[1] - w[1] * place[0] + velocity[2]
@@ -281,10 +355,18 @@ def point_velocity(v, w, place, velocity, out):
 
 @inlined
 def add_contact(A, b, dt, place, P, force):
-    """Add dt·J'PJ to the lower half of A and dt·J'·force to b.
+    """Add a contact to the step's linear system: dt·J'PJ to A, lower half, and dt·J'·force to b.
 
-    J = [1, -place×] takes velocity and angular velocity of the body to the velocity at `place`;
-    P is symmetric, shape (3, 3).
+    J = [1, -place×] is the contact Jacobian. It takes velocity and angular velocity of the body to
+    the velocity at `place`.
+
+    Args:
+        A: Matrix of the step, updated, shape (6, 6).
+        b: Right side of the step, updated, shape (6,).
+        dt: Length of the step [s].
+        place: Contact from the body's centre, world frame, shape (3,) [m].
+        P: Symmetric damping matrix of the contact, shape (3, 3) [N s/m].
+        force: Force of the contact at zero velocity of the body, shape (3,) [N].
     """
     x, y, z = place
     for j in range(3):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-r"""Walking without slip: what the legs' geometry alone makes of leg angles.
+r"""Kinematic walking models without slip, from leg angles and the legs' geometry.
 
 `walk_no_slip` takes the legs as they are. The robot rests on the legs that hold it
 (`model.contact.stance`), and its body moves such that their material contact points stand still,
@@ -7,8 +7,8 @@ r"""Walking without slip: what the legs' geometry alone makes of leg angles.
 .. math::
     v + \omega \times q_i + \dot\theta_i\, e_y \times (p_i - h_i) = 0 .
 
-Vertically three legs determine height, roll and pitch rate exactly; horizontally two equations a
-leg for three unknowns cannot all hold when a robot turns, and least squares decides.
+Vertically three legs determine height, roll and pitch rate exactly. Horizontally two equations a
+leg for three unknowns cannot all hold when a robot turns, and are solved by least squares.
 
 `walk_wheels` is the predecessor's model, section 2-4: six wheels of radius 2r that do not steer.
 The text says 4r, but its hip speed is 2 r theta_dot, and with that its results follow.
@@ -66,12 +66,12 @@ def walk_no_slip(
         dt: Length of a step [s].
 
     Returns:
-        The path. `slip_velocity` is what the legs cannot avoid against each other; forces and slip
+        The path. `slip_velocity` is the residual of the least squares; forces and slip
         ratio are unknown to this model, NaN on the ground.
 
     Raises:
         DomainError: The duration is shorter than a step.
-        WalkError: At some instant no three legs hold the robot; says when.
+        WalkError: At some instant no three legs hold the robot; the message says when.
     """
     return _walk(robot, reference, duration, dt, wheels=False)
 
@@ -81,8 +81,20 @@ def walk_wheels(
 ) -> WalkPath:
     r"""Walk as on wheels of radius 2r, each leg on the ground moving its hip by 2 r theta_dot.
 
-    Args, results and errors are those of `walk_no_slip`; the body stays level at 2r, and
-    `slip_velocity` is the sideways velocity of the hips, which the wheels ignore.
+    Args:
+        robot: The robot.
+        reference: Its leg angles over time; of any gait in which three legs hold the robot.
+        duration: Time walked [s].
+        dt: Length of a step [s].
+
+    Returns:
+        The path; the body stays level at 2r. `slip_velocity` is the sideways velocity of the hips,
+        which the wheels ignore, and what least squares leaves along the heading; forces and slip
+        ratio are unknown to this model, NaN on the ground.
+
+    Raises:
+        DomainError: The duration is shorter than a step.
+        WalkError: At some instant no three legs hold the robot; the message says when.
     """
     return _walk(robot, reference, duration, dt, wheels=True)
 
@@ -127,7 +139,7 @@ def _motion(robot: Robot, reference: LegReference, t: Array, *, wheels: bool) ->
 
 
 def _integrate(twist: Array, dt: float) -> tuple[Array, Array]:
-    """Add up steps of constant velocity and yaw rate; the chord points along the mean heading."""
+    """Integrate steps of constant velocity and yaw rate; chords point along the mean heading."""
     yaw = np.concatenate([[0.0], np.cumsum(twist[:, 2]) * dt])
     middle = 0.5 * (yaw[1:] + yaw[:-1])
     forward, left = twist[:, 0] * dt, twist[:, 1] * dt
@@ -139,13 +151,24 @@ def _integrate(twist: Array, dt: float) -> tuple[Array, Array]:
 
 @compiled
 def move(skeleton, theta, speed, wheels, motion):
-    """Fill `motion` instant by instant; return how many had legs to stand on."""
+    """Compute the motion of the body at every instant from the leg angles.
+
+    Args:
+        skeleton: The robot's geometry.
+        theta: Leg angles, shape (n, 6) [rad].
+        speed: Leg speeds, shape (n, 6) [rad/s].
+        wheels: Whether to take the legs for wheels, as `walk_wheels` does.
+        motion: Filled: the motion.
+
+    Returns:
+        Number of instants computed: n, or fewer where no three legs hold the robot.
+    """
     hips, r, beyond = skeleton
     points, up, seen = np.empty((6, 3)), np.empty(3), np.empty((6, 2))
     legs = np.full(3, -1, np.intp)
     level, own = np.empty(6), np.empty((6, 3))
     for k in range(len(theta)):
-        # The legs of the instant before, as long as they hold: among four legs in one plane any
+        # Keep the legs of the instant before while stable: among four legs in one plane any
         # three would do, and they should not alternate.
         kept = (
             legs[0] >= 0 and holds(theta[k], hips, r, beyond, legs, points, up, seen) >= -ON_GROUND
@@ -176,9 +199,14 @@ def move(skeleton, theta, speed, wheels, motion):
 
 @compiled
 def leg_velocities(hips, points, up, speed, own):
-    """Fill `own` (6, 3) with the legs' material velocities at their lowest points [m/s].
+    """Compute the legs' material velocities at their lowest points, relative to the body.
 
-    Relative to the body, along forward, left and up.
+    Args:
+        hips: Hip positions in the body frame, shape (6, 3) [m].
+        points: Lowest points in the body frame, shape (6, 3) [m].
+        up: Vertical direction in the body frame, shape (3,) [-].
+        speed: Leg speeds, shape (6,) [rad/s].
+        own: Filled: velocities along forward, left and up, shape (6, 3) [m/s].
     """
     size = np.sqrt(1 - up[0] ** 2)
     for leg in range(6):
@@ -192,23 +220,23 @@ def leg_velocities(hips, points, up, speed, own):
 
 @compiled
 def stand_still(seen, below, own, up, legs, contact, twist, slip):
-    """Fill the body's twist that keeps contacts in place, and the slip that is left.
+    """Compute the twist that keeps contacts in place, by least squares, and the remaining slip.
 
     Args:
         seen: Contact points from the body's centre, forward and left, shape (6, 2) [m].
-        below: How far each lies below the centre, shape (6,) [m].
-        own: The legs' own velocities; see `leg_velocities`.
-        up: Vertical direction in the body frame, shape (3,).
-        legs: The three legs that determine height, roll and pitch.
+        below: Distance of each below the centre, shape (6,) [m].
+        own: The legs' own velocities; see `leg_velocities`, shape (6, 3) [m/s].
+        up: Vertical direction in the body frame, shape (3,) [-].
+        legs: The three legs that determine height, roll and pitch, shape (3,).
         contact: Legs on the ground, 1 or 0, shape (6,).
-        twist: Filled with forward and left velocity and yaw rate, shape (3,).
-        slip: Filled, shape (6, 2) [m/s].
+        twist: Filled: forward and left velocity [m/s] and yaw rate [rad/s], shape (3,).
+        slip: Filled: velocity over the ground, shape (6, 2) [m/s].
     """
     roll, pitch = vertical_rates(seen, own, legs)
     count, mean = 0.0, np.zeros(4)
     for leg in range(6):
         if contact[leg] > 0:
-            # What the body's horizontal motion has to be at this contact.
+            # Horizontal velocity that the body needs at this contact.
             slip[leg, 0] = -own[leg, 0] + pitch * below[leg]
             slip[leg, 1] = -own[leg, 1] - roll * below[leg]
             count += 1.0
@@ -234,7 +262,16 @@ def stand_still(seen, below, own, up, legs, contact, twist, slip):
 
 @compiled
 def vertical_rates(seen, own, legs):
-    """Compute angular velocity about forward and left that keeps three legs on the ground."""
+    """Compute the angular velocity about forward and left that keeps three legs on the ground.
+
+    Args:
+        seen: Lowest points seen from above, shape (6, 2) [m].
+        own: Velocities of the legs relative to the body: forward, left, up, shape (6, 3) [m/s].
+        legs: Indices of the three legs, shape (3,).
+
+    Returns:
+        Angular velocity about forward and about left [rad/s].
+    """
     a, b, c = legs
     # v_z + w_x y - w_y x + own_z = 0 for each; differences leave w_x and w_y.
     x1, y1, d1 = seen[b, 0] - seen[a, 0], seen[b, 1] - seen[a, 1], own[a, 2] - own[b, 2]
@@ -245,7 +282,16 @@ def vertical_rates(seen, own, legs):
 
 @compiled
 def roll_wheels(hips, r, speed, contact, twist, slip):
-    """Fill the twist of wheels of radius 2r that do not steer, by least squares over them."""
+    """Compute the twist of wheels of radius 2r that do not steer, by least squares.
+
+    Args:
+        hips: Hip positions in the body frame, shape (6, 3) [m].
+        r: Radius of the legs' arcs [m].
+        speed: Leg speeds, shape (6,) [rad/s].
+        contact: Whether a leg is on the ground, 1 or 0, shape (6,).
+        twist: Filled: forward and leftward velocity [m/s] and yaw rate [rad/s], shape (3,).
+        slip: Filled for legs on the ground: velocity over the ground, shape (6, 2) [m/s].
+    """
     count, mean_y, mean_v = 0.0, 0.0, 0.0
     for leg in range(6):
         if contact[leg] > 0:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A walked path: where the body was, and what each leg did, at every instant."""
+"""A walked path: pose of the body and state of each leg at every sample."""
 
 from dataclasses import dataclass, fields
 
@@ -12,7 +12,7 @@ from model.slip.law import Array
 
 @dataclass(frozen=True)
 class WalkPath:
-    """What a walking model says, sample by sample.
+    """Result of a walking model, sample by sample.
 
     Attributes:
         t: Times, shape (n,) [s].

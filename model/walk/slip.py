@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""How the legs of a walk slip: a calibrated slip curve, or Coulomb friction."""
+"""Slip law of a walk: a calibrated slip curve, or Coulomb friction."""
 
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Slip:
-    """A slip law for walking, with where it comes from.
+    """A slip law for walking, with its source.
 
     Attributes:
         law: A calibrated curve, or Coulomb friction by slip velocity.
@@ -45,7 +45,7 @@ class Slip:
             weight: Weight of the robot [N].
 
         Raises:
-            DefinitionMismatch: The curve is one of another slip definition than the rig's.
+            DefinitionMismatch: The curve has another slip definition than the rig's.
         """
         from model.walk.thesis import law_traction, table_traction
 
@@ -60,9 +60,9 @@ class Slip:
         return None if isinstance(self.law, VelocityCoulomb) else self.law.load_range
 
     def loads_below_tested(self, path: WalkPath) -> float | None:
-        """Compute the share of leg contacts whose load lies below what was tested [-].
+        """Compute the share of leg contacts whose load lies below the tested range [-].
 
-        None where no load was ever tested: an assumed law has no range.
+        It is None for an assumed law, which has no tested range.
         """
         if self.tested_loads is None:
             return None

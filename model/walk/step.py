@@ -25,18 +25,18 @@ from model.walk.kernel import (
 )
 from model.walk.traction import TractionTable
 
-ROUNDS = 2  # solves a step: one to settle which contacts press and how hard, one to go by it
-MOST_ROUNDS = 8  # until the contacts that were taken to press are those that do
-FINE_STEP = 0.0005  # s, where contacts change: two tripods on the ground at once is soon over
+ROUNDS = 2  # solves a step: one for the contacts that press and their loads, one to use them
+MOST_ROUNDS = 8  # largest number of solves until the assumed contacts are those that press
+FINE_STEP = 0.0005  # s, where contacts change: both tripods are on the ground only for a short time
 FINE_TIME = 0.005  # s, after a change
-BRISTLE_STIFFNESS = 0.1  # of the normal stiffness: a foot gives tenths of a millimetre, then slides
+BRISTLE_STIFFNESS = 0.1  # of the normal stiffness: a foot yields some tenths of a millimetre
 
 
 class Spare(NamedTuple):
-    """Arrays that the loop writes over.
+    """Preallocated work arrays of the loop.
 
     Attributes:
-        work: What a step fills in.
+        work: Work arrays of a step.
         before: State before a step.
         speed: Leg speeds in a step, shape (6,) [rad/s].
         angles: Leg angles at the end of a finer step, shape (6,) [rad].
@@ -62,17 +62,17 @@ def run_steps(
     pose: Array,
     legs: Array,
 ) -> int:
-    """Walk through leg angles at equal steps.
+    """Integrate a walk through leg angles at equal steps.
 
-    A step in which a contact begins or ends is taken again in finer ones, and so are those that
-    follow for a few milliseconds.
+    A step in which a contact begins or ends is repeated with finer steps. The steps of the next few
+    milliseconds are finer too.
 
     Args:
         body: The robot.
         table: The slip law.
         ground: The ground.
-        contacts: How hard contacts are.
-        state: Where to start; left where the walk ended.
+        contacts: Stiffness and damping of contacts.
+        state: Initial state, overwritten with the final one.
         theta: Leg angles at every step's start and the last one's end, shape (n + 1, 6) [rad].
         dt: Length of a step [s].
         pose: Filled at each step's end: position and quaternion, shape (n, 7).
@@ -89,7 +89,7 @@ def run_steps(
 
 @borrowing
 def _steps(body, table, ground, contacts, state, theta, dt, pose, legs, spare):
-    """Walk as `run_steps` does, in arrays that it made."""
+    """Integrate as `run_steps` does, with the arrays that it allocated."""
     work, before, speed, angles, loaded = spare
     parts = max(int(np.ceil(dt / FINE_STEP - 1e-9)), 1)
     fine_steps = int(np.ceil(FINE_TIME / dt))
@@ -121,15 +121,15 @@ def _steps(body, table, ground, contacts, state, theta, dt, pose, legs, spare):
 
 @inlined
 def one_step(body, table, ground, contacts, state, work, theta, speed, dt):
-    """Take one linearly implicit step; see `model.walk.kernel`.
+    """Integrate one linearly implicit step; see `model.walk.kernel`.
 
     Args:
         body: The robot.
         table: The slip law.
         ground: The ground.
-        contacts: How hard contacts are.
-        state: State at the start, left at the end.
-        work: Filled with what the contacts did.
+        contacts: Stiffness and damping of contacts.
+        state: State at the start, overwritten with that at the end.
+        work: Filled with the contacts of the step.
         theta: Leg angles at the end, shape (6,) [rad].
         speed: Leg speeds in the step, shape (6,) [rad/s].
         dt: Length of the step [s].
@@ -142,7 +142,7 @@ def one_step(body, table, ground, contacts, state, work, theta, speed, dt):
     for i in range(n, N_CONTACTS):
         work.load[i] = 0.0
     for i in range(n):
-        if work.load[i] == 0.0 or work.kind[i] == ROLLING:  # nothing that a bristle could hold
+        if work.load[i] == 0.0 or work.kind[i] == ROLLING:  # no bristle there
             state.stretch[i, 0] = state.stretch[i, 1] = state.stretch[i, 2] = 0.0
     for i in range(3):
         work.b[i], work.b[3 + i] = state.v[i], state.w[i]
@@ -168,14 +168,14 @@ def one_step(body, table, ground, contacts, state, work, theta, speed, dt):
 
 @inlined
 def add_contact_forces(table, contacts, state, work, n, speed, dt):
-    """Add the contacts' forces, linear in the final velocities about a guess, to a step's system.
+    """Add the contact forces, linearised in the final velocities about a guess, to a step's system.
 
     Args:
         table: The slip law.
-        contacts: How hard contacts are.
+        contacts: Stiffness and damping of contacts.
         state: State at the step's start.
         work: The contacts and the guess; load and secant of each contact are filled in.
-        n: How many contacts there are.
+        n: Number of contacts.
         speed: Leg speeds in the step, shape (6,) [rad/s].
         dt: Length of the step [s].
     """
@@ -214,9 +214,22 @@ def add_contact_forces(table, contacts, state, work, n, speed, dt):
 
 @inlined
 def bristle_pull(table, contacts, stretch, load, x, y, z):
-    """Compute a bristle's force over its stretch after a further slip of (x, y, z) [N/m].
+    """Compute a bristle's force over its stretch after a further slip of (x, y, z).
 
-    Its stiffness, or what traction allows where that is less: then it slides at the limit.
+    It is the bristle's stiffness, or less where the force would exceed the largest traction: the
+    bristle then slides at that limit.
+
+    Args:
+        table: The slip law.
+        contacts: Stiffness and damping of contacts.
+        stretch: Stretch of the bristle before, shape (3,) [m].
+        load: Normal force of the contact [N].
+        x: Further slip along x [m].
+        y: Further slip along y [m].
+        z: Further slip along z [m].
+
+    Returns:
+        Force over stretch [N/m].
     """
     stiffness = BRISTLE_STIFFNESS * contacts.stiffness
     size = np.sqrt((stretch[0] + x) ** 2 + (stretch[1] + y) ** 2 + (stretch[2] + z) ** 2)
@@ -226,7 +239,14 @@ def bristle_pull(table, contacts, stretch, load, x, y, z):
 
 @inlined
 def contacts_agree(contacts, work, n, dt):
-    """Put the solved velocities' loads into `work`; tell whether the same contacts press."""
+    """Compute the loads of the solved velocities; return whether the same contacts press as before.
+
+    Args:
+        contacts: Stiffness and damping of contacts.
+        work: Arrays of the step with the solved velocities in `b`; loads are overwritten.
+        n: Number of contacts.
+        dt: Length of the step [s].
+    """
     k, c = contacts.stiffness, contacts.damping
     v, w, point = work.b[:3], work.b[3:], work.point
     agree = True
@@ -245,7 +265,17 @@ def contacts_agree(contacts, work, n, dt):
 
 @inlined
 def leg_turn(R, speed, w, i):
-    """Compute the speed at which leg i turns relative to the ground, about the body's y axis."""
+    """Compute the speed at which a leg turns relative to the ground, about the body's y axis.
+
+    Args:
+        R: Rotation of the body, body to world, shape (3, 3).
+        speed: Leg speeds relative to the body, shape (6,) [rad/s].
+        w: Angular velocity of the body in the world frame, shape (3,) [rad/s].
+        i: Index of the leg.
+
+    Returns:
+        Angular speed [rad/s].
+    """
     return speed[i] + R[0, 1] * w[0] + R[1, 1] * w[1] + R[2, 1] * w[2]
 
 
@@ -265,7 +295,7 @@ def _inertial_part(mass, inertia, gyro, state, dt, A, b):
 
 @inlined
 def _stretch_bristle(table, contacts, state, work, i, dt):
-    """Stretch a bristle by the step's slip, and let it slide where traction is used up."""
+    """Stretch a bristle by the step's slip; let it slide where the largest traction is reached."""
     if work.load[i] == 0.0 or work.kind[i] == ROLLING:
         return
     point, m = work.point, work.normal[i]
@@ -315,7 +345,7 @@ def _world_inertia(R, principal, out):
 
 @inlined
 def _gyroscopic(inertia, w, out):
-    """Fill with -w × (I w), the moment that turns the axis of a turning body [N m]."""
+    """Compute the gyroscopic moment -w × (I w) [N m]."""
     L0 = inertia[0, 0] * w[0] + inertia[0, 1] * w[1] + inertia[0, 2] * w[2]
     L1 = inertia[1, 0] * w[0] + inertia[1, 1] * w[1] + inertia[1, 2] * w[2]
     L2 = inertia[2, 0] * w[0] + inertia[2, 1] * w[1] + inertia[2, 2] * w[2]

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
 """The stride map: once a constant gait repeats itself, every further stride is one planar step.
 
-On flat ground nothing depends on where the robot stands or which way it heads, so a settled stride
-moves the body by the same element of SE(2) each time; walking on is composing it with itself.
+On flat ground the motion does not depend on position or heading. A settled stride therefore
+moves the body by the same element of SE(2) each time, and the path is its repeated composition.
 """
 
 from typing import NamedTuple
@@ -31,7 +31,7 @@ from model.walk.traction import TractionTable
 
 SETTLED = 1e-4  # of a stride's length: change from one stride to the next
 SETTLED_TURN = 1e-5  # change of its turn [rad]; n strides on, n/2 of it in the path's direction
-MAX_STRIDES = 12  # walked before the last is taken as settled; a tetrapod rocks for a few
+MAX_STRIDES = 12  # after which the last is taken as settled; a tetrapod rocks for a few strides
 
 
 class Planar(NamedTuple):
@@ -48,7 +48,16 @@ class Planar(NamedTuple):
     yaw: float
 
     def then(self, x: Array, y: Array, yaw: Array) -> tuple[Array, Array, Array]:
-        """Place displacements, given in this pose's frame, in the frame this pose is given in."""
+        """Compose this pose with poses that are given in its frame (SE(2) composition).
+
+        Args:
+            x: Forward displacements in this pose's frame, shape (n,) [m].
+            y: Displacements to the left, shape (n,) [m].
+            yaw: Turns, shape (n,) [rad].
+
+        Returns:
+            x [m], y [m] and yaw [rad] in the frame that this pose is given in.
+        """
         c, s = np.cos(self.yaw), np.sin(self.yaw)
         return self.x + c * x - s * y, self.y + s * x + c * y, self.yaw + yaw
 
@@ -64,7 +73,7 @@ def walk_by_strides(
 ) -> Poses:
     """Walk a gait that repeats itself: step by step until settled, then stride by stride.
 
-    A gait that is not settled after `MAX_STRIDES` goes on by the last of them.
+    A gait that is not settled after `MAX_STRIDES` continues with the last of them.
 
     Args:
         robot: The robot.

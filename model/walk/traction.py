@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Traction over load as the walk needs it: any slip law, tabulated for a compiled loop."""
+"""Traction over load for the walking models: any slip law, tabulated for a compiled loop."""
 
 from dataclasses import dataclass
 from typing import Literal, NamedTuple
@@ -17,7 +17,7 @@ TOE_LAWS: tuple[ToeLaw, ...] = ("saturated", "peak", "bristle")
 N_LOADS = 41  # rows 12 % of load apart: a table within a hundredth of its law's peak
 LOAD_RANGE = (0.02, 2.0)  # of the robot's weight; loads outside take the nearest row
 N_SLIPS = 257  # columns; cubic between them, far finer than a slip curve
-LARGEST_SLIP = 1e4  # a leg that hardly turns while it is dragged
+LARGEST_SLIP = 1e4  # slip ratio of a dragged leg that hardly turns
 FAR_OUT = 1e9  # slip ratio at which every law is saturated
 
 
@@ -70,7 +70,7 @@ class VelocityCoulomb:
     speed_scale: float = 0.001
 
     def __post_init__(self) -> None:
-        """Refuse friction that is none."""
+        """Check that friction and velocity scale are positive."""
         if not (self.friction > 0 and self.speed_scale > 0):
             raise DomainError(
                 f"friction is {self.friction:g} and its velocity scale {self.speed_scale:g} m/s; "
@@ -78,7 +78,13 @@ class VelocityCoulomb:
             )
 
     def table(self, *, weight: float, toe: ToeLaw = "saturated") -> TractionTable:
-        """Tabulate the law; `weight` [N] only sets the range of loads, of which it is free."""
+        """Tabulate the law for the compiled loop.
+
+        Args:
+            weight: Weight of the robot; the load of the table's only row, without effect on the
+                traction over load [N].
+            toe: Traction of a leg on its toe.
+        """
         _require_toe(toe)
         scale, w = _grid(1.0)
         x = scale * np.sinh(w)
@@ -144,12 +150,18 @@ def law_table(
 
 
 def curve_table(curve: SlipCurve, *, weight: float, toe: ToeLaw = "saturated") -> TractionTable:
-    """Tabulate a calibrated slip curve at its posterior mean; see `law_table`."""
+    """Tabulate a calibrated slip curve at its posterior mean; see `law_table`.
+
+    Args:
+        curve: The slip curve.
+        weight: Weight of the robot, which sets the range of loads [N].
+        toe: Traction of a leg on its toe.
+    """
     return law_table(curve.law, curve.values, weight=weight, definition=curve.definition, toe=toe)
 
 
 def _proportional_to_load(law: SlipLaw, values: Values, loads: Array) -> bool:
-    """Tell whether traction over load is the same at every load, by a few slips."""
+    """Return whether traction over load is the same at every load, tested at a few slips."""
     slips = np.array([0.001, 0.01, 0.03, 0.1, 0.3, 0.9])
     phi = np.asarray(law.force(slips, loads[:, None], values)) / loads[:, None]
     return np.allclose(phi, phi[0], rtol=1e-12, atol=0)
@@ -174,7 +186,7 @@ def _peak(law: SlipLaw, values: Values, loads: Array) -> Array:
 
 def _column_slopes(phi: Array, w: Array) -> Array:
     """Differentiate rows by a spline through them; the grid is far finer than the curve."""
-    from scipy.interpolate import CubicSpline  # here, for it takes as long as all else to import
+    from scipy.interpolate import CubicSpline  # late: as slow to import as all the rest
 
     return np.asarray(CubicSpline(w, phi, axis=1)(w, 1))
 

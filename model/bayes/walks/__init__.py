@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: MIT
-"""What tracked walks say of a robot's legs and floor: prior, misfit, posterior, fit."""
+"""Bayesian inference of leg offsets and floor from tracked walks: prior, misfit, posterior, fit."""

@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: MIT
-"""What tracked walks say of the legs and the floor.
+"""Bayesian fit of leg offsets and floor to tracked walks.
 
-Two walks cannot tell six offsets apart unless most are small. So a prior says: every leg is off by
-a little, and perhaps one, mounted wrong or knocked off before one walk, by a lot. For each of these
-cases the posterior's place is sought (`model.bayes.walks.modes`), around them it is drawn and
-weighted (`model.bayes.walks.importance`), with steering and stride integrated out
-(`model.bayes.walks.terms`). Paths alone often cannot name the leg: the weights say so.
+Two walks cannot identify six offsets unless most of them are small. The prior therefore states
+that every leg has a small offset, and that perhaps one leg has a large one, mounted wrong or
+knocked before one walk. Each of these cases has its mode (`model.bayes.walks.modes`), around which
+draws are made and weighted (`model.bayes.walks.importance`), with steering and stride integrated
+out (`model.bayes.walks.terms`). Paths alone often cannot identify the wrong leg; the weights of
+the cases then show it.
 """
 
 from collections.abc import Callable, Sequence
@@ -37,16 +38,16 @@ def fit_walks(
     threads: int = 2,
     progress: Progress | None = None,
 ) -> "WalkFit":
-    """Fit legs and floor to tracked walks of one robot on one floor.
+    """Fit leg offsets and floor to tracked walks of one robot on one floor.
 
     Args:
         robot: The robot as described.
         table: The slip law at the rig's posterior mean.
         walks: The walks.
-        prior: What is believed before.
-        rng: Source of randomness, for what counted angles leave open.
-        threads: Walks computed at once.
-        progress: Told the fraction done.
+        prior: The prior.
+        rng: Source of randomness, for leg angles that encoder counts leave undetermined.
+        threads: Number of walks computed at once.
+        progress: Called with the fraction done.
 
     Raises:
         InsufficientData: There is no walk.
@@ -70,7 +71,7 @@ def fit_walks(
 
 
 class _Density:
-    """The posterior density of all but steering and stride; keeps the terms it has computed."""
+    """Posterior density with steering and stride integrated out; stores the computed terms."""
 
     def __init__(self, misfits: Sequence[WalkMisfit], prior: WalkPrior, threads: int) -> None:
         self.misfits, self.prior, self.threads = misfits, prior, threads
@@ -83,12 +84,12 @@ class _Density:
         return self.log_prior(z, case) + self.rounds[-1].log_likelihood()
 
     def log_prior(self, z: Array, case: NDArray[np.intp]) -> Array:
-        """Compute the log prior density, but for a constant, shape (m,)."""
+        """Compute the log prior density up to a constant, shape (m,)."""
         logs = [self.prior.log_probability(c, walks=len(self.misfits)) for c in self.cases]
         return np.array(logs)[case] - 0.5 * (z**2).sum(axis=1)
 
     def terms(self, z: Array, case: NDArray[np.intp]) -> Terms:
-        """Walk every walk at m points of given cases."""
+        """Compute all walks at m points of given cases."""
         values = np.zeros((len(z), WRONG + 1))
         values[:, WALKED] = z * self.prior.scale[WALKED]
         steering, stride = self.prior.scale[LINEAR]
@@ -102,7 +103,7 @@ class _Density:
 
 
 class WalkFit:
-    """A finished fit: what all walks say, and what they say without one of them."""
+    """A finished fit: the posterior of all walks, and posteriors with one walk left out."""
 
     def __init__(
         self,
@@ -116,7 +117,7 @@ class WalkFit:
         self.posterior = self._of(range(len(names)))
 
     def without(self, walk: int) -> WalkPosterior:
-        """Return what the other walks say: the same draws, weighted without it.
+        """Return the posterior of the other walks: the same draws, reweighted without one walk.
 
         Args:
             walk: The walk's index.
@@ -153,7 +154,7 @@ class WalkFit:
         )
 
     def _values(self, z: Array, mean: Array, covariance: Array) -> Array:
-        """Draw steering and stride given all else; return all in their own units, (m, 14)."""
+        """Draw steering and stride given all else; return all parameters, shape (m, 14)."""
         noise = self._rng.standard_normal((len(z), 2, 1))
         scale = self._density.prior.scale
         values = np.zeros((len(z), WRONG + 1))
@@ -164,9 +165,10 @@ class WalkFit:
         return values
 
     def _starts(self, weight: Array, case: int, densest: int) -> list[Array]:
-        """Return where to climb from: all but a wrong leg at rest, and a case's best draw.
+        """Return starting points of the optimisation: the prior mode and a case's best draw.
 
-        A leg's scan has several tops; its weighted draws know which.
+        In the first, only a wrong leg's offset differs from zero. A scan over that offset has
+        several maxima, and its weighted draws show which of them is the highest.
         """
         plain, drawn = np.zeros(WRONG + 1), np.zeros(WRONG + 1)
         if self._density.cases[case] is not None:
@@ -177,10 +179,11 @@ class WalkFit:
     def _best(
         self, starts: Sequence[Array], case: int, keep: Sequence[int]
     ) -> tuple[Array, tuple[float, ...]]:
-        """Climb to a case's mode, and return it with every walk's misfit there.
+        """Maximise a case's posterior; return the mode with every walk's misfit there.
 
-        Not the mean: on a kink of the posterior that lies to the side on which nothing changes, and
-        does not walk as the draws do. On a kink a climb may end early too, so the best of some.
+        The mean is not used. On a kink of the posterior it lies on the side on which the walk does
+        not change, and its walk differs from those of the draws. On a kink an optimisation may also
+        end early, so the best of several is taken.
         """
         density, which = self._density, self._density.cases[case]
         misfits = [density.misfits[w] for w in keep]

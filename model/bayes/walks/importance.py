@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: MIT
-r"""Draws of what walks say, by adaptive importance sampling from the Gaussians at its modes.
+r"""Adaptive importance sampling of the posterior of walks, from the Gaussians at its modes.
 
-A gait whose legs take over from each other at equal heights sits on a kink: a common offset or a
-longer arc lengthens the steps to one side and does nothing to the other. So no Gaussian is the
-posterior. Draws from Student's t around each mode, then around the weighted draws themselves, all
-together and some of the best one by one, round after round, are weighted by the density they have
-over that which they were drawn from,
+The posterior of a gait whose legs take over from each other at equal heights has a kink: a common
+offset or a longer arc lengthens the steps to one side and has no effect to the other. The posterior
+is therefore not Gaussian. In each round draws are made from Student's t around each mode, then
+around the mean of the weighted draws of each case and around some of the draws themselves. They are
+weighted by the posterior density over that of the proposals,
 
 .. math::
     w_i \propto p(x_i) / \sum_k q_k(x_i) .
@@ -25,12 +25,12 @@ DRAWS = 200  # a round
 MOST_ROUNDS = 10
 WANTED = 150.0  # effective draws
 TAIL = 5  # degrees of freedom of what is drawn from
-ENOUGH = 60.0  # effective draws that a round's Gaussians are taken from
-BEFORE = 2.0  # draws a dimension that a case's last covariance counts as beside weighted ones
-PATIENCE = 3  # rounds of Gaussians alone, which are the better where they do at all
+ENOUGH = 60.0  # effective draws from which a round's Gaussians are estimated
+BEFORE = 2.0  # draws a dimension by whose weight a case's last covariance enters the new one
+PATIENCE = 3  # rounds of Gaussians alone, which are more efficient where they suffice
 CENTRES = 50  # draws that a round's narrower bumps are put around
 WIDTHS = (0.6, 0.3)  # of them, in turn, in standard deviations of their case
-_LEAST = 1e-3  # of probability that every case is drawn with
+_LEAST = 1e-3  # least probability with which each case is drawn
 
 
 @dataclass(frozen=True)
@@ -50,20 +50,20 @@ class Mode:
     log_evidence: float
 
     def within(self, dimensions: Sequence[int]) -> "Mode":
-        """Return its marginal in some dimensions."""
+        """Return the marginal distribution in some dimensions."""
         keep = list(dimensions)
         return replace(self, z=self.z[keep], covariance=self.covariance[np.ix_(keep, keep)])
 
 
 @dataclass(frozen=True)
 class WeightedDraws:
-    """Draws with weights.
+    """Draws with importance weights.
 
     Attributes:
         z: Draws in standard normal coordinates, shape (n, d).
         case: Index of each one's case, shape (n,).
-        weight: Their weights, together one, shape (n,).
-        log_proposal: Log density that each was drawn with, but for a constant, shape (n,).
+        weight: Their weights, with sum one, shape (n,).
+        log_proposal: Log proposal density of each up to a constant, shape (n,).
     """
 
     z: Array
@@ -79,13 +79,13 @@ def weighted_draws(
     rng: np.random.Generator,
     tell: Callable[[float], None],
 ) -> WeightedDraws:
-    """Draw from Gaussians at modes, then from those of the weighted draws, till they suffice.
+    """Draw weighted samples of the posterior by adaptive importance sampling.
 
     Args:
         modes: One a case, in the order that cases are counted.
         log_density: Log posterior density at points of given cases.
         rng: Source of randomness.
-        tell: Told the fraction done.
+        tell: Called with the fraction done.
     """
     rounds = [_around_modes(modes)]
     z, case = np.empty((0, len(modes[0].z))), np.empty(0, dtype=np.intp)
@@ -112,7 +112,7 @@ def weighted_draws(
 
 @dataclass(frozen=True)
 class _Bumps:
-    """Student's t of one shape around some points of one case.
+    """Proposal: Student's t distributions of equal shape around some points of one case.
 
     Attributes:
         case: Index of the case.
@@ -128,7 +128,7 @@ class _Bumps:
 
 
 def _around_modes(modes: Sequence[Mode]) -> list[_Bumps]:
-    """Draw each case from its Gaussian: by evidence, but all now and then."""
+    """Return one proposal around the mode of each case, with shares as in `_shares`."""
     return [
         _Bumps(i, mode.z[None], _root(mode.covariance), np.array([share]))
         for i, (mode, share) in enumerate(zip(modes, _shares(modes), strict=True))
@@ -143,7 +143,7 @@ def _around_draws(
     width: float,
     rng: np.random.Generator,
 ) -> list[_Bumps]:
-    """Draw from narrower bumps around some of the weighted draws: along a kink, whatever it is."""
+    """Return narrower proposals around some weighted draws, to follow a kink of any shape."""
     chosen = np.unique(rng.choice(len(z), size=CENTRES, p=weight))
     bumps = []
     for i in np.unique(case[chosen]):
@@ -158,7 +158,7 @@ def _root(covariance: Array) -> Array:
 
 
 def _draw(bumps: Sequence[_Bumps], rng: np.random.Generator) -> tuple[Array, NDArray[np.intp]]:
-    """Draw from Student's t: Gaussians over the root of a chi-square."""
+    """Draw from the proposals: Student's t as a Gaussian over the root of a scaled chi-square."""
     shares = np.concatenate([each.shares for each in bumps])
     means = np.concatenate([each.means for each in bumps])
     group = np.repeat(np.arange(len(bumps)), [len(each.means) for each in bumps])
@@ -171,7 +171,7 @@ def _draw(bumps: Sequence[_Bumps], rng: np.random.Generator) -> tuple[Array, NDA
 
 
 def _log_proposal(bumps: Sequence[_Bumps], z: Array, case: NDArray[np.intp]) -> Array:
-    """Return the log density that draws of given cases come with, but for a constant."""
+    """Compute the log proposal density at points of given cases, up to a constant."""
     log = np.full(len(z), -np.inf)
     total = sum(each.shares.sum() for each in bumps)
     d = z.shape[1]
@@ -190,7 +190,7 @@ def _log_proposal(bumps: Sequence[_Bumps], z: Array, case: NDArray[np.intp]) -> 
 
 
 def _shares(modes: Sequence[Mode]) -> Array:
-    """Return how often each case is drawn: by evidence, but all now and then."""
+    """Return each case's share of the draws: its evidence, with a small minimum."""
     log = np.array([mode.log_evidence for mode in modes])
     shares = np.exp(log - log.max())
     shares = shares / shares.sum() + _LEAST
@@ -198,10 +198,11 @@ def _shares(modes: Sequence[Mode]) -> Array:
 
 
 def _adapted(modes: Sequence[Mode], z: Array, case: NDArray[np.intp], weight: Array) -> list[Mode]:
-    """Take each case's Gaussian from its weighted draws, but its covariance partly from before.
+    """Update each case's Gaussian by its weighted draws, with a covariance shrunk to the former.
 
     A covariance from few draws is too narrow where none of them happened to lie, so that one draw
-    there outweighs all others. That of the round before counts as so many draws more.
+    there outweighs all others. The covariance of the round before therefore counts as a number of
+    further draws.
     """
     adapted = []
     for i, mode in enumerate(modes):
@@ -220,7 +221,7 @@ def _adapted(modes: Sequence[Mode], z: Array, case: NDArray[np.intp], weight: Ar
 
 
 def _tempered(log: Array) -> Array:
-    """Flatten weights until they leave enough draws to take a Gaussian from."""
+    """Temper weights until the effective number of draws suffices to estimate a Gaussian."""
     low, high = 0.0, 1.0
     for _ in range(20):
         power = 0.5 * (low + high)

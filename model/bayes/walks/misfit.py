@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: MIT
-r"""How far a tracked walk lies from what parameters predict, in units of what is expected.
+r"""Whitened residuals between a tracked walk and its prediction.
 
 Each walk is predicted from its leg angles and its first tracked pose. Differences from the other
-poses have the tracker's noise, that of the first pose, what counted angles leave open and what the
-walking model itself gets wrong: distance, curvature, and how hard contacts are. The last three are
-the same all along a walk, so its poses are strongly correlated,
+poses have the tracker's noise, that of the first pose, the spread that counted angles leave and the
+errors of the walking model: distance, curvature, and stiffness and damping of contacts. The last
+three are the same all along a walk, so its poses are strongly correlated,
 
 .. math::
     r \sim N(0,\; V + J_0 V_0 J_0^T + \sigma_d^2\, d d^T + \sigma_c^2\, c c^T + H + Q) .
@@ -37,10 +37,10 @@ from model.walk.dynamics import DynamicsOptions
 from model.walk.ensemble import PlanarWalk, WalkDraw, walk_ensemble
 from model.walk.traction import TractionTable
 
-RECONSTRUCTIONS = 16  # of counted angles, for the spread they leave; or walks by half the step
-LARGEST_STEP = 0.0025  # s; with a leg that is off 5 ms turn by 3 % more, for two thirds of the time
+RECONSTRUCTIONS = 16  # draws of counted angles, for their spread; or walks at half the step
+LARGEST_STEP = 0.0025  # s; with a wrong leg 5 ms turns by 3 % more and saves a third of the time
 OFFSETS_SD = np.radians(0.2)  # of the legs of those walks
-FEWEST_POSES = 3  # a start and two to compare
+FEWEST_POSES = 3  # one to start from and two to compare
 SAMPLING = 0.05  # s between the poses kept of a path
 FINE_SAMPLING = 0.02  # s, where roll and pitch are compared
 _BEND = 1e-3  # of distance and of curvature, to differentiate by
@@ -71,7 +71,7 @@ class TrackedWalk:
     tilt: TiltSeen | None = None
 
     def __post_init__(self) -> None:
-        """Refuse a track that says nothing."""
+        """Check that there are enough tracked poses."""
         if len(self.t) < FEWEST_POSES:
             raise InsufficientData(
                 f"walk '{self.name}' has {len(self.t)} tracked poses; expected {FEWEST_POSES} or "
@@ -81,15 +81,16 @@ class TrackedWalk:
 
 @dataclass(frozen=True)
 class WalkMisfit:
-    """One walk, ready to be compared.
+    """One tracked walk with the covariance of its differences from a prediction.
 
     Attributes:
         robot: The robot as described.
         table: The slip law as the rig has it.
         walk: The walk.
         options: How walks are computed.
-        root: Turns differences into residuals of unit covariance, shape (k, k).
-        tilt: What the IMU measured; None without one.
+        root: Whitening matrix, which turns differences into residuals of unit covariance, shape
+            (k, k).
+        tilt: Roll and pitch of the IMU; None without one.
     """
 
     robot: Robot
@@ -110,15 +111,15 @@ class WalkMisfit:
         rng: np.random.Generator,
         threads: int,
     ) -> "WalkMisfit":
-        """Compute what differences are expected.
+        """Compute the covariance of the differences of a walk from its prediction.
 
         Args:
             robot: The robot as described.
             table: The slip law at the rig's posterior mean.
             walk: The walk.
-            spread: What the walking model gets wrong in one walk.
-            rng: Source of randomness, for what counted angles leave open.
-            threads: Walks computed at once.
+            spread: Errors of the walking model in one walk.
+            rng: Source of randomness, for leg angles that encoder counts leave undetermined.
+            threads: Number of walks computed at once.
 
         Raises:
             WalkError: A walk diverged.
@@ -135,21 +136,28 @@ class WalkMisfit:
         return replace(misfit, root=np.linalg.inv(np.linalg.cholesky(covariance)))
 
     def finer(self) -> "WalkMisfit":
-        """Return the same, walked by the step of a single path."""
+        """Return the same misfit with the finer time step of a single path."""
         return replace(self, options=FINE)
 
     @property
     def size(self) -> int:
-        """How many residuals there are: of the poses, then of roll and pitch."""
+        """Number of residuals: of the poses, then of roll and pitch."""
         return len(self.root) + (0 if self.tilt is None else self.tilt.measured.size)
 
     @property
     def count(self) -> float:
-        """As how many independent numbers they count."""
+        """Effective number of independent residuals."""
         return len(self.root) + (0.0 if self.tilt is None else self.tilt.count)
 
     def residuals(self, state: LegState, *, threads: int) -> Array:
-        """Compute residuals of unit covariance for m states of the legs, shape (m, size).
+        """Compute the whitened residuals of this walk for m states of the legs.
+
+        Args:
+            state: The m states.
+            threads: Number of threads that compute walks.
+
+        Returns:
+            Residuals of unit covariance, shape (m, size).
 
         Raises:
             WalkError: A walk diverged.
@@ -159,13 +167,13 @@ class WalkMisfit:
         return self._with_tilt(self._difference(paths) @ self.root.T, walked)
 
     def terms(self, state: LegState, *, steering: float, stride: float, threads: int) -> Terms:
-        """Compute residuals for m states of the legs, and how they depend on steering and stride.
+        """Compute residuals for m states of the legs, and their derivatives by steering and stride.
 
         Args:
-            state: The legs; its own steering and stride do not count.
-            steering: The unit of steering [rad/m].
-            stride: The unit of stride [-].
-            threads: Walks computed at once.
+            state: The legs; its own steering and stride are ignored.
+            steering: Unit of steering [rad/m].
+            stride: Unit of stride [-].
+            threads: Number of walks computed at once.
 
         Raises:
             WalkError: A walk diverged.
@@ -178,7 +186,7 @@ class WalkMisfit:
             self._difference(bent(walked.poses, distance=no + stride, curvature=no)) - here,
         ]
         residuals = self._with_tilt(here @ self.root.T, walked)
-        by_bend = np.zeros((*residuals.shape, len(bends)))  # roll and pitch do not bend
+        by_bend = np.zeros((*residuals.shape, len(bends)))  # roll and pitch do not depend on them
         for i, bend in enumerate(bends):
             by_bend[:, : len(self.root), i] = bend @ self.root.T
         return Terms.of(residuals, by_bend)
@@ -207,7 +215,7 @@ class WalkMisfit:
         return np.linspace(0.0, end, max(round(end / step), 2) + 1)
 
     def _difference(self, paths: Poses) -> Array:
-        """Predict from the first pose, subtract what was tracked; shape (m, 3 (n - 1))."""
+        """Subtract the tracked poses from paths started at the first; shape (m, 3 (n - 1))."""
         states = from_first(states_at(paths, self.walk.t), self.walk.states[0])
         difference = states[:, 1:] - self.walk.states[1:]
         difference[..., 2] = wrap(difference[..., 2])
@@ -226,12 +234,12 @@ class WalkMisfit:
         total = self._of_tracker(self._difference(one)[0])
         total += self._of_model(one, spread) + 1e-12 * np.eye(len(total))
         total += self._of_contacts(spread, threads)
-        if len(several) > 1:  # the step moves each of them its own way, too
+        if len(several) > 1:  # their spread includes the error of the step
             return total + np.cov(self._difference(paths).T)
         return total + self._of_step(several[0], rng, threads)
 
     def _of_step(self, legs: LegReference, rng: np.random.Generator, threads: int) -> Array:
-        """Return the covariance that the step gives: it moves each path a little its own way."""
+        """Return the covariance of the error of the time step, which differs from path to path."""
         draws = [
             WalkDraw(replace(self.robot, leg_offset=self.robot.leg_offset + each), legs, self.table)
             for each in OFFSETS_SD * rng.standard_normal((RECONSTRUCTIONS, N_LEGS))
@@ -243,7 +251,7 @@ class WalkMisfit:
         return (coarse - fine).T @ (coarse - fine) / RECONSTRUCTIONS
 
     def _of_tracker(self, difference: Array) -> Array:
-        """Return the covariance that the tracker's noise gives, of the first pose and the others.
+        """Return the covariance of the tracker's noise, of the first pose and the others.
 
         Args:
             difference: Predicted minus tracked, shape (3 n,).
@@ -260,7 +268,7 @@ class WalkMisfit:
         return total
 
     def _of_model(self, path: Poses, spread: ModelSpread) -> Array:
-        """Return the covariance that the model's errors of distance and curvature give."""
+        """Return the covariance of the model's errors of distance and curvature."""
         no, small = np.zeros(1), np.full(1, _BEND)
         here = self._difference(path)[0]
         d = (self._difference(bent(path, distance=small, curvature=no))[0] - here) / _BEND
@@ -268,9 +276,10 @@ class WalkMisfit:
         return spread.distance**2 * np.outer(d, d) + spread.curvature**2 * np.outer(c, c)
 
     def _of_contacts(self, spread: ModelSpread, threads: int) -> Array:
-        """Return the covariance that contacts give which are harder or softer, more or less damped.
+        """Return the covariance due to the uncertain stiffness and damping of contacts.
 
-        It depends on the gait: where four legs carry, their loads, and so the turn, depend on it.
+        It depends on the gait: where four legs are on the ground, contact stiffness determines how
+        they share the load, and so the turn.
         """
         factors = np.exp(spread.contacts * np.array([[1, 0], [-1, 0], [0, 1], [0, -1]]))
         plain = WalkDraw(self.robot, middle(self.walk.legs), self.table)
@@ -281,7 +290,7 @@ class WalkMisfit:
 
 
 def from_first(states: Array, first: Array) -> Array:
-    """Move paths so that they begin at a pose.
+    """Move paths rigidly so that they begin at a pose.
 
     Args:
         states: x, y, yaw of m paths at n times, shape (m, n, 3) [m, m, rad].
@@ -296,5 +305,5 @@ def from_first(states: Array, first: Array) -> Array:
 
 
 def middle(legs: LegReference | QuantisedLog) -> LegReference:
-    """Return leg angles as they are, or the middle of those that counts allow."""
+    """Return leg angles as they are, or the middle ones of those that encoder counts allow."""
     return legs.smooth() if isinstance(legs, QuantisedLog) else legs

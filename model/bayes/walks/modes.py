@@ -1,16 +1,17 @@
 # SPDX-License-Identifier: MIT
-r"""Where the posterior of legs and floor lies, case by case: climbs and scans to Gaussians.
+r"""Modes of the posterior of legs and floor in every case, by Gauss-Newton and scans.
 
-All but a wrong leg's offset act nearly in proportion. So the case without a wrong leg is climbed
-first; there, and where all is as described, a scan moves one leg at a time through all it may be
-off by, with all else free to follow linearly,
+Residuals are nearly linear in all parameters but a wrong leg's offset. The case without a wrong
+leg is therefore maximised first. There, and at the prior mode, a scan changes the offset of one leg
+at a time over its whole range, while all other parameters follow linearly,
 
 .. math::
     -2 \log p(\delta) = r'^T (I + J J^T)^{-1} r' + (\delta / \sigma)^2, \quad
     r' = r(\delta) - J \hat z ,
 
-which finds the cases that matter wherever they are; the likeliest are then climbed themselves, from
-both scans: on kinks a climb ends early, and the better end counts.
+The scan finds every relevant case, however far its offset is from zero. The most probable cases are
+then maximised themselves, from both scans: at kinks an optimisation may end early, and the better
+of the two ends is taken.
 """
 
 from collections.abc import Callable, Sequence
@@ -24,18 +25,18 @@ from model.bayes.walks.prior import WRONG, Case, WalkPrior, WrongLeg, legs_of, w
 from model.robot import N_LEGS
 from model.slip.law import Array
 
-# Offsets by a tenth of a degree, factors by 5 %: contacts are not smooth below.
+# Steps of differences: offsets 0.1 degree, factors 5 %. Below, contacts are not smooth.
 DIFFERENCE = np.array([
     *[np.radians(0.1)] * N_LEGS, 0.05, 0.05, 0.1, np.radians(0.1), np.radians(1.0), 1e-3, 1e-3,
     np.radians(0.2),
 ])  # fmt: skip
 MOST_MOVES = 8
 SETTLED = 0.05  # of a prior's standard deviation
-GAINED = 0.3  # of twice the log posterior density: a climb that gains less is at its end
-SCANNED = np.radians(np.linspace(-12.0, 12.0, 17))  # offsets that are walked
-FINE = np.radians(np.linspace(-12.0, 12.0, 241))  # offsets between them
-CLIMBED = 4  # cases, at most, that are climbed after the scans
-UNLIKELY = 8.0  # below the best log evidence: such a case is not climbed; scans err by some
+GAINED = 0.3  # of twice the log posterior density: a smaller gain ends the optimisation
+SCANNED = np.radians(np.linspace(-12.0, 12.0, 17))  # offsets at which walks are computed
+FINE = np.radians(np.linspace(-12.0, 12.0, 241))  # offsets to which residuals are interpolated
+CLIMBED = 4  # largest number of cases that are optimised after the scans
+UNLIKELY = 8.0  # below the best log evidence, with a margin for the scans: not optimised
 
 
 def _evidence(mode: Mode) -> float:
@@ -43,13 +44,13 @@ def _evidence(mode: Mode) -> float:
 
 
 class ModeSearch:
-    """Residuals of all walks in standard normal coordinates, and the searches over them.
+    """Residuals of all walks in standard normal coordinates, and the searches for modes.
 
     Args:
         misfits: The walks.
-        prior: What is believed before.
-        threads: Walks computed at once.
-        numbers: How cases count these walks; in their order when None.
+        prior: The prior.
+        threads: Number of walks computed at once.
+        numbers: Indices by which cases refer to these walks; in their order when None.
     """
 
     def __init__(
@@ -67,7 +68,7 @@ class ModeSearch:
         """Find the mode of every case, in the order of `all_cases`.
 
         Args:
-            tell: Told the fraction done.
+            tell: Called with the fraction done.
 
         Raises:
             WalkError: A walk diverged.
@@ -88,16 +89,25 @@ class ModeSearch:
         return modes
 
     def _scan_at_rest(self) -> list[Mode]:
-        """Scan with all else where it was described to be.
+        """Scan about the prior mode.
 
-        At the mode without a wrong leg all else has already moved to do a wrong leg's work.
+        At the mode without a wrong leg the other parameters have already absorbed part of the
+        effect of a wrong leg.
         """
         rest = np.zeros(WRONG + 1)
         _, J = self._linearised(rest, None)
         return self.scan(self._mode(None, rest, np.eye(WRONG + 1), -np.inf), J)
 
     def residuals(self, z: Array, case: Case) -> Array:
-        """Compute residuals of all walks at m points, shape (m, n)."""
+        """Compute the whitened residuals of all walks at m points.
+
+        Args:
+            z: Points in standard normal coordinates, shape (m, 14).
+            case: The leg that is mounted wrong, or None.
+
+        Returns:
+            Residuals, shape (m, n).
+        """
         values = z * self.prior.scale
         return np.concatenate(
             [
@@ -108,11 +118,20 @@ class ModeSearch:
         )
 
     def cost(self, z: Array, case: Case) -> float:
-        """Return twice the negative log posterior density at a point, but for a constant."""
+        """Compute twice the negative log posterior density at a point, up to a constant.
+
+        Args:
+            z: The point in standard normal coordinates, shape (14,).
+            case: The leg that is mounted wrong, or None.
+        """
         return float((self.residuals(z[None], case)[0] ** 2).sum() + z @ z)
 
     def climb(self, case: Case, z: Array) -> tuple[Mode, Array]:
-        """Climb to the mode of a case by Gauss-Newton, with steps shortened while they overshoot.
+        """Find the mode of a case by Gauss-Newton with a line search.
+
+        Args:
+            case: The leg that is mounted wrong, or None.
+            z: Starting point in standard normal coordinates, shape (14,).
 
         Returns:
             The mode, and the Jacobian of the residuals there, shape (n, 14).
@@ -137,7 +156,15 @@ class ModeSearch:
         return self._mode(case, z, covariance, float(evidence)), J
 
     def scan(self, plain: Mode, J: Array) -> list[Mode]:
-        """Return the mode of every case by moving one leg at a time; the first is `plain`."""
+        """Estimate the mode of every case by a scan over the offset of one leg at a time.
+
+        Args:
+            plain: Mode of the case without a wrong leg, about which the scan is made.
+            J: Jacobian of the residuals at that mode, shape (n, 14).
+
+        Returns:
+            The modes in the order of `all_cases`; the first is `plain`.
+        """
         z = plain.z
         follow = np.linalg.inv(np.eye(len(J)) + J @ J.T)
         at_rest = self.residuals(z[None], None)[0]
@@ -161,10 +188,10 @@ class ModeSearch:
         return np.stack([np.interp(FINE, SCANNED, column) for column in walked.T], axis=1)
 
     def _scanned(self, case: WrongLeg, r: Array, J: Array, follow: NDArray[np.floating]) -> Mode:
-        """Sum up one leg's scan as a Gaussian.
+        """Summarise one leg's scan as a Gaussian.
 
         Args:
-            case: Which leg.
+            case: The wrong leg.
             r: Residuals at each of the fine offsets, all else at zero by `J`, shape (241, n).
             J: Jacobian of the residuals, shape (n, 14).
             follow: Inverse of I + J J^T, shape (n, n).

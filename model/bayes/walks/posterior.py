@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The posterior of legs and floor after walks: draws with weights, each with its case."""
+"""Posterior of leg offsets and floor after tracked walks, as weighted draws of several cases."""
 
 from dataclasses import dataclass
 
@@ -20,8 +20,8 @@ from model.predict import LegState
 from model.robot import N_LEGS
 from model.slip.law import Array
 
-UNINFORMED = 0.1  # contraction of variance below which walks said nothing
-FEW = 30  # effective draws; below, an answer hangs on a handful of them
+UNINFORMED = 0.1  # contraction of variance below which the walks do not inform a parameter
+FEW = 30  # effective draws; below, the posterior is not reliable
 
 
 @dataclass(frozen=True)
@@ -42,22 +42,22 @@ class Contraction:
 
     @property
     def contraction(self) -> float:
-        """One minus posterior over prior variance; zero where walks said nothing [-]."""
+        """One minus posterior over prior variance; zero where the walks hold no information [-]."""
         return 1 - (self.sd / self.prior_sd) ** 2
 
     @property
     def informed(self) -> bool:
-        """Tell whether the walks said anything of it."""
+        """Whether the walks inform this parameter."""
         return self.contraction > UNINFORMED
 
 
 @dataclass(frozen=True)
 class CaseFound:
-    """How likely a case is.
+    """Posterior probability of a case.
 
     Attributes:
         case: Which leg is wrong; None for no leg.
-        name: The same for a person.
+        name: The case as text.
         probability: Its posterior probability [-].
         offset: The leg's whole offset, without the common one; zero for no leg [rad].
         sd: Its standard deviation [rad].
@@ -72,16 +72,16 @@ class CaseFound:
 
 @dataclass(frozen=True)
 class WalkPosterior:
-    """The posterior after walks.
+    """The posterior after tracked walks.
 
     Attributes:
         prior: The prior.
         walks: Names of the walks, in the order that cases count them.
-        cases: What may be wrong.
+        cases: The cases, each a leg that may be wrong or none.
         values: Draws of the parameters in the order of `NAMES` and of the wrong leg's offset, shape
             (n, 14) [rad, -].
         case: Index of each draw's case, shape (n,).
-        weight: Weight of each draw, together one, shape (n,) [-].
+        weight: Weight of each draw, with sum one, shape (n,) [-].
         best: The mode of the likeliest case, shape (14,).
         best_case: That case.
         misfit: Mean squared whitened residual of each walk there, at most about 1 [-].
@@ -99,12 +99,12 @@ class WalkPosterior:
 
     @property
     def effective(self) -> float:
-        """Number of equally weighted draws that would say as much."""
+        """Effective sample size of the weighted draws."""
         return float(1 / np.sum(self.weight**2))
 
     @property
     def reliable(self) -> bool:
-        """Tell whether enough draws carry the answer."""
+        """Whether the effective sample size suffices."""
         return self.effective >= FEW
 
     def draw(self, n: int, *, rng: np.random.Generator, walk: int | None = None) -> LegState:
@@ -119,13 +119,13 @@ class WalkPosterior:
         return state_in(self.values[chosen], self.case[chosen], self.cases, walk=walk)
 
     def most_likely(self, *, walk: int | None = None) -> LegState:
-        """Return the one likeliest state of the legs."""
+        """Return the state of the legs at the mode of the likeliest case."""
         return legs_of(self.best[None], self.best_case, walk=walk)
 
     def with_wrong_legs(self) -> Array:
         """Return draws in the order of `NAMES`, shape (n, 13).
 
-        An offset counts a wrong leg's further one where it is wrong in every walk.
+        A leg's offset includes the further offset of a leg that is wrong in every walk.
         """
         values = self.values[:, :WRONG].copy()
         for i, case in enumerate(self.cases):
@@ -145,7 +145,7 @@ class WalkPosterior:
         )
 
     def found(self) -> list[CaseFound]:
-        """List the cases with any weight, likeliest first."""
+        """List the cases with non-zero weight, likeliest first."""
         rows = []
         for i, case in enumerate(self.cases):
             weight = np.where(self.case == i, self.weight, 0.0)
@@ -161,7 +161,7 @@ class WalkPosterior:
         return sorted(rows, key=lambda row: -row.probability)
 
     def of_floor_alone(self, *, rng: np.random.Generator) -> "WalkPosterior":
-        """Return what holds for another robot on the same floor: its legs are drawn anew."""
+        """Return draws for another robot on the same floor, with leg parameters from the prior."""
         keep = [NAMES.index(name) for name in FLOOR]
         values = rng.standard_normal(self.values.shape) * self.prior.scale
         best = np.zeros_like(self.best)
@@ -175,7 +175,7 @@ class WalkPosterior:
 def state_in(
     values: Array, case: NDArray[np.intp], cases: tuple[Case, ...], *, walk: int | None
 ) -> LegState:
-    """Turn draws of several cases into the state of the legs in a walk.
+    """Convert draws of several cases to the state of the legs in a walk.
 
     Args:
         values: Draws, shape (m, 14).

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What is believed of legs and floor before any walk, and which legs may be mounted wrong."""
+"""Prior of leg offsets and floor, and the cases of one leg that is mounted wrong."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
@@ -14,34 +14,34 @@ from model.slip.law import Array
 
 OFFSETS = tuple(f"leg_offset{leg}" for leg in range(1, N_LEGS + 1))
 FLOOR = ("grip", "slip_stiffness", "fall")
-# Whether a stepping leg's traction falls beyond its peak as under a rig's steady slip (1), or not
-# at all (0), as friction by velocity does, nobody has measured. Mean and standard deviation of both
-# views, equally likely:
+# Whether a stepping leg's traction has the post-peak drop of a rig's steady slip (1), or none
+# (0), as friction by velocity, has not been measured. Mean and standard deviation of the two,
+# equally likely:
 FALL, FALL_SD = 0.5, 0.5
-# Traction that rises from its peak on is none; that which falls more, unheard of.
+# Traction does not rise beyond its peak; a larger drop has not been observed.
 FALLS = (0.0, 1.5)
 NAMES = (*OFFSETS, *FLOOR, "common_offset", "leg_arc", "steering", "stride")
 UNITS = (*["rad"] * N_LEGS, "log", "log", "-", "rad", "rad", "rad/m", "-")
-WRONG = len(NAMES)  # index of the wrong leg's further offset, behind the others
-LINEAR = [NAMES.index("steering"), NAMES.index("stride")]  # of which residuals are linear
-WALKED = [i for i in range(WRONG + 1) if i not in LINEAR]  # what a walk must be walked for
+WRONG = len(NAMES)  # index of the wrong leg's further offset, after the others
+LINEAR = [NAMES.index("steering"), NAMES.index("stride")]  # residuals are linear in them
+WALKED = [i for i in range(WRONG + 1) if i not in LINEAR]  # parameters that need a new walk
 
 
 @dataclass(frozen=True)
 class WrongLeg:
-    """A leg that is off by a lot.
+    """A leg with a large constant offset.
 
     Attributes:
         leg: Its index.
-        walk: Index of the one walk in which it is, as after a knock; None for all of them, as
-            after an assembly.
+        walk: Index of the only walk in which it is off, as after a knock; None when it is off in
+            all of them, as after an assembly.
     """
 
     leg: int
     walk: int | None = None
 
     def concerns(self, walk: int | None) -> bool:
-        """Tell whether it is off in a walk; None asks for a walk to come."""
+        """Return whether the leg is off in a walk; None stands for a walk to come."""
         return self.walk is None or self.walk == walk
 
 
@@ -50,17 +50,17 @@ Case: TypeAlias = WrongLeg | None
 
 
 def wrong_legs(walks: int) -> tuple[WrongLeg, ...]:
-    """List what may be wrong in a number of walks: a leg, or a leg in one of them."""
+    """List the possible cases of one wrong leg: in all walks, or in one of them."""
     legs = range(N_LEGS)
     everywhere = tuple(WrongLeg(leg) for leg in legs)
-    if walks < 2:  # one walk does not tell its own from all
+    if walks < 2:  # with one walk both cases are the same
         return everywhere
     return (*everywhere, *(WrongLeg(leg, walk) for walk in range(walks) for leg in legs))
 
 
 @dataclass(frozen=True)
 class WalkPrior:
-    """What is believed before any walk.
+    """Prior before any walk.
 
     Attributes:
         offset_sd: Standard deviation of each leg's own offset [rad].
@@ -68,17 +68,18 @@ class WalkPrior:
             [rad].
         arc_sd: That of the legs' arc beyond the described one [rad].
         wrong_sd: That of the further offset of a leg that is mounted wrong [rad].
-        wrong: Probability that one leg is [-].
+        wrong: Probability that one leg is mounted wrong [-].
         grip_sd: Standard deviation of the logarithm of the factor on traction: floor and rig differ
             [-].
-        stiffness_sd: That of the factor on slip stiffness [-].
-        fall_sd: That of the factor on the fall beyond the peak, about `FALL` [-].
-        steering_sd: Standard deviation of the turn that is not the legs' [rad/m].
+        stiffness_sd: That of the logarithm of the factor on slip stiffness [-].
+        fall_sd: That of the factor on the post-peak drop, about `FALL` [-].
+        steering_sd: Standard deviation of the constant curvature that the legs do not explain
+            [rad/m].
         stride_sd: That of the relative error of distance [-].
-        spread: What the walking model gets wrong anew in each walk.
+        spread: Errors of the walking model, drawn anew in each walk.
 
     Raises:
-        DomainError: A standard deviation is not positive or `wrong` no probability.
+        DomainError: A standard deviation is not positive or `wrong` is not a probability.
     """
 
     offset_sd: float = float(np.radians(0.2))
@@ -94,7 +95,7 @@ class WalkPrior:
     spread: ModelSpread = field(default_factory=ModelSpread)
 
     def __post_init__(self) -> None:
-        """Refuse a prior that is none."""
+        """Check that standard deviations are positive and that `wrong` is a probability."""
         if not np.all(self.scale > 0):
             raise DomainError("a standard deviation of the prior is not above zero")
         if not 0 < self.wrong < 1:
@@ -109,7 +110,12 @@ class WalkPrior:
         ])  # fmt: skip
 
     def log_probability(self, case: Case, *, walks: int) -> float:
-        """Return the log of a case's probability among those of a number of walks."""
+        """Compute the log prior probability of a case.
+
+        Args:
+            case: The leg that is mounted wrong, or None.
+            walks: Number of walks.
+        """
         if case is None:
             return float(np.log(1 - self.wrong))
         if walks < 2:
@@ -132,11 +138,11 @@ def all_cases(walks: int) -> tuple[Case, ...]:
 
 
 def legs_of(values: Array, case: Case, *, walk: int | None = None) -> LegState:
-    """Turn parameters into the state of the legs in a walk.
+    """Convert parameters to the state of the legs in a walk.
 
     Args:
         values: Parameters in the order of `NAMES` and that of a wrong leg, shape (m, 14).
-        case: What is wrong.
+        case: The leg that is mounted wrong, or None.
         walk: The walk's index; None for a walk to come.
     """
     offset = leg_offsets(values, case, walk=walk)
@@ -153,7 +159,16 @@ def legs_of(values: Array, case: Case, *, walk: int | None = None) -> LegState:
 
 
 def leg_offsets(values: Array, case: Case, *, walk: int | None = None) -> Array:
-    """Return each leg's own offset, without the common one, shape (m, 6) [rad]."""
+    """Compute each leg's own offset, without the common one.
+
+    Args:
+        values: Parameter values in the order of `NAMES`, then that of a wrong leg, shape (m, 14).
+        case: The leg that is mounted wrong, or None.
+        walk: Index of the walk; None for a walk to come.
+
+    Returns:
+        Offsets, shape (m, 6) [rad].
+    """
     offset = values[:, :N_LEGS].copy()
     if case is not None and case.concerns(walk):
         offset[:, case.leg] += values[:, WRONG]
@@ -161,7 +176,7 @@ def leg_offsets(values: Array, case: Case, *, walk: int | None = None) -> Array:
 
 
 def describe(case: Case, walks: Sequence[str]) -> str:
-    """Say what a case means.
+    """Describe a case as text.
 
     Args:
         case: The case.

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
-r"""What tracked walks say of steering and stride, integrated out exactly.
+r"""Likelihood of tracked walks with steering and stride integrated out exactly.
 
-Steering bends a walked path and stride stretches it, so residuals are linear in the two, as in
-standard normal coordinates y, and a draw of all else need not guess them:
+Steering bends a walked path and stride stretches it, so residuals are linear in the two. In
+standard normal coordinates y they are integrated out, and need not be drawn:
 
 .. math::
     r = r_0 + D y, \quad y \sim N(0, I): \qquad
@@ -22,7 +22,7 @@ from model.slip.law import Array
 
 @dataclass(frozen=True)
 class Terms:
-    """Residuals of walks as they depend on steering and stride, for m draws of all else.
+    """Quadratic form of the residuals of walks in steering and stride, for m draws of all else.
 
     Attributes:
         square: :math:`r_0^T r_0` of each walk, shape (m, walks).
@@ -36,7 +36,7 @@ class Terms:
 
     @classmethod
     def of(cls, residuals: Array, bends: Array) -> "Terms":
-        """Sum up one walk.
+        """Compute the terms of one walk.
 
         Args:
             residuals: Whitened residuals without steering and stride, shape (m, k).
@@ -51,12 +51,12 @@ class Terms:
 
     @classmethod
     def beside(cls, walks: Sequence["Terms"]) -> "Terms":
-        """Join walks at the same draws."""
+        """Concatenate the terms of several walks at the same draws."""
         return cls(*(np.concatenate(part, axis=1) for part in _parts(walks)))
 
     @classmethod
     def below(cls, rounds: Sequence["Terms"]) -> "Terms":
-        """Join draws of the same walks."""
+        """Concatenate the terms of the same walks at further draws."""
         return cls(*(np.concatenate(part, axis=0) for part in _parts(rounds)))
 
     def only(self, walks: Sequence[int]) -> "Terms":
@@ -65,7 +65,7 @@ class Terms:
         return Terms(self.square[:, keep], self.slope[:, keep], self.curvature[:, keep])
 
     def log_likelihood(self) -> Array:
-        """Compute the log likelihood of each draw, but for a constant, shape (m,)."""
+        """Compute the log likelihood of each draw up to a constant, shape (m,)."""
         A = np.eye(2) + self.curvature.sum(axis=1)
         b = self.slope.sum(axis=1)
         explained = (b * np.linalg.solve(A, b[..., None])[..., 0]).sum(axis=1)

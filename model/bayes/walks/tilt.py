@@ -1,15 +1,14 @@
 # SPDX-License-Identifier: MIT
-r"""How far a walk's roll and pitch lie from an IMU's: what names a leg that a path cannot name.
+r"""Residuals of roll and pitch against an IMU, which identify a wrong leg where a path cannot.
 
-A leg that is off lifts or lowers its corner of the body while it carries. Several legs bend a path
-alike, but no two of them tilt the body alike at the same time of a stride. Means of short times are
-compared, apart from a constant, which is how the unit is mounted,
+A leg with an offset lifts or lowers its corner of the body while it carries load. Several legs bend
+a path alike, but no two of them tilt the body alike at the same time of a stride. Means over short
+times are compared, without their constant part, which depends on how the IMU is mounted,
 
 .. math::
     r = \frac{(\hat a_k - \bar{\hat a}) - (a_k - \bar a)}{\sigma \sqrt{S}} .
 
-What the model gets wrong is the same in each of the S strides, so that together they say as much as
-one.
+The model's error is the same in each of the S strides, so together they count as one.
 """
 
 from dataclasses import dataclass
@@ -43,12 +42,12 @@ class TiltSeen:
 
 @dataclass(frozen=True)
 class TiltMisfit:
-    """What an IMU measured, ready to be compared.
+    """Roll and pitch of an IMU, averaged for comparison with paths.
 
     Attributes:
-        mean: Takes means of a path's samples, shape (k, n).
-        measured: Means of what was measured, about their own mean, shape (k, 2) [rad].
-        strides: Strides walked.
+        mean: Averaging matrix of a path's samples, shape (k, n).
+        measured: Means of the measurement, about their own mean, shape (k, 2) [rad].
+        strides: Number of strides walked.
     """
 
     mean: Array
@@ -57,12 +56,12 @@ class TiltMisfit:
 
     @classmethod
     def of(cls, seen: TiltSeen, t: Array, legs: LegReference | QuantisedLog) -> "TiltMisfit":
-        """Take means of what was measured.
+        """Average the measurement over short times.
 
         Args:
-            seen: What was measured.
-            t: Times of the paths to come, shape (n,) [s].
-            legs: Leg angles, which tell the strides.
+            seen: Roll and pitch as measured.
+            t: Times of the paths' samples, shape (n,) [s].
+            legs: Leg angles, from which strides are counted.
 
         Raises:
             InsufficientData: IMU and walk share too little time.
@@ -80,7 +79,7 @@ class TiltMisfit:
 
     @property
     def count(self) -> float:
-        """As how many independent numbers the residuals count."""
+        """Effective number of independent residuals."""
         return 2 * len(self.measured) / self.strides
 
     def residuals(self, tilt: Array) -> Array:
@@ -91,13 +90,13 @@ class TiltMisfit:
 
 
 def _means(t: Array, k: int) -> NDArray[np.float64]:
-    """Return the matrix that takes means of samples at times t over k equal times; (k, n)."""
+    """Return the matrix of means of samples at times t over k equal intervals, shape (k, n)."""
     within = np.floor(t / TIME + 1e-9).astype(int) == np.arange(k)[:, None]
     return within / np.maximum(within.sum(axis=1, keepdims=True), 1)
 
 
 def _strides(legs: LegReference | QuantisedLog, t: Array) -> float:
-    """Count the turns that legs make on the whole, at least one."""
+    """Count the turns of the legs, averaged over the legs, at least one."""
     angles = legs.smooth() if isinstance(legs, QuantisedLog) else legs
     first, last = angles.angles(t[[0, -1]])
     return max(float(np.abs(last - first).mean()) / (2 * np.pi), 1.0)

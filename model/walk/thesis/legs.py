@@ -53,7 +53,7 @@ class SwitchedLegs:
     start: Array
 
     def __post_init__(self) -> None:
-        """Refuse legs that cannot walk."""
+        """Check that touchdown, lift-off and speeds describe legs that turn forward."""
         for item in fields(self):
             values = np.array(getattr(self, item.name), dtype=float)
             if values.shape != (N_LEGS,) or not np.isfinite(values).all():
@@ -90,7 +90,7 @@ class SwitchedLegs:
         )  # fmt: skip
 
     def motion(self, dt: float, steps: int) -> LegMotion:
-        """Turn the legs.
+        """Compute leg angles and speeds at every step.
 
         Args:
             dt: Length of a step [s].
@@ -105,7 +105,13 @@ class SwitchedLegs:
 
 
 def leg_motion(reference: LegReference | SwitchedLegs, *, dt: float, steps: int) -> LegMotion:
-    """Turn the legs by a reference: by angle if they are such, else by the clock."""
+    """Sample leg angles and speeds at every step.
+
+    Args:
+        reference: Legs that switch speed by angle, or leg angles over time.
+        dt: Length of a step [s].
+        steps: Number of steps.
+    """
     if isinstance(reference, SwitchedLegs):
         return reference.motion(dt, steps)
     t = dt * np.arange(steps)

@@ -25,7 +25,7 @@ _CONVERGED = 1e-11  # N
 
 
 class Balance(NamedTuple):
-    """What the normal forces of three legs have to balance.
+    """Contacts of three legs and the accelerations that their normal forces have to produce.
 
     Attributes:
         arms: Contact points from the body's centre, inertial frame, shape (3, 3) [m].
@@ -44,13 +44,18 @@ class Balance(NamedTuple):
 
 @compiled
 def static_loads(points, weight, loads):
-    r"""Fill `loads` (3,) with the first guess from geometry, Eq. (4-15) to (4-18) [N].
+    r"""Compute the first guess of the normal forces from geometry, Eq. (4-15) to (4-18).
 
     .. math::
         \hat f_k = m g\,\frac{d_{Bk}}{d_k}
 
     with the distances of the body's centre, the origin here, and of contact k from the line through
-    the other two contacts. `points` (3, 2 or more) is seen from above.
+    the other two contacts.
+
+    Args:
+        points: Contact points seen from above, shape (3, 2 or more) [m].
+        weight: Sum of the normal forces, the m g above [N].
+        loads: Filled: normal forces, shape (3,) [N].
     """
     for k in range(3):
         i, j = (k + 1) % 3, (k + 2) % 3
@@ -62,20 +67,28 @@ def static_loads(points, weight, loads):
 
 @compiled
 def leg_force(axes, forward, left, up, force):
-    """Fill `force` (3,) with a leg's force in the inertial frame [N]."""
+    """Compute a leg's force in the inertial frame from its components in the contact frame.
+
+    Args:
+        axes: Forward, left and up of the contact frame, in rows, shape (3, 3) [-].
+        forward: Component along forward [N].
+        left: Component along left [N].
+        up: Component along up, the normal force [N].
+        force: Filled: force in the inertial frame, shape (3,) [N].
+    """
     for a in range(3):
         force[a] = forward * axes[0, a] + left * axes[1, a] + up * axes[2, a]
 
 
 @compiled
 def accelerations(balance, traction, loads, excess, slopes):
-    """Fill `excess` (2,) with roll and pitch acceleration beyond those wanted, and its slopes.
+    """Compute the roll and pitch acceleration beyond those wanted, and their derivatives by load.
 
     Args:
         balance: The contacts; see `Balance`.
         traction: The slip law.
         loads: Normal forces, shape (3,) [N].
-        excess: Filled, shape (2,) [rad/s2].
+        excess: Filled: accelerations, shape (2,) [rad/s2].
         slopes: Filled with the derivatives with respect to loads, shape (2, 3) [rad/(s2 N)].
     """
     force, slope = np.empty(3), np.empty(3)
@@ -97,7 +110,14 @@ def accelerations(balance, traction, loads, excess, slopes):
 
 @compiled
 def solve_inside(c, slopes, total, loads):
-    """Solve c + slopes f = 0 with the sum of f given; leaves non-finite f where singular."""
+    """Solve c + slopes f = 0 with the sum of f given.
+
+    Args:
+        c: Constant terms, shape (2,) [rad/s2].
+        slopes: Coefficients of f, shape (2, 3) [rad/(s2 N)].
+        total: Sum of f [N].
+        loads: Filled: f, not finite where the system is singular, shape (3,) [N].
+    """
     a, b = slopes[0, 0] - slopes[0, 2], slopes[0, 1] - slopes[0, 2]
     d, e = slopes[1, 0] - slopes[1, 2], slopes[1, 1] - slopes[1, 2]
     p, q = c[0] + slopes[0, 2] * total, c[1] + slopes[1, 2] * total
@@ -109,7 +129,15 @@ def solve_inside(c, slopes, total, loads):
 
 @compiled
 def solve_on_edges(c, slopes, total, most, loads):
-    """Minimise |c + slopes f|^2 where one of the three f is held at a bound."""
+    """Minimise |c + slopes f|^2 with the sum of f given and one of the three f at a bound.
+
+    Args:
+        c: Constant terms, shape (2,) [rad/s2].
+        slopes: Coefficients of f, shape (2, 3) [rad/(s2 N)].
+        total: Sum of f [N].
+        most: Upper bound of each f; the lower is zero [N].
+        loads: Filled: f of the minimum, shape (3,) [N].
+    """
     best = np.inf
     for i in range(3):
         j, k = (i + 1) % 3, (i + 2) % 3
@@ -130,14 +158,14 @@ def solve_on_edges(c, slopes, total, most, loads):
 
 @compiled
 def normal_forces(balance, traction, total, most, loads):
-    """Solve Eq. (4-22), starting from and leaving its result in `loads` (3,) [N].
+    """Solve Eq. (4-22) for the normal forces by Gauss-Newton, in place.
 
     Args:
-        balance: What is to be balanced; see `Balance`.
+        balance: Contacts and wanted accelerations; see `Balance`.
         traction: The slip law.
         total: Sum of the forces; at least 0 and at most three times `most` [N].
         most: Largest force of a leg [N].
-        loads: First guess and result [N].
+        loads: First guess, overwritten with the result, shape (3,) [N].
     """
     excess, slopes, c, trial = np.empty(2), np.empty((2, 3)), np.empty(2), np.empty(3)
     for _ in range(_ROUNDS):

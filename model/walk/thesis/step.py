@@ -32,7 +32,7 @@ from model.walk.thesis.loads import Balance, leg_force, normal_forces, static_lo
 from model.walk.thesis.traction import traction_force
 
 LARGEST_SLIP = 100.0  # where Listing A.19 cuts the slip ratio off [-]
-RUNAWAY = 50.0  # no walking robot is as fast [m/s, rad/s]
+RUNAWAY = 50.0  # faster than any walking robot [m/s, rad/s]
 
 
 class Machine(NamedTuple):
@@ -47,7 +47,7 @@ class Machine(NamedTuple):
 
 
 class Manner(NamedTuple):
-    """How steps are taken; see `ThesisOptions`."""
+    """Settings of the steps; see `ThesisOptions`."""
 
     dt: float
     inner: int
@@ -59,7 +59,7 @@ class Manner(NamedTuple):
 
 
 class Legs(NamedTuple):
-    """Kinematics of the six legs at one instant, refilled at every step."""
+    """Kinematics of the six legs at one instant, overwritten at every step."""
 
     phi: Array
     phi_rate: Array
@@ -71,7 +71,7 @@ class Legs(NamedTuple):
 
 
 class Record(NamedTuple):
-    """What is kept of every sample: the state before its step, and the step's contacts."""
+    """Arrays of the samples that are kept: the state before a step, and the step's contacts."""
 
     state: Array
     contact: NDArray[np.bool_]
@@ -83,7 +83,13 @@ class Record(NamedTuple):
 
 @compiled
 def turn(q, vector, out):
-    """Fill `out` with a body vector in the inertial frame, Rx(roll) Ry(pitch) Rz(yaw)."""
+    """Rotate a body vector to the inertial frame by Rx(roll) Ry(pitch) Rz(yaw), Eq. (3-7).
+
+    Args:
+        q: Coordinates x, y, z [m], roll, pitch and yaw [rad], shape (6,).
+        vector: Vector in the body frame, shape (3,).
+        out: Filled: the vector in the inertial frame, shape (3,).
+    """
     cr, sr, cp, sp = np.cos(q[3]), np.sin(q[3]), np.cos(q[4]), np.sin(q[4])
     cy, sy = np.cos(q[5]), np.sin(q[5])
     x, y = cy * vector[0] - sy * vector[1], sy * vector[0] + cy * vector[1]
@@ -93,10 +99,23 @@ def turn(q, vector, out):
 
 @compiled
 def place_legs(machine, q, v, theta, speed, stance_speed, centre_before, legs):
-    """Fill `legs`; return the tilt X of Eq. (3-21).
+    """Compute the kinematics of the legs at one instant.
 
     Hips are placed from the body's position one step ago, as in the listing, where that variable
     is set after its use.
+
+    Args:
+        machine: The robot.
+        q: Coordinates x, y, z [m], roll, pitch and yaw [rad], shape (6,).
+        v: Their rates, shape (6,) [m/s, rad/s].
+        theta: Leg angles, shape (6,) [rad].
+        speed: Leg speeds, shape (6,) [rad/s].
+        stance_speed: Speeds that legs have, or would have, on the ground, shape (6,) [rad/s].
+        centre_before: Position of the body one step ago, shape (3,) [m].
+        legs: Filled: kinematics of the legs.
+
+    Returns:
+        Tilt X of Eq. (3-21) [-].
     """
     r, beyond = machine.radius, machine.toe_beyond
     tilt = thesis_tilt(q[3], q[4], q[5])
@@ -122,7 +141,16 @@ def place_legs(machine, q, v, theta, speed, stance_speed, centre_before, legs):
 
 @compiled
 def side_mean(values, contact, side):
-    """Average over the legs on the ground of one side, 0 left or 1 right."""
+    """Average over the legs on the ground of one side.
+
+    Args:
+        values: One value a leg, shape (6,).
+        contact: Whether a leg is on the ground, shape (6,).
+        side: 0 for left, 1 for right.
+
+    Returns:
+        The mean; NaN with no leg of the side on the ground.
+    """
     total, count = 0.0, 0
     for i in range(side, 6, 2):
         if contact[i]:
@@ -133,7 +161,18 @@ def side_mean(values, contact, side):
 
 @compiled
 def roll_rate(machine, manner, legs, sides, roll):
-    """Compute the roll rate that hip heights ask for, Eq. (3-41)."""
+    """Compute the kinematic roll rate from the rates of the hip heights, Eq. (3-41).
+
+    Args:
+        machine: The robot.
+        manner: Settings of the steps.
+        legs: Kinematics of the legs.
+        sides: Whether a leg is on the ground, shape (6,).
+        roll: Roll [rad].
+
+    Returns:
+        Roll rate [rad/s].
+    """
     inner = side_mean(legs.height_rate, sides, manner.inner)
     outer = side_mean(legs.height_rate, sides, 1 - manner.inner)
     return manner.roll_sign * (inner - outer) / (np.cos(roll) * machine.track)
@@ -141,7 +180,17 @@ def roll_rate(machine, manner, legs, sides, roll):
 
 @compiled
 def reset(machine, manner, legs, sides, q, v):
-    """Set what kinematics determines, at a change of contacts: Eq. (3-40), (3-41)."""
+    """Set the state that kinematics determines, at a change of contacts: Eq. (3-40), (3-41).
+
+    Args:
+        machine: The robot.
+        manner: Settings of the steps.
+        legs: Kinematics of the legs.
+        sides: Whether a leg is on the ground, shape (6,).
+        q: Coordinates; roll, pitch and, where asked for, height are overwritten, shape (6,)
+            [m, rad].
+        v: Their rates; those of height and roll are overwritten, shape (6,) [m/s, rad/s].
+    """
     inner = side_mean(legs.height, sides, manner.inner) * np.cos(q[3])
     outer = side_mean(legs.height, sides, 1 - manner.inner) * np.cos(q[3])
     v[3] = roll_rate(machine, manner, legs, sides, q[3])
@@ -154,10 +203,16 @@ def reset(machine, manner, legs, sides, q, v):
 
 @compiled
 def three_legs(sides, legs, q, three):
-    """Fill `three` with the legs that carry, from the sides' contact states.
+    """Choose the three legs that carry load, from the sides' contact states.
 
-    With two legs down the listing stays on the three of the step before; of four it keeps, by an
+    With two legs down the listing keeps the three of the step before. Of four it keeps, by an
     oversight in its sorting, the three furthest from the body's centre.
+
+    Args:
+        sides: Whether a leg is on the ground, shape (6,).
+        legs: Kinematics of the legs.
+        q: Coordinates, the first two the body's x and y [m], shape (6,).
+        three: Overwritten with the indices of the legs, shape (3,).
     """
     down = 0
     for i in range(6):
@@ -178,10 +233,15 @@ def three_legs(sides, legs, q, three):
 
 @compiled
 def contact_axes(yaw, tilt, axes):
-    """Fill `axes` (3, 3) with forward, left and up of the contact frames, in rows.
+    """Compute the axes of the contact frames in the inertial frame.
 
     All legs share them: R_y R_theta R_phi of Eq. (3-13) turns about y by theta + phi - pi/2, which
     is the arctangent of the tilt.
+
+    Args:
+        yaw: Yaw [rad].
+        tilt: Tilt X of Eq. (3-21) [-].
+        axes: Filled: forward, left and up, in rows, shape (3, 3) [-].
     """
     c, s, cb, sb = np.cos(yaw), np.sin(yaw), 1 / np.sqrt(1 + tilt**2), tilt / np.sqrt(1 + tilt**2)
     axes[0, 0], axes[0, 1], axes[0, 2] = c * cb, s * cb, -sb
@@ -191,7 +251,16 @@ def contact_axes(yaw, tilt, axes):
 
 @compiled
 def along(axis, v, arm):
-    """Compute the component of v + w x arm along an axis, v the rates of the six coordinates."""
+    """Compute the component of the velocity v + w x arm along an axis.
+
+    Args:
+        axis: Unit vector, shape (3,) [-].
+        v: Rates of the six coordinates: v [m/s], then w [rad/s], shape (6,).
+        arm: Point from the body's centre, shape (3,) [m].
+
+    Returns:
+        Velocity [m/s].
+    """
     x = v[0] + v[4] * arm[2] - v[5] * arm[1]
     y = v[1] + v[5] * arm[0] - v[3] * arm[2]
     z = v[2] + v[3] * arm[1] - v[4] * arm[0]
@@ -207,8 +276,13 @@ def walk_slip(leg_speed, ground_speed, signed):
         \kappa = \frac{v_T - v_H}{v_H} \text{ on the toe}
 
     with absolute values in the denominators, cut off at 100. Rolling, the listing takes
-    sign(v_R) (v_R - |v_C|) for the numerator: the same while robot and legs go forward, but a leg
-    that turns back by a hair drives at full grip. `signed` takes the difference as printed above.
+    sign(v_R) (v_R - |v_C|) for the numerator. This is the same while robot and legs go forward, but
+    a leg that turns back very slowly gets full traction.
+
+    Args:
+        leg_speed: Speed of the leg's surface, v_R or v_T [m/s].
+        ground_speed: Speed of the robot over the ground, v_C or v_H [m/s].
+        signed: Whether to take the difference as in the equation above instead of the listing's.
     """
     if leg_speed == 0.0 and ground_speed == 0.0:
         return 0.0
@@ -223,7 +297,12 @@ def walk_slip(leg_speed, ground_speed, signed):
 def lateral_walk_slip(axes, v, signed):
     """Compute the lateral slip of Eq. (4-41), (4-42) from the body's velocity, Listing A.21 [-].
 
-    Of a body that goes backward the listing's has the wrong sign; `signed` takes the right one.
+    For a body that goes backward the sign of the listing's is wrong.
+
+    Args:
+        axes: Forward, left and up of the contact frames, in rows, shape (3, 3) [-].
+        v: Rates of the six coordinates, shape (6,) [m/s, rad/s].
+        signed: Whether to take the right sign instead of the listing's.
     """
     forward = axes[0, 0] * v[0] + axes[0, 1] * v[1] + axes[0, 2] * v[2]
     left = axes[1, 0] * v[0] + axes[1, 1] * v[1] + axes[1, 2] * v[2]
@@ -236,9 +315,19 @@ def lateral_walk_slip(axes, v, signed):
 
 @compiled
 def find_slip(machine, manner, traction, legs, three, q, v, balance):
-    """Fill the arms and slips of `balance` for the three legs.
+    """Compute the lever arms and slip ratios of the three legs that carry load.
 
-    v_R of Eq. (4-32) and v_T of Eq. (4-37) are one, the rate of phi times the hip's height.
+    v_R of Eq. (4-32) and v_T of Eq. (4-37) are the same, the rate of phi times the hip's height.
+
+    Args:
+        machine: The robot.
+        manner: Settings of the steps.
+        traction: The slip law.
+        legs: Kinematics of the legs.
+        three: Indices of the legs that carry load, shape (3,).
+        q: Coordinates, shape (6,) [m, rad].
+        v: Their rates, shape (6,) [m/s, rad/s].
+        balance: Its `axes` are used; its `arms` and `slip` are filled.
     """
     arm = np.empty(3)
     for k in range(3):
@@ -261,7 +350,13 @@ def find_slip(machine, manner, traction, legs, three, q, v, balance):
 
 @compiled
 def gyroscopic(inertia, v, out):
-    """Fill `out` with J^-1 (w x J w), Eq. (4-8) [rad/s2]."""
+    """Compute the gyroscopic acceleration J^-1 (w x J w), Eq. (4-8) [rad/s2].
+
+    Args:
+        inertia: Principal moments of inertia J, shape (3,) [kg m2].
+        v: Rates of the six coordinates, the last three taken for w, shape (6,) [m/s, rad/s].
+        out: Filled: the acceleration, shape (3,) [rad/s2].
+    """
     out[0] = (inertia[2] - inertia[1]) * v[4] * v[5] / inertia[0]
     out[1] = (inertia[0] - inertia[2]) * v[5] * v[3] / inertia[1]
     out[2] = (inertia[1] - inertia[0]) * v[3] * v[4] / inertia[2]
@@ -269,7 +364,18 @@ def gyroscopic(inertia, v, out):
 
 @compiled
 def accelerate(machine, manner, traction, balance, loads, spin, v, forces):
-    """Advance the rates by Newton's and Euler's equations, Eq. (4-14); fill `forces` (3, 2)."""
+    """Integrate the rates over one step by Newton's and Euler's equations, Eq. (4-14).
+
+    Args:
+        machine: The robot.
+        manner: Settings of the steps.
+        traction: The slip law.
+        balance: Lever arms, axes and slip of the legs that carry load.
+        loads: Their normal forces, shape (3,) [N].
+        spin: Gyroscopic acceleration, shape (3,) [rad/s2].
+        v: Rates of the six coordinates, updated, shape (6,) [m/s, rad/s].
+        forces: Filled: forward and leftward force of each leg, shape (3, 2) [N].
+    """
     force, dt = np.empty(3), manner.dt
     v[2] -= dt * GRAVITY
     for a in range(3):
@@ -288,10 +394,23 @@ def accelerate(machine, manner, traction, balance, loads, spin, v, forces):
 
 @compiled
 def demands(machine, manner, legs, sides, q, v, spin, balance):
-    """Fill what normal forces must balance; return their sum, Eq. (4-22) [N].
+    """Compute the accelerations and the sum that normal forces have to produce, Eq. (4-22).
 
-    No ground pulls: where the kinematic acceleration asks for less than nothing (a leg that meets
-    the ground at flight speed), the sum is zero. The thesis's problem has no solution there.
+    The ground does not pull. Where the kinematic acceleration asks for a negative sum (a leg that
+    meets the ground at flight speed), the sum is zero. The thesis's problem has no solution there.
+
+    Args:
+        machine: The robot.
+        manner: Settings of the steps.
+        legs: Kinematics of the legs.
+        sides: Whether a leg is on the ground, shape (6,).
+        q: Coordinates, shape (6,) [m, rad].
+        v: Their rates, shape (6,) [m/s, rad/s].
+        spin: Gyroscopic acceleration, shape (3,) [rad/s2].
+        balance: Its `wanted` is filled.
+
+    Returns:
+        Sum of the normal forces, at most three times the weight [N].
     """
     balance.wanted[0] = (roll_rate(machine, manner, legs, sides, q[3]) - v[3]) / manner.dt + spin[0]
     balance.wanted[1] = -v[4] / manner.dt + spin[1]
@@ -305,7 +424,21 @@ def demands(machine, manner, legs, sides, q, v, spin, balance):
 
 @compiled
 def run(machine, manner, traction, motion, q, v, sides, record):
-    """Take all steps from q, v and the sides' contact state; return how many were finite."""
+    """Integrate the thesis's model over all steps.
+
+    Args:
+        machine: The robot.
+        manner: Settings of the steps.
+        traction: The slip law.
+        motion: Leg angles and speeds at every step.
+        q: Coordinates at the start, overwritten, shape (6,) [m, rad].
+        v: Their rates, overwritten, shape (6,) [m/s, rad/s].
+        sides: Contact state at the start, overwritten, shape (6,).
+        record: Filled: the samples that are kept.
+
+    Returns:
+        Number of steps whose rates stayed below `RUNAWAY`.
+    """
     legs = Legs(
         np.empty(6), np.empty(6), np.empty(6), np.empty(6), np.empty(6),
         np.empty((6, 3)), np.empty((6, 3)),

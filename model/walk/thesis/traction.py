@@ -67,8 +67,13 @@ def table_traction(table: TractionTable) -> Traction:
 def magic_force(traction, kappa, load):
     """Compute the Magic Formula's force with its curvature from the peak, Eq. (4-23), (4-27) [N].
 
-    The same as `model.slip.MagicFormula`, whose limit at vanishing load it shares: E tends to minus
-    infinity there, and the force to that of saturation or to none, as slip or load vanish first.
+    It equals `model.slip.MagicFormula` and has the same limit at vanishing load: E tends to minus
+    infinity there, and the force to that of saturation if slip stays finite, or to zero.
+
+    Args:
+        traction: The coefficients.
+        kappa: Slip ratio [-].
+        load: Normal force [N].
     """
     B, C = traction.B, traction.C
     Bx = B * traction.peak_slip_per_load * load
@@ -83,7 +88,13 @@ def magic_force(traction, kappa, load):
 
 @compiled
 def traction_force(traction, kappa, load):
-    """Compute the traction force of a leg at a slip ratio and a load [N]; none without load."""
+    """Compute the traction force of a leg [N]; zero without load.
+
+    Args:
+        traction: The slip law.
+        kappa: Slip ratio, or slip velocity over the table's `speed_scale` [-].
+        load: Normal force [N].
+    """
     if load <= 0.0:
         return 0.0
     if traction.exact:
@@ -93,13 +104,20 @@ def traction_force(traction, kappa, load):
 
 @compiled
 def load_derivative(traction, kappa, load, force):
-    """Compute the derivative of `traction_force` with respect to load, by a difference [-]."""
+    """Compute the derivative of `traction_force` with respect to load, by a forward difference [-].
+
+    Args:
+        traction: The slip law.
+        kappa: Slip ratio, or slip velocity over the table's `speed_scale` [-].
+        load: Normal force [N].
+        force: `traction_force` at this load [N].
+    """
     step = 1e-6 * load + 1e-9
     return (traction_force(traction, kappa, load + step) - force) / step
 
 
 def paired_sum(traction_force: Array) -> Array:
-    """Add every sample to the next, first and second, third and fourth: Fig. 5-19.
+    """Sum samples in pairs, as for the net force of Fig. 5-19.
 
     The thesis's traction changes sign at every step; the sum of a pair is what it calls the net
     force. It is twice the mean. As in the listing, the first sample is left out and pairs start

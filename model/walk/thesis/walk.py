@@ -27,7 +27,7 @@ APART = np.radians(45.0)  # where they are further apart, the gait is no tripod 
 
 @dataclass(frozen=True)
 class ThesisOptions:
-    """How the thesis's model walks.
+    """Options of the thesis's walking model.
 
     Attributes:
         dt: Length of a step [s].
@@ -41,7 +41,7 @@ class ThesisOptions:
         every: Keep every so many steps.
 
     Raises:
-        DomainError: One of them makes no sense.
+        DomainError: An option is not valid.
     """
 
     dt: float = 0.001
@@ -54,7 +54,7 @@ class ThesisOptions:
     every: int = 1
 
     def __post_init__(self) -> None:
-        """Refuse options that make no sense."""
+        """Check that the step, the automaton, the direction and `every` are valid."""
         if not (self.dt > 0 and np.isfinite(self.dt)):
             raise DomainError(f"dt is {self.dt:g} s; expected more than zero")
         inner_legs(self.direction)
@@ -65,7 +65,7 @@ class ThesisOptions:
 
     @property
     def manner(self) -> Manner:
-        """The same for the compiled loop."""
+        """The options as a tuple for the compiled loop."""
         right = self.direction == "right"
         sign = -1.0 if right and self.mend_roll else 1.0
         by_table = self.automaton == "table"
@@ -103,7 +103,7 @@ def walk_thesis(
 
     Raises:
         DomainError: The duration is shorter than a step, or the gait is no tripod.
-        WalkError: The walk diverged; says when and in what state.
+        WalkError: The walk diverged; the message says when and in what state.
     """
     t = step_times(duration, options.dt)
     steps = len(t)
@@ -139,9 +139,10 @@ def _require_tripod(motion: LegMotion, dt: float) -> None:
 
 
 def _start(robot: Robot, theta: Array, options: ThesisOptions) -> tuple[NDArray[np.bool_], Array]:
-    """Stand level on one tripod, rolled by the difference of its sides.
+    """Compute the initial state: level on one tripod, rolled by the height difference of its sides.
 
-    Which one, the heights after the first step tell: at the start of a matched gait they tie.
+    The heights after the first step decide which tripod, because at the start of a matched gait
+    they are equal.
     """
     inner = options.manner.inner
     heights = _side_heights(robot, theta[0])

@@ -195,7 +195,12 @@ class StopSwitch:
         self._asked: list[Stop] = []
 
     def request(self, category: StopCategory, reason: str) -> None:
-        """Ask for a stop."""
+        """Request a stop; safe to call from a signal handler and from any thread.
+
+        Args:
+            category: How to stop.
+            reason: Why, for the log.
+        """
         self._asked.append(Stop(category, reason))
 
     @property

@@ -47,10 +47,14 @@ class AgeGuard:
         self._limit = limit
 
     def check(self, taken: NDArray[np.float64], *, now: float) -> None:
-        """Take when the readings of one look were taken, by host time, shape (n,) [s].
+        """Check the age of the readings of one batch.
+
+        Args:
+            taken: Host time at which each reading was taken, shape (n,) [s].
+            now: Host time [s].
 
         Raises:
-            StaleReading: One of them is older than the limit.
+            StaleReading: A reading is older than the limit.
         """
         age = now - float(taken.min(initial=now))
         if age > self._limit:

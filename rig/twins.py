@@ -90,7 +90,15 @@ def simulated_legs(
     rng: np.random.Generator,
     name: str = "legs",
 ) -> Iterator[Any]:
-    """Serve a robot and yield its driver; arguments as `robot_twin`, any layout.
+    """Serve a simulated robot of any layout and yield its driver.
+
+    Args:
+        profile: Counts, layout and rate of the robot.
+        reference: Gait that it walks.
+        imperfections: Its deviations from the gait.
+        faults: Transmission errors of the line.
+        rng: Random generator.
+        name: Name of the stream.
 
     Yields:
         A `Stream` that also takes `LegCommands`.

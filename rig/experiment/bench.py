@@ -64,7 +64,12 @@ class Bench(Protocol):
         ...
 
     def turn(self, leg: float, ground: float) -> None:
-        """Command the speeds of both discs [rad/s]."""
+        """Command the speeds of both discs.
+
+        Args:
+            leg: Speed of the leg disc [rad/s].
+            ground: Speed of the ground disc [rad/s].
+        """
         ...
 
     def disarm(self) -> None:
@@ -101,7 +106,12 @@ class _DiscPair:
         self._ground.arm(ARM_LIMIT)
 
     def turn(self, leg: float, ground: float) -> None:
-        """Command both speeds [rad/s]."""
+        """Command the speeds of both discs; see `Bench.turn`.
+
+        Args:
+            leg: Speed of the leg disc [rad/s].
+            ground: Speed of the ground disc [rad/s].
+        """
         self._leg.set_speed(leg)
         self._ground.set_speed(ground)
 

@@ -218,7 +218,15 @@ def ground_speed(
 
 
 def rig_limits(limits: RunLimits, allowed: Limits) -> Limits:
-    """Combine a plan's limits with a rig's: the smaller of each counts."""
+    """Return the smaller of a plan's and a rig's limit of each quantity.
+
+    Args:
+        limits: Limits of the plan.
+        allowed: Limits of the rig's profile.
+
+    Returns:
+        The limits that hold for the run.
+    """
     further = {
         key: min((own for own in (getattr(limits, key), getattr(allowed, key)) if own is not None),
                  default=None)

@@ -96,7 +96,15 @@ class SimulatedImu:
         self._number = 0
 
     def poll(self, now: float, received: bytes) -> bytes:
-        """Give packets; see `ByteTwin.poll`. What is received is ignored, as the unit does."""
+        """Return the packets that are due; see `ByteTwin.poll`.
+
+        Args:
+            now: Time, never decreasing [s].
+            received: Bytes from the host; ignored, as the real unit does.
+
+        Returns:
+            Bytes to the host since the last poll.
+        """
         del received
         if self._switched_on is None:
             self._switched_on = now

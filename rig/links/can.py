@@ -136,15 +136,33 @@ class CanLink:
         return times[1:]
 
     def write(self, can_id: int, data: bytes) -> bool:
-        """Send a frame with an 11-bit id; False while the bus is gone.
+        """Send a frame with an 11-bit id.
+
+        Args:
+            can_id: Arbitration id, 11 bits.
+            data: At most 8 bytes.
+
+        Returns:
+            Whether the frame was sent; False while the bus is disconnected.
 
         Raises:
-            RigTimeout: The bus is there but takes no frame: nobody acknowledges, or it is off.
+            RigTimeout: The bus is there but takes no frame: it is off, or no node acknowledges.
         """
         return self._send(can.Message(arbitration_id=can_id, data=data, is_extended_id=False))
 
     def request(self, can_id: int, length: int) -> bool:
-        """Ask, by a remote frame, for a frame of so many bytes; returns and raises as `write`."""
+        """Send a remote frame, which asks a node for a frame with this id.
+
+        Args:
+            can_id: Arbitration id, 11 bits.
+            length: Length of the data asked for [bytes].
+
+        Returns:
+            Whether the frame was sent; False while the bus is disconnected.
+
+        Raises:
+            RigTimeout: As `write`.
+        """
         return self._send(
             can.Message(
                 arbitration_id=can_id, dlc=length, is_remote_frame=True, is_extended_id=False

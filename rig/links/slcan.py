@@ -87,7 +87,15 @@ class SlcanAdapter:
         self._inbox = b""
 
     def poll(self, now: float, received: bytes) -> bytes:
-        """Obey the lines that came, and hand on the frames of the bus; see `ByteTwin.poll`."""
+        """Execute the lines received and return the frames of the bus; see `ByteTwin.poll`.
+
+        Args:
+            now: Time, not used [s].
+            received: Bytes from the host since the last poll.
+
+        Returns:
+            Answers and frames as SLCAN lines.
+        """
         del now
         *lines, self._inbox = (self._inbox + received).split(END)
         self._inbox = self._inbox[-LONGEST:]  # noise without an end must not fill the memory

@@ -47,7 +47,15 @@ class SimulatedBoard:
         self._status = 0
 
     def poll(self, now: float, received: bytes) -> bytes:
-        """Take speeds and give packets; see `ByteTwin.poll`."""
+        """Execute speed commands and return the packets that are due; see `ByteTwin.poll`.
+
+        Args:
+            now: Time, never decreasing [s].
+            received: Bytes from the host since the last poll.
+
+        Returns:
+            Bytes to the host since the last poll.
+        """
         if now - self._fed > self._watchdog:
             self._stop()
             self._status = WATCHDOG_EXPIRED

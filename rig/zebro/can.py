@@ -80,7 +80,15 @@ class CanLegs(LinkedStream[CanLink]):
         return samples
 
     def set_points(self, counts: tuple[int, ...], duration: float) -> bool:
-        """Turn every leg to a count; see `LegCommands.set_points`."""
+        """Turn every leg to a count; see `LegCommands.set_points`.
+
+        Args:
+            counts: Targets in the order of the wire.
+            duration: Duration of the motion [s].
+
+        Returns:
+            Whether the link took the command.
+        """
         data = SET_POINTS.pack(*counts, milliseconds(duration))
         return self._link.write(self.profile.can_ids.set_points, data)
 

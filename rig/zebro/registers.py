@@ -93,14 +93,22 @@ class DumpLegs(_RegisterStream):
         return samples
 
     def set_points(self, counts: tuple[int, ...], duration: float) -> bool:
-        """Refuse: a dump takes no commands."""
+        """Raise: a robot that only dumps its registers takes no commands.
+
+        Args:
+            counts: Targets in the order of the wire.
+            duration: Duration of the motion [s].
+
+        Raises:
+            ProtocolError: Always.
+        """
         raise ProtocolError(
             f"profile '{self.profile.name}' describes a dump, which takes no set-points; command "
             "the robot over its ZebroBus"
         )
 
     def stop(self) -> bool:
-        """Tell that no command was taken: a dump only talks."""
+        """Return False: a robot that only dumps its registers takes no commands."""
         return False
 
 
@@ -165,7 +173,15 @@ class PolledLegs(_RegisterStream):
         return self._sample(self._answer.unpack(answer))
 
     def set_points(self, counts: tuple[int, ...], duration: float) -> bool:
-        """Turn every leg to a count; see `LegCommands.set_points`."""
+        """Turn every leg to a count; see `LegCommands.set_points`.
+
+        Args:
+            counts: Targets in the order of the wire.
+            duration: Duration of the motion [s].
+
+        Returns:
+            Whether the link took the command.
+        """
         values = (*counts, milliseconds(duration))
         order = self.profile.byte_order
         data = b"".join(value.to_bytes(2, order) for value in values)

@@ -45,7 +45,15 @@ class PacketRobot:
         self._command = set_point_body(legs.profile)
 
     def poll(self, now: float, received: bytes) -> bytes:
-        """Take commands and give packets; see `ByteTwin.poll`."""
+        """Execute commands and return the packets that are due; see `ByteTwin.poll`.
+
+        Args:
+            now: Time, never decreasing [s].
+            received: Bytes from the host since the last poll.
+
+        Returns:
+            Bytes to the host since the last poll.
+        """
         for content in self._framer.feed(received):
             packet = decode_packet(content)
             if packet is not None:
@@ -86,7 +94,15 @@ class DumpRobot:
         self._wire = FaultyWire(faults, rng=rng)
 
     def poll(self, now: float, received: bytes) -> bytes:
-        """Give dumps; see `ByteTwin.poll`. What is received is ignored, as the module does."""
+        """Return the register dumps that are due; see `ByteTwin.poll`.
+
+        Args:
+            now: Time, never decreasing [s].
+            received: Bytes from the host; ignored, as the real module does.
+
+        Returns:
+            Bytes to the host since the last poll.
+        """
         del received
         return self._wire.carry([self._encode(frame) for frame in self.legs.frames(now)])
 
@@ -121,7 +137,15 @@ class PolledRobot:
         self._counts: tuple[int, ...] = (0,) * len(legs.profile.legs)
 
     def poll(self, now: float, received: bytes) -> bytes:
-        """Answer reads and obey writes; see `ByteTwin.poll`."""
+        """Answer register reads and execute register writes; see `ByteTwin.poll`.
+
+        Args:
+            now: Time, never decreasing [s].
+            received: Bytes from the host since the last poll.
+
+        Returns:
+            Bytes to the host since the last poll.
+        """
         for frame in self.legs.frames(now):
             self._counts = frame.counts
         self._inbox += received
@@ -131,7 +155,7 @@ class PolledRobot:
         return self._wire.carry(answers)
 
     def _serve(self, now: float, answers: list[bytes]) -> bool:
-        """Work on the first request; tell whether it was whole."""
+        """Answer the first request of the inbox; return whether it was complete."""
         command, first, size = self._inbox[:3]
         registers = self.legs.profile.registers
         if command == registers.read_command:

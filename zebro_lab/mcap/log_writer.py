@@ -59,7 +59,12 @@ class LogWriter:
             self._log.attach(start_ns, name, "application/toml", text)
 
     def write(self, stream: str, samples: Sequence[Sample]) -> None:
-        """Write samples of a stream, at least one: raw, and as its view shows them."""
+        """Write samples of a stream: the raw counts, and the messages of its view.
+
+        Args:
+            stream: Name of the stream.
+            samples: Its next samples, at least one.
+        """
         view = self._views[stream]
         dtype, _ = RAW_SCHEMAS[view.raw_schema]
         columns = as_columns(samples, dtype)
@@ -72,12 +77,25 @@ class LogWriter:
             self._log.add(shown, stamp, message)
 
     def event(self, host_time: float, text: str, *, level: int = INFO) -> None:
-        """Write down something that happened."""
+        """Write an event.
+
+        Args:
+            host_time: Time of the event [s].
+            text: Description of the event.
+            level: Severity, as in `logging`.
+        """
         stamp = self.stamp(host_time)
         self._log.add(EVENTS, stamp, log_entry(stamp, text, level=level))
 
     def count(self, host_time: float, stream: str, counters: Counters, *, dropped: int) -> None:
-        """Write down what happened to a stream so far."""
+        """Write the counters of a stream.
+
+        Args:
+            host_time: Time of the counters [s].
+            stream: Name of the stream.
+            counters: Samples received, lost, damaged and so on so far.
+            dropped: Samples dropped so far because the queue to the disk was full.
+        """
         message = CdrWriter()
         for field in fields(Counters):
             message.uint64(getattr(counters, field.name))

@@ -80,8 +80,15 @@ def encode_raw(samples: Sequence[Sample], *, dtype: str, start: float) -> bytes:
 def decode_raw(data: bytes, *, dtype: str) -> SampleColumns:
     """Decode a message of `encode_raw`.
 
+    Args:
+        data: The message in CDR.
+        dtype: Type of the counts, of `RAW_SCHEMAS`.
+
+    Returns:
+        The samples; host times since the start of the run.
+
     Raises:
-        ValueError: The message is not of that form.
+        ValueError: The message does not have that form.
     """
     reader = CdrReader(data)
     host, device = reader.array("<f8"), reader.array("<f8")

@@ -90,7 +90,12 @@ class Transform:
 
 
 def transforms(stamp: int, frames: Iterable[Transform]) -> bytes:
-    """Encode where frames lie at an instant."""
+    """Encode the transforms of frames at an instant.
+
+    Args:
+        stamp: Time since the Unix epoch [ns].
+        frames: Transform of each frame to its parent.
+    """
     listed = list(frames)
     message = CdrWriter().uint32(len(listed))
     for each in listed:

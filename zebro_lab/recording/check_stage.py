@@ -78,6 +78,14 @@ class Checked:
 def check_zebro(request: CheckRequest, person: Person, *, clock: Clock = SYSTEM_CLOCK) -> Checked:
     """Find order, signs and zeros of a robot's legs and write its profile.
 
+    Args:
+        request: Address of the robot, file to write, touchdown angle.
+        person: The person who watches the robot, asked for observations.
+        clock: Host time.
+
+    Returns:
+        The profile, and the lift-off angle where a touchdown angle is given.
+
     Raises:
         AlreadyExists: The file to write is there already.
         RigError: The robot cannot be reached, sends nothing, or does not follow.

@@ -164,18 +164,36 @@ class RunRecorder:
         return self._failure
 
     def write(self, stream: str, samples: Sequence[Sample]) -> bool:
-        """Hand samples of a stream over; tell whether there was room. Never waits."""
+        """Queue samples of a stream for writing without blocking.
+
+        Args:
+            stream: Name of the stream.
+            samples: Its next samples.
+
+        Returns:
+            Whether the queue had room; where it had none, the recording fails.
+        """
         if self._queues[stream].put(samples):
             return True
         self._fail(f"disk too slow: more than {self._limit} samples of '{stream}' wait")
         return False
 
     def event(self, text: str, *, level: int = INFO) -> None:
-        """Write down something that happened now."""
+        """Log an event that happens now.
+
+        Args:
+            text: Description of the event.
+            level: Severity, as in `logging`.
+        """
         self._notes.append(_Event(self._clock.now(), text, level))
 
     def count(self, stream: str, counters: Counters) -> None:
-        """Write down what happened to a stream so far."""
+        """Log the counters of a stream.
+
+        Args:
+            stream: Name of the stream.
+            counters: Samples received, lost, damaged and so on so far.
+        """
         self._counters[stream] = counters
         self._notes.append((self._clock.now(), stream, counters))
 
@@ -188,7 +206,12 @@ class RunRecorder:
         self._clocks = dict(clocks)
 
     def count_duration(self, asked: float, *, since: float) -> None:
-        """Take how long the run was to last [s] and the host time from which that counts [s]."""
+        """Store the requested duration of the run for the end record.
+
+        Args:
+            asked: Requested duration [s].
+            since: Host time from which the duration counts [s].
+        """
         self._duration = {"asked": asked, "from": since - self.start}
 
     def end(self, reason: str = "completed") -> None:

@@ -73,9 +73,15 @@ class RecordScreen:
         return self._reason
 
     def request_stop(self, number: int, _frame: FrameType | None) -> None:
-        """Note a signal; a second one is obeyed at once, unless it is told of a lost connection.
+        """Handle a signal: the first one ends the recording, a second one ends it at once.
 
-        That is told several times: by the terminal, the shell and the service.
+        Hangups do not count as a second signal: terminal, shell and service each send one.
+
+        Args:
+            number: Number of the signal.
+
+        Raises:
+            KeyboardInterrupt: It is the second signal.
         """
         if number != _HANGUP:
             if self._asked:

@@ -126,12 +126,20 @@ class Recorded:
 def record(
     request: RecordRequest, watcher: RecordWatcher, *, clock: Clock = SYSTEM_CLOCK
 ) -> Recorded:
-    """Record devices as a run folder.
+    """Record devices into a run folder.
+
+    Args:
+        request: Devices, duration and description of the run.
+        watcher: Shown the status; may end the recording.
+        clock: Host time.
+
+    Returns:
+        The run folder and its manifest.
 
     Raises:
-        SettingsError: No device is named, or what is asked cannot be.
-        RigError: A profile, an address or a port is not right.
-        RecordingError: The run ended early; its folder holds what came before, and the reason.
+        SettingsError: No device is named, or the settings contradict each other.
+        RigError: A profile, an address or a port is invalid.
+        RecordingError: The run ended early; its folder holds what was recorded, and the reason.
     """
     play = None if request.play is None else _played(request.play)
     duration = _duration(request, play)

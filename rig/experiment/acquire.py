@@ -145,7 +145,7 @@ class GuardedAcquisition:
 
     @property
     def ramping(self) -> bool:
-        """Tell whether set-points still change."""
+        """Return whether set-points still change."""
         return self._clock.now() < self._ramp.start + self._ramp.duration
 
     def arm(self) -> None:

@@ -103,7 +103,7 @@ class Control:
         self._confirmed = True
 
     def take_confirmation(self) -> bool:
-        """Tell whether a prompt was confirmed since it was last asked."""
+        """Return whether a prompt was confirmed since it was last asked."""
         confirmed, self._confirmed = self._confirmed, False
         return confirmed
 

@@ -53,7 +53,7 @@ class RestProof:
                 seen.popleft()
 
     def holds(self, *, now: float) -> bool:
-        """Tell whether both discs are seen to stand over a whole window up to now [s]."""
+        """Return whether both discs are seen to stand over a whole window up to now [s]."""
         whole = self._began is not None and now - self._began >= WINDOW
         return whole and all(not self._problem(disc) for disc in DISCS)
 

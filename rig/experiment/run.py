@@ -45,7 +45,7 @@ class Outcome:
 
     @property
     def completed(self) -> bool:
-        """Tell whether the plan was gone through to its end."""
+        """Return whether the plan was gone through to its end."""
         return self.reason == "completed"
 
 

@@ -33,7 +33,7 @@ class ImuProfile:
         rate_scale: Counts of 1 rad/s.
         force_scale: Counts of 1 m/s².
         mounting: Quaternion w, x, y, z that turns the sensor's axes into the body's.
-        rate: Samples in a second [Hz].
+        rate: Sample rate [Hz].
         link: `serial`, or `table` for a file that somebody else wrote.
     """
 
@@ -53,7 +53,7 @@ class ImuProfile:
         return struct.Struct(("<" if self.byte_order == "little" else ">") + f"{FIELDS}h")
 
     def possible(self, counts: tuple[float, ...]) -> bool:
-        """Tell whether the quaternion has length 1, within `NORM_TOLERANCE`."""
+        """Return whether the quaternion has length 1, within `NORM_TOLERANCE`."""
         norm = sum(count * count for count in counts[:4]) ** 0.5 / self.quaternion_scale
         return abs(norm - 1) <= NORM_TOLERANCE
 
@@ -91,7 +91,7 @@ def load_imu_profile(name: str) -> ImuProfile:
         The profile.
 
     Raises:
-        ProfileError: Anything in it is missing, unknown or of the wrong kind.
+        ProfileError: A key is missing, unknown or of the wrong type.
     """
     table = open_profile(name, device="imu")
     link, frame, scale, mounting, stream = (
@@ -120,7 +120,7 @@ def render_table_profile(rate: float) -> str:
     """Spell the profile of orientation from a table in SI, in the body's axes, as TOML.
 
     Args:
-        rate: Samples in a second [Hz].
+        rate: Sample rate [Hz].
     """
     document = {
         "schema": SCHEMA,

@@ -73,8 +73,8 @@ class SimulatedImu:
         attitude: Motion of the body.
         profile: How the unit counts.
         imperfections: What it adds to the truth.
-        faults: What goes wrong on the line.
-        rng: Source of randomness.
+        faults: Transmission errors of the line.
+        rng: Random generator.
     """
 
     def __init__(

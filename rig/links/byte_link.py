@@ -26,7 +26,7 @@ class ByteLink(Protocol):
         ...
 
     def close(self) -> None:
-        """Close the link; closing twice is no fault."""
+        """Close the link; a second call has no effect."""
         ...
 
     def read(self, timeout: float) -> bytes:
@@ -37,7 +37,7 @@ class ByteLink(Protocol):
         ...
 
     def write(self, data: bytes) -> bool:
-        """Send bytes; tell whether the link took them.
+        """Send bytes; return whether the link took them.
 
         Raises:
             RigTimeout: The port does not take bytes.

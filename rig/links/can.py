@@ -87,7 +87,7 @@ class CanLink:
             ) from problem
 
     def close(self) -> None:
-        """Close the bus and let others have it; closing twice is no fault."""
+        """Close the bus and let others have it; a second call has no effect."""
         self._disconnect()
         if self._lock is not None:
             self._lock.release()
@@ -209,7 +209,7 @@ class CanLink:
             wait = 0.0
 
     def _receive(self, bus: can.BusABC, wait: float, messages: list[can.Message]) -> bool:
-        """Take one frame; tell whether there was any."""
+        """Take one frame; return whether there was any."""
         try:
             message = bus.recv(wait)
         except (ValueError, LookupError):  # python-can's slcan, of a line that was damaged
@@ -245,7 +245,7 @@ class CanLink:
         self._retry_at = self._clock.now() + RETRY_AFTER
 
     def _come_back(self, timeout: float) -> bool:
-        """Try to reopen a lost bus, at most every `RETRY_AFTER`; tell whether it is back."""
+        """Try to reopen a lost bus, at most every `RETRY_AFTER`; return whether it is back."""
         wait = self._retry_at - self._clock.now()
         self._clock.sleep(min(max(wait, 0.0), timeout))
         if wait > timeout or isinstance(self._channel, can.BusABC):

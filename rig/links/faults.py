@@ -49,7 +49,7 @@ class FaultyWire:
 
     Args:
         faults: What goes wrong.
-        rng: Source of randomness.
+        rng: Random generator.
     """
 
     def __init__(self, faults: Faults, *, rng: np.random.Generator) -> None:

@@ -132,7 +132,7 @@ class TrailerFramer:
         self._aligned = False
 
     def _align(self) -> bool:
-        """Throw away bytes up to and with the next trailer; tell whether there was one."""
+        """Throw away bytes up to and with the next trailer; return whether there was one."""
         found = self._buffer.find(self._trailer)
         if found < 0:
             self._buffer = self._buffer[-len(self._trailer) + 1 :]

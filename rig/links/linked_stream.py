@@ -22,7 +22,7 @@ class Link(Protocol):
         ...
 
     def close(self) -> None:
-        """Close it; closing twice is no fault."""
+        """Close it; a second call has no effect."""
         ...
 
 
@@ -41,7 +41,7 @@ class LinkedStream(Generic[LinkT]):
 
     @property
     def source(self) -> str:
-        """Where the samples come from."""
+        """Origin of the samples: `real`, `sim:WHAT` or `replay:WHAT`."""
         return self._link.source
 
     def __enter__(self) -> Self:

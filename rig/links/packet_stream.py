@@ -75,7 +75,7 @@ class PacketStream(LinkedStream[ByteLink]):
 
     @property
     def counters(self) -> Counters:
-        """What happened so far."""
+        """Counters of the stream so far."""
         return Counters(
             received=self._received,
             lost=self._tracker.lost,
@@ -88,7 +88,7 @@ class PacketStream(LinkedStream[ByteLink]):
         )
 
     def read(self, timeout: float) -> list[Sample]:
-        """Hand on all samples that have arrived, waiting at most `timeout` for the first [s].
+        """Return all samples that have arrived, waiting at most `timeout` for the first [s].
 
         Raises:
             DeviceMismatch: The port carries packets, and all are another device's.

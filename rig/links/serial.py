@@ -63,7 +63,7 @@ class SerialLink:
             ) from problem
 
     def close(self) -> None:
-        """Close the port and let others have it; closing twice is no fault."""
+        """Close the port and let others have it; a second call has no effect."""
         self._disconnect()
         self._lock.release()
 
@@ -118,7 +118,7 @@ class SerialLink:
         self._retry_at = self._clock.now() + RETRY_AFTER
 
     def _come_back(self, timeout: float) -> bool:
-        """Try to reopen a lost port, at most every `RETRY_AFTER`; tell whether it is back."""
+        """Try to reopen a lost port, at most every `RETRY_AFTER`; return whether it is back."""
         wait = self._retry_at - self._clock.now()
         self._clock.sleep(min(max(wait, 0.0), timeout))
         if wait > timeout:
@@ -161,7 +161,7 @@ def _take_piece(port: serial.Serial) -> bytes:
 
 
 def _readable(port: serial.Serial, timeout: float) -> bool:
-    """Tell whether a port has bytes, waiting at most `timeout` [s]."""
+    """Return whether a port has bytes, waiting at most `timeout` [s]."""
     if hasattr(port, "fileno"):
         return bool(select.select([port], [], [], timeout)[0])
     end = time.monotonic() + timeout  # ports of Windows cannot be waited for

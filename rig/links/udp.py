@@ -70,7 +70,7 @@ class UdpLink:
         self._socket = opened
 
     def close(self) -> None:
-        """Close the socket and let others have the device; closing twice is no fault."""
+        """Close the socket and let others have the device; a second call has no effect."""
         opened, self._socket = self._socket, None
         if opened is not None:
             opened.close()
@@ -96,7 +96,7 @@ class UdpLink:
         return datagrams
 
     def write(self, data: bytes) -> bool:
-        """Send one datagram; tell whether the system took it."""
+        """Send one datagram; return whether the system took it."""
         if self._socket is None:
             return False
         try:

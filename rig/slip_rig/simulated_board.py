@@ -21,8 +21,8 @@ class SimulatedBoard:
         rig: The rig it turns and weighs.
         profile: Counts, signs and rate.
         watchdog: Silence after which it stops both discs, once it has been commanded [s].
-        faults: What goes wrong on the line.
-        rng: Source of the faults' randomness.
+        faults: Transmission errors of the line.
+        rng: Random generator of the transmission errors.
     """
 
     def __init__(

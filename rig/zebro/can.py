@@ -56,7 +56,7 @@ class CanLegs(LinkedStream[CanLink]):
 
     @property
     def counters(self) -> Counters:
-        """What happened so far; damaged frames are what the bus reports as error frames."""
+        """Counters of the stream so far; damaged frames are what the bus reports as error frames."""
         return Counters(
             received=self._received,
             lost=self._tracker.lost,
@@ -68,7 +68,7 @@ class CanLegs(LinkedStream[CanLink]):
         )
 
     def read(self, timeout: float) -> list[Sample]:
-        """Hand on all samples that have arrived, waiting at most `timeout` for the first [s]."""
+        """Return all samples that have arrived, waiting at most `timeout` for the first [s]."""
         messages = self._link.read(timeout)
         now = self._clock.now()
         samples = []
@@ -93,7 +93,7 @@ class CanLegs(LinkedStream[CanLink]):
         return self._link.write(self.profile.can_ids.set_points, data)
 
     def stop(self) -> bool:
-        """Stop every leg where it is; tell whether the link took the command."""
+        """Stop every leg where it is; return whether the link took the command."""
         return self._link.write(self.profile.can_ids.stop, b"")
 
     def _sample(self, message: can.Message, now: float) -> Sample | None:

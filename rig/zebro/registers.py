@@ -68,7 +68,7 @@ class DumpLegs(_RegisterStream):
 
     @property
     def counters(self) -> Counters:
-        """What happened so far."""
+        """Counters of the stream so far."""
         return Counters(
             received=self._received,
             damaged=self._framer.damaged,
@@ -78,7 +78,7 @@ class DumpLegs(_RegisterStream):
         )
 
     def read(self, timeout: float) -> list[Sample]:
-        """Hand on all samples that have arrived, waiting at most `timeout` for the first [s]."""
+        """Return all samples that have arrived, waiting at most `timeout` for the first [s]."""
         data = self._link.read(timeout)
         if self._link.reconnected != self._connections:
             self._connections = self._link.reconnected
@@ -144,7 +144,7 @@ class PolledLegs(_RegisterStream):
 
     @property
     def counters(self) -> Counters:
-        """What happened so far; an answer that did not come whole counts as damaged."""
+        """Counters of the stream so far; an answer that did not come whole counts as damaged."""
         return Counters(
             received=self._received,
             damaged=self._damaged,
@@ -188,7 +188,7 @@ class PolledLegs(_RegisterStream):
         return self._write(self.profile.registers.set_points[0], data)
 
     def stop(self) -> bool:
-        """Stop every leg where it is; tell whether the link took the command."""
+        """Stop every leg where it is; return whether the link took the command."""
         return self._write(self.profile.registers.stop, b"\x01")
 
     def _write(self, first: int, data: bytes) -> bool:

@@ -26,8 +26,8 @@ class PacketRobot:
 
     Args:
         legs: The legs.
-        faults: What goes wrong on the line.
-        rng: Source of the faults' randomness.
+        faults: Transmission errors of the line.
+        rng: Random generator of the transmission errors.
     """
 
     def __init__(
@@ -78,8 +78,8 @@ class DumpRobot:
 
     Args:
         legs: The legs; the profile says which of them the module turns.
-        faults: What goes wrong on the line.
-        rng: Source of the faults' randomness.
+        faults: Transmission errors of the line.
+        rng: Random generator of the transmission errors.
     """
 
     def __init__(
@@ -119,8 +119,8 @@ class PolledRobot:
 
     Args:
         legs: The legs.
-        faults: What goes wrong on the line.
-        rng: Source of the faults' randomness.
+        faults: Transmission errors of the line.
+        rng: Random generator of the transmission errors.
     """
 
     def __init__(
@@ -197,7 +197,7 @@ class CanRobot:
         bus: Its own end of the bus; whoever made it closes it.
         faults: What goes wrong; only `drop`, `duplicate` and `delay` mean anything for frames that
             the bus itself guards.
-        rng: Source of the faults' randomness.
+        rng: Random generator of the transmission errors.
     """
 
     def __init__(

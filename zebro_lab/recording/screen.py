@@ -91,7 +91,7 @@ class RecordScreen:
         self._reason = self._reason or signal.Signals(number).name
 
     def close(self) -> bool:
-        """End the drawing; tell whether the terminal took that in time."""
+        """End the drawing; return whether the terminal took that in time."""
         live, self._live = self._live, None
         return live is None or in_time(live.stop)
 

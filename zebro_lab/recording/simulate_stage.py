@@ -46,7 +46,7 @@ class TwinRequest:
         can: Bus `INTERFACE:CHANNEL` for devices on CAN; None for a simulated adapter on a serial
             line, which speaks SLCAN.
         as_socket: Listen on `socket://` in place of a pseudo-terminal.
-        faults: What goes wrong on the line.
+        faults: Transmission errors of the line.
         imperfections: How the robot departs from its gait.
         seed: Of the randomness.
     """

@@ -13,8 +13,8 @@ from rig.errors import FrozenReading, StaleReading, UnreliableRecords
 Values: TypeAlias = NDArray[np.float64]
 
 TURNING: Final = 1.0
-"""Set-point above which a disc's sensors must change, and change of one that they must show [rad/s].
-"""
+"""Set-point above which a disc's sensors must change, and set-point change that they must show
+[rad/s]."""
 FEWEST_SAME: Final = 8
 """Least number of equal consecutive readings of a frozen sensor."""
 LARGE: Final = 3.0

@@ -141,7 +141,7 @@ class BoardBench(_DiscPair):
 
     @property
     def source(self) -> str:
-        """Origin of the samples: `real`, `sim:WHAT` or `replay:WHAT`."""
+        """Origin of the samples: `real` or `sim:WHAT`."""
         return self._board.source
 
     @property
@@ -219,7 +219,7 @@ class DrivesBench(_DiscPair):
 
     @property
     def source(self) -> str:
-        """Origin of the samples: `real`, `sim:WHAT` or `replay:WHAT`."""
+        """Origin of the samples: `real` or `sim:WHAT`."""
         return self._drives.source
 
     @property

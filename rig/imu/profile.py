@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Profile of an inertial measurement unit: how its counts become an orientation."""
+"""Profile of an inertial measurement unit: conversion between counts and orientation."""
 
 import struct
 from collections.abc import Sequence
@@ -32,9 +32,9 @@ class ImuProfile:
         quaternion_scale: Counts of a quaternion component of 1.
         rate_scale: Counts of 1 rad/s.
         force_scale: Counts of 1 m/s².
-        mounting: Quaternion w, x, y, z that turns the sensor's axes into the body's.
+        mounting: Quaternion w, x, y, z of the rotation from the sensor's axes to the body's.
         rate: Sample rate [Hz].
-        link: `serial`, or `table` for a file that somebody else wrote.
+        link: `serial`, or `table` for an imported file.
     """
 
     name: str
@@ -60,11 +60,11 @@ class ImuProfile:
 
 @dataclass(frozen=True)
 class Orientation:
-    """What a unit measured, in the body's axes.
+    """Measurements of a unit, in the body's axes.
 
     Attributes:
-        host_time: When the host read each sample, shape (n,) [s].
-        device_time: When the unit took it, shape (n,) [s].
+        host_time: Time at which the host read each sample, shape (n,) [s].
+        device_time: Time at which the unit took it, shape (n,) [s].
         roll: Shape (n,) [rad].
         pitch: Shape (n,) [rad].
         yaw: Unwrapped, from an arbitrary heading, shape (n,) [rad].
@@ -171,7 +171,7 @@ def encode_orientation(
         specific_force: In the body's axes, shape (3,) [m/s²].
 
     Returns:
-        Ten counts, held to 16 bits.
+        Ten counts, clipped to 16 bits.
     """
     mounting = Rotation.from_quat(profile.mounting, scalar_first=True)
     values = np.concatenate([

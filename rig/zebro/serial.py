@@ -59,5 +59,5 @@ class PacketLegs(PacketStream):
         return self.send(Kind.LEG_SET_POINTS, body)
 
     def stop(self) -> bool:
-        """Stop every leg where it is; return whether the link took the command."""
+        """Stop every leg at its present angle; return whether the link took the command."""
         return self.send(Kind.STOP)

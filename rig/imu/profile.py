@@ -117,7 +117,7 @@ def load_imu_profile(name: str) -> ImuProfile:
 
 
 def render_table_profile(rate: float) -> str:
-    """Spell the profile of orientation from a table in SI, in the body's axes, as TOML.
+    """Return the TOML of a profile for orientation imported from a table in SI, in the body's axes.
 
     Args:
         rate: Sample rate [Hz].

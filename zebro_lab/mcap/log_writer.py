@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A log that grows while a run is recorded, and can be read at every instant."""
+"""Write the MCAP log of a run incrementally, so that it is readable at every instant."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import fields
@@ -29,9 +29,9 @@ class LogWriter:
     """Writes the messages of a run as MCAP; used by one thread.
 
     Args:
-        file: Where to write.
-        views: How each stream shows, by its name.
-        attachments: Texts to keep in the log, by file name: the profiles.
+        file: Output file.
+        views: Converter of each stream to display messages, by the stream's name.
+        attachments: Texts stored in the log, by file name: the profiles.
         start: Host time at which the run began [s].
         start_ns: The same since the Unix epoch [ns].
 
@@ -103,7 +103,7 @@ class LogWriter:
         self._log.add(f"/{stream}/counters", stamp, message.uint64(dropped).message())
 
     def flush(self) -> None:
-        """Hand everything to the system, so that it outlives this process."""
+        """Pass all buffered data to the system, so that it survives the end of this process."""
         self._log.flush()
 
     def finish(self) -> None:
@@ -111,7 +111,7 @@ class LogWriter:
         self._log.finish()
 
     def stamp(self, host_time: float) -> int:
-        """Compute nanoseconds since the Unix epoch; no step of the wall clock shows in them."""
+        """Convert host time to nanoseconds since the Unix epoch, unaffected by clock changes."""
         return self._start_ns + round((host_time - self._start) * 1e9)
 
     def _register(self, name: str, view: StreamView) -> None:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""An MCAP file of ROS 2 messages: channels by topic, schemas once, numbers in sequence."""
+"""Write an MCAP file of ROS 2 messages: channels by topic, schemas, sequence numbers."""
 
 from collections.abc import Mapping
 from typing import IO
@@ -11,8 +11,8 @@ class MessageLog:
     """Writes messages of registered topics; used by one thread.
 
     Args:
-        file: Where to write.
-        chunk_size: Bytes after which a chunk ends by itself.
+        file: Output file.
+        chunk_size: Size at which a chunk ends [bytes].
     """
 
     def __init__(self, file: IO[bytes], *, chunk_size: int = 1 << 20) -> None:
@@ -78,7 +78,7 @@ class MessageLog:
         self._writer.add_metadata(name, dict(content))
 
     def flush(self) -> None:
-        """Hand everything to the system, so that it outlives this process."""
+        """Pass all buffered data to the system, so that it survives the end of this process."""
         self._writer.flush()
 
     def finish(self) -> None:

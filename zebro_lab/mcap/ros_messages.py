@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""ROS 2 messages that recorded runs carry beside raw counts, so that every viewer knows them.
+"""Encode the standard ROS 2 messages that recorded runs contain besides raw counts, for viewers.
 
-Stamps are nanoseconds since the Unix epoch; numbers are SI. What a device does not measure is NaN,
-as in ROS.
+Stamps are nanoseconds since the Unix epoch; numbers are SI. Quantities that a device does not
+measure are NaN, as in ROS.
 """
 
 import math
@@ -14,7 +14,7 @@ import numpy as np
 from zebro_lab.mcap.cdr import CdrWriter
 
 RULE = "=" * 80
-"""What stands between the definitions of a message's parts."""
+"""Separator between the definitions of nested message types."""
 HEADER = f"""\
 {RULE}
 MSG: std_msgs/Header
@@ -44,7 +44,7 @@ float64 w
 
 @dataclass(frozen=True)
 class Schema:
-    """A message type: its name, and its definition with all that it is made of."""
+    """Message type: its name, and its definition with all nested types."""
 
     name: str
     text: str

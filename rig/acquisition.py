@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Read devices, each from a thread of its own, and hand their samples to a sink."""
+"""Read devices, each in its own thread, and pass their samples to a sink."""
 
 import threading
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -18,19 +18,32 @@ from rig.sample_queue import LossyTap
 READ_WAIT: Final = 0.1
 """Longest single wait of a read [s]."""
 SILENCE: Final = 1.0
-"""Silence that is worth an event [s]."""
+"""Silence after which an event is logged [s]."""
 JOIN_LIMIT: Final = 5.0
 
 
 class SampleSink(Protocol):
-    """Receives samples and events of devices, without making their readers wait."""
+    """Non-blocking receiver of samples and events of devices."""
 
     def write(self, stream: str, samples: Sequence[Sample]) -> bool:
-        """Take samples of a stream; tell whether there was room."""
+        """Accept samples of a stream without blocking.
+
+        Args:
+            stream: Name of the stream.
+            samples: Its samples, in order.
+
+        Returns:
+            Whether there was room for them.
+        """
         ...
 
     def event(self, text: str, *, level: int = ...) -> None:
-        """Take something that happened now; levels are those of `logging`."""
+        """Accept an event that happened now.
+
+        Args:
+            text: Description of the event.
+            level: Severity, as in `logging`.
+        """
         ...
 
 
@@ -40,11 +53,12 @@ class Device:
 
     Attributes:
         stream: Its driver, not yet entered.
-        check: Guards every read, in the thread that reads; raises where a limit is broken.
+        check: Called with what every read gives, in the reading thread; raises where a limit is
+            exceeded.
         command: Called before every read, in the same thread: set-points of a gait.
         at_end: Called once before the driver is left: stops what `command` moved.
-        pause: Between two reads, for a device that tells time: waking up for each few samples
-            costs more than reading them [s].
+        pause: Pause between two reads, for a device with its own clock: waking up for every few
+            samples costs more than reading them [s].
     """
 
     stream: Stream
@@ -60,19 +74,20 @@ class Device:
 
 
 class Acquisition:
-    """One device being read, until it is told to stop.
+    """Reader thread of one device, which runs until it is asked to stop.
 
     Args:
         device: The device; its driver has been entered.
-        sink: Who takes the samples.
+        sink: Receiver of the samples.
         start: Host time at which the run began [s].
         clock: Host time.
 
     Attributes:
         tap: The newest samples, for viewers.
-        clock_watch: Its clock beside the host's.
+        clock_watch: Comparison of the device's clock with the host's.
         first: Host time of the first sample; None before it [s].
-        failure: What ended the reading before it was told to stop, or that it did not end then.
+        failure: Exception that ended the reading early, or that says that the thread did not end
+            in time; None where there is none.
     """
 
     def __init__(
@@ -98,11 +113,11 @@ class Acquisition:
 
     @property
     def counters(self) -> Counters:
-        """What happened to the stream, as of its last read."""
+        """Counters of the stream, as of its last read."""
         return self._counters
 
     def start(self) -> None:
-        """Begin to read.
+        """Start the reader thread.
 
         Raises:
             RuntimeError: The system allows no more threads.
@@ -110,15 +125,15 @@ class Acquisition:
         self._thread.start()
 
     def end_at(self, until: float) -> None:
-        """Read until then by itself, however late whoever would say so is [host time, s]."""
+        """Set the host time at which reading ends without a call of `stop` [s]."""
         self._until = until
 
     def ask_to_stop(self) -> None:
-        """Read once more what has arrived, then end; does not wait for that."""
+        """Ask the thread to read once more and then to end; does not wait for it."""
         self._done.set()
 
     def stop(self) -> None:
-        """Read no more; waits for the read that is under way, which has a time limit."""
+        """Stop the thread; waits for the read in progress, which has a timeout."""
         self._done.set()
         if self._thread.is_alive():
             self._thread.join(JOIN_LIMIT)
@@ -155,7 +170,7 @@ class Acquisition:
         self._listen(guard, samples)
 
     def _watch(self, counters: Counters) -> None:
-        """Note what happened to the link."""
+        """Log events of the link: losses, reconnections, restarts."""
         before, self._counters = self._counters, counters
         for what in ("reconnected", "restarted"):
             if getattr(counters, what) > getattr(before, what):
@@ -165,7 +180,7 @@ class Acquisition:
             self._sink.event(f"{self.name}: {missing} samples lost", level=WARNING)
 
     def _listen(self, guard: SilenceGuard, samples: Sequence[Sample]) -> None:
-        """Make one event of a silence, however long, and one of its end."""
+        """Log one event when a silence begins and one when it ends."""
         try:
             guard.check(samples, now=self._clock.now())
         except RigTimeout as silence:
@@ -182,16 +197,16 @@ class Acquisition:
 def acquiring(
     devices: Sequence[Device], *, sink: SampleSink, start: float, clock: Clock = SYSTEM_CLOCK
 ) -> Iterator[Mapping[str, Acquisition]]:
-    """Read devices, already entered, for as long as the body runs.
+    """Read devices, already entered, in threads while the body of the `with` statement runs.
 
     Args:
         devices: The devices.
-        sink: Who takes the samples.
+        sink: Receiver of the samples.
         start: Host time at which the run began [s].
         clock: Host time.
 
     Yields:
-        What reads each, by its name.
+        The reader of each device, by name.
 
     Raises:
         RuntimeError: The system allows no more threads.

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Which driver serves which profile: one table, imported only where it is used."""
+"""Table of the driver of each device profile; a driver is imported only when it is used."""
 
 from dataclasses import dataclass
 from importlib import import_module
@@ -28,7 +28,7 @@ LEG_DRIVERS: Final = {
 
 
 def open_legs(address: str, *, name: str = "legs", clock: Clock = SYSTEM_CLOCK) -> Any:
-    """Make the driver of a robot's leg stream; entering it opens the port.
+    """Return the driver of a robot's leg stream; entering it opens the port.
 
     Args:
         address: `PROFILE@PORT`; for CAN the port is `INTERFACE:CHANNEL`.
@@ -39,7 +39,7 @@ def open_legs(address: str, *, name: str = "legs", clock: Clock = SYSTEM_CLOCK) 
         A `Stream` that also takes `LegCommands`.
 
     Raises:
-        ProfileError: The address or the profile is not right.
+        ProfileError: The address or the profile is invalid.
     """
     from rig.zebro.profile import load_leg_profile
 
@@ -51,7 +51,7 @@ def open_legs(address: str, *, name: str = "legs", clock: Clock = SYSTEM_CLOCK) 
 def leg_link(
     profile: "LegProfile", port: str, *, source: str = "real", clock: Clock = SYSTEM_CLOCK
 ) -> Any:
-    """Make the link that a leg profile names.
+    """Return the serial or CAN link that a leg profile names.
 
     Args:
         profile: The profile.
@@ -63,7 +63,7 @@ def leg_link(
         A `SerialLink` or a `CanLink`.
 
     Raises:
-        ProfileError: The profile is of a table, not of a device.
+        ProfileError: The profile describes a table, not a device.
     """
     _require_device(profile)
     if profile.layout == "can":
@@ -78,7 +78,7 @@ def leg_link(
 def leg_driver(
     profile: "LegProfile", link: Any, *, name: str = "legs", clock: Clock = SYSTEM_CLOCK
 ) -> Any:
-    """Make the driver that a leg profile's layout needs, over any link.
+    """Return the driver for the layout of a leg profile, over a given link.
 
     Args:
         profile: The profile.
@@ -90,7 +90,7 @@ def leg_driver(
         A `Stream` that also takes `LegCommands`.
 
     Raises:
-        ProfileError: The profile is of a table, not of a device.
+        ProfileError: The profile describes a table, not a device.
     """
     _require_device(profile)
     module, _, driver = LEG_DRIVERS[profile.layout].partition(":")
@@ -106,7 +106,7 @@ def _require_device(profile: "LegProfile") -> None:
 
 
 def open_imu(address: str, *, name: str = "imu", clock: Clock = SYSTEM_CLOCK) -> "ImuStream":
-    """Make the driver of an inertial measurement unit; entering it opens the port.
+    """Return the driver of an inertial measurement unit; entering it opens the port.
 
     Args:
         address: `PROFILE@PORT`.
@@ -117,7 +117,7 @@ def open_imu(address: str, *, name: str = "imu", clock: Clock = SYSTEM_CLOCK) ->
         The driver.
 
     Raises:
-        ProfileError: The address or the profile is not right.
+        ProfileError: The address or the profile is invalid.
     """
     from rig.imu.profile import load_imu_profile
     from rig.imu.stream import ImuStream
@@ -149,23 +149,23 @@ class RigDevices:
 
     @property
     def streams(self) -> tuple[Stream, ...]:
-        """All devices, each a stream to be entered and read."""
+        """All devices, as streams to be entered and read."""
         return tuple(s for s in (self.drives, self.load_cell, self.board) if s is not None)
 
 
 def open_rig(address: str, *, buffered: bool = False, clock: Clock = SYSTEM_CLOCK) -> RigDevices:
-    """Make the drivers of a slip rig; entering each opens it.
+    """Return the drivers of a slip rig; entering each opens it.
 
     Args:
         address: `PROFILE@PORT`; the port is the drives' `INTERFACE:CHANNEL`, or the board's.
-        buffered: Take many records of a load cell at a time, see `NetFtCell`.
+        buffered: Let the load cell send many records per packet, see `NetFtCell`.
         clock: Host time.
 
     Returns:
         The devices.
 
     Raises:
-        ProfileError: The address or the profile is not right, or of a table.
+        ProfileError: The address or the profile is invalid, or the profile describes a table.
     """
     from rig.slip_rig.profile import load_rig_profile, require_device
 

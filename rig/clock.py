@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: MIT
-"""Host time as an argument: the machine's own, or one that a test turns by hand."""
+"""Host time as an argument: the system's monotonic clock, or a manual clock for tests."""
 
 import time
 from typing import Protocol
 
 
 class Clock(Protocol):
-    """Monotonic time of the host; its origin means nothing."""
+    """Monotonic time of the host, with an arbitrary origin."""
 
     def now(self) -> float:
         """Read the time [s]."""
@@ -18,7 +18,7 @@ class Clock(Protocol):
 
 
 class SystemClock:
-    """The machine's monotonic clock: no step of the wall clock moves it."""
+    """Monotonic clock of the system, which changes of the wall clock do not affect."""
 
     def now(self) -> float:
         """Read the time [s]."""
@@ -30,7 +30,7 @@ class SystemClock:
 
 
 class ManualClock:
-    """A clock that stands still until somebody sleeps on it; then time passes at once.
+    """Clock for tests that advances only by `sleep`, without waiting.
 
     >>> clock = ManualClock(5.0)
     >>> clock.sleep(0.25)
@@ -46,9 +46,9 @@ class ManualClock:
         return self._now
 
     def sleep(self, duration: float) -> None:
-        """Move the time on by `duration` [s]."""
+        """Advance the time by `duration` without waiting [s]."""
         self._now += max(duration, 0.0)
 
 
 SYSTEM_CLOCK = SystemClock()
-"""What drivers use unless they are given another clock."""
+"""Default clock of the drivers."""

@@ -13,21 +13,21 @@ Array: TypeAlias = NDArray[np.float64]
 FEWEST: Final = 10
 MOST_BINS: Final = 60
 DRIFT_SD: Final = 2e-3
-"""What clocks are believed to drift before any sample: quartz far less, oscillators of bare
+"""Prior standard deviation of the clock drift: quartz drifts far less, oscillators of bare
 micro-controllers a few times as much [-]."""
 
 
 @dataclass(frozen=True)
 class ClockFit:
-    r"""How host time follows from device time.
+    r"""Linear map from device time to host time.
 
     .. math::
         t_{host} = offset + (1 + drift)\,t_{device}
 
     Attributes:
-        offset: Host time of the device's zero, for a message that travels as fast as any [s].
-        drift: How much faster the host's clock runs [-].
-        delay: Median of how much later than that messages were read [s].
+        offset: Host time of the device's zero, for a message with the smallest delay [s].
+        drift: Relative excess rate of the host's clock over the device's [-].
+        delay: Median delay of messages beyond the smallest one [s].
     """
 
     offset: float
@@ -40,21 +40,22 @@ class ClockFit:
 
 
 def fit_clock(device_time: Array, host_time: Array) -> ClockFit:
-    """Estimate offset and drift from when samples were taken and read.
+    """Estimate offset and drift of a device clock by regression of host time on device time.
 
-    Reading can only be late, never early, so that the line is laid through the least late sample of
-    each of many bins: the delay of the others does not pull at it. A second of samples read at a
-    loss tells no drift, so that it is drawn towards zero by as much as it scatters (`DRIFT_SD`).
+    A sample can be read late but never early. The line is therefore fitted through the sample with
+    the smallest delay in each of many bins, so that the delays of the others do not bias it. A
+    short recording hardly determines the drift, so that it has a Gaussian prior of mean zero and
+    standard deviation `DRIFT_SD`.
 
     Args:
-        device_time: When the device took each sample, increasing, shape (n,) [s].
-        host_time: When the host read it, shape (n,) [s].
+        device_time: Device time at which each sample was taken, increasing, shape (n,) [s].
+        host_time: Host time at which it was read, shape (n,) [s].
 
     Returns:
         Offset, drift and delay.
 
     Raises:
-        ProtocolError: There are fewer than ten samples, or they were taken at one time.
+        ProtocolError: There are fewer than ten samples, or all have the same device time.
 
     >>> device = np.arange(100) / 10
     >>> fit = fit_clock(device, 5.0 + 1.0001 * device)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The clock of a device beside the host's: watched while a run is recorded, undone afterwards."""
+"""Compare a device's clock with the host's during recording, and correct sample times with it."""
 
 from collections.abc import Mapping, Sequence
 from typing import Final
@@ -12,13 +12,13 @@ from rig.device import Sample
 from rig.sample_columns import SampleColumns
 
 BUCKET: Final = 0.05
-"""One comparison of clocks is kept in each of these [s]."""
+"""Interval in which one comparison of the clocks is kept [s]."""
 RESTARTED: Final = 1.0
-"""Clocks that come apart by more than this between samples: the device began anew [s]."""
+"""Jump of the clock difference between samples that means a restart of the device [s]."""
 
 
 class ClockWatch:
-    """Keeps the least late sample of each `BUCKET`: enough for offset and drift, little to store.
+    """Collects the sample with the smallest delay in each `BUCKET`, to fit offset and drift.
 
     Args:
         start: Host time at which the run began [s].
@@ -30,7 +30,7 @@ class ClockWatch:
         self._host: list[float] = []
 
     def add(self, samples: Sequence[Sample]) -> None:
-        """Take what a read gave; its last sample waited least."""
+        """Add the samples of a read; its last sample has the smallest delay."""
         latest = samples[-1] if samples else None
         if latest is None or latest.device_time is None:
             return
@@ -46,8 +46,8 @@ class ClockWatch:
     def result(self) -> Mapping[str, float] | None:
         """Return offset [s] and drift [-] against the time of the run, and the delay [s].
 
-        Where the device began anew, its last clock that was seen for long enough. None where the
-        device tells no time, or too little of it was seen.
+        After a restart of the device they are those of its last clock with enough samples. None
+        where the device sends no time, or has sent too few samples.
         """
         device, host = _last_clock(np.array(self._device), np.array(self._host))
         if len(device) < FEWEST:
@@ -57,10 +57,10 @@ class ClockWatch:
 
 
 def _last_clock(device: Array, host: Array) -> tuple[Array, Array]:
-    """Choose the comparisons of the last clock of which there are enough, shape (n,) [s].
+    """Select the comparisons since the last restart that has enough of them, shape (n,) [s].
 
-    A sample may be read late, after which others are read in time again, but never early: where all
-    that follow lie more than `RESTARTED` later, another clock began.
+    A sample can be read late but never early. The device has therefore restarted where all later
+    comparisons are more than `RESTARTED` later.
     """
     while len(device) >= FEWEST:
         lag = host - device
@@ -76,10 +76,10 @@ def _last_clock(device: Array, host: Array) -> tuple[Array, Array]:
 
 
 def sample_times(stream: SampleColumns) -> Array:
-    """Compute when samples were taken, by the time of the run, shape (n,) [s].
+    """Compute the times at which samples were taken, since the start of the run, shape (n,) [s].
 
-    Reading takes samples in batches; where the device tells time, the batches are undone with its
-    clock, each stretch between restarts for itself. Where it tells none, the time of reading stays.
+    Samples are read in batches. Where the device sends its time, its clock corrects the times of
+    reading, separately between restarts. Where it sends none, the times of reading are returned.
 
     Args:
         stream: A recorded stream.
@@ -98,7 +98,7 @@ def sample_times(stream: SampleColumns) -> Array:
 
 
 def _filled(stream: SampleColumns) -> Array | None:
-    """Return device times, those that were lost interpolated by number; None without any."""
+    """Return device times, missing ones interpolated by sample number; None without any."""
     known = np.isfinite(stream.device_time)
     if known.sum() < FEWEST:
         return None

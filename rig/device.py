@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""What every device is: a stream of raw samples, and what can be asked of drives and load cells.
+"""Protocols of devices: streams of raw samples, drives, load cells; their counters and limits.
 
-Real, simulated and replayed devices are siblings behind these protocols. Raw counts travel; angles,
-speeds and forces are derived from them with the device's profile, now or years later.
+Real, simulated and replayed devices satisfy the same protocols. Samples hold raw counts. Angles,
+speeds and forces are computed from the counts with the device's profile, at any later time.
 """
 
 from collections.abc import Iterator, Sequence
@@ -14,17 +14,17 @@ from rig.clock import SYSTEM_CLOCK, Clock
 
 
 class Sample(NamedTuple):
-    """One reading, raw, as it arrived. A named tuple: at 7 kHz a frozen dataclass costs too much.
+    """One raw reading as it arrived. A named tuple: at 7 kHz a frozen dataclass is too slow.
 
     Attributes:
-        host_time: When the host read it, by the clock the stream was given [s].
-        device_time: When the device took it, by the device's own clock, wraps undone; None where
-            the protocol carries no time [s].
-        sequence: Number of the sample, wraps undone, strictly increasing; None where the protocol
-            numbers nothing.
+        host_time: Time at which the host read it, by the clock of the stream [s].
+        device_time: Time at which the device took it, by the device's own clock, unwrapped; None
+            where the protocol carries no time [s].
+        sequence: Sequence number of the sample, unwrapped, strictly increasing; None where the
+            protocol has none.
         counts: Raw values in the order of the protocol, units of the device.
-        status: Status or error word of the device; 0 where all is well or none is sent.
-        channel: Which of several devices on one link: node of a drive, 0 elsewhere.
+        status: Status or error word of the device; 0 without a fault or where none is sent.
+        channel: Index of the device among several on one link: node of a drive, 0 elsewhere.
     """
 
     host_time: float
@@ -37,21 +37,21 @@ class Sample(NamedTuple):
 
 @dataclass(frozen=True)
 class Counters:
-    """What happened to a stream so far.
+    """Counters of received, lost and damaged samples of a stream so far.
 
     Where a protocol numbers its samples and the device did not restart, received + lost is how many
     the device sent between the first and the last one received. A damaged or refused frame counts
-    as such when it is seen, and in `lost` when the next good one shows the hole.
+    as such when it arrives, and in `lost` when the next good one shows the gap.
 
     Attributes:
-        received: Samples handed on.
-        lost: Samples that the numbering shows to be missing.
-        damaged: Frames refused for their checksum, length or form.
-        repeated: Samples refused because their number had already passed: doubled, late.
-        refused: Whole frames refused for impossible values, or meant for another device.
-        resynchronised: Times that good frames followed damaged ones.
-        reconnected: Times that the link came back after it was gone.
-        restarted: Times that the device began to number anew.
+        received: Samples returned by the driver.
+        lost: Samples missing according to the sequence numbers.
+        damaged: Frames discarded for a wrong checksum, length or form.
+        repeated: Samples discarded as duplicates or late, because their number had passed.
+        refused: Whole frames discarded for impossible values, or meant for another device.
+        resynchronised: Number of times that good frames followed damaged ones.
+        reconnected: Number of times that the link came back after a disconnection.
+        restarted: Number of times that the device restarted its sequence numbers.
     """
 
     received: int = 0
@@ -65,19 +65,19 @@ class Counters:
 
     @property
     def rejected(self) -> int:
-        """Count the frames that arrived and were not handed on."""
+        """Number of frames that arrived and were discarded."""
         return self.damaged + self.repeated + self.refused
 
 
 class Stream(Protocol):
-    """A source of samples: open as a context manager, then read again and again.
+    """Context manager that returns the samples of a device at each call of `read`.
 
     A stream is read by one thread. Leaving it closes the link and de-energises what it drives.
     """
 
     @property
     def name(self) -> str:
-        """Name of the stream: topic in a log, row of a counter table."""
+        """Name of the stream, as in log topics and counter tables."""
         ...
 
     @property
@@ -87,17 +87,17 @@ class Stream(Protocol):
 
     @property
     def counters(self) -> Counters:
-        """What happened so far."""
+        """Counters of the stream so far."""
         ...
 
     def read(self, timeout: float) -> Sequence[Sample]:
-        """Hand on all samples that have arrived, waiting at most `timeout` for the first.
+        """Return all samples that have arrived, waiting at most `timeout` for the first.
 
         Args:
             timeout: Longest wait; 0 does not wait [s].
 
         Returns:
-            Samples in the order of the device; none where the time ran out or the link is gone.
+            Samples in the order of the device; none after a timeout or without a connection.
         """
         ...
 
@@ -112,9 +112,9 @@ class Stream(Protocol):
 
 
 class Drive(Protocol):
-    """A speed-controlled motor that turns one disc.
+    """Speed-controlled motor that turns one disc.
 
-    A drive needs its stream to be read: that is what feeds the watchdog inside it.
+    Reading the stream of a drive feeds the watchdog inside it.
     """
 
     @property
@@ -126,7 +126,7 @@ class Drive(Protocol):
         """Energise at standstill, waiting at most `timeout` [s].
 
         Raises:
-            RigTimeout: The drive did not follow.
+            RigTimeout: The drive did not energise in time.
             DeviceFault: The drive reports a fault.
         """
         ...
@@ -140,29 +140,29 @@ class Drive(Protocol):
         ...
 
     def disarm(self) -> None:
-        """Command standstill and de-energise; never fails for a drive that is not there."""
+        """Command standstill and de-energise; does not raise for a disconnected drive."""
         ...
 
 
 class LoadCellStream(Stream, Protocol):
-    """A stream of forces whose zero the device can set by itself."""
+    """Stream of forces from a device that can set its own zero."""
 
     def bias(self) -> None:
-        """Make what the cell reads now its zero."""
+        """Set the present reading of the cell as its zero."""
         ...
 
 
 @dataclass(frozen=True)
 class Limits:
-    """Largest magnitudes that a rig is allowed.
+    """Largest magnitudes allowed on a rig.
 
     Attributes:
         speed: Angular speed of a disc [rad/s].
         normal_force: Normal force [N].
         traction_force: Traction force [N].
-        lateral_force: Force on the load cell's third axis; None where nothing is said [N].
-        torque: Torque on any axis of the load cell; None where nothing is said [N m].
-        temperature_celsius: Of a drive or its motor; None where nothing is said [degC].
+        lateral_force: Force on the load cell's third axis; None where not limited [N].
+        torque: Torque on any axis of the load cell; None where not limited [N m].
+        temperature_celsius: Of a drive or its motor; None where not limited [degC].
     """
 
     speed: float
@@ -176,7 +176,7 @@ class Limits:
 def iterate(
     stream: Stream, *, duration: float, clock: Clock = SYSTEM_CLOCK, wait: float = 0.1
 ) -> Iterator[Sample]:
-    """Yield a stream's samples one by one for a while; silence does not hold it up.
+    """Yield a stream's samples one by one for a duration, also where the stream is silent.
 
     Args:
         stream: An open stream.

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What can be wrong with a device, its port or its profile; each message is one line."""
+"""Errors of devices, their ports and their profiles; each message is one line."""
 
 from os import PathLike
 
@@ -9,7 +9,7 @@ class RigError(Exception):
 
 
 class LinkError(RigError, ConnectionError):
-    """A port or bus cannot be opened, or is gone and nobody can wait for it."""
+    """A port or bus cannot be opened, or is disconnected for good."""
 
 
 class InUse(LinkError):
@@ -29,10 +29,10 @@ class PartFailed(RigError, RuntimeError):
 
 
 class RigTimeout(RigError, TimeoutError):
-    """A device did not do within its time limit what it was asked.
+    """A device did not respond, or did not do what was commanded, within its timeout.
 
     Attributes:
-        waited: Time that was waited [s].
+        waited: Time waited [s].
     """
 
     def __init__(self, problem: str, *, waited: float) -> None:
@@ -41,11 +41,11 @@ class RigTimeout(RigError, TimeoutError):
 
 
 class ProtocolError(RigError, ValueError):
-    """Bytes, or values to be made into bytes, are not of the device's protocol."""
+    """Bytes, or values to be encoded, violate the device's protocol."""
 
 
 class DeviceMismatch(RigError, ValueError):
-    """Another device than the profile's answers at the port."""
+    """The device that answers at the port is not the one of the profile."""
 
 
 class DeviceFault(RigError, RuntimeError):
@@ -80,11 +80,11 @@ class LimitExceeded(RigError, ValueError):
 
 
 class StaleReading(LimitExceeded):
-    """A reading was looked at so late that it no longer tells what the rig does."""
+    """A reading is too old to describe the present state of the rig."""
 
 
 class FrozenReading(RigError, ValueError):
-    """A sensor gives the same value, bit for bit, while what it measures must change.
+    """A sensor gives the same value, bit for bit, while the measured quantity must change.
 
     Attributes:
         value: Time without any change [s].
@@ -103,11 +103,11 @@ class FrozenReading(RigError, ValueError):
 
 
 class UnreliableRecords(RigError, ValueError):
-    """Numbering of a device's records restarts again and again, or most records are missing."""
+    """A device's record numbers restart repeatedly, or most records are missing."""
 
 
 class NotAtRest(RigError, TimeoutError):
-    """Discs that should stand were not seen to; nobody may touch them.
+    """Standstill of the discs could not be verified; the rig must not be touched.
 
     Attributes:
         limit: Largest speed of a disc that stands [rad/s].
@@ -122,7 +122,7 @@ class NotAtRest(RigError, TimeoutError):
 
 
 class ProfileError(RigError, ValueError):
-    """A device profile says something that cannot be followed.
+    """A device profile has an invalid or missing value.
 
     Attributes:
         problem: What was found, what was expected, what to try.

@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""Exclusive use of a device or a folder among all programs of a machine, by a lock of the kernel.
+"""Lock files (flock) for exclusive use of a device or folder among all programs of a machine.
 
-The kernel releases the lock when its process ends, however it ends. A device's lock may be taken
-again and again inside one process, because two drivers may share a bus; it is released with the
-last.
-Windows has no such locks: there only the exclusive opening of serial ports remains.
+The kernel releases the lock when its process ends, also after a crash. A device's lock can be taken
+several times inside one process, because two drivers may share a bus; the last release frees it.
+Windows has no such locks: there only the exclusive opening of serial ports protects a device.
 """
 
 import hashlib
@@ -24,7 +23,7 @@ from rig.errors import InUse
 fcntl: Any = importlib.import_module("fcntl") if os.name == "posix" else None
 
 LONGEST: Final = 300
-"""Longest description of an owner that is kept and shown [characters]."""
+"""Longest description of an owner that is stored and shown [characters]."""
 
 
 @dataclass
@@ -47,12 +46,12 @@ _REGISTRY: Final = _Registry()
 
 
 class Exclusive:
-    """The exclusive use of something; taken and released, or a context manager.
+    """Lock of a device or folder; has `take` and `release`, and is a context manager.
 
     Args:
-        file: The lock's file; made when missing, and never removed.
-        what: What is locked, for the message.
-        shared: Let other parts of this process take it as well.
+        file: The lock file; created when missing, and never removed.
+        what: Name of the locked thing, for the message.
+        shared: Whether other parts of this process can take it as well.
     """
 
     def __init__(self, file: Path, *, what: str, shared: bool = False) -> None:
@@ -62,11 +61,11 @@ class Exclusive:
         self._taken = False
 
     def take(self) -> None:
-        """Take the lock without waiting; taking it twice is no fault.
+        """Acquire the lock without waiting; a second call has no effect.
 
         Raises:
             InUse: Another process holds it; the message says which.
-            OSError: The file cannot be made.
+            OSError: The file cannot be created.
         """
         if self._taken or fcntl is None:
             return
@@ -79,7 +78,7 @@ class Exclusive:
         self._taken = True
 
     def release(self) -> None:
-        """Release the lock; releasing it twice is no fault."""
+        """Release the lock; a second call has no effect."""
         if not self._taken:
             return
         self._taken = False
@@ -112,10 +111,10 @@ class Exclusive:
 
 
 def try_lock(handle: int) -> bool:
-    """Lock an open file without waiting; tell whether this process may use it alone.
+    """Lock an open file without waiting; return whether this process has the lock.
 
-    Where the system or the file system has no locks, one user at a time has to do: that is told as
-    locked. Closing the file releases it.
+    Also returns True where the system or the file system has no locks. Closing the file releases
+    the lock.
     """
     if fcntl is None:
         return True
@@ -153,9 +152,10 @@ def _lock_folder() -> Path:
 
 
 def _open(file: Path) -> int:
-    """Open a lock's file; one that another user made must not be opened as if it were to be made.
+    """Open a lock file, without O_CREAT where it exists.
 
-    Linux refuses that in folders that everybody may write to (`fs.protected_regular`).
+    Linux refuses O_CREAT for another user's file in world-writable folders
+    (`fs.protected_regular`).
     """
     flags = os.O_RDWR | getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_CLOEXEC", 0)
     try:
@@ -171,13 +171,13 @@ def _open(file: Path) -> int:
 
 
 def _owner() -> str:
-    """Describe this process: number, command and when it took the lock."""
+    """Describe this process: its id, its command and the time at which it took the lock."""
     command = shlex.join([Path(sys.executable).name, *sys.argv])
     since = datetime.now(UTC).isoformat(timespec="seconds")
     return f"process {os.getpid()} ({command[:LONGEST]}) since {since}"
 
 
 def _readable(content: bytes) -> str:
-    """Return an owner's description as one line that any terminal can show."""
+    """Return an owner's description as one printable line."""
     text = content.decode("utf-8", "replace")
     return "".join(character if character.isprintable() else "?" for character in text)[:LONGEST]

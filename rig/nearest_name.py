@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Find the known name nearest to one that is unknown, for error messages."""
+"""Suggest the known name most similar to an unknown one, for error messages."""
 
 import difflib
 from collections.abc import Collection
@@ -8,14 +8,14 @@ _LISTED = 15  # names a message lists before it says how many more there are
 
 
 def nearest(name: str, known: Collection[str]) -> str:
-    """Advise on a name that is not among the known ones.
+    """Suggest the known name most similar to an unknown one.
 
     Args:
         name: The unknown name.
-        known: All names that would be understood.
+        known: All known names.
 
     Returns:
-        The nearest name, where one is similar, and the known ones.
+        Text with the most similar name, if any, and the known ones.
 
     >>> nearest("normal_froce", ["normal_force", "t"])
     "did you mean 'normal_force'? known: 'normal_force', 't'"

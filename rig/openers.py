@@ -17,9 +17,9 @@ from rig.twins import simulated_imu, simulated_legs
 from rig.zebro.profile import load_leg_profile
 
 SIMULATED: Final = "sim"
-"""In place of a port, or of PROFILE@PORT, this is a simulated twin."""
+"""Name of a simulated twin, in place of a port or of PROFILE@PORT."""
 REPLAY: Final = "replay:"
-"""Begin of an address that names a recorded run in place of a device."""
+"""Prefix of an address that names a recorded run in place of a device."""
 LEGS_PROFILE: Final = "zebro-100-serial"
 IMU_PROFILE: Final = "imu-quaternion-serial"
 
@@ -35,7 +35,7 @@ def resolve(address: str, *, default: str) -> tuple[str, str]:
         Profile and port.
 
     Raises:
-        ProfileError: Profile or port is missing, or it is a replay, which has no port.
+        ProfileError: Profile or port is missing, or the address is a replay, which has no port.
 
     >>> resolve("sim", default="zebro-100-serial")
     ('zebro-100-serial', 'sim')
@@ -49,18 +49,18 @@ def resolve(address: str, *, default: str) -> tuple[str, str]:
 
 @contextmanager
 def legs_at(address: str, gait: LegReference, *, rng: np.random.Generator) -> Iterator[Any]:
-    """Make the driver of the robot's legs at an address.
+    """Provide the driver of the robot's legs at an address.
 
     Args:
         address: `PROFILE@PORT`, `PROFILE@sim` or `sim`.
-        gait: What a twin walks until it is told otherwise.
-        rng: Randomness of a twin.
+        gait: Gait of a twin until it is commanded.
+        rng: Random generator of a twin.
 
     Yields:
         A `Stream` that also takes `LegCommands`, not yet entered.
 
     Raises:
-        ProfileError: The address or the profile is not right.
+        ProfileError: The address or the profile is invalid.
     """
     name, port = resolve(address, default=LEGS_PROFILE)
     if port == SIMULATED:
@@ -72,18 +72,18 @@ def legs_at(address: str, gait: LegReference, *, rng: np.random.Generator) -> It
 
 @contextmanager
 def imu_at(address: str, *, name: str, rng: np.random.Generator) -> Iterator[ImuStream]:
-    """Make the driver of the inertial measurement unit at an address.
+    """Provide the driver of the inertial measurement unit at an address.
 
     Args:
         address: `PROFILE@PORT`, `PROFILE@sim` or `sim`.
         name: Name of the stream.
-        rng: Randomness of a twin.
+        rng: Random generator of a twin.
 
     Yields:
         The driver, not yet entered.
 
     Raises:
-        ProfileError: The address or the profile is not right.
+        ProfileError: The address or the profile is invalid.
     """
     profile, port = resolve(address, default=IMU_PROFILE)
     if port == SIMULATED:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Device profiles: TOML found by name or path, read once, every key checked."""
+"""Find device profiles (TOML) by name or path, and split addresses into profile and port."""
 
 from importlib import resources
 from importlib.resources.abc import Traversable
@@ -15,17 +15,18 @@ SCHEMA: Final = 1
 
 
 def open_profile(name: str, *, device: str) -> TomlTable:
-    """Find a profile and begin to read it.
+    """Open a device profile by name or path as a validated TOML table.
 
     Args:
         name: Name of a shipped profile, or path of a TOML file.
-        device: Kind of device that the profile must be of.
+        device: Kind of device that the profile must describe.
 
     Returns:
-        The whole file as a table, `schema` and `device` taken.
+        The whole file as a table; `schema` and `device` are already read.
 
     Raises:
-        ProfileError: There is none, it is not TOML, or it is another device's.
+        ProfileError: There is no such profile, it is not TOML, or it describes another kind of
+            device.
     """
     source = _find(name)
     try:
@@ -56,7 +57,7 @@ def split_address(address: str) -> tuple[str, str]:
     """Split `PROFILE@PORT`.
 
     Args:
-        address: As a person types it; the port may hold anything, another `@` too.
+        address: Address as typed by a person; the port may hold any character, `@` included.
 
     Returns:
         Profile and port.

@@ -12,20 +12,20 @@ from rig.errors import ProtocolError
 
 
 class ReplayStream:
-    """Hands on recorded samples when they are due; satisfies `rig.device.Stream`.
+    """Stream of recorded samples at their recorded pace; satisfies `rig.device.Stream`.
 
     Host times are shifted so that the first sample arrives when the stream is opened; device times,
-    numbers and counts are as recorded. What was lost then is counted as lost again.
+    sequence numbers and counts are as recorded. Samples lost in the recording count as lost again.
 
     Args:
         samples: The recording, in order.
         name: Name of the stream.
         source: Where the samples come from, such as `replay:RUN`.
-        speed: How many times faster than it happened.
+        speed: Factor by which the replay is faster than the recording [-].
         clock: Host time.
 
     Raises:
-        ProtocolError: The host times run back, or the speed is not positive.
+        ProtocolError: The host times decrease, or the speed is not positive.
     """
 
     def __init__(
@@ -56,16 +56,16 @@ class ReplayStream:
 
     @property
     def finished(self) -> bool:
-        """Tell whether the recording is at its end."""
+        """Return whether every recorded sample has been returned."""
         return self._next >= len(self._samples)
 
     @property
     def counters(self) -> Counters:
-        """What happened so far."""
+        """Counters of the stream so far."""
         return Counters(received=self._next, lost=self._lost)
 
     def read(self, timeout: float) -> list[Sample]:
-        """Hand on the samples that are due, waiting at most `timeout` for the first [s]."""
+        """Return the samples that are due, waiting at most `timeout` for the first [s]."""
         if self._began is None or self.finished:
             self._clock.sleep(timeout)
             return []

@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Limits that are checked before motion and on every sample. Not a safety device.
+"""Limit checks before motion and on every sample, and requests to stop. Not a safety device.
 
-What stops a rig whose host is dead is the watchdog inside its drives, and a hardware emergency
-stop.
+If the host fails, only the watchdogs inside the drives and a hardware emergency stop stop the rig.
 """
 
 import math
@@ -18,35 +17,35 @@ from numpy.typing import NDArray
 from rig.errors import LimitExceeded, RigError, RigTimeout
 
 REST_SPEED: Final = 0.1
-"""Mean speed below which a disc stands, unless a plan says otherwise [rad/s]."""
+"""Mean speed below which a disc counts as standing, unless a plan sets it [rad/s]."""
 
 
 def require_within(value: float, limit: float, *, quantity: str, unit: str) -> None:
-    """Check a set-point.
+    """Check that the magnitude of a set-point is within its limit.
 
     Args:
-        value: What is to be commanded.
+        value: Set-point.
         limit: Largest magnitude allowed.
-        quantity: What it is, for the message.
+        quantity: Name of the quantity, for the message.
         unit: Unit of both.
 
     Raises:
-        LimitExceeded: It is beyond the limit, or no number.
+        LimitExceeded: The magnitude is above the limit, or NaN.
     """
     if not abs(value) <= limit:  # NaN too
         raise LimitExceeded(quantity, value=value, limit=limit, unit=unit)
 
 
 class SampleGuard:
-    """Watches one measured quantity: one outlier is noise, several close together are real.
+    """Limit check of one measured quantity that tolerates single outliers.
 
     Args:
         limit: Largest magnitude allowed.
-        quantity: What is watched, for the message.
+        quantity: Name of the quantity, for the message.
         unit: Unit of the limit.
-        in_a_row: So many samples beyond the limit are a fault, in a row or as most of the latest
-            2 in_a_row - 1: a sensor that saturates in two samples of three never gives three in a
-            row.
+        in_a_row: Number of samples beyond the limit, among the latest 2 in_a_row - 1, that are a
+            fault. They need not be consecutive: a sensor that saturates in two samples of three
+            never gives three in a row.
     """
 
     def __init__(self, limit: float, *, quantity: str, unit: str, in_a_row: int = 3) -> None:
@@ -57,10 +56,10 @@ class SampleGuard:
         self._latest: deque[bool] = deque(maxlen=2 * in_a_row - 1)
 
     def check(self, value: float) -> None:
-        """Take the next value.
+        """Check the next value.
 
         Raises:
-            LimitExceeded: It is the last of so many beyond the limit.
+            LimitExceeded: `in_a_row` of the latest values are beyond the limit.
         """
         beyond = not (math.isfinite(value) and abs(value) <= self._limit)
         self._latest.append(beyond)
@@ -68,10 +67,11 @@ class SampleGuard:
             raise LimitExceeded(self._quantity, value=value, limit=self._limit, unit=self._unit)
 
     def check_all(self, values: NDArray[np.float64]) -> None:
-        """Take the next values, shape (n,), in order; at 7 kHz one by one would cost too much.
+        """Check the next values in order, shape (n,); at 7 kHz one by one would be too slow.
 
         Raises:
-            LimitExceeded: So many of the latest ones, those before counted, are beyond the limit.
+            LimitExceeded: `in_a_row` of the latest values, earlier calls included, are beyond the
+                limit.
         """
         within = np.abs(values) <= self._limit  # NaN is not
         if within.all():
@@ -82,12 +82,12 @@ class SampleGuard:
 
 
 class FollowingGuard:
-    """Watches whether a disc follows its set-point; a short departure is acceleration.
+    """Limit check of a disc's speed error; a short error is tolerated as acceleration.
 
     Args:
-        limit: Largest departure allowed [rad/s].
+        limit: Largest speed error allowed [rad/s].
         name: Name of the disc, for the message.
-        longest: How long a departure may last [s].
+        longest: Longest time for which the error may exceed the limit [s].
     """
 
     def __init__(self, limit: float, *, name: str, longest: float) -> None:
@@ -97,16 +97,16 @@ class FollowingGuard:
         self._since: float | None = None
 
     def check(self, speed: float, wanted: float, *, now: float, narrower: float = math.inf) -> None:
-        """Take the latest speed and its set-point [rad/s].
+        """Check the latest speed against its set-point.
 
         Args:
-            speed: Measured.
-            wanted: Commanded.
+            speed: Measured speed [rad/s].
+            wanted: Commanded speed [rad/s].
             now: Host time [s].
-            narrower: A smaller limit that holds for now.
+            narrower: Smaller limit that holds at present [rad/s].
 
         Raises:
-            LimitExceeded: The disc has departed too far for too long, or its speed is no number.
+            LimitExceeded: The speed error was too large for too long, or the speed is NaN.
         """
         departure, limit = speed - wanted, min(self._limit, narrower)
         if abs(departure) <= limit:
@@ -119,12 +119,12 @@ class FollowingGuard:
 
 
 class SilenceGuard:
-    """Makes an event of a stream that has fallen silent.
+    """Timeout check of a stream that sends no samples.
 
     Args:
         name: Name of the stream, for the message.
         limit: Longest silence allowed [s].
-        now: Host time at which watching begins [s].
+        now: Host time at which the check begins [s].
     """
 
     def __init__(self, name: str, *, limit: float, now: float) -> None:
@@ -133,14 +133,14 @@ class SilenceGuard:
         self._heard = now
 
     def check(self, samples: Sequence[object], *, now: float) -> None:
-        """Take what a read gave.
+        """Check the time since the last sample.
 
         Args:
-            samples: What came, nothing or more.
+            samples: Samples of the latest read, possibly none.
             now: Host time [s].
 
         Raises:
-            RigTimeout: Nothing has come for longer than the limit.
+            RigTimeout: No sample has arrived for longer than the limit.
         """
         if samples:
             self._heard = now
@@ -156,15 +156,15 @@ class StopCategory(IntEnum):
     SAFE = 2
     """Ramp to standstill, then de-energise (1)."""
     EMERGENCY = 3
-    """De-energise at once; latched until somebody resets it (0)."""
+    """De-energise at once; latched until a person resets it (0)."""
 
 
 @dataclass(frozen=True)
 class Stop:
-    """A wish to stop.
+    """Request to stop.
 
     Attributes:
-        category: How.
+        category: How to stop.
         reason: Why, for the log.
     """
 
@@ -173,10 +173,10 @@ class Stop:
 
 
 class StopRequested(RigError):
-    """Somebody asked for a stop; the run is left so that it is obeyed.
+    """A stop was requested; raised to leave the run so that it is carried out.
 
     Attributes:
-        stop: How and why.
+        stop: Category and reason.
     """
 
     def __init__(self, stop: Stop) -> None:
@@ -185,34 +185,39 @@ class StopRequested(RigError):
 
 
 class StopSwitch:
-    """Where signals, keys and other threads ask for stops, and the acquiring thread looks.
+    """Stop requests from signals, keys and other threads, polled by the acquiring thread.
 
-    A harder stop prevails over a milder one. No lock: a signal's handler would wait for the thread
-    that it interrupted. Appending to and reading a list is whole by itself.
+    A harder stop prevails over a milder one. There is no mutex: a signal handler would deadlock
+    with the thread that it interrupts. Appending to and reading a list are atomic.
     """
 
     def __init__(self) -> None:
         self._asked: list[Stop] = []
 
     def request(self, category: StopCategory, reason: str) -> None:
-        """Ask for a stop."""
+        """Request a stop; safe to call from a signal handler and from any thread.
+
+        Args:
+            category: How to stop.
+            reason: Why, for the log.
+        """
         self._asked.append(Stop(category, reason))
 
     @property
     def pending(self) -> Stop | None:
-        """The hardest stop that was asked for, the first of its category; None where none was."""
+        """Hardest stop requested, the first of its category; None where there is none."""
         return max(self._asked, key=lambda stop: stop.category, default=None)
 
     @property
     def latched(self) -> bool:
-        """Tell whether an emergency stop holds until it is reset."""
+        """Return whether an emergency stop is latched."""
         stop = self.pending
         return stop is not None and stop.category is StopCategory.EMERGENCY
 
     def release(self) -> None:
-        """Take back soft stops; safe and emergency stops stay."""
+        """Clear soft stops; safe and emergency stops stay."""
         self._asked[:] = [s for s in self._asked if s.category is not StopCategory.SOFT]
 
     def reset(self) -> None:
-        """Release everything, an emergency stop too: only ever at a person's explicit wish."""
+        """Clear every stop, an emergency stop included; only on a person's explicit request."""
         self._asked.clear()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Many samples of one stream as columns: what takes them all at once costs next to nothing each."""
+"""Samples of one stream as columns (structure of arrays), for vectorised processing."""
 
 import math
 from collections.abc import Iterator, Sequence
@@ -14,14 +14,14 @@ from rig.device import Sample
 
 @dataclass(frozen=True, eq=False)
 class SampleColumns(Sequence[Sample]):
-    """Samples in order, a column each field; reads like a list of `Sample`.
+    """Samples in order, one array for each field; behaves as a sequence of `Sample`.
 
     Attributes:
-        host_time: When each sample was read, shape (n,) [s].
-        device_time: By the device's clock, NaN where it tells none, shape (n,) [s].
-        sequence: Number of each sample, -1 where it has none, shape (n,).
+        host_time: Time at which each sample was read, shape (n,) [s].
+        device_time: Time by the device's clock, NaN where it sends none, shape (n,) [s].
+        sequence: Sequence number of each sample, -1 where it has none, shape (n,).
         status: Status words, shape (n,).
-        channel: Which of several devices on the link, shape (n,).
+        channel: Index of the device among several on the link, shape (n,).
         counts: Raw values, shape (n, width).
     """
 
@@ -34,7 +34,7 @@ class SampleColumns(Sequence[Sample]):
 
     @classmethod
     def joined(cls, parts: Sequence[Self]) -> Self:
-        """Return samples of one stream, at least one part of them, as one."""
+        """Concatenate samples of one stream; there must be at least one part."""
         columns = zip(*(vars(part).values() for part in parts), strict=True)
         return parts[0] if len(parts) == 1 else cls(*map(np.concatenate, columns))
 
@@ -67,10 +67,10 @@ def _sample(
 
 
 def as_columns(samples: Sequence[Sample], dtype: DTypeLike = float) -> SampleColumns:
-    """Return samples as columns; those that are columns already, as they are.
+    """Convert samples to columns; columns are returned unchanged.
 
     Args:
-        samples: Of one stream, with equally many counts.
+        samples: Samples of one stream, with equal numbers of counts.
         dtype: Type of the counts.
 
     Raises:

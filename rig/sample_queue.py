@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Between the thread that reads a device and those who write or watch: nobody waits for anybody."""
+"""Non-blocking queues between the thread that reads a device and the writer or viewer."""
 
 import threading
 from collections import deque
@@ -10,13 +10,13 @@ from rig.sample_columns import SampleColumns
 
 
 class SampleQueue:
-    """Samples on their way to the log; bounded, and `put` never waits.
+    """Bounded, non-blocking queue of samples from a reader thread to the log writer.
 
     Args:
-        limit: Most samples that may wait.
+        limit: Capacity [samples].
 
     Attributes:
-        dropped: Samples that found no room.
+        dropped: Samples dropped so far because the queue was full.
     """
 
     def __init__(self, *, limit: int) -> None:
@@ -27,7 +27,7 @@ class SampleQueue:
         self._lock = threading.Lock()
 
     def put(self, samples: Sequence[Sample]) -> bool:
-        """Take samples, all or none; tell whether there was room."""
+        """Append samples, all or none; return whether there was room."""
         with self._lock:
             if self._count + len(samples) > self._limit:
                 self.dropped += len(samples)
@@ -37,7 +37,7 @@ class SampleQueue:
             return True
 
     def take(self) -> Sequence[Sample]:
-        """Hand on all that wait, in order."""
+        """Remove and return all queued samples, in order."""
         with self._lock:
             taken, self._waiting, self._count = self._waiting, [], 0
         columns = [samples for samples in taken if isinstance(samples, SampleColumns)]
@@ -47,13 +47,13 @@ class SampleQueue:
 
 
 class LossyTap:
-    """The newest samples for a viewer, which takes them when it can: what it misses is gone.
+    """Ring buffer of the newest samples for a viewer; older samples are discarded.
 
-    Reads are kept whole while they come, and handed over whole: a viewer that is slow, hangs or
-    raises holds up nobody.
+    A viewer that is slow, hangs or raises does not block the reader thread.
 
     Args:
-        limit: Most samples handed on; fewer than that and one read are kept.
+        limit: Largest number of samples that `take` returns; fewer than that plus those of one read
+            are stored.
     """
 
     def __init__(self, *, limit: int = 1000) -> None:
@@ -63,7 +63,7 @@ class LossyTap:
         self._lock = threading.Lock()
 
     def put(self, samples: Sequence[Sample]) -> None:
-        """Keep samples, in place of the oldest where there are too many."""
+        """Append samples; the oldest reads are discarded where there are too many."""
         with self._lock:
             self._newest.append(samples)
             self._count += len(samples)
@@ -71,7 +71,7 @@ class LossyTap:
                 self._count -= len(self._newest.popleft())
 
     def take(self) -> list[Sample]:
-        """Hand on what is kept, in order, and keep it no more."""
+        """Remove and return the newest samples, in order."""
         with self._lock:
             reads, self._newest, self._count = self._newest, deque(), 0
         return [sample for samples in reads for sample in samples][-self._limit :]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Guards against sensors that lie: readings that are old, frozen, or of records in disorder."""
+"""Checks of sensor plausibility: stale readings, frozen values, and unreliable record numbers."""
 
 from collections import deque
 from typing import Final, TypeAlias
@@ -13,29 +13,29 @@ from rig.errors import FrozenReading, StaleReading, UnreliableRecords
 Values: TypeAlias = NDArray[np.float64]
 
 TURNING: Final = 1.0
-"""Set-point above which a disc's sensors must move, and change of one which they must show [rad/s].
-"""
+"""Set-point above which a disc's sensors must change, and set-point change that they must show
+[rad/s]."""
 FEWEST_SAME: Final = 8
-"""Equal readings in a row below which a sensor is not frozen, however slow it is."""
+"""Least number of equal consecutive readings of a frozen sensor."""
 LARGE: Final = 3.0
-"""Smallest steps of a sensor that are more than its rounding."""
+"""Factor on a sensor's smallest step above which a change is more than its rounding [-]."""
 LATEST_LOOKS: Final = 9
 SCATTER_TIME: Final = 1.0
-"""Time over which the share of looks with a large change is averaged [s]."""
+"""Time over which the fraction of batches with a large change is averaged [s]."""
 SINGLE_PRECISION: Final = 2.0**-22
-"""Relative step of what travels as a single-precision number [-]."""
+"""Relative resolution of values sent in single precision [-]."""
 RESTART_WINDOW: Final = 10.0
-"""Time within which a device may restart its numbering once [s]."""
+"""Time within which a device may restart its record numbers once [s]."""
 SHARE_WINDOW: Final = 0.25
-"""Time over which the share of missing and refused records is taken [s]."""
+"""Time over which the fraction of missing and refused records is computed [s]."""
 LARGEST_SHARE: Final = 0.5
-"""Share of records that may be missing or refused [-]."""
+"""Largest allowed fraction of missing and refused records [-]."""
 FEWEST_RECORDS: Final = 20
-"""Records below which no share is taken."""
+"""Least number of records from which the fraction is computed."""
 
 
 class AgeGuard:
-    """Makes a fault of readings that waited too long in a buffer before they were looked at.
+    """Check of the age of readings, which may have waited in a buffer before they were read.
 
     Args:
         name: Name of the stream, for the message.
@@ -47,10 +47,14 @@ class AgeGuard:
         self._limit = limit
 
     def check(self, taken: NDArray[np.float64], *, now: float) -> None:
-        """Take when the readings of one look were taken, by host time, shape (n,) [s].
+        """Check the age of the readings of one batch.
+
+        Args:
+            taken: Host time at which each reading was taken, shape (n,) [s].
+            now: Host time [s].
 
         Raises:
-            StaleReading: One of them is older than the limit.
+            StaleReading: A reading is older than the limit.
         """
         age = now - float(taken.min(initial=now))
         if age > self._limit:
@@ -60,17 +64,17 @@ class AgeGuard:
 
 
 class FrozenGuard:
-    """Makes a fault of a sensor that gives the same value, bit for bit, while discs turn.
+    """Check for a sensor that gives the same value, bit for bit, while discs turn.
 
-    A sensor may do so by right: at rest, where its noise is below one count, and a simulated one
-    without noise at any steady speed. So what does not change is frozen only where it must change:
-    where it scattered by several of its smallest steps up to its last change, and a speed also
-    where its set-point has changed.
+    A working sensor gives a constant value at rest, where its noise is below one count, and a
+    simulated one without noise does so at any steady speed. A constant value therefore counts as
+    frozen only where it must change: where it scattered by several of its smallest steps until its
+    last change, or, for a speed, where its set-point has changed.
 
     Args:
-        what: What is measured, for the message.
+        what: Name of the quantity, for the message.
         limit: Longest time without any change [s].
-        follows: Whether it is the speed that is commanded.
+        follows: Whether the quantity is the commanded speed.
     """
 
     def __init__(self, what: str, *, limit: float, follows: bool = False) -> None:
@@ -86,10 +90,10 @@ class FrozenGuard:
         self._scattered = False
 
     def check(self, values: Values, *, wanted: float, now: float) -> None:
-        """Take what a look gave, in order.
+        """Check the values of a batch, in order.
 
         Args:
-            values: What the channels of the sensor gave, shape (n, channels).
+            values: Values of the sensor's channels, shape (n, channels).
             wanted: Set-point of the disc that makes the value change [rad/s].
             now: Host time [s].
 
@@ -111,7 +115,7 @@ class FrozenGuard:
                 raise FrozenReading(self._what, value=now - self._changed, limit=self._limit)
 
     def _learn(self, values: Values, last: Values, now: float) -> None:
-        """Take note of how the channels scatter at a steady set-point."""
+        """Update the resolution and scatter of the channels at a steady set-point."""
         steps = np.abs(np.diff(values, axis=0, prepend=last[None]))
         if not len(self._smallest):
             self._smallest, self._share = np.full(len(last), np.inf), np.zeros(len(last))
@@ -126,9 +130,10 @@ class FrozenGuard:
 
 
 class RecordGuard:
-    """Makes a fault of a stream whose numbering restarts again and again, or that hardly arrives.
+    """Check for a stream whose record numbers restart repeatedly or that mostly gets lost.
 
-    Numbers at random are restarts, too. One restart is let pass, and so are losses below a half.
+    Random record numbers count as restarts. A single restart is tolerated, and so are losses of up
+    to `LARGEST_SHARE`.
 
     Args:
         name: Name of the stream, for the message.
@@ -142,15 +147,15 @@ class RecordGuard:
         self._since = 0.0
 
     def check(self, counters: Counters, *, now: float) -> None:
-        """Take the stream's counters.
+        """Check the stream's counters.
 
         Args:
-            counters: What happened so far.
+            counters: Counters of the stream so far.
             now: Host time [s].
 
         Raises:
-            UnreliableRecords: The numbering has restarted twice, or most records are missing or
-                refused.
+            UnreliableRecords: The record numbers have restarted twice within `RESTART_WINDOW`, or
+                most records are missing or refused.
         """
         if self._base is None:
             self._base, self._since, self._restarted = counters, now, counters.restarted

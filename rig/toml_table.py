@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A table of a TOML file out of which each key is taken once, checked, and unknown keys refused."""
+"""Validated access to a table of a TOML file: each key is read once, unknown keys are an error."""
 
 import difflib
 import math
@@ -12,20 +12,20 @@ from rig.errors import ProfileError
 from rig.nearest_name import nearest
 
 LONGEST: Final = 10_000
-"""Most numbers of a series."""
+"""Largest number of values in a series."""
 Choice = TypeVar("Choice", bound=str)
 
 
 class TomlTable:
-    """One table of a file, out of which each key is taken exactly once.
+    """One table of a TOML file, of which each key is read and removed exactly once.
 
-    What is left when all that is known has been taken is a fault: `finish` names it. The methods
-    that take a key raise `ProfileError` (a subclass, its own error) where the key is missing
-    without a default or holds something else than it should.
+    A key that remains after all known keys have been read is an error, which `finish` raises. The
+    methods that read a key raise `ProfileError` (in a subclass: its own error) where the
+    key is missing without a default, or its value has the wrong type or range.
 
     Args:
         entries: The table.
-        file: Where it stands, for messages.
+        file: File that holds it, for messages.
         path: Dotted name of the table inside the file; empty for the whole file.
     """
 
@@ -44,33 +44,38 @@ class TomlTable:
 
     @property
     def empty(self) -> bool:
-        """Tell whether nothing is left to take."""
+        """Return whether no key is left to read."""
         return not self._entries
 
     @property
     def left(self) -> tuple[str, ...]:
-        """Name the keys that were not taken yet, in the file's order."""
+        """Keys that have not been read yet, in the file's order."""
         return tuple(self._entries)
 
     def fault(self, problem: str, key: str | None = None) -> Exception:
-        """Make an error that names the file and the key."""
+        """Return an error that names the file and the key.
+
+        Args:
+            problem: What was found and what was expected.
+            key: Key in this table; None for the table itself.
+        """
         return ProfileError(problem, file=self.file, key=self.dotted(key))
 
     def dotted(self, key: str | None) -> str | None:
-        """Return the name of a key in the whole file; None for the whole file itself."""
+        """Return the dotted name of a key in the file; None for the whole file."""
         return ".".join(part for part in (self.path, key) if part) or None
 
     def table(self, key: str) -> Self:
-        """Take a table; an absent one is empty."""
+        """Read a nested table; an absent one is empty."""
         return self.as_table(key, self.value(key, {}))
 
     def as_table(self, key: str, value: object, *, expected: str = "a table") -> Self:
-        """Return a value that was found at a key as a table.
+        """Return a value that was read from a key as a table.
 
         Args:
-            key: Where it stands.
-            value: What stands there.
-            expected: What should stand there, for the message.
+            key: Key of the value.
+            value: The value.
+            expected: Expected kind of value, for the message.
         """
         if not isinstance(value, dict):
             raise self.fault(f"found {value!r}; expected {expected}", key)
@@ -79,7 +84,12 @@ class TomlTable:
         return table
 
     def value(self, key: str, default: object = None) -> Any:
-        """Take whatever stands at a key, or the default; without either the key is missing."""
+        """Read a value of any type.
+
+        Args:
+            key: Name of the key.
+            default: Value of an absent key; None where the key is required.
+        """
         if key not in self and default is None:
             near = difflib.get_close_matches(key, self._entries, n=1, cutoff=0.8)
             hint = f"; found '{near[0]}': did you mean '{key}'?" if near else ""
@@ -87,14 +97,20 @@ class TomlTable:
         return self._entries.pop(key, default)
 
     def text(self, key: str, default: str | None = None, *, least: int = 0) -> str:
-        """Take a text of so many characters or more."""
+        """Read a string.
+
+        Args:
+            key: Name of the key.
+            default: Value of an absent key; None where the key is required.
+            least: Least number of characters.
+        """
         value = self.value(key, default)
         if not isinstance(value, str) or len(value) < least:
             raise self.fault(f"found {value!r}; expected a text", key)
         return value
 
     def texts(self, key: str) -> tuple[str, ...]:
-        """Take a list of texts, or one text; an absent one is empty."""
+        """Read a list of strings, or one string; an absent one is empty."""
         value = self.value(key, [])
         texts = [value] if isinstance(value, str) else value
         if not isinstance(texts, list) or not all(isinstance(text, str) for text in texts):
@@ -104,7 +120,13 @@ class TomlTable:
     def choice(
         self, key: str, choices: tuple[Choice, ...], default: Choice | None = None
     ) -> Choice:
-        """Take one of several texts."""
+        """Read one of several allowed strings.
+
+        Args:
+            key: Name of the key.
+            choices: Allowed values.
+            default: Value of an absent key; None where the key is required.
+        """
         value = self.value(key, default)
         for choice in choices:
             if value == choice:
@@ -112,47 +134,84 @@ class TomlTable:
         raise self.fault(f"found {value!r}; expected one of {', '.join(choices)}", key)
 
     def names(self, key: str, known: tuple[str, ...]) -> tuple[str, ...]:
-        """Take a list of known names, each once; an absent one is empty."""
+        """Read a list of known names without duplicates.
+
+        Args:
+            key: Name of the key; an absent one gives an empty list.
+            known: Allowed names.
+        """
         value = self.value(key, [])
         if not isinstance(value, list) or not all(item in known for item in value):
             raise self.fault(f"found {value!r}; expected a list of {', '.join(known)}", key)
         return tuple(dict.fromkeys(value))
 
     def flag(self, key: str, default: bool) -> bool:  # noqa: FBT001, RUF100 - a value, no switch
-        """Take true or false."""
+        """Read a boolean.
+
+        Args:
+            key: Name of the key.
+            default: Value of an absent key.
+        """
         value = self.value(key, default)
         if not isinstance(value, bool):
             raise self.fault(f"found {value!r}; expected true or false", key)
         return value
 
     def whole(self, key: str, default: int | None = None, *, least: int = 0, most: int) -> int:
-        """Take a whole number in a range, both ends included."""
+        """Read an integer in a range.
+
+        Args:
+            key: Name of the key.
+            default: Value of an absent key; None where the key is required.
+            least: Smallest allowed value.
+            most: Largest allowed value.
+        """
         value = self.value(key, default)
         if not isinstance(value, int) or isinstance(value, bool) or not least <= value <= most:
             raise self.fault(f"found {value!r}; expected a whole number, {least} to {most}", key)
         return value
 
     def number(self, key: str, default: float | None = None) -> float:
-        """Take a finite number."""
+        """Read a finite number.
+
+        Args:
+            key: Name of the key.
+            default: Value of an absent key; None where the key is required.
+        """
         return self._finite(self.value(key, default), key)
 
     def positive(self, key: str, default: float | None = None) -> float:
-        """Take a number above 0."""
+        """Read a number above 0.
+
+        Args:
+            key: Name of the key.
+            default: Value of an absent key; None where the key is required.
+        """
         value = self.number(key, default)
         if value <= 0:
             raise self.fault(f"found {value:g}; expected a number above 0", key)
         return value
 
     def positive_or_none(self, key: str) -> float | None:
-        """Take a number above 0; None where it is absent."""
+        """Read a number above 0; None where the key is absent."""
         return self.positive(key) if key in self else None
 
     def numbers(self, key: str, count: int) -> tuple[float, ...]:
-        """Take so many finite numbers."""
+        """Read a list of finite numbers.
+
+        Args:
+            key: Name of the key.
+            count: Required length of the list.
+        """
         return tuple(self._finite(item, key) for item in self._list(key, count))
 
     def wholes(self, key: str, *, most: int) -> tuple[int, ...]:
-        """Take a list of whole numbers from 0 to `most`."""
+        """Read a list of integers from 0.
+
+        Args:
+            key: Name of the key.
+            most: Largest allowed value.
+        """
         value = self.value(key)
         items: list[Any] = value if isinstance(value, list) else [None]
         if any(type(item) is not int or not 0 <= item <= most for item in items):
@@ -160,21 +219,31 @@ class TomlTable:
         return tuple(items)
 
     def signs(self, key: str, count: int) -> tuple[int, ...]:
-        """Take so many signs, each 1 or -1."""
+        """Read a list of signs, each 1 or -1.
+
+        Args:
+            key: Name of the key.
+            count: Required length of the list.
+        """
         values = self._list(key, count)
         if any(isinstance(value, bool) or value not in (-1, 1) for value in values):
             raise self.fault(f"found {values}; expected {count} times 1 or -1", key)
         return tuple(int(value) for value in values)
 
     def sign(self, key: str, default: int = 1) -> int:
-        """Take a sign, 1 or -1."""
+        """Read a sign, 1 or -1.
+
+        Args:
+            key: Name of the key.
+            default: Value of an absent key.
+        """
         value = self.value(key, default)
         if isinstance(value, bool) or value not in (-1, 1):
             raise self.fault(f"found {value!r}; expected 1 or -1", key)
         return int(value)
 
     def series(self, key: str) -> tuple[float, ...]:
-        """Take a list of numbers, or an even one as a table of `first`, `last` and `count`."""
+        """Read a list of numbers, or equidistant ones as a table of `first`, `last`, `count`."""
         value = self.value(key)
         if isinstance(value, dict):
             return self._even(self.as_table(key, value))
@@ -186,10 +255,10 @@ class TomlTable:
         return tuple(self._finite(item, key) for item in value)
 
     def finish(self) -> None:
-        """Raise where keys are left that nobody took, here or in a table that was taken.
+        """Check that no unknown key is left, here or in a nested table that was read.
 
         Raises:
-            ProfileError: There is one; the nearest known key is named.
+            ProfileError: There is an unknown key; the message names the nearest known one.
         """
         for key in self._entries:
             raise self.fault(f"unknown key; {nearest(key, self._known)}", key)

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""Parse TOML of strangers within bounds: size, depth of nesting, and numbers that TOML allows.
+"""Parse untrusted TOML with limits on size, depth of nesting and size of integers.
 
-This is the lowest floor that reads settings; `zebro_lab` reads its own through it, and checks what
-JSON holds with `require_bounded`.
+This is the lowest package that reads settings. `zebro_lab` parses its TOML with it, and checks
+parsed JSON with `require_bounded`.
 """
 
 import re
@@ -13,24 +13,24 @@ from typing import Any, Final
 MOST_BYTES: Final = 1 << 20
 """Largest TOML file that is parsed, which takes up to 3 s; a calibration of 8000 runs has it."""
 DEEPEST: Final = 32
-"""Most tables and lists inside each other, and most parts of a dotted key."""
+"""Largest depth of nested tables and lists, and largest number of parts of a dotted key."""
 
 _LARGEST: Final = 2**63  # of a whole number in TOML; float() and messages fail on ever longer ones
 _PART = r"""(?:[\w-]++|"[^"\n]*+"|'[^'\n]*+')"""
-# Time to parse grows with the square of a key's parts. A text that looks like such a key is refused
-# with it; nobody writes 32 words with a point after each.
+# Parsing time grows with the square of the number of a key's parts. A string that looks like such a
+# key is rejected as well; text with 32 words that each end in a point does not occur.
 _LONG_KEY = re.compile(rf"(?<![\w\"'-]){_PART}(?:[ \t]*+\.[ \t]*+{_PART}){{{DEEPEST}}}")
 
 
 def parse_toml(data: bytes) -> dict[str, Any]:
-    """Parse TOML.
+    """Parse TOML with limits on size, nesting and integers.
 
     Args:
         data: Content of a file, at most `MOST_BYTES`, in UTF-8 with or without a byte order mark.
 
     Raises:
-        ValueError: It is larger, no UTF-8, no TOML, nested too deeply, or holds a whole number
-            beyond 64 bits; the message is one line without the file's name.
+        ValueError: The content is larger, not UTF-8, not TOML, nested too deeply, or holds an
+            integer beyond 64 bits; the message is one line without the file's name.
 
     >>> parse_toml(b"mass = 2.17")
     {'mass': 2.17}
@@ -49,14 +49,14 @@ def parse_toml(data: bytes) -> dict[str, Any]:
 
 
 def require_bounded(document: object) -> None:
-    """Refuse a parsed document that is nested too deeply or whose values do not fit anywhere.
+    """Check depth of nesting, size of integers and validity of strings of a parsed document.
 
     Args:
-        document: Tables and lists of plain values, as TOML and JSON have them.
+        document: Tables and lists of plain values, as parsed from TOML or JSON.
 
     Raises:
-        ValueError: It is nested more than `DEEPEST` deep, a whole number has more than 64 bits, or
-            a text holds half a pair of surrogates, which no file can hold.
+        ValueError: It is nested more than `DEEPEST` deep, an integer has more than 64 bits, or a
+            string holds an unpaired surrogate, which cannot be encoded.
     """
     level: list[object] = [document]
     for _ in range(DEEPEST + 1):

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""Twins in real time, behind the real drivers: what `sim` in place of a port stands for.
+"""Simulated devices in real time behind the real drivers, which `sim` in place of a port selects.
 
-Each function serves a twin for as long as its context lasts and yields the driver, not yet entered,
-whose `source` says that it is simulated. To let other programs talk to a twin, serve `robot_twin`
-and its kind with `rig.links.serve.PortServer` and print its port.
+Each context manager serves a twin and yields its driver, not yet entered, whose `source` says that
+it is simulated. To let other programs reach a twin, serve a byte twin such as `robot_twin` with
+`rig.links.serve.PortServer` and print its port.
 """
 
 import itertools
@@ -56,20 +56,20 @@ def robot_twin(
     faults: Faults = PERFECT_LINE,
     rng: np.random.Generator,
 ) -> ByteTwin:
-    """Make the byte twin of a robot on a serial link.
+    """Return the byte twin of a robot on a serial link.
 
     Args:
-        profile: How it counts and speaks.
-        reference: The gait it walks.
-        imperfections: How it departs from that.
-        faults: What goes wrong on the line.
-        rng: Source of randomness.
+        profile: Counts, layout and rate of the robot.
+        reference: Gait that it walks.
+        imperfections: Its deviations from the gait.
+        faults: Transmission errors of the line.
+        rng: Random generator.
 
     Returns:
         The twin.
 
     Raises:
-        ProfileError: The profile's robot is on a bus, not on a serial line.
+        ProfileError: The profile's robot is on a CAN bus, not on a serial line.
     """
     if profile.layout not in BYTE_ROBOTS:
         raise ProfileError(
@@ -90,7 +90,15 @@ def simulated_legs(
     rng: np.random.Generator,
     name: str = "legs",
 ) -> Iterator[Any]:
-    """Serve a robot and yield its driver; arguments as `robot_twin`, any layout.
+    """Serve a simulated robot of any layout and yield its driver.
+
+    Args:
+        profile: Counts, layout and rate of the robot.
+        reference: Gait that it walks.
+        imperfections: Its deviations from the gait.
+        faults: Transmission errors of the line.
+        rng: Random generator.
+        name: Name of the stream.
 
     Yields:
         A `Stream` that also takes `LegCommands`.
@@ -120,14 +128,14 @@ def simulated_imu(
     rng: np.random.Generator,
     name: str = "imu",
 ) -> Iterator[ImuStream]:
-    """Serve an inertial measurement unit and yield its driver.
+    """Serve a simulated inertial measurement unit and yield its driver.
 
     Args:
-        profile: How it counts.
-        attitude: Motion of the body it sits on.
-        imperfections: What it adds to the truth.
-        faults: What goes wrong on the line.
-        rng: Source of randomness.
+        profile: Scale of the counts, mounting and rate of the unit.
+        attitude: Motion of the body that carries it.
+        imperfections: Its noise and drift.
+        faults: Transmission errors of the line.
+        rng: Random generator.
         name: Name of the stream.
 
     Yields:
@@ -151,21 +159,22 @@ def simulated_rig_devices(
     faults: Faults = PERFECT_LINE,
     rng: np.random.Generator,
 ) -> Iterator[RigDevices]:
-    """Serve a rig and yield its drivers.
+    """Serve a simulated slip rig and yield its drivers.
 
     Args:
         profile: The rig's profile.
-        rig: The rig itself; it sweeps by itself until a drive commands.
+        rig: The simulated rig; it runs its own sweep until a drive is commanded.
         watchdog: Silence after which drives or board stop the discs [s].
-        buffered: Take many records of a load cell at a time, see `NetFtCell`.
-        faults: What goes wrong on the load cell's or the board's line.
-        rng: Source of the faults' randomness.
+        buffered: Let the load cell send many records per packet, see `NetFtCell`.
+        faults: Transmission errors of the load cell's or the board's line.
+        rng: Random generator of the transmission errors.
 
     Yields:
         The drivers, not yet entered.
 
     Raises:
-        ProfileError: The profile has neither a board nor drives and load cell, or is a table's.
+        ProfileError: The profile has neither a board nor drives and load cell, or describes a
+            table.
     """
     require_device(profile)
     if profile.board is not None:

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""The acquiring thread: every sample is read, guarded and answered here.
+"""Acquisition thread: reads every sample, checks it against the limits, and commands set-points.
 
-Reading feeds the watchdogs of the drives. After a fault nothing is read any more, so that nothing
-feeds them: should the command to stop be lost, the drives stop by themselves.
+Reading feeds the watchdogs of the drives. After a fault nothing is read, so that the watchdogs
+expire: if the command to stop is lost, the drives stop by themselves.
 """
 
 import math
@@ -32,7 +32,7 @@ from rig.sensor_guards import TURNING, AgeGuard, FrozenGuard, RecordGuard
 from rig.slip_rig.profile import FURTHER_LIMITS
 
 PERIOD: Final = 0.004
-"""Between two looks: waking up for each of 7,000 samples a second costs several times more [s]."""
+"""Polling period: waking up for each of 7,000 samples per second is several times slower [s]."""
 UNDERWAY: Final = 0.5
 """How long reports from before arming may still arrive [s]."""
 FURTHER_NAMES: Final = {
@@ -41,18 +41,18 @@ FURTHER_NAMES: Final = {
     "temperature_celsius": "temperature of a drive or its motor",
 }
 ROOM_PERIOD: Final = 0.1
-"""Between two questions whether data can still be kept [s]."""
+"""Interval between checks whether data can still be stored [s]."""
 
 
 @dataclass(frozen=True)
 class Ramp:
-    """Set-points that change evenly from one pair of speeds to another.
+    """Linear ramp of the set-points of both discs.
 
     Attributes:
-        start: When it begins [s].
-        duration: How long it takes [s].
-        before: Speeds of leg and ground disc before [rad/s].
-        after: And after [rad/s].
+        start: Host time at which it begins [s].
+        duration: Duration of the ramp [s].
+        before: Speeds of leg and ground disc before the ramp [rad/s].
+        after: Speeds of leg and ground disc after the ramp [rad/s].
     """
 
     start: float
@@ -68,20 +68,20 @@ class Ramp:
 
 
 class GuardedAcquisition:
-    """Reads a bench, guards every sample, and turns the discs.
+    """Reads a bench, checks every sample against the limits, and commands the discs.
 
     Args:
         bench: The rig, entered.
-        limits: What guards stop it at.
-        control: Where stops are asked for.
-        sink: Asked for room, and told of notes.
+        limits: Limits of the guards.
+        control: Mailbox with requests to stop.
+        sink: Receiver of notes; also asked whether data can still be stored.
         clock: Host time.
-        period: Between two looks [s].
+        period: Polling period [s].
 
     Attributes:
-        reaction: Time from the arrival of a sample that tripped a guard to the stop's being sent;
+        reaction: Time from the arrival of a sample that tripped a guard until the stop was sent;
             None while no guard has tripped [s].
-        energised: Whether the drives have been energised, and not been told to stop since.
+        energised: Whether the drives have been energised and not been commanded to stop since.
     """
 
     def __init__(
@@ -145,16 +145,16 @@ class GuardedAcquisition:
 
     @property
     def ramping(self) -> bool:
-        """Tell whether set-points still change."""
+        """Return whether the set-points are still on a ramp."""
         return self._clock.now() < self._ramp.start + self._ramp.duration
 
     def arm(self) -> None:
-        """Energise at standstill and begin to watch for silence.
+        """Energise at standstill and start the silence guards.
 
         Raises:
-            RigError: A device is not there or stays faulty.
+            RigError: A device does not respond or stays faulty.
         """
-        self._bench.read()  # what lay in buffers
+        self._bench.read()  # discard what is in buffers
         self.energised = True
         self._bench.arm()
         self._await_health()
@@ -171,11 +171,12 @@ class GuardedAcquisition:
         self.energised = False
 
     def aim(self, leg: float, slip: float | None) -> None:
-        """Begin to change the set-points, no faster than allowed.
+        """Start a ramp of the set-points, within the acceleration limit.
 
         Args:
             leg: Speed of the leg disc [rad/s].
-            slip: Slip ratio that the ground disc is to make; None for standstill of both.
+            slip: Slip ratio, which sets the speed of the ground disc; None for standstill of both
+                discs [-].
 
         Raises:
             LimitExceeded: A speed is beyond its limit.
@@ -195,17 +196,17 @@ class GuardedAcquisition:
         self._standing = False
 
     def look(self) -> Batch:
-        """Wait for the next samples, command what is due and guard what has come.
+        """Wait one period, command the set-points, read the samples and check them.
 
         Returns:
-            What has come.
+            The samples that have arrived.
 
         Raises:
-            RigError: A guard tripped; the drives are already told to de-energise.
-            StopRequested: Somebody asked for a stop.
+            RigError: A guard tripped; the drives are already commanded to de-energise.
+            StopRequested: A stop was requested.
         """
         self._clock.sleep(min(max(self._look_at - self._clock.now(), 0.0), self._period))
-        self._look_at = self._clock.now() + self._period  # what a look takes delays no other
+        self._look_at = self._clock.now() + self._period  # a slow look delays no other
         try:
             batch = self._bench.read()
             arrived = self._clock.now()
@@ -224,15 +225,15 @@ class GuardedAcquisition:
         return batch
 
     def come_to_rest(self, longest: float) -> None:
-        """Ramp to standstill and prove it; only stops harder than the one obeyed are heeded.
+        """Ramp to standstill and verify it; only a harder stop than the present one interrupts.
 
         Args:
-            longest: Time after the ramp in which both discs must be seen to stand [s].
+            longest: Time after the ramp within which standstill must be verified [s].
 
         Raises:
-            NotAtRest: They were not; the drives are de-energised.
+            NotAtRest: It was not verified; the drives are de-energised.
             RigError: A guard tripped meanwhile.
-            StopRequested: A harder stop was asked for.
+            StopRequested: A harder stop was requested.
         """
         self.aim(0.0, None)
         self.until(lambda _: not self.ramping, float("inf"))
@@ -247,14 +248,14 @@ class GuardedAcquisition:
         self._standing = True
 
     def until(self, holds: Callable[[Batch], bool], longest: float) -> bool:
-        """Look until something holds.
+        """Poll the rig until a condition holds or a timeout expires.
 
         Args:
-            holds: Told every batch.
-            longest: When to give up [s].
+            holds: Condition, called with every batch.
+            longest: Timeout [s].
 
         Returns:
-            Whether it came to hold.
+            Whether the condition held before the timeout.
         """
         end = self._clock.now() + longest
         while self._clock.now() < end:
@@ -263,15 +264,15 @@ class GuardedAcquisition:
         return False
 
     def ignore_sink(self) -> None:
-        """Take the sink as lost: the way to standstill needs none."""
+        """Stop using the sink after it failed: the ramp to standstill does not need it."""
         self._sink = None
 
     def heed_no_more(self, category: StopCategory | None) -> None:
-        """Take stops up to a category as already being obeyed; None heeds all again."""
+        """Ignore stops up to a category, which is being carried out; None ignores none."""
         self._heeded = category
 
     def _tell_sink(self, now: float) -> None:
-        """Hand notes on, and ask now and then whether data can still be kept."""
+        """Pass notes to the sink, and check periodically whether data can still be stored."""
         if self._sink is None:
             return
         for note in self._control.take_notes():
@@ -281,7 +282,7 @@ class GuardedAcquisition:
             self._sink.require_room(self._limits.free_space)
 
     def _await_health(self) -> None:
-        """Let reports of a fault that arming has cleared, and that were underway, pass."""
+        """Wait until reports of a fault that arming has cleared have passed."""
         end = self._clock.now() + UNDERWAY
         while True:
             self._clock.sleep(self._period)
@@ -326,7 +327,7 @@ class GuardedAcquisition:
         self._guard_motion(batch, now)
 
     def _guard_motion(self, batch: Batch, now: float) -> None:
-        """Check that both discs follow, and that sensors of what turns are not frozen."""
+        """Check that both discs follow their set-points and that no sensor is frozen."""
         forces = np.column_stack([batch.normal, batch.traction])
         leg, ground = self.wanted
         self._frozen_forces.check(forces, wanted=leg, now=now)

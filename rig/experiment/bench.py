@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""The rig as an experiment sees it: two discs to turn, one table of samples, whatever the wiring.
+"""Common interface of a slip rig for experiments: disc speeds out, samples in, for any wiring.
 
-A bench reads drives and load cell, or a board, in one thread, and lines their samples up in time.
+A bench reads drives and load cell, or a board, in one thread, and interpolates their samples to
+common times.
 """
 
 from collections.abc import Collection, Mapping, Sequence
@@ -25,11 +26,11 @@ from rig.slip_rig.profile import BoardProfile, DriveProfile, LoadCellProfile, Ri
 from rig.slip_rig.rdt import describe_status
 
 ARM_LIMIT: Final = 2.0
-"""How long a drive may take to enter closed loop [s]."""
+"""Timeout for a drive to enter closed-loop control [s]."""
 
 
 class Bench(Protocol):
-    """A rig whose discs can be turned and whose samples can be read; a context manager."""
+    """Slip rig whose discs are commanded and whose samples are read; a context manager."""
 
     @property
     def profile(self) -> RigProfile:
@@ -38,24 +39,24 @@ class Bench(Protocol):
 
     @property
     def source(self) -> str:
-        """Where the samples come from: `real` or `sim:WHAT`."""
+        """Origin of the samples: `real` or `sim:WHAT`."""
         ...
 
     @property
     def watched(self) -> tuple[str, ...]:
-        """Names of what must not fall silent."""
+        """Names of the devices and answers that are checked for silence."""
         ...
 
     @property
     def streams(self) -> tuple[Stream, ...]:
-        """The devices, for their counters."""
+        """Streams of the devices, for their counters."""
         ...
 
     def watch(self, limits: Collection[str]) -> None:
-        """Measure from now on, for these of `FURTHER_LIMITS`, what is to be guarded.
+        """Start to measure the quantities of some of `FURTHER_LIMITS`, to be guarded.
 
         Args:
-            limits: Their names, all among those that the profile says are measured.
+            limits: Names of the limits, all among those that the profile lists as measured.
         """
         ...
 
@@ -64,15 +65,20 @@ class Bench(Protocol):
         ...
 
     def turn(self, leg: float, ground: float) -> None:
-        """Command the speeds of both discs [rad/s]."""
+        """Command the speeds of both discs.
+
+        Args:
+            leg: Speed of the leg disc [rad/s].
+            ground: Speed of the ground disc [rad/s].
+        """
         ...
 
     def disarm(self) -> None:
-        """De-energise both drives at once; never fails."""
+        """De-energise both drives at once; never raises."""
         ...
 
     def read(self) -> Batch:
-        """Hand on what has arrived, without waiting; feeds the watchdogs."""
+        """Return the samples that have arrived, without waiting; feeds the watchdogs."""
         ...
 
     def require_healthy(self) -> None:
@@ -90,7 +96,7 @@ class Bench(Protocol):
 
 
 class _DiscPair:
-    """Two drives, turned together."""
+    """Two drives that are commanded together."""
 
     def __init__(self, leg: Drive, ground: Drive) -> None:
         self._leg, self._ground = leg, ground
@@ -101,7 +107,12 @@ class _DiscPair:
         self._ground.arm(ARM_LIMIT)
 
     def turn(self, leg: float, ground: float) -> None:
-        """Command both speeds [rad/s]."""
+        """Command the speeds of both discs; see `Bench.turn`.
+
+        Args:
+            leg: Speed of the leg disc [rad/s].
+            ground: Speed of the ground disc [rad/s].
+        """
         self._leg.set_speed(leg)
         self._ground.set_speed(ground)
 
@@ -112,7 +123,7 @@ class _DiscPair:
 
 
 class BoardBench(_DiscPair):
-    """A rig on one micro-controller; satisfies `Bench`.
+    """Slip rig on one micro-controller; satisfies `Bench`.
 
     Args:
         board: Its driver, not yet entered.
@@ -131,7 +142,7 @@ class BoardBench(_DiscPair):
 
     @property
     def source(self) -> str:
-        """Where the samples come from."""
+        """Origin of the samples: `real` or `sim:WHAT`."""
         return self._board.source
 
     @property
@@ -140,10 +151,10 @@ class BoardBench(_DiscPair):
         return (self._board,)
 
     def watch(self, limits: Collection[str]) -> None:
-        """A board measures nothing more; see `Bench.watch`."""
+        """Do nothing: a board measures no further quantities; see `Bench.watch`."""
 
     def read(self) -> Batch:
-        """Hand on what has arrived; see `Bench.read`."""
+        """Return the samples that have arrived; see `Bench.read`."""
         samples = self._board.read(0.0)
         forces, speeds = decode_board(self._settings, samples)
         taken = self._time.map(samples)
@@ -178,7 +189,7 @@ class BoardBench(_DiscPair):
 
 
 class DrivesBench(_DiscPair):
-    """A rig of two drives on a bus and a load cell; satisfies `Bench`.
+    """Slip rig of two drives on a CAN bus and a load cell; satisfies `Bench`.
 
     Args:
         drives: Driver of both drives, not yet entered.
@@ -209,7 +220,7 @@ class DrivesBench(_DiscPair):
 
     @property
     def source(self) -> str:
-        """Where the samples come from."""
+        """Origin of the samples: `real` or `sim:WHAT`."""
         return self._drives.source
 
     @property
@@ -225,13 +236,13 @@ class DrivesBench(_DiscPair):
         return devices + (hot if "temperature_celsius" in self._further else ())
 
     def watch(self, limits: Collection[str]) -> None:
-        """Look at what is to be guarded beside the two forces; see `Bench.watch`."""
+        """Start to measure the guarded quantities besides the two forces; see `Bench.watch`."""
         self._further = frozenset(limits)
         if "temperature_celsius" in self._further:
             self._drives.ask_for_temperatures()
 
     def read(self) -> Batch:
-        """Hand on what has arrived; see `Bench.read`."""
+        """Return the samples that have arrived; see `Bench.read`."""
         turned, weighed = self._drives.read(0.0), self._cell.read(0.0)
         forces = decode_forces(self._cell_settings, weighed)
         taken = {"load cell": self._time.map(weighed)}
@@ -268,13 +279,13 @@ class DrivesBench(_DiscPair):
     def _further_loads(
         self, weighed: SampleColumns, hot: Mapping[int, list[float]]
     ) -> dict[str, Array]:
-        """Pick what is guarded of the load cell's other channels and of the temperatures."""
+        """Return the guarded values of the load cell's other channels and of the temperatures."""
         if not self._further:
             return {}
         lateral, torque = decode_further_loads(self._cell_settings, weighed)
         hottest = []
         for node, answers in hot.items():
-            for self._hot[node] in answers:  # one series: a cool drive excuses no hot one
+            for self._hot[node] in answers:  # one series: a cool drive hides no hot one
                 hottest.append(max(self._hot.values()))
         found = {
             "lateral_force": lateral,
@@ -284,7 +295,7 @@ class DrivesBench(_DiscPair):
         return {k: v for k, v in found.items() if k in self._further and v is not None}
 
     def _line_up(self) -> Readings:
-        """Interpolate speeds at the forces around which both are known; the others wait."""
+        """Interpolate both speeds at the times of the forces; later forces wait for speeds."""
         if not all(len(speeds) for speeds in self._speeds.values()):
             self._waiting = self._waiting[:0]
             return join([])
@@ -315,16 +326,16 @@ class DrivesBench(_DiscPair):
 
 
 def make_bench(devices: RigDevices) -> Bench:
-    """Make the bench of a rig's devices, real or simulated.
+    """Return the bench for a rig's devices, real or simulated.
 
     Args:
-        devices: Its drivers, not yet entered.
+        devices: Drivers of the rig, not yet entered.
 
     Returns:
         The bench, not yet entered.
 
     Raises:
-        ProfileError: There is neither a board, nor drives and a Net F/T cell.
+        ProfileError: There is neither a board nor drives and a Net F/T cell.
     """
     profile = devices.profile
     if devices.board is not None and profile.board is not None:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What state a run is in, whether the discs are energised, and which key does what next."""
+"""State machine of a run: its states, whether discs are energised, and the keys that apply."""
 
 from dataclasses import dataclass
 from enum import Enum
@@ -14,15 +14,15 @@ class RigState(Enum):
     PREPARING = "preparing"
     """Nothing is energised yet."""
     RUNNING = "running"
-    """The plan is gone through."""
+    """The plan is being carried out."""
     HOLDING = "holding"
-    """The discs stand, energised, until somebody lets the run go on."""
+    """The discs are held by energised drives until a person resumes the run."""
     STOPPING = "stopping"
     """The discs are ramped to standstill."""
     STOPPED = "stopped"
     """The drives are de-energised; the run is over."""
     LATCHED = "latched"
-    """The same after an emergency stop, which somebody has to reset."""
+    """As STOPPED, after an emergency stop that a person must reset."""
 
 
 _STOP_NAMES: Final = {
@@ -34,7 +34,7 @@ _KEYS: Final = {StopCategory.SOFT: "s", StopCategory.SAFE: "ss", StopCategory.EM
 
 
 def next_stop(pending: StopCategory | None) -> StopCategory:
-    """Return what the next Ctrl-C asks for: the stop that is one step harder.
+    """Return the stop that the next Ctrl-C requests: one category harder than the pending one.
 
     >>> next_stop(StopCategory.SOFT)
     <StopCategory.SAFE: 2>
@@ -44,14 +44,14 @@ def next_stop(pending: StopCategory | None) -> StopCategory:
 
 @dataclass(frozen=True)
 class Condition:
-    """What state a run is in.
+    """State of a run with its reason.
 
     Attributes:
         state: The state.
         energised: Whether the drives of the discs are energised.
-        why: What brought the run there; empty where nothing did.
-        pending: The hardest stop that is being obeyed; None where there is none.
-        hold: How long a hold lasts before a safe stop follows [s].
+        why: Reason for the state; empty where there is none.
+        pending: Hardest stop being carried out; None where there is none.
+        hold: Longest duration of a hold, after which a safe stop follows [s].
     """
 
     state: RigState
@@ -62,7 +62,7 @@ class Condition:
 
     @property
     def headline(self) -> str:
-        """Say state, energy and reason in words.
+        """Text with the state, whether discs are energised, and the reason.
 
         >>> Condition(RigState.HOLDING, True, "soft stop: Ctrl-C, time 1").headline
         'HOLDING, discs energised: soft stop: Ctrl-C, time 1'
@@ -72,7 +72,7 @@ class Condition:
 
     @property
     def keys(self) -> str:
-        """Say which key does what next; each but Ctrl-C is followed by Enter.
+        """Text with the keys that apply now; each but Ctrl-C is followed by Enter.
 
         >>> Condition(RigState.STOPPING, True, "", StopCategory.SAFE).keys
         'Ctrl-C or e: emergency stop (de-energise at once, latched)'

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What people and programs may say to a running experiment, from any thread."""
+"""Thread-safe mailbox of commands to a running experiment: pause, confirm, stop, notes."""
 
 from collections import deque
 from collections.abc import Iterator
@@ -16,11 +16,11 @@ LONGEST_NOTE: Final = 2000
 
 @dataclass(frozen=True)
 class Note:
-    """Something to be kept in the log.
+    """Entry for the log.
 
     Attributes:
-        kind: `note`, or the command that was given.
-        text: What was said.
+        kind: `note`, or the command given.
+        text: Text of the note, or details of the command.
     """
 
     kind: str
@@ -28,13 +28,13 @@ class Note:
 
 
 class Control:
-    """Mailbox of a run; the run looks into it at every sample.
+    """Mailbox of commands to a run, which polls it continuously.
 
     Attributes:
-        stop: Where stops are asked for.
-        status: One line on where the run is, for whoever asks.
-        paused: Whether the run is to hold after the point it is at.
-        failure: The first part of the run that failed; None while all work.
+        stop: Requests to stop.
+        status: Progress of the run in one line.
+        paused: Whether the run holds after the present point.
+        failure: First part of the run that failed; None without a failure.
     """
 
     def __init__(self) -> None:
@@ -46,14 +46,14 @@ class Control:
         self._notes: deque[Note] = deque()
 
     def obey(self, line: str, *, who: str) -> str:
-        """Do what a line of text says.
+        """Execute a command given as a line of text.
 
         Args:
             line: One of `COMMANDS`.
-            who: Who said so, for the log.
+            who: Origin of the command, for the log.
 
         Returns:
-            What to answer.
+            The answer.
 
         Raises:
             ProtocolError: There is no such command.
@@ -76,11 +76,11 @@ class Control:
         return "done"
 
     def fail(self, part: str, error: BaseException) -> None:
-        """Report that a part of the run failed; a safe stop follows, and the run is an error.
+        """Report the failure of a part of the run, which causes a safe stop and an error.
 
         Args:
-            part: Name of the part: a thread, the keyboard.
-            error: What it raised.
+            part: Name of the part, such as a thread or the keyboard.
+            error: Exception that it raised.
         """
         failure = PartFailed(part, error)
         if self.failure is None:
@@ -93,30 +93,30 @@ class Control:
         self._notes.append(Note("pause", "asked for"))
 
     def resume(self) -> None:
-        """Go on after a pause or a soft stop; harder stops stay."""
+        """Resume after a pause or a soft stop; harder stops stay."""
         self.paused = False
         self.stop.release()
         self._notes.append(Note("resume", "asked for"))
 
     def confirm(self) -> None:
-        """Say that what a prompt asked for is done."""
+        """Confirm that the action requested by a prompt is done."""
         self._confirmed = True
 
     def take_confirmation(self) -> bool:
-        """Tell whether a prompt was confirmed since it was last asked."""
+        """Return whether there was a confirmation since the last call, and clear it."""
         confirmed, self._confirmed = self._confirmed, False
         return confirmed
 
     def take_notes(self) -> Iterator[Note]:
-        """Hand on what is to be kept in the log, each once."""
+        """Remove and yield the entries for the log."""
         while self._notes:
             yield self._notes.popleft()
 
 
 def storable_note(text: str) -> str:
-    r"""Return a text, no longer than a note may be, that every file and log can encode.
+    r"""Truncate a text to the longest note and escape what UTF-8 cannot encode.
 
-    What is no character, such as bytes of a foreign encoding, becomes an escape.
+    Surrogates, such as bytes of another encoding, become escape sequences.
 
     >>> storable_note("caf\udce9")
     'caf\\udce9'

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""The local control socket: one command a line, from this machine only, with the run's token.
+"""Local control socket of a run: one command per line, from this machine only, with a token.
 
-The token keeps other users of the machine, and web pages that talk to loopback ports, from
-commanding motors: who can read the run's files can command the run.
+The token prevents other users of the machine, and web pages that connect to loopback ports, from
+commanding motors. Any process that can read the run's files can command the run.
 """
 
 import contextlib
@@ -21,14 +21,14 @@ from rig.experiment.control import LONGEST_NOTE, Control
 from rig.experiment.supervision import start_thread
 
 LONGEST_LINE: Final = 4 * LONGEST_NOTE + 256
-"""Bytes of a line: a token and a command of `LONGEST_NOTE` characters."""
+"""Longest line, with a token and a command of `LONGEST_NOTE` characters [bytes]."""
 PATIENCE: Final = 600.0
-"""Silence after which a client is hung up on [s]."""
+"""Silence after which a client is disconnected [s]."""
 JOIN_LIMIT: Final = 2.0
 
 
 class ControlServer:
-    """Serves a run's mailbox at a loopback port: a context manager.
+    """TCP server of a run's mailbox at a loopback port; a context manager.
 
     A line is `TOKEN COMMAND`; the answer is a line that begins with `ok` or `error`.
 
@@ -36,8 +36,8 @@ class ControlServer:
         control: The mailbox.
 
     Attributes:
-        port: Port that the system gave.
-        token: What a line must begin with.
+        port: Port assigned by the system.
+        token: Token with which each line must begin.
     """
 
     def __init__(self, control: Control) -> None:
@@ -48,7 +48,7 @@ class ControlServer:
         self._thread: threading.Thread | None = None
 
     def answer(self, line: str) -> str:
-        """Answer one line; what is wrong with it is an answer, too."""
+        """Return the answer to one line; an error is also an answer."""
         token, _, command = line.strip().partition(" ")
         if not hmac.compare_digest(token.encode(), self.token.encode()):
             return "error: wrong token; it is in the run's control.json"
@@ -64,7 +64,7 @@ class ControlServer:
             timeout = PATIENCE
 
             def handle(self) -> None:
-                with contextlib.suppress(OSError):  # hung up, or silent for too long
+                with contextlib.suppress(OSError):  # disconnected, or silent for too long
                     while line := self.rfile.readline(LONGEST_LINE):
                         reply = answer(line.decode("utf-8", "replace"))
                         self.wfile.write(f"{reply}\n".encode())
@@ -76,7 +76,7 @@ class ControlServer:
             block_on_close = False
 
             def handle_error(self, request: object, client_address: object) -> None:
-                """Report what a connection raised, which Python's server only prints."""
+                """Report an exception of a connection, which Python's server only prints."""
                 del request, client_address
                 error = sys.exception()
                 control.fail("control socket", error or RuntimeError("unknown"))
@@ -105,21 +105,21 @@ class ControlServer:
 
 
 def send_command(port: int, token: str, command: str, *, timeout: float = 2.0) -> str:
-    """Give a running experiment a command.
+    """Send a command to a running experiment.
 
     Args:
         port: Port of its control socket.
-        token: Its token.
-        command: What it is to do.
+        token: Token of the run.
+        command: One of the commands of `Control.obey`.
         timeout: Longest wait [s].
 
     Returns:
-        Its answer.
+        The answer.
 
     Raises:
-        LinkError: Nobody answers: the run is over.
-        ProtocolError: It refused, or the command is not one line of at most `LONGEST_NOTE`
-            characters, so that a part of it would be lost.
+        LinkError: There is no answer: the run is over.
+        ProtocolError: The run rejected the command, or the command is not one line of at most
+            `LONGEST_NOTE` characters.
     """
     line = f"{token} {_whole(command)}\n"
     try:
@@ -135,7 +135,7 @@ def send_command(port: int, token: str, command: str, *, timeout: float = 2.0) -
 
 
 def _whole(command: str) -> str:
-    """Return a command that one line can carry; what is no character becomes an escape."""
+    """Check that a command is one line of allowed length, and escape what cannot be encoded."""
     text = command.strip().encode("utf-8", "backslashreplace").decode("utf-8")
     lines = len(text.splitlines())
     if lines > 1:

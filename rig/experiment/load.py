@@ -7,26 +7,26 @@ from rig.errors import RigTimeout
 from rig.experiment.control import Control
 
 AXIS_PERIOD: Final = 0.3
-"""How long a driven axis must keep the force before it counts as set [s]."""
+"""Time for which a driven axis must keep the force within tolerance [s]."""
 
 
 class LoadSetter(Protocol):
-    """Whoever sets the normal force; asked once, then followed while the discs stand."""
+    """Setter of the normal force: called once with the target, then polled at standstill."""
 
     def request(self, target: float, *, now: float) -> str:
-        """Ask for a force; 0 takes all load away.
+        """Request a normal force; 0 removes all load.
 
         Args:
             target: Normal force [N].
             now: Host time [s].
 
         Returns:
-            What to tell the operator; empty where nobody has to do anything.
+            Prompt for the operator; empty where the operator has nothing to do.
         """
         ...
 
     def follow(self, normal: float, *, now: float) -> bool:
-        """Look at the force and tell whether it is set.
+        """Return whether the requested force is set.
 
         Args:
             normal: Normal force, zero subtracted [N].
@@ -38,18 +38,18 @@ class LoadSetter(Protocol):
         ...
 
     def halt(self) -> None:
-        """Move no further; never fails."""
+        """Stop the motion that sets the force; never fails."""
         ...
 
 
 class HandShaft:
-    """A person turns the shaft and confirms.
+    """Load set by an operator, who turns the threaded shaft and confirms.
 
-    A confirmation counts only where the force is within its tolerance. At zero load any force will
-    do, because the load cell's zero is what is about to be found.
+    A confirmation counts only where the force is within its tolerance. At zero load any force is
+    accepted, because the zero of the load cell is not known yet.
 
     Args:
-        control: Where the confirmation arrives.
+        control: Mailbox that receives the confirmation.
         tolerance: Largest distance from the target [N].
     """
 
@@ -59,23 +59,36 @@ class HandShaft:
         self._target = 0.0
 
     def request(self, target: float, *, now: float) -> str:
-        """Ask for a force; see `LoadSetter.request`."""
+        """Ask the operator for a force; see `LoadSetter.request`.
+
+        Args:
+            target: Normal force [N].
+            now: Host time, not used [s].
+
+        Returns:
+            The prompt for the operator.
+        """
         del now
         self._target = target
-        self._control.take_confirmation()  # what was said before this prompt
+        self._control.take_confirmation()  # a confirmation given before this prompt
         if target == 0:
             return "take all load off the load cell, then confirm"
         return f"set the normal force to {target:g} N +/- {self._tolerance:g} N, then confirm"
 
     def follow(self, normal: float, *, now: float) -> bool:
-        """Wait for the confirmation; see `LoadSetter.follow`."""
+        """Return whether the operator has confirmed a force within tolerance.
+
+        Args:
+            normal: Normal force, zero subtracted [N].
+            now: Host time, not used [s].
+        """
         del now
         if not self._control.take_confirmation():
             return False
         return self._target == 0 or abs(normal - self._target) <= self._tolerance
 
     def halt(self) -> None:
-        """Do nothing: a person stops by themselves."""
+        """Do nothing: the operator stops without a command."""
 
 
 class LoadAxis(Protocol):
@@ -87,13 +100,13 @@ class LoadAxis(Protocol):
 
 
 class DrivenShaft:
-    """An axis that presses until the load cell reads the target.
+    """Proportional control of a linear axis to a normal force.
 
     Args:
         axis: The axis.
         tolerance: Largest distance from the target [N].
-        patience: Longest time that setting may take [s].
-        gain: Velocity for each newton that is missing [m/(s N)].
+        patience: Timeout of setting a force [s].
+        gain: Velocity per newton of force error [m/(s N)].
         fastest: Largest velocity [m/s].
     """
 
@@ -116,14 +129,33 @@ class DrivenShaft:
         self._lowest = 0.0
 
     def request(self, target: float, *, now: float) -> str:
-        """Ask for a force; see `LoadSetter.request`."""
+        """Set the target of the axis; see `LoadSetter.request`.
+
+        Args:
+            target: Normal force; 0 unloads [N].
+            now: Host time [s].
+
+        Returns:
+            An empty text: the operator has nothing to do.
+        """
         self._target = target
         self._asked = self._since = now
         self._lowest = float("inf")
         return ""
 
     def follow(self, normal: float, *, now: float) -> bool:
-        """Press on until the force has been right for a while; see `LoadSetter.follow`."""
+        """Move the axis in proportion to the force error until the force stays in tolerance.
+
+        Args:
+            normal: Normal force, zero subtracted [N].
+            now: Host time [s].
+
+        Returns:
+            Whether the force has been within its tolerance for `AXIS_PERIOD`.
+
+        Raises:
+            RigTimeout: The force was not reached within `patience`.
+        """
         missing = self._target - normal
         if self._target == 0:
             missing = self._withdraw(normal, now)
@@ -142,7 +174,10 @@ class DrivenShaft:
         return False
 
     def _withdraw(self, normal: float, now: float) -> float:
-        """Draw back until the force falls no further: its zero is not known yet."""
+        """Return the force error for unloading: retract until the force stops falling.
+
+        The zero of the load cell is not known yet.
+        """
         if normal < self._lowest - self._tolerance / 4:
             self._lowest, self._since = normal, now
         return -self._fastest / self._gain

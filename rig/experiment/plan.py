@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The plan of an experiment: frozen values, read out of a table with every key checked."""
+"""The plan of an experiment as frozen dataclasses: points, load, settling, acceptance, limits."""
 
 from dataclasses import dataclass
 from typing import Final, Literal, TypeAlias
@@ -23,12 +23,12 @@ OFF_ABOVE: Final = {
     "in_a_row": 10.0, "speed_error_time": 1.0, "silence": 1.0, "reading_age": 1.0, "frozen": 1.0,
     "rest_speed": 1.0,
 }  # fmt: skip
-"""Limits above which a guard counts as off; so does `speed_error` above half the top speed."""
+"""Limits above which a guard counts as off; for `speed_error` this is half the top speed."""
 
 
 @dataclass(frozen=True)
 class PointGrid:
-    """What is to be measured: every slip ratio at every load, the loads outermost.
+    """Grid of points to measure: every slip ratio at every load, the loads outermost.
 
     Attributes:
         loads: Normal forces [N].
@@ -36,9 +36,9 @@ class PointGrid:
         omega_leg: Speed of the leg disc [rad/s].
         duration: Recorded time of a point, or of a whole sweep [s].
         order: `monotone` as given, `shuffled` within and among the loads, or `up-down`.
-        seed: Of the shuffle.
-        repeats: Times that the slips of a load are gone through.
-        sweep: Let the slip glide through all its values in one run a load.
+        seed: Seed of the shuffle.
+        repeats: Number of passes through the slips at each load.
+        sweep: Whether the slip changes continuously through all its values in one run per load.
     """
 
     loads: tuple[float, ...]
@@ -53,12 +53,12 @@ class PointGrid:
 
 @dataclass(frozen=True)
 class LoadSetting:
-    """How the normal force comes about.
+    """How the normal force is set.
 
     Attributes:
         set_by: `hand` on the threaded shaft, or a driven `axis`.
-        tolerance: Distance from the target that is good enough [N].
-        patience: What a person is reckoned to need, and longest time for an axis [s].
+        tolerance: Largest distance from the target [N].
+        patience: Estimated time that a person needs, and timeout of an axis [s].
     """
 
     set_by: Literal["hand", "axis"]
@@ -68,16 +68,17 @@ class LoadSetting:
 
 @dataclass(frozen=True)
 class SettleCriterion:
-    """When a point is steady enough to be recorded: both halves of a window agree.
+    """Criterion for a steady state before recording: both halves of a window agree.
 
-    Friction, traction over normal force, is looked at and not force: the bump of the ground disc
-    changes forces in every turn and friction hardly.
+    The criterion uses friction, traction over normal force, and not the forces: the bump of the
+    ground disc changes the forces in every turn but hardly the friction.
 
     Attributes:
         window: Length of the window [s].
-        speed: Distance of each disc's mean speed from its set-point, and of both halves [rad/s].
-        friction: Distance of both halves' friction [-].
-        timeout: When to give up waiting and record all the same [s].
+        speed: Largest difference of each disc's mean speed from its set-point, and between both
+            halves [rad/s].
+        friction: Largest difference of the friction between both halves [-].
+        timeout: Time after which the point is recorded even if it is not steady [s].
     """
 
     window: float
@@ -88,13 +89,13 @@ class SettleCriterion:
 
 @dataclass(frozen=True)
 class Acceptance:
-    """What a recorded point must show, or it is repeated.
+    """Acceptance limits of a recorded point, which is repeated if it exceeds one.
 
     Attributes:
-        slip: Distance of the mean slip ratio from the commanded one [-].
-        slip_drift: Distance of the mean slip ratio in both halves [-].
-        friction_drift: Distance of the friction in both halves [-].
-        attempts: Times that a point is tried.
+        slip: Largest difference of the mean slip ratio from the commanded one [-].
+        slip_drift: Largest difference of the mean slip ratio between both halves [-].
+        friction_drift: Largest difference of the friction between both halves [-].
+        attempts: Largest number of attempts at a point.
     """
 
     slip: float
@@ -105,14 +106,15 @@ class Acceptance:
 
 @dataclass(frozen=True)
 class Controls:
-    """Zeros and check points in between.
+    """Zeros of the load cell and check points between the points.
 
     Attributes:
-        tare_every: Points between two zeros of the load cell; 0 is once, before the first point.
-        tare_duration: Time a zero is taken from [s].
-        zero_drift: Change of the zero that is worth a warning [N].
-        check_every: Points between two check points; 0 is none.
-        check_slip: Slip ratio of the check point, at whatever load is set [-].
+        tare_every: Number of points between two zeros of the load cell; 0 means one zero, before
+            the first point.
+        tare_duration: Time over which a zero is averaged [s].
+        zero_drift: Change of the zero that causes a warning [N].
+        check_every: Number of points between two check points; 0 means none.
+        check_slip: Slip ratio of the check point, at the present load [-].
     """
 
     tare_every: int
@@ -124,27 +126,29 @@ class Controls:
 
 @dataclass(frozen=True)
 class RunLimits:
-    """What guards stop the rig at: all limits of an experiment.
+    """Limits of an experiment, at which the guards stop the rig.
 
     Attributes:
-        speed: Of a disc [rad/s].
-        acceleration: With which set-points of a disc change [rad/s^2].
+        speed: Speed of a disc [rad/s].
+        acceleration: Rate at which the set-point of a disc changes [rad/s^2].
         normal_force: Normal force [N].
         traction_force: Traction force [N].
-        in_a_row: Samples beyond a force limit, among the latest 2 in_a_row - 1, that make a fault.
-        speed_error: Distance of a disc from its set-point [rad/s].
-        speed_error_time: How long that may last [s].
-        silence: How long a stream may be silent [s].
-        reading_age: How old a reading may be when it is looked at [s].
-        frozen: How long forces and speeds may stay the same, bit for bit, while discs turn [s].
+        in_a_row: Number of samples beyond a force limit, among the latest 2 in_a_row - 1, that are
+            a fault.
+        speed_error: Difference of a disc's speed from its set-point [rad/s].
+        speed_error_time: Longest duration of a larger speed error [s].
+        silence: Longest silence of a stream [s].
+        reading_age: Largest age of a reading when it is checked [s].
+        frozen: Longest time for which forces and speeds stay the same, bit for bit, while discs
+            turn [s].
         rest_speed: Mean speed below which a disc counts as standing [rad/s].
-        free_space: What must be left where data is written [bytes].
-        hold: How long a soft stop holds before it becomes a safe one [s].
+        free_space: Least free space on the disk of the data [bytes].
+        hold: Longest duration of a hold, after which a soft stop becomes a safe one [s].
         lateral_force: Force on the load cell's third axis; None where it is not guarded [N].
         torque: Torque on any of its axes; None where it is not guarded [N m].
         temperature_celsius: Of a drive or its motor; None where it is not guarded [degC].
-        guards_off: Those of the limits that are so high, by a person's explicit wish, that they
-            guard nothing.
+        guards_off: Names of limits that a person has explicitly set so high that they have no
+            effect.
     """
 
     speed: float
@@ -167,7 +171,7 @@ class RunLimits:
 
     @property
     def off_said(self) -> str:
-        """Which guards are off, with their limits, in words; empty where none is."""
+        """Text with the guards that are off and their limits; empty where none is."""
         return ", ".join(
             f"{name} ({getattr(self, name):g} {LIMIT_UNITS[name]})" for name in self.guards_off
         )
@@ -175,18 +179,18 @@ class RunLimits:
 
 @dataclass(frozen=True)
 class Plan:
-    """An experiment.
+    """Plan of an experiment.
 
     Attributes:
-        name: Its name.
+        name: Name of the experiment.
         material: Leg and ground material.
-        operator: Who runs it.
-        points: What is measured.
+        operator: Name of the operator.
+        points: Grid of points to measure.
         load: How the normal force is set.
-        settle: When a point is steady.
-        accept: When a point is good.
+        settle: Criterion for a steady state.
+        accept: Acceptance limits of a point.
         controls: Zeros and check points.
-        limits: What stops it.
+        limits: Limits of the guards.
     """
 
     name: str
@@ -203,12 +207,12 @@ class Plan:
 def ground_speed(
     slip: float, omega_leg: float, *, radius_leg: float, radius_ground: float
 ) -> float:
-    """Compute the ground disc's speed that makes a material slip ratio, Eq. (4-44) [rad/s].
+    """Compute the speed of the ground disc for a material slip ratio, Eq. (4-44) [rad/s].
 
     Args:
         slip: Slip ratio [-].
         omega_leg: Speed of the leg disc [rad/s].
-        radius_leg: Its radius [m].
+        radius_leg: Radius of the leg disc [m].
         radius_ground: Radius of the ground disc [m].
 
     >>> round(ground_speed(0.5, 12.0, radius_leg=0.035, radius_ground=0.12), 3)
@@ -218,7 +222,15 @@ def ground_speed(
 
 
 def rig_limits(limits: RunLimits, allowed: Limits) -> Limits:
-    """Combine a plan's limits with a rig's: the smaller of each counts."""
+    """Return the smaller of a plan's and a rig's limit of each quantity.
+
+    Args:
+        limits: Limits of the plan.
+        allowed: Limits of the rig's profile.
+
+    Returns:
+        The limits that hold for the run.
+    """
     further = {
         key: min((own for own in (getattr(limits, key), getattr(allowed, key)) if own is not None),
                  default=None)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Read a plan out of a checked table: every key is taken, impossible values are refused."""
+"""Parse and validate the plan of an experiment from a TOML table."""
 
 import math
 
@@ -23,17 +23,17 @@ from rig.toml_table import TomlTable
 
 
 def parse_plan(table: TomlTable) -> Plan:
-    """Read a plan.
+    """Parse the plan of an experiment from a TOML table.
 
     Args:
-        table: The whole plan; every key is taken.
+        table: The whole plan; every key is read.
 
     Returns:
         The plan.
 
     Raises:
-        ProfileError: A key is missing, unknown (the nearest known one is named) or impossible; or
-            the table's own error.
+        ProfileError: A key is missing or unknown (the message names the nearest known one), or its
+            value is invalid; a subclass of the table raises its own error.
     """
     table.whole("schema", least=SCHEMA, most=SCHEMA)
     parts = {key: table.table(key) for key in
@@ -57,7 +57,7 @@ def parse_plan(table: TomlTable) -> Plan:
 def _points(table: TomlTable) -> PointGrid:
     length = table.choice("length", ("duration", "turns"))
     omega = table.positive("omega_leg")
-    # Turns are the leg disc's: the ground disc stands still at slip 1.
+    # Turns of the leg disc, because the ground disc stands still at slip 1.
     grid = PointGrid(
         loads=table.series("loads"),
         slips=table.series("slips"),
@@ -148,7 +148,7 @@ def _limits(table: TomlTable, *, top_speed: float) -> RunLimits:
 
 
 def _require_guard(table: TomlTable, limits: RunLimits, name: str, highest: float) -> None:
-    """Refuse a limit that turns its guard off without saying so, and saying so of one that is on.
+    """Check that a limit turns its guard off if and only if `guards_off` names it.
 
     Raises:
         ProfileError: The limit and `guards_off` contradict each other.

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Samples of the rig lined up in time, and the times at which devices took them."""
+"""Samples of the rig on a common time base, and conversion of device times to host time."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields
@@ -13,21 +13,21 @@ from rig.sample_columns import as_columns
 from rig.slip_rig.decode import Zero
 
 FASTEST_DRIFT: Final = 0.01
-"""What a device's clock drifts at most: oscillators without a quartz are off by so much [-]."""
+"""Largest drift of a device's clock, that of oscillators without a quartz [-]."""
 BEGAN_ANEW: Final = 0.1
-"""How much later than possible a device time must come to be of a clock that began anew [s]."""
+"""Excess of a sample's delay over the largest possible one that means a device restart [s]."""
 
 
 @dataclass(frozen=True)
 class Readings:
-    """Samples of the rig, lined up in time, each shape (n,).
+    """Samples of the rig on a common time base, each shape (n,).
 
     Attributes:
-        t: Host time at which the device took it [s].
+        t: Host time at which the device took each sample [s].
         omega_leg: Speed of the leg disc [rad/s].
         omega_ground: Speed of the ground disc [rad/s].
-        normal_force: Positive when pressed together [N].
-        traction_force: Positive when driving [N].
+        normal_force: Normal force, positive when pressed together [N].
+        traction_force: Traction, positive when driving [N].
     """
 
     t: Array
@@ -41,20 +41,20 @@ class Readings:
         return len(self.t)
 
     def without(self, zero: Zero) -> "Readings":
-        """Subtract a zero from both forces."""
+        """Subtract the zero of the load cell from both forces."""
         return Readings(
             self.t, self.omega_leg, self.omega_ground,
             self.normal_force - zero.normal, self.traction_force - zero.traction,
         )  # fmt: skip
 
     def since(self, start: float) -> "Readings":
-        """Keep the samples from a time on [s]."""
+        """Return the samples from a time on [s]."""
         keep = self.t >= start
         return Readings(*(getattr(self, field.name)[keep] for field in fields(self)))
 
 
 def join(parts: "list[Readings]") -> Readings:
-    """Put readings one behind the other."""
+    """Concatenate readings."""
     if not parts:
         return Readings(*(np.empty(0) for _ in fields(Readings)))
     names = [field.name for field in fields(Readings)]
@@ -63,20 +63,21 @@ def join(parts: "list[Readings]") -> Readings:
 
 @dataclass(frozen=True)
 class Batch:
-    """What one look at the rig gave.
+    """Samples of one poll of the rig.
 
     Attributes:
-        readings: Lined-up samples; a force waits here until both speeds around it are known.
+        readings: Samples on a common time base; a force appears once both speeds around it are
+            known.
         normal: Every normal force that has just arrived, for guards, shape (m,) [N].
         traction: Every traction force that has just arrived, shape (m,) [N].
         speeds: Every speed of each disc that has just arrived, by `leg` and `ground`, each of
             shape (k,) [rad/s].
-        heard: What came of each device and answer that is watched for silence, by name.
-        further: What has just arrived of other guarded quantities, by the name of their limit.
-        taken: When each reading that has just arrived was taken, by host time, by device; where the
-            device tells no time, when it arrived, shape (n,) [s].
-        fault: What a device's status says is wrong; empty where nothing is.
-        raw: Samples as they came, by stream, for a log.
+        heard: Samples of each device or answer that is checked for silence, by name.
+        further: New values of other guarded quantities, by the name of their limit.
+        taken: Host times at which new readings were taken, by device; arrival times where the
+            device sends no time, shape (n,) [s].
+        fault: Description of a fault in a device's status; empty without one.
+        raw: Raw samples, by stream, for a log.
     """
 
     readings: Readings
@@ -91,11 +92,11 @@ class Batch:
 
 
 class HostTime:
-    """Puts device times on the host's clock: what was underway least tells the offset.
+    """Online conversion of device times to host times; the smallest delay gives the clock offset.
 
-    Times never run back: where a quicker sample shows that the others were late, they stand until
-    the better ones have caught up. Clocks drift, so that the offset is believed to grow by
-    `FASTEST_DRIFT`: readings that come later by more than that are late, and not the clock.
+    Host times never decrease: when a sample with a smaller delay lowers the offset, the time stays
+    constant until later samples exceed it. The offset may grow by `FASTEST_DRIFT` because clocks
+    drift; a larger increase is a delay of the reading.
     """
 
     def __init__(self) -> None:
@@ -103,14 +104,14 @@ class HostTime:
         self._read_at = self._latest = -np.inf
 
     def map(self, samples: Sequence[Sample]) -> Array:
-        """Return when the samples were taken, shape (n,) [s]."""
+        """Return the host times at which the samples were taken, shape (n,) [s]."""
         columns = as_columns(samples)
         host, device = columns.host_time, columns.device_time
         if len(samples) == 0 or not np.isfinite(device).all():
-            return host  # none came, or the device tells no time
+            return host  # no samples, or the device sends no time
         lag = host - device
         least, elapsed = float(lag.min()), float(host[-1]) - self._read_at
-        # Nothing waits longer than time has passed: what does is of a device that began anew.
+        # A delay cannot grow faster than time passes; if it does, the device has restarted.
         if lag[-1] > self._lag + elapsed + BEGAN_ANEW:
             self._offset = least
         else:

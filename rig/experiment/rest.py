@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Proof that both discs stand, before anybody is asked to touch the rig."""
+"""Verify standstill of both discs before a person is asked to touch the rig."""
 
 from collections import deque
 from collections.abc import Callable
@@ -12,23 +12,23 @@ from rig.errors import NotAtRest
 from rig.experiment.readings import Batch
 
 WINDOW: Final = 0.25
-"""Time over which each disc's speed is averaged; by default no reading may be older [s]."""
+"""Time over which each disc's speed is averaged, and default largest age of a reading [s]."""
 FEWEST: Final = 5
-"""New readings of each disc that there must be in the window."""
+"""Least number of new readings of each disc in the window."""
 SCATTER: Final = 5.0
-"""Root mean square that noise of an encoder may have, over the limit of the mean [-]."""
+"""Largest root mean square of the speed, over the limit of its mean, to allow for noise [-]."""
 DISCS: Final[tuple[str, ...]] = ("leg", "ground")
 
 
 class RestProof:
-    """Collects new readings of both discs' speeds and tells whether they prove standstill.
+    """Standstill detector: collects new readings of both discs' speeds and tests them.
 
-    The mean over a window is judged, because an encoder's noise may well be larger than the limit.
-    The root mean square is bounded, because a disc that swings to and fro has no mean either.
+    The mean over a window is tested, because an encoder's noise can exceed the limit. The root mean
+    square is bounded as well, because the mean speed of an oscillating disc is also small.
 
     Args:
         limit: Largest mean speed of a disc that stands [rad/s].
-        oldest: Largest age of a reading that proves anything [s].
+        oldest: Largest age of a usable reading [s].
     """
 
     def __init__(self, limit: float, *, oldest: float = WINDOW) -> None:
@@ -38,10 +38,10 @@ class RestProof:
         self._seen: dict[str, deque[tuple[float, float]]] = {disc: deque() for disc in DISCS}
 
     def take(self, batch: Batch, *, now: float) -> None:
-        """Take what a look gave; readings that waited too long begin the proof anew.
+        """Add a batch; readings that are too old restart the collection.
 
         Args:
-            batch: The look.
+            batch: Samples of one poll of the rig.
             now: Host time [s].
         """
         first = min((float(t.min(initial=now)) for t in batch.taken.values()), default=now)
@@ -53,15 +53,15 @@ class RestProof:
                 seen.popleft()
 
     def holds(self, *, now: float) -> bool:
-        """Tell whether both discs are seen to stand over a whole window up to now [s]."""
+        """Return whether both discs stood during a whole window up to now [s]."""
         whole = self._began is not None and now - self._began >= WINDOW
         return whole and all(not self._problem(disc) for disc in DISCS)
 
     def failure(self, *, waited: float) -> NotAtRest:
-        """Say which disc does not stand, or that too little came to tell.
+        """Return an error that names the disc that moves, or that too few readings arrived.
 
         Args:
-            waited: How long the proof was tried [s].
+            waited: Duration of the attempt [s].
         """
         for disc in DISCS:
             if problem := self._problem(disc):
@@ -73,7 +73,7 @@ class RestProof:
         )
 
     def _problem(self, disc: str) -> str:
-        """Say why a disc is not seen to stand; empty where it is."""
+        """Return why standstill of a disc is not verified; empty where it is."""
         speeds = np.array([speed for _, speed in self._seen[disc]])
         if len(speeds) < FEWEST:
             return (
@@ -96,17 +96,17 @@ def prove_rest(
     clock: Clock,
     oldest: float = WINDOW,
 ) -> None:
-    """Look at a rig until both discs are proved to stand.
+    """Poll a rig until standstill of both discs is verified.
 
     Args:
-        look: Waits a little and gives what has come since.
+        look: Waits one period and returns the new samples.
         limit: Largest mean speed of a disc that stands [rad/s].
-        longest: When to give up [s].
+        longest: Timeout [s].
         clock: Host time.
-        oldest: Largest age of a reading that proves anything [s].
+        oldest: Largest age of a usable reading [s].
 
     Raises:
-        NotAtRest: They are not seen to stand in time.
+        NotAtRest: Standstill was not verified in time.
     """
     proof, began = RestProof(limit, oldest=oldest), clock.now()
     while not proof.holds(now=clock.now()):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Runs a plan on a bench: zero, load, settle, record, judge, repeat; and every way to stop."""
+"""Run a plan on a bench: zero, load, settle, record, check, repeat; and carry out stops."""
 
 from collections.abc import Callable, Collection
 from dataclasses import dataclass
@@ -22,20 +22,20 @@ from rig.safety import StopCategory, StopRequested
 from rig.slip_rig.decode import Forces, Zero, require_zero, tare
 
 REST_LIMIT: Final = 5.0
-"""How long the discs may take to stand after their set-points do [s]."""
+"""Timeout for the discs to stand after their set-points are zero [s]."""
 ZERO_ATTEMPTS: Final = 3
 UNLOADED: Final = Zero(0.0, 0.0, 0.0)
 
 
 @dataclass(frozen=True)
 class Outcome:
-    """How a run ended.
+    """Outcome of a run.
 
     Attributes:
-        reason: `completed`, or which stop was obeyed and why.
-        finished: Points accepted, those of an earlier run included.
-        refused: Points that no attempt made good, by their number.
-        attempts: Attempts made in this run.
+        reason: `completed`, or the stop that ended it, with its reason.
+        finished: Number of accepted points, those of an earlier run included.
+        refused: Numbers of the points of which every attempt was rejected.
+        attempts: Number of attempts in this run.
     """
 
     reason: str
@@ -45,7 +45,7 @@ class Outcome:
 
     @property
     def completed(self) -> bool:
-        """Tell whether the plan was gone through to its end."""
+        """Return whether the plan was carried out to its end."""
         return self.reason == "completed"
 
 
@@ -61,25 +61,25 @@ def run_plan(
     period: float = PERIOD,
     done: Collection[int] = (),
 ) -> Outcome:
-    """Run a plan; however it ends, the motors are at rest and the sink knows why.
+    """Run a plan; in the end the motors are at rest and the sink has stored the reason.
 
     Args:
         plan: The plan.
         bench: The rig, not yet entered.
-        load: Who sets the normal force.
-        sink: Where samples and events go.
+        load: Setter of the normal force.
+        sink: Recorder of samples and events.
         control: Mailbox for pauses, notes and stops.
-        watcher: Who follows.
+        watcher: Progress display.
         clock: Host time.
-        period: Between two looks at the rig [s].
+        period: Polling period of the rig [s].
         done: Numbers of the points that an earlier run finished.
 
     Returns:
-        How it ended, where it came to its end or was stopped on request.
+        The outcome of a run that was completed or stopped on request.
 
     Raises:
-        LimitExceeded: The plan would break a limit, before motion; or a guard tripped.
-        SinkFailed: What was measured could not be kept; the rig was ramped to rest first.
+        LimitExceeded: The plan would exceed a limit, found before motion; or a guard tripped.
+        SinkFailed: Measurements could not be stored; the rig was ramped to rest first.
         PartFailed: A thread of the program failed; the rig was ramped to rest first.
         RigError: A guard tripped or a device failed; the rig was de-energised.
         ProtocolError: An emergency stop is latched.
@@ -128,7 +128,7 @@ class _Run:
         self._refused: list[int] = []
 
     def go(self) -> Outcome:
-        """Run, and whatever happens leave the rig at rest and say why."""
+        """Run the plan; in every case leave the rig at rest and store the reason."""
         reason = "failed"
         try:
             self._show(RigState.PREPARING)
@@ -144,7 +144,7 @@ class _Run:
         return Outcome(reason, len(self._done), tuple(self._refused), self._attempts)
 
     def _guarded(self) -> str:
-        """Go through the steps; obey stops that end the run."""
+        """Carry out the steps, and stops that end the run."""
         self._sink.event("begin", f"{self._plan.name}, {self._bench.source}")
         if self._plan.limits.guards_off:
             self._sink.event("guards off", self._plan.limits.off_said)
@@ -159,7 +159,7 @@ class _Run:
             self._obey(asked)
             if self._control.failure is not None:
                 raise self._control.failure from asked
-            hardest = self._control.stop.pending  # another may have come on the way to rest
+            hardest = self._control.stop.pending  # another stop may have arrived during the ramp
             return str(asked if hardest is None else StopRequested(hardest))
         except SinkFailed as failed:
             self._show(RigState.STOPPING, str(failed))
@@ -169,7 +169,7 @@ class _Run:
         return "completed"
 
     def _remaining(self) -> list[Step]:
-        """List what is left; a resumed run begins with a zero."""
+        """List the remaining steps; a resumed run begins with a zero."""
         left = [step for step in self._steps if step.number not in self._done]
         first = next((k for k, step in enumerate(left) if isinstance(step, Point)), None)
         if first is None:
@@ -178,7 +178,7 @@ class _Run:
                 or k + 1 == first or (k > first and isinstance(left[k - 1], Point))]  # fmt: skip
 
     def _softly(self, step: Step) -> None:
-        """Do a step; hold on a soft stop and do it anew."""
+        """Carry out a step; hold on a soft stop, then repeat the step."""
         while True:
             try:
                 self._pause_if_asked()
@@ -191,7 +191,7 @@ class _Run:
                     raise
                 self._close(str(asked))
                 self._load.halt()
-                self._loaded = None  # who knows where the shaft was left
+                self._loaded = None  # the shaft may have been moved
                 self._hold(str(asked))
             else:
                 self._past.add(step.number)
@@ -202,9 +202,9 @@ class _Run:
             self._hold("pause")
 
     def _hold(self, why: str) -> None:
-        """Ramp to standstill and wait, energised, for a word to go on."""
+        """Ramp to standstill and wait, energised, until the run is resumed."""
         if self._control.stop.pending is None:
-            self._control.stop.request(StopCategory.SOFT, why)  # the next one is a harder one
+            self._control.stop.request(StopCategory.SOFT, why)  # the next stop is a harder one
         self._acquire.heed_no_more(StopCategory.SOFT)
         self._sink.event("hold", why)
         self._show(RigState.STOPPING, why)
@@ -218,12 +218,12 @@ class _Run:
             waited = f"held for {self._plan.limits.hold:g} s without a word: {why}"
             self._control.stop.request(StopCategory.SAFE, waited)
         self._acquire.heed_no_more(None)
-        self._acquire.look()  # raises where the wait ended in a harder stop
+        self._acquire.look()  # raises if the wait ended in a harder stop
         self._sink.event("go on", why)
         self._show(RigState.RUNNING)
 
     def _show(self, state: RigState, why: str = "") -> None:
-        """Tell the watcher, and whoever asks for the status, in which state the run is."""
+        """Publish the state of the run to the watcher and to the status line."""
         pending = self._control.stop.pending
         condition = Condition(
             state, self._acquire.energised, why, None if pending is None else pending.category,
@@ -240,7 +240,7 @@ class _Run:
         for _ in range(ZERO_ATTEMPTS):
             raw = join([batch.readings for batch in self._collect(duration)])
             if span(raw) >= LEAST_COVERED * duration:
-                break  # else the host was held up
+                break  # otherwise the host was delayed
         zero = tare(Forces(raw.t, raw.normal_force, raw.traction_force))
         self._sink.event(
             "zero", f"normal {zero.normal:.4f} N, traction {zero.traction:.4f} N, "
@@ -276,7 +276,7 @@ class _Run:
         self._loaded = target
 
     def _measure(self, point: Point) -> None:
-        """Measure a point until an attempt is good, or there are no more."""
+        """Measure a point until an attempt is accepted or none is left."""
         self._set_load(point.load)
         problems: tuple[str, ...] = ()
         for attempt in range(1, self._plan.accept.attempts + 1):
@@ -294,7 +294,7 @@ class _Run:
         self._attempts += 1
         settled = self._settle(point)
         zero = self._zero or UNLOADED
-        self._recording = True  # also where its opening fails: it may have begun all the same
+        self._recording = True  # set before opening, which may fail after the run has begun
         self._sink.open_run(RunStart(point, attempt, self._clock.now(), zero))
         readings = self._record(point, zero)
         verdict = judge_point(
@@ -305,7 +305,7 @@ class _Run:
         return verdict
 
     def _settle(self, point: Point) -> bool:
-        """Turn the discs as the point wants and wait until the rig is steady."""
+        """Ramp the discs to the set-points of a point and wait for a steady state."""
         acquire, criterion = self._acquire, self._plan.settle
         zero = self._zero or UNLOADED
         acquire.aim(self._plan.points.omega_leg, point.slips[0])
@@ -330,7 +330,7 @@ class _Run:
         kept: list[Readings] = []
 
         def keep(batch: Batch) -> None:
-            # Lined-up samples may be older than the recording: they waited for their speeds.
+            # Samples can be older than the recording, because they waited for their speeds.
             readings = batch.readings.without(zero).since(start)
             kept.append(readings)
             self._sink.write(readings, batch)
@@ -342,7 +342,7 @@ class _Run:
         return join(kept)
 
     def _collect(self, duration: float, keep: Callable[[Batch], None] | None = None) -> list[Batch]:
-        """Look for a while; hand each batch on, or keep them all."""
+        """Poll for a duration; pass each batch to `keep`, or return them all."""
         batches: list[Batch] = []
         take = batches.append if keep is None else keep
         end = self._clock.now() + duration
@@ -360,7 +360,7 @@ class _Run:
         self._watcher.doing(what, done=done, of=self._points, left=seconds)
 
     def _obey(self, asked: StopRequested) -> None:
-        """Come to rest as a safe or an emergency stop wants."""
+        """Bring the rig to rest for a safe or an emergency stop."""
         if asked.stop.category is StopCategory.EMERGENCY:
             self._acquire.disarm()
             self._sink.latch(asked.stop.reason)
@@ -369,7 +369,7 @@ class _Run:
         self._acquire.heed_no_more(asked.stop.category)
         try:
             self._acquire.come_to_rest(REST_LIMIT)
-        except StopRequested:  # harder still
+        except StopRequested:  # a harder stop
             pass
         except SinkFailed:
             self._rest_without_sink()
@@ -378,7 +378,7 @@ class _Run:
             self._acquire.disarm()
 
     def _rest_without_sink(self) -> None:
-        """Ramp down although nothing can be kept any more."""
+        """Ramp to rest after the sink has failed."""
         self._acquire.ignore_sink()
         try:
             self._acquire.come_to_rest(REST_LIMIT)
@@ -393,14 +393,14 @@ class _Run:
             self._sink.close_run(verdict, reason=reason)
 
     def _finish(self, reason: str) -> None:
-        """Keep how it ended, and an emergency stop above all; then show it.
+        """Store the end of the run, first the latch of an emergency stop, then show it.
 
-        A sink that fails hides no earlier error.
+        A failure of the sink does not replace an earlier error.
         """
         stop = self._control.stop.pending
         latched = stop is not None and stop.category is StopCategory.EMERGENCY
         if stop is not None and latched:
-            self._sink.latch(stop.reason)  # it may have come beside a guard, or on the way to rest
+            self._sink.latch(stop.reason)  # also one beside a guard, or in the ramp
         failed = None
         for keep in (self._close, lambda why: self._sink.event("end", why)):
             try:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Signals of the system as stops: Ctrl-C, a terminal that is closed, a process that is ended."""
+"""Signal handlers that request stops: Ctrl-C, a closed terminal, a terminated process."""
 
 import signal
 from collections.abc import Iterator
@@ -11,19 +11,19 @@ from rig.experiment.condition import next_stop
 from rig.safety import StopCategory, StopSwitch
 
 ENDING: Final = ("SIGTERM", "SIGHUP", "SIGQUIT", "SIGTSTP")
-"""Signals that ask for a safe stop: an end, a lost connection or closed terminal, Ctrl-\\, and
-Ctrl-Z, because a suspended program reads nothing and guards nothing."""
+"""Signals that request a safe stop: termination, a lost connection or closed terminal, Ctrl-\\, and
+Ctrl-Z, because a suspended program reads no samples and checks no limits."""
 
 
 @contextmanager
 def signal_stops(switch: StopSwitch) -> Iterator[None]:
-    """Let each SIGINT ask for the next harder stop, and each of `ENDING` for a safe one.
+    """Install handlers: each SIGINT requests the next harder stop, each of `ENDING` a safe one.
 
-    Only the main thread may do so. The handlers that were there come back afterwards. A signal
-    that is ignored stays so: that is how `nohup` asks for a run that outlives its terminal.
+    Only the main thread can install them. The previous handlers are restored afterwards. A signal
+    that is ignored stays ignored, as under `nohup`, which lets a run outlive its terminal.
 
     Args:
-        switch: Where stops are asked for.
+        switch: Receiver of the requests.
     """
 
     def interrupt(_number: int, _frame: FrameType | None) -> None:

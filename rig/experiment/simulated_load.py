@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The normal force of a simulated rig: an operator who never errs, and a springy axis.
+"""Normal force of a simulated rig: set exactly, or by a linear axis behind a spring.
 
 Not modelled: the operator's time and mistakes; friction, play and inertia of the axis.
 """
@@ -10,7 +10,7 @@ from rig.clock import Clock
 from rig.slip_rig.simulated import SimulatedRig
 
 LEAST: Final = 1e-3
-"""Load of a twin without load: slip laws are not defined at none [N]."""
+"""Load of an unloaded twin: slip laws are not defined at zero load [N]."""
 
 
 class SimulatedOperator:
@@ -24,13 +24,26 @@ class SimulatedOperator:
         self._rig = rig
 
     def request(self, target: float, *, now: float) -> str:
-        """Set the load; see `LoadSetter.request`."""
+        """Set the load at once; see `LoadSetter.request`.
+
+        Args:
+            target: Normal force [N].
+            now: Host time, not used [s].
+
+        Returns:
+            An empty text: nobody has to do anything.
+        """
         del now
         self._rig.load = max(target, LEAST)
         return ""
 
     def follow(self, normal: float, *, now: float) -> bool:
-        """Say that it is done."""
+        """Return True: the load is set at once.
+
+        Args:
+            normal: Normal force, not used [N].
+            now: Host time, not used [s].
+        """
         del normal, now
         return True
 
@@ -43,7 +56,7 @@ class SimulatedAxis:
 
     Args:
         rig: The rig that it presses together.
-        stiffness: Force for each metre [N/m].
+        stiffness: Spring stiffness [N/m].
         clock: Host time.
     """
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Where an experiment's samples and events go: the interface of its recorder."""
+"""Interface of the recorder that stores an experiment's samples and events."""
 
 from dataclasses import dataclass
 from typing import Protocol
@@ -12,17 +12,17 @@ from rig.slip_rig.decode import Zero
 
 
 class SinkFailed(RigError, OSError):
-    """What was measured cannot be kept: disk full, folder gone, queue full."""
+    """Measurements cannot be stored: disk full, folder gone, queue full."""
 
 
 @dataclass(frozen=True)
 class RunStart:
-    """What is known of a run before its first sample.
+    """Description of a run before its first sample.
 
     Attributes:
-        point: What is measured.
-        attempt: Which time it is tried, from 1.
-        time: Host time, whose zero means nothing [s].
+        point: Point that is measured.
+        attempt: Number of the attempt, from 1.
+        time: Host time, with an arbitrary origin [s].
         zero: Zero of the load cell, subtracted from the readings.
     """
 
@@ -33,9 +33,9 @@ class RunStart:
 
 
 class RunSink(Protocol):
-    """A recorder of runs, each a point; called by the acquiring thread, which it must not hold up.
+    """Recorder of runs, one for each point; called by the acquiring thread and must not block it.
 
-    Every method may raise `SinkFailed`, upon which the rig is stopped.
+    Every method may raise `SinkFailed`, which stops the rig.
     """
 
     def open_run(self, start: RunStart) -> None:
@@ -43,11 +43,11 @@ class RunSink(Protocol):
         ...
 
     def write(self, readings: Readings, batch: Batch) -> None:
-        """Keep samples of the run.
+        """Store samples of the run.
 
         Args:
-            readings: Lined up, zero subtracted.
-            batch: The look at the rig they came with, for its raw samples.
+            readings: Samples on a common time base, zero subtracted.
+            batch: The batch they came with, for its raw samples.
         """
         ...
 
@@ -55,13 +55,18 @@ class RunSink(Protocol):
         """End the run.
 
         Args:
-            verdict: What it is worth; None where it was broken off.
-            reason: `completed`, or why it ended.
+            verdict: Verdict on the point; None where the run was aborted.
+            reason: `completed`, or why the run ended.
         """
         ...
 
     def event(self, kind: str, text: str) -> None:
-        """Keep something that happened, at once."""
+        """Store an event at once.
+
+        Args:
+            kind: Kind of event, such as `note`.
+            text: Description of the event.
+        """
         ...
 
     def require_room(self, least: float) -> None:
@@ -69,5 +74,5 @@ class RunSink(Protocol):
         ...
 
     def latch(self, reason: str) -> None:
-        """Keep, at once and whatever else has failed, that an emergency stop holds."""
+        """Store the latch of an emergency stop, at once and whatever else has failed."""
         ...

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A plan spelled out: steps in order, how long they take, and whether the rig may do them."""
+"""Expand a plan into ordered steps, estimate their duration, and check them against limits."""
 
 import math
 from dataclasses import dataclass
@@ -13,7 +13,7 @@ from rig.safety import require_within
 from rig.slip_rig.profile import FURTHER_LIMITS, RigProfile
 
 RISE: Final = 0.15
-"""Reckoned time for a disc's own lag at a new set-point [s]."""
+"""Estimated settling time of a disc at a new set-point [s]."""
 
 
 @dataclass(frozen=True)
@@ -29,14 +29,14 @@ class Tare:
 
 @dataclass(frozen=True)
 class Point:
-    """Measure at one load.
+    """Measurement at one load.
 
     Attributes:
         number: Place in the plan, from 1.
         load: Normal force [N].
         slips: Commanded slip ratio; several for a sweep through them [-].
         kind: A `point` of the grid, a `sweep`, or a `check` point.
-        repeat: Which time the load's slips are gone through, from 1.
+        repeat: Number of the pass through the load's slips, from 1.
         direction: Whether slip grows, `up`, or falls, `down`, where the order has both; else ``.
     """
 
@@ -49,7 +49,7 @@ class Point:
 
     @property
     def label(self) -> str:
-        """Name it.
+        """Label with number, load and slip ratio.
 
         >>> Point(7, 8.13, (0.25,)).label
         'point-0007 Fn 8.13 N slip 0.2500'
@@ -70,7 +70,7 @@ Step: TypeAlias = Tare | Point
 def spell_out(plan: Plan) -> tuple[Step, ...]:
     """List the steps of a plan in order.
 
-    The same plan gives the same steps, a shuffled one too: that is what a resumed run relies on.
+    The same plan always gives the same steps, also when shuffled: a resumed run relies on this.
     """
     steps: list[Step] = [Tare(1)]
     since_tare = 0
@@ -120,15 +120,15 @@ def _passes(plan: Plan, rng: np.random.Generator) -> list[tuple[tuple[float, ...
 
 
 def require_allowed(plan: Plan, profile: RigProfile) -> None:
-    """Check every set-point of a plan before anything moves.
+    """Check every set-point of a plan against the limits before motion.
 
     Args:
         plan: The plan.
-        profile: The rig; its own limits count beside the plan's.
+        profile: The rig; its own limits apply as well as the plan's.
 
     Raises:
-        LimitExceeded: A speed or load is beyond a limit; value, limit and unit are named.
-        ProfileError: The plan limits what the rig does not measure.
+        LimitExceeded: A speed or load exceeds a limit; the message has value, limit and unit.
+        ProfileError: The plan limits a quantity that the rig does not measure.
     """
     allowed = rig_limits(plan.limits, profile.limits)
     for name in ("speed", "normal_force", "traction_force"):
@@ -164,12 +164,12 @@ def require_allowed(plan: Plan, profile: RigProfile) -> None:
 
 @dataclass(frozen=True)
 class DurationEstimate:
-    """How long steps take.
+    """Estimated duration of steps.
 
     Attributes:
-        seconds: In all, repeated points not counted [s].
-        points: Points among them.
-        loads: Times that the normal force is set, zeros included.
+        seconds: Total duration without repeated points [s].
+        points: Number of points among the steps.
+        loads: Number of times that the normal force is set, zeros included.
     """
 
     seconds: float
@@ -178,11 +178,11 @@ class DurationEstimate:
 
 
 def estimate(plan: Plan, steps: tuple[Step, ...]) -> DurationEstimate:
-    """Reckon how long steps take.
+    """Estimate the duration of steps.
 
     Args:
-        plan: Their plan.
-        steps: What remains, in order.
+        plan: Plan of the steps.
+        steps: Remaining steps, in order.
     """
     ramp = plan.points.omega_leg / plan.limits.acceleration
     seconds, points, loads, load = 0.0, 0, 0, math.nan

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""An exception that ends any thread of the program reaches the running experiment, and stops it."""
+"""Report uncaught exceptions of any thread to the running experiment, which then stops."""
 
 import threading
 from collections.abc import Callable, Iterator
@@ -11,10 +11,10 @@ from rig.experiment.control import Control
 
 @contextmanager
 def supervised(control: Control) -> Iterator[None]:
-    """Report every exception that nobody catches in a thread to a run, for as long as it lasts.
+    """Report every uncaught exception of a thread to a run while the context lasts.
 
     Args:
-        control: Mailbox of the run, whose safe stop follows.
+        control: Mailbox of the run, which then makes a safe stop.
     """
     earlier = threading.excepthook
 
@@ -30,21 +30,21 @@ def supervised(control: Control) -> Iterator[None]:
 
 
 def start_thread(work: Callable[[], None], *, name: str, control: Control) -> threading.Thread:
-    """Start a thread that a run depends on; its failure, or that it cannot start, stops the run.
+    """Start a thread that a run depends on; an exception in it stops the run.
 
     Args:
-        work: What it does.
-        name: Its name, for the message.
+        work: Function of the thread.
+        name: Name of the thread, for the message.
         control: Mailbox of the run.
 
     Raises:
-        PartFailed: The system gives no thread.
+        PartFailed: The system cannot start a thread.
     """
 
     def watched() -> None:
         try:
             work()
-        except BaseException as error:  # noqa: BLE001, RUF100 - the run stops and says why
+        except BaseException as error:  # noqa: BLE001, RUF100 - the run stops and reports it
             control.fail(name, error)
 
     thread = threading.Thread(target=watched, daemon=True, name=name)

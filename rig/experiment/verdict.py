@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Whether the rig is steady, and what a recorded point is worth."""
+"""Test for steady state, and quality checks of a recorded point."""
 
 from dataclasses import dataclass
 from typing import Final
@@ -14,18 +14,18 @@ from rig.experiment.steps import Point
 from rig.slip_rig.profile import RigProfile
 
 LEAST_COVERED: Final = 0.8
-"""Part of a point's time that its samples must span [-]."""
+"""Least fraction of a point's duration that its samples must span [-]."""
 
 
 @dataclass(frozen=True)
 class PointVerdict:
-    """What a recorded point is worth.
+    """Result of the quality checks of a recorded point.
 
     Attributes:
-        problems: Why it is to be repeated, one phrase each; none where it is good.
+        problems: Why the point must be repeated, one phrase each; empty where it is good.
         samples: Number of samples.
         slip: Mean slip ratio [-].
-        friction: Traction over normal force, both summed up [-].
+        friction: Sum of the traction over sum of the normal force [-].
         normal_force: Median normal force [N].
     """
 
@@ -37,7 +37,7 @@ class PointVerdict:
 
     @property
     def accepted(self) -> bool:
-        """Tell whether it is good."""
+        """Return whether the point passed every check."""
         return not self.problems
 
 
@@ -56,13 +56,21 @@ def halves(readings: Readings) -> tuple[Readings, Readings]:
 
 
 def friction(readings: Readings) -> float:
-    """Compute traction over normal force, both summed up; NaN without load [-]."""
+    """Compute the sum of the traction over the sum of the normal force; NaN without load [-]."""
     load = float(readings.normal_force.sum())
     return float(readings.traction_force.sum()) / load if load > 0 else np.nan
 
 
 def measured_slip(readings: Readings, profile: RigProfile) -> Array:
-    """Compute the instantaneous material slip ratio from both speeds, shape (n,) [-]."""
+    """Compute the instantaneous material slip ratio from both speeds.
+
+    Args:
+        readings: Speeds of both discs.
+        profile: Carries the radii of the discs.
+
+    Returns:
+        Slip ratio, NaN or infinite where the leg disc stands still, shape (n,) [-].
+    """
     with np.errstate(divide="ignore", invalid="ignore"):
         return slip_ratio(
             readings.omega_leg * profile.radius_leg,
@@ -72,12 +80,12 @@ def measured_slip(readings: Readings, profile: RigProfile) -> Array:
 
 
 def is_steady(window: Readings, wanted: tuple[float, float], criterion: SettleCriterion) -> bool:
-    """Tell whether speeds are at their set-points, and both halves of a window agree.
+    """Return whether speeds are at their set-points and both halves of a window agree.
 
     Args:
         window: The latest readings.
         wanted: Set-points of leg and ground disc [rad/s].
-        criterion: How near is near enough.
+        criterion: Tolerances.
 
     Returns:
         False also where the window is not yet full.
@@ -103,18 +111,18 @@ def judge_point(
     duration: float,
     profile: RigProfile,
 ) -> PointVerdict:
-    """Say what a recorded point is worth.
+    """Check the quality of a recorded point.
 
     Args:
-        readings: What was recorded, zero subtracted.
-        point: What was commanded.
-        accept: What it must show.
-        settled: Whether the rig had settled when recording began.
-        duration: How long it was recorded [s].
+        readings: Recorded samples, zero subtracted.
+        point: Commanded slip ratio and load.
+        accept: Acceptance limits.
+        settled: Whether the rig was steady when recording began.
+        duration: Duration of the recording [s].
         profile: Carries the radii.
 
     Returns:
-        The verdict. The normal force is told and not judged: the disc may stand on its bump.
+        The verdict. The normal force is reported but not checked: the disc may stand on its bump.
     """
     if len(readings) < 8:
         return PointVerdict((f"{len(readings)} samples",), len(readings), np.nan, np.nan, np.nan)

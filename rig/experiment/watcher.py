@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Who follows a run of a plan: a terminal, or nobody; never keeps the acquiring thread waiting."""
+"""Interface of the progress display of an experiment; it must not block the acquiring thread."""
 
 from typing import Protocol
 
@@ -9,33 +9,44 @@ from rig.experiment.verdict import PointVerdict
 
 
 class ExperimentWatcher(Protocol):
-    """Who follows a run: a terminal, or nobody."""
+    """Receiver of progress, prompts and verdicts of a run, such as a terminal."""
 
     def changed(self, condition: Condition) -> None:
-        """Hear that the state of the run, or whether the discs are energised, has changed."""
+        """Show a change of the run's state, or of whether the discs are energised."""
         ...
 
     def notice(self, text: str) -> None:
-        """Hear something that a person should know."""
+        """Show a message to a person."""
         ...
 
     def doing(self, what: str, *, done: int, of: int, left: float) -> None:
-        """Hear what begins.
+        """Show the step that begins.
 
         Args:
             what: Name of the step.
-            done: Points finished.
-            of: Points in all.
-            left: Time that the rest is reckoned to take [s].
+            done: Number of finished points.
+            of: Number of all points.
+            left: Estimated remaining time [s].
         """
         ...
 
     def prompt(self, text: str, *, normal: float) -> None:
-        """Hear, again and again, what a person is asked to do and the normal force now [N]."""
+        """Show a prompt for the operator; called repeatedly until it is followed.
+
+        Args:
+            text: What the operator must do.
+            normal: Present normal force [N].
+        """
         ...
 
     def judged(self, point: Point, verdict: PointVerdict, *, attempt: int) -> None:
-        """Hear what a point is worth."""
+        """Show the verdict on a point.
+
+        Args:
+            point: The point.
+            verdict: Result of its quality checks.
+            attempt: Number of the attempt, from 1.
+        """
         ...
 
 
@@ -43,16 +54,34 @@ class NobodyWatches:
     """A watcher that does nothing."""
 
     def changed(self, condition: Condition) -> None:
-        """Ignore it."""
+        """Ignore a change of state."""
 
     def notice(self, text: str) -> None:
-        """Ignore it."""
+        """Ignore a message."""
 
     def doing(self, what: str, *, done: int, of: int, left: float) -> None:
-        """Ignore it."""
+        """Ignore a step; see `ExperimentWatcher.doing`.
+
+        Args:
+            what: Name of the step.
+            done: Number of finished points.
+            of: Number of all points.
+            left: Estimated remaining time [s].
+        """
 
     def prompt(self, text: str, *, normal: float) -> None:
-        """Ignore it."""
+        """Ignore a prompt; see `ExperimentWatcher.prompt`.
+
+        Args:
+            text: What the operator must do.
+            normal: Present normal force [N].
+        """
 
     def judged(self, point: Point, verdict: PointVerdict, *, attempt: int) -> None:
-        """Ignore it."""
+        """Ignore a verdict; see `ExperimentWatcher.judged`.
+
+        Args:
+            point: The point.
+            verdict: Result of its quality checks.
+            attempt: Number of the attempt, from 1.
+        """

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Profile of an inertial measurement unit: how its counts become an orientation."""
+"""Profile of an inertial measurement unit: conversion between counts and orientation."""
 
 import struct
 from collections.abc import Sequence
@@ -32,9 +32,9 @@ class ImuProfile:
         quaternion_scale: Counts of a quaternion component of 1.
         rate_scale: Counts of 1 rad/s.
         force_scale: Counts of 1 m/s².
-        mounting: Quaternion w, x, y, z that turns the sensor's axes into the body's.
-        rate: Samples in a second [Hz].
-        link: `serial`, or `table` for a file that somebody else wrote.
+        mounting: Quaternion w, x, y, z of the rotation from the sensor's axes to the body's.
+        rate: Sample rate [Hz].
+        link: `serial`, or `table` for an imported file.
     """
 
     name: str
@@ -53,18 +53,18 @@ class ImuProfile:
         return struct.Struct(("<" if self.byte_order == "little" else ">") + f"{FIELDS}h")
 
     def possible(self, counts: tuple[float, ...]) -> bool:
-        """Tell whether the quaternion has length 1, within `NORM_TOLERANCE`."""
+        """Return whether the quaternion has length 1, within `NORM_TOLERANCE`."""
         norm = sum(count * count for count in counts[:4]) ** 0.5 / self.quaternion_scale
         return abs(norm - 1) <= NORM_TOLERANCE
 
 
 @dataclass(frozen=True)
 class Orientation:
-    """What a unit measured, in the body's axes.
+    """Measurements of a unit, in the body's axes.
 
     Attributes:
-        host_time: When the host read each sample, shape (n,) [s].
-        device_time: When the unit took it, shape (n,) [s].
+        host_time: Time at which the host read each sample, shape (n,) [s].
+        device_time: Time at which the unit took it, shape (n,) [s].
         roll: Shape (n,) [rad].
         pitch: Shape (n,) [rad].
         yaw: Unwrapped, from an arbitrary heading, shape (n,) [rad].
@@ -91,7 +91,7 @@ def load_imu_profile(name: str) -> ImuProfile:
         The profile.
 
     Raises:
-        ProfileError: Anything in it is missing, unknown or of the wrong kind.
+        ProfileError: A key is missing, unknown or of the wrong type.
     """
     table = open_profile(name, device="imu")
     link, frame, scale, mounting, stream = (
@@ -117,10 +117,10 @@ def load_imu_profile(name: str) -> ImuProfile:
 
 
 def render_table_profile(rate: float) -> str:
-    """Spell the profile of orientation from a table in SI, in the body's axes, as TOML.
+    """Return the TOML of a profile for orientation imported from a table in SI, in the body's axes.
 
     Args:
-        rate: Samples in a second [Hz].
+        rate: Sample rate [Hz].
     """
     document = {
         "schema": SCHEMA,
@@ -171,7 +171,7 @@ def encode_orientation(
         specific_force: In the body's axes, shape (3,) [m/s²].
 
     Returns:
-        Ten counts, held to 16 bits.
+        Ten counts, clipped to 16 bits.
     """
     mounting = Rotation.from_quat(profile.mounting, scalar_first=True)
     values = np.concatenate([

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A simulated inertial measurement unit on a body whose motion is given.
+"""Simulated inertial measurement unit on a body with a given motion.
 
 Not modelled: temperature, vibration and the unit's own filter.
 """
@@ -26,13 +26,13 @@ Attitude = Callable[[float], tuple[float, float, float]]
 
 @dataclass(frozen=True)
 class ImuImperfections:
-    """What a unit adds to the truth; the defaults are a perfect one.
+    """Noise and drift of a unit; the defaults are an ideal one.
 
     Attributes:
         angle_noise: Standard deviation of the orientation about each axis [rad].
         rate_noise: Standard deviation of the angular rate [rad/s].
         force_noise: Standard deviation of the specific force [m/s²].
-        yaw_drift: How fast the heading runs away [rad/s].
+        yaw_drift: Drift rate of the heading [rad/s].
 
     Raises:
         ProtocolError: A standard deviation is negative.
@@ -50,14 +50,14 @@ class ImuImperfections:
 
 
 PERFECT_UNIT = ImuImperfections()
-"""A unit that adds nothing."""
+"""A unit without noise and drift."""
 
 
 def rocking(time: float) -> tuple[float, float, float]:
-    """Compute the attitude of a body that rocks a little as it turns left.
+    """Compute the attitude of a body that oscillates in roll and pitch as it turns left.
 
     Args:
-        time: Since the beginning [s].
+        time: Time since the beginning [s].
 
     Returns:
         Roll, pitch and yaw [rad].
@@ -67,14 +67,14 @@ def rocking(time: float) -> tuple[float, float, float]:
 
 
 class SimulatedImu:
-    """A unit that sends packets; satisfies `ByteTwin`.
+    """Simulated unit that sends packets; satisfies `ByteTwin`.
 
     Args:
         attitude: Motion of the body.
-        profile: How the unit counts.
-        imperfections: What it adds to the truth.
-        faults: What goes wrong on the line.
-        rng: Source of randomness.
+        profile: Scale of the counts, mounting and rate of the unit.
+        imperfections: Its noise and drift.
+        faults: Transmission errors of the line.
+        rng: Random generator.
     """
 
     def __init__(
@@ -96,7 +96,15 @@ class SimulatedImu:
         self._number = 0
 
     def poll(self, now: float, received: bytes) -> bytes:
-        """Give packets; see `ByteTwin.poll`. What is received is ignored, as the unit does."""
+        """Return the packets that are due; see `ByteTwin.poll`.
+
+        Args:
+            now: Time, never decreasing [s].
+            received: Bytes from the host; ignored, as the real unit does.
+
+        Returns:
+            Bytes to the host since the last poll.
+        """
         del received
         if self._switched_on is None:
             self._switched_on = now

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What a byte stream to a device is, and what sits at its other end in a simulation."""
+"""Protocols of a byte stream to a device, and of the simulated device at its other end."""
 
 from typing import Protocol
 
@@ -9,59 +9,59 @@ class ByteLink(Protocol):
 
     @property
     def source(self) -> str:
-        """Where the bytes come from: `real` or `sim:WHAT`."""
+        """Origin of the bytes: `real` or `sim:WHAT`."""
         ...
 
     @property
     def reconnected(self) -> int:
-        """Count the times that the link came back after it was gone."""
+        """Number of times that the link came back after a disconnection."""
         ...
 
     def open(self) -> None:
         """Open the link.
 
         Raises:
-            LinkError: There is no such port, or no right to open it.
+            LinkError: There is no such port, or no permission to open it.
         """
         ...
 
     def close(self) -> None:
-        """Close the link; closing twice is no fault."""
+        """Close the link; a second call has no effect."""
         ...
 
     def read(self, timeout: float) -> bytes:
-        """Hand on the bytes that have arrived, waiting at most `timeout` for the first [s].
+        """Return the bytes that have arrived, waiting at most `timeout` for the first [s].
 
-        A link that is gone gives no bytes and tries to come back.
+        A disconnected link returns no bytes and tries to reconnect.
         """
         ...
 
     def write(self, data: bytes) -> bool:
-        """Send bytes; tell whether the link took them.
+        """Send bytes; return whether the link took them.
 
         Raises:
-            RigTimeout: The port does not take bytes.
+            RigTimeout: The port accepts no bytes within its timeout.
         """
         ...
 
 
 class ByteTwin(Protocol):
-    """A simulated device at the far end of a byte stream.
+    """Simulated device at the far end of a byte stream.
 
-    It has no thread and no clock: whoever serves it says what time it is. So the same twin runs in
-    a test by hand and behind a pseudo-terminal in real time.
+    It has neither thread nor clock: the caller passes the time. The same twin therefore runs step
+    by step in a test, and behind a pseudo-terminal in real time.
     """
 
     @property
     def source(self) -> str:
-        """What is simulated, as it goes into manifests: `sim:WHAT`."""
+        """Origin of its data, as in manifests: `sim:WHAT`."""
         ...
 
     def poll(self, now: float, received: bytes) -> bytes:
-        """Take what the host sent and give what the device sends up to a time.
+        """Pass the bytes that the host sent, and return those that the device sends up to a time.
 
         Args:
-            now: Time, never less than before [s].
+            now: Time, never decreasing [s].
             received: Bytes from the host since the last poll.
 
         Returns:

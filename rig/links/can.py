@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""A CAN bus: frames read in bulk by the thread that wants them, every wait with a limit.
+"""CAN bus link: frames are read in bulk by the calling thread, and every wait has a timeout.
 
-No `can.Notifier`: its thread ends without a word when a listener raises.
+`can.Notifier` is not used: its thread ends silently when a listener raises.
 """
 
 import contextlib
@@ -25,11 +25,11 @@ WRITE_LIMIT: Final = 0.5
 RETRY_AFTER: Final = 0.25
 MOST_AT_ONCE: Final = 4096
 LONGEST_READ: Final = 0.05
-"""After so long a read hands on what it has, although more may wait [s]."""
+"""Longest duration of one read; more frames may still wait [s]."""
 STAMPED: Final = frozenset({"socketcan", "virtual"})
-"""Interfaces whose time stamps tell when a frame arrived, by the system's clock."""
+"""Interfaces whose frame time stamps are arrival times by the system's clock."""
 STAMP_ERROR: Final = 0.001
-"""How far a time stamp may be off because both clocks are read one after the other [s]."""
+"""Tolerance of a time stamp, because both clocks are read one after the other [s]."""
 
 
 class CanLink:
@@ -43,8 +43,8 @@ class CanLink:
         clock: Host time.
 
     Attributes:
-        reconnected: Times that the bus came back after it failed.
-        damaged: Error frames that the bus reported, and lines of an adapter that were no frame.
+        reconnected: Number of times that the bus came back after it failed.
+        damaged: Number of error frames that the bus reported, and of invalid lines of an adapter.
     """
 
     def __init__(
@@ -72,7 +72,7 @@ class CanLink:
 
         Raises:
             InUse: Another program has it; the message says which.
-            LinkError: There is no such bus, or no right to open it.
+            LinkError: There is no such bus, or no permission to open it.
         """
         if self._lock is not None:
             self._lock.take()
@@ -87,7 +87,7 @@ class CanLink:
             ) from problem
 
     def close(self) -> None:
-        """Close the bus and let others have it; closing twice is no fault."""
+        """Close the bus and release its lock; a second call has no effect."""
         self._disconnect()
         if self._lock is not None:
             self._lock.release()
@@ -97,13 +97,13 @@ class CanLink:
         if bus is not None:
             with contextlib.suppress(
                 can.CanError, OSError
-            ):  # an adapter that is gone says so again
+            ):  # an adapter that is disconnected raises again
                 bus.shutdown()
 
     def read(self, timeout: float) -> list[can.Message]:
-        """Hand on all data frames there are, waiting at most `timeout` for the first [s].
+        """Return all data frames that have arrived, waiting at most `timeout` for the first [s].
 
-        Nothing that has arrived is left waiting, up to `MOST_AT_ONCE` frames and `LONGEST_READ`.
+        One call returns at most `MOST_AT_ONCE` frames and takes at most `LONGEST_READ` for them.
         """
         if self._bus is None and not self._come_back(timeout):
             return []
@@ -117,11 +117,11 @@ class CanLink:
         return messages
 
     def arrivals(self, messages: Sequence[can.Message]) -> list[float]:
-        """Tell when frames just read arrived, by host time, never running back [s].
+        """Estimate the arrival times of frames just read, by host time, non-decreasing [s].
 
-        A frame waits until it is read, but no longer than since the bus was last found empty. How
-        long, its time stamp tells where the interface takes it from the system's clock, as
-        socketcan's kernel does. Where it does not, the frames are spread evenly over that time.
+        A frame arrived after the bus was last found empty. Its time stamp gives the arrival where
+        the interface takes it from the system's clock, as the kernel does for socketcan. Otherwise
+        the frames are spread evenly over that time.
         """
         now, wall = self._clock.now(), time.time()
         longest = now - self._since
@@ -136,15 +136,33 @@ class CanLink:
         return times[1:]
 
     def write(self, can_id: int, data: bytes) -> bool:
-        """Send a frame with an 11-bit id; False while the bus is gone.
+        """Send a frame with an 11-bit id.
+
+        Args:
+            can_id: Arbitration id, 11 bits.
+            data: At most 8 bytes.
+
+        Returns:
+            Whether the frame was sent; False while the bus is disconnected.
 
         Raises:
-            RigTimeout: The bus is there but takes no frame: nobody acknowledges, or it is off.
+            RigTimeout: The bus is there but takes no frame: it is off, or no node acknowledges.
         """
         return self._send(can.Message(arbitration_id=can_id, data=data, is_extended_id=False))
 
     def request(self, can_id: int, length: int) -> bool:
-        """Ask, by a remote frame, for a frame of so many bytes; returns and raises as `write`."""
+        """Send a remote frame, which asks a node for a frame with this id.
+
+        Args:
+            can_id: Arbitration id, 11 bits.
+            length: Length of the data asked for [bytes].
+
+        Returns:
+            Whether the frame was sent; False while the bus is disconnected.
+
+        Raises:
+            RigTimeout: As `write`.
+        """
         return self._send(
             can.Message(
                 arbitration_id=can_id, dlc=length, is_remote_frame=True, is_extended_id=False
@@ -168,13 +186,13 @@ class CanLink:
 
     @property
     def _stamped(self) -> bool:
-        """Whether time stamps tell when frames arrived."""
+        """Whether the time stamps of frames are arrival times."""
         if isinstance(self._channel, str):
             return self._channel.partition(":")[0] in STAMPED
         return _serial_port(self._channel) is None
 
     def _drain(self, bus: can.BusABC, timeout: float, messages: list[can.Message]) -> None:
-        """Take frames until none waits, or a bound is reached."""
+        """Receive frames until none is left, or until a limit of `read` is reached."""
         port = _serial_port(bus)
         began, wait = self._clock.now(), timeout
         for _ in range(MOST_AT_ONCE):
@@ -191,16 +209,16 @@ class CanLink:
             wait = 0.0
 
     def _receive(self, bus: can.BusABC, wait: float, messages: list[can.Message]) -> bool:
-        """Take one frame; tell whether there was any."""
+        """Receive one frame; return whether there was any."""
         try:
             message = bus.recv(wait)
-        except (ValueError, LookupError):  # python-can's slcan, of a line that was damaged
+        except (ValueError, LookupError):  # raised by python-can's slcan for a damaged line
             self.damaged += 1
             return True
         except can.CanOperationError as problem:
             if not isinstance(problem.__cause__, UnicodeDecodeError):
                 raise
-            # A byte of noise, which python-can's slcan would keep and stumble over for ever.
+            # Drop a byte of noise, on which python-can's slcan would fail in every later call.
             cast("slcanBus", bus).flush()
             self.damaged += 1
             return True
@@ -209,7 +227,7 @@ class CanLink:
         return message is not None
 
     def _keep(self, message: can.Message, messages: list[can.Message]) -> None:
-        # python-can's slcan hands on lines that were cut short, with fewer data than they tell.
+        # python-can's slcan returns truncated lines, with fewer data bytes than their length says.
         cut = not message.is_remote_frame and len(message.data) != message.dlc
         if message.is_error_frame or cut:
             self.damaged += 1
@@ -227,7 +245,7 @@ class CanLink:
         self._retry_at = self._clock.now() + RETRY_AFTER
 
     def _come_back(self, timeout: float) -> bool:
-        """Try to reopen a lost bus, at most every `RETRY_AFTER`; tell whether it is back."""
+        """Try to reopen a lost bus, at most every `RETRY_AFTER`; return whether it is back."""
         wait = self._retry_at - self._clock.now()
         self._clock.sleep(min(max(wait, 0.0), timeout))
         if wait > timeout or isinstance(self._channel, can.BusABC):
@@ -250,7 +268,7 @@ def _serial_port(bus: can.BusABC) -> "serial.Serial | None":
 def _bus_lock(channel: "str | can.BusABC") -> Exclusive | None:
     """Return the lock of a bus; None where no other program can open it.
 
-    An adapter on a serial line is locked as that line, whatever it is opened as.
+    An adapter on a serial line is locked as that serial port, however it is opened.
     """
     if isinstance(channel, can.BusABC) or channel.startswith("virtual:"):
         return None

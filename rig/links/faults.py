@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Planted faults at the byte stream of a twin, so that the real parser is under test."""
+"""Fault injection into the byte stream of a twin, to test the real parser."""
 
 from dataclasses import dataclass, fields
 
@@ -10,15 +10,15 @@ from rig.errors import ProtocolError
 
 @dataclass(frozen=True)
 class Faults:
-    """How often what goes wrong on a line; the defaults are a perfect one.
+    """Probabilities of transmission errors on a line; the defaults are an error-free line.
 
     Attributes:
         flip: Probability that a bit is flipped.
         drop: Probability that a frame is lost whole.
         truncate: Probability that a frame loses its end.
         duplicate: Probability that a frame is sent twice.
-        delay: Probability that a frame comes after the next one.
-        garbage: Probability that random bytes come before a frame.
+        delay: Probability that a frame is sent after the next one.
+        garbage: Probability that random bytes precede a frame.
         noise_at_start: Random bytes before the first frame.
 
     Raises:
@@ -41,15 +41,15 @@ class Faults:
 
 
 PERFECT_LINE = Faults()
-"""Nothing goes wrong."""
+"""A line without transmission errors."""
 
 
 class FaultyWire:
-    """Passes frames on with faults; everything random comes from its generator.
+    """Channel that adds transmission errors to frames.
 
     Args:
-        faults: What goes wrong.
-        rng: Source of randomness.
+        faults: Probabilities of the errors.
+        rng: Random generator.
     """
 
     def __init__(self, faults: Faults, *, rng: np.random.Generator) -> None:
@@ -60,13 +60,13 @@ class FaultyWire:
         self._perfect = faults == PERFECT_LINE
 
     def carry(self, frames: list[bytes]) -> bytes:
-        """Pass frames on.
+        """Transmit frames with random errors.
 
         Args:
             frames: Whole frames, in order.
 
         Returns:
-            The bytes that come out at the far end.
+            The bytes at the far end.
         """
         if self._perfect:
             return b"".join(frames)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Frames out of a byte stream: found again after damage, and the damage counted."""
+"""Framing of a byte stream: COBS or fixed trailer, resynchronisation, counts of damaged frames."""
 
 from typing import Final, Protocol
 
@@ -12,31 +12,31 @@ class Framer(Protocol):
     """Finds frames in a stream of bytes.
 
     Attributes:
-        damaged: Frames that were refused so far.
-        resynchronised: Times that a good frame followed damaged ones.
+        damaged: Number of damaged frames so far.
+        resynchronised: Number of times that a good frame followed damaged ones.
     """
 
     damaged: int
     resynchronised: int
 
     def feed(self, data: bytes) -> list[bytes]:
-        """Take bytes and hand on the payloads of the frames that are now complete."""
+        """Add bytes and return the payloads of the frames that are now complete."""
         ...
 
     def reset(self) -> None:
-        """Forget a frame in the making: the link was gone, and its rest will never come."""
+        """Discard an incomplete frame, after a disconnection."""
         ...
 
 
 class CobsFramer:
-    """Frames of consistent overhead byte stuffing, each ended by a zero byte.
+    """Frames of consistent overhead byte stuffing (COBS), each ended by a zero byte.
 
-    COBS keeps zeros out of a frame, so that a zero always is an end: after any damage the next
-    frame is whole again. The piece before the first end may be the tail of a frame that was under
-    way when the port was opened, and is not counted.
+    COBS removes zeros from a frame, so that a zero always marks its end: the frame after a damaged
+    one is read correctly. The bytes before the first zero may be the tail of a frame that was sent
+    while the port was opened, and are not counted as damaged.
 
     Args:
-        longest: Longest frame of the protocol, encoded, without its end [bytes].
+        longest: Longest encoded frame of the protocol, without its end [bytes].
     """
 
     def __init__(self, *, longest: int) -> None:
@@ -48,31 +48,31 @@ class CobsFramer:
         self._astray = False
 
     def feed(self, data: bytes) -> list[bytes]:
-        """Take bytes and hand on the payloads of the frames that are now complete."""
+        """Add bytes and return the payloads of the frames that are now complete."""
         *pieces, tail = (self._tail + data).split(DELIMITER)
         self._tail = tail
-        if len(tail) > self._longest:  # noise without an end must not fill the memory
+        if len(tail) > self._longest:  # bounds the memory for noise without an end
             self._tail = tail[-self._longest - 1 :]
         return [payload for piece in pieces if (payload := self._decode(piece)) is not None]
 
     def reset(self) -> None:
-        """Forget a frame in the making."""
+        """Discard an incomplete frame."""
         self._tail = b""
         self._joined = False
 
     def refuse(self) -> None:
-        """Count a frame as damaged that was stuffed correctly and whose content is not right."""
+        """Count a correctly stuffed frame with invalid content as damaged."""
         self.damaged += 1
         self._astray = True
 
     def accept(self) -> None:
-        """Take note of a good frame."""
+        """Count a resynchronisation where a good frame follows damaged ones."""
         self.resynchronised += self._astray
         self._astray = False
 
     def _decode(self, piece: bytes) -> bytes | None:
         joined, self._joined = self._joined, True
-        if not piece:  # two ends in a row: a sender may begin with one to end any noise
+        if not piece:  # two ends in a row: a sender may begin with one to end noise
             return None
         try:
             if len(piece) <= self._longest:
@@ -85,15 +85,15 @@ class CobsFramer:
 
 
 class TrailerFramer:
-    """Frames of one length that all end in the same bytes, and have no checksum.
+    """Frames of fixed length that all end in the same bytes and have no checksum.
 
-    A frame is taken where a trailer stands both right before and at the end of it, so that a
-    truncated, doubled-up or interrupted frame is not. A bit flipped between two trailers stays
-    unseen: that is this format's weakness, not mended here.
+    A frame is accepted where a trailer is both directly before it and at its end. Truncated, merged
+    and interrupted frames are thereby discarded. A flipped bit between two trailers is not
+    detected, a weakness of the format.
 
     Args:
         length: Length of a frame with its trailer [bytes].
-        trailer: What every frame ends in.
+        trailer: Last bytes of every frame.
     """
 
     def __init__(self, *, length: int, trailer: bytes) -> None:
@@ -106,7 +106,7 @@ class TrailerFramer:
         self._astray = False
 
     def feed(self, data: bytes) -> list[bytes]:
-        """Take bytes and hand on the frames that are now complete, without their trailers."""
+        """Add bytes and return the frames that are now complete, without their trailers."""
         self._buffer += data
         frames: list[bytes] = []
         while self._aligned or self._align():
@@ -122,7 +122,7 @@ class TrailerFramer:
         return frames
 
     def reset(self) -> None:
-        """Forget a frame in the making."""
+        """Discard an incomplete frame."""
         self._buffer = b""
         self._aligned = False
 
@@ -132,7 +132,7 @@ class TrailerFramer:
         self._aligned = False
 
     def _align(self) -> bool:
-        """Throw away bytes up to and with the next trailer; tell whether there was one."""
+        """Discard bytes up to and including the next trailer; return whether there was one."""
         found = self._buffer.find(self._trailer)
         if found < 0:
             self._buffer = self._buffer[-len(self._trailer) + 1 :]

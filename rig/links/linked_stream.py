@@ -1,28 +1,28 @@
 # SPDX-License-Identifier: MIT
-"""What every stream over one link shares: it is open while the stream is entered."""
+"""Base of streams over one link, which is open while the stream is entered."""
 
 from types import TracebackType
 from typing import Generic, Protocol, Self, TypeVar
 
 
 class Link(Protocol):
-    """What is opened and closed: a serial port, a bus, a socket."""
+    """A connection that is opened and closed: a serial port, a CAN bus, a socket."""
 
     @property
     def source(self) -> str:
-        """Where what it carries comes from: `real` or `sim:WHAT`."""
+        """Origin of the data: `real` or `sim:WHAT`."""
         ...
 
     def open(self) -> None:
-        """Open it.
+        """Open the link.
 
         Raises:
-            LinkError: There is no such port, or no right to open it.
+            LinkError: There is no such port, or no permission to open it.
         """
         ...
 
     def close(self) -> None:
-        """Close it; closing twice is no fault."""
+        """Close the link; a second call has no effect."""
         ...
 
 
@@ -41,7 +41,7 @@ class LinkedStream(Generic[LinkT]):
 
     @property
     def source(self) -> str:
-        """Where the samples come from."""
+        """Origin of the samples: `real` or `sim:WHAT`."""
         return self._link.source
 
     def __enter__(self) -> Self:

@@ -1,18 +1,18 @@
 # SPDX-License-Identifier: MIT
-"""A byte stream to a twin in the same process: no port, no thread, time by any clock."""
+"""Byte link to a twin in the same process, without port or thread, with any clock."""
 
 from rig.clock import Clock
 from rig.links.byte_link import ByteTwin
 
 STEP = 0.001
-"""How often a waiting link looks after its twin [s]."""
+"""Interval at which a waiting link polls its twin [s]."""
 
 
 class MemoryLink:
-    """Bytes to and from a twin that is polled whenever the host reads.
+    """Byte link that polls its twin whenever the host reads.
 
-    With a `ManualClock` an hour of streaming passes in seconds, the same in every run. Not
-    modelled: baud rate, and bytes that overflow a receive buffer.
+    With a `ManualClock` an hour of streaming takes seconds and is reproducible. Not modelled: baud
+    rate, and overflow of a receive buffer.
     """
 
     def __init__(self, twin: ByteTwin, *, clock: Clock) -> None:
@@ -22,23 +22,23 @@ class MemoryLink:
 
     @property
     def source(self) -> str:
-        """What is simulated."""
+        """Origin of the bytes: `sim:WHAT`."""
         return self._twin.source
 
     @property
     def reconnected(self) -> int:
-        """Never: memory stays."""
+        """Always 0: the link cannot disconnect."""
         return 0
 
     def open(self) -> None:
-        """Do nothing: the twin is there."""
+        """Do nothing: the twin is always connected."""
 
     def close(self) -> None:
-        """Let the twin have what was written last."""
+        """Pass the last written bytes to the twin."""
         self._poll()
 
     def read(self, timeout: float) -> bytes:
-        """Hand on what the twin sends, letting at most `timeout` pass [s]."""
+        """Return the bytes that the twin sends, waiting at most `timeout` for the first [s]."""
         end = self._clock.now() + timeout
         while not (data := self._poll()):
             left = end - self._clock.now()
@@ -48,7 +48,7 @@ class MemoryLink:
         return data
 
     def write(self, data: bytes) -> bool:
-        """Keep bytes for the twin's next poll; always taken."""
+        """Buffer bytes for the twin's next poll; always returns True."""
         self._outbox += data
         return True
 

@@ -32,7 +32,7 @@ LONGEST_BODY: Final = 200
 
 
 class Kind(IntEnum):
-    """What a packet is about: below 16 from the device, from 16 to the device."""
+    """Kind of a packet: below 16 from the device, from 16 to the device."""
 
     LEGS = 1
     ORIENTATION = 2
@@ -46,10 +46,10 @@ class Packet(NamedTuple):
     """One packet.
 
     Attributes:
-        kind: `Kind`, or a number nobody knows.
+        kind: `Kind`, or an unknown number.
         sequence: Number of the packet, modulo 2³².
         ticks: Device time, modulo 2³² [µs].
-        body: What the kind says it is.
+        body: Content, whose layout depends on the kind.
     """
 
     kind: int
@@ -59,10 +59,10 @@ class Packet(NamedTuple):
 
 
 def encode_packet(packet: Packet) -> bytes:
-    """Make the bytes of one packet, with its end.
+    """Encode one packet with its checksum, COBS stuffing and end.
 
     Args:
-        packet: Number and ticks are taken modulo 2³².
+        packet: Packet; sequence number and ticks are taken modulo 2³².
 
     Returns:
         Stuffed bytes, ended by a zero.
@@ -80,7 +80,7 @@ def encode_packet(packet: Packet) -> bytes:
 
 
 def decode_packet(content: bytes) -> Packet | None:
-    r"""Read one unstuffed packet; None where its checksum or length is not right.
+    r"""Decode one unstuffed packet; None where its checksum or length is wrong.
 
     >>> wire = encode_packet(Packet(Kind.LEGS, 7, 20_000, bytes(range(6))))
     >>> decode_packet(cobs.decode(wire[:-1]))

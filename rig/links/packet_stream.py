@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A stream of one kind of packet over a byte link: legs, an IMU and the rig's board alike."""
+"""Stream of one kind of packet over a byte link, for legs, an IMU and the rig's board."""
 
 import struct
 from collections.abc import Callable
@@ -26,11 +26,11 @@ from rig.links.sequence import SequenceTracker, TimeUnwrapper
 
 LONGEST: Final = HEADER.size + LONGEST_BODY + CHECKSUM.size + 1
 FOREIGN_LIMIT: Final = 20
-"""So many packets of another device, and none of the one expected, make a mismatch."""
+"""Number of packets of another device, with none of the expected one, that is a mismatch."""
 
 
 def always(_: tuple[float, ...]) -> bool:
-    """Take any values."""
+    """Return True for any counts."""
     return True
 
 
@@ -42,8 +42,8 @@ class PacketStream(LinkedStream[ByteLink]):
         name: Name of the stream.
         kind: Kind of packet that carries the samples.
         body: Layout of the packet's body; its fields are the sample's counts.
-        rate: Samples in a second; tells a loss from a restart [Hz].
-        possible: Tells whether counts can be; others are refused.
+        rate: Sample rate; distinguishes a loss from a restart [Hz].
+        possible: Returns whether counts are possible; impossible ones are discarded.
         clock: Host time.
     """
 
@@ -75,7 +75,7 @@ class PacketStream(LinkedStream[ByteLink]):
 
     @property
     def counters(self) -> Counters:
-        """What happened so far."""
+        """Counters of the stream so far."""
         return Counters(
             received=self._received,
             lost=self._tracker.lost,
@@ -88,10 +88,10 @@ class PacketStream(LinkedStream[ByteLink]):
         )
 
     def read(self, timeout: float) -> list[Sample]:
-        """Hand on all samples that have arrived, waiting at most `timeout` for the first [s].
+        """Return all samples that have arrived, waiting at most `timeout` for the first [s].
 
         Raises:
-            DeviceMismatch: The port carries packets, and all are another device's.
+            DeviceMismatch: The port carries packets, but only those of another device.
         """
         data = self._link.read(timeout)
         if self._link.reconnected != self._connections:
@@ -107,14 +107,15 @@ class PacketStream(LinkedStream[ByteLink]):
         return samples
 
     def send(self, kind: Kind, body: bytes = b"") -> bool:
-        """Send a packet to the device; False while the link is gone.
+        """Send a packet to the device.
 
         Args:
-            kind: What is asked.
-            body: Its values.
+            kind: Kind of command.
+            body: Encoded values of the command.
 
         Returns:
-            Whether the link took it. Whether the device did, its stream shows.
+            Whether the link took it; False while it is disconnected. The protocol has no
+            acknowledgement: whether the device obeys shows in its stream.
         """
         ticks = int(self._clock.now() / TICK)
         packet = Packet(kind, self._sent, ticks, body)

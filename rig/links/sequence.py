@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Numbers and times that wrap: what is lost, doubled or late, and when a device began anew."""
+"""Unwrap sequence numbers and device times; detect lost, duplicate or late samples, restarts."""
 
 from typing import Any, Final
 
@@ -7,27 +7,28 @@ import numpy as np
 from numpy.typing import NDArray
 
 LATE_WINDOW: Final = 64
-"""Numbers back to which a sample is late, where a device says nothing of its own."""
+"""Default distance behind the newest number up to which a sample is late, not a restart."""
 SLACK: Final = 64
 
 
 class SequenceTracker:
-    """Follows the sample numbers of one stream.
+    """Unwraps the sequence numbers of one stream and counts losses, duplicates and restarts.
 
-    A jump ahead is a loss as far as the device can have come since the read before, at twice its
-    rate; beyond that, or far back, the device has restarted, and how much is missing is unknown.
-    (Not since the last sample: samples of one read may have waited together in a buffer.)
+    A jump forward counts as a loss up to the number of samples that the device can send since the
+    previous read at twice its rate. A longer jump, or one far back, is a restart of the device,
+    after which the number of missing samples is unknown. (The time is not counted from the last
+    sample, because samples of one read may have waited together in a buffer.)
 
     Args:
-        modulus: At what the device's numbers wrap.
-        rate: Samples in a second; None where unknown, then only jumps back are restarts [Hz].
-        late_window: A number up to this far back is an old sample; farther back the device has
-            restarted.
+        modulus: Modulus at which the device's numbers wrap.
+        rate: Sample rate; None where unknown, then only jumps back are restarts [Hz].
+        late_window: A number up to this far back is an old sample; farther back it means a restart
+            of the device.
 
     Attributes:
-        lost: Samples that are missing so far.
-        repeated: Samples refused so far: doubled or late.
-        restarted: Times that the device began to number anew.
+        lost: Number of samples missing so far.
+        repeated: Number of duplicate or late samples discarded so far.
+        restarted: Number of restarts of the device's numbers.
     """
 
     def __init__(
@@ -43,15 +44,15 @@ class SequenceTracker:
         self._read_time = self._read_before = 0.0
 
     def accept(self, number: int, host_time: float) -> int | None:
-        """Take the number of a sample.
+        """Unwrap the sequence number of a sample and update the counters.
 
         Args:
-            number: As the device sent it.
-            host_time: When it was read [s].
+            number: Number as the device sent it.
+            host_time: Time at which it was read [s].
 
         Returns:
-            The number with wraps undone, larger than every earlier one; None where the sample is
-            to be refused.
+            The unwrapped number, larger than every earlier one; None where the sample must be
+            discarded.
 
         >>> tracker = SequenceTracker(modulus=256)
         >>> [tracker.accept(number, 0.0) for number in (254, 255, 2, 2, 3)]
@@ -79,16 +80,16 @@ class SequenceTracker:
     def accept_all(
         self, numbers: NDArray[np.integer[Any]], host_time: float
     ) -> tuple[NDArray[np.bool_] | slice, NDArray[np.int64]]:
-        """Take the numbers of samples that one read gave; see `accept`.
+        """Unwrap the sequence numbers of the samples of one read; see `accept`.
 
-        Numbers without a gap, which are almost all of a fast device's, are taken together.
+        Consecutive numbers, the usual case for a fast device, are processed together.
 
         Args:
-            numbers: As the device sent them, shape (n,).
-            host_time: When they were read [s].
+            numbers: Numbers as the device sent them, shape (n,).
+            host_time: Time at which they were read [s].
 
         Returns:
-            An index of those that are accepted, and those with wraps undone.
+            An index of the accepted numbers, and the accepted numbers unwrapped.
 
         >>> tracker = SequenceTracker(modulus=256)
         >>> tracker.accept_all(np.array([254, 255, 2, 2]), 0.0)
@@ -113,10 +114,10 @@ class SequenceTracker:
 
 
 class TimeUnwrapper:
-    """Undoes the wraps of a device's clock; the time it gives never runs back.
+    """Unwraps the ticks of a device's clock to a non-decreasing time.
 
     Args:
-        modulus: At what the device's ticks wrap.
+        modulus: Modulus at which the device's ticks wrap.
         tick: Length of one tick [s].
     """
 

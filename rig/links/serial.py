@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A serial port: bulk reads with a time limit, and a port that may be unplugged and come back."""
+"""Serial port link: bulk reads with a timeout, and reconnection after unplugging."""
 
 import contextlib
 import os
@@ -15,7 +15,7 @@ from rig.exclusive import device_lock
 
 CHUNK: Final = 1 << 16
 MOST_AT_ONCE: Final = 1 << 18
-"""A read hands on so much at most: nearly a second of a line of 3 Mbaud [bytes]."""
+"""Largest number of bytes of one read: nearly a second at 3 Mbaud [bytes]."""
 RETRY_AFTER: Final = 0.25
 WRITE_LIMIT: Final = 1.0
 
@@ -23,8 +23,8 @@ WRITE_LIMIT: Final = 1.0
 class SerialLink:
     """Bytes to and from a serial port, or any URL that pyserial knows (`socket://host:port`).
 
-    Reads take all that is there, many frames with one system call. A port that goes away is
-    closed and reopened while the stream goes on; `reconnected` counts that.
+    A read returns all available bytes, many frames with one system call. A disconnected port is
+    closed and reopened while the stream continues; `reconnected` counts this.
 
     Args:
         port: Name of the port, or a URL.
@@ -50,7 +50,7 @@ class SerialLink:
 
         Raises:
             InUse: Another program has it; the message says which.
-            LinkError: There is no such port, or no right to open it.
+            LinkError: There is no such port, or no permission to open it.
         """
         self._lock.take()
         try:
@@ -63,12 +63,12 @@ class SerialLink:
             ) from problem
 
     def close(self) -> None:
-        """Close the port and let others have it; closing twice is no fault."""
+        """Close the port and release its lock; a second call has no effect."""
         self._disconnect()
         self._lock.release()
 
     def read(self, timeout: float) -> bytes:
-        """Hand on all bytes there are, waiting at most `timeout` for the first [s]."""
+        """Return all available bytes, waiting at most `timeout` for the first [s]."""
         if self._serial is None and not self._come_back(timeout):
             return b""
         port = self._serial
@@ -79,10 +79,10 @@ class SerialLink:
             return b""
 
     def write(self, data: bytes) -> bool:
-        """Send bytes; False while the port is gone.
+        """Send bytes; returns False while the port is disconnected.
 
         Raises:
-            RigTimeout: The port is there but takes no bytes.
+            RigTimeout: The port is connected but accepts no bytes.
         """
         if self._serial is None:
             return False
@@ -102,9 +102,9 @@ class SerialLink:
             self.port, do_not_open=True, baudrate=self._baudrate, timeout=0,
             write_timeout=WRITE_LIMIT,
         )  # fmt: skip
-        port = cast("serial.Serial", opened)  # the URL handlers look the same
+        port = cast("serial.Serial", opened)  # the URL handlers have the same methods
         if not self.port.startswith("socket:"):
-            port.exclusive = True  # two readers would each get half of the bytes
+            port.exclusive = True  # two readers would each get a part of the bytes
         port.open()
         return port
 
@@ -118,7 +118,7 @@ class SerialLink:
         self._retry_at = self._clock.now() + RETRY_AFTER
 
     def _come_back(self, timeout: float) -> bool:
-        """Try to reopen a lost port, at most every `RETRY_AFTER`; tell whether it is back."""
+        """Try to reopen a lost port, at most every `RETRY_AFTER`; return whether it is back."""
         wait = self._retry_at - self._clock.now()
         self._clock.sleep(min(max(wait, 0.0), timeout))
         if wait > timeout:
@@ -134,10 +134,10 @@ class SerialLink:
 
 
 def _take(port: serial.Serial) -> bytes:
-    """Take all bytes of a port that has some.
+    """Read all bytes of a port that has some.
 
     Raises:
-        OSError: The port is gone.
+        OSError: The port is disconnected.
     """
     if os.name != "posix" or not hasattr(port, "fileno"):
         return port.read(CHUNK)
@@ -149,19 +149,19 @@ def _take(port: serial.Serial) -> bytes:
 
 
 def _take_piece(port: serial.Serial) -> bytes:
-    """Take what one system call gives; of a terminal that is 4 KiB at most.
+    """Read the bytes of one system call, at most 4 KiB from a terminal.
 
     Raises:
-        OSError: The port is gone.
+        OSError: The port is disconnected.
     """
-    data = os.read(port.fileno(), CHUNK)  # pyserial would ask once more whether there are any
+    data = os.read(port.fileno(), CHUNK)  # pyserial would call select once more
     if not data:
         raise OSError(f"port {port.port} was readable and had no bytes: unplugged")
     return data
 
 
 def _readable(port: serial.Serial, timeout: float) -> bool:
-    """Tell whether a port has bytes, waiting at most `timeout` [s]."""
+    """Return whether a port has bytes, waiting at most `timeout` [s]."""
     if hasattr(port, "fileno"):
         return bool(select.select([port], [], [], timeout)[0])
     end = time.monotonic() + timeout  # ports of Windows cannot be waited for

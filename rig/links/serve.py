@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Serves twins in real time: a pseudo-terminal or a loopback socket any program can open."""
+"""Serve twins in real time at a pseudo-terminal or a loopback socket that any program can open."""
 
 import contextlib
 import os
@@ -18,19 +18,19 @@ from rig.errors import LinkError
 from rig.links.byte_link import ByteTwin
 
 TICK: Final = 0.002
-"""How often a served twin is polled [s]."""
+"""Interval at which a served twin is polled [s]."""
 JOIN_LIMIT: Final = 2.0
 
 
 class Ticker:
-    """Calls a function every tick from a thread of its own, until it is stopped.
+    """Thread that calls a function periodically, every `TICK`, until the context is left.
 
     Args:
-        tick: What to call; it gets the time [s].
+        tick: Function to call with the time [s].
         clock: Host time.
 
     Attributes:
-        failure: What the function raised; it is called no more then.
+        failure: Exception that the function raised, which ends the calls; None without one.
     """
 
     def __init__(self, tick: Callable[[float], None], *, clock: Clock = SYSTEM_CLOCK) -> None:
@@ -67,7 +67,7 @@ class _End(Protocol):
     port: str
 
     def exchange(self, data: bytes) -> bytes:
-        """Send bytes and hand on those that came."""
+        """Send bytes and return those received."""
         ...
 
     def close(self) -> None:
@@ -76,7 +76,7 @@ class _End(Protocol):
 
 
 class _Terminal:
-    """A pseudo-terminal, under a name that stays when it is unplugged and plugged in again."""
+    """Pseudo-terminal with a name that stays the same when it is unplugged and plugged in."""
 
     def __init__(self, link: Path) -> None:
         import tty
@@ -104,7 +104,7 @@ class _Terminal:
 
 
 class _Socket:
-    """A listening socket on the loopback interface that serves one client at a time."""
+    """Listening socket on the loopback interface that serves one client at a time."""
 
     def __init__(self, port: int = 0) -> None:
         self._listener = socket.create_server(("127.0.0.1", port))
@@ -163,7 +163,7 @@ class PortServer:
         clock: Host time.
 
     Attributes:
-        port: What a driver, or any program, opens.
+        port: Name of the port that a driver, or any program, opens.
     """
 
     def __init__(
@@ -181,21 +181,21 @@ class PortServer:
 
     @property
     def failure(self) -> BaseException | None:
-        """What the twin raised, if anything."""
+        """Exception that the twin raised; None without one."""
         return self._ticker.failure
 
     def unplug(self) -> None:
-        """Take the port away while the twin goes on."""
+        """Remove the port while the twin keeps running."""
         with self._lock:
             end, self._end = self._end, None
             if end is not None:
                 end.close()
 
     def plug_in(self) -> None:
-        """Bring the port back under its name.
+        """Restore the port under its name.
 
         Raises:
-            LinkError: The system gives no port.
+            LinkError: The system provides no port.
         """
         with self._lock:
             try:

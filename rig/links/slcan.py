@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
-r"""CAN frames as lines of text, as adapters on a serial line speak (SLCAN, after Lawicel's).
+r"""SLCAN (Lawicel): CAN frames as lines of text over a serial line, and a simulated adapter.
 
 ``t`` id(3) length data, ``T`` id(8) for 29-bit ids, ``r`` and ``R`` without data for remote frames;
-hexadecimal, each line ended by a carriage return. An adapter answers a carriage return where it
-obeys and a bell where it does not.
+hexadecimal, each line ended by a carriage return. An adapter answers a carriage return for a valid
+command and a bell for an invalid one.
 """
 
 import re
@@ -17,7 +17,7 @@ END: Final = b"\r"
 OBEYED: Final = b"\r"
 REFUSED: Final = b"\a"
 LONGEST: Final = 32
-"""Longest line of a frame with a time stamp, and to spare [bytes]."""
+"""Longest line of a frame with a time stamp, with some margin [bytes]."""
 _FRAME: Final = re.compile(
     rb"(?:t(?P<short>[0-9A-Fa-f]{3})|T(?P<long>[0-9A-Fa-f]{8}))(?P<length>[0-8])(?P<data>[0-9A-Fa-f]*)"
     rb"|(?:r(?P<remote>[0-9A-Fa-f]{3})|R(?P<far>[0-9A-Fa-f]{8}))(?P<asked>[0-8])"
@@ -26,7 +26,7 @@ _HIGHEST: Final = {False: (1 << 11) - 1, True: (1 << 29) - 1}
 
 
 def encode_frame(message: can.Message) -> bytes:
-    r"""Make the line of a frame, with its end.
+    r"""Encode a frame as an SLCAN line, with its end.
 
     >>> encode_frame(can.Message(arbitration_id=0x121, data=b"\x01\xff", is_extended_id=False))
     b't121201FF\r'
@@ -40,10 +40,10 @@ def encode_frame(message: can.Message) -> bytes:
 
 
 def decode_frame(line: bytes) -> can.Message:
-    """Read the line of a frame, without its end; the inverse of `encode_frame`.
+    """Decode an SLCAN line without its end; the inverse of `encode_frame`.
 
     Raises:
-        ProtocolError: The line is no frame, or an id or a length is not right.
+        ProtocolError: The line is not a frame, or its id or length is invalid.
     """
     found = _FRAME.fullmatch(line)
     if found is None:
@@ -63,20 +63,19 @@ def decode_frame(line: bytes) -> can.Message:
 
 
 class SlcanAdapter:
-    """A simulated adapter between a serial line and a bus; satisfies `ByteTwin`.
+    """Simulated adapter between a serial line and a CAN bus; satisfies `ByteTwin`.
 
-    Whatever is at the other end of the bus is thereby reached from any program that speaks SLCAN,
-    python-can's `slcan` interface among them. Frames pass while the channel is open, as the host
-    asks for it.
+    It makes the devices on the bus accessible to any program that speaks SLCAN, for example with
+    python-can's `slcan` interface. Frames pass while the host has the channel open.
 
-    Not modelled: bit rates (any is taken), time stamps, filters, and errors of the bus.
+    Not modelled: bit rates (any is accepted), time stamps, filters, and errors of the bus.
 
     Args:
-        bus: The adapter's own end of the bus; whoever made it closes it.
-        source: What is at the other end: `sim:WHAT`.
+        bus: The adapter's end of the bus; the caller closes it.
+        source: Origin of the data: `sim:WHAT`.
 
     Attributes:
-        refused: Lines that were no command and no frame.
+        refused: Number of invalid lines.
     """
 
     def __init__(self, bus: can.BusABC, *, source: str) -> None:
@@ -87,10 +86,18 @@ class SlcanAdapter:
         self._inbox = b""
 
     def poll(self, now: float, received: bytes) -> bytes:
-        """Obey the lines that came, and hand on the frames of the bus; see `ByteTwin.poll`."""
+        """Execute the lines received and return the frames of the bus; see `ByteTwin.poll`.
+
+        Args:
+            now: Time, not used [s].
+            received: Bytes from the host since the last poll.
+
+        Returns:
+            Answers and frames as SLCAN lines.
+        """
         del now
         *lines, self._inbox = (self._inbox + received).split(END)
-        self._inbox = self._inbox[-LONGEST:]  # noise without an end must not fill the memory
+        self._inbox = self._inbox[-LONGEST:]  # bounds the memory for noise without an end
         out = b"".join(self._obey(line) for line in lines)
         while (message := self._bus.recv(0.0)) is not None:
             if self._open:
@@ -105,7 +112,7 @@ class SlcanAdapter:
             self._open = command != b"C"
             return OBEYED
         if command in (b"", b"S", b"s", b"Y", b"M", b"m", b"Z"):
-            return OBEYED  # an empty line, and settings that change nothing here
+            return OBEYED  # an empty line, and settings without effect here
         if line in _ANSWERS:
             return _ANSWERS[line] + END
         self.refused += 1

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Datagrams from one device, taken in bulk from a large buffer of the system."""
+"""UDP link to one device: datagrams are read in bulk from a large socket buffer."""
 
 import contextlib
 import select
@@ -11,20 +11,20 @@ from rig.errors import LinkError
 from rig.exclusive import device_lock
 
 BUFFER: Final = 4 << 20
-"""Seconds of a fast load cell, should the reader be held up [bytes]."""
+"""Size of the socket buffer: seconds of a fast load cell, in case the reader is delayed [bytes]."""
 LONGEST: Final = 1472
-"""A datagram beyond this comes cut: an Ethernet frame carries no longer one [bytes]."""
+"""Longest datagram, that of an Ethernet frame; longer ones are truncated [bytes]."""
 MOST_AT_ONCE: Final = 8192
 
 
 class UdpLink:
-    """Datagrams to and from one address; anybody else's are dropped by the system.
+    """Datagrams to and from one address; the system drops those of other senders.
 
     Args:
         host: Name or address of the device.
         port: Its port.
-        gather: How long datagrams pile up between two reads before they are all taken: waking up
-            for each of 7,000 a second costs several times the CPU [s].
+        gather: Time for which datagrams accumulate before a read takes them all: waking up for
+            each of 7,000 per second takes several times the CPU time [s].
         source: `real`, or `sim:WHAT` for a twin's address.
         clock: Host time.
     """
@@ -49,11 +49,11 @@ class UdpLink:
         self._read_at = 0.0
 
     def open(self) -> None:
-        """Open the socket, for this program alone; the device need not be there yet.
+        """Open the socket, for this program alone; the device need not be connected yet.
 
         Raises:
-            InUse: Another program hears this device; the message says which.
-            LinkError: The name means nothing, or there is no network.
+            InUse: Another program uses this device; the message says which.
+            LinkError: The host name is unknown, or there is no network.
         """
         self._lock.take()
         opened = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
@@ -70,14 +70,14 @@ class UdpLink:
         self._socket = opened
 
     def close(self) -> None:
-        """Close the socket and let others have the device; closing twice is no fault."""
+        """Close the socket and release the device's lock; a second call has no effect."""
         opened, self._socket = self._socket, None
         if opened is not None:
             opened.close()
         self._lock.release()
 
     def read(self, timeout: float) -> list[bytes]:
-        """Hand on the datagrams there are, waiting at most `timeout` for the first [s]."""
+        """Return all available datagrams, waiting at most `timeout` for the first [s]."""
         opened = self._socket
         if opened is None or not select.select([opened], [], [], timeout)[0]:
             return []
@@ -91,12 +91,12 @@ class UdpLink:
             for _ in range(MOST_AT_ONCE):
                 try:
                     keep(receive(LONGEST))
-                except ConnectionRefusedError:  # nobody listened to what was sent; it may come
+                except ConnectionRefusedError:  # no device at the port yet; it may start later
                     continue
         return datagrams
 
     def write(self, data: bytes) -> bool:
-        """Send one datagram; tell whether the system took it."""
+        """Send one datagram; return whether the system accepted it."""
         if self._socket is None:
             return False
         try:

@@ -97,7 +97,7 @@ class RigBoard(PacketStream):
             )
 
     def command_speeds(self) -> bool:
-        """Send both speeds; tell whether the link took them."""
+        """Send both speeds; return whether the link took them."""
         self._feed_at = self._host_clock.now() + self.profile.feed_interval
         counts = [
             round(self._speeds[disc] * self.profile.counts_per_speed) for disc in ("leg", "ground")

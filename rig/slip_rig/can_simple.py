@@ -73,7 +73,11 @@ ERRORS: Final[dict[str, dict[int, str]]] = {
 
 
 def can_id(node: int, command: Command) -> int:
-    """Compute an id: node in the upper six bits, command in the lower five.
+    """Compute the arbitration id: node in the upper six bits, command in the lower five.
+
+    Args:
+        node: Node of the axis, 0 to 63.
+        command: Command of the protocol.
 
     >>> hex(can_id(3, Command.SET_INPUT_VELOCITY))
     '0x6d'
@@ -82,12 +86,16 @@ def can_id(node: int, command: Command) -> int:
 
 
 def split_id(arbitration_id: int) -> tuple[int, int]:
-    """Compute node and command of an id; the inverse of `can_id`."""
+    """Compute node and command of an arbitration id; the inverse of `can_id`."""
     return arbitration_id >> 5, arbitration_id & 0x1F
 
 
 def describe_error(error: int, firmware: str) -> str:
-    """Spell out an axis error.
+    """Describe an axis error in words.
+
+    Args:
+        error: Bit field of the axis error.
+        firmware: Version of the firmware, a key of `ERRORS`.
 
     >>> describe_error(0x800, "0.5"), describe_error(0x10000000, "0.5")
     ('watchdog timer expired', 'unknown error 0x10000000')

@@ -106,7 +106,7 @@ class DriveBus(LinkedStream[CanLink]):
 
     @property
     def counters(self) -> Counters:
-        """What happened so far."""
+        """Counters of the stream so far."""
         return Counters(
             received=self._received,
             damaged=self._link.damaged,

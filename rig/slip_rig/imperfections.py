@@ -86,7 +86,7 @@ def draw_imperfections(
     after seed, where the truth is drawn from those priors.
 
     Args:
-        rng: Source of randomness.
+        rng: Random generator.
         gain_sd: Standard deviation of both channels' gain errors [-].
         bias_sd: Standard deviation of the normal channel's bias [N].
         crosstalk_sd: Standard deviation of the crosstalk [-].

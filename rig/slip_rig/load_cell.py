@@ -78,7 +78,7 @@ class NetFtCell(LinkedStream[UdpLink]):
 
     @property
     def counters(self) -> Counters:
-        """What happened so far; reconnected counts silences that ended."""
+        """Counters of the stream so far; reconnected counts silences that ended."""
         return Counters(
             received=self._received,
             lost=self._tracker.lost,
@@ -89,7 +89,7 @@ class NetFtCell(LinkedStream[UdpLink]):
         )
 
     def read(self, timeout: float) -> SampleColumns:
-        """Hand on all samples that have arrived, waiting at most `timeout` for the first [s]."""
+        """Return all samples that have arrived, waiting at most `timeout` for the first [s]."""
         datagrams = self._link.read(timeout)
         now = self._clock.now()
         samples = self._samples(datagrams, now)

@@ -97,7 +97,7 @@ class BoardProfile:
 
     Attributes:
         baudrate: Line rate; 0 for a table [baud].
-        rate: Samples in a second [Hz].
+        rate: Sample rate [Hz].
         byte_order: Of values of several bytes.
         feed_interval: Between two speed commands that feed the board's watchdog; 0 for a
             table [s].
@@ -158,7 +158,7 @@ def render_table_profile(*, radius_leg: float, radius_ground: float, rate: float
     Args:
         radius_leg: Radius of the leg disc [m].
         radius_ground: Radius of the ground disc [m].
-        rate: Samples in a second [Hz].
+        rate: Sample rate [Hz].
     """
     document = {
         "schema": SCHEMA,
@@ -192,7 +192,7 @@ def load_rig_profile(name: str) -> RigProfile:
         The profile.
 
     Raises:
-        ProfileError: Anything in it is missing, unknown, of the wrong kind or contradictory.
+        ProfileError: A key is missing, unknown, of the wrong type or contradicts another.
     """
     table = open_profile(name, device="slip-rig")
     discs, limits = table.table("discs"), table.table("limits")

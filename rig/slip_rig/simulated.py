@@ -102,7 +102,7 @@ class SimulatedRig:
             its slips a `duration` apart, gliding from each to the next.
         imperfections: What its sensors and its bump add.
         dynamics: How it moves.
-        rng: Source of randomness.
+        rng: Random generator.
 
     Attributes:
         load: Normal force away from the bump [N].
@@ -297,7 +297,7 @@ def simulated_rig(
         plan: Radii and the sweep.
         imperfections: What sensors and bump add.
         dynamics: How it moves.
-        rng: Source of randomness.
+        rng: Random generator.
 
     Returns:
         The rig.

@@ -21,8 +21,8 @@ class SimulatedBoard:
         rig: The rig it turns and weighs.
         profile: Counts, signs and rate.
         watchdog: Silence after which it stops both discs, once it has been commanded [s].
-        faults: What goes wrong on the line.
-        rng: Source of the faults' randomness.
+        faults: Transmission errors of the line.
+        rng: Random generator of the transmission errors.
     """
 
     def __init__(
@@ -47,7 +47,15 @@ class SimulatedBoard:
         self._status = 0
 
     def poll(self, now: float, received: bytes) -> bytes:
-        """Take speeds and give packets; see `ByteTwin.poll`."""
+        """Execute speed commands and return the packets that are due; see `ByteTwin.poll`.
+
+        Args:
+            now: Time, never decreasing [s].
+            received: Bytes from the host since the last poll.
+
+        Returns:
+            Bytes to the host since the last poll.
+        """
         if now - self._fed > self._watchdog:
             self._stop()
             self._status = WATCHDOG_EXPIRED

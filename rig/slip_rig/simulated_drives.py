@@ -69,7 +69,7 @@ class SimulatedDrives:
         self._heartbeat_at = self._estimate_at = -math.inf
 
     def turning(self) -> bool:
-        """Tell whether any axis is energised and commanded to turn."""
+        """Return whether any axis is energised and commanded to turn."""
         return any(a.state == AxisState.CLOSED_LOOP and a.velocity for a in self._axes.values())
 
     def trip(self, disc: str, error: int) -> None:

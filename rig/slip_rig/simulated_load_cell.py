@@ -26,7 +26,7 @@ class SimulatedLoadCell:
         rig: The rig it weighs.
         profile: Counts, axes and rate; its address is not used.
         faults: What goes wrong; `drop`, `duplicate`, `delay` and `truncate` mean whole datagrams.
-        rng: Source of the faults' randomness.
+        rng: Random generator of the transmission errors.
 
     Attributes:
         host: Loopback address.

@@ -52,7 +52,7 @@ class SweepPlan:
         slips: Material slip ratios, Eq. (4-44) [-].
         loads: Normal forces away from the ground disc's bump [N].
         duration: Length of a run [s].
-        rate: Samples in a second [Hz].
+        rate: Sample rate [Hz].
         omega_leg: Speed of the leg disc [rad/s].
         radius_leg: Radius of the leg disc [m].
         radius_ground: Radius of the ground disc [m].
@@ -151,7 +151,7 @@ def simulate_sweep(
         values: Its parameter values, numbers.
         plan: What is commanded.
         imperfections: What the rig adds.
-        rng: Source of randomness: the same state gives the same sweep.
+        rng: Random generator: the same state gives the same sweep.
 
     Returns:
         The log and its truth.

@@ -14,7 +14,7 @@ from rig.links.sequence import SequenceTracker, TimeUnwrapper
 from rig.zebro.commands import milliseconds
 from rig.zebro.profile import LegProfile
 
-# Layouts by hand: cantools decodes some 20 times slower, and serves to check these and in tools.
+# Layouts written by hand: cantools decodes about 20 times slower. It serves tests and tools.
 CLOCK: Final = struct.Struct("<HI")
 POSITIONS: Final = struct.Struct("<6BH")
 SET_POINTS: Final = struct.Struct("<6BH")
@@ -26,8 +26,8 @@ TICK: Final = 1e-6
 class CanLegs(LinkedStream[CanLink]):
     """Stream of the layout `can`; satisfies `Stream` and `LegCommands`.
 
-    The bus guards each frame by its own checksum. The device time comes in a frame of its own
-    before the positions of the same number; where that is lost, the positions have no time.
+    CAN protects each frame with a checksum. The device time arrives in a separate frame before the
+    positions of the same number; where that frame is lost, the positions have no device time.
 
     Args:
         link: The bus.
@@ -56,7 +56,7 @@ class CanLegs(LinkedStream[CanLink]):
 
     @property
     def counters(self) -> Counters:
-        """What happened so far; damaged frames are what the bus reports as error frames."""
+        """Counters of the stream so far; the bus's error frames count as damaged."""
         return Counters(
             received=self._received,
             lost=self._tracker.lost,
@@ -68,7 +68,7 @@ class CanLegs(LinkedStream[CanLink]):
         )
 
     def read(self, timeout: float) -> list[Sample]:
-        """Hand on all samples that have arrived, waiting at most `timeout` for the first [s]."""
+        """Return all samples that have arrived, waiting at most `timeout` for the first [s]."""
         messages = self._link.read(timeout)
         now = self._clock.now()
         samples = []
@@ -80,12 +80,20 @@ class CanLegs(LinkedStream[CanLink]):
         return samples
 
     def set_points(self, counts: tuple[int, ...], duration: float) -> bool:
-        """Turn every leg to a count; see `LegCommands.set_points`."""
+        """Turn every leg to a count; see `LegCommands.set_points`.
+
+        Args:
+            counts: Targets in the order of the wire.
+            duration: Duration of the motion [s].
+
+        Returns:
+            Whether the link took the command.
+        """
         data = SET_POINTS.pack(*counts, milliseconds(duration))
         return self._link.write(self.profile.can_ids.set_points, data)
 
     def stop(self) -> bool:
-        """Stop every leg where it is; tell whether the link took the command."""
+        """Stop every leg at its present angle; return whether the link took the command."""
         return self._link.write(self.profile.can_ids.stop, b"")
 
     def _sample(self, message: can.Message, now: float) -> Sample | None:

@@ -37,7 +37,7 @@ class LegCommands(Protocol):
         ...
 
     def stop(self) -> bool:
-        """Stop every leg where it is; tell whether the link took the command."""
+        """Stop every leg where it is; return whether the link took the command."""
         ...
 
 

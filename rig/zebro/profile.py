@@ -82,7 +82,7 @@ class LegProfile:
         counts_per_revolution: Counts N of a whole turn; N itself reads as 0.
         zero_counts: Count n_0 of each channel with its toe straight ahead.
         sign: 1 for a channel whose count grows as the robot walks forward, else -1.
-        rate: Samples in a second [Hz].
+        rate: Sample rate [Hz].
         registers: For the layouts `dump` and `poll`.
         can_ids: For the layout `can`.
     """
@@ -108,7 +108,7 @@ class LegProfile:
         return 0.0 if self.layout == "table" else float(np.pi / self.counts_per_revolution)
 
     def possible(self, counts: tuple[float, ...]) -> bool:
-        """Tell whether every count is on the circle."""
+        """Return whether every count is on the circle."""
         return max(counts) <= self.counts_per_revolution and min(counts) >= 0
 
 
@@ -141,7 +141,7 @@ def load_leg_profile(name: str) -> LegProfile:
         The profile.
 
     Raises:
-        ProfileError: Anything in it is missing, unknown, of the wrong kind or contradictory.
+        ProfileError: A key is missing, unknown, of the wrong type or contradicts another.
     """
     table = open_profile(name, device="legs")
     link, frame, legs, stream = (table.table(key) for key in ("link", "frame", "legs", "stream"))

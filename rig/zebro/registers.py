@@ -68,7 +68,7 @@ class DumpLegs(_RegisterStream):
 
     @property
     def counters(self) -> Counters:
-        """What happened so far."""
+        """Counters of the stream so far."""
         return Counters(
             received=self._received,
             damaged=self._framer.damaged,
@@ -78,7 +78,7 @@ class DumpLegs(_RegisterStream):
         )
 
     def read(self, timeout: float) -> list[Sample]:
-        """Hand on all samples that have arrived, waiting at most `timeout` for the first [s]."""
+        """Return all samples that have arrived, waiting at most `timeout` for the first [s]."""
         data = self._link.read(timeout)
         if self._link.reconnected != self._connections:
             self._connections = self._link.reconnected
@@ -93,14 +93,22 @@ class DumpLegs(_RegisterStream):
         return samples
 
     def set_points(self, counts: tuple[int, ...], duration: float) -> bool:
-        """Refuse: a dump takes no commands."""
+        """Raise: a robot that only dumps its registers takes no commands.
+
+        Args:
+            counts: Targets in the order of the wire.
+            duration: Duration of the motion [s].
+
+        Raises:
+            ProtocolError: Always.
+        """
         raise ProtocolError(
             f"profile '{self.profile.name}' describes a dump, which takes no set-points; command "
             "the robot over its ZebroBus"
         )
 
     def stop(self) -> bool:
-        """Tell that no command was taken: a dump only talks."""
+        """Return False: a robot that only dumps its registers takes no commands."""
         return False
 
 
@@ -136,7 +144,7 @@ class PolledLegs(_RegisterStream):
 
     @property
     def counters(self) -> Counters:
-        """What happened so far; an answer that did not come whole counts as damaged."""
+        """Counters of the stream so far; an answer that did not come whole counts as damaged."""
         return Counters(
             received=self._received,
             damaged=self._damaged,
@@ -165,14 +173,22 @@ class PolledLegs(_RegisterStream):
         return self._sample(self._answer.unpack(answer))
 
     def set_points(self, counts: tuple[int, ...], duration: float) -> bool:
-        """Turn every leg to a count; see `LegCommands.set_points`."""
+        """Turn every leg to a count; see `LegCommands.set_points`.
+
+        Args:
+            counts: Targets in the order of the wire.
+            duration: Duration of the motion [s].
+
+        Returns:
+            Whether the link took the command.
+        """
         values = (*counts, milliseconds(duration))
         order = self.profile.byte_order
         data = b"".join(value.to_bytes(2, order) for value in values)
         return self._write(self.profile.registers.set_points[0], data)
 
     def stop(self) -> bool:
-        """Stop every leg where it is; tell whether the link took the command."""
+        """Stop every leg where it is; return whether the link took the command."""
         return self._write(self.profile.registers.stop, b"\x01")
 
     def _write(self, first: int, data: bytes) -> bool:

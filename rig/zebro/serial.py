@@ -46,10 +46,18 @@ class PacketLegs(PacketStream):
         self.profile = profile
 
     def set_points(self, counts: tuple[int, ...], duration: float) -> bool:
-        """Turn every leg to a count; see `LegCommands.set_points`."""
+        """Turn every leg to a count; see `LegCommands.set_points`.
+
+        Args:
+            counts: Targets in the order of the wire.
+            duration: Duration of the motion [s].
+
+        Returns:
+            Whether the link took the command.
+        """
         body = set_point_body(self.profile).pack(*counts, milliseconds(duration))
         return self.send(Kind.LEG_SET_POINTS, body)
 
     def stop(self) -> bool:
-        """Stop every leg where it is; tell whether the link took the command."""
+        """Stop every leg at its present angle; return whether the link took the command."""
         return self.send(Kind.STOP)

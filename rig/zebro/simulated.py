@@ -26,8 +26,8 @@ class PacketRobot:
 
     Args:
         legs: The legs.
-        faults: What goes wrong on the line.
-        rng: Source of the faults' randomness.
+        faults: Transmission errors of the line.
+        rng: Random generator of the transmission errors.
     """
 
     def __init__(
@@ -45,7 +45,15 @@ class PacketRobot:
         self._command = set_point_body(legs.profile)
 
     def poll(self, now: float, received: bytes) -> bytes:
-        """Take commands and give packets; see `ByteTwin.poll`."""
+        """Execute commands and return the packets that are due; see `ByteTwin.poll`.
+
+        Args:
+            now: Time, never decreasing [s].
+            received: Bytes from the host since the last poll.
+
+        Returns:
+            Bytes to the host since the last poll.
+        """
         for content in self._framer.feed(received):
             packet = decode_packet(content)
             if packet is not None:
@@ -70,8 +78,8 @@ class DumpRobot:
 
     Args:
         legs: The legs; the profile says which of them the module turns.
-        faults: What goes wrong on the line.
-        rng: Source of the faults' randomness.
+        faults: Transmission errors of the line.
+        rng: Random generator of the transmission errors.
     """
 
     def __init__(
@@ -86,7 +94,15 @@ class DumpRobot:
         self._wire = FaultyWire(faults, rng=rng)
 
     def poll(self, now: float, received: bytes) -> bytes:
-        """Give dumps; see `ByteTwin.poll`. What is received is ignored, as the module does."""
+        """Return the register dumps that are due; see `ByteTwin.poll`.
+
+        Args:
+            now: Time, never decreasing [s].
+            received: Bytes from the host; ignored, as the real module does.
+
+        Returns:
+            Bytes to the host since the last poll.
+        """
         del received
         return self._wire.carry([self._encode(frame) for frame in self.legs.frames(now)])
 
@@ -103,8 +119,8 @@ class PolledRobot:
 
     Args:
         legs: The legs.
-        faults: What goes wrong on the line.
-        rng: Source of the faults' randomness.
+        faults: Transmission errors of the line.
+        rng: Random generator of the transmission errors.
     """
 
     def __init__(
@@ -121,7 +137,15 @@ class PolledRobot:
         self._counts: tuple[int, ...] = (0,) * len(legs.profile.legs)
 
     def poll(self, now: float, received: bytes) -> bytes:
-        """Answer reads and obey writes; see `ByteTwin.poll`."""
+        """Answer register reads and execute register writes; see `ByteTwin.poll`.
+
+        Args:
+            now: Time, never decreasing [s].
+            received: Bytes from the host since the last poll.
+
+        Returns:
+            Bytes to the host since the last poll.
+        """
         for frame in self.legs.frames(now):
             self._counts = frame.counts
         self._inbox += received
@@ -131,7 +155,7 @@ class PolledRobot:
         return self._wire.carry(answers)
 
     def _serve(self, now: float, answers: list[bytes]) -> bool:
-        """Work on the first request; tell whether it was whole."""
+        """Answer the first request of the inbox; return whether it was complete."""
         command, first, size = self._inbox[:3]
         registers = self.legs.profile.registers
         if command == registers.read_command:
@@ -173,7 +197,7 @@ class CanRobot:
         bus: Its own end of the bus; whoever made it closes it.
         faults: What goes wrong; only `drop`, `duplicate` and `delay` mean anything for frames that
             the bus itself guards.
-        rng: Source of the faults' randomness.
+        rng: Random generator of the transmission errors.
     """
 
     def __init__(

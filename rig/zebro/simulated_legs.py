@@ -72,7 +72,7 @@ class SimulatedLegs:
         reference: The gait, any.
         profile: How the robot counts; a driver may be given another profile on purpose.
         imperfections: How it departs from the gait.
-        rng: Source of randomness.
+        rng: Random generator.
     """
 
     def __init__(

@@ -49,7 +49,7 @@ class CheckedRun:
 
     @property
     def drifted(self) -> bool:
-        """Tell whether the rig is no longer the one that was calibrated."""
+        """Return whether the rig is no longer the one that was calibrated."""
         return abs(self.deviation) > SUSPICIOUS
 
 

@@ -102,7 +102,12 @@ class ExperimentFolder:
         self._put(open_now, wait=True)
 
     def write(self, readings: Readings, batch: Batch) -> None:
-        """Keep the raw samples, out of which readings come again; see `RunSink.write`."""
+        """Queue the raw samples for the run's log; see `RunSink.write`.
+
+        Args:
+            readings: Not stored: they follow from the raw samples.
+            batch: Carries the raw samples of each stream.
+        """
         del readings
         raw = batch.raw
 
@@ -116,14 +121,23 @@ class ExperimentFolder:
         self._put(write_now)
 
     def close_run(self, verdict: PointVerdict | None, *, reason: str) -> None:
-        """End the run folder; what is not good is excluded, and kept; see `RunSink.close_run`.
+        """Close the run folder; a rejected run is kept and excluded; see `RunSink.close_run`.
 
-        This is tried after a failure as well: what can still be written is.
+        This is also tried after a failure, to write what can still be written.
+
+        Args:
+            verdict: Verdict on the point; None where the run was aborted.
+            reason: `completed`, or why the run ended.
         """
         self._put(lambda: self._close_now(verdict, reason), wait=True)
 
     def event(self, kind: str, text: str) -> None:
-        """Append to the journal, and to the run's log, after a failure too; see `RunSink.event`."""
+        """Append an event to the journal and to the run's log, also after a failure.
+
+        Args:
+            kind: Kind of event, such as `note`.
+            text: Description of the event.
+        """
 
         def note() -> None:
             if self._recorder is not None:

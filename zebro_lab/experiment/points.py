@@ -82,7 +82,7 @@ def finished_points(data: Path, journal: Journal) -> Finished:
 
 
 def holds_points(data: Path) -> bool:
-    """Tell whether a folder holds runs of an experiment, whatever its plan."""
+    """Return whether a folder holds runs of an experiment, whatever its plan."""
     return any(manifest.point for _, manifest in _read_all(data)[0])
 
 
@@ -99,7 +99,7 @@ def _read_all(data: Path) -> tuple[list[tuple[Path, RunManifest]], list[str]]:
 
 
 def _is_cut_short(run: Path, manifest: RunManifest) -> bool:
-    """Tell whether a run is a point of an earlier version that ended without an end record."""
+    """Return whether a run is a point of an earlier version that ended without an end record."""
     return (
         not manifest.point
         and manifest.excluded is None

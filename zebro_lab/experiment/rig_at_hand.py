@@ -67,7 +67,11 @@ class RigAtHand:
         return rig_views(self.bench.profile)
 
     def load_setter(self, setting: LoadSetting, control: Control) -> LoadSetter:
-        """Choose who sets the normal force.
+        """Return the setter of the normal force: the operator or a driven axis, real or simulated.
+
+        Args:
+            setting: How the plan wants the force to be set.
+            control: Mailbox that receives the operator's confirmation.
 
         Raises:
             SettingsError: The plan wants an axis, and the rig has none.

@@ -101,13 +101,25 @@ class ExperimentScreen:
         self._lines.append(text)
 
     def doing(self, what: str, *, done: int, of: int, left: float) -> None:
-        """Show what begins; see `ExperimentWatcher.doing`."""
+        """Show the step that begins; see `ExperimentWatcher.doing`.
+
+        Args:
+            what: Name of the step.
+            done: Number of finished points.
+            of: Number of all points.
+            left: Estimated remaining time [s].
+        """
         minutes, seconds = divmod(round(left), 60)
         head = f"{what}: {done} of {of} points, {minutes}:{seconds:02d} left"
         self._picture = replace(self._picture, head=head, done=done, of=max(of, 1), prompt="")
 
     def prompt(self, text: str, *, normal: float) -> None:
-        """Show what the operator is to do and the force now; see `ExperimentWatcher.prompt`."""
+        """Show a prompt for the operator; see `ExperimentWatcher.prompt`.
+
+        Args:
+            text: What the operator must do.
+            normal: Present normal force [N].
+        """
         if self._live is not None:
             self._picture = replace(self._picture, prompt=f"{text}; now {normal:.2f} N")
         elif self._picture.prompt != text:
@@ -115,7 +127,13 @@ class ExperimentScreen:
             self._picture = replace(self._picture, prompt=text)
 
     def judged(self, point: Point, verdict: PointVerdict, *, attempt: int) -> None:
-        """Show what a point is worth; see `ExperimentWatcher.judged`."""
+        """Show the verdict on a point; see `ExperimentWatcher.judged`.
+
+        Args:
+            point: The point.
+            verdict: Result of its quality checks.
+            attempt: Number of the attempt, from 1.
+        """
         worth = "; ".join(verdict.problems) or "good"
         if verdict.accepted:
             good = (point.load, verdict.slip, verdict.friction)

@@ -160,12 +160,16 @@ def _owned(data: Path) -> Iterator[None]:
 
 
 def command_run(data: Path, command: str) -> str:
-    """Give the experiment that runs into a folder a command; return its answer.
+    """Send a command to the experiment that runs in a folder, and return its answer.
+
+    Args:
+        data: Folder of the experiment.
+        command: One of the commands of `rig.experiment.control`.
 
     Raises:
-        NotFound: None runs there.
-        DataError: The file that says where to reach it is damaged.
-        RigError: It does not answer, or refuses.
+        NotFound: No experiment runs there.
+        DataError: The file with the address of the control socket is damaged.
+        RigError: The experiment does not answer, or rejects the command.
     """
     file = data / CONTROL_FILE
     if not file.exists():

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: MIT
-"""MCAP logs: ROS 2 messages (CDR), reading as far as a log is whole, writing."""
+"""MCAP logs: read and write ROS 2 messages (CDR), also from truncated or damaged files."""

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""ROS 2 messages as bytes: little-endian CDR, built field by field.
+"""Encode and decode ROS 2 messages in little-endian CDR, field by field.
 
-By hand and not by mcap-ros2-support: its writer has no `flush()` and takes several times as long.
-The tests hold these bytes against its decoder.
+The writer of mcap-ros2-support is not used: it has no `flush()` and is several times slower. The
+tests compare these bytes with its decoder.
 """
 
 import struct
@@ -97,7 +97,7 @@ def _texts_block(values: tuple[str, ...]) -> bytes:
 
 
 class CdrReader:
-    """Takes a message of `CdrWriter` apart, field by field in order.
+    """Decodes a message of `CdrWriter`, field by field in order.
 
     Args:
         data: The message.
@@ -113,11 +113,11 @@ class CdrReader:
         self._at = 0
 
     def uint32(self) -> int:
-        """Take a 32-bit number."""
+        """Read a 32-bit number."""
         return int(self._take(np.dtype("<u4"), 1)[0])
 
     def array(self, dtype: str) -> NDArray[Any]:
-        """Take a sequence of numbers.
+        """Read a sequence of numbers.
 
         Raises:
             ValueError: The message ends before it.

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Read the records of an MCAP log one after another, its chunks unpacked within bounds.
+"""Stream the records of an MCAP log, with limits on the size of decompressed chunks.
 
-Streaming: the seeking reader needs the index at the end, which a cut file has lost.
+The seeking reader is not used: it needs the index at the end, which a truncated file has lost.
 """
 
 import os
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from mcap.records import Chunk, McapRecord
 
 MOST_CHUNK: Final = 64 << 20
-"""Largest chunk that is unpacked; recorders end theirs at about one."""
+"""Largest chunk that is decompressed; recorders write chunks of about 1 MiB [bytes]."""
 FREELY: Final = 64 << 20
 MOST_RATIO: Final = 100
 """How much larger than on disk a log may unpack to, beyond `FREELY`: no sensor is so still."""
@@ -25,18 +25,18 @@ _WIDEST_WINDOW: Final = 1 << 27  # memory that a zstd frame may ask for while it
 
 
 def read_records(path: Path, take: "Callable[[McapRecord], object]") -> str | None:
-    """Hand over the records of a log, up to where it is damaged.
+    """Pass each record of a log to a function, up to the first damage.
 
     Args:
         path: The log.
-        take: What to do with each record; what it raises is damage, too.
+        take: Function called with each record; an exception in it also counts as damage.
 
     Returns:
         Why reading stopped before the end; None for a whole log.
 
     Raises:
         NotFound: There is no such file.
-        DataError: It is no regular file, or no MCAP.
+        DataError: It is not a regular file, or not MCAP.
     """
     from mcap.exceptions import InvalidMagic
     from mcap.records import Chunk
@@ -67,10 +67,10 @@ def read_records(path: Path, take: "Callable[[McapRecord], object]") -> str | No
 
 
 def _unpacked(chunk: "Chunk", most: int) -> "Chunk":
-    """Unpack a chunk, whatever size it claims.
+    """Decompress a chunk with a limit on its size, whatever size it claims.
 
     Raises:
-        ValueError: It holds more than it says, or more than `most`.
+        ValueError: It holds more bytes than it claims, or more than `most`.
     """
     if chunk.compression == "":
         return chunk

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A log that grows while a run is recorded, and can be read at every instant."""
+"""Write the MCAP log of a run incrementally, so that it is readable at every instant."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import fields
@@ -29,9 +29,9 @@ class LogWriter:
     """Writes the messages of a run as MCAP; used by one thread.
 
     Args:
-        file: Where to write.
-        views: How each stream shows, by its name.
-        attachments: Texts to keep in the log, by file name: the profiles.
+        file: Output file.
+        views: Converter of each stream to display messages, by the stream's name.
+        attachments: Texts stored in the log, by file name: the profiles.
         start: Host time at which the run began [s].
         start_ns: The same since the Unix epoch [ns].
 
@@ -59,7 +59,12 @@ class LogWriter:
             self._log.attach(start_ns, name, "application/toml", text)
 
     def write(self, stream: str, samples: Sequence[Sample]) -> None:
-        """Write samples of a stream, at least one: raw, and as its view shows them."""
+        """Write samples of a stream: the raw counts, and the messages of its view.
+
+        Args:
+            stream: Name of the stream.
+            samples: Its next samples, at least one.
+        """
         view = self._views[stream]
         dtype, _ = RAW_SCHEMAS[view.raw_schema]
         columns = as_columns(samples, dtype)
@@ -72,12 +77,25 @@ class LogWriter:
             self._log.add(shown, stamp, message)
 
     def event(self, host_time: float, text: str, *, level: int = INFO) -> None:
-        """Write down something that happened."""
+        """Write an event.
+
+        Args:
+            host_time: Time of the event [s].
+            text: Description of the event.
+            level: Severity, as in `logging`.
+        """
         stamp = self.stamp(host_time)
         self._log.add(EVENTS, stamp, log_entry(stamp, text, level=level))
 
     def count(self, host_time: float, stream: str, counters: Counters, *, dropped: int) -> None:
-        """Write down what happened to a stream so far."""
+        """Write the counters of a stream.
+
+        Args:
+            host_time: Time of the counters [s].
+            stream: Name of the stream.
+            counters: Samples received, lost, damaged and so on so far.
+            dropped: Samples dropped so far because the queue to the disk was full.
+        """
         message = CdrWriter()
         for field in fields(Counters):
             message.uint64(getattr(counters, field.name))
@@ -85,7 +103,7 @@ class LogWriter:
         self._log.add(f"/{stream}/counters", stamp, message.uint64(dropped).message())
 
     def flush(self) -> None:
-        """Hand everything to the system, so that it outlives this process."""
+        """Pass all buffered data to the system, so that it survives the end of this process."""
         self._log.flush()
 
     def finish(self) -> None:
@@ -93,7 +111,7 @@ class LogWriter:
         self._log.finish()
 
     def stamp(self, host_time: float) -> int:
-        """Compute nanoseconds since the Unix epoch; no step of the wall clock shows in them."""
+        """Convert host time to nanoseconds since the Unix epoch, unaffected by clock changes."""
         return self._start_ns + round((host_time - self._start) * 1e9)
 
     def _register(self, name: str, view: StreamView) -> None:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""An MCAP file of ROS 2 messages: channels by topic, schemas once, numbers in sequence."""
+"""Write an MCAP file of ROS 2 messages: channels by topic, schemas, sequence numbers."""
 
 from collections.abc import Mapping
 from typing import IO
@@ -11,8 +11,8 @@ class MessageLog:
     """Writes messages of registered topics; used by one thread.
 
     Args:
-        file: Where to write.
-        chunk_size: Bytes after which a chunk ends by itself.
+        file: Output file.
+        chunk_size: Size at which a chunk ends [bytes].
     """
 
     def __init__(self, file: IO[bytes], *, chunk_size: int = 1 << 20) -> None:
@@ -27,7 +27,13 @@ class MessageLog:
     def register(
         self, topic: str, schema: Schema, *, metadata: Mapping[str, str] | None = None
     ) -> None:
-        """Make the channel of a topic, which `add` then writes to."""
+        """Register the channel of a topic, to which `add` then writes.
+
+        Args:
+            topic: Name of the topic.
+            schema: Message type.
+            metadata: Names and values stored with the channel.
+        """
         from mcap.well_known import MessageEncoding, SchemaEncoding
 
         if schema.name not in self._schemas:
@@ -39,22 +45,40 @@ class MessageLog:
         )
 
     def add(self, topic: str, stamp: int, message: bytes) -> None:
-        """Write a message of a registered topic, stamped since the Unix epoch [ns]."""
+        """Write a message of a registered topic.
+
+        Args:
+            topic: Name of the topic.
+            stamp: Time since the Unix epoch [ns].
+            message: Message in CDR.
+        """
         channel = self._channels[topic]
         number = self._sequence.get(channel, 0)
         self._sequence[channel] = number + 1
         self._writer.add_message(channel, stamp, message, stamp, number)
 
     def attach(self, stamp: int, name: str, media_type: str, content: str) -> None:
-        """Keep a text beside the messages."""
+        """Write a text as an attachment of the file.
+
+        Args:
+            stamp: Time since the Unix epoch [ns].
+            name: File name of the attachment.
+            media_type: Its MIME type.
+            content: The text.
+        """
         self._writer.add_attachment(stamp, stamp, name, media_type, content.encode())
 
     def describe(self, name: str, content: Mapping[str, str]) -> None:
-        """Keep names and values about the whole file."""
+        """Write metadata of the whole file.
+
+        Args:
+            name: Name of the metadata record.
+            content: Names and values.
+        """
         self._writer.add_metadata(name, dict(content))
 
     def flush(self) -> None:
-        """Hand everything to the system, so that it outlives this process."""
+        """Pass all buffered data to the system, so that it survives the end of this process."""
         self._writer.flush()
 
     def finish(self) -> None:

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""Raw samples of any device in a log, and back: what it sent, as it sent it.
+"""Encode and decode raw samples of any device in an MCAP log.
 
-Counts are kept, not angles or forces: those follow from them with the profile, today's or one that
-was corrected years later.
+Raw counts are stored, not angles or forces. These are computed from the counts with the profile,
+which can be corrected later.
 """
 
 from collections.abc import Sequence
@@ -40,10 +40,10 @@ doubles for those whose counts have a fraction."""
 
 @dataclass(frozen=True)
 class SalvagedStreams:
-    """What could be read of a log.
+    """Streams read from a log that may be damaged.
 
     Attributes:
-        streams: What each device sent, by topic; host times since the start of the run.
+        streams: Samples of each device, by topic; host times since the start of the run.
         damage: Why reading stopped before the end; None for a whole log.
     """
 
@@ -60,7 +60,7 @@ def encode_raw(samples: Sequence[Sample], *, dtype: str, start: float) -> bytes:
     """Encode samples, at least one, as one message.
 
     Args:
-        samples: Of one device, with equally many counts.
+        samples: Samples of one device, with equal numbers of counts.
         dtype: Type of the counts, of `RAW_SCHEMAS`.
         start: Host time at which the run began [s].
 
@@ -80,8 +80,15 @@ def encode_raw(samples: Sequence[Sample], *, dtype: str, start: float) -> bytes:
 def decode_raw(data: bytes, *, dtype: str) -> SampleColumns:
     """Decode a message of `encode_raw`.
 
+    Args:
+        data: The message in CDR.
+        dtype: Type of the counts, of `RAW_SCHEMAS`.
+
+    Returns:
+        The samples; host times since the start of the run.
+
     Raises:
-        ValueError: The message is not of that form.
+        ValueError: The message does not have that form.
     """
     reader = CdrReader(data)
     host, device = reader.array("<f8"), reader.array("<f8")
@@ -99,7 +106,7 @@ def read_raw_log(path: Path) -> SalvagedStreams:
     """Read all raw streams of a log, up to the last whole chunk where it is damaged.
 
     Raises:
-        DataError: The file is no MCAP.
+        DataError: The file is not MCAP.
     """
     from mcap.records import Channel, Message, Schema
 

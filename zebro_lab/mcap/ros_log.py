@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Messages of one type in a ROS 2 log, up to where it is damaged."""
+"""Read messages of one type from a ROS 2 log, up to the first damage."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager, redirect_stdout
@@ -11,11 +11,11 @@ from zebro_lab.mcap.log_records import read_records
 
 
 class LoggedMessage(NamedTuple):
-    """A message as it was logged.
+    """Decoded message of a log.
 
     Attributes:
-        topic: Its topic.
-        log_time: Since the Unix epoch [ns].
+        topic: Topic of the message.
+        log_time: Time of logging since the Unix epoch [ns].
         content: Its fields as attributes.
     """
 
@@ -25,7 +25,7 @@ class LoggedMessage(NamedTuple):
 
 
 def read_messages(path: Path, *, schema: str) -> tuple[list[LoggedMessage], str | None]:
-    """Read all messages of one type.
+    """Read all messages of one type from a log.
 
     Args:
         path: The log, in MCAP.
@@ -37,7 +37,7 @@ def read_messages(path: Path, *, schema: str) -> tuple[list[LoggedMessage], str 
 
     Raises:
         NotFound: There is no such file.
-        DataError: It is no MCAP.
+        DataError: It is not MCAP.
     """
     from mcap.records import Channel, McapRecord, Message, Schema
     from mcap_ros2.decoder import DecoderFactory
@@ -69,7 +69,7 @@ def read_messages(path: Path, *, schema: str) -> tuple[list[LoggedMessage], str 
 
 @contextmanager
 def _damage_of(what: str) -> Iterator[None]:
-    """Call damage what the decoder raises: its parser of descriptions has no one error for it.
+    """Convert any exception of the decoder to a `ValueError`: its parser has no common error.
 
     Raises:
         ValueError: The decoder failed.

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""ROS 2 messages that recorded runs carry beside raw counts, so that every viewer knows them.
+"""Encode the standard ROS 2 messages that recorded runs contain besides raw counts, for viewers.
 
-Stamps are nanoseconds since the Unix epoch; numbers are SI. What a device does not measure is NaN,
-as in ROS.
+Stamps are nanoseconds since the Unix epoch; numbers are SI. Quantities that a device does not
+measure are NaN, as in ROS.
 """
 
 import math
@@ -14,7 +14,7 @@ import numpy as np
 from zebro_lab.mcap.cdr import CdrWriter
 
 RULE = "=" * 80
-"""What stands between the definitions of a message's parts."""
+"""Separator between the definitions of nested message types."""
 HEADER = f"""\
 {RULE}
 MSG: std_msgs/Header
@@ -44,7 +44,7 @@ float64 w
 
 @dataclass(frozen=True)
 class Schema:
-    """A message type: its name, and its definition with all that it is made of."""
+    """Message type: its name, and its definition with all nested types."""
 
     name: str
     text: str
@@ -118,7 +118,14 @@ def joint_state(
     position: Sequence[float] = (),
     velocity: Sequence[float] = (),
 ) -> bytes:
-    """Encode angles [rad] and speeds [rad/s] of joints; a side that is empty is not known."""
+    """Encode a `sensor_msgs/JointState`.
+
+    Args:
+        stamp: Time since the Unix epoch [ns].
+        names: Name of each joint.
+        position: Angle of each joint; empty where unknown, shape (joints,) [rad].
+        velocity: Angular speed of each joint; empty where unknown, shape (joints,) [rad/s].
+    """
     message = CdrWriter().time(stamp).text("").texts(names)
     for values in (position, velocity, ()):
         message.array(np.asarray(values, dtype="<f8"))
@@ -126,7 +133,13 @@ def joint_state(
 
 
 def wrench(stamp: int, *, normal: float, traction: float) -> bytes:
-    """Encode the force at a contact: x traction, z normal, in the frame `contact` [N]."""
+    """Encode the force at a contact as a wrench in the frame `contact`.
+
+    Args:
+        stamp: Time since the Unix epoch [ns].
+        normal: Normal force, along z [N].
+        traction: Traction, along x [N].
+    """
     message = CdrWriter().time(stamp).text("contact")
     return message.float64(traction, math.nan, normal, *(math.nan,) * 3).message()
 
@@ -138,13 +151,26 @@ def imu(
     angular_rate: Sequence[float],
     specific_force: Sequence[float],
 ) -> bytes:
-    """Encode a quaternion x, y, z, w, a rate [rad/s] and a specific force [m/s2] of the body."""
+    """Encode a `sensor_msgs/Imu` of the body.
+
+    Args:
+        stamp: Time since the Unix epoch [ns].
+        orientation: Quaternion x, y, z, w.
+        angular_rate: In the body's axes, shape (3,) [rad/s].
+        specific_force: Acceleration less gravity, in the body's axes, shape (3,) [m/s^2].
+    """
     message = CdrWriter().time(stamp).text("body")
     message.float64(*orientation, *_UNKNOWN, *angular_rate, *_UNKNOWN, *specific_force, *_UNKNOWN)
     return message.message()
 
 
 def log_entry(stamp: int, text: str, *, level: int = INFO) -> bytes:
-    """Encode something that happened."""
+    """Encode an event as a log message.
+
+    Args:
+        stamp: Time since the Unix epoch [ns].
+        text: Description of the event.
+        level: Severity, `INFO`, `WARNING` or `ERROR`.
+    """
     message = CdrWriter().time(stamp).uint8(level).text("zebro_lab")
     return message.text(text).text("").text("").uint32(0).message()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""ROS 2 messages of poses: frames, paths, and poses with their covariance.
+"""Encode ROS 2 messages of poses: transforms, paths, and poses with their covariance.
 
 Stamps are nanoseconds since the Unix epoch, lengths metres, quaternions x, y, z, w.
 """
@@ -74,13 +74,13 @@ float64[36] covariance  # x, y, z [m], about x, y, z [rad], by rows
 
 @dataclass(frozen=True)
 class Transform:
-    """Where a frame lies in another.
+    """Pose of a frame in its parent frame.
 
     Attributes:
-        parent: The other frame.
-        child: The frame.
-        position: Its origin, shape (3,) [m].
-        quaternion: Its orientation, x, y, z, w, shape (4,).
+        parent: Name of the parent frame.
+        child: Name of the frame.
+        position: Origin of the frame, shape (3,) [m].
+        quaternion: Orientation of the frame, x, y, z, w, shape (4,).
     """
 
     parent: str
@@ -90,7 +90,12 @@ class Transform:
 
 
 def transforms(stamp: int, frames: Iterable[Transform]) -> bytes:
-    """Encode where frames lie at an instant."""
+    """Encode the transforms of frames at an instant.
+
+    Args:
+        stamp: Time since the Unix epoch [ns].
+        frames: Transform of each frame to its parent.
+    """
     listed = list(frames)
     message = CdrWriter().uint32(len(listed))
     for each in listed:
@@ -100,13 +105,13 @@ def transforms(stamp: int, frames: Iterable[Transform]) -> bytes:
 
 
 def path(stamps: Sequence[int], frame: str, positions: Array, quaternions: Array) -> bytes:
-    """Encode a path, stamped with its first instant.
+    """Encode a path, stamped with the time of its first pose.
 
     Args:
-        stamps: Of each pose, at least one.
-        frame: Frame that poses are in.
-        positions: Shape (n, 3) [m].
-        quaternions: Shape (n, 4).
+        stamps: Time of each pose since the Unix epoch, at least one, shape (n,) [ns].
+        frame: Frame of the poses.
+        positions: Positions, shape (n, 3) [m].
+        quaternions: Orientations, x, y, z, w, shape (n, 4).
     """
     message = CdrWriter().time(stamps[0]).text(frame).uint32(len(stamps))
     for stamp, position, quaternion in zip(stamps, positions, quaternions, strict=True):
@@ -117,14 +122,14 @@ def path(stamps: Sequence[int], frame: str, positions: Array, quaternions: Array
 def pose_with_covariance(
     stamp: int, frame: str, *, position: Array, quaternion: Array, covariance: Array
 ) -> bytes:
-    """Encode a planar pose with what is known of its error.
+    """Encode a planar pose with its covariance.
 
     Args:
-        stamp: The instant.
-        frame: Frame that it is in.
-        position: Shape (3,) [m].
-        quaternion: Shape (4,).
-        covariance: Of x, y [m] and yaw [rad], shape (3, 3).
+        stamp: Time since the Unix epoch [ns].
+        frame: Frame of the pose.
+        position: Position, shape (3,) [m].
+        quaternion: Orientation, x, y, z, w, shape (4,).
+        covariance: Covariance of x, y [m] and yaw [rad], shape (3, 3).
     """
     whole = np.zeros((6, 6))
     whole[np.ix_((0, 1, 5), (0, 1, 5))] = covariance

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Samples of the slip rig in SI, and the message of earlier versions that held them so.
+"""Read samples of the slip rig in SI from the message of earlier versions.
 
-Runs that are written now hold raw samples alone (`raw_log`); logs with this message are still read.
+New runs contain only raw samples (`raw_log`); logs with this message can still be read.
 """
 
 import struct
@@ -55,13 +55,13 @@ class SlipRigTable:
         return len(self.t)
 
     def rows(self) -> NDArray[np.float64]:
-        """Return the columns side by side, shape (n, 5), in the order of the attributes."""
+        """Stack the columns in the order of the attributes, shape (n, 5)."""
         return np.column_stack([getattr(self, field.name) for field in fields(self)])
 
 
 @dataclass(frozen=True)
 class SalvagedLog:
-    """What could be read of a log.
+    """Samples read from a log that may be damaged.
 
     Attributes:
         table: The samples.
@@ -82,7 +82,7 @@ def decode_block(data: bytes) -> NDArray[np.float64]:
         Samples in the order of the attributes of `SlipRigTable`.
 
     Raises:
-        ValueError: The message is not of that form.
+        ValueError: The message does not have that form.
     """
     if data[:4] != _CDR_LITTLE_ENDIAN or len(data) < 8:
         raise ValueError("a message is not little-endian CDR")
@@ -98,7 +98,7 @@ def read_log(path: Path) -> SalvagedLog:
     """Read the samples of an MCAP log, up to the last whole chunk where it is damaged.
 
     Raises:
-        DataError: The file is no MCAP, or not one sample of it can be read.
+        DataError: The file is not MCAP, or no sample of it can be read.
     """
     from mcap.records import Channel, Message, Schema
 

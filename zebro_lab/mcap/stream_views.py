@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""What a log holds of each device beside its raw counts: messages that every ROS 2 viewer knows.
+"""Standard ROS 2 messages of each device, which a log holds besides the raw counts.
 
-They are for eyes. Stages go back to the raw counts and the profile.
+Only for display. Stages compute from the raw counts and the profile.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -22,18 +22,18 @@ from zebro_lab.mcap.raw_log import COUNTS_NAME, VALUES_NAME
 from zebro_lab.mcap.ros_messages import IMU, JOINT_STATE, WRENCH, Schema, imu, joint_state, wrench
 
 FASTEST: Final = 50.0
-"""Messages in a second that a viewer is given at most [Hz]."""
+"""Largest rate of display messages [Hz]."""
 
 
 MEAN_OVER: Final = 0.02
-"""Stretch of fast samples that a viewer is given the mean of [s]."""
+"""Interval over which fast samples are averaged for display [s]."""
 ENOUGH: Final = 1000.0
-"""Samples in a second that such a mean is taken of: no eye sees more [Hz]."""
+"""Rate to which samples are thinned before they are averaged for display [Hz]."""
 _DISCS: Final = ("leg_disc", "ground_disc")
 
 
 class StreamView(Protocol):
-    """How one device shows in a log."""
+    """Converter of one device's samples to display messages of a log."""
 
     @property
     def raw_schema(self) -> str:
@@ -42,7 +42,7 @@ class StreamView(Protocol):
 
     @property
     def metadata(self) -> Mapping[str, str]:
-        """Names and units of its counts, for whoever has only the log."""
+        """Names and units of its counts, so that the log can be read on its own."""
         ...
 
     @property
@@ -53,11 +53,11 @@ class StreamView(Protocol):
     def messages(
         self, samples: Sequence[Sample], stamps: Sequence[int]
     ) -> Iterator[tuple[str, int, bytes]]:
-        """Make the messages of samples, at least one.
+        """Yield the display messages of samples.
 
         Args:
-            samples: The next samples of the device.
-            stamps: When each was read, since the Unix epoch [ns].
+            samples: The next samples of the device, at least one.
+            stamps: Time at which each was read, since the Unix epoch [ns].
 
         Yields:
             Topic, stamp and message.
@@ -90,14 +90,19 @@ class LegsView:
     def messages(
         self, samples: Sequence[Sample], stamps: Sequence[int]
     ) -> Iterator[tuple[str, int, bytes]]:
-        """Make joint states; see `StreamView.messages`."""
+        """Yield joint states of the legs; see `StreamView.messages`.
+
+        Args:
+            samples: The next samples of the robot.
+            stamps: Time at which each was read, since the Unix epoch [ns].
+        """
         theta = self._continued(samples)
         names = [f"leg_{leg}" for leg in sorted(self._profile.legs)]
         for row in range(0, len(samples), self._stride):
             yield self._topic, stamps[row], joint_state(stamps[row], names, position=theta[row])
 
     def _continued(self, samples: Sequence[Sample]) -> Array:
-        """Decode angles so that they go on from the last sample of the call before."""
+        """Decode angles, unwrapped continuously from the last sample of the previous call."""
         if self._last is None:
             theta = decode_angles(self._profile, samples).theta
         else:
@@ -133,11 +138,16 @@ class ImuView:
     def messages(
         self, samples: Sequence[Sample], stamps: Sequence[int]
     ) -> Iterator[tuple[str, int, bytes]]:
-        """Make `Imu` messages; see `StreamView.messages`."""
+        """Yield `Imu` messages; see `StreamView.messages`.
+
+        Args:
+            samples: The next samples of the unit.
+            stamps: Time at which each was read, since the Unix epoch [ns].
+        """
         chosen = range(0, len(samples), self._stride)
         counts = as_columns(samples).counts[:: self._stride]
-        # Not by way of roll, pitch and yaw, as decode_orientation: that would cost several times
-        # as much, ten times a second.
+        # Not from roll, pitch and yaw, as in decode_orientation: that would take several times as
+        # long, ten times a second.
         measured = Rotation.from_quat(counts[:, :4], scalar_first=True)
         orientation = (measured * self._unmount).as_quat().tolist()
         rate = self._mount.apply(counts[:, 4:7] / self._profile.rate_scale).tolist()
@@ -181,10 +191,15 @@ class DrivesView:
     def messages(
         self, samples: Sequence[Sample], stamps: Sequence[int]
     ) -> Iterator[tuple[str, int, bytes]]:
-        """Make joint states of one disc each; see `StreamView.messages`."""
+        """Yield joint states of one disc each; see `StreamView.messages`.
+
+        Args:
+            samples: The next samples of both drives.
+            stamps: Time at which each was read, since the Unix epoch [ns].
+        """
         for sample, stamp in zip(samples, stamps, strict=True):
             disc, place = self._discs[sample.channel]
-            # What turns a velocity in revolutions into rad/s turns a position into rad.
+            # The factor from rev/s to rad/s also converts a position from rev to rad.
             angle, speed = (disc_speed(place, count) for count in sample.counts)
             yield self._topic, stamp, joint_state(stamp, [disc], position=[angle], velocity=[speed])
 
@@ -214,7 +229,12 @@ class LoadCellView:
     def messages(
         self, samples: Sequence[Sample], stamps: Sequence[int]
     ) -> Iterator[tuple[str, int, bytes]]:
-        """Make wrenches; see `StreamView.messages`."""
+        """Yield wrenches of mean forces; see `StreamView.messages`.
+
+        Args:
+            samples: The next samples of the load cell.
+            stamps: Time at which each was read, since the Unix epoch [ns].
+        """
         step = self._thin
         forces = decode_forces(self._profile, samples[::step])
         yield from _mean_wrenches(self._topic, forces, stamps[::step], self._profile.rate / step)
@@ -243,7 +263,12 @@ class RigBoardView:
     def messages(
         self, samples: Sequence[Sample], stamps: Sequence[int]
     ) -> Iterator[tuple[str, int, bytes]]:
-        """Make wrenches and joint states; see `StreamView.messages`."""
+        """Yield wrenches and joint states of mean forces and speeds; see `StreamView.messages`.
+
+        Args:
+            samples: The next samples of the board.
+            stamps: Time at which each was read, since the Unix epoch [ns].
+        """
         forces, speeds = decode_board(self._profile, samples)
         yield from _mean_wrenches(self._wrench, forces, stamps, self._profile.rate)
         for part in _parts(len(samples), self._profile.rate):
@@ -253,7 +278,7 @@ class RigBoardView:
 
 
 def rig_views(profile: RigProfile) -> dict[str, StreamView]:
-    """Make the views of all streams of a slip rig, by the streams' names."""
+    """Return the views of all streams of a slip rig, by the streams' names."""
     views: dict[str, StreamView] = {}
     if profile.board is not None:
         views["board"] = RigBoardView("board", profile=profile.board)
@@ -274,7 +299,7 @@ def _mean_wrenches(
 
 
 def _parts(count: int, rate: float) -> Iterator[slice]:
-    """Cut samples into stretches of `MEAN_OVER`, the last one shorter."""
+    """Split samples into intervals of `MEAN_OVER`, the last one shorter."""
     length = max(round(rate * MEAN_OVER), 1)
     for first in range(0, count, length):
         yield slice(first, min(first + length, count))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A robot and a person who watches it in, a profile out."""
+"""Determine leg order, signs and zeros of a robot with a person's observations; write a profile."""
 
 import math
 from collections.abc import Iterator
@@ -18,18 +18,18 @@ from zebro_lab.files.errors import AlreadyExists
 from zebro_lab.recording.devices import default_gait
 
 MOVING: Final = 1.0
-"""How long a leg is given to turn to an angle [s]."""
+"""Time allowed for a leg to turn to an angle [s]."""
 
 
 class Person(Protocol):
-    """Who watches the robot."""
+    """Person who watches the robot and answers questions about it."""
 
     def watch(self, channel: int) -> MovedLeg:
-        """Say which leg moved with a channel, and which way."""
+        """Return which leg moved with a channel, and in which direction."""
         ...
 
     def hold_toes_ahead(self) -> None:
-        """Return when every toe points straight ahead."""
+        """Wait until every toe points straight ahead."""
         ...
 
     def measure_height(self, theta_deg: float) -> float:
@@ -39,12 +39,13 @@ class Person(Protocol):
 
 @dataclass(frozen=True)
 class CheckRequest:
-    """What is asked of a check.
+    """Settings of a check of the robot's legs.
 
     Attributes:
         address: `PROFILE@PORT`, `PROFILE@sim` or `sim`.
         save: Profile to write.
-        touchdown_deg: Touchdown angle to find the lift-off angle of; None to leave that [deg].
+        touchdown_deg: Touchdown angle for which the lift-off angle is sought; None skips this
+            step [deg].
     """
 
     address: str
@@ -67,7 +68,7 @@ class Checked:
     Attributes:
         file: Profile written.
         profile: The same.
-        lift_off: Where it was asked for.
+        lift_off: Lift-off angle; None where it was not requested.
     """
 
     file: Path
@@ -78,6 +79,14 @@ class Checked:
 def check_zebro(request: CheckRequest, person: Person, *, clock: Clock = SYSTEM_CLOCK) -> Checked:
     """Find order, signs and zeros of a robot's legs and write its profile.
 
+    Args:
+        request: Address of the robot, file to write, touchdown angle.
+        person: The person who watches the robot, asked for observations.
+        clock: Host time.
+
+    Returns:
+        The profile, and the lift-off angle where a touchdown angle is given.
+
     Raises:
         AlreadyExists: The file to write is there already.
         RigError: The robot cannot be reached, sends nothing, or does not follow.
@@ -85,7 +94,7 @@ def check_zebro(request: CheckRequest, person: Person, *, clock: Clock = SYSTEM_
     if request.save.exists():
         raise AlreadyExists(f"{request.save} exists already; name another --save")
     with _robot(request.address) as robot:
-        # The driver's own profile stays as it is: both steps speak of channels of the wire.
+        # The driver's profile does not change: both steps refer to channels of the wire.
         ordered = check_legs(robot, person.watch, clock=clock)
         person.hold_toes_ahead()
         zeros = zero_legs(robot, clock=clock).zero_counts
@@ -107,7 +116,7 @@ def _robot(address: str) -> Iterator[Any]:
 
 
 def latest_counts_as_targets(robot: Any) -> tuple[int, ...]:
-    """Return where the legs are, as set-points: to make a robot that walks stand still."""
+    """Return the present leg counts as set-points, which make a walking robot stand still."""
     around = robot.profile.counts_per_revolution
     return tuple(int(count) % around for count in latest_counts(robot))
 

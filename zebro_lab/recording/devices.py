@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The devices a command line names, real or simulated, ready to be recorded."""
+"""Open the devices that a command line names, real, simulated or replayed, for recording."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager
@@ -33,23 +33,24 @@ from zebro_lab.runs.recorded_legs import LEGS
 
 RIG_PROFILE: Final = "rig-odrive-netft"
 PAUSE: Final = 0.053
-"""Between two reads of a device that tells time: the system keeps what comes meanwhile, and with
-the wait of the recorder this stays well below the 200 ms that a killed run may lack. No multiple of
-a usual period, so that samples are read at every age: the least late tell the clocks apart [s]."""
+"""Pause between two reads of a device that sends its time; the system buffers its data meanwhile.
+With the recorder's wait it stays well below the 200 ms that a killed run may lack. It is no
+multiple of a usual period, so that samples are read with varying delays; those with the smallest
+ones give the clock offset [s]."""
 TWIN_SWEEP: Final = SweepPlan(slips=tuple(np.linspace(0.0, 0.9, 16) ** 1.5), duration=1.0)
-"""What a simulated rig sweeps: all slips in 16 s at each of four loads."""
+"""Sweep of a simulated rig: all slips in 16 s at each of four loads."""
 
 
 @dataclass(frozen=True)
 class DevicesRequest:
-    """Which devices are asked for; None and nothing where none is.
+    """Addresses of the requested devices; None or empty where none is requested.
 
     Attributes:
         zebro: `PROFILE@PORT`, `PROFILE@sim`, `sim` or `replay:RUN`.
-        imus: The same, each.
-        rig: The same.
-        play: Gait whose set-points the robot is sent.
-        seed: Of the randomness of simulated devices.
+        imus: Address of each inertial measurement unit, in the same form.
+        rig: Address of the slip rig, in the same form.
+        play: Gait whose set-points are sent to the robot.
+        seed: Seed of the random generator of simulated devices.
     """
 
     zebro: str | None = None
@@ -61,15 +62,15 @@ class DevicesRequest:
 
 @dataclass(frozen=True)
 class OpenDevices:
-    """Devices, entered.
+    """Opened devices.
 
     Attributes:
         devices: The devices.
-        views: How each stream shows in a log, by its name.
-        profiles: Name and text of each profile, by the name a run keeps it under.
+        views: Converter of each stream to display messages, by the stream's name.
+        profiles: Name and text of each profile, by its name in the run folder.
         constants: Radii of the rig's discs [m].
-        truth: What simulated devices know to be true.
-        lasts: How long replayed runs last; None where none is replayed [s].
+        truth: True parameters of simulated devices.
+        lasts: Duration of replayed runs; None where none is replayed [s].
     """
 
     devices: tuple[Device, ...]
@@ -82,17 +83,17 @@ class OpenDevices:
 
 @contextmanager
 def open_devices(request: DevicesRequest) -> Iterator[OpenDevices]:
-    """Open every device asked for, and leave each at the end: what it drives is de-energised.
+    """Open every requested device, and close each at the end, which de-energises its motors.
 
     Args:
-        request: Which devices.
+        request: Addresses of the devices.
 
     Yields:
         The devices, their drivers entered.
 
     Raises:
-        SettingsError: None is asked for, or a gait is to be played to no robot.
-        RigError: An address, a profile or a port is not right.
+        SettingsError: No device is requested, or a gait is given without a robot.
+        RigError: An address, a profile or a port is invalid.
     """
     _require_any(request)
     rng = np.random.default_rng(request.seed)
@@ -119,26 +120,26 @@ def open_devices(request: DevicesRequest) -> Iterator[OpenDevices]:
 
 
 def default_gait() -> LegReference:
-    """Return the gait that a simulated robot walks unless it is told otherwise."""
+    """Return the default gait of a simulated robot."""
     return make_gait(GaitRequest(), leg_arc=np.pi).reference
 
 
 def twin_rig(rng: np.random.Generator) -> SimulatedRig:
-    """Make the simulated rig behind `sim`: it sweeps `TWIN_SWEEP` by itself."""
+    """Return the simulated rig that `sim` selects, which runs `TWIN_SWEEP`."""
     return simulated_rig(
         plan=TWIN_SWEEP, imperfections=TYPICAL_RIG, dynamics=RigDynamics(ripple=0.005), rng=rng
     )
 
 
 def profile_text(name: str) -> str:
-    """Read the TOML of a profile, shipped or a file."""
+    """Return the TOML text of a profile, shipped or from a file."""
     path = Path(name)
     return (path if path.is_file() else shipped_file(f"{name}.toml")).read_text(encoding="utf-8")
 
 
 @dataclass
 class _Opened:
-    """What has been opened so far."""
+    """Devices opened so far."""
 
     devices: list[Device] = field(default_factory=list)
     views: dict[str, StreamView] = field(default_factory=dict)
@@ -207,7 +208,7 @@ def _add_rig(opened: _Opened, stack: ExitStack, address: str, rng: np.random.Gen
         devices = stack.enter_context(simulated_rig_devices(profile, rig, buffered=True, rng=rng))
         opened.truth["rig"] = rig.description() | {"sweep": asdict(TWIN_SWEEP)}
     else:
-        devices = open_rig(address, buffered=True)  # nothing moves by what is recorded
+        devices = open_rig(address, buffered=True)  # recorded samples control no motion
     check = ForceCheck(profile)
     for device in devices.streams:
         is_drives = device is devices.drives
@@ -229,7 +230,7 @@ def _replay(opened: "_Opened", address: str, what: str, *, name: str | None = No
 
 
 class ForceCheck:
-    """Watches the forces of a rig in every sample; to be called with what a read gave.
+    """Limit check of a rig's forces in every sample; called with the samples of a read.
 
     Args:
         profile: Profile of the rig: axes, scale and limits.
@@ -256,7 +257,7 @@ class ForceCheck:
 
 @dataclass(frozen=True)
 class _ForceChannel:
-    """Where a force is found among a device's counts."""
+    """Position of a force among a device's counts."""
 
     index: int
     sign: int

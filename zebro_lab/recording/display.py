@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Shows how a recording is doing from a thread of its own: a frozen viewer holds up nothing."""
+"""Non-blocking status display of a recording, in its own thread."""
 
 import threading
 import time
@@ -10,17 +10,17 @@ from zebro_lab.files.errors import RecordingError
 from zebro_lab.recording.threads import needing_threads
 
 PATIENCE: Final = 1.0
-"""A display that has not returned after this is given up [s]."""
+"""Timeout after which a display that does not return is abandoned [s]."""
 
 Status = TypeVar("Status")
 
 
 class Display(Generic[Status]):
-    """Hands the newest status to a display, until that raises or hangs.
+    """Passes the newest status to a display in its own thread, until it raises or hangs.
 
     Args:
-        show: The display; called in a thread of its own, one call at a time.
-        give_up: Told once, in whichever thread, why nothing is shown any more.
+        show: The display; called in a separate thread, one call at a time.
+        give_up: Called once, in any thread, with the reason why the display ended.
     """
 
     def __init__(
@@ -41,7 +41,7 @@ class Display(Generic[Status]):
             self._end(f"display cannot be started, recording goes on without it: {error}")
 
     def show(self, status: Status) -> None:
-        """Take a status in place of one that has not been shown yet; never waits."""
+        """Set the status to show next, replacing one not shown yet; does not block."""
         with self._changed:
             self._newest = status
             self._changed.notify()
@@ -50,9 +50,9 @@ class Display(Generic[Status]):
             self._hangs()
 
     def close(self) -> None:
-        """Show what was taken last, and end; waits for a display that hangs no longer than it may.
+        """Show the last status and end the thread; waits at most `PATIENCE` for the display.
 
-        A display that hangs is left to itself.
+        The thread of a hanging display is abandoned.
         """
         with self._changed:
             self._ending = True
@@ -80,7 +80,7 @@ class Display(Generic[Status]):
                 self._end(f"display failed, recording goes on without it: {error!r}")
 
     def _take(self) -> Status | None:
-        """Wait for a status to show; None where the end has come."""
+        """Wait for a status to show; None after `close`."""
         with self._changed:
             self._since = None
             self._changed.wait_for(lambda: self._newest is not None or self._ending or self._over)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What of this machine fits and what does not: versions, packages, ports, buses, disk."""
+"""Diagnose this machine: versions, packages, serial ports, CAN interfaces, UDP buffer, disk."""
 
 import os
 import platform
@@ -20,7 +20,7 @@ from zebro_lab.recording.recorder import LEAST_FREE
 LEAST_PYTHON: Final = (3, 11)
 OURS: Final = ("zebro_lab", "rig", "tracking", "model")
 FOREIGN: Final = {"serial": "pyserial", "can": "python-can", "cv2": "opencv-python-headless"}
-"""Modules whose names others use too, and the package that each must come from."""
+"""Modules whose names several packages use, and the package that each must come from."""
 OPTIONAL_PROGRAMS: Final = {
     "ffmpeg": "films in mp4 (`--animate`); without it they are gif",
     "heif-convert": "turning HEIC photographs into JPEG for `track`",
@@ -31,16 +31,16 @@ OPTIONAL_PACKAGES: Final = {
     "numpyro": "`make bench`, which compares samplers",
 }
 COMFORTABLE: Final = 2 << 30
-"""Free space below which a person should know [bytes]: hours of recording."""
+"""Free space below which a warning is given: hours of recording [bytes]."""
 UDP_BUFFER: Final = 4 << 20
-"""What `rig.links.udp` asks of the system [bytes]."""
+"""Size of the socket buffer that `rig.links.udp` requests [bytes]."""
 NET: Final = Path("/sys/class/net")
 CAN_TYPE: Final = "280"
-"""What Linux calls the hardware type of a CAN interface."""
+"""Hardware type of a CAN interface in Linux."""
 
 
 class Grade(StrEnum):
-    """How a finding is to be taken."""
+    """Severity of a finding."""
 
     OK = "ok"
     NOTE = "note"
@@ -49,11 +49,11 @@ class Grade(StrEnum):
 
 @dataclass(frozen=True)
 class Finding:
-    """One thing that was looked at.
+    """Result of one check.
 
     Attributes:
-        state: Whether it is as it should be.
-        what: What was looked at.
+        state: Severity.
+        what: Subject of the check.
         text: What was found, and what to do about it.
     """
 
@@ -63,10 +63,10 @@ class Finding:
 
 
 def examine(data: Path) -> Iterator[Finding]:
-    """Look at everything, one finding after the other.
+    """Run every check and yield its findings.
 
     Args:
-        data: Folder that recordings are to go to, or would.
+        data: Folder for recordings; need not exist.
     """
     yield check_python(sys.version_info[:3])
     yield from check_requirements(requires("zebro-lab") or ())
@@ -79,7 +79,7 @@ def examine(data: Path) -> Iterator[Finding]:
 
 
 def check_python(version: tuple[int, ...]) -> Finding:
-    """Check the interpreter."""
+    """Check the version of the Python interpreter."""
     found = f"{'.'.join(map(str, version))} on {platform.system()} {platform.machine()}"
     if version[:2] < LEAST_PYTHON:
         wanted = ".".join(map(str, LEAST_PYTHON))
@@ -88,10 +88,10 @@ def check_python(version: tuple[int, ...]) -> Finding:
 
 
 def check_requirements(needed: Sequence[str]) -> Iterator[Finding]:
-    """Check that every package that is needed is there in a version that fits.
+    """Check that every required package is installed in a compatible version.
 
     Args:
-        needed: Requirements as package metadata spells them.
+        needed: Requirements in the format of package metadata.
     """
     fitting = []
     for requirement in map(Requirement, needed):
@@ -110,11 +110,11 @@ def check_requirements(needed: Sequence[str]) -> Iterator[Finding]:
 
 
 def check_shadows(folder: Path, search: Sequence[str]) -> Iterator[Finding]:
-    """Check that every module comes from the package it should come from.
+    """Check that no module is shadowed by another of the same name.
 
     Args:
-        folder: Working folder, which `python` puts in front of everything.
-        search: Where modules are searched for.
+        folder: Working folder, which `python` puts first on the search path.
+        search: Search path of modules.
     """
     home = Path(__file__).parents[2]
     for module in OURS:
@@ -135,7 +135,7 @@ def check_shadows(folder: Path, search: Sequence[str]) -> Iterator[Finding]:
 
 
 def check_serial_ports() -> Iterator[Finding]:
-    """List serial ports and check the right to open them."""
+    """List serial ports and check the permission to open them."""
     from serial.tools import list_ports
 
     ports = sorted(list_ports.comports())
@@ -149,12 +149,12 @@ def check_serial_ports() -> Iterator[Finding]:
 def check_port(
     device: Path, description: str, *, may: Callable[[Path, int], bool] = os.access
 ) -> Finding:
-    """Check the right to open one port.
+    """Check the permission to open one serial port.
 
     Args:
-        device: The port.
-        description: What the system says of it.
-        may: Tells whether a file may be read and written.
+        device: Path of the port.
+        description: Description by the system.
+        may: Returns whether a file can be accessed in a mode, as `os.access`.
     """
     what = f"serial port {device}"
     if sys.platform == "win32" or may(device, os.R_OK | os.W_OK):
@@ -168,7 +168,7 @@ def check_port(
 
 
 def check_can(net: Path) -> Iterator[Finding]:
-    """List the CAN interfaces of Linux and tell whether they are up.
+    """List the CAN interfaces of Linux and whether they are up.
 
     Args:
         net: Folder of the system's network interfaces.
@@ -188,10 +188,10 @@ def check_can(net: Path) -> Iterator[Finding]:
 
 
 def check_udp(limit: Path) -> Iterator[Finding]:
-    """Check how much of a fast load cell's data the system keeps while nobody reads.
+    """Check the largest UDP receive buffer of the system, which must hold a fast load cell's data.
 
     Args:
-        limit: File in which Linux says so.
+        limit: File in which Linux gives the limit.
     """
     text = _read(limit)
     if text is None:
@@ -208,10 +208,10 @@ def check_udp(limit: Path) -> Iterator[Finding]:
 
 
 def check_disk(data: Path) -> Finding:
-    """Check the room for recordings, and the right to write them.
+    """Check free disk space for recordings and the permission to write them.
 
     Args:
-        data: Folder that they go to; need not exist.
+        data: Folder for recordings; need not exist.
     """
     place = next(
         folder for folder in (data.absolute(), *data.absolute().parents) if folder.is_dir()
@@ -228,7 +228,7 @@ def check_disk(data: Path) -> Finding:
 
 
 def check_optional() -> Iterator[Finding]:
-    """Tell of what is not needed, and what for it would be."""
+    """List optional programs and packages with their purpose."""
     for program, purpose in OPTIONAL_PROGRAMS.items():
         found = shutil.which(program)
         yield Finding(Grade.OK if found else Grade.NOTE, program,
@@ -242,7 +242,7 @@ def check_optional() -> Iterator[Finding]:
 def _from(module: str, place: Path, search: Sequence[str], of: str = "ours") -> Finding:
     spec = PathFinder.find_spec(module, list(search))
     origin = None if spec is None or spec.origin is None else Path(spec.origin)
-    if origin is None and module in OURS:  # an editable installation is found by its own finder
+    if origin is None and module in OURS:  # an editable installation has its own import finder
         loaded = sys.modules.get(module) or __import__(module)
         origin = Path(str(loaded.__file__))
     what = f"module {module}"

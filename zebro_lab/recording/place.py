@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Notices that a folder is removed, renamed or replaced while a file in it is being written.
+"""Detect that a folder is removed, renamed or replaced while a file in it is being written.
 
-Writing to a file whose name is gone succeeds on Linux and macOS: only the path tells.
+Writing to a file whose name is gone succeeds on Linux and macOS, so that the path must be checked.
 """
 
 import os
@@ -12,11 +12,11 @@ from typing import IO
 
 
 class OpenPlace:
-    """Where a file that is being written, and its folder, are expected.
+    """Expected path of an open file and its folder, by device and inode.
 
     Args:
         path: The file.
-        file: The same, open.
+        file: The same file, open.
     """
 
     def __init__(self, path: Path, file: IO[bytes]) -> None:
@@ -26,7 +26,7 @@ class OpenPlace:
         self._folder = _identity(path.parent.stat())
 
     def problem(self) -> str | None:
-        """Say why what is written can no longer be found under its path; None where it can."""
+        """Return why the file can no longer be found under its path; None where it can."""
         try:
             found = self._path.stat()
         except FileNotFoundError:
@@ -38,7 +38,7 @@ class OpenPlace:
         return None
 
     def folder(self) -> Path | None:
-        """Find the folder, renamed or not; None where it is gone, or cannot be found."""
+        """Return the folder's path, also after a rename; None where it is gone or not found."""
         for place in (self._path.parent, *self._renamed()):
             try:
                 if _identity(place.stat()) == self._folder:
@@ -48,7 +48,7 @@ class OpenPlace:
         return None
 
     def _renamed(self) -> list[Path]:
-        """Ask the system where the open file lies now; Linux tells."""
+        """Return the present path of the open file according to the system (Linux only)."""
         try:
             return [Path(f"/proc/self/fd/{self._number}").readlink().parent]
         except OSError:
@@ -56,10 +56,10 @@ class OpenPlace:
 
 
 def sync_files(paths: Iterable[Path]) -> None:
-    """Wait until the disk keeps files.
+    """Flush files to the disk (fsync).
 
     Raises:
-        OSError: It does not, or one of them is gone.
+        OSError: The disk fails, or a file is gone.
     """
     with ExitStack() as stack:
         for file in [stack.enter_context(path.open("r+b")) for path in paths]:

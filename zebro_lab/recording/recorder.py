@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""Writes a run folder while the run happens; whoever hands samples over never waits.
+"""Write a run folder during a run, with non-blocking queues between devices and disk.
 
-A thread of its own writes; another one lets the disk catch up, so that a slow disk delays neither
-the log nor the devices; a third one sees whether the folder is still there. After SIGKILL the log
-lacks what came within about `FLUSH_EVERY`.
+One thread writes; a second one flushes to the disk (fsync), so that a slow disk delays neither the
+log nor the devices; a third one checks that the folder still exists. After SIGKILL the log lacks
+the samples of about the last `FLUSH_EVERY`.
 """
 
 import contextlib
@@ -40,40 +40,40 @@ from zebro_lab.runs.manifest import (
 )
 
 FLUSH_EVERY: Final = 0.1
-"""Pause between two looks at the queues, each of which ends on the disk [s]."""
+"""Interval at which the queues are written and flushed [s]."""
 SYNC_EVERY: Final = 1.0
 LIMIT: Final = 100_000
-"""Samples of one stream that may wait for the disk: 14 s of a fast load cell."""
+"""Capacity of the queue of one stream: 14 s of a fast load cell [samples]."""
 LEAST_FREE: Final = 64 << 20
-"""Free space below which a run is not begun, and ends [bytes]."""
+"""Free space below which a run does not start, or ends [bytes]."""
 RESERVE: Final = 1 << 16
-"""Kept in the run folder, so that a full disk still takes the end record [bytes]."""
+"""Space reserved in the run folder for the end record on a full disk [bytes]."""
 JOIN_LIMIT: Final = 30.0
-"""Longest wait for what the disk has been given before the end [s]."""
+"""Timeout for the writer threads to end [s]."""
 END_LIMIT: Final = 60.0
-"""Longest wait for the end of the log and the end record [s]."""
+"""Timeout for the end of the log and the end record [s]."""
 _RESERVE_FILE = ".reserve"
 
 
 @dataclass(frozen=True)
 class RunDescription:
-    """What is known of a run before it begins.
+    """Description of a run before it begins.
 
     Attributes:
         kind: "slip-rig" or "walk".
         label: Name of the run.
         source: "real", "sim:what", "replay:what", or "mixed:" and several.
         material: Leg and ground material.
-        operator: Who runs it.
+        operator: Name of the operator.
         constants: Radii of a slip rig [m].
-        profiles: Name and TOML text of each device's profile, by the name it is kept under.
+        profiles: Name and TOML text of each device's profile, by its name in the run folder.
         sources: Source of each stream.
         robot: Name of the robot.
-        truth: What simulated devices know to be true.
+        truth: True parameters of simulated devices.
         commit: Commit of this software.
-        excluded: Why the run is left out of calibrations until `RunRecorder.judge` says otherwise;
-            empty where it is not.
-        point: Which point of an experiment it is.
+        excluded: Why the run is left out of calibrations until `RunRecorder.judge` changes it;
+            empty where it is not left out.
+        point: Record of the point of an experiment.
     """
 
     kind: str
@@ -99,22 +99,22 @@ class _Event:
 
 
 class RunRecorder:
-    """A run folder that is being written: a context manager.
+    """Writer of a run folder; a context manager.
 
-    Leaving it writes the end of the log and the end record, with the reason; an exception is one.
-    Beginning waits for no disk: the thread that lets the disk catch up does so with the first
-    files too. While it writes, the folder is looked for under its name, and the disk for room.
+    Leaving the context writes the end of the log and the end record with its reason, which may be
+    an exception. Entering does not wait for the disk: the first files are also flushed by a thread.
+    During the run the existence of the folder and the free disk space are checked.
 
     Args:
-        data_dir: Folder of run folders; made when missing.
-        description: What is known before.
-        views: How each stream shows in the log, by its name.
-        limit: Most samples of a stream that may wait to be written.
-        least_free: Free space below which a run is not begun, and ends [bytes].
+        data_dir: Folder of run folders; created when missing.
+        description: Description of the run.
+        views: Converter of each stream to display messages, by the stream's name.
+        limit: Capacity of the queue of each stream [samples].
+        least_free: Free space below which a run does not start, or ends [bytes].
         clock: Host time.
 
     Attributes:
-        folder: The run folder; where it is renamed meanwhile and can be found, its new name.
+        folder: The run folder; its new path if it was renamed and can be found.
         start: Host time at which the run began [s].
     """
 
@@ -156,61 +156,84 @@ class RunRecorder:
 
     @property
     def failure(self) -> str | None:
-        """Why nothing is written any more, or the end is not whole; None while all is well.
+        """Why writing has stopped, or the end is incomplete; None without a failure.
 
-        It shows within a second what a thread of the recorder met: a disk that is full or fails, a
-        folder that was removed or renamed. Whoever drives motors looks here.
+        A failure of a recorder thread appears here within a second: a full or failing disk, a
+        folder that was removed or renamed. A program that drives motors must check it.
         """
         return self._failure
 
     def write(self, stream: str, samples: Sequence[Sample]) -> bool:
-        """Hand samples of a stream over; tell whether there was room. Never waits."""
+        """Queue samples of a stream for writing without blocking.
+
+        Args:
+            stream: Name of the stream.
+            samples: Its next samples.
+
+        Returns:
+            Whether the queue had room; where it had none, the recording fails.
+        """
         if self._queues[stream].put(samples):
             return True
         self._fail(f"disk too slow: more than {self._limit} samples of '{stream}' wait")
         return False
 
     def event(self, text: str, *, level: int = INFO) -> None:
-        """Write down something that happened now."""
+        """Log an event that happens now.
+
+        Args:
+            text: Description of the event.
+            level: Severity, as in `logging`.
+        """
         self._notes.append(_Event(self._clock.now(), text, level))
 
     def count(self, stream: str, counters: Counters) -> None:
-        """Write down what happened to a stream so far."""
+        """Log the counters of a stream.
+
+        Args:
+            stream: Name of the stream.
+            counters: Samples received, lost, damaged and so on so far.
+        """
         self._counters[stream] = counters
         self._notes.append((self._clock.now(), stream, counters))
 
     def dropped(self, stream: str) -> int:
-        """Count the samples of a stream that found no room."""
+        """Return the number of samples of a stream dropped because its queue was full."""
         return self._queues[stream].dropped
 
     def compare_clocks(self, clocks: Mapping[str, Mapping[str, float]]) -> None:
-        """Take offset [s], drift [-] and delay [s] of each device's clock, for the end record."""
+        """Store offset [s], drift [-] and delay [s] of each device's clock for the end record."""
         self._clocks = dict(clocks)
 
     def count_duration(self, asked: float, *, since: float) -> None:
-        """Take how long the run was to last [s] and the host time from which that counts [s]."""
+        """Store the requested duration of the run for the end record.
+
+        Args:
+            asked: Requested duration [s].
+            since: Host time from which the duration counts [s].
+        """
         self._duration = {"asked": asked, "from": since - self.start}
 
     def end(self, reason: str = "completed") -> None:
-        """Say that the run ends now, and why; the first reason stays."""
+        """Set the time and reason of the run's end; the first call counts."""
         self._ended = self._clock.now()
         if self._reason == "completed":
             self._reason = reason
 
     def judge(self, *, excluded: str, point: Mapping[str, Any]) -> None:
-        """Say what the run is worth; the end record takes it, in one step with all else.
+        """Set the verdict on the run, which is stored in the end record atomically.
 
         Args:
-            excluded: Why it is left out of every calibration; empty where it counts.
-            point: Which point of an experiment it is, and whether it is good.
+            excluded: Why the run is left out of every calibration; empty where it counts.
+            point: Record of the point of an experiment, with whether it was accepted.
         """
         self._excluded, self._point = excluded, point
 
     def require_space(self) -> None:
-        """Check that the disk has room.
+        """Check the free disk space.
 
         Raises:
-            RecordingError: There is less than the limit.
+            RecordingError: It is less than the limit.
         """
         try:
             free = shutil.disk_usage(self._data_dir).free
@@ -281,7 +304,7 @@ class RunRecorder:
         shutil.rmtree(self.folder, ignore_errors=True)
 
     def _fail(self, why: str) -> None:
-        """Keep why nothing is written any more; the first reason stays."""
+        """Store why writing has stopped; the first reason counts."""
         with self._failing:
             if self._failure is None:
                 self._failure = why
@@ -336,7 +359,7 @@ class RunRecorder:
             self._fail(f"{self.folder / LOG_FILE}: {_one_line(error)}")
 
     def _look_on(self) -> None:
-        """Look for the folder and for room; apart from the writer, which a slow disk holds up."""
+        """Check folder and disk space periodically, in a thread that a slow disk does not delay."""
         seen = self._clock.now()
         try:
             while not self._ending.wait(FLUSH_EVERY):
@@ -385,7 +408,7 @@ class RunRecorder:
             self._log.flush()
 
     def _finish(self) -> None:
-        """Close the log and write the end record; what fails becomes its reason."""
+        """Close the log and write the end record; a failure becomes its reason."""
         before = [thread for thread in self._threads if thread is not threading.current_thread()]
         for thread in before:
             thread.join(JOIN_LIMIT)

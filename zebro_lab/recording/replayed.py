@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""`replay:RUN` in place of a device: the streams of a recorded run, at their recorded pace."""
+"""Replay a recorded run in place of a device (`replay:RUN`), at its recorded pace."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -25,13 +25,13 @@ _MARGIN: Final = 1e-3  # so that rounding loses no last sample [s]
 
 @dataclass(frozen=True)
 class Replayed:
-    """Streams of a run that are to be played again.
+    """Streams of a replayed run.
 
     Attributes:
         streams: Each stream, not yet entered.
-        views: How each shows in a log, by its name.
+        views: Converter of each stream to display messages, by the stream's name.
         profile: Name and text of their profile.
-        manifest: Of the run.
+        manifest: Manifest of the run.
         lasts: Time from the first to the last sample [s].
     """
 
@@ -43,12 +43,12 @@ class Replayed:
 
 
 def read_replay(address: str, what: str, *, name: str | None = None) -> Replayed:
-    """Read a run whose streams are to stand in for devices.
+    """Read the streams of a recorded run that replace a device.
 
     Args:
         address: `replay:RUN`, with the run folder.
         what: Kind of device: `legs`, `imu` or `rig`.
-        name: Name of the stream of an IMU; that of the run where it has the same.
+        name: Name of an IMU's stream, which selects the run's stream of the same name, if any.
 
     Returns:
         Its streams. Their source is `replay:RUN`, or `sim:replay:RUN` where it was simulated.
@@ -56,7 +56,7 @@ def read_replay(address: str, what: str, *, name: str | None = None) -> Replayed
     Raises:
         NotFound: There is no such run, or its profile is missing.
         DataError: The run has no such stream, or cannot be read.
-        RigError: Its profile cannot be followed.
+        RigError: Its profile is invalid.
     """
     folder = Path(address.removeprefix(REPLAY))
     manifest = read_manifest(folder)

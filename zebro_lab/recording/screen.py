@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What is seen of a recording: counters on a terminal, silence in a pipe; and how to end it."""
+"""Terminal display of a recording's counters, and the signals and keys that end it."""
 
 import contextlib
 import errno
@@ -31,14 +31,14 @@ _HANGUP: Final = getattr(signal, "SIGHUP", None)
 
 
 class RecordScreen:
-    """A watcher that draws, and hears signals and keys; satisfies `RecordWatcher`.
+    """Live display that also handles signals and keys; satisfies `RecordWatcher`.
 
     Args:
-        live: Where to draw; None draws nothing.
-        keys: Where keys are typed; None where nobody can.
+        live: Display to update; None draws nothing.
+        keys: Input from which keys are read; None without a keyboard.
 
     Attributes:
-        signalled: A signal, or a terminal that was closed, ended the recording.
+        signalled: Whether a signal, or a closed terminal, ended the recording.
     """
 
     def __init__(self, live: Live | None, keys: Any = None) -> None:
@@ -48,11 +48,11 @@ class RecordScreen:
         self._reason: str | None = None
         self._asked = False
         self._drawn = float("-inf")
-        # `nohup` and its kin: whoever ignores hangups wants to outlive the terminal.
+        # Under `nohup` and the like hangups are ignored, so that the run outlives the terminal.
         self._outlives = _HANGUP is not None and signal.getsignal(_HANGUP) == signal.SIG_IGN
 
     def show(self, status: "RecordStatus") -> None:
-        """Draw how the recording is doing; in another thread than the rest."""
+        """Draw the status of the recording; called in a separate thread."""
         if self._live is None or time.monotonic() - self._drawn < DRAW_EVERY:
             return
         try:
@@ -66,16 +66,22 @@ class RecordScreen:
         self._drawn = time.monotonic()
 
     def stop_reason(self) -> str | None:
-        """Say which signal or key asked for the end; None where none did."""
+        """Return the signal or key that requested the end; None without one."""
         typed = self._typed()
         if any(key in STOP_KEYS for key in typed):
             self._reason = self._reason or "key"
         return self._reason
 
     def request_stop(self, number: int, _frame: FrameType | None) -> None:
-        """Note a signal; a second one is obeyed at once, unless it is told of a lost connection.
+        """Handle a signal: the first one ends the recording, a second one ends it at once.
 
-        That is told several times: by the terminal, the shell and the service.
+        Hangups do not count as a second signal: terminal, shell and service each send one.
+
+        Args:
+            number: Number of the signal.
+
+        Raises:
+            KeyboardInterrupt: It is the second signal.
         """
         if number != _HANGUP:
             if self._asked:
@@ -85,12 +91,12 @@ class RecordScreen:
         self._reason = self._reason or signal.Signals(number).name
 
     def close(self) -> bool:
-        """End the drawing; tell whether the terminal took that in time."""
+        """End the display; return whether the terminal accepted the output in time."""
         live, self._live = self._live, None
         return live is None or in_time(live.stop)
 
     def _typed(self) -> bytes:
-        """Take the bytes that were typed, whatever they are; a keyboard that is gone is a stop."""
+        """Return the bytes typed; a disconnected keyboard requests a stop."""
         if self._keys is None:
             return b""
         try:
@@ -114,13 +120,13 @@ class RecordScreen:
 
 @contextmanager
 def record_screen(console: Console) -> Iterator[RecordScreen]:
-    """Watch a recording while the body runs; nothing here waits for the terminal.
+    """Provide the display of a recording, which never blocks on the terminal.
 
     Args:
-        console: Where to draw; nothing is drawn, and no key heard, unless it is a terminal.
+        console: Output; nothing is drawn and no key is read unless it is a terminal.
 
     Yields:
-        The watcher to hand to the stage.
+        The watcher for the stage.
     """
     with contextlib.ExitStack() as stack:
         screen = RecordScreen(None)
@@ -146,7 +152,7 @@ def record_screen(console: Console) -> Iterator[RecordScreen]:
 
 @contextmanager
 def _single_keys() -> Iterator[Any]:
-    """Hear keys without Enter; yields None where stdin is no terminal, and on Windows."""
+    """Read keys without Enter; yields None where stdin is not a terminal, and on Windows."""
     if sys.platform == "win32" or not sys.stdin.isatty():
         yield None
         return

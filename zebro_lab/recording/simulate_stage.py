@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Simulated devices at ports that any program can open."""
+"""Serve simulated devices at ports that any program can open."""
 
 import tempfile
 from collections.abc import Callable, Iterator
@@ -38,7 +38,7 @@ WATCHDOG = 0.2
 
 @dataclass(frozen=True)
 class TwinRequest:
-    """Which device is to be simulated, and what is to go wrong.
+    """Settings of a simulated device and its errors.
 
     Attributes:
         profile: Name or path of its profile.
@@ -46,9 +46,9 @@ class TwinRequest:
         can: Bus `INTERFACE:CHANNEL` for devices on CAN; None for a simulated adapter on a serial
             line, which speaks SLCAN.
         as_socket: Listen on `socket://` in place of a pseudo-terminal.
-        faults: What goes wrong on the line.
-        imperfections: How the robot departs from its gait.
-        seed: Of the randomness.
+        faults: Transmission errors of the line.
+        imperfections: Deviations of the robot from its gait.
+        seed: Seed of the random generator.
     """
 
     profile: str
@@ -65,9 +65,9 @@ class Served:
     """A twin that is being served.
 
     Attributes:
-        source: What it is: `sim:WHAT`.
-        places: Where it can be reached, by what speaks there.
-        address: `PROFILE@PORT` that a driver takes.
+        source: Origin of its data: `sim:WHAT`.
+        places: Port of each part, by the name of the part.
+        address: `PROFILE@PORT` for a driver.
     """
 
     source: str
@@ -77,11 +77,11 @@ class Served:
 
 @contextmanager
 def serve_zebro(request: TwinRequest) -> Iterator[Served]:
-    """Serve a robot for as long as the body runs.
+    """Serve a simulated robot while the context lasts.
 
     Raises:
-        SettingsError: The bus that is named cannot be opened.
-        RigError: Profile or port is not right.
+        SettingsError: The named bus cannot be opened.
+        RigError: The profile or the port is invalid.
     """
     profile = load_leg_profile(request.profile)
     rng = np.random.default_rng(request.seed)
@@ -102,10 +102,10 @@ def serve_zebro(request: TwinRequest) -> Iterator[Served]:
 
 @contextmanager
 def serve_imu(request: TwinRequest) -> Iterator[Served]:
-    """Serve an inertial measurement unit for as long as the body runs.
+    """Serve a simulated inertial measurement unit while the context lasts.
 
     Raises:
-        RigError: Profile or port is not right.
+        RigError: The profile or the port is invalid.
     """
     rng = np.random.default_rng(request.seed)
     twin = SimulatedImu(profile=load_imu_profile(request.profile), faults=request.faults, rng=rng)
@@ -115,12 +115,12 @@ def serve_imu(request: TwinRequest) -> Iterator[Served]:
 
 @contextmanager
 def serve_rig(request: TwinRequest) -> Iterator[Served]:
-    """Serve a slip rig for as long as the body runs.
+    """Serve a simulated slip rig while the context lasts.
 
     Raises:
         SettingsError: The profile has neither a board nor drives, or the bus that is named cannot
             be opened.
-        RigError: Profile or port is not right.
+        RigError: The profile or the port is invalid.
     """
     profile = load_rig_profile(request.profile)
     rng = np.random.default_rng(request.seed)
@@ -153,7 +153,7 @@ def serve_rig(request: TwinRequest) -> Iterator[Served]:
 
 @contextmanager
 def _profile_of_cell(name: str, cell: SimulatedLoadCell) -> Iterator[Path]:
-    """Write the rig's profile with the place of its simulated cell, while the body runs."""
+    """Write a temporary copy of the rig's profile with the address of its simulated cell."""
     document = tomlkit.parse(profile_text(name))
     load_cell = cast("dict[str, object]", document["load_cell"])
     load_cell |= {"host": cell.host, "port": cell.port}
@@ -171,7 +171,7 @@ def _port(twin: ByteTwin, request: TwinRequest) -> Iterator[str]:
 
 @contextmanager
 def _bus(request: TwinRequest, source: str) -> Iterator[tuple[can.BusABC, str]]:
-    """Open the bus that was named, else one with a simulated adapter; yield it and its place."""
+    """Open the named bus, or one with a simulated adapter; yield the bus and its port."""
     if request.can is None:
         with (
             can.Bus(
@@ -198,11 +198,11 @@ def _gait(play: Path | None) -> LegReference:
 def wait_until(
     stop_requested: Callable[[], bool], *, duration: float | None, clock: Clock = SYSTEM_CLOCK
 ) -> None:
-    """Let a twin run until somebody asks to stop, or time is up.
+    """Wait until a stop is requested or a duration has passed.
 
     Args:
-        stop_requested: Tells whether somebody asked.
-        duration: How long at most; None for ever [s].
+        stop_requested: Returns whether a stop is requested.
+        duration: Longest wait; None without limit [s].
         clock: Host time.
     """
     end = clock.now() + (float("inf") if duration is None else duration)

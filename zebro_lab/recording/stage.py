@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Devices in, run folder out."""
+"""Record devices into a run folder: open them, read them in threads, log, show status, end."""
 
 from collections.abc import Mapping
 from contextlib import ExitStack, closing
@@ -26,12 +26,12 @@ from zebro_lab.runs.manifest import RunManifest, read_manifest
 LOOK_EVERY: Final = 0.05
 COUNT_EVERY: Final = 1.0
 FIRST_SAMPLE: Final = 10.0
-"""Longest wait for the first sample of every stream, where a duration is to count from it [s]."""
+"""Timeout for the first sample of every stream, from which a duration counts [s]."""
 
 
 @dataclass(frozen=True)
 class RecordRequest:
-    """What is asked of a recording.
+    """Settings of a recording.
 
     Attributes:
         data: Folder of run folders.
@@ -39,13 +39,13 @@ class RecordRequest:
         zebro: Robot: `PROFILE@PORT`, `PROFILE@sim`, `sim` or `replay:RUN`; None for none.
         imus: Inertial measurement units, the same.
         rig: Slip rig, the same.
-        play: Table or walk folder with leg angles that the robot is to follow.
-        duration: How long to record, from the first sample of the stream that begins last; None
-            until it is stopped, or the played gait or the replayed run ends [s].
+        play: Table or walk folder with leg angles that the robot follows.
+        duration: Duration of the recording, from the first sample of the stream that begins last;
+            None until it is stopped, or the played gait or the replayed run ends [s].
         material: Leg and ground material.
-        operator: Who records.
+        operator: Name of the operator.
         robot: Name of the robot.
-        seed: Of the randomness of simulated devices.
+        seed: Seed of the random generator of simulated devices.
     """
 
     data: Path
@@ -63,13 +63,13 @@ class RecordRequest:
 
 @dataclass(frozen=True)
 class StreamStatus:
-    """How a stream is doing.
+    """Status of a stream.
 
     Attributes:
-        source: Where it comes from.
-        rate: Samples in the last second or so [Hz].
-        counters: What happened so far.
-        dropped: Samples that the recorder dropped.
+        source: Origin of its samples.
+        rate: Sample rate over about the last second [Hz].
+        counters: Counters of the stream so far.
+        dropped: Number of samples that the recorder dropped.
     """
 
     source: str
@@ -80,13 +80,13 @@ class StreamStatus:
 
 @dataclass(frozen=True)
 class RecordStatus:
-    """How a recording is doing.
+    """Status of a recording.
 
     Attributes:
         folder: The run folder.
         elapsed: Time since every stream has sent its first sample [s].
-        duration: How long it is to be; None where nobody knows [s].
-        streams: Each stream, by its name.
+        duration: Planned duration; None where unknown [s].
+        streams: Status of each stream, by its name.
     """
 
     folder: Path
@@ -96,17 +96,17 @@ class RecordStatus:
 
 
 class RecordWatcher(Protocol):
-    """Who looks on, and may end a recording."""
+    """Display of a recording, which can also request its end."""
 
     def show(self, status: RecordStatus) -> None:
-        """Take how it is doing, up to twenty times a second.
+        """Show the status, up to twenty times a second.
 
-        Called in a thread of its own; where it raises or hangs, the recording goes on without it.
+        Called in a separate thread; if it raises or hangs, the recording continues without it.
         """
         ...
 
     def stop_reason(self) -> str | None:
-        """Say why it is to end now; None where it is to go on."""
+        """Return why the recording must end now; None where it continues."""
         ...
 
 
@@ -126,12 +126,20 @@ class Recorded:
 def record(
     request: RecordRequest, watcher: RecordWatcher, *, clock: Clock = SYSTEM_CLOCK
 ) -> Recorded:
-    """Record devices as a run folder.
+    """Record devices into a run folder.
+
+    Args:
+        request: Devices, duration and description of the run.
+        watcher: Shown the status; may end the recording.
+        clock: Host time.
+
+    Returns:
+        The run folder and its manifest.
 
     Raises:
-        SettingsError: No device is named, or what is asked cannot be.
-        RigError: A profile, an address or a port is not right.
-        RecordingError: The run ended early; its folder holds what came before, and the reason.
+        SettingsError: No device is named, or the settings contradict each other.
+        RigError: A profile, an address or a port is invalid.
+        RecordingError: The run ended early; its folder holds what was recorded, and the reason.
     """
     play = None if request.play is None else _played(request.play)
     duration = _duration(request, play)
@@ -160,7 +168,7 @@ def _run(
     duration: float | None,
     clock: Clock,
 ) -> str | None:
-    """Record until something ends it; return what went wrong, if anything."""
+    """Record until the end; return what went wrong, or None."""
     readers: Mapping[str, Acquisition] = {}
     display = Display[RecordStatus](
         watcher.show, give_up=lambda why: recorder.event(why, level=WARNING)
@@ -188,7 +196,7 @@ def _run(
 def _watch(
     board: "_Board", display: Display[RecordStatus], watcher: RecordWatcher, clock: Clock
 ) -> str | None:
-    """Look at everything that can end the recording until something does; return what failed."""
+    """Poll the conditions that end a recording until one holds; return the failure, or None."""
     counted = clock.now()
     while (left := board.left(now := clock.now())) > 0:
         if now - counted >= COUNT_EVERY:
@@ -205,7 +213,7 @@ def _watch(
 
 
 def _summarise(recorder: RunRecorder, readers: Mapping[str, Acquisition]) -> None:
-    """Give the recorder the last counters and the clocks, for the end record."""
+    """Pass the last counters and the clock fits to the recorder, for the end record."""
     clocks = {}
     for name, reader in readers.items():
         recorder.count(name, reader.counters)
@@ -220,7 +228,7 @@ def _summarise(recorder: RunRecorder, readers: Mapping[str, Acquisition]) -> Non
 
 
 class _Board:
-    """Keeps time and the counters of all streams, for the log and for the watcher."""
+    """Timing and counters of all streams, for the log and for the watcher."""
 
     def __init__(
         self,
@@ -238,14 +246,14 @@ class _Board:
         self._began: float | None = None
 
     def left(self, now: float) -> float:
-        """Say how long the recording still is to last, at least [s]."""
+        """Return the least remaining duration of the recording [s]."""
         if self._duration is None:
             return float("inf")
         began = self._first_samples()
         return self._duration if began is None else began + self._duration - now
 
     def problem(self, now: float) -> str | None:
-        """Say what keeps the recording from going on; None where nothing does."""
+        """Return the problem that ends the recording; None without one."""
         problem = self._recorder.failure or _failed(self._readers)
         waited = now - self._recorder.start
         if problem is None and self._duration is not None and waited > FIRST_SAMPLE:
@@ -258,11 +266,11 @@ class _Board:
         return problem
 
     def end(self, reason: str) -> None:
-        """Write down why the recording ends."""
+        """Log why the recording ends."""
         self._recorder.end(reason)
 
     def _first_samples(self) -> float | None:
-        """Return when every stream had sent its first sample, None before, and note it."""
+        """Return the time by which every stream had sent a sample, and log it; None before."""
         firsts = [reader.first for reader in self._readers.values()]
         known = [first for first in firsts if first is not None]
         if self._began is None and len(known) == len(firsts):
@@ -279,7 +287,7 @@ class _Board:
             self._recorder.count(name, reader.counters)
 
     def status(self, now: float) -> RecordStatus:
-        """Say how the recording is doing."""
+        """Return the status of the recording."""
         began, received = self._before
         if now - began >= COUNT_EVERY:
             current = {name: r.counters.received for name, r in self._readers.items()}

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Threads that the system refuses to start, as an error of one line."""
+"""Convert the system's refusal to start a thread to an error of one line."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -9,7 +9,7 @@ from zebro_lab.files.errors import RecordingError
 
 @contextmanager
 def needing_threads() -> Iterator[None]:
-    """Start threads in the body, or say in one line that the system allows no more of them.
+    """Convert a failure to start a thread in the `with` statement to a `RecordingError`.
 
     Raises:
         RecordingError: A thread could not be started.

@@ -50,7 +50,16 @@ class PoseObservation:
     def of(
         cls, photo: str, pose: BodyPose, *, t: float, t_sd: float, score: float, source: str
     ) -> "PoseObservation":
-        """Take what a path needs out of a pose."""
+        """Make an observation of a fitted pose.
+
+        Args:
+            photo: Name of the photograph.
+            pose: The robot's pose with its covariances.
+            t: Time [s].
+            t_sd: Its standard deviation [s].
+            score: Correlation of what was found with what was sought, 1 at best [-].
+            source: "marker", "body" or "hand".
+        """
         shared = pose.camera_covariance[np.ix_(PLANAR, PLANAR)]
         return cls(
             photo, t, t_sd, pose.planar, pose.planar_covariance, shared, float(pose.state[2]),

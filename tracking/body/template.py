@@ -105,7 +105,14 @@ def sample(pixels: NDArray, corners_px: Array) -> NDArray[np.float32]:
 
 
 def pixel_on_top(camera: Camera, view: CameraPose, *, pose: BodyPose, plate: TopPlate) -> float:
-    """Compute how much of the robot's top a pixel shows, as a square's side [m]."""
+    """Compute the size of a photograph's pixel on the robot's top, as a square's side [m].
+
+    Args:
+        camera: The lens.
+        view: Pose of the camera.
+        pose: Pose of the robot.
+        plate: The robot's top.
+    """
     corners_px = _corners_px(camera, view, pose, plate).astype(np.float32)
     return float(np.sqrt(plate.length * plate.width / cv2.contourArea(corners_px)))
 

@@ -78,7 +78,12 @@ class CameraPose:
 
     @classmethod
     def from_matrix(cls, rotation: ArrayLike, translation: ArrayLike) -> "CameraPose":
-        """Make a pose known without error from R, shape (3, 3) [-], and t, shape (3,) [m]."""
+        """Make a camera pose without uncertainty from a rotation matrix.
+
+        Args:
+            rotation: R, world to camera, shape (3, 3) [-].
+            translation: t, shape (3,) [m].
+        """
         vector = np.ravel(cv2.Rodrigues(np.asarray(rotation, dtype=float))[0]).astype(float)
         return cls(vector, np.asarray(translation, dtype=float), np.zeros((6, 6)))
 
@@ -127,7 +132,12 @@ def project_with_derivatives(
 
 
 def undistort(camera: Camera, corners_px: ArrayLike) -> Array:
-    """Compute the pixels a lens without distortion would have given, shape (n, 2) [px]."""
+    """Compute the pixels that a lens without distortion would have given, shape (n, 2) [px].
+
+    Args:
+        camera: The lens.
+        corners_px: Pixels of the photograph, shape (n, 2) [px].
+    """
     pixels = np.ascontiguousarray(corners_px, dtype=float).reshape(-1, 1, 2)
     straight = cv2.undistortPoints(pixels, camera.matrix, camera.distortion, P=camera.matrix)
     return np.asarray(straight, dtype=float).reshape(-1, 2)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Places where an exposure may be: beside another, or where the last step leads."""
+"""Candidate poses of exposures: a step from another exposure, or where the last step leads."""
 
 import numpy as np
 
@@ -26,12 +26,12 @@ _NEAR, _NEAR_TURN = 0.3, np.radians(16.0)
 
 
 def beside(pose: Array, length: float, *, spacing: float) -> Array:
-    """List places a step ahead of a pose and behind it.
+    """Make a grid of candidate poses one step ahead of a pose and behind it.
 
     Args:
         pose: x, y [m] and yaw [rad], shape (3,).
         length: Length of the robot [m].
-        spacing: Distance between places [m].
+        spacing: Distance between candidates [m].
 
     Returns:
         Poses, shape (n, 3).
@@ -49,7 +49,15 @@ def beside(pose: Array, length: float, *, spacing: float) -> Array:
 
 
 def nearby(pose: Array, length: float) -> Array:
-    """List places around where an exposure is expected, shape (n, 3)."""
+    """Make a grid of candidate poses around an expected one.
+
+    Args:
+        pose: Expected x, y [m] and yaw [rad], shape (3,).
+        length: Length of the robot [m]; the grid spans a fixed share of it.
+
+    Returns:
+        Poses, shape (n, 3).
+    """
     side = np.linspace(-_NEARBY, _NEARBY, 7) * length
     dx, dy = (part.ravel() for part in np.meshgrid(side, side))
     return np.concatenate([
@@ -81,7 +89,12 @@ def headed(pose: Array, poses: Array, *, square: bool) -> Array:
 
 
 def are_apart(poses: Array, length: float) -> bool:
-    """Tell whether no two exposures of a robot so long, shape (n, 3), are one."""
+    """Return whether all exposures are at least `LEAST_STEP` lengths of the robot apart.
+
+    Args:
+        poses: x, y [m] and yaw [rad], shape (n, 3).
+        length: Length of the robot [m].
+    """
     return all(
         distances(poses[k + 1 :], pose).min() >= LEAST_STEP * length
         for k, pose in enumerate(poses[:-1])
@@ -89,7 +102,13 @@ def are_apart(poses: Array, length: float) -> bool:
 
 
 def is_near(pose: Array, expected: Array, length: float) -> bool:
-    """Tell whether a pose is about where it was expected."""
+    """Return whether position and heading of a pose are close to those expected.
+
+    Args:
+        pose: x, y [m] and yaw [rad], shape (3,).
+        expected: Expected pose, shape (3,).
+        length: Length of the robot [m]; the tolerance of position is a share of it.
+    """
     turned = abs(float(np.angle(np.exp(1j * (pose[2] - expected[2])))))
     return bool(distances(pose[None], expected)[0] < _NEAR * length and turned < _NEAR_TURN)
 

@@ -17,7 +17,15 @@ _STEP_SD, _TURN_SD = 0.1, np.radians(4.0)
 
 
 def step_between(before: Array, after: Array) -> Array:
-    """Compute the step between two poses x, y [m], yaw [rad], each of shape (3,)."""
+    """Compute the step between two poses, in the frame of their mean heading.
+
+    Args:
+        before: x, y [m] and yaw [rad], shape (3,).
+        after: The same after the step, shape (3,).
+
+    Returns:
+        Forward, left [m] and turn [rad], shape (3,).
+    """
     turn = float(np.angle(np.exp(1j * (after[2] - before[2]))))
     c, s = np.cos(before[2] + turn / 2), np.sin(before[2] + turn / 2)
     dx, dy = after[:2] - before[:2]
@@ -25,7 +33,12 @@ def step_between(before: Array, after: Array) -> Array:
 
 
 def stepped(pose: Array, step: Array) -> Array:
-    """Compute the pose after a step."""
+    """Compute the pose after a step; inverse of `step_between`.
+
+    Args:
+        pose: x, y [m] and yaw [rad], shape (3,).
+        step: Forward, left [m] and turn [rad], shape (3,).
+    """
     forward, left, turn = step
     c, s = np.cos(pose[2] + turn / 2), np.sin(pose[2] + turn / 2)
     return np.array(
@@ -34,12 +47,22 @@ def stepped(pose: Array, step: Array) -> Array:
 
 
 def stepped_back(pose: Array, step: Array) -> Array:
-    """Compute the pose before a step."""
+    """Compute the pose before a step.
+
+    Args:
+        pose: x, y [m] and yaw [rad] after the step, shape (3,).
+        step: Forward, left [m] and turn [rad], shape (3,).
+    """
     return stepped(pose, -step)
 
 
 def continued(before: Array, after: Array) -> Array:
-    """Compute the pose after two, by the same step again."""
+    """Extrapolate the pose after two others by the same step.
+
+    Args:
+        before: x, y [m] and yaw [rad], shape (3,).
+        after: The next pose, shape (3,).
+    """
     return stepped(after, step_between(before, after))
 
 
@@ -85,7 +108,12 @@ def unsteadiness(poses: Array) -> float:
 
 
 def distances(poses: Array, pose: Array) -> Array:
-    """Compute how far poses, shape (n, 3), are from one [m]."""
+    """Compute the Euclidean distances of poses from one, shape (n,) [m].
+
+    Args:
+        poses: x, y [m] and yaw [rad], shape (n, 3).
+        pose: The other pose, shape (3,).
+    """
     return np.hypot(*(np.asarray(poses)[:, :2] - pose[:2]).T)
 
 

@@ -97,7 +97,12 @@ class ColourDensity:
 
     @classmethod
     def of(cls, colours: NDArray[np.float32], *, blur: float) -> "ColourDensity":
-        """Count colours, shape (n, 3); blurred by so many of 32 levels."""
+        """Estimate the density of colours by a blurred histogram.
+
+        Args:
+            colours: BGR samples, shape (n, 3) [grey levels].
+            blur: Standard deviation of the Gaussian blur [bins, of 32 a channel].
+        """
         counts, _ = np.histogramdd(colours, bins=(_LEVELS,) * 3, range=[(0, 256)] * 3)
         known = gaussian_filter(counts, blur) / max(len(colours), 1) / (256 / _LEVELS) ** 3
         return cls((1 - _RARE) * known + _RARE / 256**3)

@@ -209,7 +209,17 @@ class DarkestSearch(PictureRaster):
         return poses
 
     def best_of(self, tried: Array, look: TopColours, cover: Cover, *, most: int) -> list[Array]:
-        """Improve the best of many places; return those that hold, the best first."""
+        """Improve the likeliest of many candidate poses by local search.
+
+        Args:
+            tried: Candidate poses, shape (n, 3) [m, m, rad].
+            look: Colours of the robot's top.
+            cover: The exposures that are known already.
+            most: Most candidates to improve.
+
+        Returns:
+            Improved poses whose log odds are at least `LEAST_ODDS`, the likeliest first.
+        """
         odds = self.odds(tried, look.thinned(), cover, self.body.thinned())
         starts = apart(tried, odds, 0.19 * self.length, most=most)
 
@@ -224,7 +234,12 @@ class DarkestSearch(PictureRaster):
         return [found[k] for k in order if held[k] >= LEAST_ODDS]
 
     def longest(self, anchor: Array, chain: Chain) -> Chain:
-        """Fit a chain and lengthen it at both ends while the picture gets likelier."""
+        """Fit a chain and lengthen it at either end while the likelihood of the picture rises.
+
+        Args:
+            anchor: Pose of the known exposure, shape (3,) [m, m, rad].
+            chain: Chain to start from.
+        """
         chain = self.fitted(anchor, chain)
         worth = self.worth(chain.poses(anchor))
         while chain.ahead + chain.behind < MOST_EXPOSURES:
@@ -236,7 +251,12 @@ class DarkestSearch(PictureRaster):
         return chain
 
     def fitted(self, anchor: Array, chain: Chain) -> Chain:
-        """Choose the step of a chain by the likelihood of the picture."""
+        """Fit the step of a chain by maximum likelihood of the picture.
+
+        Args:
+            anchor: Pose of the known exposure, shape (3,) [m, m, rad].
+            chain: Chain to start from; the numbers of exposures are kept.
+        """
 
         def value(step: Array) -> float:
             return self.value(Chain(step, chain.ahead, chain.behind).poses(anchor))
@@ -252,10 +272,20 @@ class DarkestSearch(PictureRaster):
         return poses[self.own_odds(poses) >= LEAST_ODDS]
 
     def settled(self, poses: Array, k: int, step: float, order: list[int]) -> Array:
-        """TopColours for a better place of one exposure around its own, and improve the best.
+        """Refine the pose of one exposure, with the others fixed.
 
-        Sides and legs of one darken the tops of others, and look like a rim a little off its
-        place: steps that differ from their neighbours are held against a place, too.
+        The rim of the robot a little off its place looks like the robot, since sides and legs of
+        one exposure darken the tops of others. Therefore steps that differ from their neighbours
+        are penalised.
+
+        Args:
+            poses: All exposures, shape (n, 3) [m, m, rad].
+            k: Index of the exposure to refine.
+            step: Usual distance between exposures [m].
+            order: Indices of the exposures in order of the walk.
+
+        Returns:
+            All exposures with the refined one, shape (n, 3).
         """
         look = self.look(poses)
         cover = self.cover(np.delete(poses, k, axis=0), look)
@@ -291,7 +321,12 @@ class DarkestSearch(PictureRaster):
         return TopColours(own.astype(np.float32), brightest.astype(np.float32))
 
     def cover(self, poses: Array, look: TopColours) -> Cover:
-        """Lay exposures over each other."""
+        """Compute the darkest of several exposures at every point of the raster.
+
+        Args:
+            poses: The exposures, shape (n, 3) [m, m, rad].
+            look: Colours of the robot's top.
+        """
         own, brightest = (np.full_like(self.picture, _OPEN) for _ in range(2))
         for pose in poses:
             for layer, values in ((own, look.own), (brightest, look.brightest)):
@@ -305,9 +340,16 @@ class DarkestSearch(PictureRaster):
         return Cover(own, brightest, log_density)
 
     def shown(self, poses: Array, k: int) -> NDArray[np.bool_]:
-        """Mark the points at which an exposure is the darkest and looks as the first one does.
+        """Compute the mask of points at which an exposure is the darkest and has its colour.
 
-        Points of the first that others darken are left out: they are not its own.
+        Points of the first exposure that others darken are left out: their colours are not its own.
+
+        Args:
+            poses: All exposures, the first one known, shape (n, 3) [m, m, rad].
+            k: Index of the exposure.
+
+        Returns:
+            Mask on the picture's raster, shape (rows, columns).
         """
         look = self.look(poses)
         others = self.cover(np.delete(poses, k, axis=0), look).brightest
@@ -320,7 +362,15 @@ class DarkestSearch(PictureRaster):
         return same & (clear > 0.9) & darkest & self.used
 
     def clear(self, poses: Array, look: TopColours) -> NDArray[np.float32]:
-        """Mark the points of the robot that the first exposure shows as they are."""
+        """Compute the mask of points of the robot at which the known exposure is the darkest.
+
+        Args:
+            poses: All exposures, the first one known, shape (n, 3) [m, m, rad].
+            look: Colours of the robot's top.
+
+        Returns:
+            1 where it is the darkest, else 0, on the robot's raster.
+        """
         others = self.cover(poses[1:], look).brightest
         around = self.body.read(others, self.plane, poses[0])
         return np.asarray((look.own <= around + _CLAIM).all(axis=-1), dtype=np.float32)
@@ -337,7 +387,12 @@ class DarkestSearch(PictureRaster):
         return float(gain.sum()) / self.body.x.size
 
     def part(self, rows: slice, columns: slice) -> "DarkestSearch":
-        """Cut a part out; the floor and the colours of dark things are those of the whole."""
+        """Crop the raster; the models of the floor's and of dark colours stay those of the whole.
+
+        Args:
+            rows: Rows to keep.
+            columns: Columns to keep.
+        """
         window = (rows, columns)
         part = replace(
             self, plane=self.plane.part(rows, columns),
@@ -348,7 +403,17 @@ class DarkestSearch(PictureRaster):
         return part
 
     def odds(self, poses: Array, look: TopColours, cover: Cover, body: BodyRaster) -> Array:
-        """Compute the log odds of exposures, mean over what each claims; -inf where too little."""
+        """Compute the log odds of one more exposure, mean over the points that it claims.
+
+        Args:
+            poses: Candidate poses, shape (n, 3) [m, m, rad].
+            look: Colours of the robot's top, on the points of `body`.
+            cover: The exposures that are known already.
+            body: Points of the robot's top to compare.
+
+        Returns:
+            Log odds, shape (n,) [-]; -inf where too little is claimed or inside the picture.
+        """
         gain, claim, inside = self.gains(poses, look, cover, body)
         enough = (claim >= LEAST_CLAIM) & (inside >= _LEAST_SEEN)
         return np.where(enough, gain / np.maximum(claim, LEAST_CLAIM), -np.inf)
@@ -356,11 +421,17 @@ class DarkestSearch(PictureRaster):
     def gains(
         self, poses: Array, look: TopColours, cover: Cover, body: BodyRaster
     ) -> tuple[Array, Array, Array]:
-        """Compute what one exposure more would change, for each of many places, shape (n,).
+        """Compute by how much one more exposure raises the log density, for each of many poses.
+
+        Args:
+            poses: Candidate poses, shape (n, 3) [m, m, rad].
+            look: Colours of the robot's top, on the points of `body`.
+            cover: The exposures that are known already.
+            body: Points of the robot's top to compare.
 
         Returns:
             Gain of log density, mean over the exposure's points; shares of them that it claims,
-            and that are in the picture.
+            and that are in the picture. Each of shape (n,) [-].
         """
         place = body.on(self.plane, poses)
         inside = sample(self.used.astype(np.float32), place) > 0.9
@@ -381,7 +452,17 @@ class DarkestSearch(PictureRaster):
         seen: NDArray[np.float32], own: NDArray[np.float32], brightest: NDArray[np.float32],
         dark_things: Array,
     ) -> Array:  # fmt: skip
-        """Compute how likely colours are where exposures should look like this."""
+        """Compute the log density of colours at points that exposures cover.
+
+        Args:
+            seen: Colours of the picture, shape (..., 3) [grey levels].
+            own: Colours there by the known exposure, shape (..., 3).
+            brightest: Colours there by the brightest of all exposures, shape (..., 3).
+            dark_things: Density of the colours that are not the floor's, shape (...).
+
+        Returns:
+            Log density, shape (...).
+        """
         shows = _OWN_LOOK * robot_density(seen - own)
         shows += (1 - _OWN_LOOK) * robot_density(seen - brightest)
         beyond = np.clip((seen - brightest).max(axis=-1) / NOISE - 1.0, 0.0, 3.5)

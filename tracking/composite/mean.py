@@ -176,7 +176,15 @@ class MeanSearch(PictureRaster):
         return poses
 
     def next_of(self, matches: Sequence[Match], poses: Array) -> Array | None:
-        """Take the best match beside an exposure or, where steps are long, the nearest beyond."""
+        """Choose the next exposure: the best match a step away, or the nearest farther one.
+
+        Args:
+            matches: Matches, best first.
+            poses: Known exposures, shape (n, 3) [m, m, rad].
+
+        Returns:
+            Pose, shape (3,), or None. Farther matches count only where steps are long.
+        """
         beside = next((match for match in matches if self.is_beside(match, poses)), None)
         if beside is not None:
             return self.turned(beside, poses)
@@ -187,7 +195,15 @@ class MeanSearch(PictureRaster):
         return headed(nearest, poses, square=self.is_square)
 
     def turned(self, match: Match, poses: Array) -> Array:
-        """Turn the place of a match by the walk where no exposure beside it has its heading."""
+        """Correct the heading of a match by the walk where no exposure beside it has its heading.
+
+        Args:
+            match: The match.
+            poses: Known exposures, shape (n, 3) [m, m, rad].
+
+        Returns:
+            Pose of the match, shape (3,) [m, m, rad].
+        """
         if self.follows(match.planar, poses):
             return match.planar
         return headed(match.planar, poses, square=self.is_square)
@@ -199,29 +215,59 @@ class MeanSearch(PictureRaster):
         return abs(rows - columns) < 0.2 * max(rows, columns)
 
     def matches(self, change: NDArray[np.float32], robot: NDArray[np.float32]) -> list[Match]:
-        """Turn the robot's picture and compare; best first."""
+        """Match the robot's picture at all headings (normalised cross-correlation).
+
+        Args:
+            change: Difference from the floor, or its detail, shape (rows, columns, 3).
+            robot: The robot's picture, on the robot's raster.
+
+        Returns:
+            Matches, best first.
+        """
         template = self.body.template(robot, self.height)
         return match_whole(change, self.plane, template=template, least=_LEAST_MATCH)
 
     def is_beside(self, match: Match, poses: Array) -> bool:
-        """Tell whether a match follows an exposure; a clear one may be the wrong way round."""
+        """Return whether a match is one step from a known exposure.
+
+        The heading of a clear match is corrected first, since it may be turned by a half.
+
+        Args:
+            match: The match.
+            poses: Known exposures, shape (n, 3) [m, m, rad].
+        """
         pose = self.turned(match, poses) if match.score >= LONELY_SCORE else match.planar
         return self.follows(pose, poses)
 
     def follows(self, pose: Array, poses: Array) -> bool:
-        """Tell whether a pose is a step from another exposure, with nearly its heading."""
+        """Return whether a pose is a step from another exposure, with nearly its heading.
+
+        Args:
+            pose: x, y [m] and yaw [rad], shape (3,).
+            poses: Known exposures, shape (n, 3).
+        """
         away = distances(poses, pose)
         near = away < REACH * self.length
         ahead = np.cos(poses[near, 2] - pose[2]) > np.cos(_TURN)
         return bool(ahead.any() and away.min() > LEAST_STEP * self.length)
 
     def is_alone(self, match: Match, poses: Array) -> bool:
-        """Tell whether a match is clear, and farther than a step from all exposures."""
+        """Return whether a match is clear and farther than a step from all exposures.
+
+        Args:
+            match: The match.
+            poses: Known exposures, shape (n, 3) [m, m, rad].
+        """
         away = distances(poses, match.planar).min()
         return match.score >= LONELY_SCORE and bool(away > REACH * self.length)
 
     def is_new(self, match: Match, poses: Array) -> bool:
-        """Tell whether a match may be one exposure more."""
+        """Return whether a match may be a further exposure (`is_beside` or `is_alone`).
+
+        Args:
+            match: The match.
+            poses: Known exposures, shape (n, 3) [m, m, rad].
+        """
         return self.is_beside(match, poses) or self.is_alone(match, poses)
 
     def varied(self, fit: Fit) -> list[Array]:
@@ -241,7 +287,12 @@ class MeanSearch(PictureRaster):
         return [poses for poses in sets if are_apart(poses, self.length)]
 
     def fitted(self, poses: Array, *, rounds: int) -> Fit:
-        """Improve exposures and the robot's picture in turn."""
+        """Fit poses and the robot's picture by alternating least squares and local search.
+
+        Args:
+            poses: Poses to start from, the known one first, shape (n, 3) [m, m, rad].
+            rounds: Number of alternations.
+        """
         poses = poses.copy()
         robot = self.robot_at(poses, self.detail)
         scores, strengths = self.improve(poses, robot)
@@ -254,7 +305,15 @@ class MeanSearch(PictureRaster):
         return Fit(poses, robot, scores, strengths, explained, WORTH * own / self.power)
 
     def improve(self, poses: Array, robot: NDArray[np.float32]) -> tuple[Array, Array]:
-        """Improve all poses but the first in place; return scores and strengths, (n,) each."""
+        """Improve all poses but the first, in place, each on the residual of the others.
+
+        Args:
+            poses: Exposures, shape (n, 3) [m, m, rad]; changed.
+            robot: The robot's picture, on the robot's raster.
+
+        Returns:
+            Correlations and relative strengths, shape (n,) each [-]; 1 for the first.
+        """
         left = self.detail - self.sum_of(poses, robot)
         scores, strengths = np.ones(len(poses)), np.ones(len(poses))
         for k in range(1, len(poses)):
@@ -270,7 +329,13 @@ class MeanSearch(PictureRaster):
     def refined(
         self, change: NDArray[np.float32], robot: NDArray[np.float32], pose: Array
     ) -> Array:
-        """Improve a pose by the correlation with the robot's picture."""
+        """Improve a pose by maximising the correlation with the robot's picture.
+
+        Args:
+            change: Picture to compare with, shape (rows, columns, 3).
+            robot: The robot's picture, on the robot's raster.
+            pose: Pose to start from, shape (3,) [m, m, rad].
+        """
         return improved(
             lambda place: self.likeness(change, robot, place)[0], pose, reach=CLIMB, tries=120
         )[0]
@@ -278,7 +343,16 @@ class MeanSearch(PictureRaster):
     def likeness(
         self, change: NDArray[np.float32], robot: NDArray[np.float32], pose: Array
     ) -> tuple[float, float]:
-        """Compute the correlation with the robot's picture, and how strong it is there."""
+        """Compute correlation and regression coefficient of the picture on the robot's picture.
+
+        Args:
+            change: Picture to compare with, shape (rows, columns, 3).
+            robot: The robot's picture, on the robot's raster.
+            pose: x, y [m] and yaw [rad], shape (3,).
+
+        Returns:
+            Correlation and coefficient ("strength") [-].
+        """
         seen = self.body.read(change, self.plane, pose)[self.body.body]
         own = robot[self.body.body]
         seen, own = seen - seen.mean(axis=(0, 1)), own - own.mean(axis=(0, 1))
@@ -287,7 +361,15 @@ class MeanSearch(PictureRaster):
         return cross / np.sqrt(max(power * spread, 1e-9)), cross / max(power, 1e-9)
 
     def sum_of(self, poses: Array, robot: NDArray[np.float32]) -> NDArray[np.float32]:
-        """Lay the robot's picture at all poses, (rows, columns, 3)."""
+        """Compute the sum of the robot's picture at all poses.
+
+        Args:
+            poses: Exposures, shape (n, 3) [m, m, rad].
+            robot: The robot's picture, on the robot's raster.
+
+        Returns:
+            Sum on the picture's raster, shape (rows, columns, 3).
+        """
         total = np.zeros_like(self.change)
         for pose in poses:
             window, laid = self.body.laid(robot, self.plane, pose)
@@ -295,11 +377,18 @@ class MeanSearch(PictureRaster):
         return total
 
     def robot_at(self, poses: Array, change: NDArray[np.float32]) -> NDArray[np.float32]:
-        """Solve for the robot's picture of which the sum at poses is the change, or its detail.
+        """Solve for the robot's picture whose sum at all poses is nearest to the change.
 
-        Least squares; what no exposure tells apart is held near zero. Where exposures repeat by a
-        step, a pattern that alternates by it is told by the two ends of the walk alone, which is
-        why the mean of what is seen at all poses does not do.
+        Damped least squares by conjugate gradients. What the exposures do not determine is held
+        near zero. The mean of the colours at all poses is not enough: where exposures repeat by a
+        steady step, a pattern that alternates with it shows only at the two ends of the walk.
+
+        Args:
+            poses: Exposures, shape (n, 3) [m, m, rad].
+            change: Difference from the floor, or its detail, shape (rows, columns, 3).
+
+        Returns:
+            The robot's picture, on the robot's raster, with 3 channels.
         """
         seen = np.mean([self.body.read(change, self.plane, pose) for pose in poses], axis=0)
         if len(poses) == 1:

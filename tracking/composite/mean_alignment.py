@@ -108,7 +108,13 @@ class MeanReading:
 def floor_pattern(
     picture: KnownExposure, weighed: NDArray[np.float32], poses: Array
 ) -> FloorPattern:
-    """Judge the floor's pattern by what is far from all exposures."""
+    """Fit the pattern of the floor to the pixels far from all exposures.
+
+    Args:
+        picture: The picture and the known exposure.
+        weighed: The picture in whitened colours, shape (height, width, 3).
+        poses: The exposures, shape (n, 3) [m, m, rad].
+    """
     floor = ~picture.hidden
     for pose in poses:
         floor &= ~picture.box.hidden(picture.level(pose), left=_FLOOR_LEFT)
@@ -185,7 +191,15 @@ class MeanAlignment:
         ]
 
     def aligned(self, poses: Array, templates: Sequence[BodyTemplate]) -> list[Alignment | None]:
-        """Align each with its template; None of what goes astray."""
+        """Align each exposure with its template.
+
+        Args:
+            poses: Poses to start from, shape (n, 3) [m, m, rad].
+            templates: One template for each.
+
+        Returns:
+            Alignments; None where one diverges.
+        """
         pairs = zip(poses, self.alones, templates, strict=True)
         if self.pattern is None:
             return [self.edges_aligned(*each) for each in pairs]
@@ -194,7 +208,16 @@ class MeanAlignment:
     def edges_aligned(
         self, pose: Array, alone: NDArray[np.float32], template: BodyTemplate
     ) -> Alignment | None:
-        """Align the edges of one exposure."""
+        """Align one exposure by its edges.
+
+        Args:
+            pose: Pose to start from, shape (3,) [m, m, rad].
+            alone: What the others leave of the picture, shape (height, width, 3).
+            template: Template of the robot.
+
+        Returns:
+            The alignment, or None where it diverges.
+        """
         return self.picture.aligned(
             pose, alone, template, ~self.picture.hidden, least=LEAST_FAINT_SCORE,
             shines_through=True,
@@ -203,7 +226,17 @@ class MeanAlignment:
     def pattern_aligned(
         self, pose: Array, alone: NDArray[np.float32], template: BodyTemplate, pattern: FloorPattern
     ) -> Alignment | None:
-        """Align what the floor does not foretell of one exposure."""
+        """Align one exposure by what the floor's pattern does not predict.
+
+        Args:
+            pose: Pose to start from, shape (3,) [m, m, rad].
+            alone: What the others leave of the picture, shape (height, width, 3).
+            template: Template of the robot.
+            pattern: Pattern of the floor.
+
+        Returns:
+            The alignment, or None where it diverges.
+        """
         found = PatternAlignment(self.picture, alone, template, pattern, pose).solved()
         astray = found is None or self.picture.is_astray(found, pose, LEAST_NEW_SCORE)
         return None if astray else found
@@ -214,9 +247,13 @@ class MeanAlignment:
         return LEAST_CLEAR_SCORE if self.pattern is None else LEAST_NEW_SCORE
 
     def others_templates(self, poses: Array, plate: TopPlate) -> list[BodyTemplate]:
-        """Cut a part of the robot out of all exposures; for each take the mean of the others.
+        """Make a template for each exposure: the mean of all the others (leave-one-out).
 
-        The mean of all would hold an exposure where it is, and look like it.
+        A mean over all would contain the exposure itself and bias its alignment to where it starts.
+
+        Args:
+            poses: The exposures, shape (n, 3) [m, m, rad].
+            plate: Part of the robot's top to cut out.
         """
         picture = self.picture
         most = MOST_POINTS if self.pattern is None else _EVERY_PIXEL
@@ -266,7 +303,14 @@ class MeanAlignment:
     def clear_or_rough(
         self, alignment: Alignment | None, pose: Array, slip: float, lever: float
     ) -> Alignment:
-        """Take an alignment where it is clear, else the place on the raster."""
+        """Return the alignment, with others' error added, if it is clear, else the raster's pose.
+
+        Args:
+            alignment: The alignment, or None where it failed.
+            pose: Pose on the raster, shape (3,) [m, m, rad].
+            slip: Standard deviation of position at equal power, in lengths of the robot [-].
+            lever: Lever arm that converts it to heading, in lengths of the robot [-].
+        """
         if alignment is None or alignment.score < self.least_clear:
             return self.picture.rough(pose)
         return self.picture.widened(alignment, slip, lever=lever)

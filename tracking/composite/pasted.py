@@ -106,7 +106,12 @@ class PastedSearch(PictureRaster):
         return np.array([each.pose for each in kept]), sum(each.gain for each in kept)
 
     def whole(self, pose: Array, robot: NDArray[np.float32]) -> float:
-        """Compute the gain of an exposure that no other hides."""
+        """Compute the log odds of an exposure that no other hides.
+
+        Args:
+            pose: x, y [m] and yaw [rad], shape (3,).
+            robot: Colours of the robot's top, on the robot's raster.
+        """
         shown = self.used.astype(np.float32)
         return float(self.gains(pose[None], robot, shown, self.body)[0][0])
 
@@ -116,7 +121,15 @@ class PastedSearch(PictureRaster):
         return match_whole(self.picture, self.plane, template=template, least=_LEAST_MATCH)
 
     def stack_under(self, top: Pasted, found: Sequence[Pasted]) -> list[Pasted]:
-        """Add an exposure that shows whole, those that it hides on either side, and so on."""
+        """Add an exposure that shows whole and the chains of exposures below it, on both sides.
+
+        Args:
+            top: The exposure that shows whole.
+            found: Known exposures.
+
+        Returns:
+            Known and new exposures; those on top before those below.
+        """
         found = [*found, top]
         one_side = self.chain_under(top, found)
         if not one_side:
@@ -127,9 +140,13 @@ class PastedSearch(PictureRaster):
     def chain_under(
         self, above: Pasted, found: Sequence[Pasted], *, opposite: Array | None = None
     ) -> list[Pasted]:
-        """Find the exposure that another hides, the one that this hides, and so on.
+        """Find the exposure that another partly hides, then the one that this hides, and so on.
 
-        With a pose given the first of them is on the other side of the one above.
+        Args:
+            above: Exposure to start from.
+            found: Known exposures.
+            opposite: Pose, shape (3,) [m, m, rad]. If given, the first exposure found lies on the
+                other side of `above`.
         """
         chain: list[Pasted] = []
         places = beside(above.pose, self.length, spacing=self.length / 20)
@@ -178,7 +195,13 @@ class PastedSearch(PictureRaster):
         return hidden
 
     def under(self, above: Pasted, found: Sequence[Pasted], places: Array) -> Pasted | None:
-        """Find the likeliest exposure beside another, under all that are known."""
+        """Find the likeliest exposure below all known ones, beside one of them.
+
+        Args:
+            above: The exposure beside which to search.
+            found: Known exposures.
+            places: Candidate poses, shape (n, 3) [m, m, rad].
+        """
         visible = self.visible(found)
         shown = visible.astype(np.float32)
         gains, _ = self.gains(places, above.look[1::2, 1::2], shown, self.body.thinned())
@@ -190,7 +213,17 @@ class PastedSearch(PictureRaster):
         self, starts: Sequence[Array], found: Sequence[Pasted], look: NDArray[np.float32],
         visible: NDArray[np.bool_],
     ) -> Pasted | None:  # fmt: skip
-        """Improve places; return the best that holds."""
+        """Improve candidate poses by local search.
+
+        Args:
+            starts: Candidate poses, shape (3,) each [m, m, rad].
+            found: Known exposures.
+            look: Colours expected of the robot's top, on the robot's raster.
+            visible: Mask of points that no known exposure hides, shape (rows, columns).
+
+        Returns:
+            The likeliest that is accepted (`holds`), or None.
+        """
         shown = visible.astype(np.float32)
 
         def gain(pose: Array) -> float:
@@ -207,7 +240,16 @@ class PastedSearch(PictureRaster):
     def seen_again(
         self, pose: Array, look: NDArray[np.float32], shown: NDArray[np.float32]
     ) -> NDArray[np.float32]:
-        """Take how an exposure looks in its own light; as expected where others are on it."""
+        """Update the colours of the robot's top at the points where an exposure is visible.
+
+        Args:
+            pose: x, y [m] and yaw [rad] of the exposure, shape (3,).
+            look: Colours expected, on the robot's raster.
+            shown: 1 where no other exposure hides the picture, shape (rows, columns).
+
+        Returns:
+            Colours seen where they agree with those expected, else those expected.
+        """
         place = self.body.on(self.plane, pose[None])[0]
         seen, visible = sample(self.picture, place), sample(shown, place) > 0.9
         same = visible & (((seen - look) ** 2).sum(axis=-1) < _FAR**2 * NOISE**2)
@@ -217,23 +259,45 @@ class PastedSearch(PictureRaster):
         self, pose: Array, found: Sequence[Pasted], look: NDArray[np.float32],
         shown: NDArray[np.float32],
     ) -> bool:  # fmt: skip
-        """Tell whether a place is likely enough to be an exposure, and none that is known."""
+        """Return whether a pose is likely enough and apart from all known exposures.
+
+        Args:
+            pose: x, y [m] and yaw [rad], shape (3,).
+            found: Known exposures.
+            look: Colours expected, on the robot's raster.
+            shown: 1 where no known exposure hides the picture, shape (rows, columns).
+        """
         (gain,), (share,) = self.gains(pose[None], look, shown, self.body)
         likely = gain >= LEAST_GAIN and gain >= LEAST_ODDS * share
         return bool(likely and self.are_new(pose[None], found).all())
 
     def are_new(self, tried: Array, found: Sequence[Pasted]) -> NDArray[np.bool_]:
-        """Tell which places are not those of known exposures."""
+        """Return which poses are apart from all known exposures.
+
+        Args:
+            tried: Candidate poses, shape (n, 3) [m, m, rad].
+            found: Known exposures.
+
+        Returns:
+            Mask, shape (n,).
+        """
         away = np.min([distances(tried, each.pose) for each in found], axis=0)
         return away > LEAST_STEP * self.length
 
     def gains(
         self, poses: Array, robot: NDArray[np.float32], shown: NDArray[np.float32], body: BodyRaster
     ) -> tuple[Array, Array]:
-        """Compare the robot with the picture's own colours, for places (n, 3).
+        """Compute the log odds of the robot against the picture's own colours, at many poses.
+
+        Args:
+            poses: Candidate poses, shape (n, 3) [m, m, rad].
+            robot: Colours of the robot's top, on the points of `body`.
+            shown: 1 where no known exposure hides the picture, shape (rows, columns).
+            body: Points of the robot's top to compare.
 
         Returns:
-            Log odds, mean over all points of its top, and the share of these that is visible.
+            Log odds, mean over all points of its top, and the share of these that is visible; each
+            of shape (n,) [-].
         """
         place = body.on(self.plane, poses)
         seen, usual = sample(self.picture, place), sample(self.usual, place)

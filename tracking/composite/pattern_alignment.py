@@ -160,7 +160,16 @@ class PatternAlignment:
         return sample(self.template.colours, (front_left - body)[..., ::-1] / self.template.step)
 
     def slopes(self, drawn: NDArray[np.float32], body: Array, pose: Array) -> Array:
-        """Compute how the drawn picture changes with state and camera, (rows, columns, 3, 12)."""
+        """Compute the Jacobian of the drawn picture with respect to state and camera pose.
+
+        Args:
+            drawn: The drawn picture, shape (rows, columns, 3).
+            body: x, y of its pixels in the body frame, shape (rows, columns, 2) [m].
+            pose: x, y [m] and yaw [rad], shape (3,).
+
+        Returns:
+            Jacobian, shape (rows, columns, 3, 12).
+        """
         state = self.picture.level(pose)
         points = np.concatenate(
             (body, np.full((*body.shape[:2], 1), self.picture.plate.height)), axis=2
@@ -176,7 +185,12 @@ class PatternAlignment:
         return -slope @ moved.reshape(*body.shape[:2], 2, 12)
 
     def concluded(self, pose: Array, look: PatternResidual) -> Alignment:
-        """Put the pose and its covariance together."""
+        """Make the alignment: the pose with its covariance, from the residual's Jacobian.
+
+        Args:
+            pose: x, y [m] and yaw [rad], shape (3,).
+            look: Residual, Jacobian, weights and noise at the pose.
+        """
         J, prior = look.slopes[:, PLANAR], self.picture.prior
         weighed = look.weight[:, None] * J / look.noise**2
         spread = np.linalg.inv(weighed.T @ J)

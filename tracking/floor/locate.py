@@ -83,7 +83,15 @@ def locate_camera(camera: Camera, floor: FloorMap, view: FloorView) -> CameraPos
 
 
 def seen_keys(floor: FloorMap, view: FloorView) -> list[int | str]:
-    """List the marks of the floor that a photograph shows, in the map's order."""
+    """List the marks of the floor that a photograph shows, in the map's order.
+
+    Args:
+        floor: The floor's marks.
+        view: The marks that the photograph shows.
+
+    Returns:
+        Numbers of markers and names of points.
+    """
     return [key for key in floor.marks if key in view.pixels]
 
 

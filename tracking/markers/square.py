@@ -81,6 +81,14 @@ def square_homography(corners: ArrayLike) -> Array:
 
 
 def apply_homography(H: Array, points: ArrayLike) -> Array:
-    """Apply a perspective to points, shape (n, 2)."""
+    """Apply a homography to points.
+
+    Args:
+        H: Homography, shape (3, 3).
+        points: x and y, shape (n, 2).
+
+    Returns:
+        Transformed points, shape (n, 2).
+    """
     x = np.asarray(points, dtype=float) @ H[:, :2].T + H[:, 2]
     return x[:, :2] / x[:, 2:]

@@ -97,11 +97,16 @@ def _found(
 
 
 def marked_top(scene: Scene, seen: FloorSeen, photos: Sequence[Photo]) -> MarkedTop:
-    """Return the robot's top where it was marked, in a photograph that can be used.
+    """Return the annotated top of the robot, if its photograph can be used.
+
+    Args:
+        scene: Camera, floor and robot.
+        seen: The floor in the photographs, and the photographs lost to it.
+        photos: The photographs.
 
     Raises:
-        BodyError: Nobody marked it.
-        NoUsablePhoto: That photograph is not among them, or cannot be used.
+        BodyError: No top is annotated.
+        NoUsablePhoto: Its photograph is not among them, or cannot be used.
     """
     top = scene.top
     if top is None:
@@ -124,7 +129,13 @@ def _template(scene: Scene, seen: FloorSeen, photos: Sequence[Photo]) -> BodyTem
 
 
 def pose_of_top(top: MarkedTop, scene: Scene, view: CameraPose) -> BodyPose:
-    """Fit the robot's pose to clicks on the corners of its top."""
+    """Fit the robot's pose to clicks on the corners of its top.
+
+    Args:
+        top: The top, with the clicked corners.
+        scene: Camera and robot.
+        view: Pose of the camera in that photograph.
+    """
     return fit_pose(
         scene.camera, view, points_body=top.plate.corners_body, corners_px=top.corners_px,
         covariance=CLICK_SD**2 * np.eye(8), prior=scene.prior,

@@ -34,7 +34,15 @@ class FloorSeen:
     lost: Mapping[str, str]
 
     def marks_in(self, photo: str, shape: tuple[int, ...]) -> NDArray[np.bool_]:
-        """Mark the pixels of the floor's markers with their margin, shape (height, width)."""
+        """Compute the mask of the pixels of the floor's markers with their white margin.
+
+        Args:
+            photo: Name of the photograph.
+            shape: Its height and width [px].
+
+        Returns:
+            True on markers, shape (height, width).
+        """
         hidden = np.zeros(shape, dtype=np.uint8)
         for detection in self.detections:
             for corners in detection.floor.pixels.values() if detection.photo == photo else ():

@@ -38,7 +38,12 @@ class Tracked:
 
 
 def times_by_name(names: Sequence[str], times: PhotoTimes) -> Times:
-    """Return times and their standard deviations by the photographs' names."""
+    """Return times and their standard deviations by name of photograph.
+
+    Args:
+        names: Names of the photographs.
+        times: Their times [s], in the same order.
+    """
     return dict(zip(names, zip(times.t.tolist(), times.sd.tolist(), strict=True), strict=True))
 
 

@@ -61,7 +61,15 @@ def counted_from(
 
 
 def counted_later(*, manifest: RunManifest | None, asked: TimeRequest) -> CountedTimes:
-    """Say how the exposures of a composite picture will get their times, once they are found."""
+    """Describe the times of a composite picture's exposures before these are found.
+
+    Args:
+        manifest: The run they belong to, or None.
+        asked: How the exposures get their times.
+
+    Returns:
+        No times yet; a description, and a note where they are not tied to the run.
+    """
     notes = ()
     if manifest is not None and asked.table is None:
         notes = (untied(f"give seconds since the run's start as --times, or {LATER}"),)

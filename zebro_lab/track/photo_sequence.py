@@ -129,10 +129,14 @@ def open_photos(
 
 
 def calibrated_for(camera: Camera, sequence: PhotoSequence) -> Camera:
-    """Return the lens at the size of most of the photographs.
+    """Scale the lens to the size of most of the photographs.
+
+    Args:
+        camera: The lens as calibrated.
+        sequence: The photographs.
 
     Raises:
-        DataError: They have another shape than those the camera was calibrated with.
+        DataError: Their aspect ratio differs from that of the calibration's photographs.
     """
     sizes = Counter(size for path in sequence.paths if (size := upright_size(path)) is not None)
     if not sizes:
@@ -155,7 +159,11 @@ def upright_size(path: Path) -> tuple[int, int] | None:
 
 
 def exposure_times(names: Sequence[str], request: TimeRequest) -> PhotoTimes:
-    """Find the times of a composite picture's exposures, already in order.
+    """Compute the times of a composite picture's exposures from a table or an interval.
+
+    Args:
+        names: Names of the exposures, in order of time.
+        request: Interval or table of times.
 
     Raises:
         SettingsError: Neither an interval nor a table was given.

@@ -43,7 +43,17 @@ class PlacedPhoto:
     def from_above(
         self, low: Array, high: Array, *, pixels_per_metre: float, height: float = 0.0
     ) -> NDArray[np.uint8]:
-        """Draw a level rectangle of the scene from straight above; see `rectify_floor`."""
+        """Rectify a level rectangle of the scene: draw it as seen from straight above.
+
+        Args:
+            low: Lowest x and y, shape (2,) [m].
+            high: Highest x and y, shape (2,) [m].
+            pixels_per_metre: Scale [px/m].
+            height: Height of the rectangle over the floor [m].
+
+        Returns:
+            BGR picture, as from `rectify_floor`.
+        """
         return rectify_floor(
             self.pixels, self.camera, self.pose, low=low, high=high,
             pixels_per_metre=pixels_per_metre, height=height,

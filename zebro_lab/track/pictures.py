@@ -73,7 +73,19 @@ def draw_preview(
     file: IO[bytes], pixels: NDArray[np.uint8], *, camera: Camera, view: CameraPose,
     floor: FloorMap, detection: Detection, title: str, simulated: bool, command: str,
 ) -> None:  # fmt: skip
-    """Draw what was found in one photograph, with the map's marks where they should appear."""
+    """Draw a photograph with the marks detected and those of the map, projected.
+
+    Args:
+        file: Open file for the PNG.
+        pixels: The photograph, BGR, shape (height, width, 3).
+        camera: The lens.
+        view: Pose of the camera.
+        floor: The floor's marks.
+        detection: What was found in the photograph.
+        title: Title of the figure.
+        simulated: Whether the photograph is simulated; the figure then says so.
+        command: Command to record in the file's metadata.
+    """
     from zebro_lab.plots import save
     from zebro_lab.plots import track as draw
 
@@ -85,7 +97,17 @@ def draw_preview(
 def seen_marks(
     camera: Camera, view: CameraPose, floor: FloorMap, detection: Detection | None
 ) -> "list[SeenMarks]":
-    """Outline the floor's marks where the map has them, and the robot's marker where it is seen."""
+    """Compute outlines of the floor's marks, projected from the map, and of the robot's marker.
+
+    Args:
+        camera: The lens.
+        view: Pose of the camera.
+        floor: The floor's marks.
+        detection: What was found in the photograph; None for the floor alone.
+
+    Returns:
+        Outlines [px] with labels and colours.
+    """
     from zebro_lab.plots.sheet import CYCLE, RED
     from zebro_lab.plots.track import SeenMarks
 

@@ -48,12 +48,16 @@ class TrackResult:
 
 
 def track(request: TrackRequest, watcher: Progress) -> TrackResult:
-    """Track a walk and write the track folder.
+    """Track a walk in photographs and write the track folder.
+
+    Args:
+        request: Photographs, files and options.
+        watcher: Where progress is reported.
 
     Raises:
-        ZebroLabError: A file or an option says what cannot be followed.
+        ZebroLabError: A file or an option is invalid.
         TrackingError: The photographs do not give a track.
-        TrackStopped: Somebody asked to stop.
+        TrackStopped: A stop was requested.
     """
     require_replaceable(request.folder, TRACKED, inputs=request.inputs)
     inputs = read_inputs(request)

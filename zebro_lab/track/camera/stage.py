@@ -60,12 +60,16 @@ class CameraResult:
 
 
 def calibrate_camera(request: CameraRequest, progress: Progress) -> CameraResult:
-    """Calibrate the lens and write `camera.toml`.
+    """Calibrate the lens from photographs of a board and write `camera.toml`.
+
+    Args:
+        request: Folder of photographs, board and options.
+        progress: Where progress is reported.
 
     Raises:
-        ZebroLabError: An option says what cannot be followed.
+        ZebroLabError: An option is invalid.
         TrackingError: The photographs do not determine the lens.
-        TrackStopped: Somebody asked to stop.
+        TrackStopped: A stop was requested.
     """
     target = require_own(request.out, LENS, inputs=(request.photos,))
     board = parse_board(request.board)

@@ -7,20 +7,20 @@ from tracking.camera.lens import Array
 from tracking.composite.chain import distances
 
 REACH = 1.25
-"""From one exposure to the next beside it, in lengths of the robot [-]."""
+"""Largest distance between exposures that count as neighbours, in lengths of the robot [-]."""
 
 LEAST_STEP = 0.25
-"""Nearer than this two exposures are one, in lengths of the robot [-]."""
+"""Least distance between two exposures, in lengths of the robot; nearer ones are the same [-]."""
 
 MOST_EXPOSURES = 24
-"""Where exposures are judged as a set, how many there may be."""
+"""Largest number of exposures in a picture whose exposures are judged as a set."""
 
 CLIMB = (0.01, 0.01, 0.1)
-"""First changes by which a place is improved [m, m, rad]."""
+"""Initial steps of the local search for a pose [m, m, rad]."""
 
 _TURNS = np.radians(np.arange(-30.0, 31.0, 7.5))
-_SIDEWAYS = np.radians(40.0)  # a robot walks ahead or back, not to its side
-_NEARBY = 0.16  # of the length: how far a step differs from the one before
+_SIDEWAYS = np.radians(40.0)  # largest direction of a step off the heading
+_NEARBY = 0.16  # of the length: largest change from one step to the next
 _NEARBY_TURNS = np.radians([-8.0, 0.0, 8.0])
 _NEAR, _NEAR_TURN = 0.3, np.radians(16.0)
 
@@ -67,10 +67,11 @@ def nearby(pose: Array, length: float) -> Array:
 
 
 def headed(pose: Array, poses: Array, *, square: bool) -> Array:
-    """Turn a place so that an arc leads to it from the nearest exposure.
+    """Choose the heading of a pose so that an arc leads to it from the nearest exposure.
 
-    Alone a robot that looks alike from two ends, or a square one from all sides, is found the wrong
-    way round as often as not; a walk tells (`tracking.body.heading`).
+    The appearance of a symmetric robot does not determine its heading: it is found turned by a half
+    (or a quarter, if it is square) about as often as not. The direction of the walk decides it, as
+    in `tracking.body.heading`.
 
     Args:
         pose: x, y [m] and yaw [rad], shape (3,).
@@ -114,7 +115,7 @@ def is_near(pose: Array, expected: Array, length: float) -> bool:
 
 
 def apart(poses: Array, values: Array, distance: float, *, most: int) -> list[Array]:
-    """Take the best of many places that are apart from each other.
+    """Select the best of many poses that are apart from each other (non-maximum suppression).
 
     Args:
         poses: Shape (n, 3).

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""Steps from one exposure to the next, and chains of them.
+"""Steps from one exposure to the next, and chains of steps.
 
 A step is forward and left of the mean heading, and a turn: shape (3,) [m, m, rad]. Intervals of
-photographs are regular and robots do not leap, so that a step is much like the one before it.
+photographs are regular and the speed of a robot changes slowly, so that a step is similar to the
+one before it.
 """
 
 from collections.abc import Callable, Sequence
@@ -67,7 +68,7 @@ def continued(before: Array, after: Array) -> Array:
 
 
 def steady_chain(anchor: Array, step: Array, more_turn: float, ahead: int, behind: int) -> Array:
-    """Lay poses by one step, whose turn may grow, ahead of one and behind it.
+    """Compute poses by repeating one step, whose turn may grow, forward and backward from a pose.
 
     Args:
         anchor: Pose of the one, shape (3,).
@@ -91,7 +92,7 @@ def steady_chain(anchor: Array, step: Array, more_turn: float, ahead: int, behin
 
 
 def unsteadiness(poses: Array) -> float:
-    """Sum squared changes from step to step, over how much steps usually change.
+    """Compute the sum of squared changes from step to step, divided by their usual variance.
 
     Args:
         poses: In order, shape (n, 3).
@@ -118,7 +119,7 @@ def distances(poses: Array, pose: Array) -> Array:
 
 
 def usual_step(poses: Array) -> float:
-    """Compute how far poses, shape (n, 3), usually are from the nearest other [m]."""
+    """Compute the median distance of poses, shape (n, 3), from their nearest neighbour [m]."""
     if len(poses) < 2:
         return 0.0
     nearest = [distances(np.delete(poses, k, axis=0), pose).min() for k, pose in enumerate(poses)]
@@ -128,7 +129,7 @@ def usual_step(poses: Array) -> float:
 def improved(
     value: Callable[[Array], float], start: Array, *, reach: Sequence[float], tries: int
 ) -> tuple[Array, float]:
-    """Raise a value by small changes (Nelder and Mead 1965); it need not be smooth.
+    """Maximise a function by the simplex method (Nelder and Mead 1965); it need not be smooth.
 
     Args:
         value: What to raise, of an array like `start`.

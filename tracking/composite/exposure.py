@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What is found of a robot in a composite picture."""
+"""One exposure of the robot in a composite picture."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass

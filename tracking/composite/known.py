@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A picture in which one exposure of a robot without a marker is known, to align others with it."""
+"""A composite picture with one exposure of known pose, as the reference to align others."""
 
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -25,21 +25,21 @@ from tracking.errors import BodyError, CompositeError
 from tracking.pose import BodyPose, BodyPrior
 
 LEAST_SCORE = 0.75
-"""Least correlation of what is visible of an exposure with the known one [-]."""
+"""Least correlation of the visible part of an exposure with the known one [-]."""
 
 LEVER = 0.7
-"""How far from the robot's middle that much off turns it, in lengths of the robot [-]."""
+"""Lever arm that converts an error of position to one of heading, in lengths of the robot [-]."""
 
 RASTER_SD = 0.02
 """Standard deviation of a place on the raster, in lengths of the robot [-]."""
 
-_SLIP = 0.06  # of the length: an alignment that ends farther off has gone astray
+_SLIP = 0.06  # of the length: an alignment that moves farther has diverged
 _TURN = 0.15  # rad: the same
 
 
 @dataclass(frozen=True)
 class KnownExposure:
-    """A picture in which one exposure is known.
+    """A composite picture in which the pose of one exposure is known.
 
     Attributes:
         pixels: The picture, BGR, shape (height, width, 3).
@@ -139,7 +139,7 @@ class KnownExposure:
         return float((top & visible).sum() / max(int(top.sum()), 1))
 
     def level(self, pose: Array) -> Array:
-        """Stand the robot level at x, y and yaw; its state, shape (6,)."""
+        """Return the state of a level robot at x, y and yaw, shape (6,)."""
         return np.array([pose[0], pose[1], self.prior.height, 0.0, 0.0, pose[2]])
 
     def aligned(
@@ -196,7 +196,7 @@ class KnownExposure:
         return replace(alignment, pose=replace(pose, covariance=pose.covariance + added))
 
     def rough(self, pose: Array) -> Alignment:
-        """Take a place on the raster for the alignment."""
+        """Make an alignment of a pose on the raster, with the raster's error."""
         height, tilt = self.prior.height_sd, self.prior.tilt_sd
         known = np.diag([0.0, 0.0, height, tilt, tilt, 0.0]) ** 2
         covariance = known + self.slipped(RASTER_SD * self.size[0], LEVER)
@@ -238,7 +238,7 @@ class KnownExposure:
         return whole
 
     def around(self, pose: Array, *, reach: float) -> tuple[tuple[slice, slice], Array]:
-        """Compute the rows and columns of the pixels around an exposure, and what they show.
+        """Compute the window of pixels around an exposure, and where they lie on the top's plane.
 
         Args:
             pose: Of the exposure.

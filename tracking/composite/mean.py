@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: MIT
-"""Read a picture that is the mean of several exposures.
+"""Find exposures in a picture that is the mean of several exposures.
 
-Of n exposures each is as faint as 1/n; the floor's pattern is as strong as the robot. But floors
-vary in light more than in colour, and robots do not: colours are weighed by how rare they are on
-the floor (`FloorColours.whitening`). And a mean is a sum: a robot's picture is sought that, laid at
-all exposures at once, comes nearest to the photograph, so that each is compared with what the
-others leave of it.
+Of n exposures each is as faint as 1/n, and the floor's pattern is as strong as the robot. But
+floors vary in brightness more than in colour, and robots do not. Colours are therefore whitened by
+the floor's covariance (`FloorColours.whitening`). A mean is a sum: the robot's picture is solved
+for, by least squares, so that its sum over all exposures is nearest to the photograph. Each
+exposure is then compared with the residual of the others.
 """
 
 from collections.abc import Sequence
@@ -34,27 +34,27 @@ from tracking.composite.order import order_exposures
 from tracking.composite.reading import PictureRaster
 
 LONELY_SCORE = 0.6
-"""Least correlation of an exposure beside no other, or the wrong way round, when only one is known
-[-]."""
+"""Least correlation of an exposure without a neighbour, or with reversed heading, while only one is
+known [-]."""
 
 BESIDE_SCORE = 0.5
-"""Least correlation of one beside another with nearly its heading, then [-]."""
+"""Least correlation, at that stage, of one beside another with nearly the same heading [-]."""
 
 LEAST_SCORE, LEAST_OF_USUAL = 0.5, 0.75
 """Least correlation of an exposure when all others are taken away, and as a share of the usual one,
 which is less where light changes or floors are stronger than the robot [-]."""
 
 LEAST_STRENGTH = 0.5
-"""Least strength of an exposure; all are alike in a mean [-]."""
+"""Least relative strength of an exposure; all are equally strong in a mean [-]."""
 
 WORTH = 0.4
-"""By how much of what one explains a set must explain more for one exposure more [-]."""
+"""Cost of a further exposure, as a share of the power that one exposure explains [-]."""
 
 DETAIL = 1 / 4
-"""Width of what is left out where exposures are compared, in lengths of the robot [-]."""
+"""Width of the high-pass filter for comparison, in lengths of the robot [-]."""
 
 SCALE = 8.0
-"""Grey levels a standard deviation of the floor's pattern is made to be."""
+"""Standard deviation of the floor's pattern after whitening [grey levels]."""
 
 _TURN = np.radians(32.0)
 _DAMPING = 0.02
@@ -65,7 +65,7 @@ _BETTER = 1e-3  # share of the picture's power
 
 
 class Fit(NamedTuple):
-    """Exposures and the robot's picture that fit a photograph best.
+    """Fitted poses and picture of the robot, with goodness of fit.
 
     Attributes:
         poses: Shape (n, 3), the known one first.
@@ -84,10 +84,10 @@ class Fit(NamedTuple):
     cost: float
 
     def gain(self, other: "Fit") -> float:
-        """Compute by how much more is explained than by another set, less exposures' cost.
+        """Compute the gain of explained power over another set, less the cost of added exposures.
 
         The cost is the same for both sets: a picture of the robot solved at too few exposures is
-        fainter, and each of them would seem to cost less.
+        fainter, so that each of them would seem to cost less.
         """
         more = len(self.poses) - len(other.poses)
         return self.explained - other.explained - 0.5 * (self.cost + other.cost) * more
@@ -95,7 +95,7 @@ class Fit(NamedTuple):
 
 @dataclass(frozen=True)
 class MeanSearch(PictureRaster):
-    """A mean of exposures, on a raster.
+    """Search for exposures in a mean of exposures, on a raster.
 
     `body` reaches beyond the robot's top, over what its sides and legs cover.
 
@@ -109,27 +109,27 @@ class MeanSearch(PictureRaster):
 
     @cached_property
     def floor(self) -> FloorColours:
-        """How the floor looks."""
+        """Colour model of the floor."""
         return FloorColours.of(
             self.picture, self.used, width=self.length / self.plane.cell, noise=0.5
         )
 
     @cached_property
     def weighing(self) -> Array:
-        """Matrix by which colours are multiplied, shape (3, 3)."""
+        """Whitening matrix of colours, shape (3, 3)."""
         return SCALE * self.floor.whitening
 
     @cached_property
     def change(self) -> NDArray[np.float32]:
-        """What differs from the floor's light, weighed by how rare it is, (rows, columns, 3)."""
+        """Whitened difference from the floor's light, shape (rows, columns, 3)."""
         change = (self.picture - self.floor.light) @ self.weighing
         return (change * self.used[..., None]).astype(np.float32)
 
     @cached_property
     def detail(self) -> NDArray[np.float32]:
-        """The change without what varies over more than `DETAIL` of the length.
+        """High-pass filtered `change`, without variation over more than `DETAIL` of the length.
 
-        Planks, and the lamp over them, are as strong as a robot at 1/n; they vary slowly.
+        Planks, and the light of a lamp on them, are as strong as a robot at 1/n; they vary slowly.
         """
         width = DETAIL * self.length / self.plane.cell
         detail = self.change - smooth(self.change, self.used, width)
@@ -167,7 +167,7 @@ class MeanSearch(PictureRaster):
         return fit.poses[good]
 
     def alike(self, anchor: Array) -> Array:
-        """Find exposures that look like the known one as it is, others and floor in it."""
+        """Find first exposures by matching the known one, which still contains others and floor."""
         robot = self.body.read(self.detail, self.plane, anchor)
         poses = anchor[None]
         matches = [m for m in self.matches(self.detail, robot) if m.score >= BESIDE_SCORE]
@@ -210,7 +210,7 @@ class MeanSearch(PictureRaster):
 
     @property
     def is_square(self) -> bool:
-        """Tell whether the robot is about as wide as long."""
+        """Return whether the robot is about as wide as long."""
         rows, columns = self.body.x[self.body.body].shape
         return abs(rows - columns) < 0.2 * max(rows, columns)
 
@@ -271,7 +271,7 @@ class MeanSearch(PictureRaster):
         return self.is_beside(match, poses) or self.is_alone(match, poses)
 
     def varied(self, fit: Fit) -> list[Array]:
-        """List sets of exposures that differ by one or two from a set."""
+        """List sets of exposures that differ from a set by one or two exposures."""
         left = self.detail - self.sum_of(fit.poses, fit.robot)
         left *= self.used[..., None]
         new = [
@@ -403,7 +403,7 @@ class MeanSearch(PictureRaster):
         ]
 
         def repeated(values: Array) -> Array:
-            """Add up what a robot's picture gives to itself at all poses."""
+            """Apply the normal-equation operator: sum the picture shifted by all pairs of poses."""
             robot = values.reshape(shape).astype(np.float32)
             total = (1 + _DAMPING) * robot
             for overlap in overlaps:
@@ -417,7 +417,7 @@ class MeanSearch(PictureRaster):
 
 
 def _shifted(poses: Array) -> list[Array]:
-    """List chains that end one exposure later or earlier at either end; the first is kept."""
+    """List chains shifted by one exposure at either end; the first exposure is kept."""
     chain = [poses[k] for k in order_exposures(poses)]
     before, after = continued(chain[1], chain[0]), continued(chain[-2], chain[-1])
     starts: Sequence[list[Array]] = (chain, chain[1:], [before, *chain])

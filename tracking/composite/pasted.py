@@ -1,15 +1,15 @@
 # SPDX-License-Identifier: MIT
-"""Read a picture of exposures that were cut out and pasted on each other.
+"""Find exposures in a picture of robots that were cut out and pasted on each other.
 
-Each is there as far as no other hides it, and may be no more than a strip of its top with a leg of
-the next across. A place is judged by its log odds: how much likelier the robot makes the colours
-of what would be visible of it than the picture's own colours do, of which a robot's are rare. That
-asks for no share of agreement: a narrow strip that agrees is worth more than a wide one that half
-agrees, and a point that something lies on costs no more than it tells. Light changes over a floor:
-an exposure is compared with how the one a step away looks.
+Each exposure is visible where no other hides it, perhaps only as a strip of its top with a leg of
+the next across. A pose is scored by log odds: the log likelihood ratio of the robot's colours
+against the picture's own colours, over the points that would be visible. Colours of a robot are
+rare in the picture. No share of agreement is required: a narrow strip that agrees scores more than
+a wide one that half agrees, and an occluded point costs only a bounded amount. Light varies over a
+floor, so an exposure is compared with the colours of the one a step away.
 
-Scissors leave a margin, or cut out floor and shadow with the robot. Then what looks like floor near
-an exposure tells nothing: it may lie on another.
+A cut-out may have a margin, or may contain floor and shadow around the robot. Then points near an
+exposure that look like floor carry no information: they may lie on another exposure.
 """
 
 from collections.abc import Sequence
@@ -41,15 +41,15 @@ MOST_EXPOSURES = 40
 LEFT, FLOOR_LEFT = 0.05, 0.25
 """How far around the robot scissors leave anything, and floor, as a share of its length [-]."""
 
-_LEAST_OF_STEP = 0.6  # intervals are regular: an exposure is not much nearer to another than usual
+_LEAST_OF_STEP = 0.6  # least distance as a share of the usual step; intervals are regular
 _LEAST_MATCH = 0.5
-_SHOWS = 0.5  # share of visible points on which nothing lies
+_SHOWS = 0.5  # share of visible points that are not occluded
 _TRIED = 5
-_FAR = 3.0  # in standard deviations: not how it looked a step away
+_FAR = 3.0  # in standard deviations: beyond it the colour differs from that a step away
 
 
 class Pasted(NamedTuple):
-    """An exposure: its pose, its log odds, mean over all points of its top, and how it looks."""
+    """An exposure: pose, log odds (mean over all points of its top) and colours of its top."""
 
     pose: Array
     gain: float
@@ -58,7 +58,7 @@ class Pasted(NamedTuple):
 
 @dataclass(frozen=True)
 class PastedSearch(PictureRaster):
-    """A picture of pasted exposures, on a raster.
+    """Search for exposures in a picture of pasted exposures, on a raster.
 
     Attributes:
         box: The robot's body.
@@ -75,7 +75,7 @@ class PastedSearch(PictureRaster):
 
     @cached_property
     def usual(self) -> NDArray[np.float32]:
-        """How dense the colour of every point is in the whole picture."""
+        """Density, in the whole picture, of the colour of every point."""
         density = ColourDensity.of(self.picture[self.used], blur=1.0)
         return density(self.picture).astype(np.float32)
 
@@ -116,7 +116,7 @@ class PastedSearch(PictureRaster):
         return float(self.gains(pose[None], robot, shown, self.body)[0][0])
 
     def matches(self, robot: NDArray[np.float32]) -> list[Match]:
-        """Turn the robot's picture and compare; best first."""
+        """Match the robot's template at all headings; best first."""
         template = self.body.template(robot, self.box.top)
         return match_whole(self.picture, self.plane, template=template, least=_LEAST_MATCH)
 
@@ -162,16 +162,16 @@ class PastedSearch(PictureRaster):
         return chain
 
     def visible(self, found: Sequence[Pasted]) -> NDArray[np.bool_]:
-        """Mark the points of the raster that no exposure hides."""
+        """Compute the mask of points of the raster that no exposure hides."""
         visible = self.used.copy()
         for each in found:
             visible &= ~self.hidden_by(each.pose)
         return visible
 
     def in_step(self, found: Sequence[Pasted]) -> list[Pasted]:
-        """Drop exposures that are much nearer to a likelier one than steps usually are.
+        """Drop exposures that are much nearer to a likelier one than the usual step.
 
-        The first stays, and of three none can be told: that in the middle is half as far.
+        The first stays. Of three none is dropped: the middle one is half as far from the others.
         """
         kept = list(found)
         for each in sorted(found[1:], key=lambda each: each.gain):
@@ -183,12 +183,12 @@ class PastedSearch(PictureRaster):
 
     @cached_property
     def floor(self) -> NDArray[np.bool_]:
-        """Where the picture looks like floor, lit or in shadow."""
+        """Mask of points whose colour is the floor's, lit or in shadow."""
         width = self.length / self.plane.cell
         return FloorColours.of(self.picture, self.used, width=width, noise=3.0).shows(self.picture)
 
     def hidden_by(self, pose: Array) -> NDArray[np.bool_]:
-        """Mark the points of the raster that an exposure hides, or may hide."""
+        """Compute the mask of points of the raster that an exposure hides, or may hide."""
         hidden = self.box.hidden_on(self.plane, pose, left=LEFT)
         if self.with_floor:
             hidden |= self.box.hidden_on(self.plane, pose, left=FLOOR_LEFT) & self.floor

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A photograph seen from straight above, on the level plane of the robot's top."""
+"""A photograph rectified onto the level plane of the robot's top."""
 
 from dataclasses import dataclass
 
@@ -48,13 +48,13 @@ class Plane:
         return cls(low, high, cell, seen)
 
     def read(self, pixels: NDArray) -> NDArray[np.float32]:
-        """Read a photograph at the raster's points, 0 outside, shape (rows, columns, ...)."""
+        """Interpolate a photograph at the raster's points, 0 outside, (rows, columns, ...)."""
         return sample(pixels, self.seen_px)
 
     def read_smooth(self, pixels: NDArray[np.uint8]) -> NDArray[np.float32]:
-        """Read a photograph blurred to the size of a cell, so that nothing is aliased."""
+        """Interpolate a photograph after a blur of a cell's size, against aliasing."""
         spacing = float(np.median(np.linalg.norm(np.diff(self.seen_px, axis=1), axis=2)))
-        # Of the far floor nothing is lost by it: there pixels are larger than cells.
+        # The blur loses nothing of the far floor, where pixels are larger than cells.
         return self.read(np.asarray(cv2.GaussianBlur(pixels, (0, 0), max(0.4 * spacing, 0.3))))
 
     def xy_at(self, row: float, column: float) -> Array:

@@ -78,7 +78,7 @@ def align(
     Args:
         pixels: The photograph, BGR, shape (height, width, 3).
         camera: The lens.
-        view: Where the camera stands.
+        view: Pose of the camera.
         template: The robot's picture.
         prior: Height and tilt.
         start: x, y [m] and yaw [rad] to start from, shape (3,).

@@ -59,7 +59,7 @@ def find_body(
     Args:
         pixels: The photograph, BGR, shape (height, width, 3).
         camera: The lens.
-        view: Where the camera stands.
+        view: Pose of the camera.
         template: The robot's picture.
         prior: Height and tilt.
         near: x and y near which to look [m]; the whole photograph when None.
@@ -121,7 +121,7 @@ def floor_in_view(
 
     Args:
         camera: The lens.
-        view: Where the camera stands.
+        view: Pose of the camera.
         height: Height of the plane over the floor [m].
         near: x and y near which to stay [m].
         reach: How far from there [m].
@@ -153,7 +153,7 @@ def match_turned(
     Args:
         pixels: The photograph, BGR.
         camera: The lens.
-        view: Where the camera stands.
+        view: Pose of the camera.
         template: The robot's picture.
         height: Height of its top over the floor [m].
         area: Lowest and highest x, y to look at, each of shape (2,) [m].

@@ -126,7 +126,7 @@ def make_template(
     Args:
         pixels: The photograph, BGR, shape (height, width, 3).
         camera: The lens.
-        view: Where the camera stands.
+        view: Pose of the camera.
         pose: Where the robot is: `tracking.pose.fit_pose` to clicks on `plate.corners_body`.
         plate: The robot's top.
         most_points: Of a robot that shows on more pixels, the picture has about so many points.

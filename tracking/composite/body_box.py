@@ -18,7 +18,7 @@ class BodyBox:
 
     Attributes:
         camera: The lens.
-        view: Where the camera stands.
+        view: Pose of the camera.
         size: Length and width [m].
         top: Height of the robot's top over its origin [m].
         height: Height of its origin over the floor where it stands level [m].

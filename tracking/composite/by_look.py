@@ -32,7 +32,7 @@ def find_exposures_like(
     Args:
         pixels: The picture, BGR, shape (height, width, 3).
         camera: The lens.
-        view: Where the camera stood.
+        view: Pose of the camera.
         known: Pose of one exposure; of those pasted on each other, of one that shows whole.
         plate: The robot's flat top.
         body_size: Length and width of the robot's body [m].

@@ -44,7 +44,7 @@ class KnownExposure:
     Attributes:
         pixels: The picture, BGR, shape (height, width, 3).
         camera: The lens.
-        view: Where the camera stood.
+        view: Pose of the camera.
         prior: Height and tilt.
         known: Pose of the known exposure.
         plate: The robot's flat top.

@@ -68,7 +68,7 @@ def find_exposures(
     Args:
         pixels: The picture, BGR, shape (height, width, 3).
         camera: The lens.
-        view: Where the camera stood.
+        view: Pose of the camera.
         template: The picture of the robot's marker (`tracking.body.marker_template`).
         prior: Height and tilt.
         merged: How the exposures were merged.

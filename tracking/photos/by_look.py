@@ -61,7 +61,7 @@ def track_by_look(
         NoUsablePhoto: No photograph can be used, or not that in which the top is marked.
         TrackingError: The floor's map does not fit, head and tail cannot be told apart, or a
             correction cannot be replayed.
-        TrackStopped: Somebody asked to stop.
+        TrackStopped: A stop was requested.
     """
     seen = see_floor(scene, photos, robot=None, workers=workers, progress=progress)
     template = _template(scene, seen, photos)

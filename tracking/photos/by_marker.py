@@ -38,7 +38,7 @@ def track_by_marker(
     Raises:
         NoUsablePhoto: No photograph can be used, or none shows the marker.
         TrackingError: The floor's map does not fit, or a correction cannot be replayed.
-        TrackStopped: Somebody asked to stop.
+        TrackStopped: A stop was requested.
     """
     seen = see_floor(scene, photos, robot=robot, workers=workers, progress=progress)
     observations = observe(scene.camera, seen.fit, seen.detections, robot=robot, times=times)

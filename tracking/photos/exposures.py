@@ -47,7 +47,7 @@ def track_exposures(
     Raises:
         NoUsablePhoto: The picture cannot be used.
         TrackingError: The floor's map does not fit, or no exposure is found.
-        TrackStopped: Somebody asked to stop.
+        TrackStopped: A stop was requested.
     """
     seen = see_floor(scene, [photo], robot=None, workers=1, progress=progress)
     progress.step("exposures", None)

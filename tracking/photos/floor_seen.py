@@ -71,7 +71,7 @@ def see_floor(
     Raises:
         NoUsablePhoto: No photograph can be used.
         TrackingError: The floor's map does not fit.
-        TrackStopped: Somebody asked to stop.
+        TrackStopped: A stop was requested.
     """
     wanted = Wanted(scene.camera.size, scene.floor, robot)
     results = search_photos(photos, wanted, workers=workers, progress=progress)

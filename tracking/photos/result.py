@@ -28,7 +28,7 @@ class Tracked:
         track: The path.
         floor: Floor, camera and photographs behind it.
         lost: Photographs that gave no pose, with the reason.
-        notes: For a person, one line each.
+        notes: Notes for the user, one line each.
     """
 
     track: Track

@@ -66,7 +66,7 @@ def search_photos(
         What each shows, in the same order.
 
     Raises:
-        TrackStopped: Somebody asked to stop.
+        TrackStopped: A stop was requested.
     """
     if len(photos) * wanted.size[0] * wanted.size[1] < WORTH_WORKERS:
         workers = 1

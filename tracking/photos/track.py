@@ -35,7 +35,7 @@ def track_photos(
         NoUsablePhoto: No photograph can be used, or none shows the robot.
         TrackingError: The floor's map does not fit, head and tail cannot be told apart, no
             exposure is found, or a correction cannot be replayed.
-        TrackStopped: Somebody asked to stop.
+        TrackStopped: A stop was requested.
     """
     progress = NoProgress() if progress is None else progress
     if scene.merged is not None:

@@ -89,7 +89,7 @@ def run_batches(
         Results in the order of the jobs.
 
     Raises:
-        TrackStopped: Somebody asked to stop.
+        TrackStopped: A stop was requested.
     """
     progress.step(what, 0.0)
     if min(workers, len(jobs)) < 2:

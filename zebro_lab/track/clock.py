@@ -21,7 +21,7 @@ class CountedTimes:
     Attributes:
         times: Times and their standard deviations; None of exposures that are not found yet.
         said: In words, where they are from.
-        notes: For a person, one line each.
+        notes: Notes for the user, one line each.
     """
 
     times: PhotoTimes | None

@@ -31,7 +31,7 @@ class TrackFile:
         poses: The poses with their covariance; headings NaN where the table has none.
         source: Where they come from: "real", "sim:what", "unknown".
         file: The file.
-        notes: For a person, one line each.
+        notes: Notes for the user, one line each.
     """
 
     poses: Poses

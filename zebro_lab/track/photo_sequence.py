@@ -114,7 +114,7 @@ def open_photos(
         NotFound: There is nothing of this name.
         DataError: Frames of a video cannot be kept.
         TrackingError: There is no photograph, or times are missing.
-        TrackStopped: Somebody asked to stop.
+        TrackStopped: A stop was requested.
     """
     if origin.is_dir():
         yield _of_folder(origin, request)

@@ -59,8 +59,8 @@ def detect(
         pixels: The photograph, grey or BGR.
         floor: The floor's marks.
         robot: The robot.
-        hint: Detection in a photograph taken shortly before or after. Places of its marks are searched
-            first, the whole photograph only for what is not found there.
+        hint: Detection in a photograph taken shortly before or after. Its marks are searched
+            there first, the whole photograph only for what is not found.
         reach: How far the robot may have moved since, in sides of its marker [-].
 
     Returns:

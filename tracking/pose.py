@@ -84,7 +84,7 @@ class BodyPose:
             R = Rz(yaw) Ry(pitch) Rx(roll).
         covariance: Of `state` from pixels, height and tilt, errors independent from photograph to
             photograph, shape (6, 6).
-        camera_covariance: Of `state` from the camera's pose, an error that the photographs of a stand
+        camera_covariance: Of `state` from the camera's pose, an error that a stand's photographs
             share, shape (6, 6).
         misfit_px: Root mean square distance of points from their projection [px].
         cost: The minimum of the sum above [-].

@@ -20,7 +20,7 @@ MOST_PIXELS = 80_000_000
 MOST_FILE = 256 << 20
 """Largest size of a picture file [bytes]: that of an uncompressed picture of `MOST_PIXELS`."""
 MOST_SCANS = 200
-"""Largest number of scans in a JPEG. Each takes as long as a whole picture; cameras write 1 to 12."""
+"""Largest number of scans in a JPEG, each as slow as a whole picture; cameras write 1 to 12."""
 
 _READABLE = {".jpg", ".jpeg", ".png", ".tif", ".tiff", ".bmp", ".webp"}
 _FORMATS = ("JPEG", "PNG", "TIFF", "BMP", "WEBP")  # not those that start programs

@@ -76,14 +76,14 @@ def run_batches(
     progress: Progress,
     what: str,
 ) -> list[Result]:  # fmt: skip
-    """Do the same to every batch, on several cores where there are enough of them.
+    """Map a function over jobs in a process pool, or in this process with one worker.
 
     Args:
-        work: What to do; a function of a module, as other processes must find it.
-        jobs: What to do it to.
+        work: Function to apply; on module level, since it is pickled.
+        jobs: Its arguments.
         workers: Processes to use.
         progress: Where progress is reported.
-        what: What is being done, in a word or two.
+        what: Name of the step, a word or two.
 
     Returns:
         Results in the order of the jobs.
@@ -98,7 +98,7 @@ def run_batches(
             results.append(work(job))
             report_step(progress, what, number / len(jobs))
         return results
-    # Not forked: OpenCV's threads do not survive it.
+    # Not forked: OpenCV's threads do not survive a fork.
     context = multiprocessing.get_context("spawn")
     pool = ProcessPoolExecutor(min(workers, len(jobs)), context, _one_thread)
     try:

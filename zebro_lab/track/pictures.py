@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The pictures of a track folder and of its preview."""
+"""Figures of a track folder and of its preview."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -37,9 +37,9 @@ def draw_track(
         camera: The lens.
         view: Where the camera stood in that photograph.
         floor: The floor as fitted.
-        detection: What that photograph shows; None where no marker was looked for.
-        title: What was tracked; every title begins with the picture's own name.
-        simulated: Say so in the titles.
+        detection: Markers detected in that photograph; None where none was searched.
+        title: Name of the track, appended to each figure's own title.
+        simulated: Whether the photographs are simulated; the titles then say so.
     """
     from zebro_lab.plots import save  # matplotlib takes most of a second
     from zebro_lab.plots import track as draw
@@ -129,7 +129,7 @@ def _path_px(track: Track, camera: Camera, view: CameraPose) -> tuple[Array, Arr
 
 
 def _broken(rows: Array, track: Track) -> Array:
-    """Put a row of NaN where the path is interrupted, so that no line crosses a gap."""
+    """Insert a row of NaN at each gap, so that no line crosses it."""
     return np.insert(rows, np.flatnonzero(track.gap_before), np.nan, axis=0)
 
 

@@ -72,8 +72,8 @@ def annotate(request: AnnotateRequest) -> Annotations:
     """Add annotations to those of the file and write all.
 
     Args:
-        request: New annotations; corrections of one request are ordered moves, flips, deletions,
-            order, after all earlier corrections.
+        request: New annotations. Corrections of one request are applied in the sequence moves,
+            flips, deletions, order, after all earlier corrections.
 
     Returns:
         All annotations, old and new.

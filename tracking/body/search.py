@@ -61,7 +61,7 @@ def find_body(
         pixels: The photograph, BGR, shape (height, width, 3).
         camera: The lens.
         view: Pose of the camera.
-        template: The robot's picture.
+        template: Template of the robot.
         prior: Height and tilt.
         near: x and y near which to look [m]; the whole photograph when None.
         reach: How far from there [m].
@@ -155,7 +155,7 @@ def match_turned(
         pixels: The photograph, BGR.
         camera: The lens.
         view: Pose of the camera.
-        template: The robot's picture.
+        template: Template of the robot.
         height: Height of its top over the floor [m].
         area: Lowest and highest x, y to look at, each of shape (2,) [m].
         most: How many places to return.
@@ -225,7 +225,7 @@ def turned_template(
     """Draw the template rotated to a heading, as seen from above.
 
     Args:
-        template: The robot's picture, its front up.
+        template: Template of the robot, its front up.
         cell: Size of a pixel [m].
         yaw: Heading, 0 to the right [rad].
 

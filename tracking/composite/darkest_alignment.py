@@ -12,7 +12,7 @@ from tracking.composite.exposure import Exposure
 from tracking.composite.known import LEAST_SCORE, LEVER, KnownExposure
 
 DARKEST_SD = 1 / 40
-"""Error of a place, as `tracking.composite.pasted_alignment.PASTED_SD` [-]."""
+"""Error of position, as `tracking.composite.pasted_alignment.PASTED_SD` [-]."""
 
 _CELLS = 32  # points of the raster along the robot
 _SHOWN = 0.7  # share of a pixel's surroundings that must show the exposure

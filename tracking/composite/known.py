@@ -104,7 +104,7 @@ class KnownExposure:
         return self.size[0] / pixel
 
     def body_template(self, pixels: NDArray) -> BodyTemplate:
-        """Cut the body as seen from above out of the known exposure."""
+        """Cut the template of the body's outline from above out of the known exposure."""
         return self.template(pixels, self.body_plate)
 
     def template(

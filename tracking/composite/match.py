@@ -47,13 +47,13 @@ def match_whole(
 
     Args:
         picture: The photograph on `plane`, shape (rows, columns, 3); (rows, columns, 1) where the
-            robot's picture is grey.
+            template is grey.
         plane: The raster.
-        template: The robot's picture.
+        template: Template of the robot.
         least: Least correlation [-].
 
     Returns:
-        Places at which no turn and no neighbouring place fits better, best first.
+        Local maxima over heading and position, best first.
     """
     best, turn = None, None
     for index, (turned, mask) in _turns(template, plane.cell):

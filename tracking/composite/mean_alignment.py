@@ -27,14 +27,14 @@ from tracking.composite.pattern_alignment import AROUND, PatternAlignment
 from tracking.pose import PLANAR, BodyPose, rotation_with_derivatives
 
 LEAST_CLEAR_SCORE, LEAST_FAINT_SCORE = 0.4, 0.2
-"""Least correlation of an exposure's edges: to be aligned by them, and not to be astray [-]."""
+"""Least correlation of an exposure's edges to use an alignment, and not to reject it [-]."""
 
 LEAST_NEW_SCORE = 0.1
 """Least correlation of an exposure's part that the floor's pattern does not predict [-]."""
 
 MEAN_SD, MEAN_OVERLAP_SD = 1 / 1200, 1 / 220
-"""Error of a place, as `tracking.composite.pasted_alignment.PASTED_SD`, of exposures that are apart
-and of those that overlap [-]."""
+"""Error of position, as `tracking.composite.pasted_alignment.PASTED_SD`, of exposures that are
+apart and of those that overlap [-]."""
 
 _CELLS = 32  # points of the raster along the robot
 _AROUND = 0.28  # of the length: how far sides, legs and shadow reach
@@ -139,8 +139,8 @@ class MeanAlignment:
         picture: The picture and the known exposure.
         alones: What the others leave of the picture around each, shape (height, width, 3).
         poses: Where they are on a raster, the known one first, shape (n, 3).
-        pattern: Of the floor, where exposures are apart: what it does not foretell of their tops is
-            aligned, and `alones` are flat. None where they overlap: edges of their bodies are.
+        pattern: Of the floor, where exposures are apart: the prediction error of their tops is
+            aligned, and `alones` are flat. None where they overlap: edges of bodies are aligned.
     """
 
     picture: KnownExposure
@@ -285,8 +285,8 @@ class MeanAlignment:
     def anchored(self, found: Sequence[Alignment | None]) -> list[Alignment | None]:
         """Move all exposures in their own frames so that the first is where it is known to be.
 
-        Its error of alignment becomes that of the others; where it is unclear none can be judged.
-        What is wrong with the pose that is known is not in their covariance.
+        Its error of alignment becomes that of the others; where it is unclear, all become None.
+        The error of the known pose is not in their covariance.
         """
         first = found[0]
         if first is None or first.score < self.least_clear:

@@ -39,7 +39,7 @@ LEAST_ODDS = 0.9
 MOST_EXPOSURES = 40
 
 LEFT, FLOOR_LEFT = 0.05, 0.25
-"""How far around the robot scissors leave anything, and floor, as a share of its length [-]."""
+"""Margins of a cut-out around the robot: opaque, and of floor, as shares of its length [-]."""
 
 _LEAST_OF_STEP = 0.6  # least distance as a share of the usual step; intervals are regular
 _LEAST_MATCH = 0.5

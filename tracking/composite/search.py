@@ -146,7 +146,7 @@ class _Search:
 
     @property
     def slip(self) -> float:
-        """How far edges alone may move an exposure [m]."""
+        """Largest move of an exposure in an alignment by edges alone [m]."""
         return _SLIP * self.template.plate.length
 
     def among_others(self, alignment: Alignment) -> Alignment:

@@ -34,7 +34,7 @@ class Annotations:
     corrections: tuple[Correction, ...] = ()
 
     def merged(self, later: "Annotations") -> "Annotations":
-        """Merge with later annotations: their template and clicks prevail, corrections are appended."""
+        """Merge with later annotations: template and clicks prevail, corrections are appended."""
         names = {**self.clicks, **later.clicks}
         clicks = {
             photo: {**self.clicks.get(photo, {}), **later.clicks.get(photo, {})} for photo in names

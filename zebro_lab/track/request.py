@@ -76,12 +76,12 @@ class TrackRequest:
 
     @property
     def named(self) -> tuple[Path, ...]:
-        """Files that were named, beside the photographs."""
+        """Input files given, other than the photographs."""
         files = (self.camera, self.floor, self.robot, self.annotations,
                  self.times.table, self.times.clock)  # fmt: skip
         return tuple(file for file in files if file is not None)
 
     @property
     def inputs(self) -> tuple[Path, ...]:
-        """What is read, as it was named."""
+        """All inputs given: photographs, files and run."""
         return (self.photos, *self.named, *((self.run,) if self.run is not None else ()))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Photographs in, walked path out."""
+"""Robot tracking: the path of a walk from photographs."""
 
 from tracking.path import Track
 from tracking.photos import MarkedTop, Photo, Scene, Tracked, track_photos

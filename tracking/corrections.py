@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""What a person corrected, kept as data and replayed on what the tracker found.
+"""Manual corrections of tracked poses, kept as data and replayed on the tracker's observations.
 
-Nothing is overwritten: the tracker's observations stay as they are, and the same corrections on the
-same observations give the same result, in the order in which they were made.
+Observations are not overwritten. The same corrections on the same observations give the same
+result, in the order in which they were made.
 """
 
 import difflib
@@ -18,7 +18,7 @@ from tracking.path import PoseObservation
 
 @dataclass(frozen=True)
 class Move:
-    """The robot is somewhere else, or where the tracker found none.
+    """Set the robot's pose in a photograph, whether or not the tracker found it there.
 
     Attributes:
         photo: Name of the photograph.
@@ -39,7 +39,7 @@ class Move:
 
 @dataclass(frozen=True)
 class Flip:
-    """Head and tail are exchanged in a photograph.
+    """Exchange head and tail in a photograph.
 
     Attributes:
         photo: Name of the photograph.
@@ -50,7 +50,7 @@ class Flip:
 
 @dataclass(frozen=True)
 class Delete:
-    """What was found in a photograph is not the robot.
+    """Remove the observation of a photograph, which shows something else than the robot.
 
     Attributes:
         photo: Name of the photograph.
@@ -61,10 +61,10 @@ class Delete:
 
 @dataclass(frozen=True)
 class Order:
-    """The photographs, or exposures of a composite one, were taken in this order.
+    """Set the order in time of photographs, or of the exposures of a composite one.
 
     Attributes:
-        photos: Names of photographs; they share out among themselves the times they have.
+        photos: Names of photographs in order; their times are sorted and reassigned.
     """
 
     photos: tuple[str, ...]
@@ -84,13 +84,13 @@ def replay(
 
     Args:
         observations: What the tracker found.
-        corrections: What a person said, in the order in which it was said.
+        corrections: The corrections, in the order in which they were made.
         times: By photograph, time and its standard deviation; needed to `Move` the robot into a
             photograph in which the tracker found none [s].
         z: Height given to such a robot [m].
 
     Returns:
-        Observations as corrected; those left alone are the same objects.
+        Corrected observations; unchanged ones are the same objects.
 
     Raises:
         CorrectionError: When a correction names a photograph that does not exist.
@@ -110,7 +110,7 @@ def replay(
 
 
 def correction_from(entry: Mapping[str, Any]) -> Correction:
-    """Make a correction of plain values, as a file holds them.
+    """Parse a correction from plain values, as a file holds them.
 
     Args:
         entry: `kind` ("move", "flip", "delete" or "order") and the attributes of that kind.
@@ -136,7 +136,7 @@ def correction_from(entry: Mapping[str, Any]) -> Correction:
 
 
 def plain(correction: Correction) -> dict[str, Any]:
-    """Write a correction as plain values; `correction_from` reads it back.
+    """Convert a correction to plain values; inverse of `correction_from`.
 
     >>> plain(Flip("p3.jpg"))
     {'kind': 'flip', 'photo': 'p3.jpg'}
@@ -157,7 +157,7 @@ def _known(found: Mapping[str, PoseObservation], photo: str) -> PoseObservation:
 
 
 def _flipped(seen: PoseObservation) -> PoseObservation:
-    # The middle of the robot stays; only its ends change places.
+    # The position stays; only head and tail are exchanged.
     yaw = np.angle(np.exp(1j * (seen.planar[2] + np.pi)))
     return replace(seen, planar=np.array([*seen.planar[:2], float(yaw)]))
 

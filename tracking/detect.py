@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""What one photograph shows of the floor and of a marked robot, and the observations it gives.
+"""Detect the floor's and the robot's markers in a photograph, and compute the robot's pose.
 
-Two steps, since the camera's pose needs all photographs: `detect` works on one photograph at a time
-and in any order, so photographs can be spread over processes; `observe` then places the robot with
-the floor that `tracking.floor.refine_floor` has fitted to all of them.
+There are two steps, since the camera's pose needs all photographs. `detect` works on one photograph
+at a time and in any order, so that photographs can be spread over processes. `observe` then
+computes the robot's pose with the floor that `tracking.floor.refine_floor` has fitted to all.
 """
 
 from collections.abc import Mapping, Sequence
@@ -22,7 +22,7 @@ from tracking.pose import BodyPrior, RobotMarker, fit_pose
 
 @dataclass(frozen=True)
 class MarkedRobot:
-    """The robot as the tracker knows it.
+    """A robot with a marker.
 
     Attributes:
         marker: The marker on its back.
@@ -35,7 +35,7 @@ class MarkedRobot:
 
 @dataclass(frozen=True)
 class Detection:
-    """What one photograph shows.
+    """Markers detected in one photograph.
 
     Attributes:
         photo: Name of the photograph.
@@ -59,8 +59,8 @@ def detect(
         pixels: The photograph, grey or BGR.
         floor: The floor's marks.
         robot: The robot.
-        hint: What a photograph taken shortly before or after shows: where its marks are is looked
-            first, and only what is not found there is sought in the whole photograph.
+        hint: Detection in a photograph taken shortly before or after. Its marks are searched
+            there first, the whole photograph only for what is not found.
         reach: How far the robot may have moved since, in sides of its marker [-].
 
     Returns:
@@ -103,7 +103,7 @@ def _missing(
 def _near(
     pixels: NDArray[np.uint8], floor: FloorMap, robot: MarkedRobot, hint: Detection, reach: float
 ) -> list[Sighting]:
-    """Look where the marks were in a neighbouring photograph."""
+    """Search around the marks of a neighbouring photograph."""
     size = (pixels.shape[1], pixels.shape[0])
     places = [(floor.dictionary, key, corners, 0.4) for key, corners in hint.floor.pixels.items()]
     if hint.robot is not None:
@@ -131,7 +131,7 @@ def observe(
     camera: Camera, fit: FloorFit, detections: Sequence[Detection], *, robot: MarkedRobot,
     times: Mapping[str, tuple[float, float]],
 ) -> tuple[PoseObservation, ...]:  # fmt: skip
-    """Place the robot in every photograph that shows it.
+    """Compute the robot's pose in every photograph that shows its marker and the floor.
 
     Args:
         camera: The lens.
@@ -141,7 +141,7 @@ def observe(
         times: By photograph, time and its standard deviation [s].
 
     Returns:
-        One observation a photograph in which robot and floor were seen.
+        One observation for each photograph in which robot and floor were seen.
     """
     return tuple(
         _observation(camera, fit, detection.photo, detection.robot, robot, times)

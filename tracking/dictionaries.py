@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Families of markers, by the names people use for them."""
+"""Dictionaries (families) of ArUco and AprilTag markers, by name."""
 
 import difflib
 from pathlib import Path
@@ -51,10 +51,10 @@ def _dictionary_of_file(path: str) -> cv2.aruco.Dictionary:
 
 
 def guess_dictionary(pixels: NDArray[np.uint8]) -> str | None:
-    """Guess which usual dictionary a picture's markers are from.
+    """Guess which common dictionary a picture's markers are from.
 
-    For the message when nothing was found under the name given: a marker of another family is the
-    commonest reason.
+    It serves the error message when no marker of the given dictionary is found: a wrong dictionary
+    is the most frequent cause.
 
     Args:
         pixels: The picture, grey or BGR.

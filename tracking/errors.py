@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: MIT
-"""What can be wrong with photographs, and with what is asked of them."""
+"""Exceptions of `tracking`."""
 
 
 class TrackingError(Exception):
-    """Root of every error that `tracking` raises on purpose; its message is one line."""
+    """Base class of the exceptions that `tracking` raises; the message is one line."""
 
     def __str__(self) -> str:
-        """Return the message on one line, whatever names of files and cells it quotes."""
+        """Return the message on one line, also where it quotes names with line breaks."""
         return " ".join(super().__str__().split())
 
 
@@ -33,19 +33,19 @@ class TrackStopped(TrackingError):
 
 
 class CalibrationError(TrackingError, ValueError):
-    """The boards seen do not determine the lens."""
+    """The calibration boards found do not determine the lens."""
 
 
 class FloorError(TrackingError, ValueError):
-    """The floor's marks do not place the camera."""
+    """The camera's pose cannot be computed from the floor's marks."""
 
 
 class MarkerError(TrackingError, ValueError):
-    """A marker or a dictionary of markers is not what was asked for."""
+    """A marker or a dictionary of markers is unknown or invalid."""
 
 
 class BodyError(TrackingError, ValueError):
-    """The robot's own picture does not serve as its template."""
+    """The robot's top cannot be used as a template."""
 
 
 class AmbiguousHeading(BodyError):
@@ -65,11 +65,11 @@ class TimesError(TrackingError, ValueError):
 
 
 class CorrectionError(TrackingError, ValueError):
-    """A correction names what does not exist or says what cannot be."""
+    """A correction names an unknown photograph or is invalid."""
 
 
 class CompositeError(TrackingError, ValueError):
-    """A composite photograph does not show exposures that can be told apart."""
+    """The exposures of a composite photograph cannot be found or separated."""
 
 
 class PathError(TrackingError, ValueError):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""From poses in single photographs to the path of a walk."""
+"""Path of a walk: observations of the pose in photographs, sorted by time and smoothed."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -21,7 +21,7 @@ TRACK_COLUMNS = (
 
 @dataclass(frozen=True)
 class PoseObservation:
-    """The robot in one photograph.
+    """The robot's pose in one photograph, with covariance.
 
     Attributes:
         photo: Name of the photograph, or of the exposure in a composite one.
@@ -32,7 +32,7 @@ class PoseObservation:
         camera_covariance: Of `planar`, from the camera's pose, which all photographs share; shape
             (3, 3).
         z: Height of the body's origin [m].
-        score: Likeness of what was found to what was sought, 1 at best [-].
+        score: Correlation with the marker or template, 1 at best [-].
         source: "marker", "body" or "hand".
     """
 
@@ -50,7 +50,16 @@ class PoseObservation:
     def of(
         cls, photo: str, pose: BodyPose, *, t: float, t_sd: float, score: float, source: str
     ) -> "PoseObservation":
-        """Take what a path needs out of a pose."""
+        """Make an observation of a fitted pose.
+
+        Args:
+            photo: Name of the photograph.
+            pose: The robot's pose with its covariances.
+            t: Time [s].
+            t_sd: Its standard deviation [s].
+            score: Correlation with the marker or template, 1 at best [-].
+            source: "marker", "body" or "hand".
+        """
         shared = pose.camera_covariance[np.ix_(PLANAR, PLANAR)]
         return cls(
             photo, t, t_sd, pose.planar, pose.planar_covariance, shared, float(pose.state[2]),
@@ -60,7 +69,7 @@ class PoseObservation:
 
 @dataclass(frozen=True)
 class Track:
-    """The path of a walk with its uncertainty, one sample a photograph.
+    """The smoothed path of a walk with its covariance, one sample for each photograph.
 
     Attributes:
         observations: What was seen, in order of time.
@@ -91,7 +100,7 @@ class Track:
 
     @property
     def gap_before(self) -> NDArray[np.bool_]:
-        """Where the path starts anew after a gap, shape (n,)."""
+        """Whether a gap precedes each sample, shape (n,)."""
         return self.smoothed.gap_before
 
     @property
@@ -126,7 +135,7 @@ def assemble_track(
     gap: float | None = None,
     process: Process | None = None,
 ) -> Track:
-    """Order observations by time and smooth them.
+    """Sort observations by time and smooth them.
 
     Args:
         observations: What was seen, one a photograph.
@@ -138,7 +147,7 @@ def assemble_track(
         from the same place do not average it away.
 
     Raises:
-        PathError: When nothing was seen or two photographs have one time.
+        PathError: When there is no observation or two photographs have the same time.
     """
     if not observations:
         raise PathError("the robot was seen in no photograph; look at the preview of the first one")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The floor as seen from straight above, and regions that hold 90 % of a density."""
+"""Rectified view of the floor, and confidence ellipses of 90 %."""
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -12,16 +12,16 @@ def rectify_floor(
     pixels: NDArray[np.uint8], camera: Camera, view: CameraPose, *, low: ArrayLike,
     high: ArrayLike, pixels_per_metre: float, height: float = 0.0,
 ) -> NDArray[np.uint8]:  # fmt: skip
-    """Draw the floor as seen from straight above, x to the right and y up.
+    """Rectify a photograph: draw the floor as seen from straight above, x to the right and y up.
 
     Args:
         pixels: A photograph, BGR.
         camera: The lens.
-        view: Where the camera stands.
+        view: Pose of the camera.
         low: Lowest x and y shown, shape (2,) [m].
         high: Highest x and y shown, shape (2,) [m].
         pixels_per_metre: Scale [px/m].
-        height: Height of the plane that is drawn where it is; what is above or below leans [m].
+        height: Height of the plane that is drawn to scale; what is above or below is displaced [m].
 
     Returns:
         BGR picture; black where the photograph shows nothing.

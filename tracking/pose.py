@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: MIT
-"""Pose of the robot from points of it seen in one photograph.
+"""Pose of the robot from points of it in one photograph, by nonlinear least squares.
 
-All six degrees of freedom are fitted, with a prior on those a single camera sees badly: from 3 m
-away a marker of 0.12 m tells its distance to centimetres and its tilt to degrees, so the height of
-the body, its roll and its pitch are held by what is known of the robot. Minimised is
+All six degrees of freedom are fitted, with a prior on those that a single camera determines badly.
+From 3 m away a marker of 0.12 m gives its distance to centimetres and its tilt to degrees. A prior
+on height, roll and pitch therefore enters from the robot's dimensions. Minimised is
 
     r' C^-1 r + ((z - z_body) / sd_z)² + (roll / sd_tilt)² + (pitch / sd_tilt)²
 
 with r the points' pixels minus their projection. x, y and yaw carry no prior; their covariance
-contains what height and tilt leave open.
+includes the uncertainty of height and tilt.
 """
 
 from dataclasses import dataclass
@@ -62,7 +62,7 @@ class RobotMarker:
 
 @dataclass(frozen=True)
 class BodyPrior:
-    """What is known of the body's height and tilt before looking.
+    """Prior on the body's height and tilt.
 
     Attributes:
         height: Height of the body's origin over the floor [m].
@@ -82,9 +82,9 @@ class BodyPose:
     Attributes:
         state: x, y, z [m], roll, pitch, yaw [rad] of the body in the world, shape (6,);
             R = Rz(yaw) Ry(pitch) Rx(roll).
-        covariance: Of `state` from pixels, height and tilt: errors that differ from photograph to
+        covariance: Of `state` from pixels, height and tilt, errors independent from photograph to
             photograph, shape (6, 6).
-        camera_covariance: Of `state` from the camera's pose: an error all photographs of a stand
+        camera_covariance: Of `state` from the camera's pose, an error that a stand's photographs
             share, shape (6, 6).
         misfit_px: Root mean square distance of points from their projection [px].
         cost: The minimum of the sum above [-].
@@ -108,7 +108,7 @@ class BodyPose:
 
 
 PLANAR = [0, 1, 5]
-"""Places of x, y and yaw in a state."""
+"""Indices of x, y and yaw in a state."""
 
 
 def rotation_with_derivatives(roll: float, pitch: float, yaw: float) -> tuple[Array, Array]:
@@ -144,7 +144,7 @@ def fit_pose(
     prior: BodyPrior,
     scale_sd: float = 0.0,
 ) -> BodyPose:
-    """Fit the robot's pose to points of it.
+    """Fit the robot's pose to points of it by least squares with a prior on height and tilt.
 
     Args:
         camera: The lens.
@@ -154,7 +154,7 @@ def fit_pose(
         covariance: Of the raveled pixels, shape (2n, 2n) [px²].
         prior: Height and tilt.
         scale_sd: Relative standard deviation of the points' common scale, `side_sd / side` of a
-            marker: its size in the picture is a measure of height only as far as it is known [-].
+            marker. It limits how well the size in the picture determines the height [-].
 
     Returns:
         The pose at the least cost.
@@ -201,7 +201,7 @@ class _PoseProblem:
     whiten: Array
 
     def start(self) -> Array:
-        """Lay the points on the level plane of their mean height and fit x, y and yaw there."""
+        """Compute a start: x, y and yaw fitted on the level plane of the points' mean height."""
         height = self.prior.height + self.points_body[:, 2].mean()
         seen = to_floor(self.camera, self.view, self.corners_px, height)
         body = self.points_body[:, :2]

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: MIT
-"""Smooth a sequence of planar poses at irregular times; leave gaps as gaps.
+"""Smooth planar poses at irregular times (Gaussian-process smoother); gaps stay gaps.
 
-Between photographs the robot is taken to keep its twist (forward speed, sideways speed, turning
-rate in its own frame), which white noise disturbs: a constant twist is an arc, so a turning robot
-is not cut short. For neighbours k and k + 1, dt apart (Barfoot, State Estimation for Robotics,
-2017, section 11.3, written for the plane):
+Between photographs the robot is assumed to keep its twist (forward speed, sideways speed, turning
+rate in its own frame), disturbed by white noise. A constant twist is an arc, so the corners of a
+turning path are not cut. For neighbours k and k + 1, dt apart (Barfoot, State Estimation for
+Robotics, 2017, section 11.3, written for the plane):
 
     e = [ log(T_k^-1 T_k+1) - dt w_k ;  w_k+1 - w_k ],   cov e = [ dt³/3 dt²/2 ; dt²/2 dt ] x Q_c
 
@@ -12,7 +12,7 @@ The least-squares problem is block tridiagonal and solved as such. The two noise
 are those with the greatest marginal likelihood (Laplace's approximation) unless they are given.
 
 The second line leaves out the Jacobian of the logarithm, which differs from one by half the turn
-between two photographs; the noise density takes it up.
+between two photographs; the noise density absorbs the difference.
 """
 
 from dataclasses import dataclass
@@ -29,7 +29,7 @@ _LONGEST_SEARCH = 200
 
 
 class Process(NamedTuple):
-    """Densities of the noise that disturbs the twist.
+    """Noise densities of the process: white noise on the twist's derivative.
 
     Attributes:
         travel: Of forward and sideways speed [m²/s³].
@@ -63,7 +63,7 @@ class SmoothPath:
 
     @property
     def gap_before(self) -> NDArray[np.bool_]:
-        """Where the path starts anew because too long nothing was seen, shape (n,)."""
+        """Whether a gap longer than the limit precedes each sample, shape (n,)."""
         return np.diff(self.segment, prepend=self.segment[:1]) > 0
 
 
@@ -76,7 +76,7 @@ def smooth(
     gap: float | None = None,
     process: Process | None = None,
 ) -> SmoothPath:
-    """Smooth measured poses.
+    """Smooth measured poses by least squares with a constant-twist motion model.
 
     Args:
         t: Times, increasing, shape (n,) [s].
@@ -89,7 +89,7 @@ def smooth(
         process: Noise densities; None estimates them.
 
     Returns:
-        The path. Nothing is added where nothing was seen.
+        The path, at the times given only.
 
     Raises:
         PathError: When times do not increase or shapes disagree.
@@ -162,7 +162,7 @@ def _likeliest(parts: list["_Chain"]) -> Process:
 
 @dataclass(frozen=True)
 class _Solution:
-    """State x, y, yaw, twist, shape (n, 6), its covariance, and how likely the poses are."""
+    """State x, y, yaw, twist, shape (n, 6), its covariance, and the log marginal likelihood."""
 
     state: Array
     covariance: Array
@@ -179,7 +179,7 @@ class _Chain:
 
     @classmethod
     def of(cls, times: Array, measured: Array, spread: Array, stamp_sd: Array) -> "_Chain":
-        """Unwrap the yaw and turn errors of time into errors along the motion."""
+        """Unwrap the yaw and convert errors of time to errors of pose along the motion."""
         unwrapped = measured.copy()
         unwrapped[:, 2] = np.unwrap(measured[:, 2])
         if len(times) > 1:
@@ -193,7 +193,7 @@ class _Chain:
         return _Chain(self.times[:n], self.measured[:n], self.spread[:n])
 
     def start(self) -> Array:
-        """Guess the state: the poses themselves and their differences."""
+        """Compute the initial state from the poses and their differences."""
         state = np.concatenate((self.measured, np.zeros_like(self.measured)), axis=1)
         if len(self.times) > 1:
             dt = np.diff(self.times)[:, None]
@@ -218,7 +218,7 @@ class _Chain:
 
 
 _TWIST_SD = np.array([1.0, 1.0, 3.0])
-"""A walking robot's twist before looking: 1 m/s and 3 rad/s, far beyond any [m/s, m/s, rad/s]."""
+"""Prior standard deviation of the twist, far above any walking robot's [m/s, m/s, rad/s]."""
 
 
 def _link_weights(dt: Array, process: Process) -> tuple[Array, float]:

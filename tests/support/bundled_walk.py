@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The bundled, simulated walk, and somebody who follows its tracking without a word."""
+"""The bundled simulated walk, and a silent progress reporter."""
 
 import sys
 from pathlib import Path
@@ -14,19 +14,19 @@ SOME = ("00", "02", "03", "04", "05", "06")
 
 
 class Nobody:
-    """Follows without a word, and asks to stop where told to."""
+    """Progress that displays nothing, and requests a stop if `stops` is true."""
 
     def __init__(self, stops: bool = False) -> None:
         self.stops = stops
 
     def step(self, what: str, fraction: float | None) -> None:
-        """Hear nothing."""
+        """Ignore the progress."""
 
     def stop_requested(self) -> bool:
-        """Ask to stop."""
+        """Return whether a stop was requested."""
         return self.stops
 
 
 def truth(photos) -> pd.DataFrame:
-    """Return where the robot was in photographs."""
+    """Return the true poses of the robot in photographs."""
     return pd.read_csv(WALK / "photos.csv").set_index("photo").loc[list(photos)]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A blue board with patches on a brown floor, drawn, and merged in three ways."""
+"""Synthetic composite pictures of a blue board on a brown floor, merged in three ways."""
 
 import cv2
 import numpy as np
@@ -30,7 +30,7 @@ def floor(rng):
 
 
 def robot():
-    """Draw a blue board with a red head and patches that look alike from no two sides."""
+    """Draw a blue board with a red head and patches, without any symmetry."""
     picture = np.tile(np.array([120.0, 60, 30]), (80, 80, 1))
     picture[:10, 25:55] = (30, 30, 190)
     for row, column, colour in (
@@ -42,7 +42,17 @@ def robot():
 
 
 def exposure(planar, rng, ground, light=1.0):
-    """Photograph the board in some light; return the picture and where it shows it."""
+    """Draw one photograph of the board.
+
+    Args:
+        planar: x, y [m] and yaw [rad] of the board, shape (3,).
+        rng: Random numbers for the noise.
+        ground: Picture of the floor, shape (400, 640, 3).
+        light: Factor on the board's brightness [-].
+
+    Returns:
+        The photograph, and the mask of pixels that show the board.
+    """
     c, s = np.cos(planar[2]), np.sin(planar[2])
     corners = np.array([[1, 1], [1, -1], [-1, -1], [-1, 1]]) * 0.5 * np.array(SIZE)
     corners = corners @ np.array([[c, s], [-s, c]]) + planar[:2]
@@ -56,7 +66,15 @@ def exposure(planar, rng, ground, light=1.0):
 
 
 def composite(walk, kind, seed=0, lights=None, around_px=0):
-    """Merge exposures; pasted ones are cut out with so much floor around them."""
+    """Draw exposures of a walk and merge them into one picture.
+
+    Args:
+        walk: Poses x, y [m] and yaw [rad], shape (n, 3).
+        kind: "mean", "darkest" or "pasted".
+        seed: Seed of floor and noise.
+        lights: Factor on the brightness of each exposure, or None for 1 [-].
+        around_px: Margin of floor that is cut out with a pasted exposure [px].
+    """
     rng = np.random.default_rng(seed)
     ground = floor(rng)
     lights = np.ones(len(walk)) if lights is None else lights
@@ -91,7 +109,13 @@ def found_in(picture, planar, merged, **other):
 
 
 def likeness(picture, planar, *, reach):
-    """Take a picture in which one exposure is known, to look around the middle."""
+    """Make a `KnownExposure` for a search around the middle of the picture.
+
+    Args:
+        picture: The composite picture.
+        planar: x, y [m] and yaw [rad] of the known exposure, shape (3,).
+        reach: Half width of the area to search [m].
+    """
     area = floor_in_view(LENS, VIEW, PRIOR.height + TOP, (0.0, 0.0), reach)
     hidden = np.zeros(picture.shape[:2], dtype=bool)
     return KnownExposure(picture, LENS, VIEW, PRIOR, known_at(planar), PLATE, SIZE, hidden, area)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A camera that looks down, and boards as it sees them."""
+"""A camera that looks down, and calibration boards as it sees them."""
 
 import numpy as np
 

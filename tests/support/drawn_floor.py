@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A floor of four markers, and where a camera sees them."""
+"""A floor with four markers, and their projections in a camera."""
 
 import numpy as np
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Grain of a floor that repeats itself, drawn."""
+"""Synthetic grain of a wooden floor."""
 
 import cv2
 import numpy as np
@@ -8,7 +8,7 @@ WIDTH = 30.0  # px
 
 
 def grain(rng, shape=(400, 480)):
-    """Draw planks: noise that repeats itself far along a row and little across."""
+    """Draw planks: noise with a long correlation along rows and a short one across."""
     noise = rng.normal(0, 1, (*shape, 3)).astype(np.float32)
     long = cv2.GaussianBlur(noise, (0, 0), sigmaX=12, sigmaY=0.8)
     return 10 * long / long.std() + rng.normal(0, 0.5, noise.shape).astype(np.float32)

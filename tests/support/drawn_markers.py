@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Markers drawn on a floor."""
+"""Synthetic pictures of markers on a floor."""
 
 import cv2
 import numpy as np

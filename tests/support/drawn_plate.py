@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A plate with a stripe at its head, drawn on a wooden floor."""
+"""Synthetic pictures of a plate with a stripe at its head on a wooden floor."""
 
 import cv2
 import numpy as np

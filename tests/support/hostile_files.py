@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Work that must end soon, whatever file it is given."""
+"""Time limit for reading malformed files."""
 
 import threading
 
@@ -7,7 +7,7 @@ from tracking.errors import TrackingError
 
 
 def within_two_seconds(work):
-    """Do something in a thread, and return what it raised or returned."""
+    """Call a function in a thread, and return its result or `TrackingError`; None on timeout."""
     said = []
 
     def run():

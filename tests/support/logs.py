@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Logs of a few samples of each kind of device, and what public tools read in them."""
+"""Logs with a few samples of each kind of device, and what public tools read in them."""
 
 import io
 
@@ -34,7 +34,12 @@ COUNTS = {
 
 
 def log_of(stream, rows=3):
-    """Return a log with a few samples of one stream, and those samples."""
+    """Return a log with a few samples of one stream, and the samples.
+
+    Args:
+        stream: Kind of stream.
+        rows: Number of samples.
+    """
     given_samples = [
         Sample(START + 0.01 * n, 0.01 * n, n, COUNTS[stream], 0, 1 if stream == "drives" else 0)
         for n in range(rows)

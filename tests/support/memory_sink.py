@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Keep an experiment's runs in memory; satisfies `rig.experiment.sink.RunSink`."""
+"""In-memory sink for an experiment's runs; satisfies `rig.experiment.sink.RunSink`."""
 
 from dataclasses import dataclass, field
 
@@ -10,13 +10,13 @@ from rig.experiment.verdict import PointVerdict
 
 @dataclass
 class MemoryRun:
-    """A run in memory.
+    """A run kept in memory.
 
     Attributes:
         start: What was known before.
-        parts: Readings as they came.
+        parts: Batches of readings, in order of arrival.
         verdict: What it is worth.
-        reason: Why it ended; empty while it goes on.
+        reason: Why it ended; empty while it is open.
     """
 
     start: RunStart
@@ -31,13 +31,13 @@ class MemoryRun:
 
 
 class MemorySink:
-    """Keeps runs and events in memory.
+    """Sink that keeps runs and events in memory.
 
     Attributes:
-        runs: Every run, also those broken off.
-        events: Kind and text of what happened.
+        runs: Every run, aborted ones included.
+        events: Kind and text of each event.
         latched: Reasons of emergency stops.
-        room: Room left [bytes].
+        room: Free space [bytes].
     """
 
     def __init__(self) -> None:
@@ -48,32 +48,32 @@ class MemorySink:
 
     @property
     def accepted(self) -> list[MemoryRun]:
-        """The runs that are good."""
+        """The runs with a good verdict."""
         return [run for run in self.runs if run.verdict is not None and run.verdict.accepted]
 
     def open_run(self, start: RunStart) -> None:
-        """Begin a run."""
+        """Open a run."""
         self.runs.append(MemoryRun(start))
 
     def write(self, readings: Readings, batch: Batch) -> None:
-        """Keep samples."""
+        """Append samples to the open run."""
         del batch
         self.require_room(1.0)
         self.runs[-1].parts.append(readings)
 
     def close_run(self, verdict: PointVerdict | None, *, reason: str) -> None:
-        """End the run."""
+        """Close the run."""
         self.runs[-1].verdict, self.runs[-1].reason = verdict, reason
 
     def event(self, kind: str, text: str) -> None:
-        """Keep something that happened."""
+        """Append an event."""
         self.events.append((kind, text))
 
     def require_room(self, least: float) -> None:
-        """Raise SinkFailed where too little room is left [bytes]."""
+        """Raise SinkFailed if there is less free space than required [bytes]."""
         if self.room < least:
             raise SinkFailed(f"room left is {self.room:g} bytes; its limit is {least:g} bytes")
 
     def latch(self, reason: str) -> None:
-        """Keep that an emergency stop holds."""
+        """Record an emergency stop that stays latched."""
         self.latched.append(reason)

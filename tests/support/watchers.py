@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: MIT
-"""Watchers for tests: of computations (`step`, `stop_requested`) and of recordings (`show`)."""
+"""Progress reporters for tests of computations, and watchers for tests of recordings."""
 
 
 class Nobody:
-    """Never asks to stop.
+    """Progress that records the steps and never requests a stop.
 
     Attributes:
-        seen: What was reported: the steps and how far each was.
+        seen: Reported steps with the fraction done.
     """
 
     def __init__(self) -> None:
@@ -20,14 +20,14 @@ class Nobody:
 
 
 class Impatient(Nobody):
-    """Asks to stop from the first moment."""
+    """Progress that requests a stop from the start."""
 
     def stop_requested(self) -> bool:
         return True
 
 
 class Onlooker:
-    """Looks on while devices are recorded; never ends the recording."""
+    """Watcher of a recording that displays nothing and never stops it."""
 
     def show(self, status: object) -> None:
         pass
@@ -37,7 +37,7 @@ class Onlooker:
 
 
 class RecordWatcher:
-    """Looks on; asks for the end after so many looks or samples of each stream, or raises."""
+    """Watcher that stops a recording after a number of calls or samples, or raises an error."""
 
     def __init__(self, *, looks=None, samples=None, error=None):
         self.seen = []

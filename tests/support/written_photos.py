@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Photographs written with EXIF."""
+"""Write photographs with EXIF."""
 
 import numpy as np
 import PIL.Image

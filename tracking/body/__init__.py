@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The robot without a marker: its own picture, annotated once, is found in every photograph."""
+"""Markerless tracking: find the robot by a template annotated in one photograph."""
 
 from tracking.body.align import Alignment, align
 from tracking.body.heading import resolve_headings

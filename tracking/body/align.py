@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: MIT
-"""Align the robot's picture with a photograph, to a fraction of a pixel and with its error.
+"""Align the robot's template with a photograph to subpixel accuracy, with covariance.
 
-The template's points are projected for a pose, the photograph is read there, and the pose is
-improved by Gauss-Newton until the colours agree up to a gain and an offset a channel (light and
-exposure). It is what ECC does, in the robot's six degrees of freedom instead of a homography's
-eight, so that what is known of height and tilt enters as it does for a marker (`tracking.pose`).
-A seventh unknown is the picture's scale: blur and the annotation make it uncertain by some tenths
-of a percent, and the height must not take that for its own.
+The template's points are projected for a pose, the photograph is interpolated there, and the pose
+is improved by Gauss-Newton until the colours agree up to a gain and an offset for each channel
+(light and exposure). This is ECC alignment in the robot's six degrees of freedom instead of a
+homography's eight, so that the prior on height and tilt enters as it does for a marker
+(`tracking.pose`). A seventh unknown is the template's scale: blur and the annotation make it
+uncertain by some tenths of a percent, which must not bias the height.
 """
 
 from dataclasses import dataclass
@@ -25,41 +25,42 @@ _HUBER = 1.5
 _FIRST_LOOKS = 5
 
 HOPELESS_SCORE = 0.25
-"""Least correlation after five steps for which an alignment is carried on, as a rule [-]."""
+"""Default of the least correlation after five steps for which an alignment continues [-]."""
 
 LEAST_VISIBLE = 0.35
-"""Least share of the robot's picture by which it is aligned [-]."""
+"""Default of the least visible share of the template for an alignment [-]."""
 
 SCALE_SD = 5e-3
 """Relative standard deviation of the template's scale [-]."""
 
 MODEL_FACTOR = 4.0
-"""By how much what a flat picture leaves out (shading, rims, legs) exceeds white noise, as a factor
-of variance. All of these change slowly: an alignment by edges is not widened by it [-]."""
+"""Variance of model errors (shading, rims, legs) over that of white noise [-].
+
+They vary slowly over the picture; the covariance of an alignment by edges leaves them out."""
 
 MODEL_STEPS = 0.03
-"""Error of an alignment that no number of points averages away, in steps of the template; in pixels
-of the photograph where the template is drawn and not cut out of another [-].
+"""Least standard deviation of an alignment, which more points do not reduce, in steps of the
+template; in pixels of the photograph where the template is drawn and not cut out of another [-].
 
-Both pictures are read between their pixels, and the template errs as the photograph it was cut from
-does. With 0.02, errors along x of 200 simulated poses were 1.11 times what was stated."""
+Both pictures are interpolated, and the template has the errors of the photograph it was cut from.
+With 0.02, errors along x of 200 simulated poses were 1.11 times those stated."""
 
 SLOW = 1 / 24
-"""Width of what is left out where other things shine through, in lengths of the template [-].
+"""Width of the high-pass filter where other things shine through, in lengths of the template [-].
 
-A floor's planks are as much darker or lighter than each other as a marker's black and white are in
-the mean of seven exposures. Edges are where both pictures tell of the place, and stay."""
+The planks of a floor differ in brightness as much as a marker's black and white do in the mean of
+seven exposures. Edges carry the information on the pose, and the filter keeps them."""
 
 
 @dataclass(frozen=True)
 class Alignment:
-    """The robot's picture laid on a photograph.
+    """The robot's pose by template alignment, with score and likelihood.
 
     Attributes:
         pose: Pose of the robot; its misfit is 0, there being no corners.
-        score: Correlation of photograph and picture, mean over channels weighed by contrast; where
-            others shine through, of what changes fast [-].
-        log_likelihood: Of the colours, up to a constant the same for all poses in a photograph.
+        score: Correlation of photograph and template, weighted mean over channels by contrast; if
+            others shine through, after the high-pass filter [-].
+        log_likelihood: Of the colours, up to a constant common to all poses in a photograph.
     """
 
     pose: BodyPose
@@ -73,28 +74,28 @@ def align(
     visible: NDArray[np.bool_] | None = None, least_visible: float = LEAST_VISIBLE,
     least_hope: float = HOPELESS_SCORE, shines_through: bool = False, most_odd: float = np.inf,
 ) -> Alignment | None:  # fmt: skip
-    """Align the robot's picture.
+    """Align the robot's template with a photograph.
 
     Args:
         pixels: The photograph, BGR, shape (height, width, 3).
         camera: The lens.
-        view: Where the camera stands.
-        template: The robot's picture.
+        view: Pose of the camera.
+        template: The robot's template.
         prior: Height and tilt.
         start: x, y [m] and yaw [rad] to start from, shape (3,).
         blurs_px: Blurs of the photograph, coarse to fine, each aligned in turn [px].
         visible: Pixels of the photograph that may show the robot, shape (height, width); the
             others are left out.
-        least_visible: Least share of the picture that must be visible [-].
-        least_hope: Least correlation after five steps for which it is carried on [-].
-        shines_through: Whether the floor or other exposures are seen through the robot: what
-            changes over more than `SLOW` of its picture is then left out.
-        most_odd: Points that differ by so many standard deviations in any colour are left out:
-            they show something else; they count in the score [-].
+        least_visible: Least share of the template that must be visible [-].
+        least_hope: Least correlation after five steps for which the iteration continues [-].
+        shines_through: Whether the floor or other exposures are seen through the robot: variation
+            over more than `SLOW` of the template is then filtered out.
+        most_odd: Points that differ by more standard deviations in any colour are outliers and
+            left out of the fit, but not of the score [-].
 
     Returns:
         The alignment, or None where the robot leaves the photograph, little of it is visible or
-        there is no hope.
+        its correlation stays too small.
     """
     state = np.array([start[0], start[1], prior.height, 0.0, 0.0, start[2]])
     solution = None
@@ -114,7 +115,7 @@ def align(
 
 @dataclass(frozen=True)
 class _Job:
-    """Everything an alignment at one blur needs, cut to the robot's neighbourhood."""
+    """Inputs of an alignment at one blur, cropped to the robot's neighbourhood."""
 
     origin: Array
     picture: NDArray[np.float32]
@@ -137,7 +138,7 @@ class _Job:
         prior: BodyPrior, state: Array, blur: float, visible: NDArray[np.bool_] | None,
         least_visible: float, shines_through: bool, most_odd: float,
     ) -> "_Job | None":  # fmt: skip
-        """Cut out, blur and differentiate the photograph around the robot."""
+        """Crop, blur and differentiate the photograph around the robot."""
         points = template.points_body.reshape(-1, 3)
         seen, _, _ = project_with_derivatives(camera, view, _world(points, state))
         reach = 6 + 4 * blur
@@ -156,7 +157,7 @@ class _Job:
         )
         colours = cv2.GaussianBlur(template.colours, (0, 0), max(blur / max(density, 1e-3), 0.1))
         hidden = None if visible is None else (~visible[window]).astype(np.float32)
-        # Blurred pixels repeat each other over the area of the blur, 4 pi s².
+        # Blurred pixels are correlated over the area of the blur, 4 pi s².
         repeated = max(1.0, (4 * np.pi * blur**2 + 1) / density**2)
         return cls(
             low.astype(float),
@@ -227,7 +228,7 @@ class _Job:
         )
 
     def _used(self, seen: Array) -> NDArray[np.bool_]:
-        """Tell which points are in the window and not hidden, by their pixels, shape (n, 2)."""
+        """Compute the mask of points in the window and not hidden, by pixels of shape (n, 2)."""
         inside = seen - self.origin
         height, width = self.picture.shape[:2]
         used = np.all((inside >= 0) & (inside <= [width - 1, height - 1]), axis=1)
@@ -236,12 +237,12 @@ class _Job:
         return used
 
     def _slopes_at(self, seen: Array) -> Array:
-        """Read the slopes of the colours at pixels, shape (n, 3, 2)."""
+        """Interpolate the gradients of the colours at pixels, shape (n, 3, 2)."""
         along = sample(self.slopes, seen - self.origin)
         return np.stack((along[:, :3], along[:, 3:]), axis=2).astype(float)
 
     def _look(self, state: Array) -> tuple[Array, Array, Array, Array, float] | None:
-        """Compute residual (n, 3), its derivative (n, 3, 7), weights, noise (3,) and score."""
+        """Compute residual (n, 3), Jacobian (n, 3, 7), weights, noise (3,) and score."""
         seen, by_point, _ = project_with_derivatives(
             self.camera, self.view, _world(self.points, state)
         )
@@ -274,7 +275,7 @@ class _Job:
 
 
 def _without_slow(field: Array, used: NDArray[np.bool_], raster: tuple[int, int]) -> Array:
-    """Take off what changes slowly over the raster; values at its used points, shape (n, ...)."""
+    """High-pass filter a field on the raster; return values at its used points, shape (n, ...)."""
     width = SLOW * raster[0]
     layers = np.zeros((*raster, 1 + field[0].size))
     layers[used.reshape(raster)] = np.column_stack(
@@ -290,7 +291,7 @@ def _without_slow(field: Array, used: NDArray[np.bool_], raster: tuple[int, int]
 
 
 def _least_covariance(template: BodyTemplate, density: float) -> Array:
-    # Levers in lengths of the top, by which errors of yaw are as stated, too.
+    # Lever arms in lengths of the top, calibrated so that errors of yaw are as stated.
     step, lever = template.step, 0.375
     if template.drawn:
         step, lever = template.step / max(density, 1e-3), 0.6
@@ -300,7 +301,7 @@ def _least_covariance(template: BodyTemplate, density: float) -> Array:
 
 
 def _world(points: Array, state: Array) -> Array:
-    """Place points of the body by a pose, shape (6,), or a pose and a scale, shape (7,)."""
+    """Transform points of the body by a pose, shape (6,), or a pose and a scale, shape (7,)."""
     R, _ = rotation_with_derivatives(*state[3:6])
     growth = state[6] if len(state) > 6 else 0.0
     middle = points.mean(axis=0)
@@ -308,7 +309,7 @@ def _world(points: Array, state: Array) -> Array:
 
 
 def _relit(colours: Array, values: Array) -> Array:
-    """Give the template the photograph's light."""
+    """Fit gain and offset of the template's colours to the photograph."""
     a, b = colours - colours.mean(axis=0), values - values.mean(axis=0)
     power, cross = (a * a).sum(axis=0), (a * b).sum(axis=0)
     gain = np.clip(cross / np.maximum(power, 1e-9), 0.0, 4.0)
@@ -316,6 +317,6 @@ def _relit(colours: Array, values: Array) -> Array:
 
 
 def _likeness(colours: Array, values: Array) -> float:
-    """Compute how well template and photograph correlate."""
+    """Compute the correlation of template and photograph."""
     a, b = colours - colours.mean(axis=0), values - values.mean(axis=0)
     return float((a * b).sum() / np.sqrt(max((a * a).sum() * (b * b).sum(), 1e-9)))

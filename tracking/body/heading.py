@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: MIT
-"""Tell head from tail over a whole sequence, or refuse to.
+"""Resolve head and tail of a robot without a marker over a whole sequence (Viterbi).
 
-One photograph of a robot that looks alike from both ends says little about which end is ahead, and
-shadows make it say it wrongly in every photograph. But a robot does not turn round between two
-photographs, and where it walks it walks ahead: the likeliest chain of headings decides (Viterbi),
-and must be far likelier than the same chain with head and tail exchanged.
+One photograph of a nearly symmetric robot says little about which end is ahead, and shadows can
+bias every photograph in the same way. But a robot does not turn round between two photographs, and
+it walks head first. The most likely chain of headings is taken, and it must be far more likely than
+the same chain with head and tail exchanged.
 """
 
 from collections.abc import Sequence
@@ -18,7 +18,7 @@ from tracking.camera.lens import Array
 from tracking.errors import AmbiguousHeading
 
 LEAST_LOG_ODDS = 7.0
-"""Odds of a thousand to one."""
+"""Least log odds of the chosen chain to the reversed one: a thousand to one."""
 
 _TURN_SD = 0.5
 _MOST_EVIDENCE = 6.0
@@ -28,22 +28,22 @@ _TRAVEL_EVIDENCE = 6.0
 def resolve_headings(
     candidates: Sequence[BodyCandidates], *, length: float, walks_ahead: bool = True
 ) -> tuple[Alignment, ...]:
-    """Choose between head and tail in every photograph.
+    """Choose the heading in every photograph by the most likely sequence.
 
     Args:
         candidates: The robot in each photograph, in order of time.
-        length: Length of the robot; moves shorter than a quarter of it do not tell a direction [m].
+        length: Length of the robot; shorter moves than a quarter of it give no direction [m].
         walks_ahead: Whether the robot is known to walk head first, on the whole.
 
     Returns:
-        One alignment a photograph.
+        One alignment for each photograph.
 
     Raises:
-        AmbiguousHeading: When the better reading of the whole sequence is not a thousand times
+        AmbiguousHeading: When the best sequence of headings is not a thousand times
             likelier than the same sequence reversed.
     """
     options = [candidate.options for candidate in candidates]
-    # Bounded: shadows and glare can make one photograph surer than it should be.
+    # Bounded: shadows and glare can make one photograph overconfident.
     scores = [np.maximum(candidate.evidence, -_MOST_EVIDENCE) for candidate in candidates]
     links = [
         np.array([[_link(i, j, length, walks_ahead) for j in after] for i in before])
@@ -62,7 +62,7 @@ def resolve_headings(
 
 
 def _link(before: Alignment, after: Alignment, length: float, walks_ahead: bool) -> float:
-    """Score one heading after another."""
+    """Compute the log score of one heading after another."""
     a, b = before.pose.planar, after.pose.planar
     turn = float(np.angle(np.exp(1j * (b[2] - a[2]))))
     score = -0.5 * min((turn / _TURN_SD) ** 2, 20.0)
@@ -76,7 +76,7 @@ def _link(before: Alignment, after: Alignment, length: float, walks_ahead: bool)
 
 
 def _likeliest(scores: Sequence[Array], links: Sequence[Array]) -> tuple[list[int], float]:
-    """Find the chain of options with the greatest score (Viterbi)."""
+    """Find the chain of options with the greatest sum of scores (Viterbi)."""
     if not scores:
         return [], 0.0
     total, came = scores[0], []
@@ -94,12 +94,12 @@ def _score_reversed(
     options: Sequence[Sequence[Alignment]], choice: Sequence[int], scores: Sequence[Array],
     links: Sequence[Array],
 ) -> float:  # fmt: skip
-    """Score the likeliest chain that has head and tail exchanged in every photograph."""
+    """Compute the score of the best chain with head and tail exchanged in every photograph."""
     against = []
     for ways, k, own in zip(options, choice, scores, strict=True):
         yaw = ways[k].pose.state[5]
         opposite = np.array([np.cos(way.pose.state[5] - yaw) < -0.7 for way in ways])
-        # Where no opposite heading holds at all, the chosen one stays, at the price of the worst.
+        # Without an opposite candidate the chosen heading stays, with the lowest score.
         against.append(
             np.where(opposite, own, -np.inf)
             if opposite.any()

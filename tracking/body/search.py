@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""Find the robot's picture in a photograph: turn, match, align.
+"""Find the robot's template in a photograph: rectify, match at all headings, align.
 
-The photograph is rectified onto the level plane of the robot's top, where the robot has the same
-size everywhere, coarsely; its picture is turned in steps and matched; the best places are aligned.
+The photograph is rectified, coarsely, onto the level plane of the robot's top, where the robot has
+the same size everywhere. The template is rotated in steps and matched by normalised
+cross-correlation. The best places are aligned.
 """
 
 from dataclasses import dataclass
@@ -17,10 +18,10 @@ from tracking.camera.lens import Array, Camera, CameraPose, project, to_floor
 from tracking.pose import BodyPrior
 
 ACCEPTED_SCORE = 0.7
-"""Least correlation of an alignment that counts as the robot [-]."""
+"""Least correlation of an alignment to accept it as the robot [-]."""
 
 LEAST_MATCH = 0.3
-"""Least correlation of a coarse match that is worth aligning [-]."""
+"""Least correlation of a coarse match to align it [-]."""
 
 _TURNS = 24
 _CELLS = 14
@@ -28,10 +29,10 @@ _CELLS = 14
 
 @dataclass(frozen=True)
 class BodyCandidates:
-    """Where a photograph shows the robot, and the same place with its ends exchanged.
+    """Candidate alignments at one place in a photograph, which differ in heading.
 
     Attributes:
-        options: Alignments in one place that differ in heading, the likeliest first; a robot about
+        options: Alignments at one place that differ in heading, the likeliest first; a robot about
             as wide as long has up to four.
     """
 
@@ -44,7 +45,7 @@ class BodyCandidates:
 
     @property
     def evidence(self) -> Array:
-        """By how much less likely than the best each option is, shape (options,), from 0 down."""
+        """Log likelihood of each option relative to the best, shape (options,), 0 and below."""
         likelihood = np.array([option.log_likelihood for option in self.options])
         return likelihood - likelihood[0]
 
@@ -54,20 +55,20 @@ def find_body(
     prior: BodyPrior, near: ArrayLike | None = None, reach: float = 0.5,
     visible: NDArray[np.bool_] | None = None,
 ) -> BodyCandidates | None:  # fmt: skip
-    """Find the robot.
+    """Find the robot in a photograph by its template.
 
     Args:
         pixels: The photograph, BGR, shape (height, width, 3).
         camera: The lens.
-        view: Where the camera stands.
-        template: The robot's picture.
+        view: Pose of the camera.
+        template: Template of the robot.
         prior: Height and tilt.
         near: x and y near which to look [m]; the whole photograph when None.
         reach: How far from there [m].
         visible: Pixels that may show the robot, shape (height, width).
 
     Returns:
-        The best place in all headings that hold there, or None where nothing looks like the robot.
+        The best place with all accepted headings there, or None where no match is accepted.
     """
     height = prior.height + template.plate.height
     area = floor_in_view(camera, view, height, near, reach)
@@ -117,13 +118,13 @@ def floor_in_view(
     camera: Camera, view: CameraPose, height: float,
     near: ArrayLike | None = None, reach: float = np.inf,
 ) -> tuple[Array, Array]:  # fmt: skip
-    """Compute the rectangle of a level plane that the camera sees.
+    """Compute the bounding rectangle of the part of a level plane that the camera sees.
 
     Args:
         camera: The lens.
-        view: Where the camera stands.
+        view: Pose of the camera.
         height: Height of the plane over the floor [m].
-        near: x and y near which to stay [m].
+        near: x and y of the middle of a square that limits the rectangle; None for no limit [m].
         reach: How far from there [m].
 
     Returns:
@@ -134,7 +135,7 @@ def floor_in_view(
         [[u, v] for u in np.linspace(0, width - 1, 9) for v in np.linspace(0, rows - 1, 9)]
     )
     seen = to_floor(camera, view, edge, height)
-    # Far floor near the horizon would make the map endless and shows no robot.
+    # Floor near the horizon would make the raster unbounded and shows no robot.
     distance = np.linalg.norm(seen - view.position[:2], axis=1)
     seen = seen[np.isfinite(distance) & (distance < 3 * view.position[2])]
     low, high = seen.min(axis=0), seen.max(axis=0)
@@ -148,13 +149,13 @@ def match_turned(
     pixels: NDArray[np.uint8], camera: Camera, view: CameraPose, *, template: BodyTemplate,
     height: float, area: tuple[Array, Array], most: int = 4,
 ) -> list[Array]:  # fmt: skip
-    """Match the robot's picture in steps of turn on the rectified photograph.
+    """Match the template at a set of headings on the rectified photograph.
 
     Args:
         pixels: The photograph, BGR.
         camera: The lens.
-        view: Where the camera stands.
-        template: The robot's picture.
+        view: Pose of the camera.
+        template: Template of the robot.
         height: Height of its top over the floor [m].
         area: Lowest and highest x, y to look at, each of shape (2,) [m].
         most: How many places to return.
@@ -213,7 +214,7 @@ def _rectified(
     seen = project(camera, view, world.reshape(-1, 3)).reshape(*xx.shape, 2)
     # Blur to the size of a cell where it is smallest, so that remapping does not alias.
     spacing = float(np.median(np.linalg.norm(np.diff(seen, axis=1), axis=2)))
-    # Of the far floor nothing is lost by it: there pixels are larger than cells.
+    # The blur loses nothing of the far floor, where pixels are larger than cells.
     smooth = cv2.GaussianBlur(pixels, (0, 0), max(0.4 * spacing, 0.3))
     return sample(np.asarray(smooth), seen)
 
@@ -221,15 +222,15 @@ def _rectified(
 def turned_template(
     template: BodyTemplate, cell: float, yaw: float
 ) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
-    """Draw the robot's picture as seen from above.
+    """Draw the template rotated to a heading, as seen from above.
 
     Args:
-        template: The robot's picture, its front up.
+        template: Template of the robot, its front up.
         cell: Size of a pixel [m].
         yaw: Heading, 0 to the right [rad].
 
     Returns:
-        Colours, shape (n, n, 3), the robot's middle in theirs, and of the same shape 1 where it is.
+        Colours, shape (n, n, 3), centred on the robot's middle, and a mask of the same shape.
     """
     small = _shrunk(template, cell)
     rows, columns = small.shape[:2]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The robot's own picture: colours of its top, by place in the body frame."""
+"""Template of the robot: colours of its top by place in the body frame."""
 
 from dataclasses import dataclass
 
@@ -13,20 +13,20 @@ from tracking.markers import marker_picture
 from tracking.pose import BodyPose, RobotMarker, rotation_with_derivatives
 
 MOST_POINTS = 2500
-"""Most points of a template, as a rule."""
+"""Default of the largest number of points in a template, about."""
 
 
 @dataclass(frozen=True)
 class TopPlate:
-    """The flat top of the robot, the part of it that a camera above sees undistorted.
+    """The flat top of the robot, which a camera above sees without occlusion.
 
     Attributes:
         length: Extent along the body's x [m].
         width: Extent along the body's y [m].
         height: Height over the body's origin [m].
         centre_x: Place of its middle in the body frame [m].
-        margin: How much around it belongs to the picture, so that its edges do [m].
-        front_margin: The same ahead of it, where a nose may tell head from tail [m].
+        margin: Width around it that belongs to the template, so that its edges are inside [m].
+        front_margin: The same ahead of it, where a nose may distinguish head from tail [m].
     """
 
     length: float
@@ -60,15 +60,15 @@ class TopPlate:
 
 @dataclass(frozen=True)
 class BodyTemplate:
-    """The robot's picture.
+    """Template of the robot's top, on a raster in the body frame.
 
     Attributes:
         plate: Its top plate.
         step: Distance between neighbouring points [m].
         points_body: Places in the body frame, rows from the front to the rear and in each from
-            left to right, as a person ahead-up sees it, shape (rows, columns, 3) [m].
+            left to right, as seen from above with the head up, shape (rows, columns, 3) [m].
         colours: BGR at these places, shape (rows, columns, 3).
-        drawn: Whether it is computed, and not cut out of a photograph and its pixels.
+        drawn: Whether it is computed, and not cut out of a photograph.
     """
 
     plate: TopPlate
@@ -84,7 +84,7 @@ class BodyTemplate:
 
 
 def sample(pixels: NDArray, corners_px: Array) -> NDArray[np.float32]:
-    """Read a picture between its pixels, bilinearly.
+    """Interpolate a picture between its pixels, bilinearly.
 
     Args:
         pixels: Shape (height, width) or (height, width, channels).
@@ -105,7 +105,14 @@ def sample(pixels: NDArray, corners_px: Array) -> NDArray[np.float32]:
 
 
 def pixel_on_top(camera: Camera, view: CameraPose, *, pose: BodyPose, plate: TopPlate) -> float:
-    """Compute how much of the robot's top a pixel shows, as a square's side [m]."""
+    """Compute the size of a photograph's pixel on the robot's top, as a square's side [m].
+
+    Args:
+        camera: The lens.
+        view: Pose of the camera.
+        pose: Pose of the robot.
+        plate: The robot's top.
+    """
     corners_px = _corners_px(camera, view, pose, plate).astype(np.float32)
     return float(np.sqrt(plate.length * plate.width / cv2.contourArea(corners_px)))
 
@@ -114,18 +121,18 @@ def make_template(
     pixels: NDArray[np.uint8], camera: Camera, view: CameraPose, *, pose: BodyPose, plate: TopPlate,
     most_points: int = MOST_POINTS,
 ) -> BodyTemplate:  # fmt: skip
-    """Cut the robot's picture out of an annotated photograph.
+    """Cut the robot's template out of an annotated photograph.
 
     Args:
         pixels: The photograph, BGR, shape (height, width, 3).
         camera: The lens.
-        view: Where the camera stands.
+        view: Pose of the camera.
         pose: Where the robot is: `tracking.pose.fit_pose` to clicks on `plate.corners_body`.
         plate: The robot's top.
-        most_points: Of a robot that shows on more pixels, the picture has about so many points.
+        most_points: Largest number of points, about; more pixels are sampled more coarsely.
 
     Returns:
-        The picture, one point a pixel of the photograph, or fewer.
+        The template, with one point for each pixel of the photograph, or fewer.
 
     Raises:
         BodyError: When the robot is cut by the photograph's edge, too small or without contrast.
@@ -153,7 +160,7 @@ def make_template(
 
 
 def marker_template(marker: RobotMarker, *, points: int = 36) -> BodyTemplate:
-    """Take the robot's marker for its picture; no photograph is needed for it.
+    """Draw the template of the robot's marker; it needs no photograph.
 
     Args:
         marker: The marker on the robot's back.
@@ -164,7 +171,7 @@ def marker_template(marker: RobotMarker, *, points: int = 36) -> BodyTemplate:
     """
     picture = marker_picture(marker.dictionary, marker.marker_id, 16)
     cells = picture.shape[0] // 16 - 2
-    # The outermost half cell is left out: prints are cut there.
+    # The outermost half cell is left out, since prints are often cut there.
     width = marker.side * (1 + 1 / cells)
     plate = TopPlate(marker.side, marker.side, marker.position[2], marker.position[0],
                      (width - marker.side) / 2, (width - marker.side) / 2)  # fmt: skip

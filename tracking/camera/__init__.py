@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The camera: its lens, where it stands, and how the lens is calibrated."""
+"""The camera: lens model, pose, and calibration of the lens."""
 
 from tracking.camera.boards import Board, CharucoBoard, Checkerboard, SeenBoard, find_board
 from tracking.camera.calibration import CameraCalibration, calibrate

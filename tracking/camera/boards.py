@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Calibration boards and how their corners are found in a picture."""
+"""Calibration boards (checkerboard, ChArUco) and detection of their corners."""
 
 from dataclasses import dataclass
 from typing import TypeAlias
@@ -67,7 +67,7 @@ class SeenBoard:
 
 
 def find_board(pixels: NDArray[np.uint8], board: Board, *, name: str = "") -> SeenBoard | None:
-    """Find a board's corners to a fraction of a pixel.
+    """Find a calibration board's corners with subpixel accuracy.
 
     Args:
         pixels: The picture, grey or BGR, shape (height, width) or (height, width, 3).
@@ -101,8 +101,8 @@ def _find_checkerboard(grey: NDArray, board: Checkerboard, name: str) -> SeenBoa
 
 
 def _refinement_reach(grid: NDArray) -> int:
-    # Half the window of sub-pixel refinement: as wide as it goes without a neighbour's edges,
-    # which a diagonal of 0.4 squares leaves out under any perspective a board survives.
+    # Half the window of subpixel refinement: as wide as possible without a neighbour's edges,
+    # which 0.4 squares exclude under any perspective in which a board can be detected.
     steps = [np.linalg.norm(np.diff(grid, axis=axis), axis=2).min() for axis in (0, 1)]
     return int(np.clip(0.4 * min(steps), 2, 11))
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Calibrate a lens from pictures of a board, and say how well it is known."""
+"""Calibrate a lens from pictures of a board, with standard deviations of its parameters."""
 
 import math
 from collections.abc import Sequence
@@ -27,7 +27,7 @@ _GRID = (8, 6)
 
 @dataclass(frozen=True)
 class CameraCalibration:
-    """A calibrated lens and the evidence for it.
+    """A calibrated lens with standard deviations, residuals and coverage.
 
     Attributes:
         camera: The lens.
@@ -52,20 +52,20 @@ class CameraCalibration:
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """What a reader of the result should know, one sentence each."""
+        """Warnings for the user, one sentence each."""
         return tuple(_warnings(self))
 
 
 def calibrate(
     views: Sequence[SeenBoard], size: tuple[int, int], *, lens_model: str = "auto"
 ) -> CameraCalibration:
-    """Calibrate a lens.
+    """Calibrate a lens by least squares on the corners of a board in several pictures.
 
     Args:
         views: Corners of one board in several pictures, tilted differently.
         size: Width and height of the pictures [px].
         lens_model: A key of `LENS_MODELS`, or "auto": the one with the least Bayesian information
-            criterion, so that a distortion the pictures do not show is not made up.
+            criterion (BIC), against overfitting of the distortion.
 
     Returns:
         The lens, its standard deviations, residuals and coverage.
@@ -116,7 +116,7 @@ def _fit(views: Sequence[SeenBoard], size: tuple[int, int], lens_model: str) -> 
 
 
 def _information(fit: CameraCalibration, views: Sequence[SeenBoard]) -> float:
-    # Bayesian information criterion; the views' own poses are common to all models.
+    # Bayesian information criterion; the poses of the views are parameters of all models alike.
     numbers = 2 * sum(len(view.points) for view in views)
     return numbers * math.log(fit.rms**2) + _FREE_TERMS[fit.lens_model] * math.log(numbers)
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""From points in the world to pixels, and back to a plane over the floor.
+"""Pinhole camera with lens distortion: projection to pixels, and back to a plane over the floor.
 
 Pixel coordinates: the *centre* of the first pixel is (0, 0), as in OpenCV, so a picture of width w
 spans [-0.5, w - 0.5]. Programs that put (0, 0) at the first pixel's *corner* give numbers larger by
@@ -18,7 +18,7 @@ Array: TypeAlias = NDArray[np.floating[Any]]
 
 @dataclass(frozen=True)
 class Camera:
-    """A pinhole with OpenCV's lens distortion.
+    """Pinhole camera with OpenCV's lens distortion (intrinsic parameters).
 
     Attributes:
         size: Width and height of the picture [px].
@@ -37,7 +37,7 @@ class Camera:
             size: Width and height of the other pictures [px].
 
         Raises:
-            ValueError: When the other pictures have another shape, hence were cropped.
+            ValueError: When the other pictures have another aspect ratio, hence were cropped.
         """
         ratio = size[0] / self.size[0]
         if abs(size[1] / self.size[1] - ratio) * self.size[1] > 1.0:
@@ -54,7 +54,7 @@ class Camera:
 
 @dataclass(frozen=True)
 class CameraPose:
-    """Where the camera stands: X_camera = R X_world + t, OpenCV's axes (x right, y down, z ahead).
+    """Pose of the camera: X_camera = R X_world + t, OpenCV's axes (x right, y down, z ahead).
 
     Attributes:
         rotation_vector: R as axis times angle, shape (3,) [rad].
@@ -78,13 +78,18 @@ class CameraPose:
 
     @classmethod
     def from_matrix(cls, rotation: ArrayLike, translation: ArrayLike) -> "CameraPose":
-        """Make a pose known without error from R, shape (3, 3) [-], and t, shape (3,) [m]."""
+        """Make a camera pose without uncertainty from a rotation matrix.
+
+        Args:
+            rotation: R, world to camera, shape (3, 3) [-].
+            translation: t, shape (3,) [m].
+        """
         vector = np.ravel(cv2.Rodrigues(np.asarray(rotation, dtype=float))[0]).astype(float)
         return cls(vector, np.asarray(translation, dtype=float), np.zeros((6, 6)))
 
 
 def project(camera: Camera, pose: CameraPose, points_world: ArrayLike) -> Array:
-    """Compute where points of the world appear in the picture.
+    """Project points of the world into the picture.
 
     Args:
         camera: The lens.
@@ -104,7 +109,7 @@ def project(camera: Camera, pose: CameraPose, points_world: ArrayLike) -> Array:
 def project_with_derivatives(
     camera: Camera, pose: CameraPose, points_world: ArrayLike
 ) -> tuple[Array, Array, Array]:
-    """Compute pixels and how they move with the points and with the camera.
+    """Project points, with the Jacobians with respect to the points and the camera's pose.
 
     Args:
         camera: The lens.
@@ -121,20 +126,25 @@ def project_with_derivatives(
         points, pose.rotation_vector, pose.translation, camera.matrix, camera.distortion
     )
     by_pose = np.asarray(derivative, dtype=float)[:, :6].reshape(-1, 2, 6)
-    # A point of the world moves in the camera's frame by R, which is what t does without it.
+    # d X_camera / d X_world = R, and d X_camera / d t is the identity.
     by_point = by_pose[:, :, 3:] @ pose.rotation
     return np.asarray(pixels, dtype=float).reshape(-1, 2), by_point, by_pose
 
 
 def undistort(camera: Camera, corners_px: ArrayLike) -> Array:
-    """Compute the pixels a lens without distortion would have given, shape (n, 2) [px]."""
+    """Compute the pixels that a lens without distortion would have given, shape (n, 2) [px].
+
+    Args:
+        camera: The lens.
+        corners_px: Pixels of the photograph, shape (n, 2) [px].
+    """
     pixels = np.ascontiguousarray(corners_px, dtype=float).reshape(-1, 1, 2)
     straight = cv2.undistortPoints(pixels, camera.matrix, camera.distortion, P=camera.matrix)
     return np.asarray(straight, dtype=float).reshape(-1, 2)
 
 
 def rays(camera: Camera, pose: CameraPose, corners_px: ArrayLike) -> Array:
-    """Compute the directions in the world along which pixels look.
+    """Compute the viewing directions of pixels in the world.
 
     Args:
         camera: The lens.
@@ -151,7 +161,7 @@ def rays(camera: Camera, pose: CameraPose, corners_px: ArrayLike) -> Array:
 
 
 def to_floor(camera: Camera, pose: CameraPose, corners_px: ArrayLike, height: float = 0.0) -> Array:
-    """Compute the points of a horizontal plane that pixels show.
+    """Intersect the rays of pixels with a horizontal plane.
 
     Args:
         camera: The lens.

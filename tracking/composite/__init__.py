@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""One picture with all exposures of a walk in it: find each, and put them in order."""
+"""Find and order the exposures of a composite photograph, one picture of a whole walk."""
 
 from tracking.composite.by_look import find_exposures_like
 from tracking.composite.exposure import Exposure

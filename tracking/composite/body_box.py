@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The robot's body as a box, which hides what is behind it."""
+"""The robot's body as a box, and the pixels that it occludes."""
 
 from dataclasses import dataclass
 
@@ -18,7 +18,7 @@ class BodyBox:
 
     Attributes:
         camera: The lens.
-        view: Where the camera stands.
+        view: Pose of the camera.
         size: Length and width [m].
         top: Height of the robot's top over its origin [m].
         height: Height of its origin over the floor where it stands level [m].
@@ -32,29 +32,38 @@ class BodyBox:
 
     @property
     def is_square(self) -> bool:
-        """Tell whether the body is about as wide as long."""
+        """Return whether width and length of the body differ by less than 20 % of the larger."""
         return abs(self.size[0] - self.size[1]) < 0.2 * max(self.size)
 
     def hidden(self, state: Array, *, left: float) -> NDArray[np.bool_]:
-        """Mark the pixels of a photograph that it covers.
+        """Compute the mask of the pixels of a photograph that it occludes.
 
         Args:
             state: Pose, shape (6,).
-            left: What scissors leave around it, as a share of its length [-].
+            left: Margin of background that a cut-out keeps around it, as a share of its length [-].
 
         Returns:
-            Shape (height, width).
+            True where it occludes, shape (height, width).
         """
         width, height = self.camera.size
         return _filled(self._outline(state, self._corners(left)), (height, width))
 
     def top_seen(self, state: Array) -> NDArray[np.bool_]:
-        """Mark the pixels of its top, shape (height, width)."""
+        """Compute the mask of the pixels of its top, shape (height, width)."""
         width, height = self.camera.size
         return _filled(self._outline(state, self._corners(0.0)[1::2]), (height, width))
 
     def hidden_on(self, plane: Plane, pose: Array, *, left: float) -> NDArray[np.bool_]:
-        """Mark the points of a plane at its top that it covers, standing level at x, y and yaw."""
+        """Compute the mask of the points of a plane at its top that the level box occludes.
+
+        Args:
+            plane: Raster on the plane of the robot's top.
+            pose: x, y [m] and yaw [rad] of the robot, shape (3,).
+            left: Margin of background that a cut-out keeps around it, as a share of its length [-].
+
+        Returns:
+            True where it occludes, shape (rows, columns).
+        """
         state = np.array([pose[0], pose[1], self.height, 0.0, 0.0, pose[2]])
         seen = self._outline(state, self._corners(left))
         xy = to_floor(self.camera, self.view, seen, self.height + self.top)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A raster on the robot's top, to read a picture where it would be and to draw it there."""
+"""A raster on the robot's top, to sample a picture at a pose and to draw the robot there."""
 
 from dataclasses import dataclass
 
@@ -31,7 +31,13 @@ class BodyRaster:
 
     @classmethod
     def over(cls, size: tuple[float, float], cell: float, margin: int = 0) -> "BodyRaster":
-        """Lay a raster over a body of a length and a width [m], and so many cells around it."""
+        """Make a raster that covers a body and a margin around it.
+
+        Args:
+            size: Length and width of the body [m].
+            cell: Distance between neighbouring points [m].
+            margin: Rows and columns of cells to add on each side.
+        """
         rows, columns = (round(side / cell) + 2 * margin for side in size)
         ahead = ((rows - 1) / 2 - np.arange(rows)) * cell
         left = ((columns - 1) / 2 - np.arange(columns)) * cell
@@ -45,11 +51,17 @@ class BodyRaster:
         return slice(self.margin, rows - self.margin), slice(self.margin, columns - self.margin)
 
     def thinned(self) -> "BodyRaster":
-        """Take every second point."""
+        """Return a raster of every second point in both directions."""
         return BodyRaster(self.x[1::2, 1::2], self.y[1::2, 1::2], 2 * self.cell)
 
     def template(self, values: NDArray[np.float32], height: float) -> BodyTemplate:
-        """Take values on the body, shape (rows, columns, 3), for the picture of a flat top."""
+        """Make the template of a flat top from its colours.
+
+        Args:
+            values: Colours on the whole raster, shape (rows, columns, 3); those around the body are
+                not used.
+            height: Height of the top over the body's origin [m].
+        """
         rows, columns = self.body
         x, y = self.x[rows, columns], self.y[rows, columns]
         points = np.stack((x, y, np.full_like(x, height)), axis=-1)
@@ -59,18 +71,43 @@ class BodyRaster:
         return BodyTemplate(plate, self.cell, points, values[rows, columns])
 
     def on(self, plane: Plane, poses: Array) -> Array:
-        """Compute where the points are on a plane's raster, shape (n, rows, columns, 2)."""
+        """Compute the coordinates of the points on a plane's raster.
+
+        Args:
+            plane: The plane.
+            poses: x, y [m] and yaw [rad] of the robot, shape (n, 3).
+
+        Returns:
+            Column and row on the plane's raster, shape (n, rows, columns, 2) [cells].
+        """
         c, s = (f(poses[:, 2])[:, None, None] for f in (np.cos, np.sin))
         x = poses[:, 0][:, None, None] + c * self.x - s * self.y
         y = poses[:, 1][:, None, None] + s * self.x + c * self.y
         return np.stack(((x - plane.low[0]) / plane.cell, (plane.high[1] - y) / plane.cell), -1)
 
     def read(self, layer: NDArray, plane: Plane, pose: Array) -> NDArray[np.float32]:
-        """Read a layer of the plane where the robot would be, shape (rows, columns, ...)."""
+        """Interpolate a layer of the plane at the points of the robot.
+
+        Args:
+            layer: Values on the plane's raster, shape (plane rows, plane columns, ...).
+            plane: The plane.
+            pose: x, y [m] and yaw [rad] of the robot, shape (3,).
+
+        Returns:
+            Values, shape (rows, columns, ...); 0 outside the plane.
+        """
         return sample(layer, self.on(plane, pose[None])[0])
 
     def window(self, plane: Plane, pose: Array) -> Window:
-        """Compute which rows and columns of a plane's raster the robot may cover."""
+        """Compute the bounding box of the robot in rows and columns of a plane's raster.
+
+        Args:
+            plane: The plane.
+            pose: x, y [m] and yaw [rad] of the robot, shape (3,).
+
+        Returns:
+            Rows and columns, clipped to the plane.
+        """
         columns_rows = self.on(plane, pose[None])[0][[0, 0, -1, -1], [0, -1, 0, -1]]
         size = np.array(plane.seen_px.shape[1::-1])
         low = np.clip(np.floor(columns_rows.min(axis=0)).astype(int), 0, size)
@@ -80,11 +117,11 @@ class BodyRaster:
     def laid(
         self, values: NDArray[np.float32], plane: Plane, pose: Array
     ) -> tuple[Window, NDArray[np.float32]]:
-        """Lay values of the raster on a plane.
+        """Resample values of the raster on a plane.
 
         Args:
             values: Shape (rows, columns, ...).
-            plane: Where.
+            plane: The plane.
             pose: x, y [m] and yaw [rad] of the robot, shape (3,).
 
         Returns:
@@ -102,7 +139,16 @@ class BodyRaster:
         return window, sample(values, place)
 
     def between(self, pose: Array, other: Array) -> Array:
-        """Compute the affine map from this raster at one pose to the same at another, (2, 3)."""
+        """Compute the affine map from this raster at one pose to the same at another.
+
+        Args:
+            pose: First pose: x, y [m] and yaw [rad], shape (3,).
+            other: Second pose, shape (3,).
+
+        Returns:
+            Matrix that takes (column, row, 1) at the first to (column, row) at the second, shape
+            (2, 3).
+        """
         return (np.linalg.inv(self._to_world(other)) @ self._to_world(pose))[:2]
 
     def _to_world(self, pose: Array) -> Array:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Find every exposure of a robot without a marker, by how one of them looks."""
+"""Find every exposure of a robot without a marker from one exposure that is known."""
 
 from collections.abc import Callable
 
@@ -27,12 +27,12 @@ def find_exposures_like(
     plate: TopPlate, body_size: tuple[float, float], prior: BodyPrior, merged: Merged,
     hidden: NDArray[np.bool_] | None = None, near: ArrayLike | None = None, reach: float = np.inf,
 ) -> tuple[Exposure, ...]:  # fmt: skip
-    """Find all exposures that look like one of them.
+    """Find all exposures of a composite picture from one whose pose is known.
 
     Args:
         pixels: The picture, BGR, shape (height, width, 3).
         camera: The lens.
-        view: Where the camera stood.
+        view: Pose of the camera.
         known: Pose of one exposure; of those pasted on each other, of one that shows whole.
         plate: The robot's flat top.
         body_size: Length and width of the robot's body [m].
@@ -53,7 +53,7 @@ def find_exposures_like(
     hidden = np.zeros(pixels.shape[:2], dtype=bool) if hidden is None else hidden
     area = floor_in_view(camera, view, prior.height + plate.height, near, reach)
     picture = KnownExposure(pixels, camera, view, prior, known, plate, body_size, hidden, area)
-    picture.body_template(pixels)  # cut by an edge or too faint: said before the search
+    picture.body_template(pixels)  # raises early if cut by an edge or too faint
     reading = _READINGS[merged](picture)
     poses = reading.find()
     found = reading.align(poses) if len(poses) > 1 else ()

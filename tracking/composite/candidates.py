@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Places where an exposure may be: beside another, or where the last step leads."""
+"""Candidate poses of exposures: a step from another exposure, or where the last step leads."""
 
 import numpy as np
 
@@ -7,31 +7,31 @@ from tracking.camera.lens import Array
 from tracking.composite.chain import distances
 
 REACH = 1.25
-"""From one exposure to the next beside it, in lengths of the robot [-]."""
+"""Largest distance between exposures that count as neighbours, in lengths of the robot [-]."""
 
 LEAST_STEP = 0.25
-"""Nearer than this two exposures are one, in lengths of the robot [-]."""
+"""Least distance between two exposures, in lengths of the robot; nearer ones are the same [-]."""
 
 MOST_EXPOSURES = 24
-"""Where exposures are judged as a set, how many there may be."""
+"""Largest number of exposures in a picture whose exposures are judged as a set."""
 
 CLIMB = (0.01, 0.01, 0.1)
-"""First changes by which a place is improved [m, m, rad]."""
+"""Initial steps of the local search for a pose [m, m, rad]."""
 
 _TURNS = np.radians(np.arange(-30.0, 31.0, 7.5))
-_SIDEWAYS = np.radians(40.0)  # a robot walks ahead or back, not to its side
-_NEARBY = 0.16  # of the length: how far a step differs from the one before
+_SIDEWAYS = np.radians(40.0)  # largest direction of a step off the heading
+_NEARBY = 0.16  # of the length: largest change from one step to the next
 _NEARBY_TURNS = np.radians([-8.0, 0.0, 8.0])
 _NEAR, _NEAR_TURN = 0.3, np.radians(16.0)
 
 
 def beside(pose: Array, length: float, *, spacing: float) -> Array:
-    """List places a step ahead of a pose and behind it.
+    """Make a grid of candidate poses one step ahead of a pose and behind it.
 
     Args:
         pose: x, y [m] and yaw [rad], shape (3,).
         length: Length of the robot [m].
-        spacing: Distance between places [m].
+        spacing: Distance between candidates [m].
 
     Returns:
         Poses, shape (n, 3).
@@ -49,7 +49,15 @@ def beside(pose: Array, length: float, *, spacing: float) -> Array:
 
 
 def nearby(pose: Array, length: float) -> Array:
-    """List places around where an exposure is expected, shape (n, 3)."""
+    """Make a grid of candidate poses around an expected one.
+
+    Args:
+        pose: Expected x, y [m] and yaw [rad], shape (3,).
+        length: Length of the robot [m]; the grid spans a fixed share of it.
+
+    Returns:
+        Poses, shape (n, 3).
+    """
     side = np.linspace(-_NEARBY, _NEARBY, 7) * length
     dx, dy = (part.ravel() for part in np.meshgrid(side, side))
     return np.concatenate([
@@ -59,10 +67,11 @@ def nearby(pose: Array, length: float) -> Array:
 
 
 def headed(pose: Array, poses: Array, *, square: bool) -> Array:
-    """Turn a place so that an arc leads to it from the nearest exposure.
+    """Choose the heading of a pose so that an arc leads to it from the nearest exposure.
 
-    Alone a robot that looks alike from two ends, or a square one from all sides, is found the wrong
-    way round as often as not; a walk tells (`tracking.body.heading`).
+    The appearance of a symmetric robot does not determine its heading: it is found turned by a half
+    (or a quarter, if it is square) about as often as not. The direction of the walk decides it, as
+    in `tracking.body.heading`.
 
     Args:
         pose: x, y [m] and yaw [rad], shape (3,).
@@ -81,7 +90,12 @@ def headed(pose: Array, poses: Array, *, square: bool) -> Array:
 
 
 def are_apart(poses: Array, length: float) -> bool:
-    """Tell whether no two exposures of a robot so long, shape (n, 3), are one."""
+    """Return whether all exposures are at least `LEAST_STEP` lengths of the robot apart.
+
+    Args:
+        poses: x, y [m] and yaw [rad], shape (n, 3).
+        length: Length of the robot [m].
+    """
     return all(
         distances(poses[k + 1 :], pose).min() >= LEAST_STEP * length
         for k, pose in enumerate(poses[:-1])
@@ -89,13 +103,19 @@ def are_apart(poses: Array, length: float) -> bool:
 
 
 def is_near(pose: Array, expected: Array, length: float) -> bool:
-    """Tell whether a pose is about where it was expected."""
+    """Return whether position and heading of a pose are close to those expected.
+
+    Args:
+        pose: x, y [m] and yaw [rad], shape (3,).
+        expected: Expected pose, shape (3,).
+        length: Length of the robot [m]; the tolerance of position is a share of it.
+    """
     turned = abs(float(np.angle(np.exp(1j * (pose[2] - expected[2])))))
     return bool(distances(pose[None], expected)[0] < _NEAR * length and turned < _NEAR_TURN)
 
 
 def apart(poses: Array, values: Array, distance: float, *, most: int) -> list[Array]:
-    """Take the best of many places that are apart from each other.
+    """Select the best of many poses that are apart from each other (non-maximum suppression).
 
     Args:
         poses: Shape (n, 3).

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""Steps from one exposure to the next, and chains of them.
+"""Steps from one exposure to the next, and chains of steps.
 
 A step is forward and left of the mean heading, and a turn: shape (3,) [m, m, rad]. Intervals of
-photographs are regular and robots do not leap, so that a step is much like the one before it.
+photographs are regular and the speed of a robot changes slowly, so that a step is similar to the
+one before it.
 """
 
 from collections.abc import Callable, Sequence
@@ -17,7 +18,15 @@ _STEP_SD, _TURN_SD = 0.1, np.radians(4.0)
 
 
 def step_between(before: Array, after: Array) -> Array:
-    """Compute the step between two poses x, y [m], yaw [rad], each of shape (3,)."""
+    """Compute the step between two poses, in the frame of their mean heading.
+
+    Args:
+        before: x, y [m] and yaw [rad], shape (3,).
+        after: The same after the step, shape (3,).
+
+    Returns:
+        Forward, left [m] and turn [rad], shape (3,).
+    """
     turn = float(np.angle(np.exp(1j * (after[2] - before[2]))))
     c, s = np.cos(before[2] + turn / 2), np.sin(before[2] + turn / 2)
     dx, dy = after[:2] - before[:2]
@@ -25,7 +34,12 @@ def step_between(before: Array, after: Array) -> Array:
 
 
 def stepped(pose: Array, step: Array) -> Array:
-    """Compute the pose after a step."""
+    """Compute the pose after a step; inverse of `step_between`.
+
+    Args:
+        pose: x, y [m] and yaw [rad], shape (3,).
+        step: Forward, left [m] and turn [rad], shape (3,).
+    """
     forward, left, turn = step
     c, s = np.cos(pose[2] + turn / 2), np.sin(pose[2] + turn / 2)
     return np.array(
@@ -34,17 +48,27 @@ def stepped(pose: Array, step: Array) -> Array:
 
 
 def stepped_back(pose: Array, step: Array) -> Array:
-    """Compute the pose before a step."""
+    """Compute the pose before a step.
+
+    Args:
+        pose: x, y [m] and yaw [rad] after the step, shape (3,).
+        step: Forward, left [m] and turn [rad], shape (3,).
+    """
     return stepped(pose, -step)
 
 
 def continued(before: Array, after: Array) -> Array:
-    """Compute the pose after two, by the same step again."""
+    """Extrapolate the pose after two others by the same step.
+
+    Args:
+        before: x, y [m] and yaw [rad], shape (3,).
+        after: The next pose, shape (3,).
+    """
     return stepped(after, step_between(before, after))
 
 
 def steady_chain(anchor: Array, step: Array, more_turn: float, ahead: int, behind: int) -> Array:
-    """Lay poses by one step, whose turn may grow, ahead of one and behind it.
+    """Compute poses by repeating one step, whose turn may grow, forward and backward from a pose.
 
     Args:
         anchor: Pose of the one, shape (3,).
@@ -68,7 +92,7 @@ def steady_chain(anchor: Array, step: Array, more_turn: float, ahead: int, behin
 
 
 def unsteadiness(poses: Array) -> float:
-    """Sum squared changes from step to step, over how much steps usually change.
+    """Compute the sum of squared changes from step to step, divided by their usual variance.
 
     Args:
         poses: In order, shape (n, 3).
@@ -85,12 +109,17 @@ def unsteadiness(poses: Array) -> float:
 
 
 def distances(poses: Array, pose: Array) -> Array:
-    """Compute how far poses, shape (n, 3), are from one [m]."""
+    """Compute the Euclidean distances of poses from one, shape (n,) [m].
+
+    Args:
+        poses: x, y [m] and yaw [rad], shape (n, 3).
+        pose: The other pose, shape (3,).
+    """
     return np.hypot(*(np.asarray(poses)[:, :2] - pose[:2]).T)
 
 
 def usual_step(poses: Array) -> float:
-    """Compute how far poses, shape (n, 3), usually are from the nearest other [m]."""
+    """Compute the median distance of poses, shape (n, 3), from their nearest neighbour [m]."""
     if len(poses) < 2:
         return 0.0
     nearest = [distances(np.delete(poses, k, axis=0), pose).min() for k, pose in enumerate(poses)]
@@ -100,7 +129,7 @@ def usual_step(poses: Array) -> float:
 def improved(
     value: Callable[[Array], float], start: Array, *, reach: Sequence[float], tries: int
 ) -> tuple[Array, float]:
-    """Raise a value by small changes (Nelder and Mead 1965); it need not be smooth.
+    """Maximise a function by the simplex method (Nelder and Mead 1965); it need not be smooth.
 
     Args:
         value: What to raise, of an array like `start`.

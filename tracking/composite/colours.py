@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What colours a floor has, and what colours a part of a picture has."""
+"""Models of colour: of the floor, and of any part of a picture."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -12,8 +12,8 @@ from scipy.stats import chi2
 
 from tracking.camera.lens import Array
 
-_TRUSTED = 0.7  # share of the points by which the floor's scatter is judged
-_ODD = 12.0  # squared distance beyond which a colour does not count to the floor's light
+_TRUSTED = 0.7  # share of the points from which the floor's covariance is estimated
+_ODD = 12.0  # squared distance beyond which a colour is an outlier for the floor's light
 _ROUNDS = 5
 _SHADOW = 0.4  # least share of the floor's light that is left in shadow
 _NO_FLOOR = 20.0  # squared distance beyond which a colour is not the floor's
@@ -27,7 +27,7 @@ NOISE = 12.0
 
 @dataclass(frozen=True)
 class FloorColours:
-    """How a floor looks: its light, which changes slowly, and how its colours scatter about that.
+    """Colour model of a floor: light, which varies slowly, and covariance of the pattern about it.
 
     Attributes:
         light: Its colour at every place but for its pattern, shape (rows, columns, 3).
@@ -41,7 +41,7 @@ class FloorColours:
     def of(
         cls, picture: NDArray[np.float32], used: NDArray[np.bool_], *, width: float, noise: float
     ) -> "FloorColours":
-        """Judge the floor by the greater part of a picture.
+        """Estimate the model robustly from a picture of which the greater part is floor.
 
         Args:
             picture: Colours, shape (rows, columns, 3).
@@ -65,15 +65,15 @@ class FloorColours:
 
     @cached_property
     def whitening(self) -> Array:
-        """Matrix by which the pattern's colours are multiplied to scatter alike, shape (3, 3)."""
+        """Whitening matrix of the pattern's colours, shape (3, 3)."""
         return np.linalg.cholesky(np.linalg.inv(self.covariance))
 
     def oddness(self, picture: NDArray[np.float32]) -> NDArray[np.float32]:
-        """Compute how far colours are from the floor's, squared, in its scatter (Mahalanobis)."""
+        """Compute the squared Mahalanobis distance of colours from the floor's."""
         return (((picture - self.light) @ self.whitening) ** 2).sum(axis=-1).astype(np.float32)
 
     def shows(self, picture: NDArray[np.float32]) -> NDArray[np.bool_]:
-        """Tell where colours are the floor's, in its light or in shadow."""
+        """Compute the mask of points whose colour is the floor's, in its light or in shadow."""
         seen, light = picture @ self.whitening, self.light @ self.whitening
         share = (seen * light).sum(axis=-1) / np.maximum((light**2).sum(axis=-1), 1e-6)
         lit = np.clip(share, _SHADOW, 1.0)[..., None] * light
@@ -87,7 +87,7 @@ class FloorColours:
 
 @dataclass(frozen=True)
 class ColourDensity:
-    """How dense colours are in some part of a picture, per cubed grey level.
+    """Density of the colours in a part of a picture, per cubed grey level.
 
     Attributes:
         table: By blue, green and red, shape (32, 32, 32).
@@ -97,7 +97,12 @@ class ColourDensity:
 
     @classmethod
     def of(cls, colours: NDArray[np.float32], *, blur: float) -> "ColourDensity":
-        """Count colours, shape (n, 3); blurred by so many of 32 levels."""
+        """Estimate the density of colours by a blurred histogram.
+
+        Args:
+            colours: BGR samples, shape (n, 3) [grey levels].
+            blur: Standard deviation of the Gaussian blur [bins, of 32 a channel].
+        """
         counts, _ = np.histogramdd(colours, bins=(_LEVELS,) * 3, range=[(0, 256)] * 3)
         known = gaussian_filter(counts, blur) / max(len(colours), 1) / (256 / _LEVELS) ** 3
         return cls((1 - _RARE) * known + _RARE / 256**3)
@@ -109,7 +114,7 @@ class ColourDensity:
 
 
 def robot_density(difference: Array) -> Array:
-    """Compute how dense colours are that differ so much from the robot's, per cubed grey level."""
+    """Compute the density of differences from the robot's colour, per cubed grey level."""
     norm = (2 * np.pi) ** 1.5 * NOISE**3
     return np.exp(-0.5 * (difference**2).sum(axis=-1) / NOISE**2) / norm
 
@@ -117,7 +122,7 @@ def robot_density(difference: Array) -> Array:
 def smooth(
     picture: NDArray[np.float32], used: NDArray[np.bool_], width: float
 ) -> NDArray[np.float32]:
-    """Blur colours by a standard deviation of so many points, leaving out what is not used.
+    """Blur colours by a Gaussian over the points used (normalised convolution).
 
     Args:
         picture: Shape (rows, columns, 3).

@@ -1,16 +1,16 @@
 # SPDX-License-Identifier: MIT
-"""Read a picture that holds, of each pixel, the darkest value of all exposures.
+"""Find exposures in a picture that holds, of each pixel, the darkest value of all exposures.
 
-Where exposures overlap each shows only where it is the darkest, and never does the picture get
-brighter than any of them: that is what tells where they can be. A set of exposures is judged by
-how much likelier it makes the picture than the bare floor does, point by point of its raster: a
-point that some exposure covers has the darkest of their colours, or, hidden by a leg, a side or a
-shadow, a darker one of those that the robot's neighbourhood has; hardly ever a brighter one.
+Where exposures overlap, each shows only where it is the darkest, and the picture is nowhere
+brighter than any of them. This bounds where exposures can be. A set of exposures is scored by
+the log likelihood ratio of the picture against the bare floor, summed over the points of its
+raster. A point that some exposure covers has the darkest of their colours; or a darker one, from
+the colours near the robot, where a leg, a side or a shadow hides it; hardly ever a brighter one.
 
-How the robot looks is known by one exposure, on which others lie; what they hide of it shows in
-others, as the brightest that is seen of a point of its top. While some exposures are still missing
-their pattern repeats as if it were the robot's own, so that exposures are not taken one by one:
-chains of a steady step from the known exposure on are compared as wholes.
+The robot's colours come from one known exposure, which others partly cover; a covered point takes
+the brightest colour that other exposures show of it. While some exposures are still missing,
+their repeated pattern is mistaken for the robot's own. Therefore exposures are not added one by
+one: whole chains of a steady step from the known exposure on are compared.
 """
 
 from collections.abc import Sequence
@@ -49,43 +49,43 @@ from tracking.composite.order import order_exposures
 from tracking.composite.reading import PictureRaster
 
 LEAST_ODDS = 0.25
-"""Least log odds of an exposure, mean over what it claims [-]."""
+"""Least log odds of an exposure, mean over the points that it claims [-]."""
 
 LEAST_GAIN = 0.15
-"""By how much the log odds of a chain must rise for one exposure more, mean over its points [-]."""
+"""Least gain of log odds for a further exposure in a chain, mean over its points [-]."""
 
 UNSTEADY = 0.03
-"""What steps that differ by all the usual scatter (`unsteadiness`) count against a chain [-]."""
+"""Penalty for one unit of `unsteadiness` of a chain's steps [-]."""
 
 LEAST_CLAIM = 0.12
-"""Least share of its points that an exposure must claim: of these it is the darkest [-]."""
+"""Least share of its points that an exposure claims, by being the darkest there [-]."""
 
 _SEEN = 0.6  # share of the robot's own points that show it and not a darker thing
-_OWN_LOOK = 0.6  # weight of how the known exposure looks, beside the brightest seen of all
+_OWN_LOOK = 0.6  # weight of the known exposure's colours against the brightest seen
 _BRIGHTER = 0.01  # how often a point is brighter than it could be
 _FLOOR_SHARE = 0.85
 _ODD, _LIKE_FLOOR = 20.0, 12.0  # squared distances from the floor's colours
-_OPEN = 1000.0  # brighter than anything: no exposure
+_OPEN = 1000.0  # stands for no exposure: brighter than any colour
 _LEAST_SEEN = 0.6  # share of an exposure that must be in the picture
-_FAR = 2.5  # in standard deviations: another colour
-_CLAIM = 6.0  # darker than others by this, it is an exposure's own [grey levels]
+_FAR = 2.5  # in standard deviations: beyond it the colour differs
+_CLAIM = 6.0  # a point darker than others by this is claimed [grey levels]
 _FIRST_STEPS = 10
 _POLISH = (0.006, 0.006, 0.05)
 
 
 class TopColours(NamedTuple):
-    """How the robot's top looks: by the known exposure, and by the brightest seen of each point."""
+    """Colours of the robot's top: by the known exposure, and the brightest of all exposures."""
 
     own: NDArray[np.float32]
     brightest: NDArray[np.float32]
 
     def thinned(self) -> "TopColours":
-        """Take every second point, as `BodyRaster.thinned` does."""
+        """Return every second point in both directions, as `BodyRaster.thinned` does."""
         return TopColours(self.own[1::2, 1::2], self.brightest[1::2, 1::2])
 
 
 class Cover(NamedTuple):
-    """The darkest of some exposures at every point, by both looks, and how likely that makes it."""
+    """Darkest colour of several exposures at every point, by both `TopColours`, and log density."""
 
     own: NDArray[np.float32]
     brightest: NDArray[np.float32]
@@ -94,7 +94,7 @@ class Cover(NamedTuple):
 
 @dataclass(frozen=True)
 class Chain:
-    """Exposures by one steady step from the known one.
+    """Exposures at equal steps from the known one.
 
     Attributes:
         step: Forward, left, turn and by how much more it turns each time, shape (4,) [m, rad].
@@ -107,23 +107,23 @@ class Chain:
     behind: int
 
     def poses(self, anchor: Array) -> Array:
-        """Lay the exposures, the known one first, shape (n, 3)."""
+        """Compute the poses of the exposures, the known one first, shape (n, 3)."""
         return steady_chain(anchor, self.step[:3], float(self.step[3]), self.ahead, self.behind)
 
     @classmethod
     def through(cls, poses: Sequence[Array]) -> "Chain":
-        """Take the usual step between poses, all ahead of the first."""
+        """Make a chain of the median step between poses, all ahead of the first."""
         steps = [step_between(a, b) for a, b in pairwise(poses)]
         return cls(np.append(np.median(steps, axis=0), 0.0), len(steps), 0)
 
     @property
     def with_some_between(self) -> "Chain":
-        """The same chain with an exposure more between each two: every second may be missed."""
+        """The chain with half the step and twice the exposures, in case every second was missed."""
         return Chain(self.step * [0.5, 0.5, 0.5, 0.25], 2 * self.ahead, 2 * self.behind)
 
     @property
     def longer(self) -> tuple["Chain", "Chain"]:
-        """The same chain with an exposure more at one end, and at the other."""
+        """The chain with one more exposure ahead, and with one more behind."""
         return (
             Chain(self.step, self.ahead + 1, self.behind),
             Chain(self.step, self.ahead, self.behind + 1),
@@ -132,7 +132,7 @@ class Chain:
 
 @dataclass(frozen=True)
 class DarkestSearch(PictureRaster):
-    """A picture of the darkest values, on a raster.
+    """Search for exposures in a picture of the darkest values, on a raster.
 
     Attributes:
         length: The robot's length [m].
@@ -142,14 +142,14 @@ class DarkestSearch(PictureRaster):
 
     @cached_property
     def floor(self) -> FloorColours:
-        """How the floor looks."""
+        """Colour model of the floor."""
         return FloorColours.of(
             self.picture, self.used, width=self.length / self.plane.cell, noise=3.0
         )
 
     @cached_property
     def oddness(self) -> NDArray[np.float32]:
-        """How far colours are from the floor's, squared."""
+        """Squared Mahalanobis distance of each colour from the floor's."""
         return self.floor.oddness(self.picture)
 
     @cached_property
@@ -183,19 +183,22 @@ class DarkestSearch(PictureRaster):
         return self.polished(max(sets, key=self.worth))
 
     def worth(self, poses: Array) -> float:
-        """Compute the value of exposures, less what so many must gain; -inf of two in one place."""
+        """Compute the score of a set of exposures with the penalty for their number.
+
+        It is -inf where two exposures are in one place.
+        """
         if not are_apart(poses, self.length):
             return -np.inf
         return self.value(poses) - LEAST_GAIN * (len(poses) - 1)
 
     def first_steps(self, anchor: Array) -> list[Array]:
-        """Find where one exposure more makes the picture likelier."""
+        """Find candidate poses for the exposure next to the known one."""
         look = self.look(anchor[None])
         tried = beside(anchor, self.length, spacing=self.length / 20)
         return self.best_of(tried, look, self.cover(anchor[None], look), most=_FIRST_STEPS)
 
     def followed(self, poses: list[Array]) -> list[Array]:
-        """Go on from the last pose by its step, as long as there is an exposure."""
+        """Extend a chain from its last pose by its last step until no exposure is found."""
         while len(poses) < MOST_EXPOSURES:
             known = np.array(poses)
             look = self.look(known)
@@ -209,7 +212,17 @@ class DarkestSearch(PictureRaster):
         return poses
 
     def best_of(self, tried: Array, look: TopColours, cover: Cover, *, most: int) -> list[Array]:
-        """Improve the best of many places; return those that hold, the best first."""
+        """Improve the likeliest of many candidate poses by local search.
+
+        Args:
+            tried: Candidate poses, shape (n, 3) [m, m, rad].
+            look: Colours of the robot's top.
+            cover: The exposures that are known already.
+            most: Most candidates to improve.
+
+        Returns:
+            Improved poses whose log odds are at least `LEAST_ODDS`, the likeliest first.
+        """
         odds = self.odds(tried, look.thinned(), cover, self.body.thinned())
         starts = apart(tried, odds, 0.19 * self.length, most=most)
 
@@ -224,7 +237,12 @@ class DarkestSearch(PictureRaster):
         return [found[k] for k in order if held[k] >= LEAST_ODDS]
 
     def longest(self, anchor: Array, chain: Chain) -> Chain:
-        """Fit a chain and lengthen it at both ends while the picture gets likelier."""
+        """Fit a chain and lengthen it at either end while the likelihood of the picture rises.
+
+        Args:
+            anchor: Pose of the known exposure, shape (3,) [m, m, rad].
+            chain: Chain to start from.
+        """
         chain = self.fitted(anchor, chain)
         worth = self.worth(chain.poses(anchor))
         while chain.ahead + chain.behind < MOST_EXPOSURES:
@@ -236,7 +254,12 @@ class DarkestSearch(PictureRaster):
         return chain
 
     def fitted(self, anchor: Array, chain: Chain) -> Chain:
-        """Choose the step of a chain by the likelihood of the picture."""
+        """Fit the step of a chain by maximum likelihood of the picture.
+
+        Args:
+            anchor: Pose of the known exposure, shape (3,) [m, m, rad].
+            chain: Chain to start from; the numbers of exposures are kept.
+        """
 
         def value(step: Array) -> float:
             return self.value(Chain(step, chain.ahead, chain.behind).poses(anchor))
@@ -245,17 +268,27 @@ class DarkestSearch(PictureRaster):
         return Chain(step, chain.ahead, chain.behind)
 
     def polished(self, poses: Array) -> Array:
-        """Improve every pose but the first by itself; drop those that do not hold."""
+        """Refine every pose but the first by itself; drop those that are not likely enough."""
         step, order = usual_step(poses), list(order_exposures(poses))
         for k in range(1, len(poses)):
             poses = self.settled(poses, k, step, order)
         return poses[self.own_odds(poses) >= LEAST_ODDS]
 
     def settled(self, poses: Array, k: int, step: float, order: list[int]) -> Array:
-        """TopColours for a better place of one exposure around its own, and improve the best.
+        """Refine the pose of one exposure, with the others fixed.
 
-        Sides and legs of one darken the tops of others, and look like a rim a little off its
-        place: steps that differ from their neighbours are held against a place, too.
+        The rim of the robot a little off its place looks like the robot, since sides and legs of
+        one exposure darken the tops of others. Therefore steps that differ from their neighbours
+        are penalised.
+
+        Args:
+            poses: All exposures, shape (n, 3) [m, m, rad].
+            k: Index of the exposure to refine.
+            step: Usual distance between exposures [m].
+            order: Indices of the exposures in order of the walk.
+
+        Returns:
+            All exposures with the refined one, shape (n, 3).
         """
         look = self.look(poses)
         cover = self.cover(np.delete(poses, k, axis=0), look)
@@ -271,7 +304,7 @@ class DarkestSearch(PictureRaster):
         return np.concatenate((poses[:k], best[None], poses[k + 1 :]))
 
     def own_odds(self, poses: Array) -> Array:
-        """Compute the log odds of each exposure beside all others; infinite of the first."""
+        """Compute the log odds of each exposure given all others; infinite for the first."""
         look = self.look(poses)
         odds = [np.inf]
         for k in range(1, len(poses)):
@@ -280,9 +313,10 @@ class DarkestSearch(PictureRaster):
         return np.array(odds)
 
     def look(self, poses: Array) -> TopColours:
-        """Learn how the robot looks from all exposures, the known one first.
+        """Estimate the robot's colours from all exposures, the known one first.
 
-        Where it looks like the floor it may be brighter than that, and nothing is known of it.
+        Where the robot has the floor's colour it may be brighter than that; its colour is then
+        unknown.
         """
         seen = np.array([self.body.read(self.picture, self.plane, pose) for pose in poses])
         odd = np.array([self.body.read(self.oddness, self.plane, pose) for pose in poses])
@@ -291,7 +325,12 @@ class DarkestSearch(PictureRaster):
         return TopColours(own.astype(np.float32), brightest.astype(np.float32))
 
     def cover(self, poses: Array, look: TopColours) -> Cover:
-        """Lay exposures over each other."""
+        """Compute the darkest of several exposures at every point of the raster.
+
+        Args:
+            poses: The exposures, shape (n, 3) [m, m, rad].
+            look: Colours of the robot's top.
+        """
         own, brightest = (np.full_like(self.picture, _OPEN) for _ in range(2))
         for pose in poses:
             for layer, values in ((own, look.own), (brightest, look.brightest)):
@@ -305,9 +344,16 @@ class DarkestSearch(PictureRaster):
         return Cover(own, brightest, log_density)
 
     def shown(self, poses: Array, k: int) -> NDArray[np.bool_]:
-        """Mark the points at which an exposure is the darkest and looks as the first one does.
+        """Compute the mask of points at which an exposure is the darkest and has its colour.
 
-        Points of the first that others darken are left out: they are not its own.
+        Points of the first exposure that others darken are left out: their colours are not its own.
+
+        Args:
+            poses: All exposures, the first one known, shape (n, 3) [m, m, rad].
+            k: Index of the exposure.
+
+        Returns:
+            Mask on the picture's raster, shape (rows, columns).
         """
         look = self.look(poses)
         others = self.cover(np.delete(poses, k, axis=0), look).brightest
@@ -320,13 +366,21 @@ class DarkestSearch(PictureRaster):
         return same & (clear > 0.9) & darkest & self.used
 
     def clear(self, poses: Array, look: TopColours) -> NDArray[np.float32]:
-        """Mark the points of the robot that the first exposure shows as they are."""
+        """Compute the mask of points of the robot at which the known exposure is the darkest.
+
+        Args:
+            poses: All exposures, the first one known, shape (n, 3) [m, m, rad].
+            look: Colours of the robot's top.
+
+        Returns:
+            1 where it is the darkest, else 0, on the robot's raster.
+        """
         others = self.cover(poses[1:], look).brightest
         around = self.body.read(others, self.plane, poses[0])
         return np.asarray((look.own <= around + _CLAIM).all(axis=-1), dtype=np.float32)
 
     def value(self, poses: Array) -> float:
-        """Compute by how much exposures make the picture likelier, in points of one exposure."""
+        """Compute the log likelihood ratio of exposures, in units of one exposure's points."""
         look = self.look(poses)
         windows = [self.body.window(self.plane, pose) for pose in poses]
         part = self.part(*(
@@ -337,7 +391,12 @@ class DarkestSearch(PictureRaster):
         return float(gain.sum()) / self.body.x.size
 
     def part(self, rows: slice, columns: slice) -> "DarkestSearch":
-        """Cut a part out; the floor and the colours of dark things are those of the whole."""
+        """Crop the raster; the models of the floor's and of dark colours stay those of the whole.
+
+        Args:
+            rows: Rows to keep.
+            columns: Columns to keep.
+        """
         window = (rows, columns)
         part = replace(
             self, plane=self.plane.part(rows, columns),
@@ -348,7 +407,17 @@ class DarkestSearch(PictureRaster):
         return part
 
     def odds(self, poses: Array, look: TopColours, cover: Cover, body: BodyRaster) -> Array:
-        """Compute the log odds of exposures, mean over what each claims; -inf where too little."""
+        """Compute the log odds of one more exposure, mean over the points that it claims.
+
+        Args:
+            poses: Candidate poses, shape (n, 3) [m, m, rad].
+            look: Colours of the robot's top, on the points of `body`.
+            cover: The exposures that are known already.
+            body: Points of the robot's top to compare.
+
+        Returns:
+            Log odds, shape (n,) [-]; -inf where too little is claimed or inside the picture.
+        """
         gain, claim, inside = self.gains(poses, look, cover, body)
         enough = (claim >= LEAST_CLAIM) & (inside >= _LEAST_SEEN)
         return np.where(enough, gain / np.maximum(claim, LEAST_CLAIM), -np.inf)
@@ -356,11 +425,17 @@ class DarkestSearch(PictureRaster):
     def gains(
         self, poses: Array, look: TopColours, cover: Cover, body: BodyRaster
     ) -> tuple[Array, Array, Array]:
-        """Compute what one exposure more would change, for each of many places, shape (n,).
+        """Compute by how much one more exposure raises the log density, for each of many poses.
+
+        Args:
+            poses: Candidate poses, shape (n, 3) [m, m, rad].
+            look: Colours of the robot's top, on the points of `body`.
+            cover: The exposures that are known already.
+            body: Points of the robot's top to compare.
 
         Returns:
             Gain of log density, mean over the exposure's points; shares of them that it claims,
-            and that are in the picture.
+            and that are in the picture. Each of shape (n,) [-].
         """
         place = body.on(self.plane, poses)
         inside = sample(self.used.astype(np.float32), place) > 0.9
@@ -381,7 +456,17 @@ class DarkestSearch(PictureRaster):
         seen: NDArray[np.float32], own: NDArray[np.float32], brightest: NDArray[np.float32],
         dark_things: Array,
     ) -> Array:  # fmt: skip
-        """Compute how likely colours are where exposures should look like this."""
+        """Compute the log density of colours at points that exposures cover.
+
+        Args:
+            seen: Colours of the picture, shape (..., 3) [grey levels].
+            own: Colours there by the known exposure, shape (..., 3).
+            brightest: Colours there by the brightest of all exposures, shape (..., 3).
+            dark_things: Density of the colours that are not the floor's, shape (...).
+
+        Returns:
+            Log density, shape (...).
+        """
         shows = _OWN_LOOK * robot_density(seen - own)
         shows += (1 - _OWN_LOOK) * robot_density(seen - brightest)
         beyond = np.clip((seen - brightest).max(axis=-1) / NOISE - 1.0, 0.0, 3.5)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Read a picture of darkest values: find the exposures, and align what is the darkest of each."""
+"""Find the exposures of a picture of darkest values, and align the part where each is darkest."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -12,7 +12,7 @@ from tracking.composite.exposure import Exposure
 from tracking.composite.known import LEAST_SCORE, LEVER, KnownExposure
 
 DARKEST_SD = 1 / 40
-"""Error of a place, as `tracking.composite.pasted_alignment.PASTED_SD` [-]."""
+"""Error of position, as `tracking.composite.pasted_alignment.PASTED_SD` [-]."""
 
 _CELLS = 32  # points of the raster along the robot
 _SHOWN = 0.7  # share of a pixel's surroundings that must show the exposure
@@ -39,12 +39,12 @@ class DarkestReading:
         return self.search.find(self.picture.known.planar)
 
     def align(self, poses: Array) -> tuple[Exposure, ...]:
-        """Align what is the darkest of each, twice; what does not align is none."""
+        """Align the part where each exposure is the darkest, twice; drop what does not align."""
         found = self.aligned_among(poses)
         return self.aligned_among(np.array([each.alignment.pose.planar for each in found]))
 
     def aligned_among(self, poses: Array) -> tuple[Exposure, ...]:
-        """Align what is the darkest of each, judged by where the others are."""
+        """Align the part where each is the darkest, given the poses of the others."""
         picture, search, found = self.picture, self.search, []
         template = picture.body_template(picture.pixels)
         for k, pose in enumerate(poses):

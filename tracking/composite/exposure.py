@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What is found of a robot in a composite picture."""
+"""One exposure of the robot in a composite picture."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -28,6 +28,12 @@ class Exposure:
 
 
 def is_new(exposure: Exposure, known: Sequence[Exposure], same: float) -> bool:
-    """Tell whether an exposure is farther than so many metres from all that are known."""
+    """Return whether an exposure is farther than a limit from all that are known.
+
+    Args:
+        exposure: The exposure.
+        known: Known exposures.
+        same: Limit of the distance [m].
+    """
     here = exposure.alignment.pose.planar
     return all(np.hypot(*(here - each.alignment.pose.planar)[:2]) > same for each in known)

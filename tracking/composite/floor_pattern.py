@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: MIT
-"""What a floor's pattern leaves to be told, when the pixels beside have told what they can.
+"""Prewhitening of a floor's pattern: the error of predicting a pixel from its neighbours.
 
-Planks and grain repeat themselves along the floor, and a robot that is as faint as 1/n in a mean of
-n exposures is drawn to them. What a pixel's neighbours foretell of it says nothing about the robot;
-taken off, what is left of the floor is white noise, in which least squares find the robot best.
+Planks and grain are correlated along the floor, and alignment of a robot that is as faint as 1/n
+in a mean of n exposures is biased by them. What neighbouring pixels predict of a pixel says nothing
+about the robot. The prediction error of the floor is white noise, for which least squares is the
+best estimator of the robot's pose.
 """
 
 from dataclasses import dataclass
@@ -13,20 +14,20 @@ import numpy as np
 from numpy.typing import NDArray
 
 REACH_PX = 3
-"""How far a pixel is foretold from [px]."""
+"""Largest distance of a neighbour in the prediction filter [px]."""
 
 _MOST_POINTS = 60_000
-_HELD = 1e-3  # of the neighbours' power: their shares are held near zero by so much
+_HELD = 1e-3  # ridge penalty of the filter's coefficients, as a share of the neighbours' power
 
 
 @dataclass(frozen=True)
 class FloorPattern:
-    """How a floor's pattern is foretold.
+    """Linear prediction filter of a floor's pattern.
 
     Attributes:
-        width: What changes over more than this is no pattern [px].
-        filters: For each colour, what is multiplied with a pixel and those around it to leave what
-            the others do not foretell, with standard deviation 1; shape (3, side, side).
+        width: Variation over more than this is not part of the pattern [px].
+        filters: For each colour, the kernel of the prediction error, scaled to standard deviation
+            1, shape (3, side, side).
     """
 
     width: float
@@ -36,12 +37,12 @@ class FloorPattern:
     def of(
         cls, picture: NDArray[np.float32], floor: NDArray[np.bool_], *, width: float
     ) -> "FloorPattern":
-        """Judge a floor by the pixels above and to the left of each (Whittle 1954).
+        """Fit an autoregressive model to the pixels above and to the left of each (Whittle 1954).
 
         Args:
             picture: Colours, shape (height, width, 3).
             floor: Pixels that show the floor alone, shape (height, width).
-            width: What changes over more than this is no pattern [px].
+            width: Variation over more than this is not part of the pattern [px].
 
         Returns:
             The filters.
@@ -58,11 +59,11 @@ class FloorPattern:
         return cls(width, np.stack([_filter(flat[..., colour], *chosen) for colour in range(3)]))
 
     def flat(self, picture: NDArray[np.float32]) -> NDArray[np.float32]:
-        """Take off what changes slowly."""
+        """Subtract what varies slowly (high-pass filter)."""
         return _flat(picture, self.width)
 
     def new_in(self, picture: NDArray) -> NDArray[np.float32]:
-        """Compute what neighbours do not foretell, in one picture or n at once.
+        """Compute the prediction error, in one picture or n at once.
 
         Args:
             picture: Flat, shape (rows, columns, 3) or (rows, columns, 3, n).
@@ -85,7 +86,7 @@ def _flat(picture: NDArray[np.float32], width: float) -> NDArray[np.float32]:
 def _filter(
     layer: NDArray[np.float32], rows: NDArray[np.intp], columns: NDArray[np.intp]
 ) -> NDArray[np.float32]:
-    """Foretell pixels from those before them by least squares; what is left is 1 in size."""
+    """Fit a prediction filter by least squares; its error is scaled to standard deviation 1."""
     side = 2 * REACH_PX + 1
     around = np.indices((side, side)).reshape(2, -1).T - REACH_PX
     before = around[: len(around) // 2]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A picture in which one exposure of a robot without a marker is known, to align others with it."""
+"""A composite picture with one exposure of known pose, as the reference to align others."""
 
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -25,26 +25,26 @@ from tracking.errors import BodyError, CompositeError
 from tracking.pose import BodyPose, BodyPrior
 
 LEAST_SCORE = 0.75
-"""Least correlation of what is visible of an exposure with the known one [-]."""
+"""Least correlation of the visible part of an exposure with the known one [-]."""
 
 LEVER = 0.7
-"""How far from the robot's middle that much off turns it, in lengths of the robot [-]."""
+"""Lever arm that converts an error of position to one of heading, in lengths of the robot [-]."""
 
 RASTER_SD = 0.02
 """Standard deviation of a place on the raster, in lengths of the robot [-]."""
 
-_SLIP = 0.06  # of the length: an alignment that ends farther off has gone astray
+_SLIP = 0.06  # of the length: an alignment that moves farther has diverged
 _TURN = 0.15  # rad: the same
 
 
 @dataclass(frozen=True)
 class KnownExposure:
-    """A picture in which one exposure is known.
+    """A composite picture in which the pose of one exposure is known.
 
     Attributes:
         pixels: The picture, BGR, shape (height, width, 3).
         camera: The lens.
-        view: Where the camera stood.
+        view: Pose of the camera.
         prior: Height and tilt.
         known: Pose of the known exposure.
         plate: The robot's flat top.
@@ -71,7 +71,16 @@ class KnownExposure:
     def raster(
         self, cell: float, around: int = 0
     ) -> tuple[Plane, NDArray[np.float32], NDArray[np.bool_], BodyRaster]:
-        """Lay a raster on the plane of the robot's top; what is seen there and where it counts."""
+        """Resample the picture on the plane of the robot's top.
+
+        Args:
+            cell: Distance between neighbouring points [m].
+            around: Cells of margin around the body on the robot's raster.
+
+        Returns:
+            The plane, the colours on it, the mask of points that show floor or robot, and the
+            raster of the robot.
+        """
         half = 0.5 * float(np.hypot(*self.size))
         plane = Plane.over(
             self.camera, self.view, height=self.prior.height + self.plate.height,
@@ -95,13 +104,22 @@ class KnownExposure:
         return self.size[0] / pixel
 
     def body_template(self, pixels: NDArray) -> BodyTemplate:
-        """Cut the body as seen from above out of the known exposure."""
+        """Cut the template of the body's outline from above out of the known exposure."""
         return self.template(pixels, self.body_plate)
 
     def template(
         self, pixels: NDArray, plate: TopPlate, *, most_points: int = MOST_POINTS
     ) -> BodyTemplate:
-        """Cut a part of the robot out of the known exposure."""
+        """Cut a template out of the known exposure.
+
+        Args:
+            pixels: The picture, or one derived from it, shape (height, width, 3).
+            plate: Part of the robot's top to cut out.
+            most_points: Most points of the template, about.
+
+        Raises:
+            CompositeError: The part is cut by the picture's edge, too small or without contrast.
+        """
         try:
             return make_template(
                 pixels, self.camera, self.view, pose=self.known, plate=plate,
@@ -111,19 +129,37 @@ class KnownExposure:
             raise CompositeError(str(error)) from error
 
     def share(self, pose: Array, visible: NDArray[np.bool_]) -> float:
-        """Compute the share of an exposure's top that is visible."""
+        """Compute the share of an exposure's top that is visible [-].
+
+        Args:
+            pose: x, y [m] and yaw [rad], shape (3,).
+            visible: Mask of the pixels that show it, shape (height, width).
+        """
         top = self.box.top_seen(self.level(pose))
         return float((top & visible).sum() / max(int(top.sum()), 1))
 
     def level(self, pose: Array) -> Array:
-        """Stand the robot level at x, y and yaw; its state, shape (6,)."""
+        """Return the state of a level robot at x, y and yaw, shape (6,)."""
         return np.array([pose[0], pose[1], self.prior.height, 0.0, 0.0, pose[2]])
 
     def aligned(
         self, pose: Array, pixels: NDArray, template: BodyTemplate, visible: NDArray[np.bool_], *,
         least: float, shines_through: bool = False, most_odd: float = np.inf,
     ) -> Alignment | None:  # fmt: skip
-        """Align one exposure; None where that goes astray."""
+        """Align one exposure with a template.
+
+        Args:
+            pose: Pose to start from: x, y [m] and yaw [rad], shape (3,).
+            pixels: The picture, or one derived from it, shape (height, width, 3).
+            template: Template of the robot.
+            visible: Mask of the pixels to use, shape (height, width).
+            least: Least correlation to accept [-].
+            shines_through: As for `tracking.body.align`.
+            most_odd: As for `tracking.body.align`.
+
+        Returns:
+            The alignment, or None where it fails or diverges (`is_astray`).
+        """
         found = align(
             pixels, self.camera, self.view, template=template, prior=self.prior, start=pose,
             visible=visible, blurs_px=(1.0,), least_visible=0.0, least_hope=-1.0,
@@ -132,21 +168,35 @@ class KnownExposure:
         return None if found is None or self.is_astray(found, pose, least) else found
 
     def is_astray(self, found: Alignment, pose: Array, least: float) -> bool:
-        """Tell whether an alignment is too far from where it began, or too unlike the robot."""
+        """Return whether an alignment correlates too little or ends too far from its start.
+
+        Args:
+            found: The alignment.
+            pose: Pose it started from: x, y [m] and yaw [rad], shape (3,).
+            least: Least correlation to accept [-].
+        """
         aligned = found.pose.planar
         turned = abs(float(np.angle(np.exp(1j * (aligned[2] - pose[2])))))
         away = float(np.hypot(*(aligned[:2] - pose[:2])))
         return found.score < least or away > _SLIP * self.size[0] or turned > _TURN
 
     def widened(self, alignment: Alignment, slip: float, *, lever: float) -> Alignment:
-        """Add what others do to the place and the heading of an exposure, by their power."""
+        """Add to the covariance the error that other exposures and the floor cause.
+
+        Its variance is proportional to their power, (1 - score²) / score².
+
+        Args:
+            alignment: The alignment.
+            slip: Standard deviation of position at equal power, in lengths of the robot [-].
+            lever: Lever arm that converts it to heading, in lengths of the robot [-].
+        """
         power = max(1 - alignment.score**2, 0.0) / alignment.score**2
         added = self.slipped(slip * self.size[0] * float(np.sqrt(power)), lever)
         pose = alignment.pose
         return replace(alignment, pose=replace(pose, covariance=pose.covariance + added))
 
     def rough(self, pose: Array) -> Alignment:
-        """Take a place on the raster for the alignment."""
+        """Make an alignment of a pose on the raster, with the raster's error."""
         height, tilt = self.prior.height_sd, self.prior.tilt_sd
         known = np.diag([0.0, 0.0, height, tilt, tilt, 0.0]) ** 2
         covariance = known + self.slipped(RASTER_SD * self.size[0], LEVER)
@@ -154,14 +204,32 @@ class KnownExposure:
         return Alignment(BodyPose(state, covariance, np.zeros((6, 6)), 0.0, 0.0), 0.0, 0.0)
 
     def slipped(self, slip: float, lever: float) -> Array:
-        """Compute the covariance of a place that slipped by so much at a lever, shape (6, 6)."""
+        """Compute the covariance of independent errors of x, y and yaw.
+
+        Args:
+            slip: Standard deviation of x and of y [m].
+            lever: Lever arm that converts it to heading, in lengths of the robot [-].
+
+        Returns:
+            Covariance of the state, shape (6, 6) [m², rad²].
+        """
         turn = slip / (lever * self.size[0])
         return np.diag([slip, slip, 0.0, 0.0, 0.0, turn]) ** 2
 
     def on_photo(
         self, layer: NDArray, plane: Plane, pose: Array, *, reach: float = 0.75
     ) -> NDArray[np.float32]:
-        """Read a layer of a plane at the pixels around an exposure; 0 beyond so many diagonals."""
+        """Resample a layer of a plane at the pixels around an exposure.
+
+        Args:
+            layer: Values on the plane's raster, shape (rows, columns, ...).
+            plane: The plane.
+            pose: x, y [m] and yaw [rad] of the exposure, shape (3,).
+            reach: Half width of the region to fill, in diagonals of the robot [-].
+
+        Returns:
+            Values, shape (height, width, ...); 0 beyond the region.
+        """
         whole = np.zeros((*self.pixels.shape[:2], *layer.shape[2:]), np.float32)
         window, xy = self.around(pose, reach=reach)
         place = np.stack((xy[..., 0] - plane.low[0], plane.high[1] - xy[..., 1]), axis=-1)
@@ -170,7 +238,7 @@ class KnownExposure:
         return whole
 
     def around(self, pose: Array, *, reach: float) -> tuple[tuple[slice, slice], Array]:
-        """Compute the rows and columns of the pixels around an exposure, and what they show.
+        """Compute the window of pixels around an exposure, and where they lie on the top's plane.
 
         Args:
             pose: Of the exposure.

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: MIT
-"""Turn the robot's picture and compare it with a photograph seen from above.
+"""Match the robot's template at all headings with a rectified photograph.
 
-Of exposures that overlap none looks as it would alone: in a merged picture half of each is under
-another, or all shine through. What is left of the likeness is small, and lost unless the turn is
-right to a few degrees and the place to a fraction of the marker's cells: both steps are finer here
-than where a robot alone is sought (`tracking.body.search`).
+In a merged picture, overlapping exposures look different from the robot alone: half of each is
+hidden, or all are mixed. The correlation that remains is small. It is lost unless the heading is
+right to a few degrees and the position to a fraction of the marker's cells. Both steps are
+therefore finer here than in the search for a single robot (`tracking.body.search`).
 """
 
 from collections.abc import Iterator
@@ -20,7 +20,7 @@ from tracking.camera.lens import Array
 from tracking.composite.plane import Plane
 
 TURNS = 48
-"""Turns that are tried, 7.5 degrees apart."""
+"""Number of headings that are tried, 7.5 degrees apart."""
 
 CELLS = 22
 """Points of the raster along the template's plate."""
@@ -29,7 +29,7 @@ _PEAK_CELLS = 3
 
 
 class Match(NamedTuple):
-    """A place where the photograph looks like the robot.
+    """A place where the photograph correlates with the robot's template.
 
     Attributes:
         score: Correlation with its picture [-].
@@ -43,17 +43,17 @@ class Match(NamedTuple):
 def match_whole(
     picture: NDArray[np.float32], plane: Plane, *, template: BodyTemplate, least: float
 ) -> list[Match]:
-    """Find places where all of the robot's picture fits.
+    """Find local maxima of the normalised cross-correlation with the whole template.
 
     Args:
         picture: The photograph on `plane`, shape (rows, columns, 3); (rows, columns, 1) where the
-            robot's picture is grey.
+            template is grey.
         plane: The raster.
-        template: The robot's picture.
+        template: Template of the robot.
         least: Least correlation [-].
 
     Returns:
-        Places at which no turn and no neighbouring place fits better, best first.
+        Local maxima over heading and position, best first.
     """
     best, turn = None, None
     for index, (turned, mask) in _turns(template, plane.cell):

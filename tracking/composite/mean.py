@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: MIT
-"""Read a picture that is the mean of several exposures.
+"""Find exposures in a picture that is the mean of several exposures.
 
-Of n exposures each is as faint as 1/n; the floor's pattern is as strong as the robot. But floors
-vary in light more than in colour, and robots do not: colours are weighed by how rare they are on
-the floor (`FloorColours.whitening`). And a mean is a sum: a robot's picture is sought that, laid at
-all exposures at once, comes nearest to the photograph, so that each is compared with what the
-others leave of it.
+Of n exposures each is as faint as 1/n, and the floor's pattern is as strong as the robot. But
+floors vary in brightness more than in colour, and robots do not. Colours are therefore whitened by
+the floor's covariance (`FloorColours.whitening`). A mean is a sum: the robot's picture is solved
+for, by least squares, so that its sum over all exposures is nearest to the photograph. Each
+exposure is then compared with the residual of the others.
 """
 
 from collections.abc import Sequence
@@ -34,27 +34,27 @@ from tracking.composite.order import order_exposures
 from tracking.composite.reading import PictureRaster
 
 LONELY_SCORE = 0.6
-"""Least correlation of an exposure beside no other, or the wrong way round, when only one is known
-[-]."""
+"""Least correlation of an exposure without a neighbour, or with reversed heading, while only one is
+known [-]."""
 
 BESIDE_SCORE = 0.5
-"""Least correlation of one beside another with nearly its heading, then [-]."""
+"""Least correlation, at that stage, of one beside another with nearly the same heading [-]."""
 
 LEAST_SCORE, LEAST_OF_USUAL = 0.5, 0.75
 """Least correlation of an exposure when all others are taken away, and as a share of the usual one,
 which is less where light changes or floors are stronger than the robot [-]."""
 
 LEAST_STRENGTH = 0.5
-"""Least strength of an exposure; all are alike in a mean [-]."""
+"""Least relative strength of an exposure; all are equally strong in a mean [-]."""
 
 WORTH = 0.4
-"""By how much of what one explains a set must explain more for one exposure more [-]."""
+"""Cost of a further exposure, as a share of the power that one exposure explains [-]."""
 
 DETAIL = 1 / 4
-"""Width of what is left out where exposures are compared, in lengths of the robot [-]."""
+"""Width of the high-pass filter for comparison, in lengths of the robot [-]."""
 
 SCALE = 8.0
-"""Grey levels a standard deviation of the floor's pattern is made to be."""
+"""Standard deviation of the floor's pattern after whitening [grey levels]."""
 
 _TURN = np.radians(32.0)
 _DAMPING = 0.02
@@ -65,7 +65,7 @@ _BETTER = 1e-3  # share of the picture's power
 
 
 class Fit(NamedTuple):
-    """Exposures and the robot's picture that fit a photograph best.
+    """Fitted poses and picture of the robot, with goodness of fit.
 
     Attributes:
         poses: Shape (n, 3), the known one first.
@@ -84,10 +84,10 @@ class Fit(NamedTuple):
     cost: float
 
     def gain(self, other: "Fit") -> float:
-        """Compute by how much more is explained than by another set, less exposures' cost.
+        """Compute the gain of explained power over another set, less the cost of added exposures.
 
         The cost is the same for both sets: a picture of the robot solved at too few exposures is
-        fainter, and each of them would seem to cost less.
+        fainter, so that each of them would seem to cost less.
         """
         more = len(self.poses) - len(other.poses)
         return self.explained - other.explained - 0.5 * (self.cost + other.cost) * more
@@ -95,7 +95,7 @@ class Fit(NamedTuple):
 
 @dataclass(frozen=True)
 class MeanSearch(PictureRaster):
-    """A mean of exposures, on a raster.
+    """Search for exposures in a mean of exposures, on a raster.
 
     `body` reaches beyond the robot's top, over what its sides and legs cover.
 
@@ -109,27 +109,27 @@ class MeanSearch(PictureRaster):
 
     @cached_property
     def floor(self) -> FloorColours:
-        """How the floor looks."""
+        """Colour model of the floor."""
         return FloorColours.of(
             self.picture, self.used, width=self.length / self.plane.cell, noise=0.5
         )
 
     @cached_property
     def weighing(self) -> Array:
-        """Matrix by which colours are multiplied, shape (3, 3)."""
+        """Whitening matrix of colours, shape (3, 3)."""
         return SCALE * self.floor.whitening
 
     @cached_property
     def change(self) -> NDArray[np.float32]:
-        """What differs from the floor's light, weighed by how rare it is, (rows, columns, 3)."""
+        """Whitened difference from the floor's light, shape (rows, columns, 3)."""
         change = (self.picture - self.floor.light) @ self.weighing
         return (change * self.used[..., None]).astype(np.float32)
 
     @cached_property
     def detail(self) -> NDArray[np.float32]:
-        """The change without what varies over more than `DETAIL` of the length.
+        """High-pass filtered `change`, without variation over more than `DETAIL` of the length.
 
-        Planks, and the lamp over them, are as strong as a robot at 1/n; they vary slowly.
+        Planks, and the light of a lamp on them, are as strong as a robot at 1/n; they vary slowly.
         """
         width = DETAIL * self.length / self.plane.cell
         detail = self.change - smooth(self.change, self.used, width)
@@ -167,7 +167,7 @@ class MeanSearch(PictureRaster):
         return fit.poses[good]
 
     def alike(self, anchor: Array) -> Array:
-        """Find exposures that look like the known one as it is, others and floor in it."""
+        """Find first exposures by matching the known one, which still contains others and floor."""
         robot = self.body.read(self.detail, self.plane, anchor)
         poses = anchor[None]
         matches = [m for m in self.matches(self.detail, robot) if m.score >= BESIDE_SCORE]
@@ -176,7 +176,15 @@ class MeanSearch(PictureRaster):
         return poses
 
     def next_of(self, matches: Sequence[Match], poses: Array) -> Array | None:
-        """Take the best match beside an exposure or, where steps are long, the nearest beyond."""
+        """Choose the next exposure: the best match a step away, or the nearest farther one.
+
+        Args:
+            matches: Matches, best first.
+            poses: Known exposures, shape (n, 3) [m, m, rad].
+
+        Returns:
+            Pose, shape (3,), or None. Farther matches count only where steps are long.
+        """
         beside = next((match for match in matches if self.is_beside(match, poses)), None)
         if beside is not None:
             return self.turned(beside, poses)
@@ -187,45 +195,83 @@ class MeanSearch(PictureRaster):
         return headed(nearest, poses, square=self.is_square)
 
     def turned(self, match: Match, poses: Array) -> Array:
-        """Turn the place of a match by the walk where no exposure beside it has its heading."""
+        """Correct the heading of a match by the walk where no exposure beside it has its heading.
+
+        Args:
+            match: The match.
+            poses: Known exposures, shape (n, 3) [m, m, rad].
+
+        Returns:
+            Pose of the match, shape (3,) [m, m, rad].
+        """
         if self.follows(match.planar, poses):
             return match.planar
         return headed(match.planar, poses, square=self.is_square)
 
     @property
     def is_square(self) -> bool:
-        """Tell whether the robot is about as wide as long."""
+        """Return whether the robot is about as wide as long."""
         rows, columns = self.body.x[self.body.body].shape
         return abs(rows - columns) < 0.2 * max(rows, columns)
 
     def matches(self, change: NDArray[np.float32], robot: NDArray[np.float32]) -> list[Match]:
-        """Turn the robot's picture and compare; best first."""
+        """Match the robot's picture at all headings (normalised cross-correlation).
+
+        Args:
+            change: Difference from the floor, or its detail, shape (rows, columns, 3).
+            robot: The robot's picture, on the robot's raster.
+
+        Returns:
+            Matches, best first.
+        """
         template = self.body.template(robot, self.height)
         return match_whole(change, self.plane, template=template, least=_LEAST_MATCH)
 
     def is_beside(self, match: Match, poses: Array) -> bool:
-        """Tell whether a match follows an exposure; a clear one may be the wrong way round."""
+        """Return whether a match is one step from a known exposure.
+
+        The heading of a clear match is corrected first, since it may be turned by a half.
+
+        Args:
+            match: The match.
+            poses: Known exposures, shape (n, 3) [m, m, rad].
+        """
         pose = self.turned(match, poses) if match.score >= LONELY_SCORE else match.planar
         return self.follows(pose, poses)
 
     def follows(self, pose: Array, poses: Array) -> bool:
-        """Tell whether a pose is a step from another exposure, with nearly its heading."""
+        """Return whether a pose is a step from another exposure, with nearly its heading.
+
+        Args:
+            pose: x, y [m] and yaw [rad], shape (3,).
+            poses: Known exposures, shape (n, 3).
+        """
         away = distances(poses, pose)
         near = away < REACH * self.length
         ahead = np.cos(poses[near, 2] - pose[2]) > np.cos(_TURN)
         return bool(ahead.any() and away.min() > LEAST_STEP * self.length)
 
     def is_alone(self, match: Match, poses: Array) -> bool:
-        """Tell whether a match is clear, and farther than a step from all exposures."""
+        """Return whether a match is clear and farther than a step from all exposures.
+
+        Args:
+            match: The match.
+            poses: Known exposures, shape (n, 3) [m, m, rad].
+        """
         away = distances(poses, match.planar).min()
         return match.score >= LONELY_SCORE and bool(away > REACH * self.length)
 
     def is_new(self, match: Match, poses: Array) -> bool:
-        """Tell whether a match may be one exposure more."""
+        """Return whether a match may be a further exposure (`is_beside` or `is_alone`).
+
+        Args:
+            match: The match.
+            poses: Known exposures, shape (n, 3) [m, m, rad].
+        """
         return self.is_beside(match, poses) or self.is_alone(match, poses)
 
     def varied(self, fit: Fit) -> list[Array]:
-        """List sets of exposures that differ by one or two from a set."""
+        """List sets of exposures that differ from a set by one or two exposures."""
         left = self.detail - self.sum_of(fit.poses, fit.robot)
         left *= self.used[..., None]
         new = [
@@ -241,7 +287,12 @@ class MeanSearch(PictureRaster):
         return [poses for poses in sets if are_apart(poses, self.length)]
 
     def fitted(self, poses: Array, *, rounds: int) -> Fit:
-        """Improve exposures and the robot's picture in turn."""
+        """Fit poses and the robot's picture by alternating least squares and local search.
+
+        Args:
+            poses: Poses to start from, the known one first, shape (n, 3) [m, m, rad].
+            rounds: Number of alternations.
+        """
         poses = poses.copy()
         robot = self.robot_at(poses, self.detail)
         scores, strengths = self.improve(poses, robot)
@@ -254,7 +305,15 @@ class MeanSearch(PictureRaster):
         return Fit(poses, robot, scores, strengths, explained, WORTH * own / self.power)
 
     def improve(self, poses: Array, robot: NDArray[np.float32]) -> tuple[Array, Array]:
-        """Improve all poses but the first in place; return scores and strengths, (n,) each."""
+        """Improve all poses but the first, in place, each on the residual of the others.
+
+        Args:
+            poses: Exposures, shape (n, 3) [m, m, rad]; changed.
+            robot: The robot's picture, on the robot's raster.
+
+        Returns:
+            Correlations and relative strengths, shape (n,) each [-]; 1 for the first.
+        """
         left = self.detail - self.sum_of(poses, robot)
         scores, strengths = np.ones(len(poses)), np.ones(len(poses))
         for k in range(1, len(poses)):
@@ -270,7 +329,13 @@ class MeanSearch(PictureRaster):
     def refined(
         self, change: NDArray[np.float32], robot: NDArray[np.float32], pose: Array
     ) -> Array:
-        """Improve a pose by the correlation with the robot's picture."""
+        """Improve a pose by maximising the correlation with the robot's picture.
+
+        Args:
+            change: Picture to compare with, shape (rows, columns, 3).
+            robot: The robot's picture, on the robot's raster.
+            pose: Pose to start from, shape (3,) [m, m, rad].
+        """
         return improved(
             lambda place: self.likeness(change, robot, place)[0], pose, reach=CLIMB, tries=120
         )[0]
@@ -278,7 +343,16 @@ class MeanSearch(PictureRaster):
     def likeness(
         self, change: NDArray[np.float32], robot: NDArray[np.float32], pose: Array
     ) -> tuple[float, float]:
-        """Compute the correlation with the robot's picture, and how strong it is there."""
+        """Compute correlation and regression coefficient of the picture on the robot's picture.
+
+        Args:
+            change: Picture to compare with, shape (rows, columns, 3).
+            robot: The robot's picture, on the robot's raster.
+            pose: x, y [m] and yaw [rad], shape (3,).
+
+        Returns:
+            Correlation and coefficient ("strength") [-].
+        """
         seen = self.body.read(change, self.plane, pose)[self.body.body]
         own = robot[self.body.body]
         seen, own = seen - seen.mean(axis=(0, 1)), own - own.mean(axis=(0, 1))
@@ -287,7 +361,15 @@ class MeanSearch(PictureRaster):
         return cross / np.sqrt(max(power * spread, 1e-9)), cross / max(power, 1e-9)
 
     def sum_of(self, poses: Array, robot: NDArray[np.float32]) -> NDArray[np.float32]:
-        """Lay the robot's picture at all poses, (rows, columns, 3)."""
+        """Compute the sum of the robot's picture at all poses.
+
+        Args:
+            poses: Exposures, shape (n, 3) [m, m, rad].
+            robot: The robot's picture, on the robot's raster.
+
+        Returns:
+            Sum on the picture's raster, shape (rows, columns, 3).
+        """
         total = np.zeros_like(self.change)
         for pose in poses:
             window, laid = self.body.laid(robot, self.plane, pose)
@@ -295,11 +377,18 @@ class MeanSearch(PictureRaster):
         return total
 
     def robot_at(self, poses: Array, change: NDArray[np.float32]) -> NDArray[np.float32]:
-        """Solve for the robot's picture of which the sum at poses is the change, or its detail.
+        """Solve for the robot's picture whose sum at all poses is nearest to the change.
 
-        Least squares; what no exposure tells apart is held near zero. Where exposures repeat by a
-        step, a pattern that alternates by it is told by the two ends of the walk alone, which is
-        why the mean of what is seen at all poses does not do.
+        Damped least squares by conjugate gradients. What the exposures do not determine is held
+        near zero. The mean of the colours at all poses is not enough: where exposures repeat by a
+        steady step, a pattern that alternates with it shows only at the two ends of the walk.
+
+        Args:
+            poses: Exposures, shape (n, 3) [m, m, rad].
+            change: Difference from the floor, or its detail, shape (rows, columns, 3).
+
+        Returns:
+            The robot's picture, on the robot's raster, with 3 channels.
         """
         seen = np.mean([self.body.read(change, self.plane, pose) for pose in poses], axis=0)
         if len(poses) == 1:
@@ -314,7 +403,7 @@ class MeanSearch(PictureRaster):
         ]
 
         def repeated(values: Array) -> Array:
-            """Add up what a robot's picture gives to itself at all poses."""
+            """Apply the normal-equation operator: sum the picture shifted by all pairs of poses."""
             robot = values.reshape(shape).astype(np.float32)
             total = (1 + _DAMPING) * robot
             for overlap in overlaps:
@@ -328,7 +417,7 @@ class MeanSearch(PictureRaster):
 
 
 def _shifted(poses: Array) -> list[Array]:
-    """List chains that end one exposure later or earlier at either end; the first is kept."""
+    """List chains shifted by one exposure at either end; the first exposure is kept."""
     chain = [poses[k] for k in order_exposures(poses)]
     before, after = continued(chain[1], chain[0]), continued(chain[-2], chain[-1])
     starts: Sequence[list[Array]] = (chain, chain[1:], [before, *chain])

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: MIT
 """Align the exposures of a mean, each as faint as 1/n, with each other.
 
-A picture of the robot cut out of one exposure of a mean holds the floor of that place, as strong as
-in the picture. Each exposure is aligned with the mean of the others, in which there is less of it,
-in colours that are rare on the floor; then all are moved so that the known one is where it is known
-to be.
+A template cut out of one exposure of a mean contains the floor of that place, as strong as in the
+picture. Each exposure is therefore aligned with the mean of the others, in which that floor is
+weaker, in colours that are rare on the floor. Then all are moved together so that the known one is
+at its known pose.
 """
 
 from collections.abc import Sequence
@@ -27,28 +27,28 @@ from tracking.composite.pattern_alignment import AROUND, PatternAlignment
 from tracking.pose import PLANAR, BodyPose, rotation_with_derivatives
 
 LEAST_CLEAR_SCORE, LEAST_FAINT_SCORE = 0.4, 0.2
-"""Least correlation of an exposure's edges: to be aligned by them, and not to be astray [-]."""
+"""Least correlation of an exposure's edges to use an alignment, and not to reject it [-]."""
 
 LEAST_NEW_SCORE = 0.1
-"""Least correlation of what the floor does not foretell of an exposure [-]."""
+"""Least correlation of an exposure's part that the floor's pattern does not predict [-]."""
 
 MEAN_SD, MEAN_OVERLAP_SD = 1 / 1200, 1 / 220
-"""Error of a place, as `tracking.composite.pasted_alignment.PASTED_SD`, of exposures that are apart
-and of those that overlap [-]."""
+"""Error of position, as `tracking.composite.pasted_alignment.PASTED_SD`, of exposures that are
+apart and of those that overlap [-]."""
 
 _CELLS = 32  # points of the raster along the robot
 _AROUND = 0.28  # of the length: how far sides, legs and shadow reach
 _ROUNDS = 2
-_FLOOR_LEFT = 0.15  # of the length: farther from all exposures is the floor
+_FLOOR_LEFT = 0.15  # of the length: beyond it from all exposures is floor
 _EVERY_PIXEL = 250_000  # points: of a robot of 500 x 500 px
-_FINE_WIDTH = 1 / 24  # of the length: what changes over more is no fine pattern
-_PATTERN_WIDTH = 0.25  # of the length: what changes over more is no pattern
-_HALF_LEVER = 0.5  # of the length: that much off there turns it
+_FINE_WIDTH = 1 / 24  # of the length: wider variation is not fine pattern
+_PATTERN_WIDTH = 0.25  # of the length: wider variation is not pattern
+_HALF_LEVER = 0.5  # lever arm for the heading, of the length
 
 
 @dataclass(frozen=True)
 class MeanReading:
-    """A picture that is the mean of several exposures.
+    """Reading of a picture that is the mean of several exposures.
 
     Attributes:
         picture: The picture and the known exposure.
@@ -68,7 +68,7 @@ class MeanReading:
         return self.search.find(self.picture.known.planar)
 
     def align(self, poses: Array) -> tuple[Exposure, ...]:
-        """Align each exposure with what the others leave of the picture.
+        """Align each exposure with the residual that the others leave of the picture.
 
         Args:
             poses: Places on the raster, the known one first, shape (n, 3).
@@ -89,7 +89,7 @@ class MeanReading:
     def alone(
         self, poses: Array, weighed: NDArray[np.float32], weighed_again: Array
     ) -> list[NDArray[np.float32]]:
-        """Subtract from the picture around each exposure what the others show of the robot.
+        """Subtract the other exposures from the picture, around each exposure.
 
         Args:
             poses: The exposures, shape (n, 3).
@@ -108,7 +108,13 @@ class MeanReading:
 def floor_pattern(
     picture: KnownExposure, weighed: NDArray[np.float32], poses: Array
 ) -> FloorPattern:
-    """Judge the floor's pattern by what is far from all exposures."""
+    """Fit the pattern of the floor to the pixels far from all exposures.
+
+    Args:
+        picture: The picture and the known exposure.
+        weighed: The picture in whitened colours, shape (height, width, 3).
+        poses: The exposures, shape (n, 3) [m, m, rad].
+    """
     floor = ~picture.hidden
     for pose in poses:
         floor &= ~picture.box.hidden(picture.level(pose), left=_FLOOR_LEFT)
@@ -116,9 +122,9 @@ def floor_pattern(
 
 
 def fine_weighing(picture: KnownExposure) -> Array:
-    """Matrix that makes the floor's fine pattern scatter alike in all colours, shape (3, 3).
+    """Compute the whitening matrix of the floor's fine pattern, shape (3, 3).
 
-    Lenses and JPEG spare fine colour more than fine light.
+    Lenses and JPEG reduce fine detail of colour more than of brightness.
     """
     pixels, width = picture.pixels.astype(np.float32), _FINE_WIDTH * picture.length_px
     floor = FloorColours.of(pixels, ~picture.hidden, width=width, noise=0.5)
@@ -127,14 +133,14 @@ def fine_weighing(picture: KnownExposure) -> Array:
 
 @dataclass(frozen=True)
 class MeanAlignment:
-    """Exposures of a mean.
+    """Alignment of the exposures of a mean with each other.
 
     Attributes:
         picture: The picture and the known exposure.
         alones: What the others leave of the picture around each, shape (height, width, 3).
         poses: Where they are on a raster, the known one first, shape (n, 3).
-        pattern: Of the floor, where exposures are apart: what it does not foretell of their tops is
-            aligned, and `alones` are flat. None where they overlap: edges of their bodies are.
+        pattern: Of the floor, where exposures are apart: the prediction error of their tops is
+            aligned, and `alones` are flat. None where they overlap: edges of bodies are aligned.
     """
 
     picture: KnownExposure
@@ -147,7 +153,10 @@ class MeanAlignment:
         return self.overlapping() if self.pattern is None else self.apart()
 
     def apart(self) -> tuple[Exposure, ...]:
-        """Align the top alone: what is around it lies lower and shifts against it."""
+        """Align exposures that do not overlap, by the top alone.
+
+        What is around the top lies lower, and its parallax differs.
+        """
         around = AROUND * self.picture.plate.length
         found = self.with_others(replace(self.picture.plate, margin=around, front_margin=around))
         return tuple(
@@ -156,9 +165,10 @@ class MeanAlignment:
         )
 
     def overlapping(self) -> tuple[Exposure, ...]:
-        """Align the body; one but the known whose edges say little is none.
+        """Align exposures that overlap, by the body; drop those whose edges correlate too little.
 
-        If those of the known one say nothing, the others cannot be judged and stay on the raster.
+        The known one is kept. If its edges correlate too little, the others cannot be judged and
+        keep their poses on the raster.
         """
         found = self.with_others(self.picture.body_plate)
         return tuple(
@@ -168,14 +178,14 @@ class MeanAlignment:
         )
 
     def with_others(self, plate: TopPlate) -> list[Alignment | None]:
-        """Align a part of the robot with its mean in the others; None of what goes astray."""
+        """Align a part of the robot with its mean in the others; None where one diverges."""
         poses = self.poses
         share = (len(poses) - 1) / len(poses)
         found: list[Alignment | None] = []
         for _ in range(_ROUNDS):
             templates = self.others_templates(poses, plate)
             found = self.anchored(self.aligned(poses, templates))
-            # The others err, too: n exposures come nearest by that share of the way.
+            # The others have errors too: this share of the step is the best estimate.
             poses = np.array([
                 _nearer(pose, each, share) for each, pose in zip(found, poses, strict=True)
             ])  # fmt: skip
@@ -185,7 +195,15 @@ class MeanAlignment:
         ]
 
     def aligned(self, poses: Array, templates: Sequence[BodyTemplate]) -> list[Alignment | None]:
-        """Align each with its template; None of what goes astray."""
+        """Align each exposure with its template.
+
+        Args:
+            poses: Poses to start from, shape (n, 3) [m, m, rad].
+            templates: One template for each.
+
+        Returns:
+            Alignments; None where one diverges.
+        """
         pairs = zip(poses, self.alones, templates, strict=True)
         if self.pattern is None:
             return [self.edges_aligned(*each) for each in pairs]
@@ -194,7 +212,16 @@ class MeanAlignment:
     def edges_aligned(
         self, pose: Array, alone: NDArray[np.float32], template: BodyTemplate
     ) -> Alignment | None:
-        """Align the edges of one exposure."""
+        """Align one exposure by its edges.
+
+        Args:
+            pose: Pose to start from, shape (3,) [m, m, rad].
+            alone: What the others leave of the picture, shape (height, width, 3).
+            template: Template of the robot.
+
+        Returns:
+            The alignment, or None where it diverges.
+        """
         return self.picture.aligned(
             pose, alone, template, ~self.picture.hidden, least=LEAST_FAINT_SCORE,
             shines_through=True,
@@ -203,20 +230,34 @@ class MeanAlignment:
     def pattern_aligned(
         self, pose: Array, alone: NDArray[np.float32], template: BodyTemplate, pattern: FloorPattern
     ) -> Alignment | None:
-        """Align what the floor does not foretell of one exposure."""
+        """Align one exposure by what the floor's pattern does not predict.
+
+        Args:
+            pose: Pose to start from, shape (3,) [m, m, rad].
+            alone: What the others leave of the picture, shape (height, width, 3).
+            template: Template of the robot.
+            pattern: Pattern of the floor.
+
+        Returns:
+            The alignment, or None where it diverges.
+        """
         found = PatternAlignment(self.picture, alone, template, pattern, pose).solved()
         astray = found is None or self.picture.is_astray(found, pose, LEAST_NEW_SCORE)
         return None if astray else found
 
     @property
     def least_clear(self) -> float:
-        """Least correlation of an exposure to be placed by it."""
+        """Least correlation of an exposure to use its alignment."""
         return LEAST_CLEAR_SCORE if self.pattern is None else LEAST_NEW_SCORE
 
     def others_templates(self, poses: Array, plate: TopPlate) -> list[BodyTemplate]:
-        """Cut a part of the robot out of all exposures; for each take the mean of the others.
+        """Make a template for each exposure: the mean of all the others (leave-one-out).
 
-        The mean of all would hold an exposure where it is, and look like it.
+        A mean over all would contain the exposure itself and bias its alignment to where it starts.
+
+        Args:
+            poses: The exposures, shape (n, 3) [m, m, rad].
+            plate: Part of the robot's top to cut out.
         """
         picture = self.picture
         most = MOST_POINTS if self.pattern is None else _EVERY_PIXEL
@@ -244,8 +285,8 @@ class MeanAlignment:
     def anchored(self, found: Sequence[Alignment | None]) -> list[Alignment | None]:
         """Move all exposures in their own frames so that the first is where it is known to be.
 
-        Its error of alignment becomes that of the others; where it is unclear none can be judged.
-        What is wrong with the pose that is known is not in their covariance.
+        Its error of alignment becomes that of the others; where it is unclear, all become None.
+        The error of the known pose is not in their covariance.
         """
         first = found[0]
         if first is None or first.score < self.least_clear:
@@ -266,7 +307,14 @@ class MeanAlignment:
     def clear_or_rough(
         self, alignment: Alignment | None, pose: Array, slip: float, lever: float
     ) -> Alignment:
-        """Take an alignment where it is clear, else the place on the raster."""
+        """Return the alignment, with others' error added, if it is clear, else the raster's pose.
+
+        Args:
+            alignment: The alignment, or None where it failed.
+            pose: Pose on the raster, shape (3,) [m, m, rad].
+            slip: Standard deviation of position at equal power, in lengths of the robot [-].
+            lever: Lever arm that converts it to heading, in lengths of the robot [-].
+        """
         if alignment is None or alignment.score < self.least_clear:
             return self.picture.rough(pose)
         return self.picture.widened(alignment, slip, lever=lever)

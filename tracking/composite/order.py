@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Put the exposures of one picture in the order of the walk, by heading and path."""
+"""Order the exposures of one picture along the walk, by heading and path length."""
 
 from collections.abc import Sequence
 
@@ -12,11 +12,10 @@ _EXACT_ORDER = 12
 
 
 def order_exposures(poses: ArrayLike) -> tuple[int, ...]:
-    """Order exposures along the walk.
+    """Order exposures along the walk, by the cheapest chain through all.
 
-    A step from one exposure to the next is judged by its length and by how well it follows the
-    mean of both headings, as a chord follows an arc. Length alone goes astray wherever the path
-    comes near itself.
+    A step from one exposure to the next costs its length, and more the less it follows the mean of
+    both headings, as a chord follows an arc. Length alone fails where the path comes near itself.
 
     Args:
         poses: x, y [m] and yaw [rad] of the exposures, shape (n, 3).
@@ -46,7 +45,7 @@ def _step_costs(places: Array) -> Array:
 
 
 def _best_chain(cost: Array) -> tuple[int, ...]:
-    """Find the cheapest chain through all (Held and Karp 1962)."""
+    """Find the cheapest chain through all, by dynamic programming (Held and Karp 1962)."""
     n = len(cost)
     if n == 0:
         return ()
@@ -74,7 +73,7 @@ def _best_chain(cost: Array) -> tuple[int, ...]:
 
 
 def _improved_chain(cost: Array) -> tuple[int, ...]:
-    """Chain nearest to nearest from every start; improve the best by moving stretches."""
+    """Find a cheap chain: nearest neighbours from every start, then moves of stretches."""
     n = len(cost)
     chains = [_nearest_chain(cost, start) for start in range(n)]
     chain = min(chains, key=lambda c: _length(cost, c))

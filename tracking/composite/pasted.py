@@ -1,15 +1,15 @@
 # SPDX-License-Identifier: MIT
-"""Read a picture of exposures that were cut out and pasted on each other.
+"""Find exposures in a picture of robots that were cut out and pasted on each other.
 
-Each is there as far as no other hides it, and may be no more than a strip of its top with a leg of
-the next across. A place is judged by its log odds: how much likelier the robot makes the colours
-of what would be visible of it than the picture's own colours do, of which a robot's are rare. That
-asks for no share of agreement: a narrow strip that agrees is worth more than a wide one that half
-agrees, and a point that something lies on costs no more than it tells. Light changes over a floor:
-an exposure is compared with how the one a step away looks.
+Each exposure is visible where no other hides it, perhaps only as a strip of its top with a leg of
+the next across. A pose is scored by log odds: the log likelihood ratio of the robot's colours
+against the picture's own colours, over the points that would be visible. Colours of a robot are
+rare in the picture. No share of agreement is required: a narrow strip that agrees scores more than
+a wide one that half agrees, and an occluded point costs only a bounded amount. Light varies over a
+floor, so an exposure is compared with the colours of the one a step away.
 
-Scissors leave a margin, or cut out floor and shadow with the robot. Then what looks like floor near
-an exposure tells nothing: it may lie on another.
+A cut-out may have a margin, or may contain floor and shadow around the robot. Then points near an
+exposure that look like floor carry no information: they may lie on another exposure.
 """
 
 from collections.abc import Sequence
@@ -39,17 +39,17 @@ LEAST_ODDS = 0.9
 MOST_EXPOSURES = 40
 
 LEFT, FLOOR_LEFT = 0.05, 0.25
-"""How far around the robot scissors leave anything, and floor, as a share of its length [-]."""
+"""Margins of a cut-out around the robot: opaque, and of floor, as shares of its length [-]."""
 
-_LEAST_OF_STEP = 0.6  # intervals are regular: an exposure is not much nearer to another than usual
+_LEAST_OF_STEP = 0.6  # least distance as a share of the usual step; intervals are regular
 _LEAST_MATCH = 0.5
-_SHOWS = 0.5  # share of visible points on which nothing lies
+_SHOWS = 0.5  # share of visible points that are not occluded
 _TRIED = 5
-_FAR = 3.0  # in standard deviations: not how it looked a step away
+_FAR = 3.0  # in standard deviations: beyond it the colour differs from that a step away
 
 
 class Pasted(NamedTuple):
-    """An exposure: its pose, its log odds, mean over all points of its top, and how it looks."""
+    """An exposure: pose, log odds (mean over all points of its top) and colours of its top."""
 
     pose: Array
     gain: float
@@ -58,7 +58,7 @@ class Pasted(NamedTuple):
 
 @dataclass(frozen=True)
 class PastedSearch(PictureRaster):
-    """A picture of pasted exposures, on a raster.
+    """Search for exposures in a picture of pasted exposures, on a raster.
 
     Attributes:
         box: The robot's body.
@@ -75,7 +75,7 @@ class PastedSearch(PictureRaster):
 
     @cached_property
     def usual(self) -> NDArray[np.float32]:
-        """How dense the colour of every point is in the whole picture."""
+        """Density, in the whole picture, of the colour of every point."""
         density = ColourDensity.of(self.picture[self.used], blur=1.0)
         return density(self.picture).astype(np.float32)
 
@@ -106,17 +106,30 @@ class PastedSearch(PictureRaster):
         return np.array([each.pose for each in kept]), sum(each.gain for each in kept)
 
     def whole(self, pose: Array, robot: NDArray[np.float32]) -> float:
-        """Compute the gain of an exposure that no other hides."""
+        """Compute the log odds of an exposure that no other hides.
+
+        Args:
+            pose: x, y [m] and yaw [rad], shape (3,).
+            robot: Colours of the robot's top, on the robot's raster.
+        """
         shown = self.used.astype(np.float32)
         return float(self.gains(pose[None], robot, shown, self.body)[0][0])
 
     def matches(self, robot: NDArray[np.float32]) -> list[Match]:
-        """Turn the robot's picture and compare; best first."""
+        """Match the robot's template at all headings; best first."""
         template = self.body.template(robot, self.box.top)
         return match_whole(self.picture, self.plane, template=template, least=_LEAST_MATCH)
 
     def stack_under(self, top: Pasted, found: Sequence[Pasted]) -> list[Pasted]:
-        """Add an exposure that shows whole, those that it hides on either side, and so on."""
+        """Add an exposure that shows whole and the chains of exposures below it, on both sides.
+
+        Args:
+            top: The exposure that shows whole.
+            found: Known exposures.
+
+        Returns:
+            Known and new exposures; those on top before those below.
+        """
         found = [*found, top]
         one_side = self.chain_under(top, found)
         if not one_side:
@@ -127,9 +140,13 @@ class PastedSearch(PictureRaster):
     def chain_under(
         self, above: Pasted, found: Sequence[Pasted], *, opposite: Array | None = None
     ) -> list[Pasted]:
-        """Find the exposure that another hides, the one that this hides, and so on.
+        """Find the exposure that another partly hides, then the one that this hides, and so on.
 
-        With a pose given the first of them is on the other side of the one above.
+        Args:
+            above: Exposure to start from.
+            found: Known exposures.
+            opposite: Pose, shape (3,) [m, m, rad]. If given, the first exposure found lies on the
+                other side of `above`.
         """
         chain: list[Pasted] = []
         places = beside(above.pose, self.length, spacing=self.length / 20)
@@ -145,16 +162,16 @@ class PastedSearch(PictureRaster):
         return chain
 
     def visible(self, found: Sequence[Pasted]) -> NDArray[np.bool_]:
-        """Mark the points of the raster that no exposure hides."""
+        """Compute the mask of points of the raster that no exposure hides."""
         visible = self.used.copy()
         for each in found:
             visible &= ~self.hidden_by(each.pose)
         return visible
 
     def in_step(self, found: Sequence[Pasted]) -> list[Pasted]:
-        """Drop exposures that are much nearer to a likelier one than steps usually are.
+        """Drop exposures that are much nearer to a likelier one than the usual step.
 
-        The first stays, and of three none can be told: that in the middle is half as far.
+        The first stays. Of three none is dropped: the middle one is half as far from the others.
         """
         kept = list(found)
         for each in sorted(found[1:], key=lambda each: each.gain):
@@ -166,19 +183,25 @@ class PastedSearch(PictureRaster):
 
     @cached_property
     def floor(self) -> NDArray[np.bool_]:
-        """Where the picture looks like floor, lit or in shadow."""
+        """Mask of points whose colour is the floor's, lit or in shadow."""
         width = self.length / self.plane.cell
         return FloorColours.of(self.picture, self.used, width=width, noise=3.0).shows(self.picture)
 
     def hidden_by(self, pose: Array) -> NDArray[np.bool_]:
-        """Mark the points of the raster that an exposure hides, or may hide."""
+        """Compute the mask of points of the raster that an exposure hides, or may hide."""
         hidden = self.box.hidden_on(self.plane, pose, left=LEFT)
         if self.with_floor:
             hidden |= self.box.hidden_on(self.plane, pose, left=FLOOR_LEFT) & self.floor
         return hidden
 
     def under(self, above: Pasted, found: Sequence[Pasted], places: Array) -> Pasted | None:
-        """Find the likeliest exposure beside another, under all that are known."""
+        """Find the likeliest exposure below all known ones, beside one of them.
+
+        Args:
+            above: The exposure beside which to search.
+            found: Known exposures.
+            places: Candidate poses, shape (n, 3) [m, m, rad].
+        """
         visible = self.visible(found)
         shown = visible.astype(np.float32)
         gains, _ = self.gains(places, above.look[1::2, 1::2], shown, self.body.thinned())
@@ -190,7 +213,17 @@ class PastedSearch(PictureRaster):
         self, starts: Sequence[Array], found: Sequence[Pasted], look: NDArray[np.float32],
         visible: NDArray[np.bool_],
     ) -> Pasted | None:  # fmt: skip
-        """Improve places; return the best that holds."""
+        """Improve candidate poses by local search.
+
+        Args:
+            starts: Candidate poses, shape (3,) each [m, m, rad].
+            found: Known exposures.
+            look: Colours expected of the robot's top, on the robot's raster.
+            visible: Mask of points that no known exposure hides, shape (rows, columns).
+
+        Returns:
+            The likeliest that is accepted (`holds`), or None.
+        """
         shown = visible.astype(np.float32)
 
         def gain(pose: Array) -> float:
@@ -207,7 +240,16 @@ class PastedSearch(PictureRaster):
     def seen_again(
         self, pose: Array, look: NDArray[np.float32], shown: NDArray[np.float32]
     ) -> NDArray[np.float32]:
-        """Take how an exposure looks in its own light; as expected where others are on it."""
+        """Update the colours of the robot's top at the points where an exposure is visible.
+
+        Args:
+            pose: x, y [m] and yaw [rad] of the exposure, shape (3,).
+            look: Colours expected, on the robot's raster.
+            shown: 1 where no other exposure hides the picture, shape (rows, columns).
+
+        Returns:
+            Colours seen where they agree with those expected, else those expected.
+        """
         place = self.body.on(self.plane, pose[None])[0]
         seen, visible = sample(self.picture, place), sample(shown, place) > 0.9
         same = visible & (((seen - look) ** 2).sum(axis=-1) < _FAR**2 * NOISE**2)
@@ -217,23 +259,45 @@ class PastedSearch(PictureRaster):
         self, pose: Array, found: Sequence[Pasted], look: NDArray[np.float32],
         shown: NDArray[np.float32],
     ) -> bool:  # fmt: skip
-        """Tell whether a place is likely enough to be an exposure, and none that is known."""
+        """Return whether a pose is likely enough and apart from all known exposures.
+
+        Args:
+            pose: x, y [m] and yaw [rad], shape (3,).
+            found: Known exposures.
+            look: Colours expected, on the robot's raster.
+            shown: 1 where no known exposure hides the picture, shape (rows, columns).
+        """
         (gain,), (share,) = self.gains(pose[None], look, shown, self.body)
         likely = gain >= LEAST_GAIN and gain >= LEAST_ODDS * share
         return bool(likely and self.are_new(pose[None], found).all())
 
     def are_new(self, tried: Array, found: Sequence[Pasted]) -> NDArray[np.bool_]:
-        """Tell which places are not those of known exposures."""
+        """Return which poses are apart from all known exposures.
+
+        Args:
+            tried: Candidate poses, shape (n, 3) [m, m, rad].
+            found: Known exposures.
+
+        Returns:
+            Mask, shape (n,).
+        """
         away = np.min([distances(tried, each.pose) for each in found], axis=0)
         return away > LEAST_STEP * self.length
 
     def gains(
         self, poses: Array, robot: NDArray[np.float32], shown: NDArray[np.float32], body: BodyRaster
     ) -> tuple[Array, Array]:
-        """Compare the robot with the picture's own colours, for places (n, 3).
+        """Compute the log odds of the robot against the picture's own colours, at many poses.
+
+        Args:
+            poses: Candidate poses, shape (n, 3) [m, m, rad].
+            robot: Colours of the robot's top, on the points of `body`.
+            shown: 1 where no known exposure hides the picture, shape (rows, columns).
+            body: Points of the robot's top to compare.
 
         Returns:
-            Log odds, mean over all points of its top, and the share of these that is visible.
+            Log odds, mean over all points of its top, and the share of these that is visible; each
+            of shape (n,) [-].
         """
         place = body.on(self.plane, poses)
         seen, usual = sample(self.picture, place), sample(self.usual, place)

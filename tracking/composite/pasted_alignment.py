@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Read a picture of pasted exposures: find them, and align what is visible of each."""
+"""Find the exposures of a picture of pasted robots, and align the visible part of each."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -14,21 +14,23 @@ from tracking.composite.pasted import FLOOR_LEFT, LEFT, PastedSearch
 from tracking.pose import BodyPose
 
 MOST_ODD = 2.5
-"""Points of a pasted exposure that differ by more usual differences are of something else [-]."""
+"""Standard deviations beyond which a point of a pasted exposure is an outlier [-]."""
 
 PASTED_SD = 1 / 300
-"""Error of a place where others show as much as the robot does, in lengths of the robot, of an
-exposure of which all shows. It grows with the root of their power, (1 - score²) / score², and was
-chosen by exposures of simulated walks that no test draws [-]."""
+"""Standard deviation of position, in lengths of the robot, of a fully visible exposure where other
+things are as strong as the robot [-].
+
+It is proportional to the root of their power, (1 - score²) / score². It was calibrated on simulated
+walks that no test uses."""
 
 _CELLS = 40  # points of the raster along the robot
-_STRIP_LEVER = 0.9  # of the length: that much off there turns a strip
+_STRIP_LEVER = 0.9  # lever arm for the heading of a strip, of the length
 _LEAST_SHARE = 0.05
 
 
 @dataclass(frozen=True)
 class PastedReading:
-    """A picture of exposures that were cut out and pasted on each other.
+    """Reading of a picture of exposures that were cut out and pasted on each other.
 
     Attributes:
         picture: The picture and the known exposure, which shows whole.
@@ -38,7 +40,7 @@ class PastedReading:
 
     @cached_property
     def found(self) -> tuple[PastedSearch, Array]:
-        """The likelier search, of robots cut out closely or with floor, and what it finds."""
+        """The likelier of two searches, robots cut out closely or with floor, and its poses."""
         raster = self.picture.raster(self.picture.size[0] / _CELLS)
         searches = [
             PastedSearch(*raster, self.picture.box, with_floor) for with_floor in (False, True)
@@ -52,7 +54,7 @@ class PastedReading:
         return self.found[1]
 
     def align(self, poses: Array) -> tuple[Exposure, ...]:
-        """Align what no other hides of each, those on top first; else leave it on the raster."""
+        """Align the visible part of each, those on top first; keep the raster's pose on failure."""
         picture, found = self.picture, []
         template, visible = picture.body_template(picture.pixels), ~picture.hidden
         for pose in poses:
@@ -71,7 +73,7 @@ class PastedReading:
         return tuple(found)
 
     def hidden_under(self, pose: BodyPose) -> NDArray[np.bool_]:
-        """Mark the pixels that a pasted exposure hides, or may hide, shape (height, width)."""
+        """Compute the mask of pixels that an exposure hides, or may hide, (height, width)."""
         picture, search = self.picture, self.found[0]
         hidden = picture.box.hidden(pose.state, left=LEFT)
         if search.with_floor:

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""Align a faint exposure with a picture of the robot that is clearer than it.
+"""Align a faint exposure with a clearer template of the robot, in prewhitened pixels.
 
-Photograph and picture are compared by what the floor does not foretell (`floor_pattern`): least
-squares where what is left of the floor is white noise. Slopes are those of the picture. Those of
-the photograph, which `tracking.body.align` takes, are mostly the floor's where the robot is faint.
+Photograph and template are compared after the floor's prediction filter (`floor_pattern`), so that
+least squares sees white noise. The Jacobian is that of the template. The photograph's gradients,
+which `tracking.body.align` uses, are mostly the floor's where the robot is faint.
 """
 
 from dataclasses import dataclass
@@ -21,9 +21,9 @@ from tracking.composite.known import KnownExposure
 from tracking.pose import PLANAR, BodyPose, rotation_with_derivatives
 
 AROUND = 0.15
-"""How far the picture of the robot must reach beyond its top, in lengths of the top [-]."""
+"""Margin that the template must have beyond the robot's top, in lengths of the top [-]."""
 
-_REACH = 0.6  # of the body's diagonal: half a side of what is looked at
+_REACH = 0.6  # of the body's diagonal: half a side of the window
 _ITERATIONS = 6
 _HUBER = 1.5
 _LIMIT = np.array([0.01, 0.01, 0.05])  # m, m, rad: longest step
@@ -34,7 +34,7 @@ _ALL, _CAMERA = list(range(12)), slice(6, 12)  # of a state, then of the camera'
 
 @dataclass(frozen=True)
 class PatternResidual:
-    """Photograph and picture where a pose puts the top, as n values.
+    """Residual of the photograph against the template at a pose, as n values.
 
     Attributes:
         seen: Of the photograph, shape (n,).
@@ -48,13 +48,13 @@ class PatternResidual:
 
     @cached_property
     def residual(self) -> Array:
-        """What is left of the photograph with the picture's best gain, shape (n,)."""
+        """Photograph minus template times its best gain, shape (n,)."""
         gain = self.expected @ self.seen / max(self.expected @ self.expected, 1e-9)
         return self.seen - gain * self.expected
 
     @cached_property
     def noise(self) -> float:
-        """Standard deviation of what is left, by its median."""
+        """Standard deviation of the residual, by the median absolute deviation."""
         return max(1.4826 * float(np.median(np.abs(self.residual))), 1e-6)
 
     @cached_property
@@ -64,12 +64,12 @@ class PatternResidual:
 
     @property
     def score(self) -> float:
-        """Correlation of photograph and picture."""
+        """Correlation of photograph and template."""
         power = (self.expected @ self.expected) * (self.seen @ self.seen)
         return float(self.expected @ self.seen / np.sqrt(max(power, 1e-9)))
 
     def step(self) -> Array:
-        """Compute by how much x, y and yaw are off, by their slopes alone, shape (3,)."""
+        """Compute one Gauss-Newton step of x, y and yaw, clipped, shape (3,) [m, m, rad]."""
         J = np.column_stack((self.slopes, self.expected))
         weighed = self.weight[:, None] * J
         change = np.linalg.lstsq(weighed.T @ J, weighed.T @ (self.seen - self.expected))[0]
@@ -78,7 +78,7 @@ class PatternResidual:
 
 @dataclass(frozen=True)
 class PatternAlignment:
-    """One exposure and what it is aligned with.
+    """Alignment of one exposure with a template.
 
     Attributes:
         picture: The picture and the known exposure.
@@ -117,22 +117,22 @@ class PatternAlignment:
 
     @cached_property
     def seen(self) -> NDArray[np.float32]:
-        """What the floor does not foretell of the photograph, in the window."""
+        """Prediction error of the photograph by the floor's pattern, in the window."""
         return self.pattern.new_in(self.alone[self.window[0]])
 
     @cached_property
     def shown(self) -> NDArray[np.bool_]:
-        """Pixels of the window that nothing hides, as far as they are foretold from others."""
+        """Mask of the window's pixels whose prediction uses no hidden pixel."""
         hidden = self.picture.hidden[self.window[0]].astype(np.uint8)
         side = 2 * REACH_PX + 1
         return cv2.dilate(hidden, np.ones((side, side), np.uint8)) == 0
 
     def look(self, pose: Array, by: list[int]) -> PatternResidual | None:
-        """Compare photograph and picture for a pose; None where little is visible.
+        """Compute residual and Jacobian at a pose; None where little is visible.
 
         Args:
             pose: x, y [m] and yaw [rad].
-            by: Of state and camera's pose, what slopes are taken by.
+            by: Indices, in state and camera's pose, of the Jacobian's columns.
         """
         body = self.body_at(pose)
         half = 0.5 * np.array([self.picture.plate.length, self.picture.plate.width])
@@ -150,17 +150,26 @@ class PatternAlignment:
         )
 
     def body_at(self, pose: Array) -> Array:
-        """Place the pixels of the window in the body's frame, shape (rows, columns, 2) [m]."""
+        """Transform the window's pixels to the body frame, shape (rows, columns, 2) [m]."""
         c, s = np.cos(pose[2]), np.sin(pose[2])
         return (self.window[1] - pose[:2]) @ np.array([[c, -s], [s, c]])
 
     def drawn(self, body: Array) -> NDArray[np.float32]:
-        """Draw the robot's picture at places of its body, shape (rows, columns, 3)."""
+        """Interpolate the template at points of the body frame, shape (rows, columns, 3)."""
         front_left = self.template.points_body[0, 0, :2]
         return sample(self.template.colours, (front_left - body)[..., ::-1] / self.template.step)
 
     def slopes(self, drawn: NDArray[np.float32], body: Array, pose: Array) -> Array:
-        """Compute how the drawn picture changes with state and camera, (rows, columns, 3, 12)."""
+        """Compute the Jacobian of the drawn picture with respect to state and camera pose.
+
+        Args:
+            drawn: The drawn picture, shape (rows, columns, 3).
+            body: x, y of its pixels in the body frame, shape (rows, columns, 2) [m].
+            pose: x, y [m] and yaw [rad], shape (3,).
+
+        Returns:
+            Jacobian, shape (rows, columns, 3, 12).
+        """
         state = self.picture.level(pose)
         points = np.concatenate(
             (body, np.full((*body.shape[:2], 1), self.picture.plate.height)), axis=2
@@ -176,7 +185,12 @@ class PatternAlignment:
         return -slope @ moved.reshape(*body.shape[:2], 2, 12)
 
     def concluded(self, pose: Array, look: PatternResidual) -> Alignment:
-        """Put the pose and its covariance together."""
+        """Make the alignment: the pose with its covariance, from the residual's Jacobian.
+
+        Args:
+            pose: x, y [m] and yaw [rad], shape (3,).
+            look: Residual, Jacobian, weights and noise at the pose.
+        """
         J, prior = look.slopes[:, PLANAR], self.picture.prior
         weighed = look.weight[:, None] * J / look.noise**2
         spread = np.linalg.inv(weighed.T @ J)

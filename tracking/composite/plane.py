@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A photograph seen from straight above, on the level plane of the robot's top."""
+"""A photograph rectified onto the level plane of the robot's top."""
 
 from dataclasses import dataclass
 
@@ -32,28 +32,47 @@ class Plane:
         cls, camera: Camera, view: CameraPose, *, height: float, low: Array, high: Array,
         cell: float,
     ) -> "Plane":  # fmt: skip
-        """Lay a raster over a rectangle at a height over the floor [m]."""
+        """Make a raster over a level rectangle and project it into the photograph.
+
+        Args:
+            camera: The lens.
+            view: Pose of the camera.
+            height: Height of the plane over the floor [m].
+            low: Lowest x and y, shape (2,) [m].
+            high: Highest x and y, shape (2,) [m].
+            cell: Distance between neighbouring points [m].
+        """
         xx, yy = np.meshgrid(np.arange(low[0], high[0], cell), np.arange(high[1], low[1], -cell))
         world = np.stack((xx, yy, np.full_like(xx, height)), axis=-1)
         seen = project(camera, view, world.reshape(-1, 3)).reshape(*xx.shape, 2)
         return cls(low, high, cell, seen)
 
     def read(self, pixels: NDArray) -> NDArray[np.float32]:
-        """Read a photograph at the raster's points, 0 outside, shape (rows, columns, ...)."""
+        """Interpolate a photograph at the raster's points, 0 outside, (rows, columns, ...)."""
         return sample(pixels, self.seen_px)
 
     def read_smooth(self, pixels: NDArray[np.uint8]) -> NDArray[np.float32]:
-        """Read a photograph blurred to the size of a cell, so that nothing is aliased."""
+        """Interpolate a photograph after a blur of a cell's size, against aliasing."""
         spacing = float(np.median(np.linalg.norm(np.diff(self.seen_px, axis=1), axis=2)))
-        # Of the far floor nothing is lost by it: there pixels are larger than cells.
+        # The blur loses nothing of the far floor, where pixels are larger than cells.
         return self.read(np.asarray(cv2.GaussianBlur(pixels, (0, 0), max(0.4 * spacing, 0.3))))
 
     def xy_at(self, row: float, column: float) -> Array:
-        """Compute the place of a point, shape (2,) [m]."""
+        """Compute x and y of a point of the raster, shape (2,) [m].
+
+        Args:
+            row: Row of the point.
+            column: Column of the point.
+        """
         return np.array([self.low[0] + column * self.cell, self.high[1] - row * self.cell])
 
     def part(self, rows: slice, columns: slice) -> "Plane":
-        """Cut out rows and columns of the raster."""
+        """Crop the raster.
+
+        Args:
+            rows: Rows to keep.
+            columns: Columns to keep.
+        """
         low = (self.low[0] + columns.start * self.cell, self.high[1] - rows.stop * self.cell)
         high = (self.low[0] + columns.stop * self.cell, self.high[1] - rows.start * self.cell)
         return Plane(np.array(low), np.array(high), self.cell, self.seen_px[rows, columns])

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""How exposures were merged into one picture, and what a reading of such a picture does."""
+"""Ways to merge exposures into one picture, and the interface of their readings."""
 
 from dataclasses import dataclass
 from enum import StrEnum
@@ -27,7 +27,7 @@ class Merged(StrEnum):
 
 
 class Reading(Protocol):
-    """Find the exposures of a picture in which one is known, by how that one looks."""
+    """Interface: find and align the exposures of a picture from one that is known."""
 
     def find(self) -> Array:
         """Find all exposures on a raster.
@@ -44,7 +44,7 @@ class Reading(Protocol):
             poses: What `find` returned, shape (n, 3), n at least 2.
 
         Returns:
-            The exposures, the known one first; without those that turn out to be none.
+            The exposures, the known one first; without those that are rejected.
         """
         ...
 

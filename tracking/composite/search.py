@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: MIT
 """Find every exposure of a robot with a marker in one merged picture.
 
-Where the picture is a mean or has the darkest value of each pixel, exposures shine through each
-other: all of the robot's picture is compared, with a threshold that is lower beside a clearer
-exposure with nearly the same heading than alone. Pasted exposures hide each other: those that show
-whole are found first; the others are found by how the whole body looks in the clearest of them, as
-without a marker (`by_look`). Nothing is accepted by its place alone.
+In a mean, or a picture of darkest values, exposures are superposed: the whole template is
+compared, and the threshold is lower beside a clearer exposure with nearly the same heading. Pasted
+exposures occlude each other: those fully visible are found first, and the others by the
+appearance of the whole body in the clearest of them, as without a marker (`by_look`). No exposure
+is accepted for its position alone.
 """
 
 from collections.abc import Sequence
@@ -26,34 +26,36 @@ from tracking.errors import CompositeError
 from tracking.pose import BodyPrior
 
 LONELY_SCORE = 0.65
-"""Least correlation of an exposure with no clearer one beside it [-]."""
+"""Least correlation of an exposure without a clearer one beside it [-]."""
 
 BESIDE_SCORE = 0.5
-"""Least correlation of one beside a clearer one with nearly its heading [-]."""
+"""Least correlation of an exposure beside a clearer one with nearly the same heading [-]."""
 
 CLEAR_SCORE = 0.85
-"""Least correlation of one that hides others [-]."""
+"""Least correlation of an exposure that occludes others [-]."""
 
 CLEAR_SPREAD = 0.03
-"""How much less clear than the clearest an exposure may be that shows whole [-]."""
+"""Largest difference of correlation from the clearest, for a fully visible exposure [-]."""
 
 SHOWS_WHOLE = 0.9
-"""Visible share of a body from which on its marker, if it is one, has been found [-]."""
+"""Visible share of a body from which its marker, if there is one, must have been found [-]."""
 
 OTHERS_SD = 1 / 200
-"""Error of a place where others show as much as the robot does, in lengths of its template.
+"""Standard deviation of position where other things are as strong as the robot, in lengths of its
+template [-].
 
-What shines through is no noise that many points average away: it has edges and cells of its own,
-which draw the alignment to them. It grows with their power, (1 - score²) / score², and was chosen
-by 336 exposures of simulated walks that no test draws."""
+Superposed exposures are not white noise that averages out over many points: they have edges and
+cells of their own, which bias the alignment. The standard deviation is proportional to their
+power, (1 - score²) / score². The value was calibrated on 336 exposures of simulated walks that no
+test uses."""
 
-_LEVER = 0.7  # of the template's length: that much off at its ends turns it
-_SAME = 0.4  # of the template's length: nearer than this two are one
-_SLIP = 0.1  # of the template's length: farther edges alone lead astray
+_LEVER = 0.7  # lever arm for the heading, of the template's length
+_SAME = 0.4  # of the template's length: nearer ones are the same
+_SLIP = 0.1  # of the template's length: alignment by edges that moves farther has diverged
 _BESIDE = 1.25  # of the body's length
 _TURN = np.radians(32.0)  # from one exposure to the next beside it
-_SAME_BODY = 0.25  # of the body's length: nearer than this two exposures are one
-_HOPE = 0.8  # of the least correlation: less after a few steps is given up
+_SAME_BODY = 0.25  # of the body's length: nearer exposures are the same
+_HOPE = 0.8  # of the least correlation: with less after a few steps alignment stops
 
 
 def find_exposures(
@@ -66,7 +68,7 @@ def find_exposures(
     Args:
         pixels: The picture, BGR, shape (height, width, 3).
         camera: The lens.
-        view: Where the camera stood.
+        view: Pose of the camera.
         template: The picture of the robot's marker (`tracking.body.marker_template`).
         prior: Height and tilt.
         merged: How the exposures were merged.
@@ -100,7 +102,7 @@ def find_exposures(
 
 
 def _without(pixels: NDArray[np.uint8], hidden: NDArray[np.bool_]) -> NDArray[np.uint8]:
-    """Paint over what does not show the robot, in the picture's usual colour."""
+    """Fill the pixels that do not show the robot with the picture's median colour."""
     if not hidden.any():
         return pixels
     painted = pixels.copy()
@@ -120,7 +122,7 @@ class _Search:
     area: tuple[Array, Array]
 
     def shining_through(self) -> list[Exposure]:
-        """Find exposures that show as a whole, each among what is seen of others."""
+        """Find exposures by the whole template, each superposed with others."""
         plane = self.plane
         picture = plane.read_smooth(self.pixels).mean(axis=2, keepdims=True)
         matches = match_whole(picture, plane, template=self.template, least=0.9 * BESIDE_SCORE)
@@ -130,7 +132,10 @@ class _Search:
         return [Exposure(self.sharpened(each), 1.0) for each in self.along_a_walk(good)]
 
     def sharpened(self, alignment: Alignment) -> Alignment:
-        """Align by edges alone what others, or the floor, are seen through; its score stays."""
+        """Refine an alignment by edges alone, where others or the floor shine through.
+
+        The score is that of the alignment given.
+        """
         fine = align(
             self.pixels, self.camera, self.view, template=self.template, prior=self.prior,
             start=alignment.pose.planar, blurs_px=(1.0,), least_hope=0.0, shines_through=True,
@@ -141,11 +146,11 @@ class _Search:
 
     @property
     def slip(self) -> float:
-        """How far edges alone may move an exposure [m]."""
+        """Largest move of an exposure in an alignment by edges alone [m]."""
         return _SLIP * self.template.plate.length
 
     def among_others(self, alignment: Alignment) -> Alignment:
-        """Add what others that shine through do to the place and heading of an exposure."""
+        """Add the error that superposed exposures cause to the covariance of an alignment."""
         power = max(1 - alignment.score**2, 0.0) / alignment.score**2
         slip = OTHERS_SD * self.template.plate.length * power
         turn = slip / (_LEVER * self.template.plate.length)
@@ -155,7 +160,7 @@ class _Search:
 
     @property
     def plane(self) -> Plane:
-        """The raster on which the marker is sought, as high as it."""
+        """The raster for the search, at the height of the marker."""
         top = self.template.plate
         half = 0.5 * float(np.hypot(top.length, top.width))
         return Plane.over(
@@ -164,14 +169,14 @@ class _Search:
         )  # fmt: skip
 
     def aligned(self, match: Match) -> Alignment | None:
-        """Align the marker with the photograph; None where there is no hope."""
+        """Align the marker with the photograph; None where the correlation stays too small."""
         return align(
             self.pixels, self.camera, self.view, template=self.template, prior=self.prior,
             start=match.planar, blurs_px=(1.0,), least_hope=_HOPE * BESIDE_SCORE,
         )  # fmt: skip
 
     def apart(self, matches: Sequence[Match]) -> list[Match]:
-        """Keep the best of matches in one place."""
+        """Keep the best of matches in one place (non-maximum suppression)."""
         kept: list[Match] = []
         for match in matches:
             if all(self.distance(match.planar, other.planar) > self.same for other in kept):
@@ -180,21 +185,21 @@ class _Search:
 
     @property
     def same(self) -> float:
-        """Nearer than this two markers are one [m]."""
+        """Distance below which two markers are the same [m]."""
         return _SAME * self.template.plate.length
 
     @property
     def same_body(self) -> float:
-        """Nearer than this two exposures are one [m]."""
+        """Distance below which two exposures are the same [m]."""
         return _SAME_BODY * self.body[0]
 
     @staticmethod
     def distance(a: Array, b: Array) -> float:
-        """Distance between two poses [m]."""
+        """Compute the distance between two poses [m]."""
         return float(np.hypot(*(a[:2] - b[:2])))
 
     def along_a_walk(self, good: Sequence[Alignment]) -> list[Alignment]:
-        """Keep what is clear by itself, and what is beside that, and so on."""
+        """Keep clear exposures, those beside them, and so on (hysteresis threshold)."""
         kept: list[Alignment] = []
         left = list(good)
         while left:
@@ -208,7 +213,7 @@ class _Search:
         return kept
 
     def follows(self, alignment: Alignment, kept: Sequence[Alignment]) -> bool:
-        """Tell whether an exposure is clear, or beside another with nearly its heading."""
+        """Return whether an exposure is clear, or beside another with nearly its heading."""
         here = alignment.pose.planar
         return alignment.score >= LONELY_SCORE or any(
             self.distance(here, other.pose.planar) < _BESIDE * self.body[0]
@@ -217,9 +222,9 @@ class _Search:
         )
 
     def layers(self, whole: Sequence[Exposure]) -> list[Exposure]:
-        """Find exposures that hide each other, beginning with those that show whole.
+        """Find exposures that occlude each other, beginning with those fully visible.
 
-        Where none is clear, as in a blurred picture, none is sought by how a clear one looks.
+        Where none is clear, as in a blurred picture, the list is returned unchanged.
         """
         best = max((each.alignment.score for each in whole), default=0.0)
         least = max(CLEAR_SCORE, best - CLEAR_SPREAD)
@@ -230,13 +235,13 @@ class _Search:
         return [*clear, *(each for each in hidden if each is not None)]
 
     def by_marker(self, exposure: Exposure, whole: Sequence[Exposure]) -> Exposure | None:
-        """Take what its marker says of an exposure that shows whole; None if it shows none."""
+        """Replace a fully visible exposure by its marker's alignment; None if it has none."""
         if exposure.visible < SHOWS_WHOLE:
             return exposure
         return next((each for each in whole if not is_new(exposure, [each], self.same_body)), None)
 
     def hidden_by(self, clear: Sequence[Exposure]) -> list[Exposure]:
-        """Find exposures that others hide, by how the clearest of these looks."""
+        """Find exposures that others occlude, by the appearance of the clearest of these."""
         top = TopPlate(*self.body, self.template.plate.height, 0.0, 0.0, 0.0)
         for exposure in clear:
             picture = KnownExposure(
@@ -246,7 +251,7 @@ class _Search:
             try:
                 picture.body_template(self.pixels)
             except CompositeError:
-                continue  # cut by the picture's edge, too small or too faint: the next may not be
+                continue  # cut by the picture's edge, too small or too faint: try the next
             reading = PastedReading(picture)
             found = reading.align(reading.find())
             return [each for each in found if is_new(each, clear, self.same_body)]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The floor: its marks, and where the camera stands over them."""
+"""The floor's marks, and the camera's pose over them."""
 
 from tracking.floor.locate import FloorView, locate_camera
 from tracking.floor.marks import FloorMap, FloorMarker, FloorPoint

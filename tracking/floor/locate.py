@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Where the camera stands, from the floor's marks in one photograph."""
+"""Camera pose from the floor's marks in one photograph (PnP)."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -18,7 +18,7 @@ _MISFIT_PX = 8.0
 
 @dataclass(frozen=True)
 class FloorView:
-    """The floor's marks that one photograph shows.
+    """The floor's marks seen in one photograph, with pixel covariance.
 
     Attributes:
         photo: Name of the photograph.
@@ -36,8 +36,8 @@ class FloorView:
 
         Args:
             photo: Name of the photograph.
-            sightings: Markers found in it; those of a number seen twice are left out, since one
-                of them is something else.
+            sightings: Markers found in it. Those of a number seen twice are left out, since one
+                of them is a false detection.
         """
         numbers = [sighting.marker_id for sighting in sightings]
         single = [s for s in sightings if numbers.count(s.marker_id) == 1]
@@ -62,7 +62,7 @@ class FloorView:
 
 
 def locate_camera(camera: Camera, floor: FloorMap, view: FloorView) -> CameraPose:
-    """Find where the camera stands, taking the floor's map as true.
+    """Compute the camera's pose from one photograph, taking the floor's map as exact.
 
     Args:
         camera: The lens.
@@ -83,7 +83,15 @@ def locate_camera(camera: Camera, floor: FloorMap, view: FloorView) -> CameraPos
 
 
 def seen_keys(floor: FloorMap, view: FloorView) -> list[int | str]:
-    """List the marks of the floor that a photograph shows, in the map's order."""
+    """List the marks of the floor that a photograph shows, in the map's order.
+
+    Args:
+        floor: The floor's marks.
+        view: The marks that the photograph shows.
+
+    Returns:
+        Numbers of markers and names of points.
+    """
     return [key for key in floor.marks if key in view.pixels]
 
 
@@ -112,7 +120,7 @@ def _best_pose(camera: Camera, floor: FloorMap, view: FloorView) -> tuple[Camera
 def _starting_poses(camera: Camera, points: Array, pixels: Array) -> list[CameraPose]:
     flat = np.ptp(points[:, 2]) < 1e-9
     level = points - [0.0, 0.0, points[0, 2] if flat else 0.0]
-    # IPPE gives both readings of a flat target, but of one view in a hundred none that is finite.
+    # IPPE gives both solutions for a flat target, but for one view in a hundred none is finite.
     methods = (cv2.SOLVEPNP_IPPE, cv2.SOLVEPNP_SQPNP) if flat else (cv2.SOLVEPNP_SQPNP,)
     poses = []
     for rotation, translation in _solutions(camera, level, pixels, methods):
@@ -125,7 +133,7 @@ def _starting_poses(camera: Camera, points: Array, pixels: Array) -> list[Camera
 def _solutions(
     camera: Camera, points: Array, pixels: Array, methods: tuple[int, ...]
 ) -> list[tuple[Array, Array]]:
-    """Solve for rotation vector and translation by OpenCV's methods; keep what is finite."""
+    """Solve for rotation vector and translation by OpenCV's PnP methods; keep finite solutions."""
     found = []
     for method in methods:
         try:
@@ -154,7 +162,7 @@ def _polish(
         return project_with_derivatives(camera, pose_of(x), points)[2].reshape(-1, 6)
 
     x0 = np.concatenate((start.rotation_vector, start.translation))
-    # Robust: a misplaced mark must not bend the pose so that all marks look a little wrong.
+    # Robust loss: a misplaced mark must not bias the pose and spread its error over all marks.
     fit = least_squares(
         residual, x0, jac=jacobian,  # pyright: ignore[reportArgumentType] # scipy has no types
         loss="soft_l1", f_scale=2.0, x_scale="jac",

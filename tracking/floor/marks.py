@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What lies on the floor at places measured with a tape: markers, and points to click on."""
+"""Marks on the floor at places measured with a tape: markers, and points to click on."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -61,7 +61,7 @@ class FloorMarker:
         return replace(self, x=self.x + x, y=self.y + y, yaw=self.yaw + yaw, side=self.side + side)
 
     def mirrored(self) -> "FloorMarker":
-        """Return where the marker is when its map was drawn with y to the right."""
+        """Return the marker mirrored, for a map that was drawn with y to the right."""
         return replace(self, y=-self.y, yaw=-self.yaw)
 
 
@@ -70,7 +70,7 @@ class FloorPoint:
     """A point of the floor that can be clicked on in a photograph.
 
     Attributes:
-        name: What it is called.
+        name: Its name.
         x: Position [m].
         y: Position, to the left of x [m].
         z: Height over the floor [m].
@@ -103,7 +103,7 @@ class FloorPoint:
         return replace(self, x=self.x + float(step[0]), y=self.y + float(step[1]))
 
     def mirrored(self) -> "FloorPoint":
-        """Return where the point is when its map was drawn with y to the right."""
+        """Return the point mirrored, for a map that was drawn with y to the right."""
         return replace(self, y=-self.y)
 
 
@@ -140,7 +140,7 @@ class FloorMap:
         return tuple(marker.marker_id for marker in self.markers)
 
     def mirrored(self) -> "FloorMap":
-        """Return the map as it should be when it was drawn with y to the right."""
+        """Return the map mirrored, for one that was drawn with y to the right."""
         return self.with_marks({key: mark.mirrored() for key, mark in self.marks.items()})
 
     def with_marks(self, marks: dict[int | str, Mark]) -> "FloorMap":

@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: MIT
-"""Camera and floor together: every stand of the camera and every mark, weighed by the tape.
+"""Bundle adjustment of camera poses and floor marks, with the tape measurements as a prior.
 
-The unknowns are a camera pose a stand (6) and x, y, yaw and side of every mark (x, y of a point).
-Minimised is
+The unknowns are a camera pose for each stand (6) and x, y, yaw and side of every mark (x, y of a
+point). Minimised is
 
     sum over stands and marks  r' C^-1 r  +  sum over marks  ((m - m_tape) / sd_tape)²
 
-where r is the mark's pixels minus its projection. The tape holds the frame: without it the floor
-could be shifted, turned and stretched at will.
+where r is the mark's pixels minus its projection. The tape fixes the frame: without it translation,
+rotation and scale of the floor are undetermined.
 """
 
 from collections.abc import Mapping, Sequence
@@ -23,14 +23,14 @@ from tracking.floor.marks import FloorMap
 from tracking.floor.stands import split_stands
 
 _CHANCE = 0.95
-"""Residuals no larger than in this share of sound fits are put down to chance."""
+"""Confidence level: residuals below this quantile of chi-squared are put down to chance."""
 
 _REWEIGHINGS = 5
 
 
 @dataclass(frozen=True)
 class Stand:
-    """A stretch of photographs during which the camera did not move.
+    """Consecutive photographs during which the camera did not move.
 
     Attributes:
         pose: The camera, with a covariance that includes the tape's.
@@ -43,16 +43,16 @@ class Stand:
 
 @dataclass(frozen=True)
 class FloorFit:
-    """The floor and the camera, fitted to all photographs.
+    """The floor and the camera, fitted to all photographs, with residual statistics.
 
     Attributes:
         floor: The map with refined positions.
-        stands: One entry a stretch of photographs with the camera at rest.
+        stands: One entry for each stretch of photographs with the camera at rest.
         shifts: By mark, how far it is from where the tape had it, shape (2,) [m].
         misfit_px: Root mean square distance of marks from their projection [px].
-        noise_factor: By how much residuals in pixels exceed what the marks' covariances promise, 1
-            where chance explains it; it is part of the poses' covariances [-].
-        tape_factor: By how much marks are farther from where the tape has them than it promises;
+        noise_factor: Ratio of the pixel residuals to what the marks' covariances predict, 1
+            where not significant; it is part of the poses' covariances [-].
+        tape_factor: Ratio of the marks' distances from their taped places to the tape's error;
             likewise [-].
         unused: Photographs that show no mark of the floor, with the reason.
     """
@@ -67,7 +67,7 @@ class FloorFit:
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """What a reader of the result should know, one sentence each."""
+        """Warnings for the user, one sentence each."""
         messages = [
             f"the camera moved between {a.photos[-1]} and {b.photos[0]}; each side has its own "
             f"camera pose"
@@ -95,7 +95,7 @@ class FloorFit:
 
 
 def refine_floor(camera: Camera, floor: FloorMap, views: Sequence[FloorView]) -> FloorFit:
-    """Fit camera poses and mark positions to all photographs at once.
+    """Fit camera poses and mark positions to all photographs at once (bundle adjustment).
 
     Args:
         camera: The lens.
@@ -144,8 +144,8 @@ def _mean_view(views: Sequence[FloorView]) -> FloorView:
     covariances: dict[int | str, Array] = {}
     for key in {key: None for view in views for key in view.pixels}:
         seen = [view for view in views if key in view.pixels]
-        # The median forgives a photograph in which the robot covers a corner; the covariance is
-        # not divided by the number of photographs, since print and lens err alike in each.
+        # The median is robust to a photograph in which the robot covers a corner. The covariance is
+        # not divided by the number of photographs: errors of print and lens are common to all.
         pixels[key] = np.median([view.pixels[key] for view in seen], axis=0)
         covariances[key] = np.mean([view.covariances[key] for view in seen], axis=0)
     return FloorView(views[0].photo, pixels, covariances)
@@ -153,7 +153,7 @@ def _mean_view(views: Sequence[FloorView]) -> FloorView:
 
 @dataclass(frozen=True)
 class _Part:
-    """Normal equations of one group of observations, its weighed squares and its size."""
+    """Normal equations of one group of observations, its weighted sum of squares and its size."""
 
     normal: Array
     gradient: Array
@@ -162,7 +162,7 @@ class _Part:
 
 
 def _weighed(parts: Sequence[Array], factors: Sequence[float]) -> Array:
-    """Sum what groups of observations give, each with its variance multiplied by factor²."""
+    """Sum the normal equations of groups, each with its variance multiplied by factor²."""
     return np.sum([part / factor**2 for part, factor in zip(parts, factors, strict=True)], axis=0)
 
 
@@ -175,7 +175,7 @@ class _Problem:
     def solve(
         self, starts: Sequence[CameraPose]
     ) -> tuple[FloorMap, list[CameraPose], list[Array], float, tuple[float, float]]:
-        """Fit, and fit again with pixels and tape weighed as their residuals ask.
+        """Fit, and refit with the variances of pixels and tape scaled by their residuals.
 
         Returns:
             Map, poses, their covariances, misfit [px], and by how much pixels and tape exceed
@@ -210,12 +210,12 @@ class _Problem:
     def _factors(
         self, parts: Sequence["_Part"], factors: tuple[float, float]
     ) -> tuple[float, float]:
-        """Estimate by how much the residuals of pixels and of the tape exceed their promise.
+        """Estimate the variance components of pixels and tape.
 
         Variance components (Helmert 1907; Koch 1999, section 3.6): with N the normal equations of
         all and N_g those of one group, its n_g residuals have r_g = n_g - tr(N^-1 N_g) degrees of
-        freedom and should square to as much. One factor for both would blame the tape for a
-        picture worse than it seems, and widen every camera's pose by it.
+        freedom, the expectation of their sum of squares. One factor for both would attribute the
+        error of a poor picture to the tape, and widen the covariance of every camera pose.
         """
         inverse = np.linalg.inv(_weighed([part.normal for part in parts], factors))
         found = []

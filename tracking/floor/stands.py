@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Notice a bumped tripod: split the photographs where the floor's marks jump in the picture."""
+"""Detect camera movement: split the photographs where the floor's marks jump in the picture."""
 
 from collections.abc import Sequence
 
@@ -9,14 +9,14 @@ from tracking.camera.lens import Array
 from tracking.floor.locate import FloorView
 
 JUMP_PX = 0.2
-"""Shift of the floor's marks that counts as a bump, beyond what their noise explains [px]."""
+"""Least shift of the floor's marks that counts as a movement, beyond their noise [px]."""
 
 
 def split_stands(views: Sequence[FloorView], *, jump_px: float = JUMP_PX) -> tuple[int, ...]:
     """Number the stretches of photographs between which the camera moved.
 
-    A bump of 0.05 degrees moves the floor by 1 px in a usual picture and the robot's path by 2 mm,
-    so the shift is compared with the noise of the marks themselves.
+    A rotation by 0.05 degrees moves the floor by 1 px in a usual picture and the path by 2 mm.
+    The shift is therefore compared with the noise of the marks themselves.
 
     Args:
         views: The floor's marks in each photograph, in order of time.
@@ -54,5 +54,5 @@ def _has_moved(stand: Sequence[FloorView], view: FloorView, jump_px: float) -> b
 
 
 def _typical(shift: Array) -> float:
-    # The median over points: a mark that is half hidden by a leg must not count as a bump.
+    # The median over points: a mark that is half hidden by a leg must not count as a movement.
     return float(np.median(np.linalg.norm(shift.reshape(-1, 2), axis=1)))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Photographs and video frames, and when they were taken."""
+"""Read photographs, video frames and their times."""
 
 from tracking.images.clock import (
     CameraClockOffset,

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Tie the camera's clock to the computer's by one photograph of a QR code that shows the time."""
+"""Clock offset between camera and computer, from one photograph of a QR code with the time."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -17,7 +17,7 @@ _PREFIX = "zebro-clock:"
 
 @dataclass(frozen=True)
 class CameraClockOffset:
-    """How far the camera's clock is ahead of the computer's.
+    """Offset of the camera's clock from the computer's, positive when it is ahead.
 
     Attributes:
         seconds: Camera minus computer [s].
@@ -29,7 +29,7 @@ class CameraClockOffset:
 
 
 def clock_text(t: float) -> str:
-    """Write what the code of a moment says.
+    """Format the text that the QR code of a moment encodes.
 
     Args:
         t: Seconds since 1970, UTC [s].
@@ -41,7 +41,7 @@ def clock_text(t: float) -> str:
 
 
 def clock_picture(t: float, *, module_px: int = 12) -> NDArray[np.uint8]:
-    """Draw the code of a moment, white margin included.
+    """Draw the QR code of a moment, with its white margin.
 
     Args:
         t: Seconds since 1970, UTC [s].
@@ -57,7 +57,7 @@ def clock_picture(t: float, *, module_px: int = 12) -> NDArray[np.uint8]:
 
 
 def read_clock(pixels: NDArray[np.uint8]) -> float | None:
-    """Read the time that a photographed code shows [s], or None where there is none."""
+    """Decode the time that a photographed QR code shows [s], or None where there is none."""
     text, _, _ = cv2.QRCodeDetector().detectAndDecode(pixels)
     if not text.startswith(_PREFIX):
         return None
@@ -68,7 +68,7 @@ def read_clock(pixels: NDArray[np.uint8]) -> float | None:
 
 
 def clock_offset(path: Path, *, renewal: float = 0.1) -> CameraClockOffset:
-    """Compare the code in a photograph with the photograph's EXIF time.
+    """Compute the clock offset from the code in a photograph and the photograph's EXIF time.
 
     Args:
         path: Photograph of the code.

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Read photographs, and say of each that cannot be read what is wrong with it."""
+"""Read photographs with limits of size, and report damaged files."""
 
 import re
 import warnings
@@ -16,11 +16,11 @@ from numpy.typing import NDArray
 from tracking.errors import PhotoError, TrackingError
 
 MOST_PIXELS = 80_000_000
-"""Largest picture that is read: decoding it and turning it takes less than a gigabyte."""
+"""Largest number of pixels that is read: decoding and turning them takes less than a gigabyte."""
 MOST_FILE = 256 << 20
-"""Largest file of a picture [bytes]: that of an uncompressed one of `MOST_PIXELS`."""
+"""Largest size of a picture file [bytes]: that of an uncompressed picture of `MOST_PIXELS`."""
 MOST_SCANS = 200
-"""Scans of a JPEG, each of which costs as much time as the whole picture; cameras write 1 to 12."""
+"""Largest number of scans in a JPEG, each as slow as a whole picture; cameras write 1 to 12."""
 
 _READABLE = {".jpg", ".jpeg", ".png", ".tif", ".tiff", ".bmp", ".webp"}
 _FORMATS = ("JPEG", "PNG", "TIFF", "BMP", "WEBP")  # not those that start programs
@@ -46,14 +46,14 @@ class Image:
 
 
 def find_photos(folder: Path) -> tuple[Path, ...]:
-    """List the photographs of a folder, in the order in which a person counts.
+    """List the photographs of a folder in natural order of their names.
 
     Args:
-        folder: Folder, whose own files count only.
+        folder: The folder; subfolders are not searched.
 
     Returns:
         Paths, "p2.jpg" before "p10.jpg". Files of kinds that cannot be read (HEIC) are among them,
-        so that reading names them instead of their being passed over.
+        so that reading reports them instead of skipping them silently.
 
     Raises:
         TrackingError: When there is no folder or no photograph in it.
@@ -103,7 +103,7 @@ def open_picture(path: Path) -> Iterator[PIL.Image.Image]:
     except PIL.Image.DecompressionBombError as error:
         most = 2 * (PIL.Image.MAX_IMAGE_PIXELS or MOST_PIXELS)
         raise PhotoError(path.name, _too_large(f"more than {most / 1e6:.0f}")) from error
-    except Exception as error:  # Pillow answers damage with whatever went wrong inside it
+    except Exception as error:  # Pillow raises many kinds of exceptions for damaged files
         said = " ".join(str(error).split()) or type(error).__name__
         raise PhotoError(
             path.name,
@@ -112,7 +112,7 @@ def open_picture(path: Path) -> Iterator[PIL.Image.Image]:
 
 
 def read_pixels(path: Path, *, size: tuple[int, int] | None = None) -> NDArray[np.uint8]:
-    """Read a photograph, turned as its EXIF orientation says.
+    """Read a photograph, rotated by its EXIF orientation.
 
     Args:
         path: The file.
@@ -136,7 +136,7 @@ def read_pixels(path: Path, *, size: tuple[int, int] | None = None) -> NDArray[n
 
 
 def _upright(path: Path) -> PIL.Image.Image:
-    """Decode a picture; what it was before it was turned is freed on return."""
+    """Decode a picture and rotate it; the memory of the original is freed on return."""
     with open_picture(path) as picture:
         _refuse_many_scans(path)
         PIL.ImageOps.exif_transpose(picture, in_place=True)
@@ -147,7 +147,7 @@ def _upright(path: Path) -> PIL.Image.Image:
 
 
 def _refuse_unreadable(path: Path) -> None:
-    # Neither a FIFO, which would wait for a writer, nor a device.
+    # Neither a FIFO, which would block until there is a writer, nor a device.
     if not path.is_file():
         found = "no regular file; move it elsewhere"
         raise PhotoError(path.name, found if path.exists() else f"no such file in {path.parent}")

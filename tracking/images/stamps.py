@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""Times of a regular interval timer from stamps in whole seconds.
+"""Reconstruct the times of a regular interval timer from time stamps in whole seconds.
 
-A stamp says s <= t < s + 1. If the timer is regular, t_k = t_0 + n_k T, and every stamp cuts a
-strip out of the plane of (t_0, T). What all strips share is a small polygon: its centroid and
-spread give every time to a few hundredths of a second, where one stamp leaves 0.29 s, or 29 mm
+A stamp says s <= t < s + 1. If the timer is regular, t_k = t_0 + n_k T, and every stamp bounds
+(t_0, T) to a strip of their plane. The intersection of all strips is a small polygon. Its centroid
+and spread give every time to a few hundredths of a second, where one stamp leaves 0.29 s, or 29 mm
 for a robot that walks 0.1 m/s.
 """
 
@@ -21,7 +21,7 @@ _JITTERS = (0.0, 0.01, 0.02, 0.05, 0.1, 0.2)
 
 @dataclass(frozen=True)
 class IntervalFit:
-    """Times on a regular interval that agree with all stamps.
+    """Times on a regular interval that are consistent with all stamps.
 
     Attributes:
         t: Times, shape (n,), each within two thirds of the stamps' resolution of the truth where
@@ -29,7 +29,7 @@ class IntervalFit:
         sd: Standard deviation of each, shape (n,) [s].
         interval: The timer's interval [s].
         missing: Numbers of the exposures between first and last that have no photograph.
-        jitter: How far the timer had to be allowed to stray from its beat [s].
+        jitter: Least deviation from regularity for which the stamps are consistent [s].
     """
 
     t: Array
@@ -54,9 +54,9 @@ def fit_interval(stamps: ArrayLike, *, resolution: float = 1.0) -> IntervalFit |
     if len(s) < 3 or span <= 0:
         return None
     for jitter in _JITTERS:
-        # The longest interval first: shorter ones that explain more skips always exist.
+        # The longest interval first: shorter ones with more skipped exposures always fit too.
         for intervals in range(len(s) - 1, 2 * len(s)):
-            # Below two steps of the stamp a skipped exposure looks like a slower timer.
+            # Below two steps of the stamp a skipped exposure equals a slower timer.
             if intervals >= len(s) and span / intervals < 2 * resolution:
                 break
             numbers = np.round((s - s[0]) * intervals / span).astype(int)
@@ -100,7 +100,7 @@ def _times(start: float, numbers: NDArray[np.int64], polygon: Array, jitter: flo
 
 
 def _centroid(polygon: Array) -> tuple[Array, Array]:
-    """Compute mean and covariance of the uniform density on a convex polygon."""
+    """Compute mean and covariance of the uniform distribution on a convex polygon."""
     middle = polygon.mean(axis=0)
     order = np.argsort(
         np.arctan2(*(polygon - middle).T[::-1] / np.ptp(polygon, axis=0)[::-1, None])

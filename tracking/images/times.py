@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""When photographs were taken: EXIF, a table, or a regular interval."""
+"""Times of photographs: from EXIF, a table, or a regular interval."""
 
 import csv
 import math
@@ -16,7 +16,7 @@ from tracking.images.read import open_picture
 from tracking.images.stamps import fit_interval
 
 MOST_TABLE = 16 << 20
-"""Largest table of times [bytes]: of some hundred thousand photographs."""
+"""Largest size of a table of times [bytes]: that of some hundred thousand photographs."""
 _MOST_DIGITS = 9  # of a fraction of a second
 _EXIF_FOLDER, _TAKEN, _FRACTION, _CHANGED = 0x8769, 0x9003, 0x9291, 0x0132
 
@@ -28,7 +28,7 @@ class PhotoTimes:
     Attributes:
         t: Times by the camera's clock, shape (n,) [s].
         sd: Standard deviation of each, shape (n,) [s].
-        source: Where they are from, in words.
+        source: Their source, in words.
     """
 
     t: Array
@@ -37,7 +37,7 @@ class PhotoTimes:
 
 
 def exif_time(path: Path) -> tuple[float, float] | None:
-    """Read when a photograph was taken, by the camera's own clock.
+    """Read the time of a photograph from EXIF, by the camera's clock.
 
     Args:
         path: The file.
@@ -67,7 +67,7 @@ def exif_time(path: Path) -> tuple[float, float] | None:
 
 
 def times_from_exif(paths: Sequence[Path]) -> PhotoTimes:
-    """Read the times of photographs, fitting a regular interval to stamps in whole seconds.
+    """Read the times of photographs from EXIF; fit a regular interval to stamps in whole seconds.
 
     Args:
         paths: The photographs, in order.
@@ -86,7 +86,7 @@ def times_from_exif(paths: Sequence[Path]) -> PhotoTimes:
         )
     t = np.array([stamp[0] for stamp in stamps if stamp is not None])
     step = np.array([stamp[1] for stamp in stamps if stamp is not None])
-    # A clock that shows no fractions but stores "00" has whole seconds all the same.
+    # A clock that stores "00" in every photograph has whole seconds only.
     if step.max() < 1.0 and not np.allclose(t % 1.0, 0.0):
         return PhotoTimes(t + step / 2, step / math.sqrt(12), "EXIF with fractions of a second")
     fit = fit_interval(t)
@@ -105,7 +105,7 @@ def times_from_interval(count: int, interval: float, *, jitter: float = 0.0) -> 
     Args:
         count: Number of photographs.
         interval: Interval of the timer [s].
-        jitter: Standard deviation of a time about its beat [s].
+        jitter: Standard deviation of each time [s].
 
     Raises:
         TimesError: When the interval is not positive.
@@ -127,7 +127,7 @@ def times_from_table(table: Path, paths: Sequence[Path]) -> PhotoTimes:
     Raises:
         TimesError: When the file, a column or a photograph is missing, or a number is none.
     """
-    if table.exists() and not table.is_file():  # a FIFO would wait for a writer
+    if table.exists() and not table.is_file():  # a FIFO would block until there is a writer
         raise TimesError(f"{table} is no file; expected a table of times")
     try:
         if table.stat().st_size > MOST_TABLE:

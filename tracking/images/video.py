@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Frames of a video at their own times."""
+"""Read frames of a video with their own time stamps."""
 
 import os
 from collections.abc import Iterator
@@ -21,9 +21,9 @@ _MARKS = (b"RIFF", b"\x1a\x45\xdf\xa3")  # AVI; Matroska and WebM
 
 
 def video_frames(path: Path, *, every: float = 0.0) -> Iterator[Image]:
-    """Yield frames of a video, turned upright.
+    """Yield frames of a video, rotated upright, with their time stamps.
 
-    Times are the frames' own stamps, never their number divided by a rate: phones vary the rate.
+    Times are the frames' own stamps, not their number divided by a rate: phones vary the rate.
 
     Args:
         path: The video.
@@ -38,7 +38,7 @@ def video_frames(path: Path, *, every: float = 0.0) -> Iterator[Image]:
     if not path.is_file() or path.stat().st_size == 0:
         raise PhotoError(path.name, "no such file, or an empty one; expected a video")
     _refuse_playlist(path)
-    # What is wrong is said below; FFmpeg would write to the terminal by itself.
+    # Errors are raised below; FFmpeg would write them to the terminal.
     os.environ.setdefault("OPENCV_FFMPEG_LOGLEVEL", "-8")
     capture = cv2.VideoCapture(str(path))
     try:
@@ -52,7 +52,7 @@ def video_frames(path: Path, *, every: float = 0.0) -> Iterator[Image]:
 
 
 def _refuse_playlist(path: Path) -> None:
-    """Refuse what is no container: FFmpeg also plays lists, which name other files and servers."""
+    """Raise unless the file is a video container; FFmpeg also plays lists of files and servers."""
     with path.open("rb") as file:
         head = file.read(12)
     if not (head[4:8] in _ATOMS or head.startswith(_MARKS)):
@@ -79,7 +79,7 @@ def _frames(capture: cv2.VideoCapture, name: str, every: float) -> Iterator[Imag
         if t - last < every - FRAME_TIME_SD:
             continue
         decoded, pixels = capture.retrieve()
-        # OpenCV may call a damaged frame decoded and hand over none.
+        # OpenCV may report a damaged frame as decoded and return none.
         if not decoded or pixels is None:
             continue
         last = t

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Square markers: what they are and where a picture shows them, to a few hundredths of a pixel."""
+"""Square markers (ArUco, AprilTag): geometry, and detection to a few hundredths of a pixel."""
 
 from tracking.dictionaries import DICTIONARIES, dictionary_named, guess_dictionary
 from tracking.markers.find import Region, find_markers, neighbourhood

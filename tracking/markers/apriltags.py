@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""AprilTags as their makers' own detector sees them, where pupil-apriltags is installed.
+"""AprilTag detector of pupil-apriltags, where it is installed.
 
-It finds tags that OpenCV's detector for ArUco markers lets go of. Its pixels have their corners at
-whole numbers, OpenCV's their centres: half a pixel, or 2 mm on the floor, lies between the two. Its
-corners begin at the upper right one and run counter-clockwise, for a tag as OpenCV prints it.
+It finds tags that OpenCV's ArUco detector misses. Its pixels have their corners at whole numbers,
+OpenCV's their centres: the difference of half a pixel is 2 mm on the floor. Its corners begin at
+the upper right one and run counter-clockwise, for a tag as OpenCV prints it.
 """
 
 from collections.abc import Sequence
@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from tracking.camera.lens import Array
 
 FAMILIES = {"apriltag_16h5": "tag16h5", "apriltag_25h9": "tag25h9", "apriltag_36h11": "tag36h11"}
-"""OpenCV's names of the families that the detector knows, with its own."""
+"""The detector's name of each tag family, by OpenCV's name."""
 
 MOST_WRONG_BITS = 1
 
@@ -26,7 +26,7 @@ _ORDER = [1, 0, 3, 2]
 def apriltag_quads(
     grey: NDArray[np.uint8], dictionary: str, numbers: Sequence[int]
 ) -> list[tuple[Array, int]]:
-    """Find tags with pupil-apriltags.
+    """Detect AprilTags with pupil-apriltags.
 
     Args:
         grey: The picture, shape (height, width).
@@ -53,8 +53,8 @@ def _detector(family: str) -> Any:
     try:
         from pupil_apriltags import Detector
     except ImportError:
-        return None  # an extra: OpenCV's own detector does without it
+        return None  # an optional dependency: OpenCV's own detector works without it
     detector = Detector(families=family, nthreads=1, quad_decimate=1.0)
-    # Its destructor frees families that the library still holds, which ends the process.
+    # Its destructor frees families that the library still uses, which crashes the process.
     detector.tag_families = {}
     return detector

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""Find markers in a picture: OpenCV's detector first, the marker's own picture where it fails.
+"""Detect markers: OpenCV's detector first, template matching of its rejected candidates second.
 
-OpenCV decides bit by bit and lets go of a marker that is dark or blurred, although its outline is
-among the quadrilaterals it rejected. Those are compared with the marker that is wanted: one known
-picture of 36 cells is recognised long after its bits are not.
+OpenCV decodes bit by bit and rejects markers that are dark or blurred, although their outline is
+among its candidate quadrilaterals. Those are correlated with the marker that is wanted: one known
+picture of 36 cells is recognised long after its bits cannot be decoded.
 """
 
 from collections.abc import Iterable, Sequence
@@ -21,10 +21,10 @@ from tracking.markers.refine import Sighting, refine_corners
 from tracking.markers.square import marker_picture
 
 ACCEPTED_SCORE = 0.8
-"""Least correlation with the marker's picture of a quadrilateral that OpenCV rejected [-]."""
+"""Least correlation to accept a quadrilateral that OpenCV rejected [-]."""
 
 LEAST_SCORE = 0.5
-"""Least correlation for a marker that OpenCV decoded bit by bit [-]."""
+"""Least correlation to accept a marker that OpenCV decoded [-]."""
 
 
 _DARK_COUNTS = 128  # from black to white: fewer make a dark picture
@@ -40,7 +40,7 @@ class Region(NamedTuple):
 
 
 def neighbourhood(corners_px: ArrayLike, size: tuple[int, int], *, reach: float) -> Region:
-    """Compute the window around a marker or a robot seen before.
+    """Compute the search window around a marker or a robot seen before.
 
     Args:
         corners_px: Points of it, shape (n, 2) [px].
@@ -64,7 +64,7 @@ def find_markers(
     region: Region | None = None,
     effort: int = 2,
 ) -> tuple[Sighting, ...]:
-    """Find the markers that are wanted.
+    """Detect the wanted markers in a picture.
 
     Args:
         pixels: The picture, grey or BGR, shape (height, width) or (height, width, 3).
@@ -77,7 +77,7 @@ def find_markers(
             missing.
 
     Returns:
-        What was found, ordered by number. A number that occurs twice was seen twice.
+        Markers found, ordered by number. A number that occurs twice was seen twice.
     """
     area = Region(0, 0, pixels.shape[1], pixels.shape[0]) if region is None else region
     grey = _grey(pixels[area.top : area.bottom, area.left : area.right])
@@ -158,7 +158,7 @@ def _decoded(
 
 
 def _brightened(grey: NDArray[np.uint8], dictionary: str, numbers: Sequence[int]) -> list[Sighting]:
-    """Look again in a dark picture: OpenCV's threshold is 7 counts, of however few there are."""
+    """Scale a dark picture and detect again: OpenCV's threshold is 7 counts at any brightness."""
     darkest, brightest = np.percentile(grey, (0.1, 99.9))
     if not 0 < brightest - darkest < _DARK_COUNTS:
         return []
@@ -172,7 +172,7 @@ def _enlarged(grey: NDArray[np.uint8], dictionary: str, numbers: Sequence[int]) 
     large = cv2.resize(grey, None, fx=2.0, fy=2.0, interpolation=cv2.INTER_CUBIC)
     large = cv2.createCLAHE(clipLimit=3.0, tileGridSize=(8, 8)).apply(large)
     corners, _, others = _detector(dictionary, patient=True).detectMarkers(large)
-    # Decoded or not, the original pixels decide.
+    # Corners are refined in the original pixels in either case.
     # Pixel centres: the middle of large pixels 2u and 2u + 1 is the small pixel u.
     quads = [(np.asarray(quad, dtype=float) + 0.5) / 2 - 0.5 for quad in (*corners, *others)]
     return recognise(grey, quads, dictionary, numbers)
@@ -181,7 +181,7 @@ def _enlarged(grey: NDArray[np.uint8], dictionary: str, numbers: Sequence[int]) 
 def recognise(
     grey: NDArray[np.uint8], quads: Iterable[ArrayLike], dictionary: str, numbers: Sequence[int]
 ) -> list[Sighting]:
-    """Tell which quadrilaterals are wanted markers, by comparing pictures.
+    """Classify quadrilaterals as wanted markers by correlation with the markers' pictures.
 
     Args:
         grey: The picture, shape (height, width).
@@ -218,7 +218,7 @@ def _is_marker_like(corners: Array) -> bool:
 def _best_turn(
     grey: NDArray[np.uint8], corners: Array, dictionary: str, number: int
 ) -> Array | None:
-    """Turn a quadrilateral's corners so that it looks like the marker, or return None."""
+    """Rotate a quadrilateral's corners to the marker's best orientation, or return None."""
     target = marker_picture(dictionary, number, 4)
     inner = np.ascontiguousarray(target[4:-4, 4:-4])
     best, best_score = None, 0.5
@@ -232,17 +232,17 @@ def _best_turn(
 
 
 def _flattened(grey: NDArray[np.uint8], corners: Array, n: int) -> NDArray[np.float32]:
-    """Read the inside of a quadrilateral as a square of n pixels."""
+    """Rectify the inside of a quadrilateral to a square of n pixels."""
     square = np.array([[0, 0], [n, 0], [n, n], [0, n]], dtype=np.float32) - np.float32(0.5)
     H = cv2.getPerspectiveTransform(corners.astype(np.float32), square)
     return cv2.warpPerspective(grey, H, (n, n), flags=cv2.INTER_AREA).astype(np.float32)
 
 
 def _number_at(grey: NDArray[np.uint8], corners: Array, dictionary: str) -> int:
-    """Tell which of all the dictionary's markers, in any turn, a quadrilateral looks like most.
+    """Return the marker of the dictionary, in any rotation, with the greatest correlation.
 
-    Markers of one dictionary share their border and half of their cells: where one lies, another
-    that is wanted fits to 0.8 as well, and would be taken for a second robot.
+    Markers of one dictionary share their border and half of their cells. Where one lies, another
+    that is wanted correlates by up to 0.8, and would be taken for a second robot.
     """
     pictures = _cells_of_all(dictionary)
     cells = round(pictures.shape[1] ** 0.5)
@@ -254,7 +254,7 @@ def _number_at(grey: NDArray[np.uint8], corners: Array, dictionary: str) -> int:
 
 @cache
 def _cells_of_all(dictionary: str) -> Array:
-    """Return the cells of all markers in four turns, of mean 0 and length 1, (4 markers, cells)."""
+    """Return the normalised cells of all markers in four rotations, shape (4 markers, cells)."""
     count = dictionary_named(dictionary).bytesList.shape[0]
     inner = [marker_picture(dictionary, number, 1)[1:-1, 1:-1] for number in range(count)]
     turned = np.array([np.rot90(cells, turn).ravel() for cells in inner for turn in range(4)])
@@ -263,7 +263,7 @@ def _cells_of_all(dictionary: str) -> Array:
 
 
 def _apart(candidates: list[Sighting]) -> list[Sighting]:
-    """Keep the best of sightings that lie on each other."""
+    """Keep the best of overlapping sightings (non-maximum suppression)."""
     kept: list[Sighting] = []
     for sighting in sorted(candidates, key=lambda candidate: -candidate.score):
         centre = sighting.corners_px.mean(axis=0)

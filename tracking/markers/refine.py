@@ -1,17 +1,16 @@
 # SPDX-License-Identifier: MIT
-"""Corners of a marker from all its pixels: fit the picture it would give, compare, improve.
+"""Refine a marker's corners by fitting a rendered picture of it to all its pixels.
 
 Detectors find corners by their edges, to 0.1-0.5 px. But the marker is known, so every edge of
-every cell tells where it is. The model of a pixel is
+every cell carries information. The model of a pixel is
 
     I(p) = o + o_x x + o_y y + g D + q D (1 - D),    D = (T_c * G_s)(p)
 
 with T_c the marker drawn with its corners at c, G_s a Gaussian blur, g the contrast, o the
-brightness with a slope for shading, and q the bend of the camera's tone curve: pictures are blurred
-in light but stored in tones, which moves every edge towards the black by a part of the blur and,
-unmodelled, makes markers look small and hence far. These fourteen unknowns are fitted by
-Gauss-Newton; the residual gives the noise and how far it is correlated, the normal equations the
-covariance.
+brightness with a slope for shading, and q the curvature of the camera's tone curve. Pictures are
+blurred in light but stored in tones, which moves every edge towards the black by a part of the
+blur; unmodelled, this makes markers look small and hence far. These fourteen unknowns are fitted by
+Gauss-Newton. The residual gives the noise and its correlation, the normal equations the covariance.
 """
 
 from dataclasses import dataclass
@@ -28,13 +27,13 @@ from tracking.markers.square import (
 )
 
 CORNER_FLOOR_PX = 0.003
-"""What the model of a sharp picture leaves out, independently at each corner [px]."""
+"""Standard deviation of model errors, independent at each corner, in a sharp picture [px]."""
 
 _LAGS_PX = 8
-"""How far apart pixels may err alike: a block of JPEG [px]."""
+"""Largest lag of the residual's autocovariance: a block of JPEG [px]."""
 
 _SLOPE = np.array([[1.0, -8.0, 0.0, 8.0, -1.0]]) / 12
-"""Difference of five points: that of three takes a sharp edge for less steep than it is."""
+"""Five-point central difference; that of three points underestimates the slope of a sharp edge."""
 
 _UNITS = np.eye(8).reshape(8, 4, 2)
 _USUAL_SIDE = 60.0
@@ -44,7 +43,7 @@ _BLURS_INSIDE = 2.5
 
 @dataclass(frozen=True)
 class Sighting:
-    """A marker in a picture.
+    """A marker detected in a picture, with the covariance of its corners.
 
     Attributes:
         marker_id: Number of the marker in its dictionary.
@@ -66,7 +65,7 @@ def refine_corners(
     grey: NDArray[np.uint8], corners_px: Array, *, dictionary: str, marker_id: int,
     iterations: int = 12
 ) -> Sighting | None:  # fmt: skip
-    """Fit a marker's picture, starting a pixel or two beside its corners.
+    """Refine a marker's corners by Gauss-Newton, from a start within a pixel or two.
 
     Args:
         grey: The picture, shape (height, width).
@@ -99,12 +98,13 @@ def refine_corners(
 
 @dataclass(frozen=True)
 class _Patch:
-    """A window of the picture: its corner there, its pixels, its shrinking, its pixels' places.
+    """A window of the picture: its origin, pixels, downsampling factor and pixel coordinates.
 
-    A marker of hundreds of pixels is shrunk: corners need no more than some dozens a side, and
-    time goes with their square. Shrunk, not thinned out: every second pixel of every second row
-    sees a quarter of the places in the 8 x 8 blocks of JPEG, whose errors there are the same in all
-    blocks. They move whole markers, by 0.05 px in a dark, blurred picture, and no residual tells.
+    A marker of hundreds of pixels is downsampled: corners need no more than some dozens a side, and
+    time grows with their square. It is averaged, not decimated: every second pixel of every second
+    row falls on a quarter of the places in the 8 x 8 blocks of JPEG, whose errors there are the
+    same in all blocks. They shift whole markers by 0.05 px in a dark, blurred picture, which no
+    residual shows.
     """
 
     origin: Array
@@ -114,7 +114,7 @@ class _Patch:
 
     @classmethod
     def around(cls, grey: NDArray[np.uint8], corners_px: Array, shrink: int) -> "_Patch | None":
-        """Cut the marker out with its white margin and room for the fit to move."""
+        """Crop the marker with its white margin and room for the fit to move."""
         reach = 0.25 * np.ptp(corners_px, axis=0).max() + 3
         low = np.maximum(np.floor(corners_px.min(axis=0) - reach).astype(int), 0)
         high = np.minimum(np.ceil(corners_px.max(axis=0) + reach).astype(int) + 1, grey.shape[::-1])
@@ -130,17 +130,17 @@ class _Patch:
         return cls(low.astype(float), np.asarray(values, dtype=float), shrink, points)
 
     def own(self, corners_px: Array) -> Array:
-        """Turn pixels of the picture into pixels of the patch, centres at integers in both."""
+        """Convert pixels of the picture to pixels of the patch, centres at integers in both."""
         return (corners_px - self.origin + 0.5) / self.shrink - 0.5
 
     def whole(self, corners: Array) -> Array:
-        """Turn pixels of the patch into pixels of the picture."""
+        """Convert pixels of the patch to pixels of the picture."""
         return (corners + 0.5) * self.shrink - 0.5 + self.origin
 
 
 @dataclass(frozen=True)
 class _Fit:
-    """State of Gauss-Newton: corners in the patch [px] and blur [px]."""
+    """State of the Gauss-Newton iteration: corners in the patch [px] and blur [px]."""
 
     corners: Array
     blur: float
@@ -148,15 +148,15 @@ class _Fit:
 
 @dataclass(frozen=True)
 class _Look:
-    """A fit held against the picture.
+    """Residual and Jacobian of a fit.
 
     Attributes:
         points: Pixels compared, across and down, shape (n, 2).
         design: Derivative of their values with respect to the 14 unknowns, shape (n, 14).
         inverse: Of the normal equations, shape (14, 14).
-        residual: What the fit leaves of their values, shape (n,) [grey levels].
-        contrast: White less black [grey levels].
-        score: Likeness with the marker [-].
+        residual: Values minus the fit, shape (n,) [grey levels].
+        contrast: White minus black [grey levels].
+        score: Correlation with the marker [-].
     """
 
     points: Array
@@ -169,9 +169,9 @@ class _Look:
     def covariance(self, patch: _Patch) -> Array:
         """Compute the covariance of the corners in the patch, shape (8, 8) [px²].
 
-        Least squares with a residual of covariance R: (J'J)^-1 J'RJ (J'J)^-1. R is read off the
-        residual itself: compression and what the model misses make neighbouring pixels err alike,
-        which a count of pixels takes for evidence.
+        Least squares with a residual of covariance R: (J'J)^-1 J'RJ (J'J)^-1. R is estimated from
+        the residual itself: compression and model errors make neighbouring pixels correlated, so
+        that the number of pixels overstates the information.
         """
         column, row = (self.points - self.points.min(axis=0)).astype(int).T
         shape = (int(row.max()) + 1, int(column.max()) + 1)
@@ -191,7 +191,7 @@ class _Look:
 
 
 def _autocovariance(left: Array, used: Array, *, lags: int) -> Array:
-    """Compute the residual's covariance by distance, tapered, shape (2 lags + 1, 2 lags + 1)."""
+    """Compute the residual's tapered autocovariance by lag, shape (2 lags + 1, 2 lags + 1)."""
     shape = (left.shape[0] + lags, left.shape[1] + lags)
     power = [np.abs(np.fft.rfft2(part, shape)) ** 2 for part in (left, used)]
     product, pairs = (np.fft.irfft2(part, shape) for part in power)
@@ -203,7 +203,7 @@ def _autocovariance(left: Array, used: Array, *, lags: int) -> Array:
 
 
 def _look(fit: _Fit, patch: _Patch, dictionary: str, marker_id: int) -> _Look | None:
-    """Draw the marker as the fit has it and compare it with the picture."""
+    """Render the marker for a fit and compute residual and Jacobian."""
     H = square_homography(fit.corners)
     own = apply_homography(np.linalg.inv(H), patch.points)
     used = np.flatnonzero(_is_used(own, fit, _cells(dictionary)))
@@ -212,13 +212,13 @@ def _look(fit: _Fit, patch: _Patch, dictionary: str, marker_id: int) -> _Look | 
     points, own, values = patch.points[used], own[used], patch.values.ravel()[used]
     drawn = _draw(dictionary, marker_id, H, fit, patch.values.shape)
     tone = drawn.ravel()[used]
-    # One column a row of memory: each is read and written as a whole.
+    # Each column of the Jacobian is contiguous in memory.
     design = np.empty((14, len(used)))
     design[9], design[10:12] = 1.0, (points - points.mean(axis=0)).T
     design[12], design[13] = tone, tone * (1 - tone)
     light = np.linalg.lstsq(design[9:] @ design[9:].T, design[9:] @ values, rcond=None)[0]
     contrast = light[3]
-    if contrast <= 1.0:  # less than a grey level: nothing, or a negative
+    if contrast <= 1.0:  # less than a grey level: no marker, or an inverted one
         return None
     steepness = contrast + light[4] * (1 - 2 * tone)
     design[:9] = steepness * _geometry_design(fit, H, drawn, used, own, points)
@@ -230,7 +230,7 @@ def _look(fit: _Fit, patch: _Patch, dictionary: str, marker_id: int) -> _Look | 
 
 
 def _improved(fit: _Fit, look: _Look) -> tuple[_Fit, float]:
-    """Take one step of Gauss-Newton; return the fit and how far its corners moved [px]."""
+    """Take one Gauss-Newton step; return the fit and the largest move of its corners [px]."""
     step = look.inverse[:9] @ (look.design.T @ look.residual)
     longest = float(np.abs(step[:8]).max())
     step[:8] *= min(1.0, 0.1 * _shortest_side(fit.corners) / max(longest, 1e-12))
@@ -242,7 +242,7 @@ def _improved(fit: _Fit, look: _Look) -> tuple[_Fit, float]:
 def _geometry_design(
     fit: _Fit, H: Array, drawn: Array, used: NDArray, own: Array, points: Array
 ) -> Array:
-    """Compute how drawn pixels change with the eight corner numbers and the blur, shape (9, n).
+    """Compute the Jacobian of drawn pixels by the eight corner coordinates and the blur, (9, n).
 
     With p = (H own) / w, w the third component, a point of the marker moves with its corners by
     dp = (dH own - p (dH own)_3) / w, and what is drawn there by minus the slope times dp.
@@ -264,7 +264,7 @@ def _geometry_design(
 
 
 def _slopes_of_homography(corners: Array, H: Array) -> Array:
-    """Compute how the perspective changes with its corners, shape (3, 3, 8)."""
+    """Compute the derivative of the homography with respect to its corners, shape (3, 3, 8)."""
     step = 1e-4 * _shortest_side(corners)
     moved = square_homography(corners + step * _UNITS)
     return (np.moveaxis(moved, 0, -1) - H[:, :, None]) / step
@@ -272,7 +272,7 @@ def _slopes_of_homography(corners: Array, H: Array) -> Array:
 
 def _inverse_normal(design: Array) -> Array | None:
     normal = design @ design.T
-    normal[8, 8] += 1e-3 * normal[8, 8] + 1e-9  # a sharp picture says nothing about its blur
+    normal[8, 8] += 1e-3 * normal[8, 8] + 1e-9  # a sharp picture does not determine its blur
     try:
         return np.linalg.inv(normal + 1e-12 * np.trace(normal) * np.eye(len(normal)))
     except np.linalg.LinAlgError:
@@ -280,7 +280,7 @@ def _inverse_normal(design: Array) -> Array | None:
 
 
 def _likeness(own: Array, values: Array, drawn: Array, dictionary: str) -> float:
-    # Only cells inside the black border tell one marker from another: all have the border.
+    # Only cells inside the black border distinguish markers: all have the border.
     inside = (np.abs(own - 0.5) < 0.5 - 1 / _cells(dictionary)).all(axis=1)
     if inside.sum() < 16:
         return 0.0
@@ -289,7 +289,7 @@ def _likeness(own: Array, values: Array, drawn: Array, dictionary: str) -> float
 
 
 def _is_used(own: Array, fit: _Fit, cells: int) -> NDArray[np.bool_]:
-    """Choose the marker's pixels and those of its white margin that nothing beyond it blurs into.
+    """Select the marker's pixels and those of its white margin without blur from beyond it.
 
     Every print has a margin one cell wide; what lies beyond it is not known.
     """
@@ -301,8 +301,8 @@ def _is_used(own: Array, fit: _Fit, cells: int) -> NDArray[np.bool_]:
 def _draw(dictionary: str, marker_id: int, H: Array, fit: _Fit, shape: tuple[int, ...]) -> Array:
     cells = _cells(dictionary)
     n = 4
-    # Half as fine as what it is sampled at where the marker is foreshortened most: then reading
-    # between its points places an edge along a row of pixels, and not at the nearest sample.
+    # Half the resolution at which it is sampled where foreshortening is greatest: interpolation
+    # then places an edge along a row of pixels, and not at the nearest sample.
     fine_px = n * _shortest_side(fit.corners) / cells
     cell_px = int(np.clip(2 ** np.floor(np.log2(fine_px / 2)), 4, 64))
     picture = marker_picture(dictionary, marker_id, cell_px)

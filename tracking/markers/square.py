@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""A marker as a square: its corners, its picture and its perspective.
+"""Geometry of a square marker: its corners, its picture and its homography.
 
-Corners go as OpenCV's: top left, top right, bottom right, bottom left of the marker as printed.
+The order of corners is OpenCV's: top left, top right, bottom right, bottom left of the marker as
+printed.
 """
 
 from functools import lru_cache
@@ -56,9 +57,9 @@ def marker_picture(dictionary: str, marker_id: int, cell_px: int) -> Array:
 
 
 def square_homography(corners: ArrayLike) -> Array:
-    """Compute the perspective that takes the unit square to four corners.
+    """Compute the homography from the unit square to four corners.
 
-    Written out rather than taken from OpenCV, whose version accepts single precision only.
+    It is written out rather than taken from OpenCV, whose version accepts single precision only.
 
     Args:
         corners: Where the corners of `UNIT_SQUARE` go, shape (..., 4, 2).
@@ -81,6 +82,14 @@ def square_homography(corners: ArrayLike) -> Array:
 
 
 def apply_homography(H: Array, points: ArrayLike) -> Array:
-    """Apply a perspective to points, shape (n, 2)."""
+    """Apply a homography to points.
+
+    Args:
+        H: Homography, shape (3, 3).
+        points: x and y, shape (n, 2).
+
+    Returns:
+        Transformed points, shape (n, 2).
+    """
     x = np.asarray(points, dtype=float) @ H[:, :2].T + H[:, 2]
     return x[:, :2] / x[:, 2:]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Photographs of a walk to its track."""
+"""Track a robot in the photographs of a walk."""
 
 from tracking.photos.result import Tracked
 from tracking.photos.scene import MarkedTop, Photo, Scene

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Track a robot without a marker, by its own picture."""
+"""Track a robot without a marker, by a template of its top."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -26,13 +26,13 @@ from tracking.pose import BodyPose, BodyPrior, fit_pose
 CLICK_SD = 1.0
 """Standard deviation of a click on a corner of the robot's top [px]."""
 
-_REACH = 0.6  # how far from where it was the robot is looked for first [m]
-_WORTH_WORKERS = 6  # photographs: rotating and matching takes a second each
+_REACH = 0.6  # radius around the last position that is searched first [m]
+_WORTH_WORKERS = 6  # photographs; each takes a second to match
 
 
 @dataclass(frozen=True)
 class _Search:
-    """A stretch of photographs to find the robot in."""
+    """A batch of consecutive photographs in which to find the robot."""
 
     camera: Camera
     template: BodyTemplate
@@ -44,10 +44,10 @@ def track_by_look(
     scene: Scene, photos: Sequence[Photo], *, times: Times, gap: float | None, workers: int,
     progress: Progress,
 ) -> Tracked:  # fmt: skip
-    """Track a robot by its own picture, its top marked in one photograph.
+    """Track a robot by a template of its top, annotated in one photograph.
 
     Args:
-        scene: What is known, with the robot's top.
+        scene: Camera, floor and robot, with the annotated top.
         photos: The photographs, in order of time.
         times: By photograph, time and its standard deviation [s].
         gap: As of `finish` [s].
@@ -61,7 +61,7 @@ def track_by_look(
         NoUsablePhoto: No photograph can be used, or not that in which the top is marked.
         TrackingError: The floor's map does not fit, head and tail cannot be told apart, or a
             correction cannot be replayed.
-        TrackStopped: Somebody asked to stop.
+        TrackStopped: A stop was requested.
     """
     seen = see_floor(scene, photos, robot=None, workers=workers, progress=progress)
     template = _template(scene, seen, photos)
@@ -85,7 +85,7 @@ def _found(
     scene: Scene, seen: FloorSeen, template: BodyTemplate, photos: Sequence[Photo], *,
     workers: int, progress: Progress,
 ) -> list[BodyCandidates | None]:  # fmt: skip
-    """Find the robot in each photograph, on several cores."""
+    """Find the robot in each photograph, in a process pool."""
     workers = workers if len(photos) >= _WORTH_WORKERS else 1
     jobs = [
         _Search(scene.camera, template, scene.prior,
@@ -97,11 +97,16 @@ def _found(
 
 
 def marked_top(scene: Scene, seen: FloorSeen, photos: Sequence[Photo]) -> MarkedTop:
-    """Return the robot's top where it was marked, in a photograph that can be used.
+    """Return the annotated top of the robot, if its photograph can be used.
+
+    Args:
+        scene: Camera, floor and robot.
+        seen: The floor in the photographs, and the photographs lost to it.
+        photos: The photographs.
 
     Raises:
-        BodyError: Nobody marked it.
-        NoUsablePhoto: That photograph is not among them, or cannot be used.
+        BodyError: No top is annotated.
+        NoUsablePhoto: Its photograph is not among them, or cannot be used.
     """
     top = scene.top
     if top is None:
@@ -114,7 +119,7 @@ def marked_top(scene: Scene, seen: FloorSeen, photos: Sequence[Photo]) -> Marked
 
 
 def _template(scene: Scene, seen: FloorSeen, photos: Sequence[Photo]) -> BodyTemplate:
-    """Take the robot's picture out of the photograph in which its top was marked."""
+    """Cut the template out of the photograph in which the robot's top is annotated."""
     top = marked_top(scene, seen, photos)
     view = seen.fit.pose_of(top.photo)
     files = {photo.name: photo.path for photo in photos}
@@ -124,7 +129,13 @@ def _template(scene: Scene, seen: FloorSeen, photos: Sequence[Photo]) -> BodyTem
 
 
 def pose_of_top(top: MarkedTop, scene: Scene, view: CameraPose) -> BodyPose:
-    """Fit the robot's pose to clicks on the corners of its top."""
+    """Fit the robot's pose to clicks on the corners of its top.
+
+    Args:
+        top: The top, with the clicked corners.
+        scene: Camera and robot.
+        view: Pose of the camera in that photograph.
+    """
     return fit_pose(
         scene.camera, view, points_body=top.plate.corners_body, corners_px=top.corners_px,
         covariance=CLICK_SD**2 * np.eye(8), prior=scene.prior,
@@ -148,7 +159,7 @@ def _find_one(
     try:
         pixels = read_pixels(photo.path, size=job.camera.size)
     except PhotoError:
-        return None  # was readable a moment ago: the file went away
+        return None  # the file was readable before: it was removed meanwhile
     if near is not None:
         found = find_body(pixels, job.camera, view, template=job.template, prior=job.prior,
                           near=near, reach=_REACH)  # fmt: skip

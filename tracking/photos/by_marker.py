@@ -24,7 +24,7 @@ def track_by_marker(
     """Track a robot by the marker on its back.
 
     Args:
-        scene: What is known.
+        scene: Camera, floor and prior knowledge of the robot.
         robot: The robot.
         photos: The photographs, in order of time.
         times: By photograph, time and its standard deviation [s].
@@ -38,7 +38,7 @@ def track_by_marker(
     Raises:
         NoUsablePhoto: No photograph can be used, or none shows the marker.
         TrackingError: The floor's map does not fit, or a correction cannot be replayed.
-        TrackStopped: Somebody asked to stop.
+        TrackStopped: A stop was requested.
     """
     seen = see_floor(scene, photos, robot=robot, workers=workers, progress=progress)
     observations = observe(scene.camera, seen.fit, seen.detections, robot=robot, times=times)
@@ -68,10 +68,10 @@ def _robot_unseen(
 
 
 def other_markers(pixels: NDArray[np.uint8], robot: MarkedRobot, floor: FloorMap) -> str | None:
-    """Name the markers in a photograph that are not the floor's.
+    """List the markers in a photograph that are not the floor's.
 
-    For the message when the robot's is nowhere: another number or dictionary is the commonest
-    reason.
+    It serves the error message when the robot's marker is found nowhere: a wrong number or
+    dictionary is the most frequent cause.
 
     Args:
         pixels: The photograph, grey or BGR.

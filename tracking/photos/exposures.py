@@ -31,10 +31,10 @@ def track_exposures(
 ) -> Tracked:  # fmt: skip
     """Track a robot through the exposures of one composite picture.
 
-    Exposures are called after the picture: `walk.jpg#1` is the first.
+    Exposures are named after the picture: `walk.jpg#1` is the first.
 
     Args:
-        scene: What is known; the robot's marker, or its marked top, is what is looked for.
+        scene: Camera, floor and robot; its marker or annotated top is searched.
         photo: The picture.
         merged: How the exposures were merged.
         times_of: Gives the times of the exposures, by their names in order.
@@ -47,7 +47,7 @@ def track_exposures(
     Raises:
         NoUsablePhoto: The picture cannot be used.
         TrackingError: The floor's map does not fit, or no exposure is found.
-        TrackStopped: Somebody asked to stop.
+        TrackStopped: A stop was requested.
     """
     seen = see_floor(scene, [photo], robot=None, workers=1, progress=progress)
     progress.step("exposures", None)
@@ -65,13 +65,13 @@ def track_exposures(
 
 
 def _exposures(scene: Scene, seen: FloorSeen, photo: Photo, merged: Merged) -> tuple[Exposure, ...]:
-    """Find exposures by the robot's marker, or by the one whose top was marked."""
+    """Find exposures by the robot's marker, or by the one whose top is annotated."""
     size = scene.body_size
     if size is None:
         raise CompositeError("the length and width of the robot's body are not known")
     pixels = read_pixels(photo.path, size=scene.camera.size)
     view = seen.fit.pose_of(photo.name)
-    # The floor's markers look like the robot's.
+    # The floor's markers are similar to the robot's, so they are masked.
     hidden = seen.marks_in(photo.name, pixels.shape[:2])
     if scene.robot is not None:
         return find_exposures(

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The floor and the camera, fitted to what all photographs show."""
+"""Detect the floor's marks in all photographs and fit floor and camera to them."""
 
 from collections import Counter
 from collections.abc import Mapping, Sequence
@@ -16,12 +16,12 @@ from tracking.photos.scene import Photo, Scene
 from tracking.photos.search import PhotoResult, Wanted, search_photos
 from tracking.photos.workers import Progress
 
-_MARK_MARGIN = 1.5  # by how much a floor marker and its margin are larger than its black square
+_MARK_MARGIN = 1.5  # size of a floor marker with its margin over that of its black square
 
 
 @dataclass(frozen=True)
 class FloorSeen:
-    """The floor and the camera, and what each photograph shows.
+    """Fitted floor and camera, with the detections of each photograph.
 
     Attributes:
         fit: Floor and camera.
@@ -34,7 +34,15 @@ class FloorSeen:
     lost: Mapping[str, str]
 
     def marks_in(self, photo: str, shape: tuple[int, ...]) -> NDArray[np.bool_]:
-        """Mark the pixels of the floor's markers with their margin, shape (height, width)."""
+        """Compute the mask of the pixels of the floor's markers with their white margin.
+
+        Args:
+            photo: Name of the photograph.
+            shape: Its height and width [px].
+
+        Returns:
+            True on markers, shape (height, width).
+        """
         hidden = np.zeros(shape, dtype=np.uint8)
         for detection in self.detections:
             for corners in detection.floor.pixels.values() if detection.photo == photo else ():
@@ -48,12 +56,12 @@ def see_floor(
     scene: Scene, photos: Sequence[Photo], *, robot: MarkedRobot | None, workers: int,
     progress: Progress,
 ) -> FloorSeen:  # fmt: skip
-    """Look at all photographs and fit floor and camera to them.
+    """Detect markers in all photographs and fit floor and camera to them.
 
     Args:
-        scene: What is known.
+        scene: Camera, floor and clicked points.
         photos: The photographs, in order of time.
-        robot: The robot whose marker is looked for, too; None for none.
+        robot: The robot whose marker is detected, too; None for none.
         workers: Processes to use.
         progress: Where progress is reported.
 
@@ -63,7 +71,7 @@ def see_floor(
     Raises:
         NoUsablePhoto: No photograph can be used.
         TrackingError: The floor's map does not fit.
-        TrackStopped: Somebody asked to stop.
+        TrackStopped: A stop was requested.
     """
     wanted = Wanted(scene.camera.size, scene.floor, robot)
     results = search_photos(photos, wanted, workers=workers, progress=progress)

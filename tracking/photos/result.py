@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""From the robot's places in photographs to a track, with what a person should know of it."""
+"""Assemble a track from observed poses: corrections, smoothing, notes for the user."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -15,9 +15,9 @@ from tracking.photos.scene import Scene
 from tracking.pose import BodyPrior
 
 Times = Mapping[str, tuple[float, float]]
-"""By photograph, its time and the standard deviation of that [s]."""
+"""By photograph, its time and the standard deviation of the time [s]."""
 
-_HIGH = 3.0  # standard deviations by which the body may seem higher than robot.toml has it
+_HIGH = 3.0  # standard deviations of height above robot.toml's that are put down to chance
 
 
 @dataclass(frozen=True)
@@ -28,7 +28,7 @@ class Tracked:
         track: The path.
         floor: Floor, camera and photographs behind it.
         lost: Photographs that gave no pose, with the reason.
-        notes: For a person, one line each.
+        notes: Notes for the user, one line each.
     """
 
     track: Track
@@ -38,14 +38,19 @@ class Tracked:
 
 
 def times_by_name(names: Sequence[str], times: PhotoTimes) -> Times:
-    """Return times and their standard deviations by the photographs' names."""
+    """Return times and their standard deviations by name of photograph.
+
+    Args:
+        names: Names of the photographs.
+        times: Their times [s], in the same order.
+    """
     return dict(zip(names, zip(times.t.tolist(), times.sd.tolist(), strict=True), strict=True))
 
 
 def observation_of(
     photo: str, alignment: Alignment, time: tuple[float, float], *, source: str
 ) -> PoseObservation:
-    """Take the robot's place in a photograph from how its picture was aligned.
+    """Make an observation of the pose from a template alignment.
 
     Args:
         photo: Name of the photograph or exposure.
@@ -63,13 +68,13 @@ def finish(
     scene: Scene, seen: FloorSeen, observations: Sequence[PoseObservation], *,
     unseen: Mapping[str, str], times: Times, gap: float | None,
 ) -> Tracked:  # fmt: skip
-    """Replay corrections, smooth, and say what a person should know.
+    """Apply corrections, smooth the poses, and collect notes for the user.
 
     Args:
-        scene: What is known.
+        scene: Camera, floor, robot and corrections.
         seen: Floor and camera.
-        observations: Where the robot was found.
-        unseen: Photographs in which it was not, with the reason.
+        observations: Observed poses.
+        unseen: Photographs in which the robot was not found, with the reason.
         times: By photograph, time and its standard deviation [s].
         gap: Interval longer than which the path is interrupted; None for 3.5 usual ones [s].
 
@@ -77,7 +82,7 @@ def finish(
         The track.
 
     Raises:
-        TrackingError: The robot is nowhere seen, or a correction cannot be replayed.
+        TrackingError: The robot is seen in no photograph, or a correction cannot be replayed.
     """
     kept = replay(observations, scene.corrections, times=times, z=scene.prior.height)
     track = assemble_track(kept, gap=gap)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What is known of a walk before its photographs are looked at."""
+"""Inputs of tracking that are known beforehand: camera, floor, robot and annotations."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -14,12 +14,12 @@ from tracking.floor import FloorMap, FloorView
 from tracking.pose import BodyPrior
 
 Click = tuple[float, float]
-"""A pixel that a person pointed at: u, v [px]."""
+"""A pixel that a person clicked on: u, v [px]."""
 
 
 @dataclass(frozen=True)
 class Photo:
-    """A photograph to look at.
+    """A photograph, by name and file.
 
     Attributes:
         name: What the results call it.
@@ -32,7 +32,7 @@ class Photo:
 
 @dataclass(frozen=True)
 class MarkedTop:
-    """The robot's top, clicked on in one photograph.
+    """Annotation of the robot's top: its corners, clicked on in one photograph.
 
     Attributes:
         photo: Name of the photograph.
@@ -47,16 +47,16 @@ class MarkedTop:
 
 @dataclass(frozen=True)
 class Scene:
-    """What is known before looking.
+    """Camera, floor, robot and annotations.
 
     Attributes:
         camera: The lens, at the size of the photographs.
         floor: The floor as measured.
         prior: Height and tilt of the body.
-        robot: The robot with its marker; None where it is tracked by its own picture.
-        top: The robot's top in one photograph, to track it by its own picture.
+        robot: The robot with its marker; None where it is tracked by a template.
+        top: Annotation of the robot's top in one photograph, to track it by a template.
         clicks: By photograph, points of the floor by name, where they were clicked on [px].
-        corrections: What a person corrects in what is found, in the order in which it was said.
+        corrections: Manual corrections of the poses found, in the order in which they were made.
         merged: How the exposures of one composite picture were merged; None of photographs.
         body_size: Length and width of the robot's body, needed for a composite picture [m].
     """
@@ -72,14 +72,14 @@ class Scene:
     body_size: tuple[float, float] | None = None
 
     def with_clicks(self, view: FloorView) -> FloorView:
-        """Add the points of the floor that a person clicked on to what a photograph shows."""
+        """Add the clicked points of the floor to the marks that a photograph shows."""
         clicks = self._clicks_for(view.photo)
         return view if not clicks else view.with_clicked(clicks)
 
     def _clicks_for(self, photo: str) -> Mapping[str, Click]:
         """Return a photograph's clicks; on a tripod those of one photograph hold for all.
 
-        Where the floor has markers these place the camera in the other photographs.
+        Where the floor has markers, these give the camera's pose in the other photographs.
         """
         if photo in self.clicks or self.floor.markers or not self.clicks:
             return self.clicks.get(photo, {})

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""Markers in many photographs, on several cores; a bad photograph does not lose the others.
+"""Detect markers in many photographs, in a process pool; damaged photographs are reported.
 
-The camera stands still and the robot moves a little between two photographs, so after the first
-one each marker is looked for where it was. The whole photograph is searched again only where the
-robot is not found there, or most of the floor is not.
+The camera stands still and the robot moves a little between two photographs. After the first
+photograph each marker is therefore searched where it was before. The whole photograph is searched
+only where the robot, or most of the floor, is not found there.
 """
 
 from collections.abc import Sequence
@@ -23,12 +23,12 @@ from tracking.photos.workers import WORTH_WORKERS, Progress, batches_of, run_bat
 
 @dataclass(frozen=True)
 class Wanted:
-    """What to look for.
+    """What to detect in photographs: marks of the floor and the robot's marker.
 
     Attributes:
         size: Width and height photographs must have [px].
         floor: The floor's marks.
-        robot: The robot; None where its marker is not to be looked for.
+        robot: The robot; None where its marker is not to be detected.
     """
 
     size: tuple[int, int]
@@ -38,7 +38,7 @@ class Wanted:
 
 @dataclass(frozen=True)
 class PhotoResult:
-    """What looking at a photograph gave.
+    """Detection in one photograph, or why it cannot be used.
 
     Attributes:
         photo: Its name.
@@ -54,7 +54,7 @@ class PhotoResult:
 def search_photos(
     photos: Sequence[Photo], wanted: Wanted, *, workers: int, progress: Progress
 ) -> tuple[PhotoResult, ...]:
-    """Look for markers in photographs.
+    """Detect markers in photographs, in parallel where that is faster.
 
     Args:
         photos: The photographs, in order of time.
@@ -66,7 +66,7 @@ def search_photos(
         What each shows, in the same order.
 
     Raises:
-        TrackStopped: Somebody asked to stop.
+        TrackStopped: A stop was requested.
     """
     if len(photos) * wanted.size[0] * wanted.size[1] < WORTH_WORKERS:
         workers = 1
@@ -81,14 +81,14 @@ def _search_batch(job: tuple[Wanted, Sequence[Photo]]) -> list[PhotoResult]:
     hint: Detection | None = None
     for photo in photos:
         look = look_at(photo, wanted, hint)
-        # A photograph without the robot must not make the next one forget where the floor is.
+        # A photograph without the robot must not discard the hint of where the floor's marks are.
         hint = look.seen or hint
         looks.append(look)
     return looks
 
 
 def look_at(photo: Photo, wanted: Wanted, hint: Detection | None = None) -> PhotoResult:
-    """Look for markers in one photograph.
+    """Detect markers in one photograph.
 
     Args:
         photo: The photograph.
@@ -112,7 +112,7 @@ def _detected(
     if robot is None:
         return _floor_alone(name, pixels, wanted.floor)
     if hint is not None and hint.floor.pixels:
-        # Marks out of the picture are not sought in the whole of it again and again.
+        # Avoids a search of the whole picture in every photograph for marks outside it.
         seen = FloorMap(
             wanted.floor.dictionary,
             tuple(m for m in wanted.floor.markers if m.marker_id in hint.floor.pixels),
@@ -126,6 +126,6 @@ def _detected(
 
 
 def _floor_alone(name: str, pixels: NDArray[np.uint8], floor: FloorMap) -> Detection:
-    """Look for the floor's marks where the robot has no marker."""
+    """Detect the floor's marks where the robot has no marker."""
     found = find_markers(pixels, floor.dictionary, wanted=floor.marker_ids) if floor.markers else ()
     return Detection(name, FloorView.of(name, found), None)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Photographs, or one composite picture, to the track of a walk."""
+"""Track a walk in photographs, or in one composite picture."""
 
 from collections.abc import Callable, Sequence
 
@@ -16,10 +16,10 @@ def track_photos(
     scene: Scene, photos: Sequence[Photo], *, times_of: Callable[[Sequence[str]], PhotoTimes],
     gap: float | None = None, workers: int = 1, progress: Progress | None = None,
 ) -> Tracked:  # fmt: skip
-    """Track a robot in photographs: by its marker, by its own picture, or in a composite picture.
+    """Track a robot in photographs: by its marker, by a template, or in a composite picture.
 
     Args:
-        scene: What is known: camera, floor, robot, and what a person pointed at or corrects.
+        scene: Camera, floor, robot, and annotations of a person.
             `scene.merged` says that there is one picture, with many exposures.
         photos: The photographs in order of time, or the one composite picture.
         times_of: Gives the times of photographs by their names in order; of a composite picture,
@@ -35,7 +35,7 @@ def track_photos(
         NoUsablePhoto: No photograph can be used, or none shows the robot.
         TrackingError: The floor's map does not fit, head and tail cannot be told apart, no
             exposure is found, or a correction cannot be replayed.
-        TrackStopped: Somebody asked to stop.
+        TrackStopped: A stop was requested.
     """
     progress = NoProgress() if progress is None else progress
     if scene.merged is not None:

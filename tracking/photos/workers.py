@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The same work for batches of photographs, on several cores, with progress and a way to stop."""
+"""Process pool for batches of photographs, with progress and cancellation."""
 
 import multiprocessing
 from collections.abc import Callable, Sequence
@@ -12,7 +12,7 @@ import numpy as np
 from tracking.errors import TrackStopped
 
 WORTH_WORKERS = 60e6
-"""Pixels to look at for which starting other processes, a second each, pays."""
+"""Least number of pixels for which worker processes, which take a second each to start, pay."""
 
 LONGEST_BATCH = 12
 
@@ -22,30 +22,48 @@ Result = TypeVar("Result")
 
 
 class Progress(Protocol):
-    """Where progress is reported, and who may ask to stop."""
+    """Interface to report progress and to ask whether to stop."""
 
     def step(self, what: str, fraction: float | None) -> None:
-        """Report what is going on, and how far it is (None: unknown)."""
+        """Report the current step and its progress.
+
+        Args:
+            what: Name of the step, a word or two.
+            fraction: Share that is done, 0 to 1; None if unknown.
+        """
         ...
 
     def stop_requested(self) -> bool:
-        """Tell whether somebody asked to stop."""
+        """Return whether a stop was requested."""
         ...
 
 
 class NoProgress:
-    """Progress that is not shown."""
+    """Progress that is not displayed and never stops the work."""
 
     def step(self, what: str, fraction: float | None) -> None:
-        """Show nothing."""
+        """Do nothing.
+
+        Args:
+            what: Name of the step.
+            fraction: Share that is done, 0 to 1; None if unknown.
+        """
 
     def stop_requested(self) -> bool:
-        """Return False: nobody asks to stop."""
+        """Return False: no stop is ever requested."""
         return False
 
 
 def batches_of(items: Sequence[Item], workers: int) -> list[Sequence[Item]]:
-    """Cut a sequence into stretches that follow each other, about two for each worker."""
+    """Split a sequence into contiguous batches, about two for each worker.
+
+    Args:
+        items: The sequence.
+        workers: Number of worker processes.
+
+    Returns:
+        Batches of at most `LONGEST_BATCH` items, in order.
+    """
     length = int(np.clip(np.ceil(len(items) / (2 * workers)), 1, LONGEST_BATCH))
     return [items[start : start + length] for start in range(0, len(items), length)]
 
@@ -58,20 +76,20 @@ def run_batches(
     progress: Progress,
     what: str,
 ) -> list[Result]:  # fmt: skip
-    """Do the same to every batch, on several cores where there are enough of them.
+    """Map a function over jobs in a process pool, or in this process with one worker.
 
     Args:
-        work: What to do; a function of a module, as other processes must find it.
-        jobs: What to do it to.
+        work: Function to apply; on module level, since it is pickled.
+        jobs: Its arguments.
         workers: Processes to use.
         progress: Where progress is reported.
-        what: What is being done, in a word or two.
+        what: Name of the step, a word or two.
 
     Returns:
         Results in the order of the jobs.
 
     Raises:
-        TrackStopped: Somebody asked to stop.
+        TrackStopped: A stop was requested.
     """
     progress.step(what, 0.0)
     if min(workers, len(jobs)) < 2:
@@ -80,7 +98,7 @@ def run_batches(
             results.append(work(job))
             report_step(progress, what, number / len(jobs))
         return results
-    # Not forked: OpenCV's threads do not survive it.
+    # Not forked: OpenCV's threads do not survive a fork.
     context = multiprocessing.get_context("spawn")
     pool = ProcessPoolExecutor(min(workers, len(jobs)), context, _one_thread)
     try:
@@ -97,10 +115,15 @@ def _one_thread() -> None:
 
 
 def report_step(progress: Progress, what: str, fraction: float | None) -> None:
-    """Report how far it is, and stop where that is asked for.
+    """Report progress, and raise if a stop was requested.
+
+    Args:
+        progress: Where to report it.
+        what: Name of the step.
+        fraction: Share that is done, 0 to 1; None if unknown.
 
     Raises:
-        TrackStopped: Somebody asked to stop.
+        TrackStopped: A stop was requested.
     """
     progress.step(what, fraction)
     if progress.stop_requested():

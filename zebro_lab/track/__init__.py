@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: MIT
-"""Photographs to a path: camera and floor files, annotations, the track folder."""
+"""Photo tracking: camera and floor files, annotations, and the track folder."""

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""`zebro-lab annotate`: mark the robot, point at the floor, correct what the tracker found."""
+"""`zebro-lab annotate`: mark the robot, click on points of the floor, correct poses."""
 
 from pathlib import Path
 from typing import Annotated
@@ -93,7 +93,7 @@ def annotate(
     around: Around = None,
     reach: Reach = 100,
 ) -> None:
-    """Say what the tracker cannot know: annotations.toml, replayed by track --annotations."""
+    """Annotate photographs for the tracker: annotations.toml, used by track --annotations."""
     if grid is not None and photo is None:
         raise typer.BadParameter("needed: which photograph to draw", param_hint="'--photo'")
     if grid is None and not any((corners, click, move, flip, delete, order, said)):

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""What a person says about photographs in, `annotations.toml` out; and a picture to read pixels in.
+"""Write a person's annotations of photographs to `annotations.toml`, and draw a grid of pixels.
 
-No window is opened: what is said comes as arguments or as a file, and the pixels to say are read
-in a picture with a grid, which any viewer shows, on any machine.
+No window is opened. Annotations are arguments or a file; their pixels are read off a picture with a
+grid, which any viewer shows on any machine.
 """
 
 import difflib
@@ -33,7 +33,7 @@ _EXPOSURE = "#"
 
 @dataclass(frozen=True)
 class AnnotateRequest:
-    """What is said.
+    """Annotations to write, as options of the command.
 
     Attributes:
         photos: Folder of photographs, video, or composite picture.
@@ -43,7 +43,7 @@ class AnnotateRequest:
             right, rear left [px].
         plate: "LENGTHxWIDTH@HEIGHT" of the top, height over the body's centre; None for the robot's
             body.
-        margin: How much around the top belongs to its picture [m].
+        margin: Width around the top that belongs to its template [m].
         robot: A `robot.toml`; the thesis's robot when None.
         clicks: Points of the floor, each "PHOTO:NAME=U,V" [px].
         moves: Where the robot is, each "PHOTO:X,Y,YAW" [m, m, deg].
@@ -69,17 +69,17 @@ class AnnotateRequest:
 
 
 def annotate(request: AnnotateRequest) -> Annotations:
-    """Add what is said to the annotations and write them.
+    """Add annotations to those of the file and write all.
 
     Args:
-        request: What is said; corrections of one request are taken as moves, flips, deletions and
-            order, after all those said before.
+        request: New annotations. Corrections of one request are applied in the sequence moves,
+            flips, deletions, order, after all earlier corrections.
 
     Returns:
         All annotations, old and new.
 
     Raises:
-        ZebroLabError: A photograph does not exist, or something is said that cannot be understood.
+        ZebroLabError: A photograph does not exist, or an annotation is invalid.
         TrackingError: There are no photographs.
     """
     if request.said is not None and request.out.exists() and request.out.samefile(request.said):
@@ -232,7 +232,7 @@ def _require_photos(said: Annotations, names: Sequence[str]) -> None:
 
 
 def _known(photo: str, names: Sequence[str]) -> None:
-    # Exposures and frames are counted only when they are tracked: walk.jpg#3 is one of walk.jpg.
+    # Exposures and frames are known only after tracking: walk.jpg#3 is one of walk.jpg.
     if photo in names or photo.rpartition(_EXPOSURE)[0] in names:
         return
     near = difflib.get_close_matches(photo, names, n=1)

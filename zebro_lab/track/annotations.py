@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""`annotations.toml`: what a person said about photographs, replayed every time they are tracked.
+"""`annotations.toml`: a person's annotations of photographs, applied whenever they are tracked.
 
-Nothing in it is ever overwritten: new corrections go to its end.
+Entries are not overwritten: new corrections are appended.
 """
 
 from collections.abc import Mapping
@@ -21,12 +21,12 @@ ANNOTATIONS_FILE = "annotations.toml"
 
 @dataclass(frozen=True)
 class Annotations:
-    """What a person said.
+    """A person's annotations of photographs.
 
     Attributes:
-        template: The robot's top in one photograph; None where nobody marked it.
+        template: Annotation of the robot's top in one photograph, or None.
         clicks: By photograph, points of the floor by name, where they were clicked [px].
-        corrections: What is wrong in what the tracker finds, in the order in which it was said.
+        corrections: Corrections of the tracker's poses, in the order in which they were made.
     """
 
     template: MarkedTop | None = None
@@ -34,7 +34,7 @@ class Annotations:
     corrections: tuple[Correction, ...] = ()
 
     def merged(self, later: "Annotations") -> "Annotations":
-        """Return both: the later template and clicks prevail, later corrections follow."""
+        """Merge with later annotations: template and clicks prevail, corrections are appended."""
         names = {**self.clicks, **later.clicks}
         clicks = {
             photo: {**self.clicks.get(photo, {}), **later.clicks.get(photo, {})} for photo in names
@@ -109,7 +109,7 @@ def _corrections(table: SettingsTable) -> tuple[Correction, ...]:
 
 
 def render_annotations(said: Annotations) -> str:
-    """Write annotations as commented TOML that `read_annotations` reads back."""
+    """Format annotations as commented TOML; inverse of `read_annotations`."""
     template, values = _HEADING, {}
     if said.template is not None:
         template += _TEMPLATE_SECTION

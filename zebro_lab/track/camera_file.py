@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""`camera.toml`: the lens, how well it is known, and from which photographs."""
+"""Read and write `camera.toml`: the lens, its uncertainty, and its photographs."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -19,7 +19,7 @@ _CALIBRATION = (
 
 @dataclass(frozen=True)
 class CameraFile:
-    """What a `camera.toml` says.
+    """Content of a `camera.toml`.
 
     Attributes:
         camera: The lens.
@@ -63,7 +63,7 @@ def _size(table: SettingsTable) -> tuple[int, int]:
 
 
 def render_camera_file(fit: CameraCalibration, *, photos: Mapping[str, str]) -> str:
-    """Write a calibration as commented TOML that `read_camera_file` reads back.
+    """Format a calibration as commented TOML; inverse of `read_camera_file`.
 
     Args:
         fit: The calibration.
@@ -88,7 +88,7 @@ def render_camera_file(fit: CameraCalibration, *, photos: Mapping[str, str]) -> 
 
 
 HEADING = "# The camera's lens, in pixels."
-"""What the file begins with: by this it is known for what `camera calibrate` wrote."""
+"""First lines of the file, by which it is recognised as written by `camera calibrate`."""
 _TEMPLATE = (
     HEADING
     + """ The centre of the first pixel is (0, 0), as in OpenCV.

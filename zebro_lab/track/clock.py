@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The zero of a track's time: the run's start, a moment given, or the first photograph."""
+"""Time origin of a track: the run's start, a given moment, or the first photograph."""
 
 from dataclasses import dataclass
 from datetime import datetime
@@ -10,18 +10,18 @@ from zebro_lab.files.errors import SettingsError
 from zebro_lab.runs.manifest import RunManifest
 from zebro_lab.track.photo_sequence import TimeRequest
 
-_CLOCK = 1e8  # times beyond this are a clock's, counted from 1970 [s]
-_ROUND_A_RUN = 60.0  # how long before and after a run a photograph may well be taken [s]
+_CLOCK = 1e8  # larger times are a clock's, counted from 1970 [s]
+_ROUND_A_RUN = 60.0  # tolerance before and after a run for photographs of it [s]
 
 
 @dataclass(frozen=True)
 class CountedTimes:
-    """Times of photographs as the track has them.
+    """Times of photographs relative to the track's origin.
 
     Attributes:
-        times: Times and their standard deviations; None of exposures that are not found yet.
-        said: In words, where they are from.
-        notes: For a person, one line each.
+        times: Times and their standard deviations; None for exposures that are not found yet.
+        said: Their source, in words.
+        notes: Notes for the user, one line each.
     """
 
     times: PhotoTimes | None
@@ -32,7 +32,7 @@ class CountedTimes:
 def counted_from(
     times: PhotoTimes, *, start: datetime | None, manifest: RunManifest | None, asked: TimeRequest
 ) -> CountedTimes:
-    """Count times from a moment: the one given, the run's start, or the first photograph.
+    """Subtract the time origin: the given moment, the run's start, or the first photograph.
 
     Args:
         times: Times of the photographs: since 1970 where they are a clock's, else as given.
@@ -41,7 +41,7 @@ def counted_from(
         asked: How the photographs got their times.
 
     Raises:
-        SettingsError: A moment is given, but the photographs' times are no clock's.
+        SettingsError: A moment is given, but the photographs' times are not a clock's.
         TimesError: All photographs were taken long before or after the run.
     """
     if asked.interval is not None or asked.table is not None or not _by_a_clock(times):
@@ -61,7 +61,15 @@ def counted_from(
 
 
 def counted_later(*, manifest: RunManifest | None, asked: TimeRequest) -> CountedTimes:
-    """Say how the exposures of a composite picture will get their times, once they are found."""
+    """Describe the times of a composite picture's exposures before these are found.
+
+    Args:
+        manifest: The run they belong to, or None.
+        asked: How the exposures get their times.
+
+    Returns:
+        No times yet; a description, and a note where they are not tied to the run.
+    """
     notes = ()
     if manifest is not None and asked.table is None:
         notes = (untied(f"give seconds since the run's start as --times, or {LATER}"),)
@@ -72,7 +80,7 @@ LATER = "bring it to the run's clock with `validate --time-offset`"
 
 
 def untied(advice: str) -> str:
-    """Say that nothing tells when in the run the photographs were taken."""
+    """Format the note that the photographs' times are not tied to the run's."""
     return (
         "time is counted from the first photograph, and nothing tells when in the run it was "
         f"taken: {advice}"
@@ -99,7 +107,7 @@ def _as_given(
 
 
 def _beside(counted: PhotoTimes, manifest: RunManifest) -> tuple[str, ...]:
-    """Compare times since the run's start with how long it lasted."""
+    """Note photographs outside the run's duration; raise if all are far from it."""
     length = float("inf")
     if manifest.stop is not None:
         begun, ended = map(datetime.fromisoformat, (manifest.start, manifest.stop))

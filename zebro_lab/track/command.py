@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""`zebro-lab track`: photographs in, path out."""
+"""`zebro-lab track`: the path of a robot from photographs."""
 
 import sys
 from datetime import datetime
@@ -203,7 +203,7 @@ def _track(request: "TrackRequest") -> None:
 
 
 def track_lines(result: "TrackResult") -> list[str]:
-    """Say what was tracked, how well, what was left out and what was written."""
+    """Format the result: what was tracked, how well, what was left out and what was written."""
     import numpy as np
 
     from zebro_lab.track.folder import written
@@ -243,7 +243,7 @@ def _preview(request: "TrackRequest", file: Path) -> None:
 
 
 def preview_lines(seen: "Preview") -> list[str]:
-    """Say what the first photograph shows."""
+    """Format what the first photograph shows."""
     from math import degrees
 
     lines = [

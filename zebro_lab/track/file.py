@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Poses over time from a table: `track.csv`, `path.csv`, or a stranger's with the same columns."""
+"""Read poses over time from a table: `track.csv`, `path.csv`, or one with the same columns."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -25,13 +25,13 @@ _COVARIANCE = ("cov_xx", "cov_xy", "cov_xyaw", "cov_yy", "cov_yyaw", "cov_yawyaw
 
 @dataclass(frozen=True)
 class TrackFile:
-    """Tracked poses with what is known of their errors.
+    """Tracked poses with their covariance, source and notes.
 
     Attributes:
         poses: The poses with their covariance; headings NaN where the table has none.
-        source: Where they come from: "real", "sim:what", "unknown".
+        source: Their source: "real", "sim:what", "unknown".
         file: The file.
-        notes: For a person, one line each.
+        notes: Notes for the user, one line each.
     """
 
     poses: Poses
@@ -41,13 +41,13 @@ class TrackFile:
 
     @property
     def covariance(self) -> Array:
-        """Covariance of x, y, yaw of each pose, zero where it is not known, shape (n, 3, 3)."""
+        """Covariance of x, y, yaw of each pose, zero where it is unknown, shape (n, 3, 3)."""
         known = self.poses.covariance
         return np.zeros((len(self.poses), 3, 3)) if known is None else known
 
 
 def read_track(path: Path) -> TrackFile:
-    """Read a track.
+    """Read tracked poses from a table or a track folder.
 
     Args:
         path: A table with `t_s,x_m,y_m`, or `t,x,y`, perhaps `yaw_rad` (or `yaw`) and the upper
@@ -64,7 +64,7 @@ def read_track(path: Path) -> TrackFile:
 
 
 def track_of_table(table: RawTable) -> TrackFile:
-    """Check the poses of a table with the columns of `read_track`.
+    """Validate the poses of a table with the columns of `read_track`.
 
     Raises:
         DataError: As in `read_track`.
@@ -88,14 +88,14 @@ def track_of_table(table: RawTable) -> TrackFile:
 
 
 def _tracked_source(file: Path) -> str | None:
-    """Take the source from the manifest of the track folder that holds a file."""
+    """Return the source in the manifest of the track folder that holds a file."""
     if file.name != TRACK_CSV or not (file.parent / MANIFEST).is_file():
         return None
     return str(read_track_manifest(file.parent).get("source", "unknown"))
 
 
 def read_poses(file: Path) -> Poses:
-    """Read a predicted path: the columns of `read_track`, without its covariance.
+    """Read a predicted path from a table with the columns of `read_track`, without covariance.
 
     Raises:
         NotFound: There is no such file.
@@ -105,7 +105,7 @@ def read_poses(file: Path) -> Poses:
 
 
 def tum_lines(poses: Poses) -> str:
-    """Write poses as TUM does, `t x y z qx qy qz qw`, for evo; unknown headings are zero."""
+    """Format poses as TUM trajectory, `t x y z qx qy qz qw`, for evo; unknown headings are zero."""
     yaw = np.nan_to_num(poses.yaw)
     return "".join(
         f"{t:.6f} {x:.6f} {y:.6f} 0 0 0 {np.sin(half):.9f} {np.cos(half):.9f}\n"

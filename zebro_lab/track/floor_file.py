@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""`floor.toml`: markers and points on the floor, as measured with a tape."""
+"""Read and write `floor.toml`: markers and points on the floor, as measured with a tape."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -50,7 +50,7 @@ def read_floor_file(file: Path) -> FloorMap:
 
 
 def _common(table: SettingsTable) -> dict[str, float]:
-    """Take what holds for all marks that do not say otherwise."""
+    """Read the defaults for marks that do not set a value."""
     stated = {
         key: table.quantity(key, unit, above=0.0) for key, unit in _COMMON.items() if key in table
     }
@@ -90,11 +90,11 @@ def _point(points: SettingsTable, name: str, common: Mapping[str, float]) -> Flo
 
 
 def render_floor_file(floor: FloorMap, *, heading: str) -> str:
-    """Write a floor as commented TOML that `read_floor_file` reads back.
+    """Format a floor as commented TOML; inverse of `read_floor_file`.
 
     Args:
         floor: The floor.
-        heading: What it is, as comment lines without their `#`.
+        heading: Description, as comment lines without their `#`.
     """
     lines = [*(f"# {line}".rstrip() for line in heading.splitlines()), *_LEGEND]
     template = "\n".join([*lines, "", 'dictionary = ""', "", "[markers]", ""])

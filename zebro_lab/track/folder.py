@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The sole owner of the format of a track folder: `track.csv`, `track.tum` and `manifest.json`."""
+"""Read and write a track folder: `track.csv`, `track.tum` and `manifest.json`."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
@@ -20,17 +20,17 @@ PICTURES = ("overlay.png", "map.png", "residuals.png")
 TRACKED = ResultKind(
     KIND, "track", (TRACK_CSV, TRACK_TUM, FLOOR_FILE, ANNOTATIONS_FILE, *PICTURES), SCHEMA
 )
-"""What `track` writes; an earlier track's files are replaced."""
+"""Kind of folder that `track` writes; an earlier track's files are replaced."""
 
 _DIGITS = "%.10g"
 
 
 class WrittenTrack(Protocol):
-    """A path as a folder takes it: one that was tracked, or somebody else's."""
+    """Interface of a path that a track folder can hold: tracked here, or imported."""
 
     @property
     def columns(self) -> Mapping[str, Sequence[float] | Sequence[str]]:
-        """The table `track.csv`, all of `tracking.path.TRACK_COLUMNS` that are known."""
+        """The table `track.csv`: those of `tracking.path.TRACK_COLUMNS` that are known."""
         ...
 
     @property
@@ -49,17 +49,18 @@ def track_folder(
     inputs: Mapping[str, str],
     report: Mapping[str, object],
 ) -> Iterator[Path]:
-    """Write a track folder so that it appears finished or not at all.
+    """Write a track folder atomically.
 
-    The body adds pictures and other files to the draft; the manifest, which lists them, comes last.
+    The body of the `with` statement adds pictures and other files to the draft. The manifest, which
+    lists them, is written last.
 
     Args:
         out: Folder to make or to renew.
         track: The track.
         source: "real", "sim:what" or "unknown".
-        settings: What was asked, as JSON can hold it.
+        settings: Options of the command, as JSON can hold them.
         inputs: SHA-256 of each file that was read.
-        report: What a reader should know: photographs left out and why, notes, zero of time.
+        report: Photographs left out and why, notes, origin of time.
 
     Yields:
         The draft.
@@ -93,5 +94,5 @@ def read_track_manifest(folder: Path) -> Mapping[str, Any]:
 
 
 def written(folder: Path) -> Sequence[Path]:
-    """List what a track folder holds of ours."""
+    """List the files of a track folder that this program wrote."""
     return [folder / name for name in (*TRACKED.names, MANIFEST) if (folder / name).is_file()]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A path that somebody else tracked: a table or a TUM file, as `track` would have written it."""
+"""Import a path tracked by another program, from a table or a TUM file."""
 
 import re
 from collections.abc import Mapping, Sequence
@@ -31,7 +31,7 @@ TUM_COLUMNS: Final = ("t_s", "x_m", "y_m", "z_m", "qx", "qy", "qz", "qw")
 
 @dataclass(frozen=True)
 class ForeignTrack:
-    """Somebody else's path; satisfies `WrittenTrack`.
+    """An imported path; satisfies `WrittenTrack`.
 
     Attributes:
         track: Poses and their covariance, checked.
@@ -47,7 +47,7 @@ class ForeignTrack:
 
     @property
     def columns(self) -> Mapping[str, Sequence[float]]:
-        """The table `track.csv`: what is known of it."""
+        """The table `track.csv`, with the columns that are known."""
         poses = self.track.poses
         x, y = poses.position.T.tolist()
         known: dict[str, Sequence[float]] = {"t_s": poses.t.tolist(), "x_m": x, "y_m": y}
@@ -66,7 +66,7 @@ class ForeignTrack:
 
 
 def is_tum(path: Path) -> bool:
-    """Tell by its name whether a file is a TUM trajectory."""
+    """Return whether a file is a TUM trajectory, by its name."""
     return path.suffix.lower() in TUM_SUFFIXES
 
 
@@ -75,7 +75,7 @@ def track_of_foreign_table(table: RawTable, mapping: MappedColumns, *, zero: flo
 
     Args:
         table: The table.
-        mapping: Where the columns come from, over `TRACK_UNITS`; `t`, `x`, `y`, `z` and `yaw` are
+        mapping: Names of the columns, over `TRACK_UNITS`; `t`, `x`, `y`, `z` and `yaw` are
             known too.
         zero: Time of the table at which the run began [s].
 
@@ -111,7 +111,7 @@ def read_tum(path: Path) -> RawTable:
     """
     import pandas as pd
 
-    # Not splitlines: it also cuts at characters that no editor counts as the end of a line.
+    # Not splitlines: it also splits at characters that editors do not count as line ends.
     lines = re.split(r"\r\n|\n|\r", read_text(path))
     numbered = [(i, line) for i, line in enumerate(lines, start=1)
                 if line.strip() and not line.startswith("#")]  # fmt: skip
@@ -125,7 +125,7 @@ def read_tum(path: Path) -> RawTable:
 
 
 def _seen_as(table: RawTable, mapping: MappedColumns, name: str) -> MappedColumns:
-    """Take a column by its short name where the table has that, and not the canonical one."""
+    """Rename a column from its short name, if the table has that and not the canonical one."""
     short = _SHORT.get(name)
     if short is None or mapping.has(table, name) or mapping.mapped[name].name != name:
         return mapping

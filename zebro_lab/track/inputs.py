@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What is read before photographs are tracked: camera, floor, robot, annotations, the run."""
+"""Read the inputs of tracking: camera, floor, robot, annotations, the run."""
 
 from dataclasses import dataclass, replace
 
@@ -25,17 +25,17 @@ mean: all are faint, and the floor shows through them (the average of all photog
 
 
 class HowMergedUnknown(SettingsError):
-    """Nobody said how the exposures of a composite picture were merged."""
+    """A composite picture needs `--merged`, how its exposures were merged."""
 
 
 @dataclass(frozen=True)
 class TrackInputs:
-    """What was read.
+    """The inputs of tracking, as read from files.
 
     Attributes:
-        request: What is asked.
-        scene: What is known before looking, with the lens as it was calibrated.
-        annotations: What a person said about the photographs.
+        request: Options of the track.
+        scene: Camera, floor, robot and annotations, with the lens as it was calibrated.
+        annotations: A person's annotations of the photographs.
         manifest: The run they belong to; None for none.
     """
 
@@ -45,7 +45,7 @@ class TrackInputs:
     manifest: RunManifest | None
 
     def scene_of(self, sequence: PhotoSequence) -> Scene:
-        """Return what is known of photographs, with the lens at their size.
+        """Return the scene with the lens scaled to the photographs' size.
 
         Raises:
             DataError: They have another shape than those the camera was calibrated with.
@@ -53,7 +53,7 @@ class TrackInputs:
         return replace(self.scene, camera=calibrated_for(self.scene.camera, sequence))
 
     def source_of(self, sequence: PhotoSequence) -> str:
-        """Say where photographs are from: as told, as the files say, or as the run has it."""
+        """Return the photographs' source: the one given, the files' own, or the run's."""
         if self.request.source is not None:
             return self.request.source
         if sequence.source is not None or self.manifest is None:
@@ -61,15 +61,15 @@ class TrackInputs:
         return self.manifest.source
 
     def require_complete(self, sequence: PhotoSequence) -> None:
-        """Raise where something is missing without which photographs cannot be tracked.
+        """Raise if an input that tracking needs is missing.
 
         Raises:
-            HowMergedUnknown: Nobody said how the exposures of a composite picture were merged.
-            SettingsError: The robot carries no marker and its top is not marked.
+            HowMergedUnknown: It is unknown how the exposures of a composite picture were merged.
+            SettingsError: The robot carries no marker and its top is not annotated.
         """
         if sequence.is_composite and self.request.merged is None:
             with open_picture(sequence.paths[0]):
-                pass  # what is no picture is told of as such
+                pass  # files that are no pictures have their own error
             raise HowMergedUnknown(_HOW_MERGED, key="--merged")
         if self.scene.robot is None and self.scene.top is None:
             raise SettingsError(
@@ -79,7 +79,7 @@ class TrackInputs:
             )
 
     def counted_times(self, sequence: PhotoSequence) -> CountedTimes:
-        """Count photographs' times from a moment; exposures get theirs once they are found."""
+        """Compute photographs' times from the track's origin; exposures get theirs once found."""
         times, asked = sequence.times, self.request.times
         if times is None:
             return counted_later(manifest=self.manifest, asked=asked)
@@ -87,14 +87,14 @@ class TrackInputs:
 
 
 def read_inputs(request: TrackRequest) -> TrackInputs:
-    """Read what is known before looking at photographs.
+    """Read and check the inputs of tracking.
 
     Args:
-        request: What is asked.
+        request: Options of the track.
 
     Raises:
-        ZebroLabError: A file says what cannot be followed.
-        TrackingError: A marker is the robot's and one of the floor's.
+        ZebroLabError: A file is missing or invalid.
+        TrackingError: A marker is both the robot's and one of the floor's.
     """
     manifest = None if request.run is None else read_manifest(request.run)
     described = RobotFile() if request.robot is None else read_robot_file(request.robot)

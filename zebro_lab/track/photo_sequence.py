@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What is to be tracked: photographs of a folder, frames of a video, or one composite picture."""
+"""Open photographs of a folder, frames of a video, or one composite picture, with their times."""
 
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
@@ -31,7 +31,7 @@ from zebro_lab.files.errors import DataError, NotFound, SettingsError
 
 VIDEOS = (".mp4", ".mov", ".m4v", ".avi", ".mkv", ".webm")
 FRAME_STEP = 0.5
-"""Time between two frames of a video that are taken, unless told otherwise [s]."""
+"""Default interval between the frames taken from a video [s]."""
 
 _ORIENTATION = 0x0112
 _LYING = {5, 6, 7, 8}
@@ -39,7 +39,7 @@ _LYING = {5, 6, 7, 8}
 
 @dataclass(frozen=True)
 class TimeRequest:
-    """How photographs get their times.
+    """Options for the times of photographs.
 
     Attributes:
         interval: Interval of the timer; None to take another source [s].
@@ -63,12 +63,12 @@ class PhotoSequence:
     """Photographs in order of time.
 
     Attributes:
-        names: What the results call them, shape (n,).
+        names: Their names in results, shape (n,).
         paths: Files that hold them, shape (n,).
-        times: When they were taken; of a composite picture None until its exposures are counted.
+        times: Their times; None for a composite picture until its exposures are counted.
         source: "sim:…" where the files say that they are simulated, else None.
-        origin: What the user named: the folder, the video or the picture.
-        left_out: Photographs of the folder that are not among them, with the reason.
+        origin: The folder, the video or the picture given.
+        left_out: Photographs of the folder that are not used, with the reason.
     """
 
     names: tuple[str, ...]
@@ -85,7 +85,7 @@ class PhotoSequence:
 
     @property
     def is_composite(self) -> bool:
-        """Tell one picture with many exposures from photographs."""
+        """Whether this is one picture with many exposures."""
         return self.times is None
 
 
@@ -99,12 +99,12 @@ def open_photos(
 ) -> Iterator[PhotoSequence]:
     """Find the photographs and their times.
 
-    Frames of a video are kept in a temporary folder while the body runs.
+    Frames of a video are kept in a temporary folder until the `with` statement ends.
 
     Args:
         origin: Folder of photographs, video, or one composite picture.
         request: How they get their times.
-        progress: Where it is reported while a video is read; None for nowhere.
+        progress: Where progress is reported while a video is read, or None.
         frames: Most frames of a video that are wanted; None for all.
 
     Yields:
@@ -114,7 +114,7 @@ def open_photos(
         NotFound: There is nothing of this name.
         DataError: Frames of a video cannot be kept.
         TrackingError: There is no photograph, or times are missing.
-        TrackStopped: Somebody asked to stop.
+        TrackStopped: A stop was requested.
     """
     if origin.is_dir():
         yield _of_folder(origin, request)
@@ -129,10 +129,14 @@ def open_photos(
 
 
 def calibrated_for(camera: Camera, sequence: PhotoSequence) -> Camera:
-    """Return the lens at the size of most of the photographs.
+    """Scale the lens to the size of most of the photographs.
+
+    Args:
+        camera: The lens as calibrated.
+        sequence: The photographs.
 
     Raises:
-        DataError: They have another shape than those the camera was calibrated with.
+        DataError: Their aspect ratio differs from that of the calibration's photographs.
     """
     sizes = Counter(size for path in sequence.paths if (size := upright_size(path)) is not None)
     if not sizes:
@@ -144,7 +148,7 @@ def calibrated_for(camera: Camera, sequence: PhotoSequence) -> Camera:
 
 
 def upright_size(path: Path) -> tuple[int, int] | None:
-    """Read width and height of a picture as it is seen, or None of what is no picture [px]."""
+    """Return width and height of a picture after EXIF rotation; None if it is no picture [px]."""
     try:
         with open_picture(path) as picture:
             width, height = picture.size
@@ -155,7 +159,11 @@ def upright_size(path: Path) -> tuple[int, int] | None:
 
 
 def exposure_times(names: Sequence[str], request: TimeRequest) -> PhotoTimes:
-    """Find the times of a composite picture's exposures, already in order.
+    """Compute the times of a composite picture's exposures from a table or an interval.
+
+    Args:
+        names: Names of the exposures, in order of time.
+        request: Interval or table of times.
 
     Raises:
         SettingsError: Neither an interval nor a table was given.
@@ -182,7 +190,7 @@ def _of_folder(folder: Path, request: TimeRequest) -> PhotoSequence:
     else:
         left_out = _without_time(paths)
         paths = tuple(path for path in paths if path.name not in left_out)
-        # A file that is no picture has no EXIF either; it is named later, with what is wrong.
+        # A file that is no picture has no EXIF either; its error is reported later.
         readable = [path for path in paths if upright_size(path) is not None]
         times = _spread(readable, paths)
     if request.clock is not None:
@@ -201,7 +209,7 @@ def _of_folder(folder: Path, request: TimeRequest) -> PhotoSequence:
 
 
 def _without_time(paths: tuple[Path, ...]) -> Mapping[str, str]:
-    """Find the few pictures that have no EXIF time where most have one."""
+    """Find the few pictures without EXIF time where most have one."""
     readable = [path for path in paths if upright_size(path) is not None]
     without = [path for path in readable if exif_time(path) is None]
     if 2 * len(without) >= len(readable):
@@ -212,7 +220,7 @@ def _without_time(paths: tuple[Path, ...]) -> Mapping[str, str]:
 
 
 def _spread(readable: list[Path], paths: tuple[Path, ...]) -> PhotoTimes:
-    """Give files without a time that of the file before them; they are reported, not tracked."""
+    """Fill missing times with that of the file before; these files are reported, not tracked."""
     if not readable:
         return PhotoTimes(np.zeros(len(paths)), np.zeros(len(paths)), "none: nothing can be read")
     times = times_from_exif(readable)
@@ -226,7 +234,7 @@ def _spread(readable: list[Path], paths: tuple[Path, ...]) -> PhotoTimes:
 
 def _by_computer(times: PhotoTimes, clock: Path) -> PhotoTimes:
     offset = clock_offset(clock)
-    # The offset's own error is common to all photographs; it is stated, not added to each.
+    # The offset's error is common to all photographs: it is stated once, not added to each.
     said = f"{times.source}; camera's clock {offset.seconds:+.3f} s (sd {offset.sd:.3f} s) ahead"
     return PhotoTimes(times.t - offset.seconds, times.sd, said)
 
@@ -268,7 +276,7 @@ def _floats(numbers: list[float]) -> Array:
 
 
 def _simulated(path: Path) -> str | None:
-    # What draws photographs for tests and demonstrations says so in the camera's make.
+    # Simulated photographs of tests and demonstrations say so in the camera's make.
     try:
         with open_picture(path) as picture:
             make = str(picture.getexif().get(0x010F, "")).strip("\0 ")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The photographs behind a track, found again by their hashes and seen from straight above."""
+"""Find the photographs behind a track by their hashes, and rectify them."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -28,12 +28,12 @@ from zebro_lab.track.photo_sequence import VIDEOS, upright_size
 
 @dataclass(frozen=True)
 class PlacedPhoto:
-    """A photograph, and where the camera stood.
+    """A photograph with the camera's pose.
 
     Attributes:
         pixels: BGR, shape (height, width, 3).
         camera: The lens.
-        pose: Where it stood.
+        pose: Pose of the camera.
     """
 
     pixels: NDArray[np.uint8]
@@ -43,7 +43,17 @@ class PlacedPhoto:
     def from_above(
         self, low: Array, high: Array, *, pixels_per_metre: float, height: float = 0.0
     ) -> NDArray[np.uint8]:
-        """Draw a level rectangle of the scene from straight above; see `rectify_floor`."""
+        """Rectify a level rectangle of the scene: draw it as seen from straight above.
+
+        Args:
+            low: Lowest x and y, shape (2,) [m].
+            high: Highest x and y, shape (2,) [m].
+            pixels_per_metre: Scale [px/m].
+            height: Height of the rectangle over the floor [m].
+
+        Returns:
+            BGR picture, as from `rectify_floor`.
+        """
         return rectify_floor(
             self.pixels, self.camera, self.pose, low=low, high=high,
             pixels_per_metre=pixels_per_metre, height=height,
@@ -52,16 +62,16 @@ class PlacedPhoto:
 
 @dataclass(frozen=True)
 class TrackedPhotos:
-    """Photographs of a track.
+    """The photographs of a track, with camera, floor and annotations.
 
     Attributes:
         t: Time of each pose of the track, shape (n,) [s].
         names: Its photograph.
-        files: Where each photograph is, by name.
+        files: File of each photograph, by name.
         camera: The lens, at the size it was calibrated with.
         floor: The floor as refined with the photographs.
-        said: What a person said about them.
-        simulated: Whether nobody took them.
+        said: A person's annotations of them.
+        simulated: Whether they are simulated.
     """
 
     t: Array
@@ -73,7 +83,7 @@ class TrackedPhotos:
     simulated: bool = False
 
     def view(self, name: str) -> PlacedPhoto:
-        """Read a photograph and find where the camera stood.
+        """Read a photograph and compute the camera's pose.
 
         Raises:
             TrackingError: It does not show the floor's marks.
@@ -117,7 +127,7 @@ def photos_of_track(track: Path) -> TrackedPhotos:
 
 
 def _file_of(name: str, inputs: Mapping[Path, str]) -> Path:
-    """Find the file of a photograph; exposures of a composite share theirs."""
+    """Return the file of a photograph; exposures of a composite share theirs."""
     plain = name.rpartition("#")[0] or name
     file = next((path for path in inputs if path.name == plain), None)
     if file is None or not file.is_file():

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The pictures of a track folder and of its preview."""
+"""Figures of a track folder and of its preview."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -37,9 +37,9 @@ def draw_track(
         camera: The lens.
         view: Where the camera stood in that photograph.
         floor: The floor as fitted.
-        detection: What that photograph shows; None where no marker was looked for.
-        title: What was tracked; every title begins with the picture's own name.
-        simulated: Say so in the titles.
+        detection: Markers detected in that photograph; None where none was searched.
+        title: Name of the track, appended to each figure's own title.
+        simulated: Whether the photographs are simulated; the titles then say so.
     """
     from zebro_lab.plots import save  # matplotlib takes most of a second
     from zebro_lab.plots import track as draw
@@ -73,7 +73,19 @@ def draw_preview(
     file: IO[bytes], pixels: NDArray[np.uint8], *, camera: Camera, view: CameraPose,
     floor: FloorMap, detection: Detection, title: str, simulated: bool, command: str,
 ) -> None:  # fmt: skip
-    """Draw what was found in one photograph, with the map's marks where they should appear."""
+    """Draw a photograph with the marks detected and those of the map, projected.
+
+    Args:
+        file: Open file for the PNG.
+        pixels: The photograph, BGR, shape (height, width, 3).
+        camera: The lens.
+        view: Pose of the camera.
+        floor: The floor's marks.
+        detection: What was found in the photograph.
+        title: Title of the figure.
+        simulated: Whether the photograph is simulated; the figure then says so.
+        command: Command to record in the file's metadata.
+    """
     from zebro_lab.plots import save
     from zebro_lab.plots import track as draw
 
@@ -85,7 +97,17 @@ def draw_preview(
 def seen_marks(
     camera: Camera, view: CameraPose, floor: FloorMap, detection: Detection | None
 ) -> "list[SeenMarks]":
-    """Outline the floor's marks where the map has them, and the robot's marker where it is seen."""
+    """Compute outlines of the floor's marks, projected from the map, and of the robot's marker.
+
+    Args:
+        camera: The lens.
+        view: Pose of the camera.
+        floor: The floor's marks.
+        detection: What was found in the photograph; None for the floor alone.
+
+    Returns:
+        Outlines [px] with labels and colours.
+    """
     from zebro_lab.plots.sheet import CYCLE, RED
     from zebro_lab.plots.track import SeenMarks
 
@@ -107,7 +129,7 @@ def _path_px(track: Track, camera: Camera, view: CameraPose) -> tuple[Array, Arr
 
 
 def _broken(rows: Array, track: Track) -> Array:
-    """Put a row of NaN where the path is interrupted, so that no line crosses a gap."""
+    """Insert a row of NaN at each gap, so that no line crosses it."""
     return np.insert(rows, np.flatnonzero(track.gap_before), np.nan, axis=0)
 
 

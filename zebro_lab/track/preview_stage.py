@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The first photograph alone, before the long run: what is found, its scale, and a tape check."""
+"""Preview of a track: detections in the first photograph, its scale, and a check of the tape."""
 
 from dataclasses import dataclass
 from io import BytesIO
@@ -29,7 +29,7 @@ _FAR = 4e-3  # disagreement of tape and picture worth a warning [m]
 
 @dataclass(frozen=True)
 class TapeCheck:
-    """Distance between two marks of the floor.
+    """Distance between two marks of the floor, by tape and by photograph.
 
     Attributes:
         marks: Their names.
@@ -43,13 +43,13 @@ class TapeCheck:
 
     @property
     def is_off(self) -> bool:
-        """Tell whether tape and photograph disagree."""
+        """Return whether tape and photograph disagree."""
         return abs(self.seen - self.tape) > _FAR
 
 
 @dataclass(frozen=True)
 class Preview:
-    """What the first photograph shows.
+    """Detections, scale and tape checks of the first photograph.
 
     Attributes:
         file: The picture that was drawn.
@@ -58,7 +58,7 @@ class Preview:
         unseen: Marks of the floor that are not.
         camera_height: Height of the camera over the floor [m].
         misfit_px: Distance of marks from where the map has them, root mean square [px].
-        scale: What a pixel is on the floor in the middle of the marks [m/px].
+        scale: Size of a pixel on the floor in the middle of the marks [m/px].
         robot: x, y [m] and yaw [rad] of the robot, shape (3,); None where its marker is not seen.
         robot_side_px: Side of its marker in the photograph [px].
         tape: Tape checks of all pairs.
@@ -77,14 +77,14 @@ class Preview:
 
 
 def preview(request: TrackRequest, file: Path) -> Preview:
-    """Look at the first photograph and draw what is found.
+    """Detect marks in the first photograph and draw them.
 
     Args:
-        request: What will be asked of the track.
+        request: Options of the track.
         file: The PNG to write.
 
     Raises:
-        ZebroLabError: A file or an option says what cannot be followed.
+        ZebroLabError: A file or an option is invalid.
         TrackingError: The floor's map does not fit.
     """
     target = require_own(file, PREVIEW, inputs=request.inputs)

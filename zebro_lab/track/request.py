@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What is asked of a track."""
+"""Options of a track."""
 
 from dataclasses import dataclass, field
 from datetime import datetime
@@ -14,7 +14,7 @@ from zebro_lab.track.robot import WALKING_HEIGHT_SD
 
 @dataclass(frozen=True)
 class TrackRequest:
-    """What is asked of a track.
+    """Options of a track: photographs, files and settings.
 
     Attributes:
         photos: Folder of photographs, video, or one composite picture.
@@ -25,16 +25,16 @@ class TrackRequest:
         run: Run folder the photographs belong to.
         times: How the photographs get their times.
         start: Moment from which time is counted; None for the run's start or the first photograph.
-        marker: What is printed on the robot: dictionary, number and side; None for what the robot's
-            file says.
-        without_marker: Track the robot by its own picture, annotated in one photograph.
-        merged: How the exposures of a composite picture were merged; None of other photographs.
-        annotations: What a person said about the photographs.
+        marker: The robot's marker: dictionary, number and side; None to take that of the robot's
+            file.
+        without_marker: Track the robot by a template, annotated in one photograph.
+        merged: How the exposures of a composite picture were merged; None for other photographs.
+        annotations: An `annotations.toml`, a person's annotations of the photographs.
         body_height: Height of the body's origin while the robot stands; None to take the marker's
             [m].
         height_sd: Standard deviation of that height over a walk [m].
         gap: Interval longer than which the path is interrupted; None for 3.5 usual ones [s].
-        source: Where the photographs are from; None to take the files' word or the run's.
+        source: Source of the photographs; None to take that of the files or of the run.
         workers: Processes to use.
     """
 
@@ -76,12 +76,12 @@ class TrackRequest:
 
     @property
     def named(self) -> tuple[Path, ...]:
-        """Files that were named, beside the photographs."""
+        """Input files given, other than the photographs."""
         files = (self.camera, self.floor, self.robot, self.annotations,
                  self.times.table, self.times.clock)  # fmt: skip
         return tuple(file for file in files if file is not None)
 
     @property
     def inputs(self) -> tuple[Path, ...]:
-        """What is read, as it was named."""
+        """All inputs given: photographs, files and run."""
         return (self.photos, *self.named, *((self.run,) if self.run is not None else ()))

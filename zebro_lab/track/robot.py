@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What tracking takes from `robot.toml`: the marker on the robot, and how high the body is."""
+"""The robot for tracking, from `robot.toml`: its marker, and the prior on the body's height."""
 
 import numpy as np
 
@@ -12,7 +12,7 @@ from zebro_lab.robot.marker_print import parse_marker
 from zebro_lab.robot.robot_file import RobotFile
 
 WALKING_HEIGHT_SD = 5e-3
-"""How far a walking body is from the height at which it stands: legs lift it as they turn [m]."""
+"""Standard deviation of a walking body's height about its standing height, as legs lift it [m]."""
 
 STEEPEST = 0.05
 """Roll or pitch beyond which a marker on the robot is not level [rad]."""
@@ -21,19 +21,19 @@ STEEPEST = 0.05
 def tracked_robot(
     described: RobotFile, marker: str | None = None, *, prior: BodyPrior
 ) -> MarkedRobot:
-    """Put together what is known of a robot that carries a marker.
+    """Make the robot with its marker from `robot.toml` and options.
 
     The marker's frame in `robot.toml` has its x along the print's upward direction: a print whose
     top points ahead has no yaw.
 
     Args:
         described: The `robot.toml`.
-        marker: What is printed on the robot, such as "4x4_50:0:120mm"; None for what the file says.
+        marker: The robot's marker, such as "4x4_50:0:120mm"; None for that of the file.
         prior: Height and tilt of the body.
 
     Raises:
-        SettingsError: The marker is none.
-        UnitError: Its side is no length.
+        SettingsError: The marker is invalid.
+        UnitError: Its side is not a length.
     """
     place = described.marker
     if place is None:
@@ -64,7 +64,7 @@ def tracked_robot(
 def body_prior(
     described: RobotFile, *, height: float | None = None, height_sd: float = WALKING_HEIGHT_SD
 ) -> BodyPrior:
-    """Say how high the body's origin is, from a height given or from the marker's.
+    """Compute the prior on the body's height, from a given height or from the marker's.
 
     Args:
         described: The `robot.toml`.

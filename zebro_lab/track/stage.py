@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Photographs in, track folder out."""
+"""Track photographs into a track folder."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -28,14 +28,14 @@ from zebro_lab.track.request import TrackRequest
 
 @dataclass(frozen=True)
 class TrackResult:
-    """A track that was written.
+    """A written track.
 
     Attributes:
         folder: The track folder.
         tracked: What was found.
-        photos: How many photographs or exposures there were.
+        photos: Number of photographs or exposures.
         source: "real", "sim:what" or "unknown".
-        times: Where times are from, and from when they are counted.
+        times: Source and origin of the times, in words.
         is_composite: Whether they are exposures of one picture.
     """
 
@@ -48,12 +48,16 @@ class TrackResult:
 
 
 def track(request: TrackRequest, watcher: Progress) -> TrackResult:
-    """Track a walk and write the track folder.
+    """Track a walk in photographs and write the track folder.
+
+    Args:
+        request: Photographs, files and options.
+        watcher: Where progress is reported.
 
     Raises:
-        ZebroLabError: A file or an option says what cannot be followed.
+        ZebroLabError: A file or an option is invalid.
         TrackingError: The photographs do not give a track.
-        TrackStopped: Somebody asked to stop.
+        TrackStopped: A stop was requested.
     """
     require_replaceable(request.folder, TRACKED, inputs=request.inputs)
     inputs = read_inputs(request)
@@ -82,7 +86,7 @@ def _times_of(
 def _result(
     inputs: TrackInputs, sequence: PhotoSequence, tracked: Tracked, counted: CountedTimes
 ) -> TrackResult:
-    """Add what was known before the photographs were looked at."""
+    """Make the result, with the photographs left out and notes known before tracking."""
     lost = {**sequence.left_out, **tracked.lost}
     tracked = replace(tracked, lost=lost, notes=(*counted.notes, *tracked.notes))
     count = len(sequence.names) + len(sequence.left_out)
@@ -114,7 +118,7 @@ def _write(inputs: TrackInputs, sequence: PhotoSequence, result: TrackResult) ->
 
 def _draw(draft: Path, result: TrackResult, scene: Scene, sequence: PhotoSequence) -> None:
     track, seen = result.tracked.track, result.tracked.floor
-    # The last photograph shows the floor under the path's beginning, where no robot stands now.
+    # In the last photograph the robot no longer hides the floor where the path begins.
     last = track.observations[-1].photo.rpartition("#")[0] if sequence.is_composite else None
     shown = last or track.observations[-1].photo
     detections = {each.photo: each for each in seen.detections}

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""Simulated photographs with known truth; shares no code with what it is to test.
+"""Simulated photographs with known truth; shares no code with the code under test.
 
-Rendered by inverse mapping: each pixel is the mean over rays through its square, each traced back
-through the lens to the floor, a print or the robot.
+Rendered by inverse mapping (ray casting): each pixel is the mean over rays through its square, each
+traced back through the lens to the floor, a print or the robot.
 """
 
 from support.synthetic.composite import CompositeKind, composite

@@ -9,7 +9,7 @@ import numpy as np
 
 from support.synthetic.photograph import Pixels, SyntheticPhoto
 
-_CUT_MARGIN_PX = 5  # what a person with scissors leaves around the robot
+_CUT_MARGIN_PX = 5  # margin of a cut-out around the robot
 _FEATHER_PX = 1.5
 
 
@@ -29,7 +29,7 @@ def composite(photos: Sequence[SyntheticPhoto], kind: CompositeKind | str) -> Pi
 
     Args:
         photos: In order of time; of one camera that did not move.
-        kind: How.
+        kind: How they are merged.
 
     Returns:
         One picture, shape (height, width, 3).

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""A perspective camera with lens distortion: points to pixels, and pixels back to rays.
+"""Pinhole camera with lens distortion: points to pixels, and pixels back to rays.
 
-Written out in full, so that the truth of a synthetic photograph rests on no other code.
+Written out in full, so that the truth of a synthetic photograph depends on no other code.
 """
 
 from dataclasses import dataclass, field
@@ -89,7 +89,7 @@ def look_at(
     field_of_view: float = np.radians(50.0),
     distortion: tuple[float, float, float, float, float] = (0.0, 0.0, 0.0, 0.0, 0.0),
 ) -> SyntheticCamera:
-    """Place an upright camera.
+    """Make an upright camera that points at a target.
 
     Args:
         position: Of the camera, shape (3,) [m].

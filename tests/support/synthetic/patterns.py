@@ -87,10 +87,10 @@ def charuco_cells(columns: int, rows: int, *, dictionary: str = "DICT_4X4_50") -
 
 
 def plate_cells(rng: np.random.Generator, *, cells: int = 34, parts: int = 18) -> Grid:
-    """Draw a top plate with electronics on it: what a robot without a marker is known by.
+    """Draw a top plate with electronics on it, by which a robot without a marker is tracked.
 
     Args:
-        rng: Where the parts lie.
+        rng: Random numbers for the places of the parts.
         cells: Cells across and down.
         parts: Rectangular parts on the plate.
 
@@ -110,7 +110,7 @@ def floor_texture(rng: np.random.Generator, *, size: int = 1024) -> Grid:
     """Draw a speckled floor that repeats without a seam every `FLOOR_TEXTURE_SIDE`.
 
     Args:
-        rng: Of the speckles.
+        rng: Random numbers for the speckles.
         size: Samples along each side.
 
     Returns:
@@ -128,7 +128,7 @@ def floor_texture(rng: np.random.Generator, *, size: int = 1024) -> Grid:
 
 
 def look_up(grid: Grid, across: NDArray, down: NDArray) -> Grid:
-    """Read the cell under each point.
+    """Look up the cell under each point (nearest neighbour).
 
     Args:
         grid: Albedo, shape (rows, columns) or (rows, columns, 3).

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""From brightness to a photograph: exposure, blur, glare, shade, noise and compression."""
+"""Turn brightness into a photograph: exposure, blur, glare, shade, noise and compression."""
 
 from dataclasses import dataclass
 
@@ -18,7 +18,7 @@ _FULL = 255.0
 
 @dataclass(frozen=True)
 class Glare:
-    """A round patch of light, where a lamp mirrors: it adds up and washes out.
+    """Glare of a lamp: a round patch of added light.
 
     Attributes:
         centre_px: Across and down [px].
@@ -39,7 +39,7 @@ class Shade:
         point_px: A point on its edge, across and down [px].
         angle: From the x axis of the picture to where it gets dark, turning to y [rad].
         softness_px: Length of the transition [px].
-        left_over: What is left of the light inside [-].
+        left_over: Share of the light that is left inside [-].
     """
 
     point_px: tuple[float, float]
@@ -50,7 +50,7 @@ class Shade:
 
 @dataclass(frozen=True)
 class Conditions:
-    """How a photograph is taken; the defaults are kind.
+    """Conditions under which a photograph is taken; the defaults are favourable.
 
     Attributes:
         exposure: Share of full scale at which white paper in full light ends up [-].
@@ -58,7 +58,7 @@ class Conditions:
         defocus_sd_px: Standard deviation of the blur over the whole picture [px].
         shake_px: How far the picture moves during the exposure, across and down [px].
         read_noise_counts: Noise without light, standard deviation of 255 [counts].
-        shot_noise_counts: Noise at full scale; grows with the root of the light [counts].
+        shot_noise_counts: Noise at full scale; proportional to the root of the light [counts].
         jpeg_quality: Of the compression; None leaves it out.
         glare: Mirrored lamps.
         shade: Shadows of what is beside the picture.
@@ -83,7 +83,7 @@ HARSH = Conditions(
 
 @dataclass(frozen=True)
 class SyntheticPhoto:
-    """A photograph whose truth is known.
+    """A synthetic photograph with its truth.
 
     Attributes:
         pixels: Blue, green and red, shape (height, width, 3).
@@ -114,8 +114,8 @@ def take_photo(
         state: Where the robot is; None for no robot.
         look: How it looks; the default carries a marker.
         conditions: How the photograph is taken.
-        rng: Of the noise.
-        background: What `render_background(scene)` returned, to draw it but once.
+        rng: Random numbers for the noise.
+        background: Result of `render_background(scene)`, to draw it only once.
 
     Returns:
         The photograph and its truth. The same arguments and seed give the same pixels.
@@ -134,12 +134,12 @@ def take_photo(
 def develop(
     picture: Picture, conditions: Conditions, *, rng: np.random.Generator
 ) -> tuple[Pixels, bytes | None]:
-    """Turn brightness into pixels.
+    """Convert brightness to pixels with the camera's and compression's errors.
 
     Args:
         picture: Brightness in blue, green and red, shape (height, width, 3) [-].
         conditions: How the photograph is taken.
-        rng: Of the noise.
+        rng: Random numbers for the noise.
 
     Returns:
         Pixels, and the JPEG they were decoded from when there is one.

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The robot in a synthetic photograph: where it is, how its legs stand, how it looks."""
+"""State and appearance of the robot in a synthetic photograph."""
 
 from dataclasses import dataclass, field, replace
 
@@ -12,7 +12,7 @@ PLATE_TOP = 0.0385  # of the top plate above the body's centre [m]
 
 @dataclass(frozen=True)
 class DrawnPose:
-    """Where the body's centre is and how it is turned, R = Rz(yaw) Ry(pitch) Rx(roll).
+    """Pose of the body's centre, R = Rz(yaw) Ry(pitch) Rx(roll).
 
     Attributes:
         x: Inertial [m].
@@ -50,7 +50,7 @@ class DrawnPose:
 
 @dataclass(frozen=True)
 class RobotState:
-    """What a robot does while it is photographed.
+    """Pose, leg angles and velocity of the robot during a photograph.
 
     Attributes:
         pose: In the middle of the exposure.
@@ -104,10 +104,10 @@ class DrawnRobotMarker:
 
 @dataclass(frozen=True)
 class RobotLook:
-    """How a robot looks.
+    """Appearance of a robot.
 
     Attributes:
-        marker: On its plate; None for a robot known by its body alone.
+        marker: On its plate; None for a robot without a marker.
         plate_seed: Of the parts on its top plate.
         parts: Number of parts on its top plate; 0 leaves it plain.
     """

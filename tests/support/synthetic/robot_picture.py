@@ -86,10 +86,10 @@ def paint_robot(
 
 @dataclass(frozen=True)
 class _Sampler:
-    """What is to be seen of a robot, ray by ray.
+    """Sampler of a robot's appearance, ray by ray.
 
-    A value has five parts: the robot's blue, green and red, whether it is there, and what is left
-    of the floor's light; the last is 0 where the robot is, the first four where it is not.
+    A value has five parts: the robot's blue, green and red, whether it is there, and the share of
+    the floor's light; the last is 0 where the robot is, the first four where it is not.
     """
 
     state: RobotState
@@ -99,11 +99,11 @@ class _Sampler:
     exposure_time: float
 
     def averages(self, rays: RayField, shape: tuple[int, int]) -> Picture:
-        """Average the values over each pixel, shape (*shape, 5).
+        """Average the values over each pixel, shape (*shape, 5) (adaptive sampling).
 
-        A robot at rest is drawn from a few points of each pixel; all are used only where these, or
-        those of the pixels around, disagree. Every surface is flat in colour: its edges part the
-        corners of the pixels they cross, or a tip of it comes in over a side.
+        A robot at rest is sampled at a few points of each pixel. All points are used only where
+        these, or those of the pixels around, disagree. Every surface has a uniform colour: an edge
+        separates the corners of the pixels it crosses, and a tip crosses a side.
         """
         if self._moves:
             return self._mean(rays, range(SAMPLES)).reshape(*shape, _PARTS)
@@ -167,7 +167,7 @@ def _paint_print(
 
 @dataclass(frozen=True)
 class _Seen:
-    """A robot at one moment, as rays find it."""
+    """A robot at one moment, for intersection with rays."""
 
     pose: DrawnPose
     leg_angles: tuple[float, ...]
@@ -187,7 +187,7 @@ class _Seen:
         return found, all_colours
 
     def floor_light(self, origin: Array, rays: NDArray, disc: Array) -> Picture:
-        """Compute what is left of the floor's brightness where each ray meets it, shape (n,)."""
+        """Compute the share of the floor's brightness where each ray meets it, shape (n,)."""
         down = np.minimum(rays[2], np.float32(-1e-6))  # rays to the sky end far away
         places = origin[:, None].astype(np.float32) - rays * np.float32(origin[2]) / down
         turn = self.pose.rotation.T.astype(np.float32)
@@ -202,7 +202,7 @@ class _Seen:
         return left
 
     def _near(self, start: Components, along: Components) -> NDArray:
-        """Tell which rays meet a box around the whole robot: most need no closer look."""
+        """Return which rays meet a bounding box of the robot; the others need no further test."""
         marker = self.look.marker
         top = PLATE_TOP if marker is None else max(PLATE_TOP, marker.height)
         low, high = (-REACH, -REACH, -2.1 * LEG_RADIUS), (REACH, REACH, top + 2.1 * LEG_RADIUS)
@@ -226,7 +226,7 @@ class _Seen:
         return nearest, colour
 
     def _prints(self) -> list[_Print]:
-        """List what is printed on level sheets: the plate's parts and the marker."""
+        """List the prints on level sheets: the plate's parts and the marker."""
         lit = float(self._faces()[2, 1])
         prints = [_Print(self.plate, _PLATE_SIDE, PLATE_TOP, lit)]
         if (marker := self.look.marker) is not None:
@@ -257,7 +257,7 @@ def _rows(vectors: NDArray) -> Components:
 
 
 def _towards(light: Light, disc: Array) -> Array:
-    """Pick the direction towards one point of the lamp, given in its unit disc."""
+    """Compute the direction to one point of the lamp, given in its unit disc."""
     axis = light.towards
     side = np.cross(axis, [0.0, 1.0, 0.0] if abs(axis[1]) < 0.9 else [1.0, 0.0, 0.0])
     side /= np.linalg.norm(side)

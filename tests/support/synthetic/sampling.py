@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: MIT
-"""Where in a pixel, and when in an exposure, a picture is sampled.
+"""Sample points within a pixel and within an exposure (lattice rule with random shifts).
 
-A pixel is the mean over its square. It is taken at the points of a lattice, each with an x and a y
-that no other has: in one pixel an upright or level edge is then placed to 1/55 of a pixel, where an
-8 x 8 grid would place it to 1/8. An oblique edge may run along the lattice's own rows, and one
-lattice for all pixels would place it wrongly in each alike, by up to 1/15. So each pixel has one of
-14 lattices, shifted, both chosen by a hash of its place: its error is its own, with a standard
-deviation of 0.017 px, and an edge of n pixels is placed to 0.017 / sqrt(n) px.
+A pixel is the mean over its square. It is sampled on a lattice whose points all differ in x and in
+y. In one pixel an upright or level edge is then placed to 1/55 of a pixel, where an 8 x 8 grid
+would place it to 1/8. An oblique edge may run along the lattice's own rows, and the same lattice in
+all pixels would place it wrongly in each alike, by up to 1/15. Each pixel therefore has one of 14
+lattices, shifted, both chosen by a hash of its coordinates. Its error is independent, with a
+standard deviation of 0.017 px, and an edge of n pixels is placed to 0.017 / sqrt(n) px.
 """
 
 from dataclasses import dataclass
@@ -61,7 +61,7 @@ class Patch:
 
 
 def patch_around(camera: SyntheticCamera, points: Array, *, margin: float = 3.0) -> Patch | None:
-    """Find the pixels that may show what lies within some points.
+    """Compute the bounding patch of pixels around projected points.
 
     Args:
         camera: The camera.
@@ -112,7 +112,7 @@ class RayField:
         return self.middle + du * self.per_u + dv * self.per_v
 
     def beside(self, du: float, dv: float) -> NDArray[np.float32]:
-        """Return directions through a place in every pixel, from its centre [px], shape (3, n)."""
+        """Return directions through one offset from every pixel's centre [px], shape (3, n)."""
         away = np.float32(du) * self.per_u + np.float32(dv) * self.per_v
         return (self.middle + away).astype(np.float32)
 
@@ -146,7 +146,7 @@ def _own_lattices(u: NDArray, v: NDArray) -> tuple[NDArray[np.intp], NDArray[np.
 
 
 def _hashed(u: NDArray, v: NDArray, salt: int) -> NDArray[np.uint32]:
-    """Mix coordinates until neighbours have nothing in common (Wellons, lowbias32)."""
+    """Hash coordinates, so that neighbours are uncorrelated (Wellons, lowbias32)."""
     h = np.full(u.shape, salt, np.uint32)
     for more in (u, v):
         h = h + more.astype(np.uint32)

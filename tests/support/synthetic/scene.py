@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What stands still in front of the camera: floor, light, and sheets of print."""
+"""Static parts of the scene: camera, floor, light, and printed sheets."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
@@ -22,18 +22,18 @@ from support.synthetic.surfaces import rectangle_hit
 Picture = NDArray[np.float32]
 
 _EDGE_POINTS = 33  # along each edge of a sheet, to follow how a lens bends it
-_SKY = 0.75  # what is seen above the horizon [-]
+_SKY = 0.75  # brightness above the horizon [-]
 
 
 @dataclass(frozen=True)
 class Light:
-    """A lamp far away, and light from all around.
+    """A distant lamp and ambient light.
 
     Attributes:
         direction: Towards the lamp, of any length, shape (3,).
         ambient: Brightness of a white surface in the lamp's shadow [-].
         lamp: What the lamp adds to a white surface that faces it [-].
-        radius: Half the angle the lamp is seen under: how soft its shadows are [rad].
+        radius: Angular radius of the lamp, which sets the softness of shadows [rad].
     """
 
     direction: tuple[float, float, float] = (0.35, 0.25, 1.0)
@@ -131,7 +131,7 @@ class DrawnScene:
         camera: The camera.
         markers: On the floor.
         light: The light.
-        floor_seed: Of the floor's speckles.
+        floor_seed: Seed of the floor's speckles.
     """
 
     camera: SyntheticCamera
@@ -206,7 +206,7 @@ def _floor(scene: DrawnScene) -> Picture:
     texture = floor_texture(np.random.default_rng(scene.floor_seed))
     scale = len(texture) / FLOOR_TEXTURE_SIDE
     picture = np.empty((camera.height, camera.width, 3), np.float32)
-    for top in range(0, camera.height, 256):  # a strip at a time: rays need much memory
+    for top in range(0, camera.height, 256):  # in strips, to limit the memory of the rays
         v, u = np.mgrid[top : min(top + 256, camera.height), 0 : camera.width].astype(float)
         rays = camera.rays(np.stack([u, v], axis=-1)) @ camera.rotation
         below = rays[..., 2] < -1e-3

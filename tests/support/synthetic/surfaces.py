@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Where rays meet boxes, flat rectangles and bent strips.
+"""Intersections of rays with boxes, rectangles and bent strips.
 
-A ray is an origin and a direction, each three components x, y, z; a component is a number or an
+A ray is an origin and a direction, each three components x, y, z. A component is a number or an
 array, and broadcasts against the others. Distances are in units of the direction's length, infinite
 where the ray misses.
 """
@@ -16,7 +16,7 @@ Components = tuple[Component, Component, Component]
 
 
 class Hit(NamedTuple):
-    """Where a ray meets a surface.
+    """Intersection of rays with a surface.
 
     Attributes:
         distance: Along the ray, infinite where it misses.
@@ -34,7 +34,7 @@ def box_hit(
     low: tuple[float, float, float],
     high: tuple[float, float, float],
 ) -> Hit:
-    """Find where rays enter an upright box; rays that start inside miss.
+    """Compute where rays enter an axis-aligned box; rays that start inside miss.
 
     Args:
         origin: Of the rays, in the box's frame [m].
@@ -54,7 +54,7 @@ def meets_box(
     low: tuple[float, float, float],
     high: tuple[float, float, float],
 ) -> NDArray:
-    """Tell which rays pass through an upright box, or start in it.
+    """Return which rays pass through an axis-aligned box, or start in it.
 
     Args:
         origin: Of the rays, in the box's frame [m].
@@ -72,7 +72,7 @@ def _slabs(
     low: tuple[float, float, float],
     high: tuple[float, float, float],
 ) -> tuple[list[NDArray], NDArray, NDArray]:
-    """Find where rays enter the slab of each axis, the last of these, and where they leave one."""
+    """Compute where rays enter each axis's slab, the last entry and the first exit."""
     entries, exits = [], []
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         for start, step, near, far in zip(origin, direction, low, high, strict=True):
@@ -86,7 +86,7 @@ def _slabs(
 def rectangle_hit(
     origin: Components, direction: Components, *, size: tuple[float, float], z: float
 ) -> tuple[NDArray, NDArray, NDArray]:
-    """Find where rays meet a rectangle parallel to the xy plane, centred on the z axis.
+    """Intersect rays with a rectangle parallel to the xy plane, centred on the z axis.
 
     Args:
         origin: Of the rays, in the rectangle's frame [m].
@@ -114,7 +114,7 @@ def half_circle_hit(
     width: float,
     angle: float,
 ) -> NDArray:
-    """Find where rays meet a leg: a thin strip, bent to half a circle about an axis along y.
+    """Intersect rays with a leg: a thin strip, bent to half a circle about an axis along y.
 
     Args:
         origin: Of the rays, in the body frame [m].
@@ -134,7 +134,7 @@ def half_circle_hit(
     b = from_x * along_x + from_z * along_z
     root = np.asarray(b * b - a * (from_x * from_x + from_z * from_z - radius * radius))
     nearest = np.full(root.shape, np.inf)
-    near = np.flatnonzero(root >= 0)  # few do, and only these are looked at more closely
+    near = np.flatnonzero(root >= 0)  # few do, and only these are tested further
     parts = (a, b, from_x, from_z, along_x, along_z, direction[1], origin[1] - hip[1])
     a, b, from_x, from_z, along_x, along_z, along_y, from_y = (
         part[near] if isinstance(part, np.ndarray) and part.ndim else part for part in parts

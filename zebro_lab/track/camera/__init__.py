@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: MIT
-"""Calibrate the camera, print the tracking kit, show the clock to photograph."""
+"""Camera calibration, printed tracking kit, and clock to photograph."""

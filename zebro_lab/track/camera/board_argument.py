@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What `--board` says: which calibration board was photographed."""
+"""Parse `--board`, the description of a calibration board."""
 
 from tracking.camera import Board, CharucoBoard, Checkerboard
 from tracking.errors import TrackingError
@@ -15,11 +15,11 @@ _EXPECTED = (
 
 
 def parse_board(text: str) -> Board:
-    """Read a board from its description.
+    """Parse the description of a calibration board.
 
     Raises:
-        SettingsError: It describes none.
-        UnitError: A length is none.
+        SettingsError: The description is invalid.
+        UnitError: A length is invalid.
 
     >>> parse_board("checkerboard:9x6:25mm")
     Checkerboard(columns=9, rows=6, square=0.025)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The QR clock on a terminal: no window, so it works over a remote shell too."""
+"""QR code of the time on a terminal; it opens no window, so it works over a remote shell."""
 
 import time
 from collections.abc import Callable
@@ -11,30 +11,30 @@ from numpy.typing import NDArray
 from tracking.images import clock_picture
 
 RENEWAL = 0.1
-"""How often the code is renewed; `tracking.images.clock_offset` counts on it [s]."""
+"""Interval at which the code is renewed; `tracking.images.clock_offset` assumes it [s]."""
 
 _HOME = "\x1b[H"
 _CLEAR = "\x1b[2J"
 
 
 def show_clock(stopped: Callable[[], bool], *, duration: float | None) -> None:
-    """Show the code of the moment until somebody stops it.
+    """Show the QR code of the current time until a stop is requested.
 
     Args:
-        stopped: Tells whether somebody asked to stop.
-        duration: How long; None for until then [s].
+        stopped: Returns whether a stop was requested.
+        duration: Time after which to stop; None for no limit [s].
     """
     end = None if duration is None else time.monotonic() + duration
     typer.echo(_CLEAR, nl=False)
     while not stopped() and (end is None or time.monotonic() < end):
         now = time.time()
         typer.echo(f"{_HOME}{code_lines(now)}\nphotograph this code; Ctrl-C ends", nl=True)
-        # To the beat of the clock itself: the code then never shows a time long past.
+        # In phase with the clock itself, so that the code never shows an outdated time.
         time.sleep(RENEWAL - time.time() % RENEWAL)
 
 
 def code_lines(t: float) -> str:
-    """Draw the code of a moment in half blocks, two rows of squares a line, black on white.
+    """Draw the QR code of a moment in half-block characters, two rows a line, black on white.
 
     Args:
         t: Seconds since 1970, UTC [s].

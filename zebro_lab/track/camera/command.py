@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""`zebro-lab camera kit | calibrate | clock`: what has to be done before photographs are taken."""
+"""`zebro-lab camera kit | calibrate | clock`: preparations before photographs are taken."""
 
 from enum import StrEnum
 from pathlib import Path
@@ -26,14 +26,14 @@ zebro-lab camera calibrate board-photos --board checkerboard:9x6:25mm --out came
 
 
 class Paper(StrEnum):
-    """Papers of the kit."""
+    """Paper sizes of the kit."""
 
     A4 = "a4"
     LETTER = "letter"
 
 
 class LensModel(StrEnum):
-    """Distortions, in order of complexity."""
+    """Lens distortion models, in order of complexity."""
 
     AUTO = "auto"
     NONE = "none"
@@ -89,7 +89,7 @@ def calibrate(
 
 
 def calibration_lines(result: "CameraResult") -> list[str]:
-    """Say what was fitted, how well it is known and what was left out."""
+    """Format the calibration's result: lens, standard deviations, files left out."""
     fit = result.fit
     matrix, sd = fit.camera.matrix, fit.sd
     width, height = fit.camera.size

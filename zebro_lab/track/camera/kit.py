@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""What a lab prints for tracking, to scale: markers, calibration board, ruler, instructions.
+"""Layout of the printed tracking kit, to scale: markers, calibration board, ruler, instructions.
 
-Pages are lists of shapes in millimetres from the lower left corner of the paper; a marker is drawn
-cell by cell, so that nothing is resampled on its way to the printer.
+Pages are lists of shapes in millimetres from the lower left corner of the paper. A marker is drawn
+cell by cell, so that nothing is resampled before it is printed.
 """
 
 from dataclasses import dataclass
@@ -24,7 +24,7 @@ FLOOR_MARKERS = (10, 11, 12, 13)
 FLOOR_SIDE = 150.0
 """Side of the floor's markers [mm]."""
 
-# Another dictionary than the markers': a board left in the picture is not taken for the floor.
+# Not the markers' dictionary, so that a board left in the picture is not taken for the floor.
 BOARD = CharucoBoard(7, 5, 0.035, 0.026, "5x5_50")
 """The board that the kit prints and `camera calibrate` expects by default."""
 
@@ -53,9 +53,9 @@ class Text:
     """A line of text.
 
     Attributes:
-        x: Where it begins, or its middle where centred [mm].
+        x: Its left end, or its middle if centred [mm].
         y: Its base line [mm].
-        text: What it says.
+        text: The text.
         size: Height of its type [pt].
         centred: Whether x is its middle.
     """
@@ -74,8 +74,8 @@ class KitPage:
     Attributes:
         width: Of the paper [mm].
         height: Of the paper [mm].
-        rectangles: What is black.
-        texts: What is written.
+        rectangles: Black rectangles.
+        texts: Lines of text.
     """
 
     width: float
@@ -109,7 +109,7 @@ def kit_pages(paper: str = "a4") -> tuple[KitPage, ...]:
 
 
 def starter_floor() -> FloorMap:
-    """Return the layout that the instructions advise, to be edited to what the tape says."""
+    """Return the floor layout that the instructions advise, to be replaced by measured places."""
     places = ((0.0, -0.5), (2.0, -0.5), (2.0, 1.5), (0.0, 1.5))
     markers = tuple(
         FloorMarker(number, FLOOR_SIDE / 1e3, x, y)
@@ -121,7 +121,7 @@ def starter_floor() -> FloorMap:
 def marker_rectangles(
     dictionary: str, number: int, side: float, *, left: float, bottom: float
 ) -> tuple[Rectangle, ...]:
-    """Draw a marker's black cells as the runs of its rows and of its columns.
+    """Compute a marker's black cells as rectangles, one for each run in rows and in columns.
 
     Args:
         dictionary: Name of the dictionary.
@@ -132,7 +132,7 @@ def marker_rectangles(
     """
     black = marker_picture(dictionary, number, 1)[1:-1, 1:-1] < 0.5
     cell = side / len(black)
-    # Rows and columns both: rows alone leave hairlines where two of them meet.
+    # Rows and columns both: rows alone leave hairlines between them.
     across = [
         Rectangle(left + start * cell, bottom + side - (row + 1) * cell, count * cell, cell)
         for row, cells in enumerate(black)
@@ -147,13 +147,13 @@ def marker_rectangles(
 
 
 def _runs(black: NDArray[np.bool_]) -> list[tuple[int, int]]:
-    """List where runs of black begin and how long they are."""
+    """Return start and length of each run of black cells."""
     edges = np.flatnonzero(np.diff(np.concatenate(([0], black.astype(int), [0]))))
     return [(start, end - start) for start, end in edges.reshape(-1, 2).tolist()]
 
 
 def board_rectangles(board: CharucoBoard, *, left: float, bottom: float) -> tuple[Rectangle, ...]:
-    """Draw a ChArUco board: black where row plus column is even, a marker in every white square.
+    """Compute a ChArUco board's rectangles: black where row plus column is even, else a marker.
 
     Args:
         board: The board; OpenCV's pattern since 4.6.

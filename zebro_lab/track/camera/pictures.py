@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The tracking kit as PDF, at true scale."""
+"""Draw the tracking kit as PDF, at true scale."""
 
 from collections.abc import Sequence
 from os import PathLike
@@ -17,13 +17,13 @@ _INCH = 25.4  # mm
 
 @styled
 def save_pages(pages: Sequence[KitPage], path: str | PathLike[str] | IO[bytes]) -> None:
-    """Write pages as PDF; a millimetre of a page is a millimetre on paper.
+    """Write pages as PDF at true scale, a millimetre for a millimetre.
 
-    The bytes depend on the pages alone: no time stamp goes in.
+    The bytes depend on the pages alone: no time stamp is written.
 
     Args:
         pages: The pages.
-        path: Where to; its folder exists. Or a file that is open.
+        path: File to write, in an existing folder, or an open file.
     """
     metadata = {"Creator": "zebro-lab", "Title": "Tracking kit", "CreationDate": None}
     with PdfPages(path, metadata=metadata) as file:
@@ -35,7 +35,7 @@ def save_pages(pages: Sequence[KitPage], path: str | PathLike[str] | IO[bytes]) 
 def draw_page(page: KitPage) -> Figure:
     """Draw a page on a figure of the paper's size."""
     figure = Figure(figsize=(page.width / _INCH, page.height / _INCH), facecolor="white")
-    # Axes that fill the paper and count in millimetres: nothing is fitted or shrunk.
+    # Axes that fill the paper, in millimetres: nothing is rescaled.
     axes = figure.add_axes((0.0, 0.0, 1.0, 1.0))
     axes.set(xlim=(0, page.width), ylim=(0, page.height))
     axes.set_axis_off()

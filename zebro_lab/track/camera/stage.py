@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Photographs of a board in, `camera.toml` out; the kit to print; the clock to photograph."""
+"""Calibrate a camera from photographs of a board into `camera.toml`; write the kit to print."""
 
 import os
 from collections import Counter
@@ -27,12 +27,12 @@ LENS = text_file("camera calibrate", HEADING)
 
 @dataclass(frozen=True)
 class CameraRequest:
-    """What is asked of a calibration.
+    """Options of a camera calibration.
 
     Attributes:
         photos: Folder of photographs of the board.
         out: The `camera.toml` to write.
-        board: The board, as `--board` says it.
+        board: Description of the board, as for `--board`.
         lens_model: "auto" or the distortion to fit.
         workers: Processes to use.
     """
@@ -46,7 +46,7 @@ class CameraRequest:
 
 @dataclass(frozen=True)
 class CameraResult:
-    """A calibration that was written.
+    """A written camera calibration.
 
     Attributes:
         file: The `camera.toml`.
@@ -60,12 +60,16 @@ class CameraResult:
 
 
 def calibrate_camera(request: CameraRequest, progress: Progress) -> CameraResult:
-    """Calibrate the lens and write `camera.toml`.
+    """Calibrate the lens from photographs of a board and write `camera.toml`.
+
+    Args:
+        request: Folder of photographs, board and options.
+        progress: Where progress is reported.
 
     Raises:
-        ZebroLabError: An option says what cannot be followed.
+        ZebroLabError: An option is invalid.
         TrackingError: The photographs do not determine the lens.
-        TrackStopped: Somebody asked to stop.
+        TrackStopped: A stop was requested.
     """
     target = require_own(request.out, LENS, inputs=(request.photos,))
     board = parse_board(request.board)
@@ -108,7 +112,7 @@ def _why_none(request: CameraRequest, left_out: dict[str, str]) -> str:
 
 
 def write_kit(out: Path, *, paper: str = "a4") -> tuple[Path, ...]:
-    """Write the kit to print and a `floor.toml` to edit.
+    """Write the printable kit and a starter `floor.toml`.
 
     Args:
         out: Folder to write into.
@@ -118,7 +122,7 @@ def write_kit(out: Path, *, paper: str = "a4") -> tuple[Path, ...]:
         The files.
 
     Raises:
-        AlreadyExists: There is a `floor.toml`, which may hold what a tape said, or another kit.
+        AlreadyExists: There is a `floor.toml`, which may hold measurements, or another kit.
         SettingsError: The paper is unknown.
     """
     from zebro_lab.track.camera.pictures import save_pages  # matplotlib takes most of a second

@@ -73,10 +73,15 @@ __all__ = [
 
 
 class Silent:
-    """Shows no progress and never asks to stop."""
+    """A watcher that shows no progress and never asks to stop."""
 
     def step(self, what: str, fraction: float | None) -> None:
-        """Ignore a step."""
+        """Ignore a progress report.
+
+        Args:
+            what: Name of the task.
+            fraction: Share of the task that is done, 0 to 1 [-]; None when unknown.
+        """
 
     def stop_requested(self) -> bool:
         """Return False."""
@@ -209,7 +214,7 @@ def calibrate(
 
     Args:
         data: Files and folders of rig data.
-        out: Calibration folder to write; None to keep nothing.
+        out: Calibration folder to write; None to keep no files.
         columns: A `columns.toml` for tables that have none beside them.
         slip_definition: Definition of the slip ratio to fit in; that of the data when None.
         law: "magic-formula", "brush" or "coulomb-stribeck".

@@ -83,7 +83,15 @@ def guess_set_points(table: RawTable) -> list[str]:
 
 
 def numbers_or_none(table: RawTable, name: str) -> Array | None:
-    """Return a column as numbers, shape (n,); None where it holds none."""
+    """Return the numbers of a column.
+
+    Args:
+        table: Table that has the column.
+        name: Header of the column.
+
+    Returns:
+        Values by row, shape (n,), in the file's unit; None if no cell is a finite number.
+    """
     try:
         numbers = table.numbers(name)
     except DataError:

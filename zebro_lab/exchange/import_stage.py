@@ -82,9 +82,17 @@ class Imported:
 
 
 def import_run(request: ImportRequest, watcher: Watcher) -> Imported:
-    """Make run folders of somebody else's files: one of a walk, one for each run of a rig.
+    """Convert files recorded by other software to run folders.
 
-    Everything is read and checked before anything is written.
+    A walk becomes one run folder; rig data become one run folder per run. All files are read and
+    checked before the first folder is written.
+
+    Args:
+        request: Files to import and settings.
+        watcher: Receives progress.
+
+    Returns:
+        The run folders written, and notes.
 
     Raises:
         SettingsError: What is asked cannot be, or a `columns.toml` cannot be followed.

@@ -116,7 +116,16 @@ def rig_runs(
 
 
 def write_rig_run(data_dir: Path, run: RigRun) -> Path:
-    """Write a run folder; what the certificate says of the load cell goes into its columns.toml.
+    """Write the run folder of an imported rig run.
+
+    Standard deviations from the load cell's certificate go into the folder's `columns.toml`.
+
+    Args:
+        data_dir: Folder that holds all runs.
+        run: Samples, geometry and provenance of the run.
+
+    Returns:
+        The run folder.
 
     Raises:
         AlreadyExists: A run of this start and label is there already.

@@ -77,7 +77,14 @@ def parameter_labels(parameters: Sequence[Parameter]) -> tuple[str, ...]:
 
 
 def new_figure(title: str, simulated: bool, *, width: float, height: float) -> Figure:
-    """Return an empty figure on white paper, sides in inches, marked when simulated."""
+    """Create an empty figure with a white background.
+
+    Args:
+        title: Title of the figure.
+        simulated: Whether to append "(simulated)" to the title.
+        width: Width of the figure [inch].
+        height: Height of the figure [inch].
+    """
     figure = Figure(figsize=(width, height), dpi=150, layout="constrained", facecolor="white")
     FigureCanvasAgg(figure)
     figure.suptitle(f"{title} (simulated)" if simulated else title)
@@ -102,7 +109,12 @@ def save(
 
 
 def legend_below(figure: Figure, *, columns: int) -> None:
-    """List what the panels drew, each entry once, under all of them."""
+    """Add one legend below all panels, with each label once.
+
+    Args:
+        figure: Figure to add the legend to.
+        columns: Number of columns of the legend.
+    """
     entries = {
         label: handle
         for axes in figure.axes
@@ -131,7 +143,17 @@ def plain(value: float) -> str:
 
 
 def slip_grid(slip: Array, count: int) -> Array:
-    """Span the tested slip, three times as densely in the part where peaks are narrow."""
+    """Compute a grid of slip ratios over the tested range, denser around zero.
+
+    Slip curves have narrow peaks near zero slip, where the grid gets additional points.
+
+    Args:
+        slip: Tested slip ratios [-].
+        count: Number of points over the full range; as many are added around zero.
+
+    Returns:
+        Increasing slip ratios [-].
+    """
     low, high = float(slip.min()), float(slip.max())
     reach = NARROW * max(-low, high)
     narrow = np.linspace(max(low, -reach), min(high, reach), count)

@@ -11,7 +11,11 @@ ABSENT = Markup("–")
 
 
 def look_up(document: Mapping[str, Any], keys: tuple[str | int, ...]) -> Any:
-    """Return what lies under keys of a document; None where nothing does.
+    """Return the value at a key path of a nested document, or None if there is none.
+
+    Args:
+        document: Nested mappings and lists.
+        keys: Keys and list indices, outermost first.
 
     >>> look_up({"a": [{"b": 2}]}, ("a", 0, "b"))
     2
@@ -50,7 +54,11 @@ def number(
 
 
 def spelled(value: float, digits: int = 3) -> str:
-    """Round to significant digits; whole numbers, which count, are spelled whole.
+    """Format a number with a given number of significant digits; integers are not rounded.
+
+    Args:
+        value: Number to format.
+        digits: Number of significant digits.
 
     >>> spelled(0.02084), spelled(1721.4, 4), spelled(62000), spelled(1e-7)
     ('0.0208', '1721', '62000', '1e-07')

@@ -78,9 +78,14 @@ def embed(file: Path, *, stage: str, simulated: bool) -> Picture:
 
 
 def lies_in(folder: Path, name: str) -> bool:
-    """Tell whether a file that a manifest names lies in its folder, links followed.
+    """Return whether a file named in a manifest lies in the manifest's folder.
 
-    A manifest is somebody's text: `../secret.png`, an absolute path or a link may name any file.
+    Links are resolved first. A manifest is untrusted input: `../secret.png`, an absolute path or a
+    link could refer to any file.
+
+    Args:
+        folder: Folder of the manifest.
+        name: File name as given in the manifest.
     """
     if Path(name).name != name or "\0" in name:
         return False
@@ -100,7 +105,11 @@ def place_of(name: str) -> tuple[int, str]:
 
 
 def caption_of(stem: str, *, stage: str) -> str:
-    """Say what a picture shows, by the name of its file and the stage that drew it.
+    """Return the caption of a picture, from its file name and the stage that drew it.
+
+    Args:
+        stem: File name of the picture without its suffix.
+        stage: Stage that drew the picture.
 
     >>> caption_of("walk-3.photos", stage="validation")
     'Photographs from above beside the robot drawn at its predicted pose'

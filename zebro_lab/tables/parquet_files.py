@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Parquet files, read as raw tables within bounds."""
+"""Read Parquet files as raw tables, with limits on memory."""
 
 import os
 from collections import Counter
@@ -24,7 +24,7 @@ def read_parquet_file(path: Path) -> RawTable:
 
     Raises:
         NotFound: There is no such file.
-        DataError: It is no whole Parquet file, or would unpack to too much.
+        DataError: It is not a complete Parquet file, or its unpacked size exceeds the limit.
     """
     with open_file(path) as file, parsing(path, "is not a whole Parquet file", advice=_ADVICE):
         table = _read(file, path)

@@ -94,7 +94,13 @@ def validate(
 
 
 def print_validated(console: "Console", validated: "Validated", out: Path) -> None:
-    """Print every walk's table, the means over walks, and where all was written."""
+    """Print a table for each walk, the means over walks, and the output folder.
+
+    Args:
+        console: Console to print to.
+        validated: Results of the validation.
+        out: Folder that was written.
+    """
     from rich.text import Text
 
     if "sim:" in validated.source:

@@ -105,7 +105,14 @@ def tilt_metrics(tilt: TiltJudged) -> dict[str, float]:
 
 
 def summarise_runs(runs: Sequence[JudgedRun], *, rng: np.random.Generator) -> list[Summary]:
-    """Average metrics over runs, with intervals from drawing whole runs again; none of one run."""
+    """Compute the mean of each metric over runs, with bootstrap intervals.
+
+    Whole runs are resampled. A metric with too few finite values gets no summary.
+
+    Args:
+        runs: Judged runs with the same models.
+        rng: Random number generator of the bootstrap.
+    """
     summaries = []
     for name in [row.name for row in runs[0].rows]:
         rows = [metrics(row) for run in runs for row in run.rows if row.name == name]

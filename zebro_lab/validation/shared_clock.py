@@ -31,7 +31,12 @@ class SharedClock:
 
 
 def given_clock(track: TrackFile, offset: float) -> SharedClock:
-    """Add a known offset to a track's times [s]."""
+    """Shift a track's times by a known clock offset.
+
+    Args:
+        track: Tracked poses.
+        offset: Offset that is added to the times [s].
+    """
     return SharedClock(_moved(track, offset), offset)
 
 

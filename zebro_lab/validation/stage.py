@@ -80,11 +80,18 @@ def pairs_of_run(run: Path) -> tuple[Path, Path]:
 
 
 def validate(request: ValidateRequest, watcher: Watcher) -> Validated:
-    """Judge predictions against tracks and write the folder.
+    """Compute the errors of predicted paths against tracks and write the validation folder.
+
+    Args:
+        request: Pairs of prediction and track, settings, and the folder to write.
+        watcher: Receives progress.
+
+    Returns:
+        Results of each run, means over runs, and the source of the data.
 
     Raises:
-        ZebroLabError: A file is missing, or prediction and track share no time.
-        ModelError: A path cannot be judged.
+        ZebroLabError: A file is missing, or prediction and track do not overlap in time.
+        ModelError: The errors of a path cannot be computed.
     """
     if not request.pairs:
         raise SettingsError("missing: nothing to validate", key="--predicted, --track")

@@ -80,7 +80,12 @@ COLUMNS = tuple(name for block in _BLOCKS for name in block.columns)
 
 
 def write_path(file: Path, path: WalkPath) -> None:
-    """Write a path as CSV in SI with the columns `COLUMNS`; what a model does not have is empty."""
+    """Write a path as CSV in SI with the columns `COLUMNS`.
+
+    Args:
+        file: File to write.
+        path: The path; quantities that its model does not compute become empty cells.
+    """
     values = np.column_stack([block.values(path) for block in _BLOCKS])
     line = ",".join(block.form for block in _BLOCKS for _ in block.columns) + "\n"
     with file.open("w", encoding="utf-8", newline="\n") as text:

@@ -38,7 +38,12 @@ class InformedLegs:
         return self.posterior.most_likely(walk=self.index)
 
     def draw(self, n: int, *, rng: np.random.Generator) -> LegState:
-        """Draw states of the legs."""
+        """Draw leg states from the posterior.
+
+        Args:
+            n: Number of draws.
+            rng: Random number generator.
+        """
         return self.posterior.draw(n, rng=rng, walk=self.index)
 
     def settings(self) -> dict[str, object]:

@@ -135,7 +135,15 @@ def _leg_state(
 
 
 def offset_sd_deg(request: BandRequest, legs: LegReference | QuantisedLog) -> float:
-    """Return the standard deviation of leg offsets: as asked, or half a count either way [deg]."""
+    """Return the standard deviation of leg offsets [deg].
+
+    It is the requested value, else that of quantisation, step / sqrt(12), for a log in counts, else
+    `ASSUMED_OFFSET_DEG`.
+
+    Args:
+        request: Request with the standard deviation, if any.
+        legs: Leg angles.
+    """
     if request.offset_sd_deg is not None:
         return request.offset_sd_deg
     if isinstance(legs, QuantisedLog):

@@ -51,13 +51,20 @@ class PredictRequest:
 
 
 def predict(request: PredictRequest, watcher: Watcher) -> Walked:
-    """Predict where measured leg angles lead and write the walk folder.
+    """Predict the path from measured leg angles and write the walk folder.
 
-    The path keeps the log's own time. A run that keeps a robot.toml is walked by that robot, unless
-    another is asked for.
+    The path has the log's time base. The robot is that of the request, else the `robot.toml` of the
+    run, else the thesis's robot.
+
+    Args:
+        request: Leg log, model, band and output folder.
+        watcher: Receives progress.
+
+    Returns:
+        The predicted walk with its notes.
 
     Raises:
-        ZebroLabError: A file is missing or holds what cannot be followed.
+        ZebroLabError: A file is missing or has invalid content.
         ModelError: The walk cannot be computed.
     """
     settle(request.log)

@@ -85,7 +85,12 @@ def summary_lines(summary: WalkSummary) -> list[str]:
 
 
 def slip_lines(walked: Walked, summary: WalkSummary) -> list[str]:
-    """Say how much legs slipped, and whether at loads that were tested."""
+    """Format lines on the mean slip of the legs, and on contacts outside the tested loads.
+
+    Args:
+        walked: The walk with its slip law.
+        summary: Summary of the walk.
+    """
     lines = []
     if np.isfinite(summary.mean_slip):
         lines.append(f"legs in contact slip at {1000 * summary.mean_slip:.2f} mm/s on average")

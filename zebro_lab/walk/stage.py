@@ -35,11 +35,18 @@ class WalkRequest:
 
 
 def walk(request: WalkRequest, watcher: Watcher) -> Walked:
-    """Walk a gait and write the walk folder.
+    """Simulate a gait and write the walk folder.
+
+    Args:
+        request: Gait, model, duration, band and output folder.
+        watcher: Receives progress.
+
+    Returns:
+        The walk with its notes.
 
     Raises:
-        ZebroLabError: A file or an option says what cannot be followed.
-        ModelError: No legs can walk so, or the walk cannot be computed.
+        ZebroLabError: A file or an option has an invalid value.
+        ModelError: The gait is impossible, or the walk cannot be computed.
     """
     require_replaceable(request.model.out, WALKED["walk"], inputs=request.model.inputs)
     described = robot_of(request.model)
@@ -71,11 +78,18 @@ def walk(request: WalkRequest, watcher: Watcher) -> Walked:
 
 
 def write_robot(file: Path, request: ModelRequest) -> Path:
-    """Write the robot asked for as a commented robot.toml to start from.
+    """Write the robot of a request as a commented `robot.toml`, as a template for editing.
+
+    Args:
+        file: File to write.
+        request: Request that names the robot.
+
+    Returns:
+        The file written.
 
     Raises:
         AlreadyExists: The file exists.
-        SettingsError: The robot asked for is none.
+        SettingsError: The robot is described with invalid values.
     """
     if file.exists():
         raise AlreadyExists(f"{file} exists already; edit it, or name another")

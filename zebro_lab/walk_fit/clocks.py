@@ -64,7 +64,12 @@ def estimated_clock_of(slip: Slip) -> Clock:
 
 
 def since(track: TrackFile, start: float) -> TrackFile:
-    """Count a track's times from another zero [s]."""
+    """Shift a track's times so that they count from `start`.
+
+    Args:
+        track: Tracked poses.
+        start: Time of the new origin, in the track's present time base [s].
+    """
     return replace(track, poses=track.poses.delayed(-start))
 
 

@@ -31,7 +31,8 @@ class GaitPlayer:
         self._gait = gait
         self._start: float | None = None
         self._due = 0.0
-        # At most at the robot's report rate, at least twice per horizon, so that set-points overlap.
+        # At most at the robot's report rate. Without that limit twice per horizon, so that the last
+        # set-point is not reached before the next is sent.
         self._interval = max(HORIZON / 2, 1 / profile.rate)
 
     def __call__(self, now: float) -> None:

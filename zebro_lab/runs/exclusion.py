@@ -66,7 +66,10 @@ def _written(folder: Path, did: str, why: str) -> RunManifest:
 
 
 def _history(manifest: RunManifest) -> tuple[Mapping[str, str], ...]:
-    """Return past exclusions; one made by hand or an earlier version is the only entry."""
+    """Return all exclusions, with the present one appended if it was not recorded.
+
+    An exclusion made by hand or by an earlier version is not in the manifest's list.
+    """
     history, now = tuple(manifest.exclusions), manifest.excluded
     excluded = [each.get("why") for each in history if each["did"] == EXCLUDED]
     if now is None or (excluded and excluded[-1] == now.get("why")):

@@ -123,7 +123,11 @@ def _list_events(axes: Axes, events: Sequence[Event]) -> None:
 
 
 def _chosen(events: Sequence[Event]) -> list[Event]:
-    """Select the events to label: the first and last of each run of equal texts."""
+    """Select at most `_MOST_EVENTS` events to label, in time order.
+
+    The first and the last event are always kept. The others are ranked by how often their text
+    occurred before, then warnings first, then by time.
+    """
     if len(events) <= _MOST_EVENTS:
         return list(events)
     seen: Counter[str] = Counter()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""`zebro-lab validate`: how far predicted paths lie from tracked ones."""
+"""`zebro-lab validate`: errors of predicted paths against tracked ones."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -144,7 +144,7 @@ def _table(run: "JudgedRun") -> "Table":
 
 
 def _tilt(run: "JudgedRun") -> list[str]:
-    """Say how roll and pitch compare with the IMU's."""
+    """Format lines on the errors of roll and pitch against the IMU."""
     import numpy as np
 
     if run.tilt is None:
@@ -160,7 +160,7 @@ def _tilt(run: "JudgedRun") -> list[str]:
 
 
 def _verdict(run: "JudgedRun") -> list[str]:
-    """Say what the band is worth."""
+    """Format lines on coverage and consistency (NEES) of the band."""
     row = run.rows[0]
     if run.band is None:
         return []

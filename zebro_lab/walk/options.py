@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Options that `walk` and `predict` have in common."""
+"""Command-line options that `walk` and `predict` share."""
 
 from enum import StrEnum
 from pathlib import Path
@@ -18,7 +18,7 @@ class Model(StrEnum):
 
 
 class Toe(StrEnum):
-    """What a leg on its toe, which no rig has measured, holds."""
+    """Traction laws of a leg on its toe, which no rig has measured."""
 
     SATURATED = "saturated"
     PEAK = "peak"

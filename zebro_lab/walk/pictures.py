@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The pictures of a walk folder."""
+"""Pictures and animation of a walk folder."""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -19,14 +19,14 @@ def draw_walk(
 ) -> None:
     """Draw path, motion, orientation, slip ratios, forces and contacts of a walk.
 
-    What each leg did is drawn for the last two cycles, where a walk has settled.
+    Slip, forces and contacts are drawn for the last two cycles, when the walk is steady.
 
     Args:
         folder: Folder to write the PNG files into.
         path: The walk.
         robot: The robot.
-        title: What walked by which model; every title begins with the picture's own name.
-        period: Time of a cycle; None where it is not known [s].
+        title: Gait and model; every title begins with the picture's own name.
+        period: Duration of a gait cycle; None if unknown [s].
     """
     from zebro_lab.plots import save, walk_legs, walk_path  # matplotlib takes most of a second
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A gait in, walk folder out."""
+"""Stage of `zebro-lab walk`: construct a gait, compute the path, write the walk folder."""
 
 from dataclasses import dataclass
 from functools import partial
@@ -19,13 +19,13 @@ from zebro_lab.walk.walking import ModelRequest, Walked, robot_of, walk_with, wr
 
 @dataclass(frozen=True)
 class WalkRequest:
-    """What is asked of a walk.
+    """Settings of a walk.
 
     Attributes:
         gait: The gait.
-        model: Which model, on what, and what to write.
-        duration: Time to walk [s].
-        band: What band to predict; None for the path alone.
+        model: Model, slip law, robot, and what to write.
+        duration: Duration of the walk [s].
+        band: Settings of the band; None for the path alone.
     """
 
     gait: GaitRequest

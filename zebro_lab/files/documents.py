@@ -10,7 +10,7 @@ from zebro_lab.files.errors import DataError, SettingsError
 from zebro_lab.files.opening import Fault, parsing, read_bytes, read_text
 
 MOST_JSON: Final = 8 << 20
-"""Largest JSON file that is read: the manifest of fifty thousand photographs."""
+"""Largest JSON file that is read: the manifest of fifty thousand photographs [bytes]."""
 
 
 def read_toml_document(

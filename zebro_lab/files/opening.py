@@ -18,7 +18,7 @@ from zebro_lab.files.errors import DataError, NotFound, SettingsError, ZebroLabE
 Fault = type[DataError] | type[SettingsError]
 
 MOST_TEXT: Final = 64 << 20
-"""Largest text file that is read at once: a trajectory of half a million poses."""
+"""Largest text file that is read at once: a trajectory of half a million poses [bytes]."""
 _KINDS: Final = (
     (stat.S_ISDIR, "a folder"), (stat.S_ISFIFO, "a FIFO"), (stat.S_ISSOCK, "a socket"),
     (stat.S_ISCHR, "a device"), (stat.S_ISBLK, "a device"),

@@ -88,7 +88,7 @@ def is_unit_of(unit: str, si_unit: str) -> bool:
 
 @cache
 def _registry() -> "UnitRegistry":
-    from pint import UnitRegistry  # 0.3 s; only those who convert pay
+    from pint import UnitRegistry  # takes 0.3 s, so imported only for conversion
 
     registry = UnitRegistry()
     registry.define("@alias turn = rev")

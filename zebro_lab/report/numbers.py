@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Numbers of a report: each says, for programs, which file and key it is from, and its value."""
+"""Numbers of a report, marked up with the file, key and value that they come from."""
 
 import math
 from collections.abc import Mapping
@@ -32,17 +32,17 @@ def look_up(document: Mapping[str, Any], keys: tuple[str | int, ...]) -> Any:
 def number(
     document: Mapping[str, Any], *keys: str | int, file: str, scale: float = 1.0, digits: int = 3
 ) -> str:
-    """Spell a number with its origin: `<data value="0.0123" data-file=… data-key=…>12.3</data>`.
+    """Format a number with its origin: `<data value="0.0123" data-file=… data-key=…>12.3</data>`.
 
     Args:
         document: Content of the file.
-        keys: Where in it the number lies.
-        file: Name of the file, for the reader.
+        keys: Key path of the number in it.
+        file: Name of the file, as shown.
         scale: Factor from the file's unit to the shown one.
-        digits: Significant digits shown; whole numbers are shown whole.
+        digits: Significant digits shown; integers are not rounded.
 
     Returns:
-        The element; a dash where there is no number.
+        The HTML element; a dash if there is no number.
     """
     value = look_up(document, keys)
     if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Finished folders in, one page out."""
+"""Stage of `zebro-lab report`: find result folders and write the page."""
 
 from dataclasses import dataclass
 from datetime import datetime
@@ -15,7 +15,7 @@ REPORT = html_page("report")
 
 @dataclass(frozen=True)
 class ReportRequest:
-    """What is asked of a report.
+    """Settings of a report.
 
     Attributes:
         data: A run folder, or a folder of them.

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
 """The functions that a notebook or script needs; `import zebro_lab as zl` offers them.
 
-Paths may be strings. Functions that write a folder do so whole or not at all, as the commands do,
-and refuse to replace what another command made. Without `out` nothing is kept on disk.
+Paths may be strings. Functions that write a folder do so atomically, as the commands do, and raise
+if the folder is the result of another command. Without `out` no files are kept.
 """
 
 import io
@@ -73,10 +73,15 @@ __all__ = [
 
 
 class Silent:
-    """Shows no progress and never asks to stop."""
+    """A watcher that shows no progress and never asks to stop."""
 
     def step(self, what: str, fraction: float | None) -> None:
-        """Ignore a step."""
+        """Ignore a progress report.
+
+        Args:
+            what: Name of the task.
+            fraction: Share of the task that is done, 0 to 1 [-]; None when unknown.
+        """
 
     def stop_requested(self) -> bool:
         """Return False."""
@@ -123,7 +128,7 @@ class WalkResult:
     Attributes:
         walk: Body, legs, slip and forces over time.
         draws: Paths with the unknowns drawn; None unless draws were asked for.
-        notes: What a person should know, one line each.
+        notes: Notes, one line each.
     """
 
     walk: WalkPath
@@ -209,13 +214,13 @@ def calibrate(
 
     Args:
         data: Files and folders of rig data.
-        out: Calibration folder to write; None to keep nothing.
+        out: Calibration folder to write; None to keep no files.
         columns: A `columns.toml` for tables that have none beside them.
         slip_definition: Definition of the slip ratio to fit in; that of the data when None.
         law: "magic-formula", "brush" or "coulomb-stribeck".
         ensembles: Independent ensembles of walkers.
         max_steps: Sampler moves after which a fit that has not converged ends as such.
-        seed: Seed of everything random.
+        seed: Seed of all random numbers.
         watcher: Follows the progress and may ask to stop.
 
     Raises:
@@ -287,7 +292,7 @@ def walk_gait(
     seed: int = 1,
     out: PathLike | None = None,
 ) -> WalkResult:
-    """Compute where a gait leads, as `zebro-lab walk` does.
+    """Compute the path of a gait, as `zebro-lab walk` does.
 
     Args:
         gait: Name of the gait.
@@ -299,7 +304,7 @@ def walk_gait(
         direction: Side to turn to.
         robot: A `robot.toml`; the thesis's robot when None.
         draws: Paths to draw for a band, at least two; 0 for the single path.
-        seed: Seed of everything random.
+        seed: Seed of all random numbers.
         out: Walk folder to write; None to keep nothing.
 
     Raises:
@@ -327,7 +332,7 @@ def predict_walk(
     seed: int = 1,
     out: PathLike | None = None,
 ) -> WalkResult:
-    """Predict where measured leg angles lead, as `zebro-lab predict` does.
+    """Predict the path from measured leg angles, as `zebro-lab predict` does.
 
     Args:
         legs: A table of leg angles, a recorded run, or a walk folder.
@@ -336,7 +341,7 @@ def predict_walk(
         robot: A `robot.toml`; the run's own, else the thesis's robot, when None.
         columns: A `columns.toml` in place of the one beside the table.
         draws: Paths to draw for a band, at least two; 0 for the single path.
-        seed: Seed of everything random.
+        seed: Seed of all random numbers.
         out: Walk folder to write; None to keep nothing.
 
     Raises:
@@ -408,7 +413,7 @@ def validate_walks(
         out: Validation folder to write; None to keep nothing.
         anchor: Start each path from the first tracked pose, which is then not scored.
         time_offset: Added to the tracks' times; None to find it in the motion [s].
-        seed: Seed of everything random.
+        seed: Seed of all random numbers.
 
     Raises:
         ZebroLabError: A file is missing, or prediction and track share no time.

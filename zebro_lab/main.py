@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""`zebro-lab COMMAND`: every command of the lab."""
+"""The command line `zebro-lab COMMAND`: collects all commands."""
 
 from typing import Annotated
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A stopped fit on disk: plain arrays, no pickle, tied to its data and settings."""
+"""Checkpoint of a stopped fit: arrays without pickle, with a hash of data and settings."""
 
 import io
 from pathlib import Path
@@ -22,15 +22,15 @@ _NONE, _ADVICE = "is no checkpoint of this program", "remove it and start anew"
 
 
 def save_checkpoint(folder: Path, chains: Chains, *, fingerprint: str) -> Path:
-    """Write the chains so that a fit can go on, replacing an earlier checkpoint in one step.
+    """Write the sampler's chains so that a fit can be resumed; replaces a checkpoint atomically.
 
     Args:
         folder: Folder of the calibration; made when missing.
-        chains: Where the sampler stands.
-        fingerprint: Hash of the data and settings the chains belong to.
+        chains: State of the sampler.
+        fingerprint: Hash of the data and settings that the chains belong to.
 
     Raises:
-        NotWritten: The file system refuses.
+        NotWritten: The file cannot be written.
     """
     buffer = io.BytesIO()
     np.savez(
@@ -55,10 +55,10 @@ def load_checkpoint(folder: Path, *, fingerprint: str) -> Chains:
 
     Args:
         folder: Folder of the calibration.
-        fingerprint: Hash of the data and settings at hand.
+        fingerprint: Hash of the present data and settings.
 
     Raises:
-        DataError: There is none, it is damaged, or it belongs to other data or settings.
+        DataError: There is no checkpoint, it is damaged, or it belongs to other data or settings.
     """
     path = folder / FILE
     if not path.is_file():

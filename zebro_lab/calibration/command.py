@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""`calibrate-slip DATA…`: fit a slip curve to rig logs and say how far to trust it."""
+"""`calibrate-slip DATA…`: fit a slip curve to rig data and report whether to trust it."""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -91,7 +91,7 @@ Resume = Annotated[bool, typer.Option("--resume", help="Go on with the stopped f
 
 
 class FitWalks(Protocol):
-    """Fits walks beside a finished calibration and prints what they said."""
+    """Fits tracked walks with a finished calibration and prints the results."""
 
     def __call__(
         self,
@@ -107,10 +107,10 @@ class FitWalks(Protocol):
 
 
 def calibrate_command(fit_walks: FitWalks) -> Callable[..., None]:
-    """Make the command `calibrate-slip`.
+    """Create the command `calibrate-slip`.
 
     Args:
-        fit_walks: What `--walks` does: it stands above this room and is handed down.
+        fit_walks: Function that `--walks` calls; an argument, as this room must not import it.
     """
 
     def calibrate(
@@ -174,7 +174,7 @@ def calibrate_command(fit_walks: FitWalks) -> Callable[..., None]:
 
 
 def _fit_and_report(request: "CalibrationRequest") -> bool:
-    """Fit, print, and tell whether the fit has converged."""
+    """Fit and print the results; return whether the fit converged."""
     from rich.console import Console
 
     from zebro_lab.calibration.screen import print_calibration
@@ -193,7 +193,7 @@ def _fit_and_report(request: "CalibrationRequest") -> bool:
 
 
 def wide_console() -> "Console":
-    """Return the terminal, or where there is none a console 120 columns wide."""
+    """Return a console; 120 columns wide if the output is not a terminal."""
     from rich.console import Console
 
     console = Console(highlight=False)

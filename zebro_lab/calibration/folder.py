@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""The sole owner of the format of a calibration folder: `slip.toml`, tables, draws, manifest."""
+"""Read and write a calibration folder: `slip.toml`, tables, draws, manifest.
+
+Only this module depends on the format of these files.
+"""
 
 import csv
 import io
@@ -34,7 +37,7 @@ CALIBRATION = ResultKind(
     schema=SCHEMA,
     inside={"walks": "walks"},
 )
-"""What walks said lies inside: it was fitted with the earlier law, and goes with it."""
+"""Kind of a calibration folder; `walks/` inside was fitted with its law and is removed with it."""
 
 _ADVICE = "name a slip.toml or the folder that calibrate-slip wrote"
 SUMMARY_COLUMNS = (
@@ -45,13 +48,13 @@ SUMMARY_COLUMNS = (
 
 @dataclass(frozen=True)
 class SlipFile:
-    """What a `slip.toml` says.
+    """Content of a `slip.toml`.
 
     Attributes:
         curve: The slip curve.
         file: The file.
         source: Where the data come from.
-        doubt: Headline of a verdict that does not trust the fit; None where it does.
+        doubt: Headline of the verdict if the fit cannot be trusted, else None.
     """
 
     curve: SlipCurve
@@ -61,7 +64,7 @@ class SlipFile:
 
 
 def write_tables(folder: Path, calibration: "Calibration", *, inputs: Mapping[str, str]) -> None:
-    """Write everything but the pictures and the manifest.
+    """Write all files of a calibration folder except pictures and manifest.
 
     Args:
         folder: Folder to write into.
@@ -86,7 +89,7 @@ def read_slip(path: Path) -> SlipCurve:
 
 
 def read_slip_file(path: Path) -> SlipFile:
-    """Read a `slip.toml`, once, with what it says of the fit; as `read_slip`."""
+    """Read a `slip.toml` with its curve, source and verdict; see `read_slip`."""
     settle(path)
     file = path / SLIP_TOML if path.is_dir() else path
     try:
@@ -190,7 +193,7 @@ def _slip_toml(calibration: "Calibration", inputs: Mapping[str, str]) -> str:
 
 
 def _distinct_names(paths: Sequence[str]) -> list[str]:
-    """Shorten paths to their last parts, as few as tell them apart: every run has a log.mcap."""
+    """Shorten paths to their last parts, as few as keep them distinct: every run has a log.mcap."""
     depths = range(1, max((len(Path(path).parts) for path in paths), default=1) + 1)
     shortened = ([str(Path(*Path(path).parts[-depth:])) for path in paths] for depth in depths)
     return next((names for names in shortened if len(set(names)) == len(names)), list(paths))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Rig data of any accepted form, turned into samples for the calibration."""
+"""Read rig data from tables and run folders as samples for a calibration."""
 
 from collections import Counter
 from collections.abc import Collection, Mapping, Sequence
@@ -33,25 +33,25 @@ from zebro_lab.tables.run_separation import Runs, run_times, separate_runs
 from zebro_lab.tables.slip_source import SlipColumn, converted, slip
 from zebro_lab.tables.table_files import read_table_file, table_stem
 
-_LEAST_SAMPLES = 20  # of a recording: fewer say nothing about its noise
+_LEAST_SAMPLES = 20  # of a recording, to estimate its noise
 _LEAST_TRIALS = 8  # averages over trials: more than any law has parameters
-_CONSTANT_SLIP = 1e-6  # range of slip ratio below which there is no curve to see
-_NOISE_ALONE = 1.1  # a spread of slip that sensor noise explains up to a tenth
+_CONSTANT_SLIP = 1e-6  # range of slip ratio below which slip is constant
+_NOISE_ALONE = 1.1  # ratio of slip spread to sensor noise below which noise explains the spread
 
 
 @dataclass(frozen=True)
 class RigData:
-    """Samples of a rig experiment and where they came from.
+    """Samples of a rig experiment with their provenance.
 
     Attributes:
         samples: The samples.
         files: Every file read, in order: data, column maps, manifests.
-        source: "real", "sim:what", "replay:what"; "unknown" where nobody said; "mixed:a,b" for
+        source: "real", "sim:what", "replay:what"; "unknown" if not stated; "mixed:a,b" for
             several.
-        notes: For a person, one line each: how slip was obtained, rows left out and why, how
-            runs were separated, units converted.
+        notes: Notes, one line each: how slip was obtained, rows dropped and why, how runs were
+            separated, units converted.
         load_cell: Standard deviations from [load_cell] by name, SI; only those given.
-        repeated: Of the notes, those on data that were named twice and count once.
+        repeated: Those of the notes that are on duplicate data.
     """
 
     samples: SlipSamples
@@ -64,7 +64,7 @@ class RigData:
 
 @dataclass(frozen=True)
 class _Part:
-    """What one table contributes."""
+    """Samples and notes of one table."""
 
     path: Path
     columns: Columns
@@ -133,7 +133,7 @@ def _column_maps(sources: Sequence[DataSource], override: Path | None) -> dict[D
 
 
 def _labels(sources: Sequence[DataSource]) -> list[str]:
-    """Name every table, all in the briefest way that keeps the names apart."""
+    """Return the shortest labels of tables that are distinct."""
     below = [source.path.relative_to(source.root).parent for source in sources]
     stems = [table_stem(source.path) for source in sources]
     schemes = (
@@ -145,7 +145,7 @@ def _labels(sources: Sequence[DataSource]) -> list[str]:
 
 
 def _exclusion(source: DataSource) -> str | None:
-    """Return why a run is left out; None where it counts."""
+    """Return why a run is excluded; None if it is not."""
     if not source.is_run_folder:
         return None
     excluded = read_manifest(source.path).excluded
@@ -153,7 +153,7 @@ def _exclusion(source: DataSource) -> str | None:
 
 
 def _bytes_of(source: DataSource) -> str:
-    """Return what a table or a log is known by under another name."""
+    """Return the content hash of a table or log, by which copies are recognised."""
     file = source.path / LOG_FILE if source.is_run_folder else source.path
     return content_hash(file) if file.is_file() else str(source.path)
 
@@ -168,12 +168,12 @@ def _known(
     maps: Mapping[DataSource, Columns],
     labels: Mapping[DataSource, str],
 ) -> dict[str, str]:
-    """Return the runs that are left out, by what they are known by under another name."""
+    """Return the labels of excluded runs by their keys, by which copies are recognised."""
     known: dict[str, str] = {}
     for source in excluded:
         try:
             part = _read_part(source, maps[source], labels[source], None)
-        except (ZebroLabError, ModelError):  # it may well be left out for what is wrong with it
+        except (ZebroLabError, ModelError):  # it may be excluded because it is damaged
             continue
         known |= dict.fromkeys(_keys(part), f"{labels[source]}, which is left out")
     return known
@@ -182,7 +182,7 @@ def _known(
 def _once(
     parts: Sequence[_Part], known: Mapping[str, str]
 ) -> tuple[list[_Part], list[tuple[str, str]]]:
-    """Leave out runs that are there already, or are left out under another name; pair both."""
+    """Drop duplicate runs and copies of excluded runs; return them in pairs with the other."""
     seen, repeated, kept = dict(known), [], []
     for part in parts:
         keys = _keys(part)
@@ -196,7 +196,7 @@ def _once(
 
 
 def _with_runs(part: _Part, chosen: NDArray[np.bool_]) -> _Part:
-    """Return a part with some of its runs."""
+    """Return a part with only the chosen runs."""
     rows = chosen[part.runs.index]
     index = (np.cumsum(chosen) - 1)[part.runs.index[rows]]
     names = tuple(name for name, keep in zip(part.runs.names, chosen, strict=True) if keep)
@@ -241,14 +241,14 @@ def _read_part(
 def _run_folder_table(folder: Path, columns: Columns) -> tuple[RawTable, Columns, tuple[Path, ...]]:
     """Read a run folder as a table.
 
-    Its columns are canonical, and it is one run, or one for each sweep: of a `columns.toml` only
-    the row conditions and the load cell apply to it.
+    Its columns are canonical, and it is one run or one run per sweep. Only the row conditions and
+    the load cell of a `columns.toml` apply to it.
     """
     import pandas as pd
 
     run, notes, rule = read_slip_rig_run(folder), (), RunRule()
     columns_read = dict(vars(run.table))
-    if run.manifest.profiles.get(RIG, TABLE) != TABLE:  # as devices sent it: not cut yet
+    if run.manifest.profiles.get(RIG, TABLE) != TABLE:  # raw device samples: not segmented yet
         number, notes = recorded_sweeps(run)
         rule = RunRule(by=(SWEEP,)) if number.max() > 1 else rule
         columns_read = {

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What `calibrate-slip` prints: data, parameters, the plain curve at each load, the verdict."""
+"""Terminal output of `calibrate-slip`: data, parameters, curve at each load, verdict."""
 
 from pathlib import Path
 
@@ -18,9 +18,9 @@ def print_calibration(console: Console, calibration: Calibration, data: RigData,
     """Print a finished fit.
 
     Args:
-        console: Where to print.
+        console: Console to print to.
         calibration: The finished fit.
-        data: What it was made from.
+        data: Rig data that were fitted.
         out: The calibration folder.
     """
     _print_data(console, calibration, data)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What `--slip` means: a calibration, Coulomb friction, or the thesis's own curve."""
+"""Parse the option `--slip`: a calibration, Coulomb friction, or the thesis's curve."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -22,13 +22,13 @@ EXPECTED_SLIP = f"a {SLIP_TOML}, the folder that holds it, coulomb:MU[:V] or the
 
 @dataclass(frozen=True)
 class NamedSlip(Slip):
-    """A slip law as a command line names it.
+    """A slip law as named on a command line.
 
     Attributes:
         text: The value of `--slip`.
         files: Files that were read.
-        notes: For a person, one line each.
-        walks: What tracked walks said of legs and floor; None where none informed it.
+        notes: Notes, one line each.
+        walks: Posterior of legs and floor after tracked walks; None if no walks were fitted.
     """
 
     text: str
@@ -38,23 +38,23 @@ class NamedSlip(Slip):
 
     @property
     def title(self) -> str:
-        """Its name where there is little room: a calibration's folder without those above it."""
+        """Short name: for a calibration the name of its folder, without its parents."""
         if not self.files:
             return self.text
         return self.files[0].absolute().parent.name or self.text
 
 
 def parse_slip(text: str, *, with_walks: bool = True) -> NamedSlip:
-    """Read the value of `--slip`.
+    """Parse the value of `--slip`.
 
     Args:
         text: A `slip.toml`, its folder, `coulomb:MU[:V]` with the velocity V [m/s] over which
             friction sets in, or `thesis`.
-        with_walks: Read what walks said beside it, too.
+        with_walks: Whether to read the posterior of `walks/` too.
 
     Raises:
-        NotFound: It names no file, folder or law.
-        SettingsError: A number is none, or not positive.
+        NotFound: It is not the name of a file, folder or law.
+        SettingsError: A number cannot be parsed or is not positive.
         DataError: The calibration cannot be read.
 
     >>> parse_slip("coulomb:0.38").law

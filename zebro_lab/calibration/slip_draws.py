@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Draws of a slip law: of a calibration's posterior, or the one law that was assumed."""
+"""Draw slip laws from a calibration's posterior; an assumed law has a single draw."""
 
 from pathlib import Path
 
@@ -21,14 +21,14 @@ MOST_TABLES = 200  # a table costs as much as walking a second, and paths hardly
 def slip_tables(
     slip: NamedSlip, n: int, *, weight: float, toe: ToeLaw = "saturated", rng: np.random.Generator
 ) -> list[TractionTable]:
-    """Tabulate draws of the law, up to `MOST_TABLES`.
+    """Compute interpolation tables of traction for draws of the law, up to `MOST_TABLES`.
 
     Args:
-        slip: What `--slip` named.
-        n: Draws wanted; an assumed law has one.
+        slip: Slip law named by `--slip`.
+        n: Number of draws; an assumed law has one.
         weight: Weight of the robot [N].
         toe: Traction of a leg on its toe.
-        rng: Source of randomness.
+        rng: Random number generator.
 
     Raises:
         DataError: The posterior beside the slip.toml is damaged or of another law.
@@ -42,19 +42,19 @@ def slip_tables(
             tables.append(
                 law_table(law.law, values, weight=weight, definition=law.definition, toe=toe)
             )
-        except DomainError:  # a draw in the tail that this robot's loads take out of its shape
+        except DomainError:  # a draw from the tail that is invalid at this robot's loads
             continue
     return tables or [slip.traction_table(weight=weight, toe=toe)]
 
 
 def law_draws(slip: NamedSlip, curve: SlipCurve, n: int, *, rng: np.random.Generator) -> Array:
-    """Draw values of a law's parameters: from the posterior's draws, or from their Gaussian.
+    """Draw a law's parameters: from the posterior's draws, or from their Gaussian.
 
     Args:
-        slip: What `--slip` named.
-        curve: Its curve.
-        n: Draws wanted; a law that was assumed has one.
-        rng: Source of randomness.
+        slip: Slip law named by `--slip`.
+        curve: Its slip curve.
+        n: Number of draws; an assumed law has one.
+        rng: Random number generator.
 
     Returns:
         Values, shape (n, k).
@@ -72,7 +72,7 @@ def law_draws(slip: NamedSlip, curve: SlipCurve, n: int, *, rng: np.random.Gener
 
 
 def _posterior(file: Path, curve: SlipCurve) -> Array:
-    """Read the draws of every parameter, those that were fixed at their value, shape (m, k)."""
+    """Read the draws of all parameters, shape (m, k); fixed parameters have constant columns."""
     names = [parameter.name for parameter in curve.law.parameters]
     columns, others = read_draws_of(file, "posterior", names, advice=_ADVICE)
     drawn = list(columns)

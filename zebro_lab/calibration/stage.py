@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Rig data in, calibration folder out: read, prepare, sample, judge, write."""
+"""Stage of `calibrate-slip`: read rig data, sample the posterior, write the calibration folder."""
 
 import math
 import time
@@ -38,7 +38,7 @@ class Stopped(ZebroLabError):
     """The fit was stopped on request.
 
     Attributes:
-        checkpoint: Where the fit stands; None when sampling had not begun and nothing was written.
+        checkpoint: Checkpoint file; None if sampling had not begun and nothing was written.
     """
 
     def __init__(self, checkpoint: Path | None) -> None:
@@ -52,7 +52,7 @@ class Stopped(ZebroLabError):
 
 @dataclass(frozen=True)
 class CalibrationRequest:
-    """What is asked of a fit.
+    """Settings of a fit.
 
     Attributes:
         data: Files and folders of rig data.
@@ -61,14 +61,15 @@ class CalibrationRequest:
         slip_definition: Definition to fit in; that of the data when None.
         law: Name of the slip law.
         curvature: For the Magic Formula: "auto", "peak", "constant" or a fixed E.
-        load_sensitivity: For the Magic Formula: let friction and stiffness vary with load.
-        block_length: Samples in a block; chosen when None.
-        load_cell: What is known of the load cell beyond `columns.toml`, by field of `LoadCell`.
-        ensembles: Independent ensembles.
+        load_sensitivity: For the Magic Formula: whether friction and stiffness vary with load.
+        block_length: Samples in a block; chosen from the data when None.
+        load_cell: Properties of the load cell that replace those of `columns.toml`, by field of
+            `LoadCell`.
+        ensembles: Number of independent ensembles of walkers.
         max_steps: Sampler moves after which a fit that has not converged is written as such.
-        seed: Seed of everything random.
-        threads: Ensembles advanced at once.
-        resume: Go on from the checkpoint in `out`.
+        seed: Seed of all random numbers.
+        threads: Number of ensembles advanced in parallel.
+        resume: Whether to continue from the checkpoint in `out`.
     """
 
     data: tuple[Path, ...]
@@ -88,11 +89,11 @@ class CalibrationRequest:
 
     @property
     def inputs(self) -> tuple[Path, ...]:
-        """What is read, as it was named."""
+        """Files and folders that are read, as named."""
         return (*self.data, *((self.columns,) if self.columns is not None else ()))
 
     def sampler(self) -> SamplerSettings:
-        """Return how the posterior is to be sampled."""
+        """Return the settings of the sampler."""
         return SamplerSettings(
             ensembles=self.ensembles,
             max_steps=self.max_steps,
@@ -102,7 +103,7 @@ class CalibrationRequest:
         )
 
     def decisive(self) -> dict[str, object]:
-        """Return what decides the numbers, as JSON can hold it."""
+        """Return the settings that affect the results, JSON-serialisable."""
         return {
             "slip_definition": self.slip_definition,
             "law": self.law,
@@ -119,16 +120,16 @@ def calibrate(request: CalibrationRequest, watcher: Watcher) -> tuple[Calibratio
     """Fit a slip law to rig data and write the calibration folder.
 
     Args:
-        request: What is asked.
-        watcher: Hears of progress and may ask to stop.
+        request: Data, settings and output folder.
+        watcher: Receives progress and may request a stop.
 
     Returns:
-        The finished fit and the data it was made from.
+        The finished fit and the rig data.
 
     Raises:
         ZebroLabError: The data or the request cannot be used; nothing was written.
         ModelError: The fit failed; nothing was written.
-        Stopped: The watcher asked to stop; once sampling had begun a checkpoint was written.
+        Stopped: The watcher requested a stop; a checkpoint was written if sampling had begun.
     """
     require_replaceable(request.out, CALIBRATION, inputs=request.inputs)
     watcher.step("reading", None)
@@ -163,18 +164,18 @@ def calibrate(request: CalibrationRequest, watcher: Watcher) -> tuple[Calibratio
 
 
 class _Checkpoint:
-    """The checkpoint of a fit, written every few seconds."""
+    """Writes the checkpoint of a fit at intervals of some seconds."""
 
     def __init__(self, folder: Path, mark: str) -> None:
         self._folder, self._mark, self._saved = folder, mark, time.monotonic()
 
     def keep(self, chains: Chains) -> None:
-        """Write the chains if the last time was long ago."""
+        """Write the chains if the interval since the last checkpoint has passed."""
         if time.monotonic() - self._saved > CHECKPOINT_SECONDS:
             self.save(chains)
 
     def save(self, chains: Chains | None) -> Path | None:
-        """Write the chains, if there are any, and return where."""
+        """Write the chains, if there are any, and return the file."""
         if chains is None:
             return None
         self._saved = time.monotonic()

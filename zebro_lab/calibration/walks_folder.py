@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""The sole owner of the format of `walks/` in a calibration: what tracked walks said."""
+"""Read and write `walks/` of a calibration folder: posterior of legs and floor after tracked walks.
+
+Only this module depends on the format of these files.
+"""
 
 from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass
@@ -23,7 +26,7 @@ from zebro_lab.robot.robot_file import RobotFile
 Metrics: TypeAlias = Mapping[str, float]
 """Metrics of one model's path, by the names of columns in `left_out.csv`."""
 
-SCHEMA = 2  # 1 counted the fall from another place
+SCHEMA = 2  # schema 1 defined the post-peak drop with another reference point
 FOLDER = "walks"
 WALKS_TOML, DRAWS, LEFT_OUT = "walks.toml", "draws.npz", "left_out.csv"
 _ANEW = "fit the walks again with calibrate-slip --walks"
@@ -34,11 +37,11 @@ WALKS = ResultKind(
 
 @dataclass(frozen=True)
 class StoredWalks:
-    """A posterior after walks, as it was read.
+    """A stored posterior after walks.
 
     Attributes:
         posterior: The posterior.
-        legs: What describes the legs that were fitted; see `describe_legs`.
+        legs: Description of the legs that were fitted; see `describe_legs`.
         logs: SHA-256 of the leg log of each walk, in the posterior's order.
         folder: Its folder.
     """
@@ -50,7 +53,7 @@ class StoredWalks:
 
     @property
     def files(self) -> tuple[Path, ...]:
-        """What it was read from."""
+        """Files that it was read from."""
         return self.folder / WALKS_TOML, self.folder / DRAWS
 
 
@@ -64,10 +67,10 @@ class WalksToWrite:
             empty for one walk.
         robot: The robot that walked.
         logs: The leg log of each walk.
-        inputs: Every file read, the calibration's first.
-        settings: What was asked, as JSON can hold it.
+        inputs: Every file read, those of the calibration first.
+        settings: Settings of the fit, JSON-serialisable.
         source: Where the walks come from.
-        notes: For a person, one line each.
+        notes: Notes, one line each.
     """
 
     posterior: WalkPosterior
@@ -81,7 +84,7 @@ class WalksToWrite:
 
 
 def describe_legs(described: RobotFile) -> dict[str, Any]:
-    """Return what makes legs those of one robot, whatever marker it carries."""
+    """Return the parameters that identify a robot's legs; its marker is not one of them."""
     robot = described.robot
     return {
         "hips": robot.hips.tolist(),
@@ -95,15 +98,15 @@ def describe_legs(described: RobotFile) -> dict[str, Any]:
 
 
 def write_walks(calibration: Path, fitted: WalksToWrite, *, draw: Callable[[Path], object]) -> Path:
-    """Write `walks/` into a calibration folder, whole or not at all.
+    """Write `walks/` into a calibration folder, atomically.
 
     Args:
         calibration: The calibration folder.
         fitted: The finished fit.
-        draw: Draws its pictures into a folder.
+        draw: Function that draws the pictures into a folder.
 
     Returns:
-        The folder.
+        The folder written.
     """
     folder = calibration / FOLDER
     inputs = file_hashes(dict.fromkeys(fitted.inputs))
@@ -128,7 +131,7 @@ def write_walks(calibration: Path, fitted: WalksToWrite, *, draw: Callable[[Path
 
 
 def read_walks_beside(slip_toml: Path) -> StoredWalks | None:
-    """Read what walks said beside a `slip.toml`; None where no walk informed it.
+    """Read the posterior after walks beside a `slip.toml`; None if no walks were fitted.
 
     Raises:
         DataError: It is damaged, of a later schema, or was fitted with another slip law.

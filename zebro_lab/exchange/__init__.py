@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: MIT
-"""Other people's files: start a column map, import runs, export runs."""
+"""Import and export: write a column map, import runs from other software, export runs."""

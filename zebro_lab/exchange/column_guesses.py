@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Guesses, from its header and numbers, at what the columns of a table are."""
+"""Guess the canonical columns of a table from its header and numbers."""
 
 import re
 from collections.abc import Mapping
@@ -35,13 +35,13 @@ _MOST_SET_POINTS = 200
 
 @dataclass(frozen=True)
 class ColumnGuess:
-    """Where a canonical column probably comes from.
+    """Guessed column of a file for a canonical column.
 
     Attributes:
         name: Header in the file.
-        unit: Unit read off the header; None where it shows none.
-        negative: The median is negative.
-        others: Other headers that would fit.
+        unit: Unit parsed from the header; None if it has none.
+        negative: Whether the median is negative.
+        others: Other headers that match.
     """
 
     name: str
@@ -51,9 +51,9 @@ class ColumnGuess:
 
 
 def guess_columns(table: RawTable) -> dict[str, ColumnGuess]:
-    """Guess the header of every canonical column that a table seems to have.
+    """Guess the header of each canonical column that a table may have.
 
-    Only names decide; numbers tell the sign alone.
+    Columns are matched by their headers; the numbers only determine the sign.
     """
     guesses: dict[str, ColumnGuess] = {}
     taken: set[str] = set()
@@ -70,7 +70,7 @@ def guess_columns(table: RawTable) -> dict[str, ColumnGuess]:
 
 
 def guess_set_points(table: RawTable) -> list[str]:
-    """Find the columns that hold a set-point: few values, each kept for a while."""
+    """Find set-point columns: few distinct values, each constant over many rows."""
     found = []
     for name in table.columns:
         numbers = numbers_or_none(table, name)
@@ -83,7 +83,15 @@ def guess_set_points(table: RawTable) -> list[str]:
 
 
 def numbers_or_none(table: RawTable, name: str) -> Array | None:
-    """Return a column as numbers, shape (n,); None where it holds none."""
+    """Return the numbers of a column.
+
+    Args:
+        table: Table that has the column.
+        name: Header of the column.
+
+    Returns:
+        Values by row, shape (n,), in the file's unit; None if no cell is a finite number.
+    """
     try:
         numbers = table.numbers(name)
     except DataError:

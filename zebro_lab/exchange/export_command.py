@@ -11,7 +11,7 @@ from zebro_lab.terminal.messages import say
 
 
 class ExportFormat(StrEnum):
-    """Forms of exported runs."""
+    """File formats of exported runs."""
 
     CSV = "csv"
     PARQUET = "parquet"

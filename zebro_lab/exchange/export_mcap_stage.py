@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A run with its track and prediction in, one MCAP file for Foxglove out.
+"""Stage of `zebro-lab export --to mcap`: write a run, track and prediction to one MCAP file.
 
 | topic | schema | what |
 |---|---|---|
@@ -55,17 +55,17 @@ from zebro_lab.walk.prediction_file import robot_of_walk
 
 FLOOR, BODY, TRACKED = "floor", "body", "tracked"
 SHOWN_DRAWS = 20
-FRAMES = 50.0  # frames of the walking robot in a second [Hz]
+FRAMES = 50.0  # frame rate of the walking robot [Hz]
 
 
 @dataclass(frozen=True)
 class Exported:
-    """What an exported file holds.
+    """Summary of an exported file.
 
     Attributes:
         file: The file.
-        topics: Messages by topic.
-        notes: What is missing, for a person.
+        topics: Number of messages by topic.
+        notes: Notes on what is missing, one line each.
     """
 
     file: Path
@@ -84,7 +84,7 @@ class _Predicted:
 
 
 class _Stamped:
-    """A log whose messages are stamped by the time of the run."""
+    """A log whose messages have the time of the run as time stamp."""
 
     def __init__(self, log: MessageLog, start_ns: int) -> None:
         self._log, self._start = log, start_ns
@@ -103,8 +103,8 @@ class _Stamped:
 def export_mcap(run: Path, *, out: Path) -> Exported:
     """Write legs, frames, track and predicted band as one MCAP file of ROS 2 messages.
 
-    The prediction is put where validation puts it: it starts from the first tracked pose. Without
-    a track it starts at the origin.
+    As in validation, the prediction is anchored at the first tracked pose. Without a track it
+    starts at the origin.
 
     Args:
         run: Run folder, or a folder with track/ or prediction/.
@@ -113,7 +113,7 @@ def export_mcap(run: Path, *, out: Path) -> Exported:
     Raises:
         AlreadyExists: `out` is there already.
         NotFound: There is nothing to export.
-        DataError: Something is damaged, or track and prediction share no time.
+        DataError: A file is damaged, or track and prediction do not overlap in time.
     """
     if out.exists():
         raise AlreadyExists(f"{out} exists already; name another --out")
@@ -250,7 +250,7 @@ def _level(yaw: Array) -> Array:
 
 
 def _thinned(t: Array, rate: float) -> Sequence[int]:
-    """Return rows no closer than a rate allows, the last one included."""
+    """Return indices of rows downsampled to a rate, including the last row."""
     usual = float(np.median(np.diff(t)))
     rows = list(range(0, len(t), max(int(np.ceil(1 / (rate * usual) - 1e-6)), 1)))
     return rows if rows[-1] == len(t) - 1 else [*rows, len(t) - 1]

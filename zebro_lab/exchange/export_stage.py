@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A recorded run in, tables that any program reads out."""
+"""Stage of `zebro-lab export`: write a run as CSV or Parquet tables."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -21,24 +21,24 @@ Columns = Mapping[str, Any]
 
 
 def export_run(folder: Path, *, to: Format, out: Path) -> tuple[Path, ...]:
-    """Write a run as tables: raw samples of each stream, and what follows from them in SI.
+    """Write a run as tables: raw samples of each stream, and decoded values in SI.
 
-    `legs` holds `t` and `theta1` to `theta6`, `slip_rig` the columns of a calibration,
-    `NAME_raw` what a device sent. A Parquet table carries the source in its metadata, a CSV table
-    in its first line.
+    `legs` has the columns `t` and `theta1` to `theta6`, `slip_rig` those of a calibration,
+    `NAME_raw` the raw samples of a device. A Parquet table has the source in its metadata, a CSV
+    table in its first line.
 
     Args:
         folder: The run folder.
         to: "csv" or "parquet".
-        out: Folder to make.
+        out: Folder to create.
 
     Returns:
         The files written.
 
     Raises:
-        NotFound: It is no run folder, or its log is missing.
-        DataError: It cannot be read, or holds no samples.
-        AlreadyExists: `out` is there already.
+        NotFound: It is not a run folder, or its log is missing.
+        DataError: It cannot be read, or has no samples.
+        AlreadyExists: `out` exists.
     """
     if out.exists():
         raise AlreadyExists(f"{out} exists already; name another --out")

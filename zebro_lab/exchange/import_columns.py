@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Which map of names and units counts for each file that is imported."""
+"""Find the column map that applies to each imported file."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -23,17 +23,17 @@ SERIES: Final[Mapping[str, Mapping[str, str]]] = {
 """Names and units of each time series."""
 _SECTIONS: Final = (*SERIES, RIG)
 _PLAIN: Final = (LEGS, RIG)
-"""Whose own columns.toml, without sections, `predict` and `calibrate-slip` read too."""
+"""Kinds whose columns.toml may be without sections, as `predict` and `calibrate-slip` read it."""
 
 
 @dataclass(frozen=True)
 class ForeignColumns:
-    """What a `columns.toml` says of one file.
+    """Entries of a `columns.toml` for one file.
 
     Attributes:
-        entries: Its entries for this file; None where there are none.
+        entries: Its entries for this file; None if there are none.
         file: The `columns.toml`; None without one.
-        section: Key of the entries in it; "" for all of it.
+        section: Key of the entries in it; "" for the whole file.
     """
 
     entries: dict[str, Any] | None = None
@@ -42,23 +42,23 @@ class ForeignColumns:
 
     @property
     def topic(self) -> str | None:
-        """Topic of an MCAP log; None where nobody said.
+        """Topic of an MCAP log; None if not stated.
 
         Raises:
-            SettingsError: It is no text.
+            SettingsError: It is not a string.
         """
         if self.entries is None or self.file is None or "topic" not in self.entries:
             return None
         return SettingsTable(self.entries, file=self.file, path=self.section).text("topic")
 
     def series(self, what: str) -> MappedColumns:
-        """Return the map of a time series.
+        """Return the column map of a time series.
 
         Args:
             what: One of `SERIES`.
 
         Raises:
-            SettingsError: A key, a unit or a sign cannot be followed.
+            SettingsError: A key, a unit or a sign is invalid.
         """
         if self.entries is None or self.file is None:
             return replace(canonical_columns(SERIES[what]), where=f"{what}.")
@@ -68,10 +68,10 @@ class ForeignColumns:
         )
 
     def rig(self) -> Columns:
-        """Return the map of a rig's table.
+        """Return the column map of a rig table.
 
         Raises:
-            SettingsError: A key, a unit or a value cannot be followed.
+            SettingsError: A key, a unit or a value is invalid.
         """
         if self.entries is None or self.file is None:
             return Columns()
@@ -79,16 +79,16 @@ class ForeignColumns:
 
 
 def foreign_columns(what: str, table: Path, named: Path | None) -> ForeignColumns:
-    """Find what a `columns.toml` says of a file that is imported.
+    """Find the entries of a `columns.toml` for an imported file.
 
     Args:
-        what: `legs`, `imu`, `track` or `rig`.
+        what: Kind of file: `legs`, `imu`, `track` or `rig`.
         table: The file.
         named: A `columns.toml` in place of that beside the file.
 
     Raises:
-        NotFound: The one that was named is not there.
-        SettingsError: It cannot be read, or mixes sections with the form that has none.
+        NotFound: The named `columns.toml` does not exist.
+        SettingsError: It cannot be read, or has entries both in sections and outside of them.
     """
     beside = table.parent / COLUMNS_FILE
     file = named or (beside if beside.is_file() else None)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""`zebro-lab import`: somebody else's files into run folders."""
+"""`zebro-lab import`: convert files from other software to run folders."""
 
 from datetime import datetime
 from pathlib import Path

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Somebody else's files in, run folders out."""
+"""Stage of `zebro-lab import`: convert files from other software to run folders."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -32,14 +32,14 @@ from zebro_lab.track.foreign import (
 )
 
 _UNIX: Final = 1e9
-"""Times from here on are seconds since 1970: no run lasts for 30 years [s]."""
+"""Times from this value on are taken as Unix time: no run lasts for 30 years [s]."""
 _FIRST: Final = datetime(1970, 1, 1, tzinfo=UTC)
-_LAST: Final = datetime(2262, 1, 1, tzinfo=UTC)  # a log counts nanoseconds in 64 bits
+_LAST: Final = datetime(2262, 1, 1, tzinfo=UTC)  # largest time in nanoseconds in 64 bits
 
 
 @dataclass(frozen=True)
 class ImportRequest:
-    """What is to be imported.
+    """Files to import, and settings.
 
     Attributes:
         data: Folder of run folders.
@@ -50,9 +50,9 @@ class ImportRequest:
         robot: A `robot.toml`, kept with the run.
         columns: A `columns.toml` in place of those beside the files.
         label: Name of the run; the stem of the legs' or the rig's file when None.
-        start: When the files' time was 0, with its time zone; None where nobody says.
+        start: Date of the files' time 0, with its time zone; None if unknown.
         material: Leg and ground material.
-        operator: Who recorded them.
+        operator: Name of the operator.
     """
 
     data: Path
@@ -70,11 +70,11 @@ class ImportRequest:
 
 @dataclass(frozen=True)
 class Imported:
-    """What has been imported.
+    """Result of an import.
 
     Attributes:
         folders: The run folders.
-        notes: For a person, one line each.
+        notes: Notes, one line each.
     """
 
     folders: tuple[Path, ...]
@@ -82,15 +82,23 @@ class Imported:
 
 
 def import_run(request: ImportRequest, watcher: Watcher) -> Imported:
-    """Make run folders of somebody else's files: one of a walk, one for each run of a rig.
+    """Convert files recorded by other software to run folders.
 
-    Everything is read and checked before anything is written.
+    A walk becomes one run folder; rig data become one run folder per run. All files are read and
+    checked before the first folder is written.
+
+    Args:
+        request: Files to import and settings.
+        watcher: Receives progress.
+
+    Returns:
+        The run folders written, and notes.
 
     Raises:
-        SettingsError: What is asked cannot be, or a `columns.toml` cannot be followed.
+        SettingsError: An option or a `columns.toml` is invalid.
         NotFound: A file is missing.
-        DataError: A file holds what cannot be taken; names file, column and row.
-        AlreadyExists: One of the runs is there already.
+        DataError: A file has invalid content; names file, column and row.
+        AlreadyExists: One of the runs exists.
     """
     _require_something(request)
     watcher.step("reading", None)
@@ -187,7 +195,7 @@ def _rig(request: ImportRequest) -> tuple[Sequence[RigRun], tuple[str, ...]]:
 
 
 def _start(given: datetime | None, first: float) -> tuple[datetime, float, tuple[str, ...]]:
-    """Say when a run began, which time of the files that is, and what a person should know."""
+    """Return the start date of a run, the files' time at the start [s], and notes."""
     if given is not None:
         return given.astimezone(UTC), 0.0, ()
     if first >= _UNIX:
@@ -201,7 +209,7 @@ def _start(given: datetime | None, first: float) -> tuple[datetime, float, tuple
 def _apart(
     t: Array, imu: ImuLog | None, track: ForeignTrack | None, zero: float
 ) -> tuple[str, ...]:
-    """Say which of the files share no time with the legs."""
+    """Return notes on files that do not overlap the leg log in time."""
     others = {
         IMU: None if imu is None else imu.t - zero,
         TRACK: None if track is None else track.track.poses.t,

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A slip rig's table that somebody else wrote, as run folders: one for each run in it."""
+"""Import the table of a slip rig: one run folder for each run in it."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
@@ -32,15 +32,15 @@ class RigRun:
 
     Attributes:
         label: Its name.
-        table: Its samples, by the table's time until `begun`.
+        table: Its samples, in the time base of the table until `begun` is called.
         radius_leg: Radius of the leg disc [m].
         radius_ground: Radius of the ground disc [m].
-        source: Where it comes from.
+        source: Where the data come from.
         material: Leg and ground material.
-        operator: Who recorded it.
+        operator: Name of the operator.
         files: Every file read.
         load_cell: Standard deviations from the load cell's certificate, SI.
-        start: When its time was 0.
+        start: Date of its time 0.
     """
 
     label: str
@@ -55,11 +55,11 @@ class RigRun:
     start: datetime = datetime(1970, 1, 1, tzinfo=UTC)
 
     def begun(self, start: datetime, zero: float) -> "RigRun":
-        """Return the run with its own time, which begins at 0.
+        """Return the run in its own time base, which begins at 0.
 
         Args:
-            start: When the table's time was `zero`.
-            zero: Time of the table then [s].
+            start: Date at which the table's time was `zero`.
+            zero: Time of the table at `start` [s].
         """
         first = float(self.table.t[0])
         table = replace(self.table, t=self.table.t - first)
@@ -69,21 +69,21 @@ class RigRun:
 def rig_runs(
     path: Path, columns: Columns, *, label: str, material: str, operator: str
 ) -> tuple[list[RigRun], tuple[str, ...]]:
-    """Read a table and cut it into runs.
+    """Read a table and separate it into runs.
 
     Args:
-        path: CSV or Parquet.
-        columns: Names, units, signs, radii, and what separates runs.
-        label: Name with which every run's begins.
+        path: CSV or Parquet file.
+        columns: Column map, radii, and the rule that separates runs.
+        label: Prefix of every run's name.
         material: Leg and ground material.
-        operator: Who recorded it.
+        operator: Name of the operator.
 
     Returns:
-        The runs, and notes for a person.
+        The runs, and notes, one line each.
 
     Raises:
         DataError: A column is missing, a radius changes, rows are averages of trials, or time does
-            not increase in a run.
+            not increase within a run.
     """
     raw = read_table_file(path)
     table = RigTable(raw, columns, kept_rows(raw, columns))
@@ -116,7 +116,16 @@ def rig_runs(
 
 
 def write_rig_run(data_dir: Path, run: RigRun) -> Path:
-    """Write a run folder; what the certificate says of the load cell goes into its columns.toml.
+    """Write the run folder of an imported rig run.
+
+    Standard deviations from the load cell's certificate go into the folder's `columns.toml`.
+
+    Args:
+        data_dir: Folder that holds all runs.
+        run: Samples, geometry and provenance of the run.
+
+    Returns:
+        The run folder.
 
     Raises:
         AlreadyExists: A run of this start and label is there already.

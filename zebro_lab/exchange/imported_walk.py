@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A walk that somebody else logged, written as a run folder like any other."""
+"""Write an imported walk as a run folder."""
 
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
@@ -38,26 +38,26 @@ from zebro_lab.track.foreign import ForeignTrack
 IMU: Final = "imu"
 TRACK: Final = "track"
 _DEGREES: Final = 360
-"""Counts of a revolution under which imported angles are kept: they are degrees."""
+"""Counts per revolution in the profile of imported angles: they are stored in degrees."""
 _BATCH: Final = 100
-"""Samples of a message."""
+"""Number of samples per message."""
 
 
 @dataclass(frozen=True)
 class ImportedWalk:
-    """What is known of a walk.
+    """Data of an imported walk.
 
     Attributes:
         label: Name of the run.
         source: "real", "sim:what", "replay:what" or "import:FILE".
-        start: When time was 0, with its time zone.
+        start: Date of time 0, with its time zone.
         zero: Time of the files at which the run began [s].
         legs: Leg angles.
         imu: Orientation of the body.
-        track: Its path; None without one.
-        robot: The robot; the thesis's where it has no file.
+        track: Its tracked path; None without one.
+        robot: The robot; the thesis's robot without a file.
         material: Leg and ground material.
-        operator: Who recorded it.
+        operator: Name of the operator.
     """
 
     label: str
@@ -87,7 +87,7 @@ class _Stream:
 
 
 def write_imported_walk(data_dir: Path, walk: ImportedWalk) -> Path:
-    """Write a run folder: log, profiles, manifest, and the track where there is one.
+    """Write a run folder: log, profiles, manifest, and the track if there is one.
 
     Args:
         data_dir: Folder of run folders; made when missing.
@@ -115,7 +115,7 @@ def write_imported_walk(data_dir: Path, walk: ImportedWalk) -> Path:
 
 
 def _streams(draft: Path, walk: ImportedWalk) -> Mapping[str, _Stream]:
-    """Write the profiles and make the samples of all streams."""
+    """Write the profiles and encode the samples of all streams."""
     t, theta = walk.legs.reference.t - walk.zero, walk.legs.reference.theta
     texts = {LEGS: render_leg_profile(_leg_profile(_rate(t)))}
     if walk.imu is not None:
@@ -169,7 +169,7 @@ def _write_log(draft: Path, walk: ImportedWalk, streams: Mapping[str, _Stream]) 
 
 
 def _batches(streams: Mapping[str, _Stream]) -> list[tuple[str, list[Sample]]]:
-    """Cut all streams into batches, in the order of time."""
+    """Split all streams into batches, in time order."""
     batches = [
         (name, stream.samples[first : first + _BATCH])
         for name, stream in streams.items()

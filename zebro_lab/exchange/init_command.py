@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""`zebro-lab init FILE`: start a `columns.toml` from a table's own header."""
+"""`zebro-lab init FILE`: write a `columns.toml` template from a table's header."""
 
 from pathlib import Path
 from typing import Annotated
@@ -31,7 +31,7 @@ def init(
 
 
 def _to_check(found: set[str]) -> list[str]:
-    """Say what no header can tell."""
+    """Return advice on what to check, as it cannot be derived from a header."""
     advice = ["names, units and signs above; each is commented in the file"]
     missing = [name for name in ("normal_force", "traction_force") if name not in found]
     speeds = {"omega_leg", "omega_ground"} <= found

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Write a commented `columns.toml` for a table, guessed from its own header."""
+"""Write a commented `columns.toml` for a table, guessed from its header."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -49,7 +49,7 @@ def write_columns_template(file: Path, *, force: bool = False) -> Path:
 
     Args:
         file: CSV or Parquet file to read the header of.
-        force: Replace a `columns.toml` that is there already.
+        force: Whether to replace an existing `columns.toml`.
 
     Returns:
         The file written.
@@ -67,7 +67,7 @@ def write_columns_template(file: Path, *, force: bool = False) -> Path:
 
 
 def render_template(table: RawTable) -> str:
-    """Write out the guesses about a table as commented TOML."""
+    """Render the guessed column map of a table as commented TOML."""
     guesses = guess_columns(table)
     used = {guess.name for guess in guesses.values()}
     others = [name for name in table.columns if name not in used]
@@ -112,7 +112,7 @@ def _column_section(table: RawTable, name: str, guesses: Mapping[str, ColumnGues
 def _runs_section(table: RawTable, guesses: Mapping[str, ColumnGuess]) -> str:
     by = ", ".join(map(_quoted, guess_set_points(table)))
     restarts = "t" in guesses and _runs_backwards(table, guesses["t"].name)
-    # Without a rule such a file cannot be read at all: a guess serves better than a comment.
+    # Without a rule such a file cannot be read at all, so a guess is better than a comment.
     active = "" if restarts and by else "# "
     by = by or _quoted("SET_POINT")
     check = "  # CHECK: time restarts in the file" if restarts else ""

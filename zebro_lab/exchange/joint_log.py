@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Joint angles of a ROS 2 log in MCAP, as a table like any other."""
+"""Read joint angles from a ROS 2 log in MCAP to a table."""
 
 from pathlib import Path
 from typing import Any, Final
@@ -20,21 +20,21 @@ def read_joint_log(path: Path, *, topic: str | None = None) -> RawTable:
 
     Args:
         path: The log.
-        topic: Topic to read; None where the log has joint states on one topic alone.
+        topic: Topic to read; None if the log has joint states on a single topic.
 
     Returns:
-        A table with `t`, the stamps (of the log, where the messages have none) [s], and a column
-        of positions for each joint [rad]. A joint `leg_N` is called `thetaN`.
+        A table with `t`, the time stamps (log times if the messages have none) [s], and a column
+        of positions for each joint [rad]. A joint `leg_N` is named `thetaN`.
 
     Raises:
         NotFound: There is no such file.
-        DataError: It is no MCAP, or holds no joint states on one topic.
+        DataError: It is not MCAP, or does not have joint states on exactly one topic.
     """
     messages, damage = read_messages(path, schema=JOINT_STATE.name)
     rows: dict[str, list[tuple[float, dict[str, float]]]] = {}
     for topic_found, log_time, state in messages:
         stamp = state.header.stamp.sec + NANOSECOND * state.header.stamp.nanosec
-        joints = dict(zip(state.name, state.position, strict=False))  # it may tell speeds only
+        joints = dict(zip(state.name, state.position, strict=False))  # may be empty
         if joints:
             rows.setdefault(topic_found, []).append((stamp or NANOSECOND * log_time, joints))
     chosen = _chosen(rows, topic, path)

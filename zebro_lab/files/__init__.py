@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: MIT
-"""Files on disk: bounded opening of what users bring; results written whole or not at all."""
+"""Files on disk: read user files with size limits; write results atomically."""

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Read arrays of numbers out of an .npz archive within bounds; never a pickle."""
+"""Read arrays of numbers from an .npz archive with size limits and without pickle."""
 
 import math
 import zipfile
@@ -15,28 +15,28 @@ from zebro_lab.files.errors import DataError
 from zebro_lab.files.opening import open_file, parsing
 
 MOST_BYTES: Final = 256 << 20
-"""Most that the wanted arrays of an archive may unpack to: a band of 10,000 paths of a minute."""
+"""Largest unpacked size of the arrays read: a band of 10,000 paths of one minute [bytes]."""
 _HEADERS: Final = {(1, 0): npy.read_array_header_1_0, (2, 0): npy.read_array_header_2_0}
-_NUMBERS: Final = "biufU"  # truth, whole numbers, floats and texts of a fixed length
+_NUMBERS: Final = "biufU"  # booleans, integers, floats and fixed-length strings
 
 
 def read_arrays(
     path: Path, names: Iterable[str], *, advice: str, most: int = MOST_BYTES
 ) -> Mapping[str, NDArray]:
-    """Read arrays of an archive.
+    """Read arrays of an .npz archive.
 
     Args:
         path: The archive.
-        names: Arrays that are wanted.
-        advice: What to do where there is none, or where it cannot be read.
-        most: Bytes that they may unpack to in all.
+        names: Names of the arrays to read.
+        advice: What to do if the file is missing or cannot be read; part of the error message.
+        most: Largest unpacked size of all arrays together [bytes].
 
     Returns:
-        Them, by name; not to be written to.
+        Read-only arrays by name.
 
     Raises:
         NotFound: There is no such file.
-        DataError: It is no archive, lacks an array, holds something else than numbers, or unpacks
+        DataError: It is not an archive, lacks an array, has an array of another type, or unpacks
             to more than `most`.
     """
     with (
@@ -62,7 +62,7 @@ def _member(archive: zipfile.ZipFile, name: str, path: Path) -> zipfile.ZipInfo:
 
 
 def _array(archive: zipfile.ZipFile, member: zipfile.ZipInfo, path: Path) -> NDArray:
-    """Read one array; zipfile reads no more of it than the size it states."""
+    """Read one array; zipfile reads at most the size stated in the archive."""
     with archive.open(member) as file:
         shape, fortran, dtype = _header(file, member, path)
         data = file.read()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Files and folders that appear finished or not at all."""
+"""Write files and folders atomically: they appear complete or not at all."""
 
 import os
 import secrets
@@ -12,7 +12,7 @@ from zebro_lab.files.errors import AlreadyExists
 
 
 def atomic_write_bytes(path: str | os.PathLike[str], data: bytes) -> Path:
-    """Write a file so that a reader sees the old one or the whole new one.
+    """Write a file atomically: a reader sees the old content or the complete new content.
 
     Args:
         path: File to write; its folder must exist.
@@ -36,16 +36,25 @@ def atomic_write_bytes(path: str | os.PathLike[str], data: bytes) -> Path:
 
 
 def atomic_write_text(path: str | os.PathLike[str], text: str) -> Path:
-    """Write a UTF-8 text file as `atomic_write_bytes` does; line ends stay as they are."""
+    """Write a UTF-8 text file atomically, as `atomic_write_bytes` does.
+
+    Args:
+        path: File to write; its folder must exist.
+        text: Its content; line endings are not translated.
+
+    Returns:
+        The path written.
+    """
     return atomic_write_bytes(path, text.encode())
 
 
 @contextmanager
 def atomic_folder(target: str | os.PathLike[str]) -> Iterator[Path]:
-    """Fill a new folder so that it appears finished or, after any exception, not at all.
+    """Create a folder atomically: it appears complete or, after any exception, not at all.
 
-    The body writes into a hidden folder beside the target. What may replace an earlier result is
-    written with `zebro_lab.files.result_folder`.
+    The body writes into a hidden draft folder beside the target, which is renamed at the end.
+    Folders that may replace an earlier result are written with
+    `zebro_lab.files.result_folder.result_folder`.
 
     Args:
         target: Folder to make, or an empty one; missing parents are made.
@@ -72,20 +81,21 @@ def atomic_folder(target: str | os.PathLike[str]) -> Iterator[Path]:
 
 
 def nearest_folder(path: Path) -> Path:
-    """Return the nearest folder above a path that exists: drafts lie there.
+    """Return the nearest existing parent folder of a path, where drafts are created.
 
-    It is on the same file system, and there is no parent to clean up.
+    It is on the same file system, so that a draft can be renamed to its target, and no parent
+    folder has to be created first.
     """
     return next(parent for parent in path.parents if parent.is_dir())
 
 
 def draft_name(path: Path) -> str:
-    """Name a hidden draft beside a path, anew at each call."""
+    """Return a unique hidden file name for a draft of a path."""
     return f".{path.name}.{secrets.token_hex(4)}.part"
 
 
 def sync_files(folder: Path) -> None:
-    """Bring every file below a folder to the disk."""
+    """Flush every file below a folder to disk (fsync)."""
     for path in folder.rglob("*"):
         if path.is_file():
             with path.open("rb") as file:
@@ -93,7 +103,7 @@ def sync_files(folder: Path) -> None:
 
 
 def sync_folder(folder: Path) -> None:
-    """Bring the names in a folder to the disk, where the file system can."""
+    """Flush the entries of a folder to disk (fsync), if the file system supports it."""
     try:
         handle = os.open(folder, os.O_RDONLY)
     except OSError:  # a folder that may be written to but not listed

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Read TOML and JSON files of users within bounds of size, depth and numbers."""
+"""Read TOML and JSON files with limits on size, nesting depth and numbers."""
 
 import json
 from pathlib import Path
@@ -10,7 +10,7 @@ from zebro_lab.files.errors import DataError, SettingsError
 from zebro_lab.files.opening import Fault, parsing, read_bytes, read_text
 
 MOST_JSON: Final = 8 << 20
-"""Largest JSON file that is read: the manifest of fifty thousand photographs."""
+"""Largest JSON file that is read: the manifest of fifty thousand photographs [bytes]."""
 
 
 def read_toml_document(
@@ -20,14 +20,14 @@ def read_toml_document(
 
     Args:
         path: The file.
-        advice: What to do where there is none.
-        remedy: What to do where it cannot be read.
-        fault: Error to raise where it cannot be read.
+        advice: What to do if the file does not exist; part of the error message.
+        remedy: What to do if it cannot be read; part of the error message.
+        fault: Type of error to raise if it cannot be read.
 
     Raises:
         NotFound: There is no such file.
-        SettingsError: It is no regular file, too large, no TOML, or nested too deeply (or
-            `DataError`, as `fault` says).
+        SettingsError: It is not a regular file, too large, not TOML, or nested too deeply
+            (`DataError` if `fault` is that type).
     """
     data = read_bytes(path, most=MOST_BYTES, advice=advice, fault=fault)
     with parsing(path, "cannot be read as TOML", advice=remedy, fault=fault):
@@ -37,9 +37,16 @@ def read_toml_document(
 def read_json_document(path: Path, *, advice: str = "") -> Any:
     """Read a JSON file.
 
+    Args:
+        path: The file.
+        advice: What to do if the file does not exist; part of the error message.
+
+    Returns:
+        The parsed content.
+
     Raises:
-        NotFound: There is no such file; `advice` says what to do.
-        DataError: It is no regular file, too large, no JSON, or nested too deeply.
+        NotFound: There is no such file.
+        DataError: It is not a regular file, too large, not JSON, or nested too deeply.
     """
     text = read_text(path, most=MOST_JSON, advice=advice)
     with parsing(path, "cannot be read as JSON", advice="make it again"):
@@ -49,10 +56,14 @@ def read_json_document(path: Path, *, advice: str = "") -> Any:
 
 
 def require_object(content: object, path: Path) -> dict[str, Any]:
-    """Return what a JSON file holds where it is an object.
+    """Return the content of a JSON file if it is an object.
+
+    Args:
+        content: Parsed content.
+        path: The file, for the error message.
 
     Raises:
-        DataError: It is a list, a number or a text.
+        DataError: The content is a list, a number or a string.
     """
     if not isinstance(content, dict):
         raise DataError("is not a JSON object", file=path)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Read draws of a posterior out of a netCDF (HDF5) file within bounds, and from no other file."""
+"""Read posterior draws from a netCDF (HDF5) file, with size limits and without external links."""
 
 from collections.abc import Iterable, Mapping
 from pathlib import Path
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     import h5py
 
 MOST_DRAWS: Final = 4_000_000
-"""Draws of a parameter that are read; a calibration writes some ten thousand."""
+"""Largest number of draws per parameter; a calibration writes some ten thousand."""
 
 
 def read_draws_of(
@@ -23,21 +23,21 @@ def read_draws_of(
 ) -> tuple[Mapping[str, NDArray[np.float64]], tuple[str, ...]]:
     """Read draws of parameters.
 
-    HDF5 may say that numbers, or whole groups, lie in another file, and would read that one.
+    External links and external storage of HDF5, which refer to other files, are rejected.
 
     Args:
         path: The file.
-        group: Group that holds them.
-        names: Parameters; those that the file lacks are left out.
-        advice: What to do where it cannot be read.
+        group: Group that has the draws.
+        names: Parameters; those that the file lacks are omitted.
+        advice: What to do if it cannot be read; part of the error message.
 
     Returns:
-        The draws by parameter, equally many of each, and the names of all that the group holds.
+        The draws by parameter, equally many of each, and the names of all members of the group.
 
     Raises:
         NotFound: There is no such file.
-        DataError: It is no such file, or a parameter's draws are no numbers, too many or
-            elsewhere.
+        DataError: It is not such a file, or a parameter's draws are not numbers, too many, or
+            stored in another file.
     """
     import h5py
 
@@ -57,12 +57,12 @@ def read_draws_of(
 
 
 def _text(name: object) -> str:
-    """Return a name as text; h5py hands those that are no UTF-8 on as bytes."""
+    """Return a name as a string; h5py returns names that are not UTF-8 as bytes."""
     return name.decode("utf-8", "backslashreplace") if isinstance(name, bytes) else str(name)
 
 
 def _own(group: "h5py.Group", name: str, path: Path) -> object:
-    """Return what a group itself holds under a name."""
+    """Return a member that is stored in the group itself, not behind an external link."""
     import h5py
 
     if not isinstance(group.get(name, getlink=True), h5py.HardLink):
@@ -78,7 +78,7 @@ def _draws(group: "h5py.Group", name: str, path: Path) -> NDArray[np.float64]:
         raise DataError(f"'{name}' holds no numbers", file=path)
     if found.external or found.is_virtual:
         raise DataError(f"has the draws of '{name}' in another file", file=path)
-    size = found.size or 0  # None of one that is stated to be empty
+    size = found.size or 0  # None for a dataset declared empty
     if not 0 < size <= MOST_DRAWS:
         raise DataError(f"claims {size} draws of '{name}'; 1 to {MOST_DRAWS} are read", file=path)
     return np.ravel(found[()]).astype(float)

@@ -1,16 +1,16 @@
 # SPDX-License-Identifier: MIT
-"""Texts that a file in UTF-8 can hold: names and arguments may come with bytes that are none."""
+"""Make strings encodable as UTF-8: file names and arguments may contain invalid bytes."""
 
 from collections.abc import Mapping
 
 
 def encodable(value: object) -> object:
-    r"""Turn what is no character into an escape, in every text of a JSON document.
+    r"""Escape lone surrogates in every string of a JSON document.
 
-    Python keeps such bytes, of a foreign encoding, as halves of surrogate pairs.
+    Python represents bytes that are not UTF-8 as lone surrogates.
 
     Args:
-        value: A text, or mappings and sequences of texts; anything else stays.
+        value: A string, or mappings and sequences of strings; other values are kept.
 
     >>> encodable({"label": "caf\udce9", "n": 1})
     {'label': 'caf\\udce9', 'n': 1}

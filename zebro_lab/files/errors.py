@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What can be wrong with what people hand in; each message is one line."""
+"""Error types of `zebro_lab`; each message is one line."""
 
 from os import PathLike
 
@@ -11,9 +11,9 @@ class ZebroLabError(Exception):
 
 
 class DataError(ZebroLabError, ValueError):
-    """A table or a recording does not hold what is needed.
+    """A table or a recording has missing or invalid content.
 
-    The message begins with the place, as far as it is known: file, column, row.
+    The message begins with the known part of the location: file, column, row.
 
     Attributes:
         problem: What was found, what was expected, what to try.
@@ -55,7 +55,7 @@ class DataError(ZebroLabError, ValueError):
 
 
 class SettingsError(ZebroLabError, ValueError):
-    """A settings file or an option says something that cannot be followed.
+    """A settings file or an option has an invalid value.
 
     Attributes:
         problem: What was found, what was expected, what to try.
@@ -77,10 +77,10 @@ class SettingsError(ZebroLabError, ValueError):
 
 
 class UnitError(ZebroLabError, ValueError):
-    """A unit is unknown, or measures something else.
+    """A unit is unknown, or measures another quantity.
 
     Attributes:
-        unit: The unit, as it was written.
+        unit: The unit, as written.
     """
 
     def __init__(self, problem: str, *, unit: str) -> None:
@@ -93,11 +93,11 @@ class NotFound(ZebroLabError, FileNotFoundError):
 
 
 class AlreadyExists(ZebroLabError, FileExistsError):
-    """Writing would destroy what is already there."""
+    """Writing would overwrite an existing file or folder."""
 
 
 class NotWritten(ZebroLabError, OSError):
-    """A result cannot be written: the file system refuses."""
+    """A result cannot be written because of an error of the file system."""
 
 
 class RecordingError(ZebroLabError, OSError):
@@ -105,5 +105,5 @@ class RecordingError(ZebroLabError, OSError):
 
 
 def _one_line(place: str, problem: str) -> str:
-    # Messages of foreign libraries, quoted in ours, often run over several lines.
+    # Messages of other libraries, quoted in ours, often have several lines.
     return shortened(shown(" ".join(f"{place}: {problem}".split() if place else problem.split())))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Manifests of the folders that commands write: read, and refused where they are others."""
+"""Read and check the manifests of result folders."""
 
 from collections.abc import Collection, Mapping
 from pathlib import Path
@@ -14,11 +14,11 @@ def read_json_object(file: Path, *, of: str) -> dict[str, Any]:
 
     Args:
         file: The file.
-        of: What the folder should be, as "walk folder".
+        of: Kind of folder that is expected, e.g. "walk folder".
 
     Raises:
-        NotFound: There is none.
-        DataError: It is damaged, or no JSON object.
+        NotFound: There is no such file.
+        DataError: It is damaged, or not a JSON object.
     """
     try:
         return require_object(read_json_document(file), file)
@@ -33,13 +33,13 @@ def read_folder_manifest(
 
     Args:
         file: The manifest.
-        of: What the folder holds, as "walk".
-        kinds: What its `kind` may be.
-        schema: The version that is read.
+        of: Content of the folder, e.g. "walk".
+        kinds: Accepted values of its `kind`.
+        schema: Accepted version of the schema.
 
     Raises:
-        NotFound: There is none.
-        DataError: It is damaged, of another schema, or that of another command.
+        NotFound: There is no such file.
+        DataError: It is damaged, of another schema, or of another command.
     """
     content = read_json_object(file, of=f"{of} folder")
     if content.get("kind") not in tuple(kinds):

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Names of files that more than one room reads or writes."""
+"""File names used by more than one room."""
 
 from typing import Final
 
 PATH_CSV: Final = "path.csv"
-"""The path of a walk folder, one row a moment."""
+"""The path of a walk folder, one row per time step."""

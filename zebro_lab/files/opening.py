@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""Open files that users bring: regular ones alone, bounded in size, every fault as one line.
+"""Open user files safely: regular files only, limited in size, with one-line error messages.
 
-Every reader of a user's file opens it here, and calls foreign parsers inside `parsing`. Documents
-(TOML, JSON), archives of arrays and compressed tables have bounds of their own beside this file.
+Every reader of a user's file opens it with these functions and calls third-party parsers inside
+`parsing`. Limits for documents (TOML, JSON), array archives and compressed tables are in the other
+modules of this folder.
 """
 
 import os
@@ -17,7 +18,7 @@ from zebro_lab.files.errors import DataError, NotFound, SettingsError, ZebroLabE
 Fault = type[DataError] | type[SettingsError]
 
 MOST_TEXT: Final = 64 << 20
-"""Largest text file that is read at once: a trajectory of half a million poses."""
+"""Largest text file that is read at once: a trajectory of half a million poses [bytes]."""
 _KINDS: Final = (
     (stat.S_ISDIR, "a folder"), (stat.S_ISFIFO, "a FIFO"), (stat.S_ISSOCK, "a socket"),
     (stat.S_ISCHR, "a device"), (stat.S_ISBLK, "a device"),
@@ -30,21 +31,22 @@ def open_file(
 ) -> Iterator[BinaryIO]:
     """Open a regular file for reading.
 
-    A FIFO or device is never opened: that would wait for a writer, or move the device.
+    A FIFO or device is never opened: opening a FIFO blocks until there is a writer, and opening a
+    device may have side effects.
 
     Args:
         path: The file.
-        most: Bytes it may have; None where its reader bounds itself.
-        advice: What to do where there is no such file.
-        fault: Error to raise where it is not one that is read.
+        most: Largest size that is accepted [bytes]; None if the caller limits what it reads.
+        advice: What to do if the file does not exist; part of the error message.
+        fault: Type of error to raise if the file cannot be opened.
 
     Yields:
-        The file.
+        The open file.
 
     Raises:
         NotFound: There is no such file.
-        DataError: It is no regular file, too large, or cannot be opened (or `SettingsError`, as
-            `fault` says).
+        DataError: It is not a regular file, too large, or cannot be opened (`SettingsError` if
+            `fault` is that type).
     """
     with os.fdopen(_descriptor(path, advice, fault), "rb") as file:
         size = os.fstat(file.fileno()).st_size
@@ -58,7 +60,19 @@ def open_file(
 
 
 def read_bytes(path: Path, *, most: int, advice: str = "", fault: Fault = DataError) -> bytes:
-    """Read a whole file; the arguments and errors are those of `open_file`."""
+    """Read a whole file as bytes.
+
+    Args:
+        path: The file.
+        most: Largest size that is read [bytes].
+        advice: What to do if the file does not exist; part of the error message.
+        fault: Type of error to raise if the file cannot be read.
+
+    Raises:
+        NotFound: There is no such file.
+        DataError: It is not a regular file, too large, or cannot be read (`SettingsError` if
+            `fault` is that type).
+    """
     with (
         open_file(path, most=most, advice=advice, fault=fault) as file,
         parsing(path, "cannot be read", fault=fault),
@@ -69,7 +83,19 @@ def read_bytes(path: Path, *, most: int, advice: str = "", fault: Fault = DataEr
 def read_text(
     path: Path, *, most: int = MOST_TEXT, advice: str = "", fault: Fault = DataError
 ) -> str:
-    """Read a whole text file in UTF-8, with or without a byte order mark; see `open_file`."""
+    """Read a whole text file in UTF-8, with or without a byte order mark.
+
+    Args:
+        path: The file.
+        most: Largest size that is read [bytes].
+        advice: What to do if the file does not exist; part of the error message.
+        fault: Type of error to raise if the file cannot be read.
+
+    Raises:
+        NotFound: There is no such file.
+        DataError: It is not a regular file, too large, cannot be read, or is not UTF-8
+            (`SettingsError` if `fault` is that type).
+    """
     data = read_bytes(path, most=most, advice=advice, fault=fault)
     try:
         return data.decode("utf-8-sig")
@@ -85,19 +111,19 @@ def read_text(
 def parsing(
     path: Path, problem: str, *, advice: str = "", fault: Fault = DataError
 ) -> Iterator[None]:
-    """Turn whatever a parser raises into one line that names the file.
+    """Convert any exception of a parser into a one-line error that names the file.
 
-    Parsers of other projects answer malformed input with whatever went wrong inside them, so that
-    no list of exceptions is ever complete.
+    Third-party parsers may raise any exception on malformed input, so every exception is caught.
 
     Args:
         path: The file.
-        problem: What is wrong with it, as "cannot be read as TOML".
-        advice: What to try.
-        fault: Error to raise.
+        problem: What is wrong with it, e.g. "cannot be read as TOML".
+        advice: What to try; part of the error message.
+        fault: Type of error to raise.
 
     Raises:
-        DataError: The body raised an error that is not ours (or `SettingsError`, as `fault` says).
+        DataError: The body raised an error of another project (`SettingsError` if `fault` is that
+            type).
     """
     try:
         yield

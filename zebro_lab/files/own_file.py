@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Single files that a command makes: replaced where the file says that the command made it."""
+"""Overwrite a single output file only if the same command wrote it."""
 
 import os
 from collections.abc import Callable, Iterator, Sequence
@@ -12,7 +12,7 @@ from zebro_lab.files.folder_manifest import read_json_object
 from zebro_lab.files.result_folder import MANIFEST
 
 _HEAD: Final = 1 << 16
-"""Marks lie within so many first bytes."""
+"""Number of leading bytes that are searched for the mark of a command."""
 _PNG: Final = b"\x89PNG\r\n\x1a\n"
 SOFTWARE: Final = "zebro-lab"
 COMMENT: Final = "Comment"
@@ -21,11 +21,11 @@ COMMENT: Final = "Comment"
 
 @dataclass(frozen=True)
 class OwnFile:
-    """A kind of file that one command makes.
+    """A kind of file that one command writes.
 
     Attributes:
-        command: The command, for a person.
-        is_ours: Tells by the first bytes of a file whether the command made it.
+        command: The command, as shown in messages.
+        is_ours: Returns whether the command wrote a file, given the file's first bytes.
     """
 
     command: str
@@ -33,14 +33,14 @@ class OwnFile:
 
 
 def html_page(command: str) -> OwnFile:
-    """Return the mark of a page: zebro-lab as its generator."""
+    """Return the file kind of an HTML page, recognised by its generator tag."""
     return OwnFile(command, lambda head: b'<meta name="generator" content="zebro-lab ' in head)
 
 
 def picture(command: str) -> OwnFile:
-    """Return the mark of a PNG picture: its software, and the command as its comment.
+    """Return the file kind of a PNG picture, recognised by its software and comment metadata.
 
-    A picture of an earlier version names the software alone.
+    Pictures of an earlier version have only the software field; the comment names the command.
     """
 
     def is_ours(head: bytes) -> bool:
@@ -51,23 +51,30 @@ def picture(command: str) -> OwnFile:
 
 
 def text_file(command: str, heading: str) -> OwnFile:
-    """Return the mark of a text file: the line that it begins with."""
+    """Return the file kind of a text file, recognised by its first line.
+
+    Args:
+        command: The command that writes the file.
+        heading: Text that the file begins with.
+    """
     return OwnFile(command, lambda head: head.startswith(heading.encode()))
 
 
 def require_own(out: Path, kind: OwnFile, *, inputs: Sequence[Path] = ()) -> Path:
-    """Refuse to write onto what the command did not make, before anything is computed.
+    """Raise if an output file exists that the command did not write.
+
+    Called before anything is computed.
 
     Args:
         out: File that is to be written.
-        kind: What makes it.
+        kind: Kind of file that the command writes.
         inputs: Files and folders that are read.
 
     Returns:
-        The file itself, where `out` is a link to it.
+        The file itself if `out` is a link to it.
 
     Raises:
-        AlreadyExists: It is a folder, an input, part of a result, or not of the command.
+        AlreadyExists: It is a folder, an input, part of a result, or of another command.
         NotFound: Its folder does not exist.
     """
     file = Path(os.path.realpath(out))
@@ -88,7 +95,7 @@ def _require_ours(out: Path, file: Path, kind: OwnFile) -> None:
         raise AlreadyExists(f"{out} is no regular file; name another --out")
     with file.open("rb") as opened:
         head = opened.read(_HEAD)
-    if head and not kind.is_ours(head):  # an empty file is nobody's work
+    if head and not kind.is_ours(head):  # an empty file may be overwritten
         raise AlreadyExists(
             f"{out} was not made by {kind.command}; move it away, or name another --out"
         )
@@ -99,7 +106,7 @@ def _require_ours(out: Path, file: Path, kind: OwnFile) -> None:
 
 
 def _listed_beside(file: Path) -> Sequence[str]:
-    """List the files of the result that a file lies in, if it lies in one."""
+    """List the files of the result folder that contains a file, if there is one."""
     try:
         manifest = read_json_object(file.parent / MANIFEST, of="result folder")
     except ZebroLabError:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Where numbers come from: hashes of files, versions of software."""
+"""Provenance of results: hashes of files, versions of software."""
 
 import hashlib
 import json
@@ -23,18 +23,18 @@ def file_hashes(paths: Iterable[Path]) -> dict[str, str]:
 
 
 def fingerprint(hashes: Mapping[str, str], settings: Mapping[str, object]) -> str:
-    """Hash data and settings together; file names and places do not count, contents do.
+    """Compute a hash of data and settings; it depends on file contents, not on names or paths.
 
     Args:
         hashes: SHA-256 of each data file.
-        settings: Everything else that decides the numbers, as JSON can hold it.
+        settings: All other settings that affect the results, JSON-serialisable.
     """
     content = {"data": sorted(hashes.values()), "settings": dict(settings)}
     return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
 
 
 def software() -> dict[str, str]:
-    """Name the versions that decide the numbers."""
+    """Return the versions of the software that affects the results."""
     return {
         "python": platform.python_version(),
         **{name: version(name) for name in RECORDED},

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Replace a folder so that a process killed at any moment leaves the old one or the new one whole.
+"""Replace a folder atomically: a killed process leaves either the old or the new one complete.
 
 | step | on disk | killed after it |
 |---|---|---|
@@ -9,7 +9,7 @@
 | the draft becomes NAME | both | NAME is new; the next one removes the old |
 | what could not be linked is moved, the old one and the note are removed | NAME new | NAME is new |
 
-The note is locked while its writer lives, so that nobody restores what is just being replaced.
+The note is locked while its writer runs, so that no other process restores during a replacement.
 """
 
 import json
@@ -29,17 +29,17 @@ from zebro_lab.files.errors import AlreadyExists, DataError
 
 PREVIOUS: Final = ".previous"
 PATIENCE: Final = 10.0
-"""How long to wait for another process that replaces the same folder [s]."""
+"""Timeout for another process that replaces the same folder [s]."""
 _LOG = logging.getLogger(__name__)
 
 
 @dataclass(frozen=True)
 class _Note:
-    """What a replacement writes down before it moves anything.
+    """Journal entry that a replacement writes before it moves any folder.
 
     Attributes:
-        inode: Number of the old folder, by which NAME.previous is known for it.
-        owned: What of the old folder is replaced: paths relative to it, with `/`.
+        inode: Inode of the old folder, by which NAME.previous is recognised.
+        owned: Files of the old folder that are replaced: paths relative to it, with `/`.
     """
 
     inode: int
@@ -47,22 +47,22 @@ class _Note:
 
 
 def previous_of(folder: Path) -> Path:
-    """Return where the old folder lies while a new one takes its place."""
+    """Return the path NAME.previous, where the old folder is kept during a replacement."""
     return folder.with_name(folder.name + PREVIOUS)
 
 
 def replace_folder(folder: Path, draft: Path, *, owned: Callable[[], Collection[str]]) -> None:
-    """Put a draft in a folder's place; what is not owned there is carried over.
+    """Replace a folder by a draft, keeping the files that are not owned.
 
     Args:
-        folder: Folder to make or to replace; no symbolic link.
+        folder: Folder to create or to replace; not a symbolic link.
         draft: The new folder, on the same file system.
-        owned: Says what of the old folder is to go, as paths relative to it; it may refuse. It is
-            asked under the lock, so that nothing changes between the answer and the replacement.
+        owned: Returns the files of the old folder to remove, as paths relative to it, or raises.
+            It is called while the lock is held, so that the list is still valid when it is used.
 
     Raises:
-        AlreadyExists: Another process replaces it, or NAME.previous is somebody's own.
-        OSError: The folder cannot be moved or written; the old one is there as before.
+        AlreadyExists: Another process is replacing it, or NAME.previous is a user's folder.
+        OSError: The folder cannot be moved or written; the old one is unchanged.
     """
     folder.parent.mkdir(parents=True, exist_ok=True)
     with _locked(folder) as note:
@@ -81,21 +81,21 @@ def replace_folder(folder: Path, draft: Path, *, owned: Callable[[], Collection[
 
 
 def settle(path: Path, *, writing: bool = False) -> Path:
-    """Restore a result of which an interrupted replacement left NAME.previous alone.
+    """Restore a result folder after an interrupted replacement that left only NAME.previous.
 
-    Every reader of a result calls it first, every writer too. A result that is whole loses what
-    the interrupted replacement left beside it.
+    Every reader and writer of a result calls it first. If the result is complete, the leftovers of
+    the interrupted replacement are removed.
 
     Args:
         path: Folder of a result, or a file in it.
-        writing: NAME is about to be replaced: NAME.previous is restored only where a replacement
-            noted that it made it, else it may be somebody's own copy and stays as it is.
+        writing: Whether NAME is about to be replaced. Then NAME.previous is restored only if a note
+            says that a replacement made it; otherwise it may be a user's copy and is kept.
 
     Returns:
         The path.
 
     Raises:
-        DataError: There is only NAME.previous and it cannot be renamed.
+        DataError: Only NAME.previous exists and it cannot be renamed.
         AlreadyExists: Another process is still replacing it after `PATIENCE`.
     """
     absolute = Path(os.path.realpath(path))
@@ -108,10 +108,10 @@ def settle(path: Path, *, writing: bool = False) -> Path:
 
 
 def require_free_previous(folder: Path) -> None:
-    """Refuse to use NAME.previous where somebody keeps a folder of his own under that name.
+    """Check that NAME.previous is not a user's folder.
 
     Raises:
-        AlreadyExists: It is there; an interrupted replacement is settled before this is asked.
+        AlreadyExists: It exists; interrupted replacements are settled before this check.
     """
     if os.path.lexists(previous_of(folder)):
         raise AlreadyExists(
@@ -130,7 +130,7 @@ def _settle(folder: Path, *, writing: bool) -> None:
         raise
     except OSError as error:
         if folder.exists():
-            return  # it is whole; that the old one beside it cannot be removed harms no reader
+            return  # it is complete; an old folder that cannot be removed does not affect readers
         raise DataError(
             f"is missing, and {previous_of(folder).name} beside it cannot be renamed "
             f"({error.strerror}); rename it to {folder.name} by hand",
@@ -139,7 +139,7 @@ def _settle(folder: Path, *, writing: bool) -> None:
 
 
 def _settle_locked(folder: Path, note: _Note | None) -> None:
-    """Finish or undo what a killed process began; what it did not leave is not touched."""
+    """Finish or undo the replacement of a killed process; other folders are not touched."""
     if note is None or not _is_left(folder, note):
         return
     if not folder.exists():
@@ -150,7 +150,7 @@ def _settle_locked(folder: Path, note: _Note | None) -> None:
 
 
 def _is_left(folder: Path, note: _Note | None) -> bool:
-    """Tell whether NAME.previous is the folder that a note speaks of."""
+    """Return whether NAME.previous is the folder recorded in a note."""
     previous = previous_of(folder)
     return note is not None and previous.is_dir() and previous.stat().st_ino == note.inode
 
@@ -177,7 +177,7 @@ def _swap(folder: Path, draft: Path) -> None:
 
 
 def _carry(old: Path, new: Path, owned: Collection[str], below: str = "") -> None:
-    """Link what is not owned into the draft; what cannot be linked is moved after the swap."""
+    """Hard-link files that are not owned into the draft; others are moved after the swap."""
     for path in sorted(old.iterdir()):
         name, target = below + path.name, new / path.name
         if name in owned:
@@ -203,13 +203,13 @@ def _link(file: Path, target: Path) -> None:
 
 
 def _drop_emptied(folder: Path, name: str, owned: Collection[str]) -> None:
-    """Remove a folder of which everything was owned."""
+    """Remove a folder whose files were all owned."""
     if any(each.startswith(f"{name}/") for each in owned) and not any(folder.iterdir()):
         folder.rmdir()
 
 
 def _sweep(old: Path, new: Path, owned: Collection[str], below: str = "") -> None:
-    """Move what is not owned and did not come into the new folder by a link."""
+    """Move files that are not owned and were not linked into the new folder."""
     for path in sorted(old.iterdir()):
         name, target = below + path.name, new / path.name
         if name in owned:
@@ -223,7 +223,7 @@ def _sweep(old: Path, new: Path, owned: Collection[str], below: str = "") -> Non
 
 
 def _is_newer(file: Path, target: Path) -> bool:
-    """Tell whether a file was saved after its link was made, or could not be linked."""
+    """Return whether a file was replaced after its link was made, or could not be linked."""
     if not os.path.lexists(target):
         return True
     one, other = file.lstat(), target.lstat()
@@ -236,7 +236,7 @@ def _note_of(folder: Path) -> Path:
 
 @contextmanager
 def _locked(folder: Path) -> Iterator[IO[bytes]]:
-    """Hold the note of a folder's replacement; it goes at the end, unless it is still needed."""
+    """Lock the note of a folder's replacement; it is removed at the end unless still needed."""
     with _open_locked(folder) as note:
         try:
             yield note
@@ -260,7 +260,7 @@ def _open_locked(folder: Path) -> IO[bytes]:
 
 
 def _is_at(note: IO[bytes], path: Path) -> bool:
-    """Tell whether a note that was waited for has not been removed in the meantime."""
+    """Return whether an open note still exists at its path after waiting for its lock."""
     try:
         return os.fstat(note.fileno()).st_ino == path.stat().st_ino
     except FileNotFoundError:
@@ -275,7 +275,7 @@ def _write_note(note: IO[bytes], content: _Note) -> None:
 
 
 def _read_note(note: IO[bytes]) -> _Note | None:
-    """Read a note; None where nothing, or nothing whole, was written down yet."""
+    """Read a note; None if it is empty or incomplete."""
     note.seek(0)
     try:
         content = json.loads(note.read())
@@ -285,7 +285,7 @@ def _read_note(note: IO[bytes]) -> _Note | None:
 
 
 def _sync(folder: Path) -> None:
-    """Bring every file and folder of a draft to the disk."""
+    """Flush every file and folder of a draft to disk (fsync)."""
     for path in folder.rglob("*"):
         if _is_folder(path):
             sync_folder(path)

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""Result folders: written whole with a manifest, and replaced by the same command alone.
+"""Result folders: written atomically with a manifest, and replaced only by the same command.
 
-What a command wrote is known by `manifest.json`: its kind, and the hash of each file. Everything
-else in the folder is somebody's own: it is carried over when the result is replaced, and a result
-that would take its place is refused.
+`manifest.json` has the kind of the result and the hash of each file that the command wrote. All
+other files in the folder belong to the user: they are kept when the result is replaced, and a
+result that would overwrite one raises an error.
 """
 
 import glob
@@ -32,14 +32,14 @@ _GLOB: Final = "*"
 
 @dataclass(frozen=True)
 class ResultKind:
-    """What one command writes.
+    """Kind of result folder that a command writes.
 
     Attributes:
-        kind: What the manifest calls it.
-        command: Command that writes it, for a person.
-        names: Files that it may hold, as patterns; the manifest is one more.
-        schema: Version of its form.
-        inside: Kinds of the results in folders below it that a new one makes void, by the name of
+        kind: Its name in the manifest.
+        command: Command that writes it, as shown in messages.
+        names: Patterns of the files that it may have, besides the manifest.
+        schema: Version of its format.
+        inside: Kinds of results in folders below it that a new result invalidates, by the name of
             the folder.
     """
 
@@ -51,18 +51,17 @@ class ResultKind:
 
 
 def require_replaceable(out: Path, kind: ResultKind, *, inputs: Sequence[Path] = ()) -> None:
-    """Refuse a folder that cannot be made or replaced, before anything is computed.
+    """Check that a result folder can be created or replaced, before anything is computed.
 
     Args:
         out: Folder that is to be written.
-        kind: What is to be written.
+        kind: Kind of result to write.
         inputs: Files and folders that are read.
 
     Raises:
         AlreadyExists: It is a file or below one, a broken link, an input, the result of another
-            command, or holds a file of somebody else, or one that was changed, where a file is to
-            be written.
-        NotWritten: The folder in which it lies cannot be written to.
+            command, or a file to be written exists that belongs to the user or was changed.
+        NotWritten: Its parent folder cannot be written to.
     """
     folder = real_place(out)
     settle(folder, writing=True)
@@ -86,21 +85,21 @@ def require_replaceable(out: Path, kind: ResultKind, *, inputs: Sequence[Path] =
 
 @contextmanager
 def result_folder(out: Path, kind: ResultKind, *, content: Mapping[str, object]) -> Iterator[Path]:
-    """Write a result so that it appears whole, or the earlier one stays.
+    """Write a result folder atomically; after an exception the earlier result is unchanged.
 
-    The manifest comes last: schema, kind, content, hashes of the files written, and software.
+    The manifest is written last: schema, kind, content, hashes of the files, and software.
 
     Args:
-        out: Folder to make or to replace; missing parents are made.
-        kind: What is written.
-        content: What the manifest says beside; taken when the body has ended.
+        out: Folder to create or to replace; missing parents are created.
+        kind: Kind of result.
+        content: Further content of the manifest; read when the body has ended.
 
     Yields:
-        The draft to write into.
+        The draft folder to write into.
 
     Raises:
         AlreadyExists: As in `require_replaceable`.
-        NotWritten: The folder cannot be made or moved.
+        NotWritten: The folder cannot be created or moved.
     """
     require_replaceable(out, kind)
     folder = real_place(out)
@@ -127,16 +126,16 @@ def result_folder(out: Path, kind: ResultKind, *, content: Mapping[str, object])
 
 
 def real_place(path: Path) -> Path:
-    """Return a file or folder itself, not a link to it: a link is followed, never replaced."""
+    """Resolve a link to its target, so that the target is replaced and not the link."""
     return Path(os.path.realpath(path))
 
 
 @contextmanager
 def writing(out: Path) -> Iterator[None]:
-    """Turn what the file system refuses while a folder is written into one line.
+    """Convert an `OSError` raised while a folder is written into a one-line error.
 
     Raises:
-        NotWritten: The body raised an `OSError` that is not ours.
+        NotWritten: The body raised an `OSError` that is not a `ZebroLabError`.
     """
     try:
         yield
@@ -149,7 +148,7 @@ def writing(out: Path) -> Iterator[None]:
 
 
 def plain_json(value: object) -> object:
-    """Replace what JSON cannot hold: numbers that are none or infinite."""
+    """Replace numbers that JSON cannot represent: NaN and infinity."""
     if isinstance(value, Mapping):
         return {key: plain_json(each) for key, each in value.items()}
     if isinstance(value, list | tuple):
@@ -158,7 +157,7 @@ def plain_json(value: object) -> object:
 
 
 def _require_ground(out: Path) -> None:
-    """Refuse a place that can hold no folder: one below a file, or behind a broken link."""
+    """Check that a folder can be created: not below a file or behind a broken link."""
     for place in (out, *out.parents):
         if place.is_symlink() and not place.exists():
             raise AlreadyExists(f"{place} is a link to what is not there; name another --out")
@@ -167,7 +166,7 @@ def _require_ground(out: Path) -> None:
 
 
 def _require_not_inside(out: Path, folder: Path) -> None:
-    """Refuse to replace the folder that the process, and mostly its shell, works in."""
+    """Check that the folder to replace is not the working directory or above it."""
     try:
         here = Path.cwd()
     except OSError:  # it was removed
@@ -180,7 +179,7 @@ def _require_not_inside(out: Path, folder: Path) -> None:
 
 
 def _owned(folder: Path, kind: ResultKind) -> frozenset[str]:
-    """List what of a folder an earlier run of the same command wrote, by paths relative to it.
+    """List the files that an earlier run of the same command wrote, relative to the folder.
 
     Raises:
         AlreadyExists: It is the result of another command, or was changed since.
@@ -208,7 +207,7 @@ def _owned(folder: Path, kind: ResultKind) -> frozenset[str]:
 
 
 def _void(folder: Path, kind: str) -> frozenset[str]:
-    """List what of a result below another becomes void with it; what was changed is kept."""
+    """List the files of an invalidated result below another; changed files are kept."""
     try:
         return _owned(folder, ResultKind(kind, kind, ()))
     except AlreadyExists:
@@ -226,7 +225,7 @@ def _manifest_of(folder: Path) -> Mapping[str, Any]:
 
 
 def _outputs(manifest: Mapping[str, Any]) -> Mapping[str, object]:
-    """Return the files that a manifest lists; nothing outside its own folder."""
+    """Return the files that a manifest lists, only those inside its folder."""
     listed = manifest.get("outputs")
     if not isinstance(listed, Mapping):
         return {}
@@ -245,7 +244,7 @@ def _require_free(
 
 
 def _require_kept(out: Path, folder: Path, path: Path, replaced: Collection[str]) -> None:
-    """Refuse a folder whose replacement would take an input away."""
+    """Check that replacing a folder does not remove an input."""
     place = real_place(path)
     inside = place.is_relative_to(folder) and place.relative_to(folder).parts[:1]
     if place == folder or (inside and inside[0] in replaced):
@@ -256,7 +255,7 @@ def _require_kept(out: Path, folder: Path, path: Path, replaced: Collection[str]
 
 @contextmanager
 def _draft_of(folder: Path) -> Iterator[Path]:
-    """Make a hidden draft beside a folder, and remove those that killed processes left there."""
+    """Create a hidden draft beside a folder, and remove drafts of killed processes."""
     ground = nearest_folder(folder)
     for stale in ground.glob(f".{glob.escape(folder.name)}.????????.part"):
         with _lock_of(stale) as is_stale:
@@ -273,7 +272,7 @@ def _draft_of(folder: Path) -> Iterator[Path]:
 
 @contextmanager
 def _lock_of(draft: Path) -> Iterator[bool]:
-    """Lock a draft for as long as it is written; tell whether nobody else holds it."""
+    """Lock a draft while it is written; yield whether the lock was acquired."""
     handle = -1
     is_free = False
     with suppress(OSError):

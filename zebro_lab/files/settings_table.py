@@ -14,31 +14,36 @@ _NO_UNIT: Final = "dimensionless"
 
 
 class SettingsTable(TomlTable):
-    """One table of a settings file; what cannot be followed is a `SettingsError`.
+    """One table of a TOML settings file, with unit conversion; errors are `SettingsError`.
 
-    Arguments as `TomlTable`.
+    Takes the arguments of `TomlTable`.
     """
 
     def fault(self, problem: str, key: str | None = None) -> SettingsError:
-        """Make an error that names the file and the key."""
+        """Return an error that names the file and the key.
+
+        Args:
+            problem: What is wrong.
+            key: Key in this table; None for the table itself.
+        """
         return SettingsError(problem, file=self.file, key=self.dotted(key))
 
     def quantity(self, key: str, unit: str, *, default: float | None = None,
                  above: float = -math.inf, least: float = -math.inf) -> float:  # fmt: skip
-        """Take a number in SI, or a text such as "30 mm".
+        """Read a quantity: a number in SI, or a string with a unit such as "30 mm".
 
         Args:
-            key: Its key.
-            unit: Its SI unit.
-            default: What to return where it is missing.
-            above: What it must exceed.
-            least: What it must not fall below.
+            key: Key of the value.
+            unit: SI unit of the result.
+            default: Value to return if the key is missing, in SI.
+            above: Exclusive lower limit, in SI.
+            least: Inclusive lower limit, in SI.
 
         Returns:
             The number in SI.
 
         Raises:
-            SettingsError: It is missing without a default, no number, or too small.
+            SettingsError: The value is missing without a default, not a number, or too small.
         """
         number = self._to_si(key, self.value(key, default), unit)
         if number <= above:
@@ -48,19 +53,35 @@ class SettingsTable(TomlTable):
         return number
 
     def quantities(self, key: str, count: int, unit: str) -> tuple[float, ...]:
-        """Take a list of numbers, each as `quantity` takes one.
+        """Read a list of quantities, each in SI or a string with a unit.
+
+        Args:
+            key: Key of the list.
+            count: Expected number of elements.
+            unit: SI unit of the result.
+
+        Returns:
+            The numbers in SI.
 
         Raises:
-            SettingsError: It is missing, of another length, or holds something else.
+            SettingsError: The list is missing, of another length, or has an element that is not a
+                quantity.
         """
         found = self._list(key, count)
         return tuple(self._to_si(f"{key}[{i}]", each, unit) for i, each in enumerate(found))
 
     def factor(self, key: str, unit: str) -> tuple[str, float]:
-        """Take the name of a unit, and compute the factor from it to an SI unit, its default.
+        """Read the name of a unit and compute its conversion factor to an SI unit.
+
+        Args:
+            key: Key of the unit's name.
+            unit: SI unit to convert to; also the default if the key is missing.
+
+        Returns:
+            Name of the unit, and the factor from it to the SI unit.
 
         Raises:
-            SettingsError: It is unknown or measures something else.
+            SettingsError: The unit is unknown or measures another quantity.
         """
         name = self.text(key, unit)
         try:

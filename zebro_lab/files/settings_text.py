@@ -13,8 +13,8 @@ def fill_in(template: str, values: Mapping[str, Any]) -> str:
 
     Args:
         template: TOML, with any value at the keys that get one; keys it lacks are added.
-        values: What to write, tables as mappings; numbers are written to twelve digits, so that
-            degrees come back without the noise of the last bits.
+        values: Values to write, tables as mappings; numbers are rounded to twelve digits, which
+            removes rounding errors of unit conversion.
 
     Returns:
         The filled template.
@@ -22,7 +22,7 @@ def fill_in(template: str, values: Mapping[str, Any]) -> str:
     >>> fill_in("[legs]\nradius = 0  # of the arc [m]", {"legs": {"radius": 0.1 + 0.2}})
     '[legs]\nradius = 0.3  # of the arc [m]'
     """
-    import tomlkit  # 0.1 s; only those who write pay
+    import tomlkit  # takes 0.1 s, so imported only for writing
 
     document = tomlkit.parse(template)
     _fill(document, values)
@@ -30,7 +30,7 @@ def fill_in(template: str, values: Mapping[str, Any]) -> str:
 
 
 def inline_table(values: Mapping[str, Any]) -> Mapping[str, Any]:
-    """Make a table that stands in one line, for `fill_in`."""
+    """Create an inline table (on one line) for `fill_in`."""
     import tomlkit
 
     table = tomlkit.inline_table()
@@ -48,7 +48,7 @@ def _fill(table: MutableMapping[str, Any], values: Mapping[str, Any]) -> None:
 
 
 def _plain(value: Any) -> Any:
-    """Return a value as plain lists, texts and numbers of twelve digits."""
+    """Convert a value to plain lists, strings and numbers rounded to twelve digits."""
     if isinstance(value, str | bool | numbers.Integral):
         return value
     if isinstance(value, Mapping):

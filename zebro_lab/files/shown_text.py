@@ -1,19 +1,19 @@
 # SPDX-License-Identifier: MIT
-"""Text of files made harmless before it is shown, on a terminal or in a page.
+"""Escape control characters in text from files before it is shown in a terminal or a page.
 
-A label may hold an escape sequence that rewrites the screen, a newline that fakes the line of
-another run, or marks of direction that reverse what is read.
+A label may contain an escape sequence that rewrites the screen, a newline that imitates the line of
+another run, or direction marks that reverse the reading order.
 """
 
 import re
 from typing import Final
 
 LONGEST: Final = 1000
-"""Characters of a message that are shown; the middle of a longer one is left out."""
+"""Largest number of characters of a message that are shown; longer ones are truncated."""
 
-# Controls of C0 and C1, line and paragraph separators, marks of direction, invisible operators,
-# the byte order mark, annotations, halves of surrogate pairs, tags. Joiners, which Persian and
-# Hindi are written with, stay.
+# C0 and C1 control characters, line and paragraph separators, direction marks, invisible operators,
+# the byte order mark, annotations, lone surrogates, tags. Joiners are kept: Persian and Hindi need
+# them.
 _HARMFUL = re.compile(
     "[\x00-\x1f\x7f-\x9f\u061c\u200b\u200e\u200f\u2028-\u202e\u2060-\u206f\ufeff\ufff9-\ufffb"
     "\ud800-\udfff\U000e0000-\U000e0fff]"
@@ -21,7 +21,7 @@ _HARMFUL = re.compile(
 
 
 def shown(text: str) -> str:
-    r"""Spell out characters that would do something other than show themselves.
+    r"""Escape control and invisible characters.
 
     >>> shown("completed\nall well \x1b[31m")
     'completed\\nall well \\x1b[31m'
@@ -30,7 +30,11 @@ def shown(text: str) -> str:
 
 
 def shortened(text: str, longest: int = LONGEST) -> str:
-    """Leave out the middle of a long text.
+    """Truncate a long string by replacing its middle with an ellipsis.
+
+    Args:
+        text: String to truncate.
+        longest: Largest number of characters kept.
 
     >>> shortened("abcdefghij", 5)
     'ab … ij'

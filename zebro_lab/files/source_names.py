@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: MIT
-"""Where data come from, as texts: `real`, `sim:WHAT`, `replay:WHAT`, `import:FILE`, `mixed:A,B`."""
+"""Names of data sources: `real`, `sim:WHAT`, `replay:WHAT`, `import:FILE`, `mixed:A,B`."""
 
 from collections.abc import Sequence
 from pathlib import Path
 
 
 def joined_source(sources: Sequence[str]) -> str:
-    """Join the sources of a run's streams; what is simulated throughout still begins with `sim:`.
+    """Join the sources of a run's streams; the result begins with `sim:` if all are simulated.
 
     >>> joined_source(["sim:zebro", "sim:imu"]), joined_source(["real", "sim:imu"])
     ('sim:zebro+imu', 'mixed:real,sim:imu')
@@ -19,7 +19,11 @@ def joined_source(sources: Sequence[str]) -> str:
 
 
 def stated_source(stated: str | None, file: Path) -> str:
-    """Return the source that somebody stated, else the file.
+    """Return the stated source, or a source name made from the file's name.
+
+    Args:
+        stated: Source as stated in a file; None or "unknown" if there is none.
+        file: File that the data were read from.
 
     >>> stated_source("unknown", Path("x/legs.csv"))
     'import:legs.csv'

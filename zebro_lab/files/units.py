@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Units as people write them, turned into factors to SI."""
+"""Unit conversion: parse units and compute factors to SI."""
 
 import difflib
 import math
@@ -21,10 +21,10 @@ _QUANTITY = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(.*)",
 
 
 def factor_to_si(unit: str, si_unit: str) -> float:
-    """Compute the factor that takes numbers in a unit to an SI unit.
+    """Compute the conversion factor from a unit to an SI unit.
 
-    Angles count as a dimension here, though SI has them dimensionless: "Hz" and "1/min" for an
-    angular speed would otherwise pass and be wrong by 2 pi.
+    Angles count as a dimension here, although they are dimensionless in SI: otherwise "Hz" and
+    "1/min" would be accepted for an angular speed, which is wrong by a factor of 2 pi.
 
     Args:
         unit: Unit as pint spells it; "", "-" and "1" mean none.
@@ -47,10 +47,15 @@ def factor_to_si(unit: str, si_unit: str) -> float:
 
 
 def quantity_to_si(quantity: str | float, si_unit: str) -> float:
-    """Convert a number in SI, or a text such as "35 mm", to a number in SI.
+    """Convert a quantity, such as "35 mm", to a number in SI.
+
+    Args:
+        quantity: Number in SI, or a string with a number and a unit; without a unit it is in SI.
+        si_unit: SI unit of the result.
 
     Raises:
-        UnitError: The text is no finite number with a unit, or the unit does not fit.
+        UnitError: The string is not a finite number with a unit, or the unit measures another
+            quantity.
 
     >>> quantity_to_si("35 mm", "m"), quantity_to_si(0.035, "m")
     (0.035, 0.035)
@@ -68,7 +73,12 @@ def quantity_to_si(quantity: str | float, si_unit: str) -> float:
 
 
 def is_unit_of(unit: str, si_unit: str) -> bool:
-    """Tell whether numbers in a unit can be converted to an SI unit."""
+    """Return whether a unit can be converted to an SI unit.
+
+    Args:
+        unit: Unit as pint spells it; "", "-" and "1" mean none.
+        si_unit: SI unit to convert to.
+    """
     try:
         factor_to_si(unit, si_unit)
     except UnitError:
@@ -78,7 +88,7 @@ def is_unit_of(unit: str, si_unit: str) -> bool:
 
 @cache
 def _registry() -> "UnitRegistry":
-    from pint import UnitRegistry  # 0.3 s; only those who convert pay
+    from pint import UnitRegistry  # takes 0.3 s, so imported only for conversion
 
     registry = UnitRegistry()
     registry.define("@alias turn = rev")

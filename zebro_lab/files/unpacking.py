@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Read text tables, also gzipped, while counting what they unpack to."""
+"""Read text tables, also gzipped, with limits on their unpacked size."""
 
 import gzip
 import io
@@ -15,27 +15,27 @@ from zebro_lab.files.opening import open_file
 
 FREELY: Final = 64 << 20
 MOST_RATIO: Final = 100
-"""How much larger than on disk a file may unpack to, beyond `FREELY`: logs of sensors reach 20."""
+"""Largest ratio of unpacked to packed size, beyond `FREELY`; logs of sensors reach 20 [-]."""
 MOST_CELLS: Final = 32_000_000
-"""Cells of a table that are read; each takes some 25 bytes while numbers are parsed."""
+"""Largest number of table cells; each takes some 25 bytes while numbers are parsed."""
 LONGEST_LINE: Final = 1 << 20
 
 
 @contextmanager
 def open_unpacked(path: Path, *, width: int = 1) -> Iterator[IO[bytes]]:
-    """Open a file for reading, unpacking it where its name ends in .gz.
+    """Open a file for reading, decompressing it if its name ends in .gz.
 
     Args:
         path: The file.
-        width: Cells of each line, which its reader keeps.
+        width: Number of cells per line that its reader keeps.
 
     Yields:
-        The unpacked file; reading beyond a bound raises.
+        The decompressed file; reading beyond a limit raises.
 
     Raises:
         NotFound: There is no such file.
-        DataError: It is no regular file, no whole gzip file, unpacks to too much, or has too many
-            cells.
+        DataError: It is not a regular file, not a complete gzip file, its unpacked size exceeds the
+            limit, or it has too many cells.
     """
     with open_file(path) as file:
         most = FREELY + MOST_RATIO * os.fstat(file.fileno()).st_size
@@ -44,12 +44,12 @@ def open_unpacked(path: Path, *, width: int = 1) -> Iterator[IO[bytes]]:
         try:
             yield counted  # pyright: ignore[reportReturnType]
         except Exception as error:
-            # pandas calls every error of the file it reads from by a name of its own.
+            # pandas replaces errors of the file it reads from by its own types.
             raise counted.refusal or error from error
 
 
 class _Counted(io.BufferedIOBase):
-    """A file that counts what is read from it, and refuses to go on beyond bounds."""
+    """A file wrapper that counts bytes and lines read, and raises beyond the limits."""
 
     def __init__(
         self, source: IO[bytes] | gzip.GzipFile, path: Path, most: int, width: int

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The pictures of a calibration: arrays in, matplotlib figures out, pyplot never touched."""
+"""Figures of calibrations, walks, tracks and validations from arrays, without pyplot."""
 
 from zebro_lab.plots.noise import residuals
 from zebro_lab.plots.posterior import corner, traces

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The robot walking, in three dimensions: mp4 where ffmpeg is there, else gif."""
+"""3-D animation of the walking robot: mp4 if ffmpeg is installed, else gif."""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -36,20 +36,20 @@ def animate(
     simulated: bool,
     progress: Callable[[float], None] = lambda _: None,
 ) -> Path:
-    """Draw the walking robot as a film; the camera goes along, the grid on the ground stands.
+    """Write an animation of the walking robot; the camera follows the body over a fixed grid.
 
     Args:
         path: The walk.
         robot: The robot.
         folder: Folder to write `animation.mp4` (with ffmpeg on the search path) or
             `animation.gif` into.
-        title: Title of the film; name the model.
-        simulated: Say so in the title.
-        progress: Called with the fraction drawn.
+        title: Title of the animation; name the model.
+        simulated: Whether to append "(simulated)" to the title.
+        progress: Called with the fraction drawn, 0 to 1 [-].
 
     Returns:
-        The file written. In contact a leg is orange, in the air grey; a walk too long for 400
-        frames is shown faster, and the film says how much.
+        The file written. In contact a leg is orange, in the air grey. A walk too long for 400
+        frames is shown faster, with the factor written in the picture.
     """
     frames, speed_up = frame_times(path.t)
     index = np.searchsorted(path.t, frames).clip(0, len(path.t) - 1)
@@ -66,13 +66,13 @@ def animate(
 
 
 def frame_times(t: Array) -> tuple[Array, float]:
-    """Choose when to draw a frame.
+    """Compute the times of the frames.
 
     Args:
         t: Times of the walk, shape (n,) [s].
 
     Returns:
-        Times, evenly spaced, and how many times faster than life they are shown.
+        Times, evenly spaced [s], and the speed-up factor of the animation [-].
 
     >>> frames, speed_up = frame_times(np.linspace(0, 40, 1000))
     >>> len(frames), speed_up
@@ -92,7 +92,7 @@ def _writer() -> tuple[AbstractMovieWriter, str]:
 
 
 class _Scene:
-    """The drawn things, made once and moved for every frame."""
+    """Artists of the animation, created once and updated for every frame."""
 
     def __init__(self, figure: Figure, path: WalkPath, robot: Robot, speed_up: float) -> None:
         self._path, self._robot = path, robot
@@ -123,7 +123,7 @@ class _Scene:
         self._clock = figure.text(0.03, 0.04, "")
 
     def show(self, sample: int) -> None:
-        """Move everything to a sample of the path."""
+        """Update all artists to a sample of the path."""
         path = self._path
         position, orientation = path.position[sample], path.orientation[sample]
         corners = to_world(body_corners(self._robot), position, orientation)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What a fit leaves over: four checks of the noise model."""
+"""Residual plots of a fit: four checks of the noise model."""
 
 import math
 
@@ -22,7 +22,7 @@ _NORMAL_90, _NORMAL_95 = 1.6449, 1.96  # half-widths of a standard normal's cent
 def residuals(
     blocks: Blocks, *, whitened: Array, run_score: Array, title: str, simulated: bool
 ) -> Figure:
-    """Draw what the fit leaves over, as four checks of the noise model.
+    """Draw the residuals of a fit, as four checks of the noise model.
 
     Args:
         blocks: Block means.
@@ -31,7 +31,7 @@ def residuals(
         run_score: Mean of each run in standard deviations of its posterior predictive, shape
             (n_runs,) [-].
         title: Title of the figure.
-        simulated: Say so in the title.
+        simulated: Whether to append "(simulated)" to the title.
 
     Returns:
         The figure: residuals over slip, their distribution, their autocorrelation within runs,
@@ -69,9 +69,12 @@ def _draw_distribution(axes: Axes, whitened: Array) -> None:
 def _autocorrelation(
     whitened: Array, run: NDArray[np.intp]
 ) -> tuple[NDArray[np.intp], Array, NDArray[np.intp]]:
-    """Return lags that some run has, the mean product of blocks so far apart, and their number.
+    """Compute the autocorrelation of whitened residuals within runs.
 
-    The products are over the mean square: whitened residuals have a known mean, zero.
+    The mean is known to be zero, so it is not subtracted.
+
+    Returns:
+        Lags that occur within runs [blocks], autocorrelation at each lag [-], and number of pairs.
     """
     rows = []
     for lag in range(1, min(_MAX_LAG, len(whitened) - 1) + 1):

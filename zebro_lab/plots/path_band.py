@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The band of a predicted path: from above and over time, with a track where there is one."""
+"""Plot the band of a predicted path, from above and over time, with an optional track."""
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -14,13 +14,13 @@ _LEVELS = (0.05, 0.25, 0.5, 0.75, 0.95)
 
 @styled
 def path_band(paths: Poses, *, title: str, simulated: bool, track: Poses | None = None) -> Figure:
-    """Draw an ensemble of paths: some of them from above, x, y and yaw over time.
+    """Draw the draws of a path from above, and quantiles of x, y and yaw over time.
 
     Args:
-        paths: The ensemble.
+        paths: The draws.
         title: Title of the figure.
-        simulated: Say so in the title.
-        track: Tracked poses of the same clock and floor.
+        simulated: Whether to append "(simulated)" to the title.
+        track: Tracked poses in the same time base and frame.
 
     Returns:
         The figure; bands hold 50 and 90 % of the draws at each time.

@@ -28,9 +28,9 @@ def path_validation(
     Args:
         paths: The prediction and the baselines, by name, all in the track's frame.
         track: The tracked poses.
-        band: The prediction's ensemble, in the same frame.
+        band: The prediction's draws, in the same frame; None without draws.
         title: Name of the walk.
-        simulated: Say so in the title.
+        simulated: Whether to append "(simulated)" to the title.
 
     Returns:
         The figure.

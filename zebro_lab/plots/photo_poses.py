@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Photographs from above beside the robot drawn where it was predicted (Fig. 5-3, 5-24, 5-25)."""
+"""Photographs from above with the robot drawn at its predicted pose (Fig. 5-3, 5-24, 5-25)."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -55,7 +55,7 @@ def photos_beside_poses(
         shots: Photographs and predicted poses.
         robot: The robot.
         title: Name of the walk.
-        simulated_photos: Say that the photographs are simulated too; predictions always are.
+        simulated_photos: Whether the photographs are simulated too; predictions always are.
 
     Returns:
         The figure: photographs above, predicted robots below, with the tracked outline.
@@ -115,10 +115,10 @@ def band_over_floor(
         floor: The floor from straight above, BGR.
         extent: Lowest x, highest x, lowest y, highest y of it [m].
         path: The predicted path, in the floor's frame.
-        band: Its draws; None where there are none.
+        band: Its draws; None without draws.
         track: The tracked poses.
         title: Name of the walk.
-        simulated_photos: Say that the photograph is simulated too; predictions always are.
+        simulated_photos: Whether the photograph is simulated too; predictions always are.
 
     Returns:
         The figure, x to the right and y up, both to one scale.
@@ -131,7 +131,7 @@ def band_over_floor(
         width=max(scale * width, 5.0) + 0.8, height=scale * height + 1.3,
     )  # fmt: skip
     axes = figure.add_subplot()
-    # Paler than the photograph: the paths are the figure, the floor its paper.
+    # The photograph is drawn paler, so that the paths stand out.
     axes.imshow(floor[:, :, ::-1], extent=extent, interpolation="antialiased", alpha=0.55)
     for i, position in enumerate(band.position[:_SHOWN_DRAWS] if band is not None else ()):
         axes.plot(*position.T, color=BLUE, lw=0.5, alpha=0.25, label="draws" if i == 0 else None)

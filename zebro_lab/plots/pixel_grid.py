@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A photograph with its pixels numbered, for those who point at places in it without a mouse."""
+"""Draw a photograph with a pixel grid, to read pixel coordinates without a mouse."""
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -21,8 +21,8 @@ def pixel_grid(
     Args:
         pixels: The photograph, BGR, shape (height, width, 3).
         title: Title of the figure.
-        around: Pixel near which to draw, enlarged; None for all.
-        reach: How far from there [px].
+        around: Centre of an enlarged region [px]; None for the whole photograph.
+        reach: Half the side of the region [px].
 
     Returns:
         The figure.

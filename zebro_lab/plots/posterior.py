@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A posterior's draws: all pairs of parameters, and the chains they came from."""
+"""Plots of posterior draws: corner plot of all pairs of parameters, and traces of the chains."""
 
 import math
 import textwrap
@@ -33,8 +33,8 @@ def corner(
         draws: Posterior draws, shape (n_draws, k).
         labels: Axis label of each parameter with its unit, k of them; see `parameter_labels`.
         title: Title of the figure.
-        simulated: Say so in the title.
-        truth: True values where they are known, shape (k,); NaN for an unknown one.
+        simulated: Whether to append "(simulated)" to the title.
+        truth: True values, shape (k,); NaN for an unknown one; None if all are unknown.
 
     Returns:
         The figure: densities on the diagonal, titled with median and central 90 %; regions of
@@ -72,7 +72,7 @@ def traces(chains: Array, *, labels: Sequence[str], title: str, simulated: bool 
         chains: Draws, shape (n_ensembles, n_draws, k).
         labels: Axis label of each parameter with its unit, k of them; see `parameter_labels`.
         title: Title of the figure.
-        simulated: Say so in the title.
+        simulated: Whether to append "(simulated)" to the title.
 
     Returns:
         The figure: a row for each parameter, densities left, traces right. Ensembles that agree
@@ -174,5 +174,5 @@ def _label_corner(axes: Axes, labels: Sequence[str], row: int, column: int) -> N
 
 
 def _wrapped(label: str) -> str:
-    """Break a label's words over lines no wider than a panel; a line's symbol and unit stay."""
+    """Wrap the words of a label to the width of a panel; the line with symbol and unit is kept."""
     return "\n".join(textwrap.fill(line, 18, break_long_words=False) for line in label.split("\n"))

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""What every picture shares: colours, paper, title, legend, labels, and the PNG it ends as.
+"""Shared style of all figures: colours, size, title, legend, labels, and writing PNG files.
 
-Colours are Okabe and Ito's and viridis: they stay apart for colour-blind readers and in grey print.
+Colours are Okabe and Ito's and viridis: colour-blind readers and grey prints can distinguish them.
 """
 
 import math
@@ -48,7 +48,7 @@ class Blocks(Protocol):
         normal_force: Mean normal force, shape (n,) [N].
         traction_force: Mean traction force, positive when driving, shape (n,) [N].
         run: Index of the run each block belongs to, non-decreasing, shape (n,).
-        definition: What the slip ratios are divided by.
+        definition: Slip definition of the slip ratios.
     """
 
     @property
@@ -64,7 +64,7 @@ class Blocks(Protocol):
 
 
 def parameter_labels(parameters: Sequence[Parameter]) -> tuple[str, ...]:
-    r"""Spell each parameter's name, symbol and unit as a two-line axis label.
+    r"""Format each parameter's name, symbol and unit as a two-line axis label.
 
     >>> from model.slip import MagicFormula
     >>> parameter_labels(MagicFormula().parameters)[3]
@@ -77,7 +77,14 @@ def parameter_labels(parameters: Sequence[Parameter]) -> tuple[str, ...]:
 
 
 def new_figure(title: str, simulated: bool, *, width: float, height: float) -> Figure:
-    """Return an empty figure on white paper, sides in inches, marked when simulated."""
+    """Create an empty figure with a white background.
+
+    Args:
+        title: Title of the figure.
+        simulated: Whether to append "(simulated)" to the title.
+        width: Width of the figure [inch].
+        height: Height of the figure [inch].
+    """
     figure = Figure(figsize=(width, height), dpi=150, layout="constrained", facecolor="white")
     FigureCanvasAgg(figure)
     figure.suptitle(f"{title} (simulated)" if simulated else title)
@@ -90,19 +97,25 @@ def save(
 ) -> None:
     """Write a figure as PNG at its own resolution, whatever the path's suffix.
 
-    The bytes depend on the figure alone: no time stamp and no library version goes in.
+    The file is reproducible: it has no time stamp and no library version.
 
     Args:
-        figure: What to write.
-        path: Where to; its folder exists. Or a file that is open.
-        command: Command that draws it, where it stands alone: it is known by that again.
+        figure: Figure to write.
+        path: File to write, in an existing folder, or an open file.
+        command: Command that draws it, stored as metadata, by which the command recognises its own
+            picture; None for a picture in a result folder.
     """
     metadata = {"Software": SOFTWARE, **({} if command is None else {COMMENT: command})}
     figure.savefig(path, format="png", dpi="figure", metadata=metadata)
 
 
 def legend_below(figure: Figure, *, columns: int) -> None:
-    """List what the panels drew, each entry once, under all of them."""
+    """Add one legend below all panels, with each label once.
+
+    Args:
+        figure: Figure to add the legend to.
+        columns: Number of columns of the legend.
+    """
     entries = {
         label: handle
         for axes in figure.axes
@@ -112,17 +125,17 @@ def legend_below(figure: Figure, *, columns: int) -> None:
 
 
 def slip_label(blocks: Blocks) -> str:
-    """Name the slip axis with the definition its ratios are in."""
+    """Return the label of the slip axis, with the slip definition."""
     return f"slip ratio, {blocks.definition} definition [-]"
 
 
 def point_alpha(count: int) -> float:
-    """Return the opacity at which this many points still show their density."""
+    """Compute the opacity of scatter points from their number, so that density is visible."""
     return float(np.clip(12 / math.sqrt(max(count, 1)), 0.15, 0.8))
 
 
 def plain(value: float) -> str:
-    """Spell a number with three significant digits and no exponent up to a million.
+    """Format a number with three significant digits, without exponent up to a million.
 
     >>> plain(1148.3), plain(0.01442)
     ('1150', '0.0144')
@@ -131,7 +144,17 @@ def plain(value: float) -> str:
 
 
 def slip_grid(slip: Array, count: int) -> Array:
-    """Span the tested slip, three times as densely in the part where peaks are narrow."""
+    """Compute a grid of slip ratios over the tested range, denser around zero.
+
+    Slip curves have narrow peaks near zero slip, where the grid gets additional points.
+
+    Args:
+        slip: Tested slip ratios [-].
+        count: Number of points over the full range; as many are added around zero.
+
+    Returns:
+        Increasing slip ratios [-].
+    """
     low, high = float(slip.min()), float(slip.max())
     reach = NARROW * max(-low, high)
     narrow = np.linspace(max(low, -reach), min(high, reach), count)

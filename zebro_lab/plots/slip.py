@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Slip curves: one panel for each tested load."""
+"""Plot slip curves, one panel for each tested load."""
 
 import math
 from collections.abc import Sequence
@@ -27,7 +27,7 @@ from zebro_lab.plots.sheet import (
 )
 
 _QUANTILES = (0.05, 0.25, 0.5, 0.75, 0.95)
-_NEAR_LOAD = 0.1  # further off its nominal load than this, a block need not lie on the curve
+_NEAR_LOAD = 0.1  # relative load difference beyond which a block is not comparable with the curve
 
 
 @styled
@@ -42,18 +42,18 @@ def slip_curves(
 ) -> Figure:
     """Draw data and posterior slip curves, one panel for each tested load.
 
-    Each block goes to the nearest load level; blocks whose load is more than 10 % off it are
-    hollow, since the curve is not theirs. The bands are of the curve (parameters alone), without
-    noise and run offsets. Where a peak lies in the first 15 % of the tested slip a second panel
-    beside each shows that part.
+    Each block is drawn at the nearest load level; blocks whose load differs by more than 10 % are
+    hollow, since the curve is for another load. The bands are those of the curve (parameters only),
+    without noise and run offsets. If a peak is in the first 15 % of the tested slip, a second panel
+    shows that part.
 
     Args:
         blocks: Block means.
-        law: Slip law the draws are of.
+        law: Slip law of the draws.
         draws: Posterior draws of the law's parameters, shape (n_draws, k).
         load_levels: Nominal loads, shape (n_levels,) [N].
         title: Title of the figure.
-        simulated: Say so in the title.
+        simulated: Whether to append "(simulated)" to the title.
 
     Returns:
         The figure.
@@ -96,7 +96,7 @@ class _LoadCurve:
     bands: Array  # shape (5, m): `_QUANTILES` of the traction force [N]
 
     def peaks(self) -> list[int]:
-        """Index the extrema of the median curve that lie inside the tested range."""
+        """Return the indices of extrema of the median curve inside the tested range."""
         median = self.bands[2]
         tops = (int(np.argmax(median)), int(np.argmin(median)))
         return [top for top in tops if 0 < top < len(median) - 1]
@@ -121,7 +121,7 @@ def _load_curves(blocks: Blocks, law: SlipLaw, draws: Array, levels: Array) -> l
 
 
 def _narrow_reach(blocks: Blocks, curves: Sequence[_LoadCurve]) -> tuple[float, float] | None:
-    """Return the slip to look at closely, None where no peak is narrow."""
+    """Return the slip range of the additional panel; None if no peak is narrow."""
     reach = NARROW * float(np.abs(blocks.slip).max())
     peaks = [peak for curve in curves if (peak := curve.main_peak())]
     if not any(abs(slip) < reach for slip, _ in peaks):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The slip surface: traction over slip and load."""
+"""Plot the slip surface: traction over slip and load."""
 
 from typing import cast
 
@@ -32,7 +32,7 @@ def slip_surface(
         law: Slip law.
         values: Parameter values of the law, shape (k,).
         title: Title of the figure.
-        simulated: Say so in the title.
+        simulated: Whether to append "(simulated)" to the title.
 
     Returns:
         The figure. The surface covers the tested slip and load; a single load gets a margin of a

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Roll and pitch of a predicted walk beside those an IMU measured."""
+"""Plot roll and pitch of a predicted walk with those measured by an IMU."""
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -17,12 +17,12 @@ def tilt(t: Array, predicted: Array, measured: Array, *, title: str, simulated: 
     Args:
         t: Times, shape (n,) [s].
         predicted: Predicted roll and pitch, shape (n, 2) [rad].
-        measured: The IMU's, shape (n, 2) [rad].
+        measured: Measured roll and pitch, shape (n, 2) [rad].
         title: Name of the walk.
-        simulated: Say so in the title.
+        simulated: Whether to append "(simulated)" to the title.
 
     Returns:
-        The figure, with the IMU's bias left in.
+        The figure; the IMU's bias is not removed.
     """
     figure = new_figure(f"Roll and pitch: {title}", simulated, width=8.5, height=4.6)
     middle = 0.5 * (t[0] + t[-1])

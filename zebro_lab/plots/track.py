@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A track over a photograph, over the floor from above, and what is left of each observation."""
+"""Plot a track over a photograph and over the floor from above, and its residuals over time."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -38,12 +38,12 @@ def over_photo(
     pixels: NDArray[np.uint8], *, title: str, simulated: bool, path_px: Array | None = None,
     headings_px: Array | None = None, marks: Sequence[SeenMarks] = (),
 ) -> Figure:  # fmt: skip
-    """Draw what was found over a photograph.
+    """Draw path, headings and detected markers over a photograph.
 
     Args:
         pixels: The photograph, BGR, shape (height, width, 3).
         title: Title of the figure.
-        simulated: Say so in the title.
+        simulated: Whether to append "(simulated)" to the title.
         path_px: The body's origin in each photograph, shape (n, 2); NaN interrupts it [px].
         headings_px: A point ahead of each, shape (n, 2) [px].
         marks: Markers and outlines.
@@ -101,7 +101,7 @@ def over_floor(
         ellipses: Outline of a region around each pose in which the robot is, shape (m, 2) [m].
         labels: What to write beside each pose; empty where nothing.
         title: Title of the figure.
-        simulated: Say so in the title.
+        simulated: Whether to append "(simulated)" to the title.
 
     Returns:
         The figure, x to the right and y up, both to one scale.
@@ -112,7 +112,7 @@ def over_floor(
         title, simulated, width=max(scale * width, 5.0) + 0.8, height=scale * height + 1.1
     )
     axes = figure.add_subplot()
-    # Paler than the photograph: the path is the figure, the floor its paper.
+    # The photograph is drawn paler, so that the path stands out.
     axes.imshow(floor[:, :, ::-1], extent=extent, interpolation="antialiased", alpha=0.65)
     axes.plot(*poses[:, :2].T, color=RED, lw=1.3, marker="o", ms=2.5, label="body's origin")
     for ellipse in ellipses:
@@ -135,21 +135,21 @@ def residual_page(
     t: Array, residuals: Array, *, sd: Array, score: Array, height: Array, source: Sequence[str],
     title: str, simulated: bool,
 ) -> Figure:  # fmt: skip
-    """Draw what is left of each observation beside the smoothed path.
+    """Draw the residuals of the observations against the smoothed path.
 
     Args:
         t: Times, shape (n,) [s].
         residuals: Observed minus smoothed x, y [m] and yaw [rad], shape (n, 3).
         sd: Standard deviation of each observation, shape (n, 3).
-        score: Likeness of what was found to what was sought, shape (n,) [-].
+        score: Similarity of each detection to its template, shape (n,) [-].
         height: Height of the body's origin, shape (n,) [m].
         source: How each was found: "marker", "body" or "hand".
         title: Title of the figure.
-        simulated: Say so in the title.
+        simulated: Whether to append "(simulated)" to the title.
 
     Returns:
-        The figure: x, y, yaw with bands that hold 90 % of what errors of observation alone give,
-        then height and score.
+        The figure: residuals of x, y and yaw with the 90 % bands of the observation noise, then
+        height and score.
     """
     figure = new_figure(title, simulated, width=8.5, height=8.5)
     panels = figure.subplots(5, 1, sharex=True)

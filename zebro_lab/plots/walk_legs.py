@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What each leg did: slip ratio, normal force, traction, contact."""
+"""Plot slip ratio, normal force, traction and contact of each leg over time."""
 
 from collections.abc import Iterator
 
@@ -26,7 +26,7 @@ def slip_ratios(path: WalkPath, *, title: str, simulated: bool) -> Figure:
     Args:
         path: The stretch of walk to draw.
         title: Title of the figure; name the model.
-        simulated: Say so in the title.
+        simulated: Whether to append "(simulated)" to the title.
 
     Returns:
         The figure: a panel for each leg, where it is on the robot; contact is shaded. A leg on its
@@ -50,7 +50,7 @@ def normal_forces(path: WalkPath, *, title: str, simulated: bool) -> Figure:
     Args:
         path: The stretch of walk to draw.
         title: Title of the figure; name the model.
-        simulated: Say so in the title.
+        simulated: Whether to append "(simulated)" to the title.
 
     Returns:
         The figure: a panel for each leg, where it is on the robot; contact is shaded.
@@ -72,7 +72,7 @@ def traction_forces(path: WalkPath, *, title: str, simulated: bool) -> Figure:
     Args:
         path: The stretch of walk to draw.
         title: Title of the figure; name the model.
-        simulated: Say so in the title.
+        simulated: Whether to append "(simulated)" to the title.
 
     Returns:
         The figure: a panel for each leg, where it is on the robot, forward and to the left of the
@@ -90,7 +90,7 @@ def paired_traction(path: WalkPath, *, title: str, simulated: bool) -> Figure:
     Args:
         path: The stretch of walk to draw.
         title: Title of the figure; name the model.
-        simulated: Say so in the title.
+        simulated: Whether to append "(simulated)" to the title.
 
     Returns:
         The figure, as `traction_forces` draws it.
@@ -107,7 +107,7 @@ def gantt(path: WalkPath, *, title: str, simulated: bool) -> Figure:
     Args:
         path: The stretch of walk to draw.
         title: Title of the figure; name the model.
-        simulated: Say so in the title.
+        simulated: Whether to append "(simulated)" to the title.
 
     Returns:
         The figure: a row for each leg, leg 1 on top; bars are contact, left legs darker.
@@ -130,7 +130,7 @@ def gantt(path: WalkPath, *, title: str, simulated: bool) -> Figure:
 
 
 def stances(t: Array, contact: NDArray[np.bool_]) -> list[tuple[float, float]]:
-    """Find when a leg was in contact.
+    """Compute the intervals in which a leg was in contact.
 
     Args:
         t: Times, shape (n,) [s].
@@ -196,7 +196,7 @@ def _limits(values: Array, *, least: float, cut: float = 0.01) -> tuple[float, f
 
 
 def _label(figure: Figure, what: str, values: Array) -> None:
-    """Name the axes, and say so where a model computes nothing of what is drawn."""
+    """Label the axes; add a note if the model does not compute the quantity."""
     figure.supylabel(what, fontsize=9.0)
     for axes in figure.axes[-2:]:
         axes.set_xlabel("time [s]")

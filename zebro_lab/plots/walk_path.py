@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A walk from above and over time: path with snapshots, motion of the body, its orientation."""
+"""Plot a walk: path from above with snapshots, position and orientation of the body over time."""
 
 from collections.abc import Sequence
 
@@ -35,7 +35,7 @@ def path_with_snapshots(
         path: The walk.
         robot: The robot, for the size of its body.
         title: Title of the figure; name the model.
-        simulated: Say so in the title.
+        simulated: Whether to append "(simulated)" to the title.
         snapshot_times: When to draw the body; six evenly spaced times by default [s].
 
     Returns:
@@ -76,7 +76,7 @@ def motion(path: WalkPath, *, title: str, simulated: bool) -> Figure:
     Args:
         path: The walk.
         title: Title of the figure; name the model.
-        simulated: Say so in the title.
+        simulated: Whether to append "(simulated)" to the title.
 
     Returns:
         The figure: a column for each of x, y, z in the inertial frame. The tips of impacts are
@@ -94,7 +94,7 @@ def orientation(path: WalkPath, *, title: str, simulated: bool) -> Figure:
     Args:
         path: The walk.
         title: Title of the figure; name the model.
-        simulated: Say so in the title.
+        simulated: Whether to append "(simulated)" to the title.
 
     Returns:
         The figure: a column for each angle. The tips of impacts are cut off where they would

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The robot's shape in the world, for those who draw it: body, hips and legs."""
+"""Geometry of the robot for drawing: body, hips and legs in the inertial frame."""
 
 import numpy as np
 

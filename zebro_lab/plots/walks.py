@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What walks said of legs and floor: prior against posterior of each parameter."""
+"""Plot prior and posterior of legs and floor after walks, for each parameter."""
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -15,11 +15,11 @@ _SCALES = {"rad": (180 / np.pi, "deg"), "rad/m": (180 / np.pi, "deg/m"), "-": (1
 
 @styled
 def walk_parameters(posterior: WalkPosterior, *, simulated: bool) -> Figure:
-    """Draw prior and posterior of every parameter; what was not informed is said above it.
+    """Draw prior and posterior of every parameter; titles name parameters that are not informed.
 
     Args:
         posterior: The posterior after walks.
-        simulated: Say so in the title.
+        simulated: Whether to append "(simulated)" to the title.
 
     Returns:
         The figure.

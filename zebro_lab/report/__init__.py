@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: MIT
-"""Put the finished folders of every stage onto one page."""
+"""Render the finished folders of all stages as one HTML page."""

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""`zebro-lab report RUN`: everything on one page."""
+"""`zebro-lab report RUN`: write an HTML report of a run."""
 
 from pathlib import Path
 from typing import Annotated

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Numbers of a report: each says, for programs, which file and key it is from, and its value."""
+"""Numbers of a report, marked up with the file, key and value that they come from."""
 
 import math
 from collections.abc import Mapping
@@ -11,7 +11,11 @@ ABSENT = Markup("–")
 
 
 def look_up(document: Mapping[str, Any], keys: tuple[str | int, ...]) -> Any:
-    """Return what lies under keys of a document; None where nothing does.
+    """Return the value at a key path of a nested document, or None if there is none.
+
+    Args:
+        document: Nested mappings and lists.
+        keys: Keys and list indices, outermost first.
 
     >>> look_up({"a": [{"b": 2}]}, ("a", 0, "b"))
     2
@@ -28,17 +32,17 @@ def look_up(document: Mapping[str, Any], keys: tuple[str | int, ...]) -> Any:
 def number(
     document: Mapping[str, Any], *keys: str | int, file: str, scale: float = 1.0, digits: int = 3
 ) -> str:
-    """Spell a number with its origin: `<data value="0.0123" data-file=… data-key=…>12.3</data>`.
+    """Format a number with its origin: `<data value="0.0123" data-file=… data-key=…>12.3</data>`.
 
     Args:
         document: Content of the file.
-        keys: Where in it the number lies.
-        file: Name of the file, for the reader.
+        keys: Key path of the number in it.
+        file: Name of the file, as shown.
         scale: Factor from the file's unit to the shown one.
-        digits: Significant digits shown; whole numbers are shown whole.
+        digits: Significant digits shown; integers are not rounded.
 
     Returns:
-        The element; a dash where there is no number.
+        The HTML element; a dash if there is no number.
     """
     value = look_up(document, keys)
     if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
@@ -50,7 +54,11 @@ def number(
 
 
 def spelled(value: float, digits: int = 3) -> str:
-    """Round to significant digits; whole numbers, which count, are spelled whole.
+    """Format a number with a given number of significant digits; integers are not rounded.
+
+    Args:
+        value: Number to format.
+        digits: Number of significant digits.
 
     >>> spelled(0.02084), spelled(1721.4, 4), spelled(62000), spelled(1e-7)
     ('0.0208', '1721', '62000', '1e-07')

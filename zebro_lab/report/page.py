@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A report as one page: a template of `zebro_lab/report/pages`, filled and escaped by Jinja."""
+"""Render a report with the Jinja templates of `zebro_lab/report/pages`, with escaping."""
 
 import base64
 import hashlib
@@ -54,15 +54,15 @@ ERROR_COLUMNS = (
 
 
 def render_report(sources: Sources, *, title: str, made: datetime) -> str:
-    """Fill the page.
+    """Render the report as HTML.
 
     Args:
-        sources: What there is to show.
+        sources: Results to show.
         title: Title of the report.
-        made: When it is made.
+        made: Date of the report.
 
     Returns:
-        HTML that needs no other file.
+        Self-contained HTML.
     """
     style = (files("zebro_lab.report") / PAGES / STYLE).read_text(encoding="utf-8")
     template = _template()
@@ -84,7 +84,7 @@ def render_report(sources: Sources, *, title: str, made: datetime) -> str:
             count=_count,
             pictures=_pictures,
         )
-    # Jinja escapes markup; what else a text of a file may do is spelled out here, for all of them.
+    # Jinja escapes markup; control characters in text from files are escaped here, for all of them.
     return "\n".join(map(shown, page.split("\n")))
 
 
@@ -101,7 +101,7 @@ def _template() -> Template:
 
 
 def _policy(style: str) -> str:
-    """Return what the page may load: its own style and pictures in itself, and nothing else."""
+    """Return the content security policy: the page's own style and embedded pictures only."""
     digest = base64.b64encode(hashlib.sha256(style.encode()).digest()).decode("ascii")
     return (
         f"default-src 'none'; img-src data:; style-src 'sha256-{digest}'; base-uri 'none'; "

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Pictures of a report: in the page itself, each with what it shows in words."""
+"""Pictures of a report, embedded in the page, with captions."""
 
 import base64
 from collections.abc import Mapping
@@ -36,7 +36,7 @@ CAPTIONS: Mapping[str, str] = {
     ".imu": "Roll and pitch of the predicted walk beside the IMU's",
     ".errors": "Predicted paths beside the track, and their errors over time",
 }
-"""What each picture of a stage shows, by its name; validations begin theirs with the run's."""
+"""Captions by file name; in a validation by the end of the name, which begins with the run's."""
 
 
 @dataclass(frozen=True)
@@ -44,8 +44,8 @@ class Picture:
     """A picture in a page.
 
     Attributes:
-        data: The file as a `data:` address.
-        caption: What it shows.
+        data: The file as a `data:` URL.
+        caption: Its caption.
         name: Name of the file.
     """
 
@@ -55,15 +55,15 @@ class Picture:
 
 
 def embed(file: Path, *, stage: str, simulated: bool) -> Picture:
-    """Put a picture's bytes into an address, and say what it shows.
+    """Encode a picture as a `data:` URL, with its caption.
 
     Args:
-        file: A PNG.
+        file: A PNG file.
         stage: Stage that drew it.
-        simulated: Say so in the caption.
+        simulated: Whether to mark it as simulated in the caption.
 
     Raises:
-        DataError: It is no PNG, or larger than `MOST_PICTURE`.
+        DataError: It is not a PNG, or larger than `MOST_PICTURE`.
     """
     data = read_bytes(file, most=MOST_PICTURE)
     if not data.startswith(_PNG):
@@ -78,9 +78,14 @@ def embed(file: Path, *, stage: str, simulated: bool) -> Picture:
 
 
 def lies_in(folder: Path, name: str) -> bool:
-    """Tell whether a file that a manifest names lies in its folder, links followed.
+    """Return whether a file named in a manifest lies in the manifest's folder.
 
-    A manifest is somebody's text: `../secret.png`, an absolute path or a link may name any file.
+    Links are resolved first. A manifest is untrusted input: `../secret.png`, an absolute path or a
+    link could refer to any file.
+
+    Args:
+        folder: Folder of the manifest.
+        name: File name as given in the manifest.
     """
     if Path(name).name != name or "\0" in name:
         return False
@@ -88,7 +93,7 @@ def lies_in(folder: Path, name: str) -> bool:
 
 
 def place_of(name: str) -> tuple[int, str]:
-    """Return where a picture stands among those of its stage: as in `CAPTIONS`, others last.
+    """Return the sort key of a picture: the order of `CAPTIONS`, others last.
 
     >>> sorted(["corner.png", "curves.png", "b.imu.png", "b.png"], key=place_of)
     ['curves.png', 'corner.png', 'b.imu.png', 'b.png']
@@ -100,7 +105,11 @@ def place_of(name: str) -> tuple[int, str]:
 
 
 def caption_of(stem: str, *, stage: str) -> str:
-    """Say what a picture shows, by the name of its file and the stage that drew it.
+    """Return the caption of a picture, from its file name and the stage that drew it.
+
+    Args:
+        stem: File name of the picture without its suffix.
+        stage: Stage that drew the picture.
 
     >>> caption_of("walk-3.photos", stage="validation")
     'Photographs from above beside the robot drawn at its predicted pose'

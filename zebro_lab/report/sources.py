@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What a report is made of: the finished folders of every stage, or what would make them."""
+"""Find the result folders that a report shows, and the commands for those that are missing."""
 
 import csv
 from collections.abc import Callable, Mapping, Sequence
@@ -21,8 +21,8 @@ from zebro_lab.walk.folder import PREDICTION
 MANIFEST, SUMMARY = "manifest.json", "summary.csv"
 TRACK, CALIBRATION = "track", "calibration"
 BESIDE: Mapping[str, tuple[str, ...]] = {CALIBRATION: (SLIP_TOML, SUMMARY), WALKS: (WALKS_TOML,)}
-"""What else of a stage's result is read, beside its manifest."""
-_MOST_TABLE = 4 << 20  # bytes of summary.csv, a line a parameter
+"""Files of a stage's result that are read in addition to its manifest."""
+_MOST_TABLE = 4 << 20  # bytes of summary.csv, one line per parameter
 WALK_PARTS = (TRACK, PREDICTION, VALIDATION)
 MAKERS: Mapping[str, str] = {
     CALIBRATION: "zebro-lab calibrate {data} --out {folder}",
@@ -31,20 +31,20 @@ MAKERS: Mapping[str, str] = {
     PREDICTION: "zebro-lab predict {run} --slip calibration --draws 500 --out {folder}",
     VALIDATION: "zebro-lab validate {run} --out {folder}",
 }
-"""Command that makes each part."""
+"""Command that writes each part."""
 
 
 @dataclass(frozen=True)
 class Part:
-    """What a stage wrote, or the command that makes it.
+    """Result of a stage, or the command that writes it.
 
     Attributes:
         name: Name of the stage's result.
-        folder: Where it is, or would be.
-        documents: Content of its JSON, TOML and CSV files, by file name; empty where it is missing.
-        pictures: Its pictures, in the order in which they are read.
-        maker: Command that makes it.
-        not_shown: Pictures that its manifest lists and that do not lie in its folder.
+        folder: Its folder, which may not exist.
+        documents: Content of its JSON, TOML and CSV files, by file name; empty if it is missing.
+        pictures: Its pictures, in the order shown.
+        maker: Command that writes it.
+        not_shown: Pictures that its manifest lists but that are not in its folder.
     """
 
     name: str
@@ -56,12 +56,12 @@ class Part:
 
     @property
     def missing(self) -> bool:
-        """Tell whether the stage has not been run."""
+        """Whether the result is missing."""
         return not self.documents
 
     @property
     def manifest(self) -> Mapping[str, Any]:
-        """The stage's manifest; empty where it is missing."""
+        """The stage's manifest; empty if it is missing."""
         return self.documents.get(MANIFEST, {})
 
     @property
@@ -72,11 +72,11 @@ class Part:
 
 @dataclass(frozen=True)
 class Run:
-    """One run and what was made of it.
+    """One run with its results.
 
     Attributes:
         folder: Its folder.
-        recorded: What its `run.json` says; empty where nothing was recorded here.
+        recorded: Content of its `run.json`; empty if it is not a recorded run.
         parts: Track, prediction and validation, by name; none for a run of the slip rig.
     """
 
@@ -92,14 +92,14 @@ class Run:
 
 @dataclass(frozen=True)
 class Sources:
-    """Everything that a report shows.
+    """All results that a report shows.
 
     Attributes:
         data: The folder that was named.
-        runs: Its runs, in the order of their names.
+        runs: Its runs, sorted by name.
         calibration: The calibration.
-        together: A validation of several runs together; None where the report is of one run.
-        walks: What walks said beside the calibration; None where none informed it.
+        together: A validation of several runs together; None for a report of one run.
+        walks: Posterior after walks of the calibration; None if no walks were fitted.
     """
 
     data: Path
@@ -110,7 +110,7 @@ class Sources:
 
     @property
     def parts(self) -> Sequence[Part]:
-        """Every part, made or missing."""
+        """All parts, present or missing."""
         walks = [part for run in self.runs for part in run.parts.values()]
         more = [part for part in (self.walks, self.together) if part is not None]
         return [self.calibration, *walks, *more]
@@ -124,7 +124,7 @@ class Sources:
 
 
 def find_sources(data: Path, *, calibration: Path) -> Sources:
-    """Find what there is to report on.
+    """Find the results to report on.
 
     Args:
         data: A run folder, a folder with track, prediction or validation, or a folder of run
@@ -186,7 +186,7 @@ def _part(name: str, folder: Path, data: Path) -> Part:
 
 
 def _rows(file: Path) -> dict[str, dict[str, Any]]:
-    """Read a table by the names in its first column, numbers as numbers."""
+    """Read a table as rows by the name in the first column; numeric cells become numbers."""
     text = read_text(file, most=_MOST_TABLE)
     with parsing(file, "cannot be read as CSV", advice="make it again"):
         rows = [row for row in csv.DictReader(text.splitlines()) if None not in row]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Finished folders in, one page out."""
+"""Stage of `zebro-lab report`: find result folders and write the page."""
 
 from dataclasses import dataclass
 from datetime import datetime
@@ -15,7 +15,7 @@ REPORT = html_page("report")
 
 @dataclass(frozen=True)
 class ReportRequest:
-    """What is asked of a report.
+    """Settings of a report.
 
     Attributes:
         data: A run folder, or a folder of them.
@@ -31,11 +31,18 @@ class ReportRequest:
 
 
 def report(request: ReportRequest, *, made: datetime) -> Sources:
-    """Write the page, whole or not at all, and return what it shows.
+    """Write the report page atomically.
+
+    Args:
+        request: Folders to report on, and the page to write.
+        made: Date shown on the page.
+
+    Returns:
+        The results shown on the page.
 
     Raises:
         ZebroLabError: There is nothing to report on, a manifest is damaged, or `out` is a folder or
-            no report.
+            a file that is not a report.
     """
     out = require_own(request.out, REPORT, inputs=(request.data, request.calibration))
     sources = find_sources(request.data, calibration=request.calibration)

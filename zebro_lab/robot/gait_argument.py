@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The gait a command line asks for."""
+"""Parse gait options of a command line and construct the gait."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass
@@ -27,7 +27,7 @@ from zebro_lab.files.errors import SettingsError
 
 @dataclass(frozen=True)
 class GaitRequest:
-    """What is asked of a gait; None where the gait's own default is to be taken.
+    """Parameters of a requested gait; None for the gait's default.
 
     Attributes:
         name: Name of the gait, a key of `GAITS`.
@@ -52,23 +52,23 @@ class GaitRequest:
     tau_turn: float | None = None
 
     def given(self) -> dict[str, object]:
-        """Return what was asked for, by option, the name apart."""
+        """Return the options that were given, by name, without the name of the gait."""
         return {k: v for k, v in asdict(self).items() if v is not None and k != "name"}
 
     @property
     def side(self) -> Direction:
-        """Where to turn."""
+        """Side to turn to."""
         return "right" if self.direction == "right" else "left"
 
 
 @dataclass(frozen=True)
 class Gait:
-    """A gait made as asked.
+    """A constructed gait.
 
     Attributes:
         reference: Leg angles over time.
-        what: Its name with what sets it apart, for titles.
-        direction: Where it turns.
+        what: Its name with its main parameters, for titles.
+        direction: Side it turns to.
     """
 
     reference: CyclicReference
@@ -78,22 +78,22 @@ class Gait:
 
 @dataclass(frozen=True)
 class _Kind:
-    """How a gait is made, and which options it has."""
+    """Constructor of a gait, and the options it accepts."""
 
     options: tuple[str, ...]
     make: Callable[[GaitRequest, float], Gait]
 
 
 def make_gait(request: GaitRequest, *, leg_arc: float) -> Gait:
-    """Make the gait asked for.
+    """Construct a gait from its parameters.
 
     Args:
-        request: What is asked.
+        request: Name and parameters of the gait.
         leg_arc: Angle of the legs' arc [rad].
 
     Raises:
-        SettingsError: There is no such gait, it has no such option, or an angle cannot be read.
-        DomainError: No legs can walk so.
+        SettingsError: There is no such gait, it has no such option, or an angle cannot be parsed.
+        DomainError: The gait is impossible with these parameters.
 
     >>> gait = make_gait(GaitRequest(steering=1.1, touchdown_deg="50"), leg_arc=np.pi)
     >>> gait.what, np.degrees(gait.reference.liftoff).round(1).tolist()[:2]

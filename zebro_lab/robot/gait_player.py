@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Sends a robot the set-points of a gait in time: gently into it, and never by leaps."""
+"""Send a robot the leg set-points of a gait in real time, with a smooth lead-in."""
 
 from typing import Final
 
@@ -8,17 +8,17 @@ from rig.zebro.commands import LegCommands, follow
 from rig.zebro.profile import LegProfile
 
 LEAD_IN: Final = 1.0
-"""How long the legs take from wherever they are to where the gait begins [s]."""
+"""Duration of the move from the present leg angles to the first angles of the gait [s]."""
 HORIZON: Final = 0.1
-"""How far ahead of a played gait its set-points lie [s]."""
+"""Time by which set-points are sent ahead [s]."""
 
 
 class GaitPlayer:
-    """Sends a gait's set-points whenever they are due; to be called with the host time.
+    """Sends the set-points of a gait when they are due; call it with the host time.
 
-    The gait's time 0 is `LEAD_IN` after the first call. Where a call comes so late that the legs
-    have arrived and wait, the gait waits as long: a set-point farther ahead would make them leap,
-    and beyond half a turn take the wrong way round.
+    The gait's time 0 is `LEAD_IN` after the first call. If a call comes so late that the legs have
+    reached their last set-point, the gait is delayed by the waiting time: a set-point farther ahead
+    would make the legs jump, and beyond half a turn rotate in the wrong direction.
 
     Args:
         legs: The robot.
@@ -31,11 +31,12 @@ class GaitPlayer:
         self._gait = gait
         self._start: float | None = None
         self._due = 0.0
-        # No faster than the robot reports, and twice within the horizon: no set-point runs out.
+        # At most at the robot's report rate. Without that limit twice per horizon, so that the last
+        # set-point is not reached before the next is sent.
         self._interval = max(HORIZON / 2, 1 / profile.rate)
 
     def __call__(self, now: float) -> None:
-        """Send the next set-point where it is due."""
+        """Send the next set-point if it is due."""
         if self._start is None:
             self._start = self._due = now + LEAD_IN
             follow(self._legs, self._gait, start=self._start, now=now, horizon=LEAD_IN)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Orientation of the body from somebody else's table, in SI and the axes of the body."""
+"""Read the body's orientation from an IMU table, in SI and in the body frame."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -38,9 +38,9 @@ class ImuLog:
         t: Time, shape (n,) [s].
         values: Quaternion w, x, y, z, angular rate x, y, z [rad/s], specific force x, y, z [m/s2],
             NaN where the table has none, shape (n, 10).
-        source: "real", "sim:what", "replay:what"; None where nobody said.
+        source: "real", "sim:what", "replay:what"; None if not stated.
         files: Every file read.
-        notes: For a person, one line each.
+        notes: Notes, one line each.
     """
 
     t: Array
@@ -51,11 +51,11 @@ class ImuLog:
 
 
 def imu_of_table(table: RawTable, mapping: MappedColumns) -> ImuLog:
-    """Read orientation from a table: quaternions, or roll and pitch and perhaps yaw.
+    """Read orientation from a table: quaternions, or roll and pitch with optional yaw.
 
     Args:
         table: The table.
-        mapping: Where the columns come from, over `IMU_UNITS`.
+        mapping: Column map with the canonical names of `IMU_UNITS`.
 
     Raises:
         DataError: Time or orientation is missing, a cell holds no finite number, time does not

@@ -19,8 +19,8 @@ from zebro_lab.tables.raw_table import RawTable
 
 ANGLES = tuple(f"theta{leg}" for leg in range(1, N_LEGS + 1))
 LEG_UNITS: Mapping[str, str] = {"t": "s", **dict.fromkeys(ANGLES, "rad")}
-_WIDEST_GAP = 5.0  # median steps between samples; beyond, a leg may have done anything
-_LONGEST_TURN = 2.5  # rad between samples; from pi on, which way a leg turned is a guess
+_WIDEST_GAP = 5.0  # median sample intervals; interpolation over a longer gap is not valid
+_LONGEST_TURN = 2.5  # rad between samples; from pi on the direction of rotation is ambiguous
 
 
 @dataclass(frozen=True)
@@ -29,9 +29,9 @@ class LegLog:
 
     Attributes:
         reference: Angles over time, unwrapped, with the canonical sign.
-        source: "real", "sim:what", "replay:what"; "unknown" where nobody said.
+        source: "real", "sim:what", "replay:what"; "unknown" if not stated.
         files: Every file read.
-        notes: For a person, one line each.
+        notes: Notes, one line each.
     """
 
     reference: SampledReference
@@ -51,8 +51,8 @@ def legs_of_table(
 
     Args:
         table: The table.
-        mapping: Where time and angles come from, over `LEG_UNITS`.
-        files: What the table was read from.
+        mapping: Column map with the canonical names of `LEG_UNITS`.
+        files: Files that the table was read from.
         leg_sign: 1 or -1 for each leg, shape (6,).
 
     Raises:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Which markers a dictionary has, and that no two things wear the same one."""
+"""Check marker numbers: they exist in their dictionary and are unique."""
 
 from collections.abc import Iterable
 
@@ -10,10 +10,10 @@ from tracking.markers import dictionary_named
 
 
 def require_in_dictionary(dictionary: str, numbers: Iterable[int]) -> None:
-    """Refuse markers that a dictionary does not have.
+    """Check that a marker dictionary contains marker numbers.
 
     Args:
-        dictionary: Its name.
+        dictionary: Name of the dictionary.
         numbers: Numbers of markers.
 
     Raises:
@@ -28,10 +28,15 @@ def require_in_dictionary(dictionary: str, numbers: Iterable[int]) -> None:
 
 
 def require_apart(robot: MarkedRobot, floor: FloorMap) -> None:
-    """Refuse a robot whose marker has the number of one of the floor's.
+    """Check that robot marker and floor markers have different numbers.
+
+    Args:
+        robot: Robot with its marker.
+        floor: Floor markers.
 
     Raises:
-        MarkerError: It has; sightings are told apart by number.
+        MarkerError: A floor marker has the robot marker's number; detections are identified by
+            number.
     """
     number = robot.marker.marker_id
     if number in floor.marker_ids:

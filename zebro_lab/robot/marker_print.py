@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What is printed on the robot: which marker of which dictionary, and how large."""
+"""The printed robot marker: dictionary, number and size."""
 
 from dataclasses import dataclass
 
@@ -9,7 +9,7 @@ from zebro_lab.files.units import quantity_to_si
 
 @dataclass(frozen=True)
 class MarkerPrint:
-    """A printed marker; the kit's where nothing else is said.
+    """A printed marker; the defaults are those of the printed kit.
 
     Attributes:
         dictionary: Name of its dictionary.
@@ -23,7 +23,7 @@ class MarkerPrint:
 
     @property
     def text(self) -> str:
-        """The form that `parse_marker` reads.
+        """The marker as a string that `parse_marker` reads.
 
         >>> MarkerPrint().text
         '4x4_50:0:120mm'
@@ -36,11 +36,11 @@ KIT_PRINT = MarkerPrint()
 
 
 def parse_marker(text: str) -> MarkerPrint:
-    """Take "DICTIONARY:NUMBER:SIDE" apart.
+    """Parse a marker written as "DICTIONARY:NUMBER:SIDE".
 
     Raises:
-        SettingsError: It says something else.
-        UnitError: The side is no length.
+        SettingsError: The string has another form.
+        UnitError: The side is not a length.
 
     >>> parse_marker("apriltag_36h11:4:10cm")
     MarkerPrint(dictionary='apriltag_36h11', number=4, side=0.1)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""`robot.toml`: the robot that walks, what its leg log's signs mean, and the marker it carries."""
+"""Read and write `robot.toml`: robot parameters, signs of the leg angles, and the robot marker."""
 
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -20,14 +20,14 @@ _FORWARD = (1,) * N_LEGS
 
 @dataclass(frozen=True)
 class Marker:
-    """Where a marker sits on the robot.
+    """Pose of the marker on the robot, and its printed pattern.
 
     Attributes:
         position: Its centre in the body frame, shape (3,) [m].
         roll_pitch_yaw: Its orientation in the body frame, R = Rz Ry Rx, shape (3,) [rad].
-        height: Height of its centre above the ground while the robot stands; None where nobody
-            measured it [m].
-        printed: What is printed on it; the kit's where the file does not say.
+        height: Height of its centre above the ground while the robot stands; None if it was not
+            measured [m].
+        printed: Printed pattern; that of the kit by default.
     """
 
     position: tuple[float, float, float]
@@ -38,13 +38,13 @@ class Marker:
 
 @dataclass(frozen=True)
 class RobotFile:
-    """What a `robot.toml` says.
+    """Content of a `robot.toml`.
 
     Attributes:
         robot: The robot.
-        leg_sign: For each leg 1 where its reported angle grows as it walks forward, else -1,
+        leg_sign: For each leg 1 if its reported angle grows as it walks forward, else -1,
             shape (6,).
-        marker: Its marker; None where it has none.
+        marker: Its marker; None if it has none.
         file: The file; None for the thesis's robot.
     """
 
@@ -55,11 +55,11 @@ class RobotFile:
 
 
 def read_robot_file(file: Path) -> RobotFile:
-    """Read and check a `robot.toml`; what it leaves out is the thesis's robot's.
+    """Read and check a `robot.toml`; missing values are those of the thesis's robot.
 
     Raises:
         NotFound: There is no such file.
-        SettingsError: It is no TOML, or holds an unknown key, an impossible value or a wrong unit.
+        SettingsError: It is not TOML, or has an unknown key, an invalid value or a wrong unit.
     """
     advice = f"expected a {ROBOT_FILE} (walk --write-robot {file} starts one)"
     top = read_settings(file, advice=advice)
@@ -75,7 +75,7 @@ def read_robot_file(file: Path) -> RobotFile:
 
 
 def render_robot_file(described: RobotFile) -> str:
-    """Write a robot as commented TOML that `read_robot_file` reads back.
+    """Serialise a robot as commented TOML that `read_robot_file` reads back.
 
     >>> print(render_robot_file(RobotFile()).splitlines()[3])
     mass = 2.17  # [kg]
@@ -143,7 +143,7 @@ def _marker_section(marker: Marker | None) -> str:
 
 
 def _robot(top: SettingsTable, legs: SettingsTable) -> Robot:
-    """Take the robot's numbers; what is absent is the thesis's robot's."""
+    """Read the robot's parameters; missing ones are those of the thesis's robot."""
     given: dict[str, Any] = {}
     if "mass" in top:
         given["mass"] = top.quantity("mass", "kg")

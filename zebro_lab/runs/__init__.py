@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: MIT
-"""Run folders and what reads them back: lists, exclusion, recorded signals, plots."""
+"""Run folders: read and write them, list runs, exclude runs, decode signals, plot."""

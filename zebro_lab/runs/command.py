@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""`zebro-lab runs` and `exclude`: what has been recorded, and what of it counts."""
+"""`zebro-lab runs` and `exclude`: list runs, and leave runs out of calibrations."""
 
 from pathlib import Path
 from typing import Annotated

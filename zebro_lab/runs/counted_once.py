@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Find data that are named twice: the same bytes, or the same samples imported twice."""
+"""Find duplicate data: files with the same content, or the same samples imported twice."""
 
 import gzip
 import hashlib
@@ -15,7 +15,7 @@ from model.slip.law import Array
 from zebro_lab.files.provenance import file_hash
 
 FEWEST: Final = 20
-"""Samples of a run below which equal numbers may be chance: averages are rounded."""
+"""Fewest samples with which equal forces identify a run; fewer may be equal by chance."""
 _MOST: Final = 1 << 30  # bytes that are unpacked to be compared; a larger file is compared packed
 _CHUNK: Final = 1 << 20
 _SHOWN: Final = 3
@@ -23,11 +23,11 @@ _T = TypeVar("_T")
 
 
 def content_hash(file: Path) -> str:
-    """Compute the SHA-256 of what a file holds: a gzip file counts by what was packed."""
+    """Compute the SHA-256 of a file's content; gzip files are decompressed first."""
     if file.name.lower().endswith(".gz"):
         try:
             return _unpacked_hash(file) or file_hash(file)
-        except (OSError, EOFError, zlib.error):  # it is damaged: whoever reads it says so
+        except (OSError, EOFError, zlib.error):  # a damaged file: its reader reports the error
             return file_hash(file)
     return file_hash(file)
 
@@ -44,7 +44,7 @@ def _unpacked_hash(file: Path) -> str | None:
 
 
 def array_hash(*arrays: Array) -> str:
-    """Compute the SHA-256 of numbers, to the last bit."""
+    """Compute the SHA-256 of the bytes of arrays."""
     digest = hashlib.sha256()
     for each in arrays:
         digest.update(str(each.shape).encode())
@@ -53,15 +53,16 @@ def array_hash(*arrays: Array) -> str:
 
 
 def run_keys(forces: Sequence[Array], run: NDArray[np.intp], n_runs: int) -> tuple[str, ...]:
-    """Return what each run of a table is known by again, under any name and definition of slip.
+    """Compute a key per run of a table, by which duplicates are found.
 
-    That is its forces: two recordings never repeat them to the last bit. Runs of a few samples are
-    known by all forces of their table together, and so is one whose forces stand still.
+    The key is a hash of the forces, independent of names and slip definitions: two recordings never
+    have exactly equal forces. A run with few samples or constant forces is identified by all forces
+    of its table.
 
     Args:
         forces: Columns of forces, each of shape (n,).
         run: Run of each sample, shape (n,).
-        n_runs: How many runs there are.
+        n_runs: Number of runs.
     """
     whole = array_hash(*forces)
     keys = []
@@ -75,7 +76,14 @@ def run_keys(forces: Sequence[Array], run: NDArray[np.intp], n_runs: int) -> tup
 def first_of_each(
     items: Sequence[_T], *, key: Callable[[_T], Hashable]
 ) -> tuple[list[_T], list[tuple[_T, _T]]]:
-    """Return the items without repeated ones, and each repeated one with the one it repeats.
+    """Remove duplicates, keeping the first item of each key.
+
+    Args:
+        items: Items in order.
+        key: Returns the key by which two items are duplicates.
+
+    Returns:
+        Unique items, and pairs of each duplicate with the item kept.
 
     >>> first_of_each(["a.csv", "b.csv", "A.csv"], key=str.lower)
     (['a.csv', 'b.csv'], [('A.csv', 'a.csv')])
@@ -90,7 +98,14 @@ def first_of_each(
 
 
 def told_once(what: str, repeated: Sequence[tuple[object, object]]) -> tuple[str, ...]:
-    """Say in one line what is there twice; nothing where nothing is.
+    """Format a note on duplicates that were dropped.
+
+    Args:
+        what: Plural noun for the items.
+        repeated: Pairs of each duplicate with the item kept.
+
+    Returns:
+        One line, or nothing if there are no duplicates.
 
     >>> told_once("tables", [("b.csv", "a.csv")])
     ('1 of the tables is there twice and counts once: b.csv is a.csv',)

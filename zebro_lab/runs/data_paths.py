@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Which files and run folders a command line means."""
+"""Find the table files and run folders named on a command line."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -27,11 +27,11 @@ class DataSource:
 
     @property
     def is_run_folder(self) -> bool:
-        """Tell a run folder from a table file."""
+        """Whether this is a run folder, not a table file."""
         return self.path.is_dir()
 
     def columns_file(self) -> Path | None:
-        """Find the nearest `columns.toml`: beside the data, then upwards to the root."""
+        """Find the nearest `columns.toml`, from the data's folder upwards to the root."""
         folder = self.path if self.is_run_folder else self.path.parent
         while True:
             if (folder / COLUMNS_FILE).is_file():
@@ -42,11 +42,10 @@ class DataSource:
 
 
 def find_sources(paths: Sequence[Path]) -> list[DataSource]:
-    """Find the tables and run folders that a command line means.
+    """Find tables and run folders recursively, without duplicates.
 
-    A folder stands for every CSV and Parquet file and every run folder below it, in the order
-    of their names; links are followed, hidden folders and calibration outputs passed over. What is
-    named twice counts once.
+    A folder stands for every CSV and Parquet file and every run folder below it, sorted by name.
+    Links are followed; hidden folders and calibration folders are skipped.
 
     Args:
         paths: Files and folders, as named.
@@ -78,11 +77,11 @@ def _sources_at(path: Path) -> list[DataSource]:
 
 
 def _walk(folder: Path, entered: set[tuple[int, int]]) -> Iterator[Path]:
-    """Yield the tables and run folders below a folder; links may lead in circles.
+    """Yield the tables and run folders below a folder; cyclic links are detected.
 
     Args:
-        folder: Where to look.
-        entered: Device and inode of the folders that were looked at; this one is added.
+        folder: Folder to search.
+        entered: Device and inode of the folders already visited; this one is added.
     """
     status = folder.stat()
     if (status.st_dev, status.st_ino) in entered:

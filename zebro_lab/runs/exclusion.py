@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Leave a run out of every calibration, or take it in again; every reason stays on record."""
+"""Exclude a run from calibrations, or undo that; every reason is kept in the manifest."""
 
 from collections.abc import Mapping
 from dataclasses import replace
@@ -16,11 +16,11 @@ UNSAID: Final = "no reason given"
 
 
 def exclude_run(folder: Path, *, why: str) -> RunManifest:
-    """Leave a run out of every calibration from now on, and keep it.
+    """Exclude a run from every later calibration; its data are kept.
 
     Args:
         folder: The run folder.
-        why: Reason, for whoever reads it later; the reasons of before stay in `exclusions`.
+        why: Reason; earlier reasons are kept in `exclusions`.
 
     Raises:
         NotFound: It is no run folder.
@@ -36,7 +36,7 @@ def take_in_again(folder: Path, *, why: str | None = None) -> RunManifest:
 
     Args:
         folder: The run folder.
-        why: Reason, kept with those for which it was left out.
+        why: Reason, kept with the reasons of the exclusions.
 
     Raises:
         NotFound: It is no run folder.
@@ -48,7 +48,7 @@ def take_in_again(folder: Path, *, why: str | None = None) -> RunManifest:
 
 
 def past_reasons(manifest: RunManifest) -> tuple[str, ...]:
-    """Return why a run was left out before now, the latest first."""
+    """Return the reasons of past exclusions, the latest first."""
     reasons = [each.get("why", UNSAID) for each in _history(manifest) if each["did"] == EXCLUDED]
     return tuple(reversed(reasons[:-1] if manifest.excluded is not None else reasons))
 
@@ -66,7 +66,10 @@ def _written(folder: Path, did: str, why: str) -> RunManifest:
 
 
 def _history(manifest: RunManifest) -> tuple[Mapping[str, str], ...]:
-    """Return what was done; an exclusion of an earlier version, or by hand, is told by itself."""
+    """Return all exclusions, with the present one appended if it was not recorded.
+
+    An exclusion made by hand or by an earlier version is not in the manifest's list.
+    """
     history, now = tuple(manifest.exclusions), manifest.excluded
     excluded = [each.get("why") for each in history if each["did"] == EXCLUDED]
     if now is None or (excluded and excluded[-1] == now.get("why")):

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Run folders: `DATA/<utc time>_<kind>_<label>/` with `run.json` and `log.mcap`.
 
-This file alone knows their form, which docs/formats.md describes.
+Only this module depends on their layout, which docs/formats.md describes.
 """
 
 import re
@@ -58,7 +58,7 @@ __all__ = [
 LOG_FILE = "log.mcap"
 _BOARD_TOPIC: Final = raw_topic("board")
 STILL_GROWING: Final = 3.0
-"""A log touched so recently is being recorded: the recorder writes to it every second [s]."""
+"""A log modified more recently than this is being recorded; it is written every second [s]."""
 
 
 @dataclass(frozen=True)
@@ -67,10 +67,10 @@ class SlipRigRun:
 
     Attributes:
         folder: Its folder.
-        manifest: What `run.json` says.
+        manifest: Content of `run.json`.
         table: The samples.
         files: Files read.
-        notes: What a person should know about how it was read.
+        notes: Notes on how it was read, one line each.
     """
 
     folder: Path
@@ -84,7 +84,7 @@ class SlipRigRun:
 def finished_run_folder(
     data_dir: Path, *, kind: str, label: str, start: datetime
 ) -> Iterator[tuple[Path, Path]]:
-    """Fill the folder of a run that is over, so that it appears finished or not at all.
+    """Write the folder of a finished run atomically: it appears complete or not at all.
 
     Args:
         data_dir: Folder of run folders; made when missing.
@@ -93,7 +93,7 @@ def finished_run_folder(
         start: When it began, with its time zone.
 
     Yields:
-        The run folder that is to be, and the draft to write into.
+        Path of the final run folder, and the draft folder to write into.
 
     Raises:
         AlreadyExists: A run of this start and label is there already.
@@ -108,7 +108,7 @@ def finished_run_folder(
 def read_slip_rig_run(folder: Path) -> SlipRigRun:
     """Read a run of the slip rig.
 
-    A log that was cut short is read up to its last whole chunk, and a note says so.
+    A truncated log is read up to its last complete chunk, and a note says so.
 
     Raises:
         NotFound: There is no manifest or no log.
@@ -134,7 +134,7 @@ def read_slip_rig_run(folder: Path) -> SlipRigRun:
 
 
 def new_run_folder(data_dir: Path, *, kind: str, label: str, start: datetime) -> Path:
-    """Make the folder of a run that is about to be recorded, empty.
+    """Create the empty folder of a run to be recorded.
 
     Args:
         data_dir: Folder of run folders; made when missing.
@@ -161,7 +161,7 @@ def new_run_folder(data_dir: Path, *, kind: str, label: str, start: datetime) ->
 
 
 def find_runs(data_dir: Path) -> list[Path]:
-    """Find all run folders below a folder, or the folder itself, in the order of their names.
+    """Find all run folders in a folder, recursively and including itself, sorted by path.
 
     Raises:
         NotFound: There is no such folder.
@@ -172,9 +172,14 @@ def find_runs(data_dir: Path) -> list[Path]:
 
 
 def run_state(folder: Path, manifest: RunManifest) -> str:
-    """Say how a run ended: its exit status, or `recovered` where nobody could write one.
+    """Return the state of a run: its exit status, `recording` or `recovered`.
 
-    A run without an end is still `recording` while its log grows.
+    A run without an exit status is `recording` while its log file grows, and `recovered` after the
+    recorder died.
+
+    Args:
+        folder: Run folder.
+        manifest: Its manifest.
     """
     if manifest.exit_status != RECORDING:
         return manifest.exit_status
@@ -184,11 +189,13 @@ def run_state(folder: Path, manifest: RunManifest) -> str:
 
 
 def require_ended(folder: Path) -> None:
-    """Refuse a run that is being recorded: its end record would undo what is written now.
+    """Check that a run is not being recorded, so that its manifest can be changed.
+
+    The recorder rewrites the manifest when the run ends.
 
     Raises:
-        NotFound: It is no run folder.
-        RecordingError: It is being recorded.
+        NotFound: The folder is not a run folder.
+        RecordingError: The run is being recorded.
     """
     if run_state(folder, read_manifest(folder)) == RECORDING:
         raise RecordingError(f"{folder} is being recorded; wait until it has ended")
@@ -197,7 +204,7 @@ def require_ended(folder: Path) -> None:
 def _slip_rig_table(
     folder: Path, manifest: RunManifest
 ) -> tuple[SlipRigTable, str | None, tuple[str, ...]]:
-    """Read or derive the samples; also say what damage ended them, and what was left out."""
+    """Read or derive the samples; also return the damage that ends them, and notes."""
     path = folder / LOG_FILE
     if not manifest.profiles:
         log = read_log(path)
@@ -224,10 +231,14 @@ def _require_radii(manifest: RunManifest, file: Path) -> None:
 
 
 def require_recorded(path: Path, manifest: RunManifest) -> None:
-    """Refuse a log that is not the one that was recorded.
+    """Check a log file against the checksum in the manifest.
+
+    Args:
+        path: Log file.
+        manifest: Manifest of its run; without a checksum nothing is checked.
 
     Raises:
-        DataError: Its hash differs from the manifest's.
+        DataError: The SHA-256 checksums differ.
     """
     if manifest.log_sha256 is not None and file_hash(path) != manifest.log_sha256:
         raise DataError(
@@ -244,7 +255,14 @@ def _salvage_note(folder: Path, manifest: RunManifest, count: int, damage: str) 
 
 
 def run_path(data_dir: Path, kind: str, label: str, start: datetime) -> Path:
-    """Name the folder of a run."""
+    """Return the path of a run folder, from start time, kind and label.
+
+    Args:
+        data_dir: Folder that holds all runs.
+        kind: Kind of the run.
+        label: Label of the run.
+        start: Start of the run; written in UTC.
+    """
     return Path(data_dir) / f"{start.astimezone(UTC):%Y%m%dT%H%M%SZ}_{kind}_{_slug(label)}"
 
 
@@ -253,5 +271,5 @@ def _slug(label: str) -> str:
 
 
 def epoch_ns(moment: datetime) -> int:
-    """Return nanoseconds since the Unix epoch, to a microsecond."""
+    """Return nanoseconds since the Unix epoch, with microsecond resolution."""
     return (moment - datetime(1970, 1, 1, tzinfo=UTC)) // timedelta(microseconds=1) * 1000

@@ -32,7 +32,7 @@ def read_leg_log(
 
     Raises:
         NotFound: A file does not exist.
-        SettingsError: The `columns.toml` says something that cannot be followed.
+        SettingsError: The `columns.toml` has an invalid value.
         DataError: A leg is missing, a cell holds no finite number, time does not increase or has
             a gap, or a leg turns too far between samples; names file, row and column.
     """

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What `run.json` of a run folder says: read, checked and written here alone."""
+"""The manifest `run.json` of a run folder: read, check and write it."""
 
 import json
 from collections.abc import Mapping, Sequence
@@ -21,55 +21,62 @@ SCHEMA_VERSION = 1
 KINDS = ("slip-rig", "walk")
 IMPORTED = "imported"
 RIG = "rig"
-"""Name under which a run keeps the profile of its rig."""
+"""Name of the rig's profile in a run folder."""
 TABLE = "table"
-"""Name of the profile of samples that a table gave, already decoded and cut into runs."""
+"""Name of the profile for samples imported from a table, already decoded and cut into runs."""
 RECORDING = "recording"
 """Exit status of a run that has not ended yet, or whose recorder was killed."""
 
 
 def profile_file(folder: Path, stream: str) -> Path:
-    """Return where a run keeps the profile of a stream; correcting it repairs the run."""
+    """Return the path of a stream's profile in a run folder.
+
+    The run is decoded with this file, so that a wrong profile can be corrected afterwards.
+
+    Args:
+        folder: Run folder.
+        stream: Name of the stream.
+    """
     return folder / PROFILES / f"{stream}.toml"
 
 
 @dataclass(frozen=True)
 class RunManifest:
-    """What `run.json` says about a run.
+    """Content of the `run.json` of a run.
 
     Attributes:
         kind: "slip-rig" or "walk".
-        label: Name its operator gave it.
+        label: Name given by the operator.
         material: Leg and ground material.
-        operator: Who ran it.
-        source: "real", "sim:what", "replay:what", or "import:FILE" where a file was imported and
-            nobody said more.
+        operator: Name of the operator.
+        source: "real", "sim:what", "replay:what", or "import:FILE" for an imported file without a
+            stated source.
         start: Start, UTC, ISO 8601.
-        stop: Stop, UTC, ISO 8601; None while it is recorded, or where nobody could write it.
+        stop: Stop, UTC, ISO 8601; None while it is recorded, or if the recorder died.
         exit_status: "completed", "recording", "imported", or why it ended.
-        software: Version and commit of what recorded it.
+        software: Version and commit of the recording software.
         constants: Canonical columns that are one number for the rig, SI: radius_leg,
             radius_ground; also zero_normal and zero_traction [N], where the unloaded load cell's
             zero is to be subtracted.
         streams: Samples recorded, by topic.
-        log_sha256: SHA-256 of `log.mcap`; None where the recorder could not close it.
-        excluded: {"why": reason} where the run is to be left out of every calibration.
-        exclusions: What was excluded and undone, in order: {"did": "excluded" or "undone", "why":
+        log_sha256: SHA-256 of `log.mcap`; None if the recorder could not close it.
+        excluded: {"why": reason} if the run is excluded from every calibration.
+        exclusions: Exclusions and their undoing, in order: {"did": "excluded" or "undone", "why":
             reason, "at": time}.
-        profiles: Name of each device's profile, by stream; the profile itself lies in the folder.
+        profiles: Name of each device's profile, by stream; the profile itself is in the folder.
         sources: Source of each stream.
-        counters: What happened to each stream: received, lost, damaged and so on, and how many the
+        counters: Sample counts of each stream: received, lost, damaged and so on, and how many the
             recorder itself dropped.
         clocks: Offset [s], drift [-] and delay [s] of each device's clock against the time of the
-            run, where the device tells time.
-        duration: How long the run was to last ("asked") and the time of the run from which that
-            counts ("from"), when every stream had sent its first sample; empty where it was to
-            last until it was stopped [s].
+            run, for devices that send their time.
+        duration: Requested duration ("asked") and the time of the run from which it counts
+            ("from"), when every stream had sent its first sample; empty for a run without a set
+            duration [s].
         robot: Name of the robot, for a walk.
-        truth: What a simulated device knows to be true.
+        truth: True values of a simulated device.
         inputs: SHA-256 of the files that an imported run was made from, by their names.
-        point: Which point of an experiment the run is, and whether it is good.
-        schema_version: Version of this form.
+        point: The point of an experiment that the run measures, and whether it is good.
+        schema_version: Version of the manifest's format.
     """
 
     kind: str
@@ -102,7 +109,7 @@ def read_manifest(folder: Path) -> RunManifest:
     """Read and check a run folder's `run.json`.
 
     Raises:
-        NotFound: There is none.
+        NotFound: There is no manifest.
         DataError: It is damaged, incomplete, or of another version.
     """
     file = folder / MANIFEST_FILE
@@ -110,7 +117,14 @@ def read_manifest(folder: Path) -> RunManifest:
 
 
 def write_manifest(folder: Path, manifest: RunManifest) -> Path:
-    """Write a run folder's `run.json`, whole or not at all.
+    """Write the `run.json` of a run folder atomically.
+
+    Args:
+        folder: Run folder.
+        manifest: Content to write.
+
+    Returns:
+        The file written.
 
     Raises:
         OSError: The folder cannot be written.
@@ -119,7 +133,7 @@ def write_manifest(folder: Path, manifest: RunManifest) -> Path:
 
 
 def manifest_text(manifest: RunManifest) -> str:
-    """Render `run.json`; what is None or empty is left out."""
+    """Serialise a manifest as JSON; fields that are None or empty are omitted."""
     document = {
         key: value for key, value in asdict(manifest).items()
         if value is not None and (value or key not in _OPTIONAL)
@@ -128,7 +142,7 @@ def manifest_text(manifest: RunManifest) -> str:
 
 
 def software_version(commit: str = "unknown") -> dict[str, str]:
-    """Name what records: version of this software, and its commit."""
+    """Return version and commit of this software."""
     try:
         return {"version": version("zebro-lab"), "commit": commit}
     except PackageNotFoundError:
@@ -195,7 +209,7 @@ def _require_entries(document: Mapping[str, Any], file: Path) -> None:
 
 
 def _require_entry(name: str, key: str, value: object, kinds: tuple[type, ...], file: Path) -> None:
-    # An angle or a count that could not be told is null in JSON.
+    # An unknown angle or count is null in JSON.
     if value is None and kinds != (str,) and kinds != (dict,):
         return
     if not isinstance(value, kinds) or isinstance(value, bool):

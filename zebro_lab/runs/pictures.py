@@ -14,7 +14,7 @@ from zebro_lab.plots.sheet import CYCLE, RED, new_figure, styled
 from zebro_lab.runs.signals import Event, Panel, RunSignals
 
 _COLUMNS: Final = 1500
-"""Stretches that a long curve is cut into; of each, its extremes are drawn."""
+"""Number of intervals of a long curve; only the extremes of each interval are drawn."""
 _MOST_EVENTS: Final = 10
 _LONGEST_TEXT: Final = 90
 
@@ -50,15 +50,15 @@ def raw_streams(run: RunSignals) -> Figure:
 
 
 def extremes(t: Array, values: Array, columns: int) -> tuple[Array, Array]:
-    """Thin a curve so that no spike is lost: least and greatest of each stretch, in their order.
+    """Downsample a curve to the minimum and maximum of each interval, so that spikes are kept.
 
     Args:
         t: Times, shape (n,) [s].
         values: Values, shape (n,).
-        columns: Stretches to cut it into.
+        columns: Number of intervals.
 
     Returns:
-        Times and values, each of shape (2 columns,), or as given where they are no more.
+        Times and values, each of shape (2 columns,), in time order; as given if there are no more.
 
     >>> t = np.arange(1000.0)
     >>> float(extremes(t, np.where(t == 503, 9.0, 0.0), 10)[1].max())
@@ -75,7 +75,7 @@ def extremes(t: Array, values: Array, columns: int) -> tuple[Array, Array]:
 
 
 def _known(panel: Panel) -> bool:
-    """Tell whether a device measured anything that the panel shows."""
+    """Return whether a panel has any measured value."""
     return any(np.isfinite(line).any() for line in panel.lines.values())
 
 
@@ -97,7 +97,7 @@ def _draw_panel(axes: Axes, panel: Panel) -> None:
 
 
 def _broken(t: Array, values: Array, gaps: Array) -> tuple[Array, Array]:
-    """Break a curve in its gaps: no line is drawn where there were no samples."""
+    """Insert NaN at gaps, so that no line is drawn where there are no samples."""
     at = np.searchsorted(t, gaps[:, 0], side="right")
     return np.insert(t, at, gaps.mean(axis=1)), np.insert(values, at, np.nan)
 
@@ -123,7 +123,11 @@ def _list_events(axes: Axes, events: Sequence[Event]) -> None:
 
 
 def _chosen(events: Sequence[Event]) -> list[Event]:
-    """Choose what there is room for: the first, the last, and of each text one before its next."""
+    """Select at most `_MOST_EVENTS` events to label, in time order.
+
+    The first and the last event are always kept. The others are ranked by how often their text
+    occurred before, then warnings first, then by time.
+    """
     if len(events) <= _MOST_EVENTS:
         return list(events)
     seen: Counter[str] = Counter()

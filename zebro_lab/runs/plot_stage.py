@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A run in, one picture of all that it recorded out."""
+"""Stage of `zebro-lab plot`: read a run and draw all its streams in one picture."""
 
 from dataclasses import dataclass
 from io import BytesIO
@@ -21,7 +21,7 @@ class Drawn:
 
     Attributes:
         file: The picture.
-        signals: What it shows.
+        signals: Signals shown.
     """
 
     file: Path

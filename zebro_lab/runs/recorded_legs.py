@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Leg angles of a recorded run, as a table like any other."""
+"""Decode the leg angles of a recorded run to a table."""
 
 from pathlib import Path
 
@@ -16,7 +16,7 @@ LEGS = "legs"
 
 
 def is_recorded(path: Path) -> bool:
-    """Tell whether a path is a run folder."""
+    """Return whether a path is a run folder."""
     return (path / MANIFEST_FILE).is_file()
 
 

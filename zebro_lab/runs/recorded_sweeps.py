@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A recording of a rig that sweeps by itself, cut into its sweeps."""
+"""Segment a recording of a rig that sweeps slip continuously into its sweeps."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -9,7 +9,7 @@ from zebro_lab.files.errors import DataError
 from zebro_lab.runs.folder import LOG_FILE, SlipRigRun
 
 SWEEP = "sweep"
-"""Column that numbers them."""
+"""Name of the column with the sweep number."""
 
 
 def recorded_sweeps(run: SlipRigRun) -> tuple[NDArray[np.intp], tuple[str, ...]]:
@@ -19,8 +19,8 @@ def recorded_sweeps(run: SlipRigRun) -> tuple[NDArray[np.intp], tuple[str, ...]]
         run: The run.
 
     Returns:
-        Number of each sample's sweep from 1 on, 0 where none is, shape (n,); and what to tell a
-        person.
+        Sweep number of each sample, from 1; 0 outside sweeps, shape (n,). Then notes, one line
+        each.
 
     Raises:
         DataError: The leg disc stood all the time, or slip never stopped jumping.

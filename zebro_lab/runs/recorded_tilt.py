@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Roll and pitch over time as an IMU of a recorded run measured them."""
+"""Decode roll and pitch over time from the IMU of a recorded run."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -13,7 +13,7 @@ from zebro_lab.runs.folder import LOG_FILE
 from zebro_lab.runs.manifest import profile_file
 
 IMUS = ("imu", "imu1", "imu2")
-"""Names of the streams, the first of which is taken."""
+"""Names of IMU streams; the first that was recorded is used."""
 
 
 @dataclass(frozen=True)

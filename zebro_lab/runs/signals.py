@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Everything a run recorded, as curves over time: what devices sent, and where they fell silent."""
+"""All streams of a run as time series in SI, with gaps and events."""
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
@@ -60,7 +60,7 @@ class Event:
     Attributes:
         t: When [s].
         text: What.
-        warning: It was no part of the plan.
+        warning: Whether it is unexpected.
     """
 
     t: float
@@ -75,10 +75,10 @@ class RunSignals:
     Attributes:
         name: Name of the run folder.
         state: How it ended.
-        source: Where it comes from.
+        source: Where the data come from.
         panels: Curves of all streams.
-        events: What happened, in order.
-        notes: For a person, one line each.
+        events: Events in time order.
+        notes: Notes, one line each.
     """
 
     name: str
@@ -90,7 +90,7 @@ class RunSignals:
 
 
 def read_signals(folder: Path) -> RunSignals:
-    """Read all streams of a run, recorded, imported or written at once.
+    """Read all streams of a recorded or imported run.
 
     Raises:
         NotFound: It is no run folder, or its log is missing.
@@ -117,14 +117,15 @@ def read_signals(folder: Path) -> RunSignals:
 
 
 def find_gaps(t: Array, sequence: NDArray[np.int64] | None = None) -> Array:
-    """Find stretches without samples: silences, and numbers that are missing.
+    """Find gaps in a stream: long intervals between samples, and missing sequence numbers.
 
     Args:
         t: Time of each sample, shape (n,) [s].
-        sequence: Its number, -1 where it has none, shape (n,); None where nothing is numbered.
+        sequence: Sequence number of each sample, -1 if it has none, shape (n,); None if the stream
+            is not numbered.
 
     Returns:
-        Begin and end of each, shape (k, 2) [s].
+        Begin and end of each gap, shape (k, 2) [s].
     """
     steps = np.diff(t)
     usual = float(np.median(steps[steps > 0])) if np.any(steps > 0) else 0.0

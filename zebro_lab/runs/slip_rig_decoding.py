@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""From raw samples of a recorded slip rig to the columns that a calibration takes."""
+"""Decode raw samples of a recorded slip rig to speeds and forces in SI."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -18,31 +18,30 @@ from zebro_lab.mcap.raw_log import raw_topic
 from zebro_lab.mcap.slip_rig_log import SlipRigTable
 from zebro_lab.runs.manifest import RIG, profile_file
 
-_MANY = 3  # forces to a speed, from which on they are averaged
+_MANY = 3  # fewest forces per speed sample with which forces are averaged
 
 
 def derive_table(
     folder: Path, streams: Mapping[str, SampleColumns], *, zero: Mapping[str, float]
 ) -> tuple[SlipRigTable, tuple[str, ...]]:
-    """Compute speeds and forces of a recorded run from what its devices sent.
+    """Compute speeds and forces of a recorded run from the raw samples of its devices.
 
-    Where drives and load cell are apart, the slower of them, as a rule the drives, sets the rows:
-    forces are averaged about the instants of the speeds. Were speeds interpolated to many forces,
-    their noise would pass for wander of the slip, to which forces answer. What lies outside the
-    speeds is left out: nobody knows the slip there.
+    If drives and load cell are separate streams, the slower stream, usually the drives, sets the
+    rows: forces are averaged around the times of the speeds. Interpolating speeds to the times of
+    many forces would turn speed noise into apparent changes of slip that have no effect on force.
+    Forces outside the time range of the speeds are dropped, as the slip is unknown there.
 
     Args:
-        folder: The run folder, which keeps the profile.
+        folder: The run folder, which has the profile.
         streams: Raw streams of its log, by topic.
-        zero: What the unloaded load cell read, `zero_normal` and `zero_traction`, to be
-            subtracted; 0 where absent [N].
+        zero: Zero offsets of the load cell, `zero_normal` and `zero_traction`, to be subtracted;
+            0 if absent [N].
 
     Returns:
-        The samples, and notes on what was left out.
+        The samples, and notes on what was dropped.
 
     Raises:
-        DataError: A stream is missing or without a complete sample, or the profile cannot be
-            followed.
+        DataError: A stream is missing or without a complete sample, or the profile is invalid.
     """
     file = profile_file(folder, RIG)
     try:
@@ -86,18 +85,17 @@ def _of_two(
 
 
 def averages_around(at: Array, t: Array, values: Array) -> tuple[NDArray[np.intp], Array]:
-    """Average values about instants: what lies nearer to one than to its neighbours.
+    """Average values around given times: each value belongs to the nearest time.
 
-    What is further away than the median interval is nobody's: there were samples lost.
+    Values further away than the median interval are dropped, as samples were lost there.
 
     Args:
-        at: Instants, increasing, shape (m,) [s].
+        at: Times to average around, increasing, shape (m,) [s].
         t: Times of the values, increasing, shape (n,) [s].
         values: The values, shape (k, n).
 
     Returns:
-        Indices of the instants that have values about them, shape (j,), and the averages, shape
-        (k, j).
+        Indices into `at` of the times that have values, shape (j,), and the averages, shape (k, j).
     """
     reach = float(np.median(np.diff(at))) if len(at) > 1 else np.inf
     middle = 0.5 * (at[1:] + at[:-1])

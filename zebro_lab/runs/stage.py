@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Run folders in, a list of what they hold out."""
+"""Stage of `zebro-lab runs`: summarise all run folders below a folder."""
 
 from dataclasses import dataclass
 from datetime import datetime
@@ -18,10 +18,10 @@ class ListedRun:
 
     Attributes:
         name: Name of the folder.
-        state: How it ended, whether it is left out, or what is wrong with it.
-        duration: How long it lasted, as text.
-        samples: How many samples of what, as text.
-        source: Where they come from.
+        state: How it ended, whether it is excluded, or why it cannot be read.
+        duration: Duration, as text.
+        samples: Number of samples per stream, as text.
+        source: Where the data come from.
     """
 
     name: str
@@ -32,9 +32,9 @@ class ListedRun:
 
 
 def list_runs(data: Path) -> list[ListedRun]:
-    """List the runs below a folder; one that cannot be read is listed with its fault.
+    """List the runs below a folder; one that cannot be read is listed with its error.
 
-    The log of a run without an end record is read, to say what was recovered.
+    The log of a run without an end record is read, to count the recovered samples.
 
     Raises:
         NotFound: There is no such folder.
@@ -58,7 +58,7 @@ def _listed(folder: Path) -> ListedRun:
 
 
 def _with_exclusions(state: str, manifest: RunManifest) -> str:
-    """Say why a run is left out now, and why it was before."""
+    """Append the reasons of present and past exclusions to a run's state."""
     before = "; ".join(past_reasons(manifest))
     if manifest.excluded is None:
         return f"{state} (was excluded: {before})" if before else state

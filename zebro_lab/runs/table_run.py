@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Write a slip rig's samples that are known in SI already, from a table, as a finished run folder.
+"""Write slip-rig samples that are already in SI as a finished run folder.
 
-They are kept as raw samples are, under a profile that leaves them as they are.
+They are stored like raw samples, with a profile whose conversion factors are 1.
 """
 
 from collections.abc import Callable, Mapping
@@ -32,7 +32,7 @@ from zebro_lab.runs.manifest import (
 )
 
 _BOARD: Final = "board"
-_BLOCK: Final = 1000  # samples; what a file cut short can lose
+_BLOCK: Final = 1000  # samples per chunk; a truncated file loses at most one chunk
 
 
 def write_slip_rig_run(
@@ -66,7 +66,7 @@ def write_slip_rig_run(
         exit_status: How the run ended.
         commit: Commit of the software that recorded it.
         inputs: SHA-256 of the files that the samples were imported from.
-        extra: Adds files of its own to the folder before it appears.
+        extra: Called with the draft folder, to write more files before it is renamed.
 
     Returns:
         The run folder.
@@ -107,7 +107,7 @@ def write_slip_rig_run(
 def _write_profile(
     draft: Path, t: NDArray[np.float64], radius_leg: float, radius_ground: float
 ) -> Path:
-    """Write the profile of samples in SI, with which they are read back as they are."""
+    """Write the profile of samples in SI, which decodes them unchanged."""
     step = float(np.median(np.diff(t))) if len(t) > 1 else 0.0
     file = profile_file(draft, RIG)
     file.parent.mkdir(exist_ok=True)

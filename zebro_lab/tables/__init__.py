@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: MIT
-"""Tables of other people: CSV and Parquet files, column maps, units, into arrays in SI."""
+"""Read CSV and Parquet tables with column maps and units into arrays in SI."""

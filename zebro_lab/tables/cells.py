@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Errors that name a cell of a table, and the check that its times increase."""
+"""Error messages that name a table cell, and the check that times increase."""
 
 import numpy as np
 
@@ -9,7 +9,7 @@ from zebro_lab.tables.raw_table import RawTable
 
 
 def require_increasing(table: RawTable, column: str, t: Array) -> None:
-    """Refuse times that stand still or run backwards.
+    """Check that times are strictly increasing.
 
     Args:
         table: Table to name.
@@ -33,7 +33,14 @@ def require_increasing(table: RawTable, column: str, t: Array) -> None:
 
 
 def cell_error(table: RawTable, column: str, index: int, problem: str) -> DataError:
-    """Make the error that names a cell; `index` counts data rows from 0."""
+    """Return an error that names a cell of a table.
+
+    Args:
+        table: Table to name.
+        column: Header of the column.
+        index: Data row, counted from 0.
+        problem: What is wrong with the cell.
+    """
     return DataError(
         problem, file=table.path, column=column, row=index + 1, line=table.line(index + 1)
     )

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""`columns.toml`: how a lab's own tables map to the canonical columns in SI.
+"""`columns.toml`: map the columns of a table to canonical columns in SI.
 
 The keys are described in docs/formats.md; `zebro-lab init FILE` writes a commented example.
 """
@@ -21,12 +21,12 @@ COLUMNS_FILE = "columns.toml"
 
 @dataclass(frozen=True)
 class CanonicalColumn:
-    """A column the calibration knows.
+    """A column that a calibration uses.
 
     Attributes:
         name: Its canonical name.
-        unit: Its SI unit; None where it holds no number.
-        meaning: One line, with the sign.
+        unit: Its SI unit; None if it is not numeric.
+        meaning: Description in one line, with the sign convention.
     """
 
     name: str
@@ -61,13 +61,13 @@ _SOURCES = ("real", "sim", "replay", "unknown")
 
 @dataclass(frozen=True)
 class MappedColumn:
-    """Where a canonical column comes from.
+    """The column of a file that a canonical column is read from.
 
     Attributes:
         name: Its header in the file.
         unit: Its unit in the file.
-        factor: What takes the file's numbers to SI with the canonical sign; `unit` and sign.
-        definition: Slip definition, for `slip_ratio` alone.
+        factor: Factor from the file's numbers to SI with the canonical sign.
+        definition: Slip definition, for `slip_ratio` only.
     """
 
     name: str
@@ -78,12 +78,14 @@ class MappedColumn:
 
 @dataclass(frozen=True)
 class RunRule:
-    """What separates the runs of one file; without any of them a `run` column, else the file.
+    """Rule that separates the rows of one file into runs.
+
+    Without a rule, runs are separated by the `run` column; without that, the file is one run.
 
     Attributes:
-        by: Columns, by their names in the file, whose change starts a run.
-        gap: Pause that starts a run when it is exceeded [s]; None for no such rule.
-        each_row: Every row is the average of a trial and so a run of its own.
+        by: Columns, by their headers in the file; a change of value starts a run.
+        gap: A longer interval between samples starts a run [s]; None for no such rule.
+        each_row: Every row is the average of a trial and therefore a run.
     """
 
     by: tuple[str, ...] = ()
@@ -93,14 +95,14 @@ class RunRule:
 
 @dataclass(frozen=True)
 class Columns:
-    """What a `columns.toml` says.
+    """Content of a `columns.toml`.
 
     Attributes:
         file: The file itself; None for the canonical names in SI, without a file.
-        source: "real", "sim:what" or "replay:what"; None where it does not say.
+        source: "real", "sim:what" or "replay:what"; None if not stated.
         columns: Mapped columns by canonical name.
-        constants: Canonical columns that are one number for the whole rig, SI.
-        runs: What separates runs.
+        constants: Canonical columns that are constant for the whole rig, in SI.
+        runs: Rule that separates runs.
         keep: Conditions that every row must meet.
         load_cell: Standard deviations from the load cell's certificate, SI.
     """
@@ -119,22 +121,19 @@ def read_columns(file: Path) -> Columns:
 
     Raises:
         NotFound: There is no such file.
-        SettingsError: It is no TOML, or holds an unknown key, unit or value.
+        SettingsError: It is not TOML, or has an unknown key, unit or value.
     """
     return parse_columns(read_settings(file, advice=f"expected a {COLUMNS_FILE}"))
 
 
 def parse_columns(table: SettingsTable) -> Columns:
-    """Check what a `columns.toml` holds.
+    """Parse and check the content of a `columns.toml`.
 
     Args:
-        table: Its content, or a section of one; every key is taken.
-
-    Returns:
-        What it says.
+        table: Its content, or a section of one; no other keys are allowed.
 
     Raises:
-        SettingsError: It holds an unknown key, unit or value.
+        SettingsError: It has an unknown key, unit or value.
     """
     columns = table.table("columns")
     said = Columns(
@@ -155,21 +154,18 @@ def parse_columns(table: SettingsTable) -> Columns:
 
 
 def parse_mapped_column(columns: SettingsTable, name: str, si_unit: str | None) -> MappedColumn:
-    """Take header, unit and sign of one column.
+    """Parse header, unit and sign of one mapped column.
 
     Args:
-        columns: The section that has an entry for it: a table, or its header alone.
+        columns: Section that has an entry for the column: a table, or only its header.
         name: Its canonical name.
-        si_unit: Its SI unit; None where it holds no number.
-
-    Returns:
-        Where the column comes from.
+        si_unit: Its SI unit; None if it is not numeric.
 
     Raises:
-        SettingsError: Header, unit or sign cannot be followed.
+        SettingsError: Header, unit or sign is invalid.
     """
     found = columns.value(name)
-    if isinstance(found, str):  # t = "ET": a name alone, in SI
+    if isinstance(found, str):  # t = "ET": only a header, in SI
         found = {"name": found}
     table = columns.as_table(name, found, expected="a table with name, unit, sign")
     unit, factor = table.factor("unit", si_unit) if si_unit else ("", 1.0)
@@ -182,10 +178,15 @@ def parse_mapped_column(columns: SettingsTable, name: str, si_unit: str | None) 
 
 
 def parse_definition(text: object, *, file: Path | None, key: str) -> SlipDefinition:
-    """Read the name of a slip definition.
+    """Parse the name of a slip definition.
+
+    Args:
+        text: Name of the definition.
+        file: File that it was read from, for the error message.
+        key: Key or column that it was read from, for the error message.
 
     Raises:
-        SettingsError: It is none.
+        SettingsError: There is no definition of this name.
     """
     try:
         return SlipDefinition(str(text))

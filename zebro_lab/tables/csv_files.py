@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""CSV files, whatever their separator and decimal sign."""
+"""Read CSV files; separator and decimal sign are detected."""
 
 import codecs
 import csv
@@ -31,7 +31,7 @@ _MAGIC = {
 
 @dataclass(frozen=True)
 class _CsvLayout:
-    """How a CSV file is written: separator, and the names on its header line (1-based)."""
+    """Layout of a CSV file: separator, headers, and the header's line number (from 1)."""
 
     separator: str
     names: list[str]
@@ -42,7 +42,7 @@ def read_csv_file(path: Path) -> RawTable:
     """Read a CSV file, also gzipped: UTF-8, separated by commas, semicolons or tabs.
 
     Raises:
-        DataError: It is no text, no regular table, empty, or cut short.
+        DataError: It is not text, not a regular table, empty, or truncated.
     """
     import pandas as pd
 
@@ -55,7 +55,7 @@ def read_csv_file(path: Path) -> RawTable:
             header=None,
             names=unique,
             skiprows=layout.header_line,
-            index_col=False,  # else a surplus cell shifts every column without a word
+            index_col=False,  # otherwise an extra cell shifts all columns silently
             skipinitialspace=True,
             low_memory=False,
             encoding="utf-8-sig",
@@ -127,7 +127,7 @@ def _decode_head(path: Path, head: bytes) -> str:
     if b"\0" in head:
         raise DataError("is not text but a binary file; export it as CSV or Parquet", file=path)
     try:
-        # The incremental decoder forgives a character that the end of the head cuts in two.
+        # The incremental decoder accepts a character that is truncated at the end of the head.
         text = codecs.getincrementaldecoder("utf-8-sig")().decode(head)
     except UnicodeDecodeError as error:
         raise DataError(
@@ -145,7 +145,7 @@ def _count_comments(lines: list[tuple[int, str]]) -> int:
 
 
 def _separator(path: Path, lines: list[tuple[int, str]]) -> str:
-    """Choose the one separator that cuts the first lines into equally many cells."""
+    """Detect the separator: the only one that gives the first lines equal numbers of cells."""
     texts = [text for _, text in lines[:_HEAD_LINES]]
     counts = {s: [len(cells) for cells in csv.reader(texts, delimiter=s)] for s in _SEPARATORS}
     regular = [s for s, cells in counts.items() if cells[0] > 1 and len(set(cells)) == 1]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Columns of a lab's own table under the names and units that a stage knows: time series."""
+"""Column map of a time series: canonical names and units for the columns of a table."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -18,13 +18,13 @@ from zebro_lab.tables.raw_table import RawTable
 
 @dataclass(frozen=True)
 class MappedColumns:
-    """Where the columns of a time series come from.
+    """Column map of a time series.
 
     Attributes:
-        mapped: Every column that the stage knows, by its canonical name.
-        source: "real", "sim:what", "replay:what"; None where nobody said.
+        mapped: Mapped columns, by canonical name.
+        source: "real", "sim:what", "replay:what"; None if not stated.
         file: The `columns.toml`; None without one.
-        where: Place in it, with a final dot; "" for all of it.
+        where: Dotted section in it, with a final dot; "" for the whole file.
     """
 
     mapped: Mapping[str, MappedColumn]
@@ -33,12 +33,22 @@ class MappedColumns:
     where: str = ""
 
     def has(self, table: RawTable, name: str) -> bool:
-        """Tell whether a table has a column, under the name it is mapped to."""
+        """Return whether a table has a column, under the header it is mapped to.
+
+        Args:
+            table: Table to look in.
+            name: Canonical name of the column.
+        """
         header = self.mapped[name].name
         return header in table.columns or header in table.repeated
 
     def called(self, name: str, header: str) -> "MappedColumns":
-        """Return the map with another header for a column, its unit kept."""
+        """Return a copy of the map with another header for a column; its unit is kept.
+
+        Args:
+            name: Canonical name of the column.
+            header: New header in the file.
+        """
         mapped = replace(self.mapped[name], name=header)
         return replace(self, mapped={**self.mapped, name: mapped})
 
@@ -48,11 +58,11 @@ class MappedColumns:
         Args:
             table: The table.
             name: Canonical name.
-            what: What the column is, for a person.
-            advice: What to do about a cell that holds no number.
+            what: Description of the column, for the error message.
+            advice: What to do about a cell without a number, for the error message.
 
         Raises:
-            DataError: The column is missing, or a cell holds no finite number; names the cell.
+            DataError: The column is missing, or a cell has no finite number; names the cell.
         """
         mapped = self.mapped[name]
         if not self.has(table, name):
@@ -76,26 +86,23 @@ class MappedColumns:
 
 
 def canonical_columns(units: Mapping[str, str]) -> MappedColumns:
-    """Return the map of a table whose names and units are the canonical ones.
+    """Return the column map of a table with canonical names and units.
 
     Args:
-        units: SI unit of every column that the stage knows.
+        units: SI unit of each column, by canonical name.
     """
     return MappedColumns({name: MappedColumn(name, unit) for name, unit in units.items()})
 
 
 def parse_mapped_columns(table: SettingsTable, units: Mapping[str, str]) -> MappedColumns:
-    """Read names, units and signs; what is not mapped keeps its canonical name and unit.
+    """Parse a column map; columns without an entry keep their canonical name and unit.
 
     Args:
-        table: The keys `source` and `columns`; every key is taken.
-        units: SI unit of every column that the stage knows.
-
-    Returns:
-        The map.
+        table: Table with the keys `source` and `columns`; no other keys are allowed.
+        units: SI unit of each column, by canonical name.
 
     Raises:
-        SettingsError: A key, a unit or a sign cannot be followed.
+        SettingsError: A key, a unit or a sign is invalid.
     """
     columns = table.table("columns")
     mapped = {

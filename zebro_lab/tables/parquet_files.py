@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Parquet files, read as raw tables within bounds."""
+"""Read Parquet files as raw tables, with limits on memory."""
 
 import os
 from collections import Counter
@@ -24,7 +24,7 @@ def read_parquet_file(path: Path) -> RawTable:
 
     Raises:
         NotFound: There is no such file.
-        DataError: It is no whole Parquet file, or would unpack to too much.
+        DataError: It is not a complete Parquet file, or its unpacked size exceeds the limit.
     """
     with open_file(path) as file, parsing(path, "is not a whole Parquet file", advice=_ADVICE):
         table = _read(file, path)
@@ -51,7 +51,7 @@ def _read(file: IO[bytes], path: Path) -> "pa.Table":
     with pq.ParquetFile(file, **limits) as opened:
         metadata, schema = opened.metadata, opened.schema_arrow
         _require_bounded(metadata, path, os.fstat(file.fileno()).st_size)
-    # A long text that stands in many rows is stored once; unpacked it would be copied into each.
+    # A long string that repeats in many rows is stored once, but unpacked it is copied to each row.
     texts = [field.name for field in schema if _is_text(field.type)]
     with pq.ParquetFile(file, read_dictionary=texts, **limits) as opened:
         return opened.read()
@@ -67,7 +67,7 @@ def _require_bounded(metadata: Any, path: Path, size: int) -> None:
             "it, or leave out columns that nothing reads",
             file=path,
         )
-    # Not `group.column(i)`, where pyarrow 26 ends the process if a column's statistics are wrong.
+    # Not `group.column(i)`: pyarrow 26 aborts the process there if a column's statistics are wrong.
     unpacked = sum(group.total_byte_size for group in groups)
     if unpacked > FREELY + MOST_RATIO * size:
         raise DataError(

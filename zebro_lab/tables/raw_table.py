@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A table as its file has it: names and numbers, without meaning."""
+"""A table as read from a file, before columns are mapped."""
 
 import re
 from collections.abc import Mapping
@@ -15,7 +15,7 @@ from zebro_lab.files.errors import DataError
 from zebro_lab.files.opening import parsing
 from zebro_lab.files.unpacking import open_unpacked
 
-_BLOCK = 1 << 16  # cells that are turned into numbers before the next are looked at
+_BLOCK = 1 << 16  # cells converted to numbers at a time
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -23,17 +23,17 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class RawTable:
-    """A table as its file has it.
+    """A table as read from a file.
 
     Attributes:
         path: The file, or the run folder.
-        columns: Columns by name, numbers or texts, each of shape (n,).
-        repeated: Names that head more than one column, and so name none.
-        source: Source the file itself states; None where it does not.
-        decimal_comma: Numbers may be written 0,5.
-        notes: What a person should know about how the file was read.
-        header_line: Line of the header in a text file, 1 for the first; None for others.
-        unreadable: Type of the cells of columns that hold neither numbers nor texts, by name.
+        columns: Columns by header, numbers or strings, each of shape (n,).
+        repeated: Headers of more than one column, which are therefore ambiguous.
+        source: Source stated in the file; None if not stated.
+        decimal_comma: Whether numbers may be written with a decimal comma, e.g. 0,5.
+        notes: Notes on how the file was read, one line each.
+        header_line: Line of the header in a text file, from 1; None for others.
+        unreadable: Cell type of columns that are neither numbers nor strings, by header.
     """
 
     path: Path
@@ -53,7 +53,7 @@ class RawTable:
         """Return a column.
 
         Raises:
-            DataError: The file has none, or more than one, of that name.
+            DataError: The file has no column, or more than one, with this header.
         """
         if name in self.repeated:
             raise DataError(
@@ -72,10 +72,10 @@ class RawTable:
         return self.columns[name]
 
     def numbers(self, name: str) -> NDArray[np.float64]:
-        """Return a column as numbers, NaN where a cell is empty, shape (n,).
+        """Return a column as numbers, NaN for empty cells, shape (n,).
 
         Raises:
-            DataError: The column is missing, or a cell holds no number.
+            DataError: The column is missing, or a cell is not a number.
         """
         import pandas as pd
 
@@ -94,9 +94,10 @@ class RawTable:
         return values
 
     def line(self, row: int) -> int | None:
-        """Find the line of a text file that holds a data row (1 for the first).
+        """Return the line number of a data row in a text file; None for other files.
 
-        Reads the file again, since only errors ask; None where rows are no lines.
+        Rows and lines count from 1. The file is read again, as this is only called for error
+        messages.
         """
         if self.header_line is None:
             return None
@@ -122,9 +123,9 @@ class RawTable:
 
 
 def _as_numbers(cells: "pd.Series") -> NDArray[np.float64]:
-    """Convert cells to numbers, NaN where one is empty or holds no number, and after such.
+    """Convert cells to numbers; NaN for empty cells, for other text, and after a block with text.
 
-    A cell that holds none takes pandas some microseconds: a column of names would take minutes.
+    Converting text takes pandas some microseconds per cell: a column of names would take minutes.
     """
     import pandas as pd
 
@@ -141,5 +142,5 @@ def _as_numbers(cells: "pd.Series") -> NDArray[np.float64]:
 
 
 def _has_points(cells: "pd.Series") -> bool:
-    # 1,234.5 and 1.234,5 are both possible: where points occur, a comma is not the decimal sign.
+    # 1,234.5 and 1.234,5 are both possible: if points occur, the comma is not the decimal sign.
     return bool(cells.astype(str).str.contains(".", regex=False, na=False).any())

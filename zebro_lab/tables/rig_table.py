@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""One table and its column map, turned into checked arrays in SI."""
+"""Read the columns of a rig table as checked arrays in SI."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -16,10 +16,10 @@ from zebro_lab.tables.raw_table import RawTable
 
 @dataclass(frozen=True)
 class RigTable:
-    """A raw table seen through its column map, on the rows that are kept.
+    """A raw table with its column map, restricted to the kept rows.
 
     Attributes:
-        raw: The table as its file has it.
+        raw: The table as read.
         columns: The column map.
         rows: Indices of the kept rows, shape (n,).
     """
@@ -29,7 +29,7 @@ class RigTable:
     rows: NDArray[np.intp]
 
     def source_of(self, name: str) -> MappedColumn | None:
-        """Say where a canonical column comes from; None where the table has none."""
+        """Return the mapped column of a canonical column, or None if the table has none."""
         if name in self.columns.columns:
             return self.columns.columns[name]
         if name in self.raw.columns or name in self.raw.repeated:
@@ -50,7 +50,7 @@ class RigTable:
         return values * source.factor
 
     def texts(self, name: str) -> NDArray[np.object_]:
-        """Return a canonical column that holds names, as its file has it, shape (n,)."""
+        """Return a canonical column of strings, as in the file, shape (n,)."""
         source = self.source_of(name)
         if source is None:
             raise self.missing(name)
@@ -87,21 +87,27 @@ class RigTable:
         return constant
 
     def require(self, name: str, good: NDArray[np.bool_], problem: Callable[[str], str]) -> None:
-        """Raise an error at the first row of a column that is not good.
+        """Raise an error at the first invalid row of a column.
 
         Args:
-            name: Canonical column.
-            good: Which kept rows are good, shape (n,).
-            problem: What to say, given the value as the file has it, with its unit.
+            name: Canonical name of the column.
+            good: Whether each kept row is valid, shape (n,).
+            problem: Formats the message, given the cell's value with its unit.
 
         Raises:
-            DataError: A row is not good.
+            DataError: A row is invalid.
         """
         if not good.all():
             raise self.error_at(name, int(np.argmin(good)), problem)
 
     def error_at(self, name: str, index: int, problem: Callable[[str], str]) -> DataError:
-        """Make the error that names a cell; `index` counts the kept rows from 0."""
+        """Return an error that names a cell.
+
+        Args:
+            name: Canonical name of the column.
+            index: Row among the kept rows, counted from 0.
+            problem: Formats the message, given the cell's value with its unit.
+        """
         source = self.source_of(name)
         if source is None:
             raise self.missing(name)
@@ -114,7 +120,7 @@ class RigTable:
         )  # fmt: skip
 
     def missing(self, name: str) -> DataError:
-        """Make the error that says a canonical column is missing."""
+        """Return the error for a missing canonical column."""
         return DataError(
             f"missing; {nearest(name, list(self.raw.columns))}; "
             f"map it in {COLUMNS_FILE} as [columns.{name}] (zebro-lab init writes one)",
@@ -136,7 +142,14 @@ class RigTable:
 
 
 def kept_rows(raw: RawTable, columns: Columns) -> NDArray[np.intp]:
-    """Find the rows in which every condition of [rows] keep holds.
+    """Return the indices of the rows that meet every condition of `[rows] keep`.
+
+    Args:
+        raw: Table as read.
+        columns: Column map with the conditions.
+
+    Returns:
+        Row indices, counted from 0, increasing.
 
     Raises:
         DataError: A condition names a missing column, or no row is left.

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Conditions such as `slip > 0.05` that choose rows of a table."""
+"""Conditions such as `slip > 0.05` that filter the rows of a table."""
 
 import operator
 import re
@@ -30,9 +30,9 @@ class RowCondition:
     """One comparison of a column with a number.
 
     Attributes:
-        column: Name of the column, as its file has it.
+        column: Header of the column in the file.
         operator: One of ==, !=, <, <=, >, >=.
-        number: What to compare with, in the column's own unit.
+        number: Number to compare with, in the column's unit.
     """
 
     column: str
@@ -40,11 +40,11 @@ class RowCondition:
     number: float
 
     def __str__(self) -> str:
-        """Write the condition as its user would."""
+        """Format the condition as it is written in a settings file."""
         return f"{self.column} {self.operator} {self.number:g}"
 
     def holds(self, values: NDArray[np.float64]) -> NDArray[np.bool_]:
-        """Tell in which rows the condition holds; never where the value is NaN.
+        """Return for each row whether the condition holds; False for NaN.
 
         Args:
             values: The column, shape (n,).
@@ -53,12 +53,12 @@ class RowCondition:
 
 
 def parse_row_condition(text: str) -> RowCondition:
-    """Read `name operator number`; a name that holds an operator stands in backticks.
+    """Parse `name operator number`; a name that contains an operator is put in backticks.
 
-    The text is only ever matched, never evaluated: a settings file from elsewhere runs no code.
+    The text is matched, never evaluated, so that a settings file cannot run code.
 
     Raises:
-        ValueError: The text is no such comparison.
+        ValueError: The text is not such a comparison.
 
     >>> parse_row_condition("slip > 0.05")
     RowCondition(column='slip', operator='>', number=0.05)

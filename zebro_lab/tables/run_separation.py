@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Which rows of a table belong to one run, and whether their time makes sense."""
+"""Assign the rows of a table to runs, and check their times."""
 
 from collections import Counter
 from dataclasses import dataclass
@@ -19,8 +19,8 @@ class Runs:
 
     Attributes:
         index: Index into `names` of every kept row, non-decreasing, shape (n,).
-        names: One name a run.
-        rule: What separated them, for a person.
+        names: Name of each run.
+        rule: Description of the rule that separated them.
     """
 
     index: NDArray[np.intp]
@@ -31,15 +31,16 @@ class Runs:
 def separate_runs(table: RigTable, label: str) -> Runs:
     """Assign every kept row to a run.
 
-    Runs are found on all rows, before [rows] keep takes some away: leaving out the start-up of
-    a recording must not cut it in two.
+    Runs are found on all rows, before [rows] keep is applied: filtering rows must not split a
+    recording in two.
 
     Args:
         table: The table.
-        label: Name of the table, with which every run's name begins.
+        label: Name of the table; prefix of every run's name.
 
     Raises:
-        DataError: A column of the rule is missing, or the rule needs a time that is not there.
+        DataError: A column of the rule is missing, or the rule needs a time column and there is
+            none.
     """
     rule, mapped_run = table.columns.runs, table.source_of("run")
     if rule.each_row:
@@ -56,13 +57,17 @@ def separate_runs(table: RigTable, label: str) -> Runs:
 
 
 def run_times(table: RigTable, runs: Runs) -> Array | None:
-    """Return the time of every kept row, increasing within a run, shape (n,) [s].
+    """Return the time of every kept row, and check that it increases within each run.
+
+    Args:
+        table: Rig table.
+        runs: Run of each row.
 
     Returns:
-        None where the table has no time, or every row is a trial.
+        Times, shape (n,) [s]; None if the table has no time column or every row is a trial.
 
     Raises:
-        DataError: Time stands still or runs backwards inside a run.
+        DataError: Time repeats or decreases within a run.
     """
     if table.columns.runs.each_row or table.source_of("t") is None:
         return None
@@ -135,7 +140,7 @@ def _shown(cell: object) -> str:
 
 
 def _unique(names: list[str]) -> tuple[str, ...]:
-    """Number the names of set-points that were visited again."""
+    """Make names unique by numbering set-points that were measured again."""
     seen: Counter[str] = Counter()
     unique = []
     for name in names:

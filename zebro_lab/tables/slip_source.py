@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The slip ratio of a rig table: as given with its definition, or from the disc speeds."""
+"""Slip ratio of a rig table: given with its definition, or computed from the disc speeds."""
 
 from dataclasses import dataclass
 
@@ -14,18 +14,18 @@ from zebro_lab.tables.columns import COLUMNS_FILE, MappedColumn, parse_definitio
 from zebro_lab.tables.rig_table import RigTable
 
 _SPEEDS = ("omega_leg", "omega_ground")
-_SLIP_NOISE = 0.1  # by which a measured slip ratio may pass its limits; in percent it passes far
+_SLIP_NOISE = 0.1  # margin for noise beyond the limits of slip; values in percent exceed it by far
 
 
 @dataclass(frozen=True)
 class SlipColumn:
-    """Slip of every kept row, and how it came about.
+    """Slip ratio of every kept row, and how it was obtained.
 
     Attributes:
         ratio: Slip ratio in `definition`, shape (n,) [-].
-        definition: What it is divided by.
-        column: Canonical column to name where a row is at fault.
-        origin: How it was obtained, for a person.
+        definition: Slip definition.
+        column: Canonical column to name in error messages.
+        origin: Description of how it was obtained.
     """
 
     ratio: Array
@@ -35,14 +35,14 @@ class SlipColumn:
 
 
 def slip(table: RigTable) -> SlipColumn:
-    """Return the slip ratio: as given where its definition is, else from the disc speeds.
+    """Return the slip ratio: the given one if its definition is known, else from disc speeds.
 
-    A given slip wins only when somebody said what it is (mapped it, or stated its definition);
-    otherwise speeds, where they are there, leave nothing to guess.
+    A given slip ratio is used only if it is mapped or its definition is stated; otherwise the disc
+    speeds are used if the table has them, as their definition is known.
 
     Raises:
-        DataError: Neither is there, the definition of a given slip is not stated, or a value
-            is impossible.
+        DataError: The table has neither, the definition of a given slip ratio is not stated, or a
+            value is out of range.
     """
     given = table.source_of("slip_ratio")
     speeds = all(table.source_of(name) for name in _SPEEDS)
@@ -63,11 +63,15 @@ def slip(table: RigTable) -> SlipColumn:
 
 
 def converted(table: RigTable, slip_column: SlipColumn, target: SlipDefinition) -> SlipColumn:
-    """Convert slip to another definition.
+    """Convert slip ratios to another definition.
+
+    Args:
+        table: Table that they were read from, for error messages.
+        slip_column: Slip ratios with their definition.
+        target: Definition to convert to.
 
     Raises:
-        DataError: A row's slip is outside what its definition can take, or infinite in the
-            other.
+        DataError: A slip ratio is outside the range of its definition, or infinite in the other.
     """
     ratio, source, column = slip_column.ratio, slip_column.definition, slip_column.column
     if source is target:
@@ -136,7 +140,7 @@ def _given_slip(
 
 
 def _refuse_impossible(table: RigTable, ratio: Array, definition: SlipDefinition) -> None:
-    # Noise may carry a measured slip past its limit: only what lies beyond a margin is an error.
+    # Noise may put a measured slip ratio past its limit: only values beyond a margin are errors.
     inner = np.sign(ratio) * np.maximum(np.abs(ratio) - _SLIP_NOISE, 0)
     other = next(d for d in SlipDefinition if d is not definition)
     try:
@@ -173,7 +177,7 @@ def _slip_from_speeds(table: RigTable, *, unused: MappedColumn | None) -> SlipCo
 
 
 def _first_refused(values: Array, source: SlipDefinition, target: SlipDefinition) -> int:
-    """Find the first value that `convert_slip` refuses, by bisection on the prefix."""
+    """Return the index of the first value that `convert_slip` rejects, by bisection."""
     accepted, refused = 0, len(values)
     while refused - accepted > 1:
         middle = (accepted + refused) // 2

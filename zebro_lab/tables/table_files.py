@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""CSV and Parquet files, read as raw tables."""
+"""Read CSV and Parquet files as raw tables."""
 
 from pathlib import Path
 
@@ -12,7 +12,7 @@ TABLE_SUFFIXES = (".csv", ".csv.gz", ".parquet")
 
 
 def is_table_file(path: Path) -> bool:
-    """Tell by its name whether a file is a table that can be read."""
+    """Return whether a file has the suffix of a supported table format."""
     return path.name.lower().endswith(TABLE_SUFFIXES)
 
 
@@ -21,7 +21,7 @@ def read_table_file(path: Path) -> RawTable:
 
     Raises:
         NotFound: There is no such file.
-        DataError: It is of another kind, empty, damaged, or no table.
+        DataError: It is of another kind, empty, damaged, or not a table.
     """
     if not path.exists():
         raise NotFound(f"{path}: no such file")

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""What a command says to the person at the terminal, and how it ends."""
+"""Terminal output of commands: messages, progress bar, errors and exit."""
 
 import os
 
-# One BLAS thread: decision 13. Two names, since builds differ; whoever sets them is obeyed. Before
-# NumPy is loaded, or in vain.
+# One BLAS thread: decision 13. Two names, since builds differ; values set by the user are kept.
+# This has an effect only before NumPy is loaded.
 for _name in ("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
     os.environ.setdefault(_name, "1")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""How a command ends: one line for a known error, a traceback for an unknown one."""
+"""Error handling of commands: one line for a known error, a traceback for an unknown one."""
 
 import os
 import sys
@@ -12,9 +12,9 @@ import typer
 def run(app: typer.Typer) -> None:
     """Run a Typer app; known errors become one line on stderr and exit code 1.
 
-    Known are the errors of the project, and what the file system says of a file.
+    Known errors are those of the project, and operating system errors that name a file.
     """
-    # ArviZ tells developers of its next version once a day; users can do nothing about it.
+    # ArviZ warns developers about its next version once a day; this does not concern users.
     warnings.filterwarnings("ignore", message=r"\s*ArviZ is undergoing", category=FutureWarning)
     _guard(lambda: app())
 
@@ -35,7 +35,7 @@ def _guard(command: Callable[[], object]) -> None:
 
 
 def _of_a_file(error: Exception) -> str | None:
-    """Say what the file system refuses to do with a file; None of an error of something else."""
+    """Return the message of an operating system error on a file; None for other errors."""
     if not isinstance(error, OSError) or error.filename is None:
         return None
     name = error.filename if isinstance(error.filename, int) else os.fsdecode(error.filename)
@@ -43,7 +43,7 @@ def _of_a_file(error: Exception) -> str | None:
 
 
 def _is_known(error: Exception) -> bool:
-    # The roots are looked up among what is loaded: importing them here would slow --help down.
+    # The root errors are looked up in loaded modules: importing them here would slow --help down.
     roots = [
         getattr(sys.modules.get(module), name, None)
         for module, name in (

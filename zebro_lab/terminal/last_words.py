@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Last words of a command, to a terminal or pipe that may be stopped, blocked or gone."""
+"""Print with a timeout, to a terminal or pipe that may be stopped, blocked or closed."""
 
 import os
 import sys
@@ -8,13 +8,19 @@ from collections.abc import Callable
 from typing import Final, NoReturn
 
 PATIENCE: Final = 1.0
-"""How long a terminal or pipe may take nothing before it is given up [s]."""
+"""Timeout for writing to a terminal or pipe [s]."""
 
 
 def say_in_time(text: str, *, err: bool = False) -> bool:
-    """Print text and a line end on stdout or stderr; tell whether it was taken in time.
+    """Print a line to stdout or stderr with a timeout.
 
-    Where it was not, a thread may still be writing: leave by `leave_at_once`.
+    Args:
+        text: Text to print, without the newline.
+        err: Whether to print to stderr.
+
+    Returns:
+        Whether the line was written within `PATIENCE`. If not, a thread may still be blocked in
+        the write: end the process with `leave_at_once`.
     """
 
     def write() -> None:
@@ -28,7 +34,7 @@ def say_in_time(text: str, *, err: bool = False) -> bool:
 
 
 def in_time(act: Callable[[], object]) -> bool:
-    """Do something to a terminal; tell whether it ended within `PATIENCE`, and succeeded."""
+    """Call a function in a thread; return whether it succeeded within the timeout `PATIENCE`."""
     done: list[bool] = []
 
     def run() -> None:
@@ -49,5 +55,5 @@ def in_time(act: Callable[[], object]) -> bool:
 
 
 def leave_at_once(code: int) -> NoReturn:
-    """End the process without flushing: the interpreter would wait for a blocked terminal."""
+    """Exit without flushing: at a normal exit the interpreter would wait for a blocked terminal."""
     os._exit(code)

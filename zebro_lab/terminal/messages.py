@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Write lines to the terminal; text of files in them can do nothing but be read."""
+"""Write lines to the terminal, with control characters escaped."""
 
 from typing import TYPE_CHECKING
 
@@ -12,17 +12,17 @@ if TYPE_CHECKING:
 
 
 def say(line: str, *, err: bool = False) -> None:
-    """Write one line; a newline inside it, and whatever else is no character, is spelled out.
+    """Write one line to the terminal; newlines and control characters in it are escaped.
 
     Args:
         line: The line.
-        err: Write to the standard error.
+        err: Whether to write to standard error.
     """
     typer.echo(shown(line), err=err)
 
 
 def plain(line: str) -> "Text":
-    """Return one line for a console of Rich, without markup, made harmless as by `say`."""
+    """Return one line for a Rich console, without markup and escaped as by `say`."""
     from rich.text import Text
 
     return Text(shown(line))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A progress bar with the time left on a terminal, silence in a pipe, and polite stopping."""
+"""Progress bar with the remaining time, and graceful stopping on Ctrl-C; silent in a pipe."""
 
 import signal
 from collections.abc import Iterator
@@ -12,7 +12,7 @@ from rich.progress import TimeRemainingColumn as TimeLeftColumn
 
 
 class ProgressBar:
-    """A watcher that draws on a terminal and notes Ctrl-C and SIGTERM as a wish to stop."""
+    """A watcher that draws a progress bar and turns SIGINT and SIGTERM into a stop request."""
 
     def __init__(self, progress: Progress) -> None:
         self._progress = progress
@@ -21,7 +21,12 @@ class ProgressBar:
         self._stop = False
 
     def step(self, what: str, fraction: float | None) -> None:
-        """Show what is going on, and how far it is (None: unknown)."""
+        """Update the progress bar.
+
+        Args:
+            what: Name of the task; a new name starts a new bar.
+            fraction: Share of the task that is done, 0 to 1 [-]; None when unknown.
+        """
         if what != self._what:
             if self._task is not None:
                 self._progress.update(self._task, total=1.0, completed=1.0)
@@ -31,11 +36,19 @@ class ProgressBar:
             self._progress.update(self._task, completed=fraction)
 
     def stop_requested(self) -> bool:
-        """Tell whether somebody asked to stop."""
+        """Return whether a stop signal was received."""
         return self._stop
 
     def request_stop(self, _signal: int, _frame: FrameType | None) -> None:
-        """Note the wish to stop; a second one is obeyed at once."""
+        """Handle a stop signal: set the stop flag; a second signal raises immediately.
+
+        Args:
+            _signal: Signal number; unused.
+            _frame: Interrupted stack frame; unused.
+
+        Raises:
+            KeyboardInterrupt: A stop was already requested.
+        """
         if self._stop:
             raise KeyboardInterrupt
         self._stop = True

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: MIT
-"""Judge predicted paths against tracked ones; the validation folder."""
+"""Compute errors of predicted paths against tracked ones; the validation folder."""

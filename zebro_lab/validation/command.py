@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""`zebro-lab validate`: how far predicted paths lie from tracked ones."""
+"""`zebro-lab validate`: errors of predicted paths against tracked ones."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -94,7 +94,13 @@ def validate(
 
 
 def print_validated(console: "Console", validated: "Validated", out: Path) -> None:
-    """Print every walk's table, the means over walks, and where all was written."""
+    """Print a table for each walk, the means over walks, and the output folder.
+
+    Args:
+        console: Console to print to.
+        validated: Results of the validation.
+        out: Folder that was written.
+    """
     from rich.text import Text
 
     if "sim:" in validated.source:
@@ -138,7 +144,7 @@ def _table(run: "JudgedRun") -> "Table":
 
 
 def _tilt(run: "JudgedRun") -> list[str]:
-    """Say how roll and pitch compare with the IMU's."""
+    """Format lines on the errors of roll and pitch against the IMU."""
     import numpy as np
 
     if run.tilt is None:
@@ -154,7 +160,7 @@ def _tilt(run: "JudgedRun") -> list[str]:
 
 
 def _verdict(run: "JudgedRun") -> list[str]:
-    """Say what the band is worth."""
+    """Format lines on coverage and consistency (NEES) of the band."""
     row = run.rows[0]
     if run.band is None:
         return []

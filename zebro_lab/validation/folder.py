@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The sole owner of the format of a validation folder."""
+"""Write a validation folder; only this module depends on its format."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -24,7 +24,7 @@ SCHEMA = 1
 METRICS, ERRORS = "metrics.csv", "errors.csv"
 VALIDATION = ResultKind("validation", "validate", (METRICS, ERRORS, "*.tum", "*.png"), SCHEMA)
 MEANS = ("ate_m", "ate_of_length", "ate_aligned_m", "yaw_rms_deg", "energy_m", "crps_yaw_deg")
-"""Metrics of which a mean over runs is told."""
+"""Metrics that are averaged over runs."""
 
 
 @dataclass(frozen=True)
@@ -105,7 +105,14 @@ def tilt_metrics(tilt: TiltJudged) -> dict[str, float]:
 
 
 def summarise_runs(runs: Sequence[JudgedRun], *, rng: np.random.Generator) -> list[Summary]:
-    """Average metrics over runs, with intervals from drawing whole runs again; none of one run."""
+    """Compute the mean of each metric over runs, with bootstrap intervals.
+
+    Whole runs are resampled. A metric with too few finite values gets no summary.
+
+    Args:
+        runs: Judged runs with the same models.
+        rng: Random number generator of the bootstrap.
+    """
     summaries = []
     for name in [row.name for row in runs[0].rows]:
         rows = [metrics(row) for run in runs for row in run.rows if row.name == name]
@@ -131,10 +138,10 @@ def write_validation(
     """Write the folder: metrics, errors pose by pose, TUM files for evo, pictures, manifest.
 
     Args:
-        out: Folder to make or to renew.
-        shown: What was judged.
+        out: Folder to create or replace.
+        shown: Judged walks with the content of their pictures.
         summary: Means over runs.
-        settings: What was asked, as JSON can hold it.
+        settings: Settings of the validation, JSON-serialisable.
         inputs: SHA-256 of each file that was read.
         source: Where prediction and track come from.
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A run's prediction judged against its track, with what a person is told of it."""
+"""Compute the errors of a run's prediction against its track."""
 
 from dataclasses import dataclass
 
@@ -18,8 +18,8 @@ class JudgedRun(Judgement):
 
     Attributes:
         name: Name of the walk.
-        notes: For a person, one line each.
-        tilt: Roll and pitch against the IMU's; None where the run has none.
+        notes: Notes, one line each.
+        tilt: Errors of roll and pitch against the IMU; None for a run without an IMU.
     """
 
     name: str
@@ -35,18 +35,18 @@ def judge_run(
     anchor: bool,
     rng: np.random.Generator,
 ) -> JudgedRun:
-    """Judge a prediction and the baselines against a track.
+    """Compute the errors of a prediction and its baselines against a track.
 
     Args:
         name: Name of the walk.
-        predicted: What was predicted.
-        track: What was tracked, by the prediction's clock.
-        anchor: Start every path from the first tracked pose, which is then not scored.
-        rng: Source of randomness.
+        predicted: The prediction with its baselines.
+        track: The track, in the prediction's time base.
+        anchor: Whether every path starts from the first tracked pose, which is then not scored.
+        rng: Random number generator.
 
     Raises:
-        DataError: Track and prediction share too little time.
-        SettingsError: Paths should start from a track without headings.
+        DataError: Track and prediction overlap too little in time.
+        SettingsError: Anchoring is requested with a track without headings.
     """
     inside = shared_time(track.poses, predicted.prediction.path, file=track.file)
     if inside.sum() - anchor < 2:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The pictures of a validation: errors, roll and pitch, and the photographs of the walk."""
+"""Pictures of a validation: errors, roll and pitch, and the photographs of the walk."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from zebro_lab.plots.photo_poses import Shot
 
 SHOTS = 4
-_CROP = 0.45  # side of what is shown around the robot [m]
+_CROP = 0.45  # side of the region shown around the robot [m]
 _CROP_SCALE = 900.0  # px/m
 _MARGIN = 0.3  # around the paths on the floor [m]
 _MOST_FLOOR_PIXELS = 1.5e6
@@ -27,12 +27,12 @@ _MOST_FLOOR_PIXELS = 1.5e6
 
 @dataclass(frozen=True)
 class ShownRun:
-    """A judged walk with all that its pictures show.
+    """A judged walk with the content of its pictures.
 
     Attributes:
-        run: The walk, judged.
-        prediction: What was predicted.
-        photos: The photographs of its track; None where there are none to show.
+        run: Errors of the walk.
+        prediction: The prediction.
+        photos: The photographs of its track; None if there are none to show.
         time_offset: Added to the track's times to bring them to the prediction's clock [s].
     """
 
@@ -43,15 +43,15 @@ class ShownRun:
 
 
 def draw_validation(folder: Path, shown: ShownRun, *, simulated: bool) -> tuple[str, ...]:
-    """Draw `RUN.png` and, of what there is, `RUN.imu.png`, `RUN.photos.png` and `RUN.floor.png`.
+    """Draw `RUN.png`, and `RUN.imu.png`, `RUN.photos.png` and `RUN.floor.png` if there are data.
 
     Args:
         folder: Folder to write into.
         shown: The walk.
-        simulated: Say so in the titles.
+        simulated: Whether to append "(simulated)" to the titles.
 
     Returns:
-        What could not be drawn and why, one line each.
+        Notes on pictures that could not be drawn, one line each.
     """
     from zebro_lab.plots import save
     from zebro_lab.plots.path_validation import path_validation
@@ -93,7 +93,7 @@ def _draw_photos(folder: Path, shown: ShownRun, photos: TrackedPhotos) -> None:
         shots, walk.robot, title=run.name, simulated_photos=photos.simulated
     )
     save(figure, folder / f"{run.name}.photos.png")
-    # The last photograph shows the floor under the path's beginning, where no robot stands now.
+    # In the last photograph the robot no longer hides the floor at the start of the path.
     _draw_floor(folder / f"{run.name}.floor.png", run, views[max(views)], photos.simulated)
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A track on the clock of a prediction: by an offset that is given, or found in the motion."""
+"""Shift a track to the clock of a prediction, by a given or an estimated clock offset."""
 
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -14,16 +14,16 @@ from model.slip.law import Array
 from zebro_lab.files.errors import DataError
 from zebro_lab.track.file import TrackFile
 
-_STEP = 0.05  # s either side, over which the path's speed is taken
+_STEP = 0.05  # s to either side, for the finite difference of the path's velocity
 
 
 @dataclass(frozen=True)
 class SharedClock:
-    """A track whose clock is a prediction's.
+    """A track in the time base of a prediction.
 
     Attributes:
-        track: The track, its covariance widened by what is not known of the clock.
-        offset: What was added to its times [s].
+        track: The track; its covariance includes the uncertainty of the clock offset.
+        offset: Offset that was added to its times [s].
     """
 
     track: TrackFile
@@ -31,25 +31,30 @@ class SharedClock:
 
 
 def given_clock(track: TrackFile, offset: float) -> SharedClock:
-    """Add a known offset to a track's times [s]."""
+    """Shift a track's times by a known clock offset.
+
+    Args:
+        track: Tracked poses.
+        offset: Offset that is added to the times [s].
+    """
     return SharedClock(_moved(track, offset), offset)
 
 
 def estimated_clock(
     track: TrackFile, path: Poses, *, otherwise: str = "Give --time-offset SECONDS"
 ) -> SharedClock:
-    r"""Find the offset of a track's clock in the motion, and say what it leaves open.
+    r"""Estimate the clock offset of a track from the motion, and add it with its uncertainty.
 
-    An error of the clock puts every pose ahead or behind by as much time, so the covariance grows
-    by :math:`\sigma_\tau^2 v v^T` with v the path's velocity.
+    A clock error shifts every pose along the path by the same time, so the covariance grows by
+    :math:`\sigma_\tau^2 v v^T` with v the path's velocity.
 
     Args:
         track: The track.
         path: The prediction.
-        otherwise: What a person may do where the motion does not tell.
+        otherwise: What to do if the offset is not determined; part of the error message.
 
     Raises:
-        DataError: The motion does not tell the offset.
+        DataError: The motion does not determine the offset.
     """
     try:
         found = estimate_offset(track.poses, path)
@@ -70,15 +75,15 @@ def estimated_clock(
 
 
 def shared_time(track: Poses, path: Poses, *, file: Path) -> NDArray[np.bool_]:
-    """Tell which tracked poses lie within the time of a path, shape (len(track),).
+    """Return whether each tracked pose lies within the time range of a path, shape (len(track),).
 
     Args:
         track: The track.
         path: The path.
-        file: The track's file, for the message.
+        file: The track's file, for the error message.
 
     Raises:
-        DataError: Fewer than two do.
+        DataError: Fewer than two poses do.
     """
     try:
         return overlap(track, path)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Predictions and tracks in, validation folder out."""
+"""Stage of `zebro-lab validate`: compare predictions with tracks, write the validation folder."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -33,14 +33,14 @@ TRACK = "track"
 
 @dataclass(frozen=True)
 class ValidateRequest:
-    """What is asked of a validation.
+    """Settings of a validation.
 
     Attributes:
         pairs: Prediction and track of each walk.
         out: Folder to write.
-        anchor: Start each path from the first tracked pose, which is then not scored.
-        time_offset: Added to the tracks' times; None to find it in the motion of each [s].
-        seed: Seed of everything random.
+        anchor: Whether each path starts from the first tracked pose, which is then not scored.
+        time_offset: Offset added to the tracks' times; None to estimate it for each track [s].
+        seed: Seed of all random numbers.
     """
 
     pairs: tuple[tuple[Path, Path], ...]
@@ -55,7 +55,7 @@ class Validated:
     """A finished validation.
 
     Attributes:
-        runs: Every walk, judged.
+        runs: Errors of each walk.
         summary: Means over walks; empty for one.
         source: Where predictions and tracks come from.
     """
@@ -80,11 +80,18 @@ def pairs_of_run(run: Path) -> tuple[Path, Path]:
 
 
 def validate(request: ValidateRequest, watcher: Watcher) -> Validated:
-    """Judge predictions against tracks and write the folder.
+    """Compute the errors of predicted paths against tracks and write the validation folder.
+
+    Args:
+        request: Pairs of prediction and track, settings, and the folder to write.
+        watcher: Receives progress.
+
+    Returns:
+        Results of each run, means over runs, and the source of the data.
 
     Raises:
-        ZebroLabError: A file is missing, or prediction and track share no time.
-        ModelError: A path cannot be judged.
+        ZebroLabError: A file is missing, or prediction and track do not overlap in time.
+        ModelError: The errors of a path cannot be computed.
     """
     if not request.pairs:
         raise SettingsError("missing: nothing to validate", key="--predicted, --track")
@@ -128,7 +135,7 @@ def validate(request: ValidateRequest, watcher: Watcher) -> Validated:
 
 
 def _content(pair: tuple[Path, Path]) -> tuple[str, ...]:
-    """Return what a walk is known by under another name: its predicted and its tracked path."""
+    """Return hashes of a walk's predicted and tracked path, by which copies are recognised."""
     return tuple(
         content_hash(file) if file.is_file() else str(file)
         for path, name in zip(pair, (PATH_CSV, TRACK_CSV), strict=True)
@@ -144,7 +151,7 @@ def _noted(shown: ShownRun, told: Sequence[str]) -> ShownRun:
 def _with_surroundings(
     judged: JudgedRun, prediction: PredictionFile, tracked: Path, offset: float
 ) -> tuple[ShownRun, tuple[Path, ...]]:
-    """Add what else a run knows: its IMU, and the photographs of its track; return files read."""
+    """Add errors against the run's IMU, and photographs of its track; also return files read."""
     notes, files, photos = list(judged.notes), (), None
     run = tracked.parent if tracked.name == TRACK else None
     measured = read_recorded_tilt(run) if run is not None and is_recorded(run) else None
@@ -165,7 +172,7 @@ def _with_surroundings(
 
 
 def _names(paths: Sequence[Path]) -> list[str]:
-    """Name walks by their folders, with a number where two share a name."""
+    """Name walks by their folders, numbered if several have the same name."""
     names = []
     for path in paths:
         place = path if path.is_dir() else path.with_suffix("")

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: MIT
-"""Walk a gait or measured leg angles by a model; the walk folder and its band."""
+"""Simulate a gait or predict a path from measured leg angles; the walk folder and its band."""

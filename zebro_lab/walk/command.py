@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""`zebro-lab walk`: where a gait leads."""
+"""`zebro-lab walk`: simulate a gait."""
 
 from enum import StrEnum
 from pathlib import Path

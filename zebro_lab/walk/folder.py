@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""The sole owner of the format of a walk folder: `path.csv` and `manifest.json`."""
+"""Read and write a walk folder: `path.csv` and `manifest.json`.
+
+Only this module depends on the format of these files.
+"""
 
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
@@ -33,23 +36,23 @@ DRAWS, BAND_CSV, BAND_PICTURE = "draws.npz", "band.csv", "band.png"
 BAND = (DRAWS, BAND_CSV, BAND_PICTURE)
 FILES = (PATH_CSV, *(f"{name}.png" for name in PICTURES), *ANIMATIONS, *BAND)
 WALKED = {kind: ResultKind(kind, kind, FILES, SCHEMA) for kind in KINDS}
-"""What `walk` and `predict` write; an earlier result of the same command is replaced."""
+"""Kinds of folders that `walk` and `predict` write."""
 
-_DIGITS = "%.10g"  # far below what any model means, far above what a float loses
+_DIGITS = "%.10g"  # far finer than any model's accuracy, far coarser than rounding errors of floats
 
 _BATCH = 10_000
-"""Rows that are spelled at once, in a third of pandas' time; each takes 2 kB as Python's floats."""
+"""Rows formatted at a time, each 2 kB as Python floats; this takes a third of pandas' time."""
 
 
 @dataclass(frozen=True)
 class _Block:
-    """Neighbouring columns that hold one attribute of a path.
+    """Consecutive CSV columns that hold one attribute of a path.
 
     Attributes:
         columns: Their names.
-        values: The attribute, one column each, shape (n, len(columns)).
-        may_be_empty: Cells may hold no number, where a model has none.
-        form: How a number is written.
+        values: Function that returns the attribute, shape (n, len(columns)).
+        may_be_empty: Whether cells may be empty, if the model does not compute the attribute.
+        form: Format of a number.
     """
 
     columns: tuple[str, ...]
@@ -80,7 +83,12 @@ COLUMNS = tuple(name for block in _BLOCKS for name in block.columns)
 
 
 def write_path(file: Path, path: WalkPath) -> None:
-    """Write a path as CSV in SI with the columns `COLUMNS`; what a model does not have is empty."""
+    """Write a path as CSV in SI with the columns `COLUMNS`.
+
+    Args:
+        file: File to write.
+        path: The path; quantities that its model does not compute become empty cells.
+    """
     values = np.column_stack([block.values(path) for block in _BLOCKS])
     line = ",".join(block.form for block in _BLOCKS for _ in block.columns) + "\n"
     with file.open("w", encoding="utf-8", newline="\n") as text:
@@ -100,20 +108,20 @@ def walk_folder(
     settings: Mapping[str, object],
     inputs: Mapping[str, str],
 ) -> Iterator[Path]:
-    """Write a walk folder so that it appears finished or not at all.
+    """Write a walk folder atomically.
 
-    The body adds pictures to the draft; the manifest, which lists them, comes last.
+    The body adds pictures to the draft; the manifest, which lists them, is written last.
 
     Args:
-        out: Folder to make or to renew.
-        path: The walked path.
+        out: Folder to create or replace.
+        path: The path.
         kind: One of `KINDS`.
-        source: "sim:" and the model that walked.
-        settings: What the walk was asked to be, as JSON can hold it.
+        source: "sim:" and the name of the model.
+        settings: Settings of the walk, JSON-serialisable.
         inputs: SHA-256 of each file that was read.
 
     Yields:
-        The draft, for pictures.
+        The draft folder, for pictures.
 
     Raises:
         AlreadyExists: `out` is a file, or the result of another command.
@@ -125,7 +133,7 @@ def walk_folder(
 
 
 def read_walk(path: Path) -> WalkPath:
-    """Read a path back.
+    """Read the path of a walk folder.
 
     Args:
         path: A walk folder, or its `path.csv`.
@@ -153,8 +161,8 @@ def read_walk_manifest(folder: Path) -> Mapping[str, Any]:
     """Read the manifest of a walk folder.
 
     Raises:
-        NotFound: There is none.
-        DataError: It is damaged, of a later schema, or that of another command.
+        NotFound: There is no manifest.
+        DataError: It is damaged, of a later schema, or of another command.
     """
     settle(folder)
     return read_folder_manifest(folder / MANIFEST, of="walk", kinds=KINDS, schema=SCHEMA)

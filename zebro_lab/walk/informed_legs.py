@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What walks said, for the walk at hand: the same robot's legs, or another's on the same floor."""
+"""Select what a posterior after walks says about the legs and the floor of a given walk."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -13,18 +13,18 @@ from zebro_lab.calibration.walks_folder import StoredWalks, describe_legs
 from zebro_lab.files.provenance import file_hash
 from zebro_lab.robot.robot_file import RobotFile
 
-_SEED = 1  # of another robot's legs, which are drawn from the prior
+_SEED = 1  # for another robot's legs, which are drawn from the prior
 
 
 @dataclass(frozen=True)
 class InformedLegs:
-    """What is believed of the legs and the floor of a walk.
+    """Posterior of legs and floor, as it applies to one walk.
 
     Attributes:
-        posterior: What walks said.
-        index: The walk's own index among them; None for a walk to come.
-        folder: Where it was read from.
-        notes: For a person, one line each.
+        posterior: Posterior after walks.
+        index: Index of this walk among the fitted walks; None for a new walk.
+        folder: Folder that it was read from.
+        notes: Notes, one line each.
     """
 
     posterior: WalkPosterior
@@ -34,15 +34,20 @@ class InformedLegs:
 
     @property
     def middle(self) -> LegState:
-        """The one likeliest state of the legs."""
+        """The most probable leg state."""
         return self.posterior.most_likely(walk=self.index)
 
     def draw(self, n: int, *, rng: np.random.Generator) -> LegState:
-        """Draw states of the legs."""
+        """Draw leg states from the posterior.
+
+        Args:
+            n: Number of draws.
+            rng: Random number generator.
+        """
         return self.posterior.draw(n, rng=rng, walk=self.index)
 
     def settings(self) -> dict[str, object]:
-        """Return what decided the numbers, as JSON can hold it."""
+        """Return the settings that affect the results, JSON-serialisable."""
         legs = self.middle
         return {
             "folder": str(self.folder),
@@ -65,13 +70,14 @@ def informed_legs(
     logs: Sequence[Path] = (),
     same_legs: bool | None = None,
 ) -> InformedLegs:
-    """Choose what of a posterior holds for a walk.
+    """Select the part of a posterior that applies to a walk.
 
     Args:
-        walks: The posterior after walks.
+        walks: The stored posterior after walks.
         described: The robot that walks.
-        logs: Files of its leg log.
-        same_legs: Whether the legs are those that were fitted; told by the description when None.
+        logs: Files of its leg log, by which a fitted walk is recognised.
+        same_legs: Whether the legs are those that were fitted; None to compare the robots'
+            descriptions.
     """
     same = walks.legs == describe_legs(described) if same_legs is None else same_legs
     names = ", ".join(walks.posterior.walks)

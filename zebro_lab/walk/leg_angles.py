@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""From a leg log to the angles that a model walks: counts are reconstructed, not taken as told."""
+"""Leg angles of a log as model input: quantised encoder counts are reconstructed."""
 
 import numpy as np
 
@@ -11,14 +11,14 @@ from zebro_lab.robot.leg_log import LegLog
 def angles_from(
     log: LegLog, start: float
 ) -> tuple[SampledReference | QuantisedLog, tuple[str, ...]]:
-    """Return the angles from time zero on, to be reconstructed where an encoder counted them.
+    """Return leg angles from time zero on, with their resolution if they are encoder counts.
 
     Args:
         log: The leg log.
-        start: Its time that becomes zero [s].
+        start: Time of the log that becomes zero [s].
 
     Returns:
-        The angles, and what to tell a person of them.
+        The angles, and notes, one line each.
     """
     t, theta = log.reference.t - start, log.reference.theta
     step = find_step(theta)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Options that `walk` and `predict` have in common."""
+"""Command-line options that `walk` and `predict` share."""
 
 from enum import StrEnum
 from pathlib import Path
@@ -18,7 +18,7 @@ class Model(StrEnum):
 
 
 class Toe(StrEnum):
-    """What a leg on its toe, which no rig has measured, holds."""
+    """Traction laws of a leg on its toe, which no rig has measured."""
 
     SATURATED = "saturated"
     PEAK = "peak"
@@ -83,10 +83,14 @@ Animate = Annotated[bool, typer.Option("--animate", help="Film the robot: mp4, o
 
 
 def require_slip(model: Model, slip: str | None) -> None:
-    """Refuse a command line without `--slip` where the model slips.
+    """Check that `--slip` is given if the model needs it.
+
+    Args:
+        model: Chosen model.
+        slip: Value of `--slip`; None if it was not given.
 
     Raises:
-        BadParameter: It has none.
+        BadParameter: The model has slipping legs and `--slip` is missing.
     """
     if slip is None and model in (Model.DYNAMICS, Model.THESIS):
         raise typer.BadParameter(

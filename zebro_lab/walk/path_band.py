@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The band of a predicted path: its draws, quantiles and picture, and the files they go to."""
+"""The band of a predicted path: compute draws, write and read draws, quantiles and picture."""
 
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
@@ -32,21 +32,21 @@ from zebro_lab.walk.informed_legs import InformedLegs
 
 SAMPLING = 0.1  # s between the poses kept of each draw
 ASSUMED_OFFSET_DEG = 0.3  # of legs whose zero was set by hand
-_TOLD = 50  # times the bar moves
+_TOLD = 50  # progress reports
 
 
 @dataclass(frozen=True)
 class BandRequest:
-    """What is asked of a band.
+    """Settings of a band.
 
     Attributes:
         draws: Number of paths.
-        seed: Seed of everything random.
-        offset_sd_deg: Standard deviation of each leg's unknown offset; None for that of a count,
-            or for legs that are not counted `ASSUMED_OFFSET_DEG` [deg].
+        seed: Seed of all random numbers.
+        offset_sd_deg: Standard deviation of each leg's unknown offset; None for that of
+            quantisation, or `ASSUMED_OFFSET_DEG` if angles are not encoder counts [deg].
         start_sd: Standard deviation of the start pose: x, y [m] and yaw [deg].
-        spread: What the walking model itself gets wrong.
-        threads: Draws walked at once.
+        spread: Error of the walking model itself.
+        threads: Number of draws computed in parallel.
     """
 
     draws: int
@@ -57,14 +57,14 @@ class BandRequest:
     threads: int = 2
 
     def __post_init__(self) -> None:
-        """Refuse a band of nothing."""
+        """Check the number of draws and the standard deviations."""
         if self.draws < 2:
             raise SettingsError(f"{self.draws} draws make no band; ask for 200", key="--draws")
         if any(sd < 0 for sd in (*self.start_sd, self.offset_sd_deg or 0.0)):
             raise SettingsError("a standard deviation is negative", key="--start-sd")
 
     def settings(self) -> dict[str, object]:
-        """Return what was asked, as JSON can hold it."""
+        """Return the settings, JSON-serialisable."""
         return asdict(self)
 
 
@@ -79,20 +79,20 @@ def predict_band(
     informed: InformedLegs | None = None,
     watcher: Watcher,
 ) -> Poses:
-    """Walk an ensemble from time zero on, started at the origin.
+    """Compute draws of a path from time zero on, started at the origin.
 
     Args:
-        request: What is asked.
+        request: Settings of the band.
         robot: The robot.
         legs: Its leg angles.
-        slip: How its legs slip.
-        duration: Time walked [s].
+        slip: Slip law of the legs.
+        duration: Duration of the walk [s].
         toe: Traction of a leg on its toe.
-        informed: What walks said of legs and floor.
-        watcher: Who follows.
+        informed: Posterior of legs and floor; None without fitted walks.
+        watcher: Receives progress.
 
     Raises:
-        SettingsError: Offsets are asked for that walks have told.
+        SettingsError: A standard deviation of offsets is given although `informed` has them.
     """
     rng = np.random.default_rng(request.seed)
     state = _leg_state(request, legs, informed, rng)
@@ -135,7 +135,15 @@ def _leg_state(
 
 
 def offset_sd_deg(request: BandRequest, legs: LegReference | QuantisedLog) -> float:
-    """Return the standard deviation of leg offsets: as asked, or half a count either way [deg]."""
+    """Return the standard deviation of leg offsets [deg].
+
+    It is the requested value, else that of quantisation, step / sqrt(12), for a log in counts, else
+    `ASSUMED_OFFSET_DEG`.
+
+    Args:
+        request: Request with the standard deviation, if any.
+        legs: Leg angles.
+    """
     if request.offset_sd_deg is not None:
         return request.offset_sd_deg
     if isinstance(legs, QuantisedLog):
@@ -148,8 +156,8 @@ def write_band(folder: Path, paths: Poses, *, title: str) -> None:
 
     Args:
         folder: Folder to write into.
-        paths: The paths, in the time of the walk folder.
-        title: What was predicted.
+        paths: The paths, in the time base of the walk folder.
+        title: Title of the picture.
     """
     import pandas as pd
 
@@ -172,7 +180,7 @@ def read_draws(folder: Path) -> Poses:
     """Read the draws of a walk folder.
 
     Raises:
-        NotFound: It has none.
+        NotFound: The folder has no draws.
         DataError: They are damaged.
     """
     file = folder / DRAWS

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The pictures of a walk folder."""
+"""Pictures and animation of a walk folder."""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -19,14 +19,14 @@ def draw_walk(
 ) -> None:
     """Draw path, motion, orientation, slip ratios, forces and contacts of a walk.
 
-    What each leg did is drawn for the last two cycles, where a walk has settled.
+    Slip, forces and contacts are drawn for the last two cycles, when the walk is steady.
 
     Args:
         folder: Folder to write the PNG files into.
         path: The walk.
         robot: The robot.
-        title: What walked by which model; every title begins with the picture's own name.
-        period: Time of a cycle; None where it is not known [s].
+        title: Gait and model; every title begins with the picture's own name.
+        period: Duration of a gait cycle; None if unknown [s].
     """
     from zebro_lab.plots import save, walk_legs, walk_path  # matplotlib takes most of a second
 
@@ -59,14 +59,30 @@ def animate_walk(
     title: str,
     progress: Callable[[float], None] = lambda _: None,
 ) -> Path:
-    """Draw the walking robot as a film; see `zebro_lab.plots.animation.animate`."""
+    """Write an animation of the walking robot, as `zebro_lab.plots.animation.animate` does.
+
+    Args:
+        folder: Folder to write to.
+        path: The walk.
+        robot: The robot.
+        title: Title of the animation.
+        progress: Called with the fraction of frames drawn, 0 to 1 [-].
+
+    Returns:
+        The file written.
+    """
     from zebro_lab.plots.animation import animate
 
     return animate(path, robot, folder, title=title, simulated=True, progress=progress)
 
 
 def last_cycles(path: WalkPath, period: float | None) -> WalkPath:
-    """Return the last two cycles of a walk, or its last 4 s where no cycle is known."""
+    """Return the last two cycles of a walk, or its last 4 s if the period is unknown.
+
+    Args:
+        path: The walk.
+        period: Duration of a gait cycle [s]; None if unknown.
+    """
     shown = _SHOWN_TIME if period is None else _SHOWN_CYCLES * period
     first = int(np.searchsorted(path.t, path.t[-1] - shown - 1e-9))
     return path.part(slice(min(first, max(len(path.t) - 2, 0)), None))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""`zebro-lab predict LEGLOG`: where measured leg angles lead."""
+"""`zebro-lab predict LEGLOG`: predict the path from measured leg angles."""
 
 from pathlib import Path
 from typing import Annotated

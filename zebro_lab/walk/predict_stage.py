@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Measured leg angles in, walk folder out."""
+"""Stage of `zebro-lab predict`: read leg angles, compute the path, write the walk folder."""
 
 from dataclasses import dataclass, replace
 from functools import partial
@@ -27,14 +27,14 @@ from zebro_lab.walk.walking import ModelRequest, Walked, robot_of, walk_with, wr
 
 @dataclass(frozen=True)
 class PredictRequest:
-    """What is asked of a prediction.
+    """Settings of a prediction.
 
     Attributes:
-        log: Leg angles: CSV, Parquet, or a walk folder.
-        model: Which model, on what, and what to write.
+        log: Leg angles: CSV, Parquet, a recorded run or a walk folder.
+        model: Model, slip law, robot, and what to write.
         columns: A `columns.toml` in place of the one beside the log.
-        direction: Side the gait turns to; only the thesis's model asks.
-        band: What band to predict; None for the path alone.
+        direction: Side the gait turns to; only the thesis's model uses it.
+        band: Settings of the band; None for the path alone.
     """
 
     log: Path
@@ -45,19 +45,26 @@ class PredictRequest:
 
     @property
     def inputs(self) -> tuple[Path, ...]:
-        """What is read, as it was named."""
+        """Files and folders that are read, as named."""
         columns = () if self.columns is None else (self.columns,)
         return (self.log, *columns, *self.model.inputs)
 
 
 def predict(request: PredictRequest, watcher: Watcher) -> Walked:
-    """Predict where measured leg angles lead and write the walk folder.
+    """Predict the path from measured leg angles and write the walk folder.
 
-    The path keeps the log's own time. A run that keeps a robot.toml is walked by that robot, unless
-    another is asked for.
+    The path has the log's time base. The robot is that of the request, else the `robot.toml` of the
+    run, else the thesis's robot.
+
+    Args:
+        request: Leg log, model, band and output folder.
+        watcher: Receives progress.
+
+    Returns:
+        The predicted walk with its notes.
 
     Raises:
-        ZebroLabError: A file is missing or holds what cannot be followed.
+        ZebroLabError: A file is missing or has invalid content.
         ModelError: The walk cannot be computed.
     """
     settle(request.log)
@@ -108,7 +115,7 @@ def _with_own_robot(request: PredictRequest) -> PredictRequest:
 
 
 def _as_walked(described: RobotFile) -> RobotFile:
-    """Return the robot without signs and offsets: the angles of a walked path are true ones."""
+    """Return the robot without leg signs and offsets: angles of a walked path are exact."""
     robot = replace(described.robot, leg_offset=np.zeros(N_LEGS))
     return replace(described, robot=robot, leg_sign=(1,) * N_LEGS)
 

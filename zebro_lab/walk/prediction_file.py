@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A predicted path read back: a walk folder with its draws, or any table of poses."""
+"""Read a predicted path from a walk folder with its draws, or from a table of poses."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -23,7 +23,7 @@ from zebro_lab.walk.path_band import read_draws
 
 @dataclass(frozen=True)
 class WalkedPath:
-    """The single path of a walk folder with all that the model says of it, and its robot."""
+    """The single path of a walk folder with all its columns, and its robot."""
 
     path: WalkPath
     robot: Robot
@@ -31,14 +31,14 @@ class WalkedPath:
 
 @dataclass(frozen=True)
 class PredictionFile:
-    """A prediction as it was read.
+    """A prediction as read from files.
 
     Attributes:
         prediction: The predicted path with its draws and baselines.
         source: Where it comes from.
         files: Files that were read.
-        notes: For a person, one line each.
-        walk: The single path with roll, pitch, legs and robot; None where it is a bare table.
+        notes: Notes, one line each.
+        walk: The single path with roll, pitch, legs and robot; None for a table of poses.
     """
 
     prediction: Prediction
@@ -49,10 +49,10 @@ class PredictionFile:
 
 
 def read_prediction(path: Path) -> PredictionFile:
-    """Read a walk folder with its draws, or any table of poses; walk its baselines.
+    """Read a walk folder with its draws, or a table of poses, and compute the baselines.
 
     Raises:
-        ZebroLabError: It is missing, or no path.
+        ZebroLabError: The file is missing, or is not a path.
     """
     settle(path)
     file = path / PATH_CSV if path.is_dir() else path
@@ -76,7 +76,7 @@ def read_prediction(path: Path) -> PredictionFile:
 
 
 def robot_of_walk(manifest: Mapping[str, Any]) -> Robot:
-    """Read the robot without leg offsets: the angles of a walked path are true ones already."""
+    """Read the robot of a walk, without leg offsets: angles of a walked path are exact."""
     described = manifest["settings"]["robot"]
     return Robot(
         hips=np.array(described["hips"]),
@@ -91,7 +91,7 @@ def robot_of_walk(manifest: Mapping[str, Any]) -> Robot:
 def _baselines(
     walked: WalkedPath, manifest: Mapping[str, Any]
 ) -> tuple[dict[str, Poses], tuple[str, ...]]:
-    """Walk the leg angles of a walk folder by every simpler model: as described, not as fitted."""
+    """Compute the baselines for a walk's leg angles, with the described, not the fitted, legs."""
     walk = walked.path
     found = (manifest["settings"].get("walks") or {}).get("leg_offset", 0.0)
     reference = SampledReference(walk.t - walk.t[0], walk.theta - np.asarray(found))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What `walk` and `predict` print: where the robot went, and how."""
+"""Terminal output of `walk` and `predict`: summary of the path, slip and gait."""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -21,15 +21,15 @@ from zebro_lab.walk.summary import WalkSummary, summarise
 from zebro_lab.walk.walking import ModelRequest, Walked, WalkStopped
 
 INTERRUPTED = 130
-_MANY_UNTESTED = 0.01  # of the contacts: a few at touchdown do not matter
+_MANY_UNTESTED = 0.01  # share of the contacts; a few at touchdown do not matter
 
 
 def run_and_report(run: Callable[[Watcher], Walked], request: ModelRequest) -> None:
-    """Run a stage under a progress bar and print what came out.
+    """Run a stage with a progress bar and print the results.
 
     Args:
         run: The stage.
-        request: What it was asked.
+        request: Its settings.
 
     Raises:
         Exit: The walk was stopped.
@@ -50,7 +50,7 @@ def print_walk(console: Console, walked: Walked, out: Path) -> None:
     """Print a finished walk.
 
     Args:
-        console: Where to print.
+        console: Console to print to.
         walked: The finished walk.
         out: The walk folder.
     """
@@ -67,7 +67,7 @@ def print_walk(console: Console, walked: Walked, out: Path) -> None:
 
 
 def summary_lines(summary: WalkSummary) -> list[str]:
-    """Say where a walk went and how."""
+    """Format lines on end pose, speed, curvature, roll and pitch of a walk."""
     x, y, yaw = summary.end
     over = f"over {summary.strides} strides" if summary.strides else "over the whole walk"
     rate = f"yaw rate {np.degrees(summary.yaw_rate):.3f} deg/s"
@@ -85,7 +85,12 @@ def summary_lines(summary: WalkSummary) -> list[str]:
 
 
 def slip_lines(walked: Walked, summary: WalkSummary) -> list[str]:
-    """Say how much legs slipped, and whether at loads that were tested."""
+    """Format lines on the mean slip of the legs, and on contacts outside the tested loads.
+
+    Args:
+        walked: The walk with its slip law.
+        summary: Summary of the walk.
+    """
     lines = []
     if np.isfinite(summary.mean_slip):
         lines.append(f"legs in contact slip at {1000 * summary.mean_slip:.2f} mm/s on average")
@@ -103,7 +108,7 @@ def slip_lines(walked: Walked, summary: WalkSummary) -> list[str]:
 
 
 def gait_table(reference: CyclicReference) -> Table:
-    """Make the table of what a gait is, a row for each leg."""
+    """Return a table of a gait's parameters, one row per leg."""
     title = f"the gait, with a cycle of {reference.period:.4g} s"
     table = Table(title=title, box=box.SIMPLE, title_justify="left")
     table.add_column("leg")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A gait in, walk folder out."""
+"""Stage of `zebro-lab walk`: construct a gait, compute the path, write the walk folder."""
 
 from dataclasses import dataclass
 from functools import partial
@@ -19,13 +19,13 @@ from zebro_lab.walk.walking import ModelRequest, Walked, robot_of, walk_with, wr
 
 @dataclass(frozen=True)
 class WalkRequest:
-    """What is asked of a walk.
+    """Settings of a walk.
 
     Attributes:
         gait: The gait.
-        model: Which model, on what, and what to write.
-        duration: Time to walk [s].
-        band: What band to predict; None for the path alone.
+        model: Model, slip law, robot, and what to write.
+        duration: Duration of the walk [s].
+        band: Settings of the band; None for the path alone.
     """
 
     gait: GaitRequest
@@ -35,11 +35,18 @@ class WalkRequest:
 
 
 def walk(request: WalkRequest, watcher: Watcher) -> Walked:
-    """Walk a gait and write the walk folder.
+    """Simulate a gait and write the walk folder.
+
+    Args:
+        request: Gait, model, duration, band and output folder.
+        watcher: Receives progress.
+
+    Returns:
+        The walk with its notes.
 
     Raises:
-        ZebroLabError: A file or an option says what cannot be followed.
-        ModelError: No legs can walk so, or the walk cannot be computed.
+        ZebroLabError: A file or an option has an invalid value.
+        ModelError: The gait is impossible, or the walk cannot be computed.
     """
     require_replaceable(request.model.out, WALKED["walk"], inputs=request.model.inputs)
     described = robot_of(request.model)
@@ -71,11 +78,18 @@ def walk(request: WalkRequest, watcher: Watcher) -> Walked:
 
 
 def write_robot(file: Path, request: ModelRequest) -> Path:
-    """Write the robot asked for as a commented robot.toml to start from.
+    """Write the robot of a request as a commented `robot.toml`, as a template for editing.
+
+    Args:
+        file: File to write.
+        request: Request that names the robot.
+
+    Returns:
+        The file written.
 
     Raises:
         AlreadyExists: The file exists.
-        SettingsError: The robot asked for is none.
+        SettingsError: The robot is described with invalid values.
     """
     if file.exists():
         raise AlreadyExists(f"{file} exists already; edit it, or name another")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A walk in a few numbers."""
+"""Summary statistics of a walk: speed, yaw rate, radius, roll and pitch, mean slip."""
 
 from dataclasses import dataclass
 
@@ -8,25 +8,25 @@ import numpy as np
 from model.slip.law import Array
 from model.walk.path import WalkPath
 
-_STRAIGHT = 0.05  # rad/m: beyond a radius of 20 m nobody sees a curve on a lab floor
+_STRAIGHT = 0.05  # rad/m: a radius above 20 m is not visible as a curve on a lab floor
 
 
 @dataclass(frozen=True)
 class WalkSummary:
-    """What a person asks of a walk first.
+    """Summary statistics of a walk.
 
     Attributes:
-        duration: Time walked [s].
+        duration: Duration of the walk [s].
         end: x, y and yaw at the end [m, m, rad].
-        length: Length of the line over the ground [m].
-        strides: Whole strides the numbers below are means over; 0 where there is none, and they
-            are of the whole walk.
+        length: Length of the path over the ground [m].
+        strides: Number of whole strides that speed, yaw rate and radius are means over; 0 if there
+            is none, and they are means over the whole walk.
         speed: Speed along the curve [m/s].
         yaw_rate: Mean yaw rate, positive to the left [rad/s].
         radius: Radius of the curve, positive to the left; infinite for a straight walk [m].
         largest_roll: Largest roll to either side [rad].
         largest_pitch: Largest pitch to either side [rad].
-        mean_slip: Mean slip speed of legs in contact; NaN where the model has none [m/s].
+        mean_slip: Mean slip speed of legs in contact; NaN if the model has no slip [m/s].
     """
 
     duration: float
@@ -42,15 +42,15 @@ class WalkSummary:
 
     @property
     def straight(self) -> bool:
-        """Tell whether the curve is too wide to be seen."""
+        """Whether the curvature is below `_STRAIGHT`."""
         return not abs(self.radius) < 1 / _STRAIGHT
 
 
 def summarise(path: WalkPath) -> WalkSummary:
     r"""Compute the summary of a walk.
 
-    Speed and radius are those of strides, not of the wiggling line between: a stride's poses lie
-    on a circle when the gait is constant,
+    Speed and radius are computed from the poses between strides, not from the oscillating path
+    within them. For a constant gait these poses lie on a circle,
 
     .. math::
         R = \frac{|\Delta p|}{2 \sin(\Delta\psi / 2)}, \qquad v = R\, \Delta\psi / T .
@@ -81,16 +81,16 @@ def summarise(path: WalkPath) -> WalkSummary:
 
 
 def stride_poses(path: WalkPath) -> tuple[Array, int]:
-    """Find the poses between strides: where the legs have, on average, turned once more.
+    """Find the poses between strides, at which the legs have completed a turn on average.
 
-    The first stride starts the robot and is left out where there are others.
+    The first stride is the transient from standstill and is left out if there are others.
 
     Args:
         path: The walk.
 
     Returns:
         Times and poses t, x, y, yaw, shape (m, 4), m >= 2, and the number of strides between
-        them; the first and last sample and 0 where the legs do not turn as often.
+        them; the first and last sample and 0 if the legs complete too few turns.
     """
     turned = path.theta.mean(axis=1)
     turns = (np.maximum.accumulate(turned) - turned[0]) / (2 * np.pi)
@@ -100,6 +100,6 @@ def stride_poses(path: WalkPath) -> tuple[Array, int]:
     if whole < 1:
         return columns[[0, -1]], 0
     wanted = np.arange(1 if whole > 1 else 0, whole + 1)
-    rising = np.concatenate([[True], np.diff(turns) > 0])  # interpolation needs no plateaus
+    rising = np.concatenate([[True], np.diff(turns) > 0])  # np.interp needs increasing values
     poses = [np.interp(wanted, turns[rising], column[rising]) for column in columns.T]
     return np.column_stack(poses), len(wanted) - 1

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The band of a finished walk, whether a log's or a gait's legs made it."""
+"""Compute the band of a finished walk, from a leg log or a gait."""
 
 from model.gait.quantised import QuantisedLog
 from model.gait.reference import LegReference
@@ -20,15 +20,15 @@ def band_of(
     toe: ToeLaw,
     watcher: Watcher,
 ) -> Poses:
-    """Walk an ensemble of what is not known about a walk, from time zero on.
+    """Compute paths of a walk with its unknown parameters drawn, from time zero on.
 
     Args:
-        request: What is asked of the band.
+        request: Settings of the band.
         walked: The finished single walk.
         legs: Its leg angles.
-        duration: Time walked [s].
+        duration: Duration of the walk [s].
         toe: Traction of a leg on its toe.
-        watcher: Who follows.
+        watcher: Receives progress.
 
     Raises:
         SettingsError: The model has no band.

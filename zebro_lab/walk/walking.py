@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What `walk` and `predict` have in common: a model walks leg angles, and a folder is written."""
+"""Shared by `walk` and `predict`: compute a path from leg angles, and write the walk folder."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
@@ -25,10 +25,10 @@ from zebro_lab.walk.folder import walk_folder
 from zebro_lab.walk.informed_legs import InformedLegs, informed_legs
 from zebro_lab.walk.pictures import animate_walk, draw_walk
 
-INFORMED_MODEL = "dynamics"  # the one whose legs and floor walks were fitted with
+INFORMED_MODEL = "dynamics"  # the model with which legs and floor were fitted to walks
 
 MOST_STEPS: Final = 500_000
-"""Steps of a walk; each takes about 1.1 kB while the path is computed and written."""
+"""Largest number of time steps; each takes about 1.1 kB while a path is computed and written."""
 
 
 class WalkStopped(ZebroLabError):
@@ -37,18 +37,18 @@ class WalkStopped(ZebroLabError):
 
 @dataclass(frozen=True)
 class ModelRequest:
-    """Which model is to walk, on what, and what is to be written.
+    """Model, slip law and robot of a walk, and what is to be written.
 
     Attributes:
         out: Walk folder to write.
-        slip: What `--slip` names; None for a model without slip.
+        slip: Value of `--slip`; None for a model without slip.
         model: Name of the model.
         toe: Traction of a leg on its toe.
         robot: A `robot.toml`; the thesis's robot when None.
         arc_deg: Angle of the legs' arc in place of the robot's [deg].
-        dt: Length of a step; the model's own when None [s].
-        figures: Draw the pictures.
-        animate: Draw the film.
+        dt: Time step; the model's default when None [s].
+        figures: Whether to draw the pictures.
+        animate: Whether to write the animation.
     """
 
     out: Path
@@ -63,7 +63,7 @@ class ModelRequest:
 
     @property
     def inputs(self) -> tuple[Path, ...]:
-        """Files and folders that are read, as they were named."""
+        """Files and folders that are read, as named."""
         slip = () if self.slip in (None, THESIS) else (Path(str(self.slip)),)
         return (*slip, *((self.robot,) if self.robot is not None else ()))
 
@@ -74,14 +74,14 @@ class Walked:
 
     Attributes:
         path: The path.
-        reference: The leg angles it was walked with.
-        described: The robot, as asked for.
-        slip: How its legs slipped; None for a model without slip.
+        reference: Leg angles that it was computed from.
+        described: The robot, as requested.
+        slip: Slip law of its legs; None for a model without slip.
         model: Name of the model.
-        dt: Length of its step [s].
-        title: What walked by which model.
-        notes: For a person, one line each.
-        informed: What walks said of its legs and floor; None without walks.
+        dt: Time step [s].
+        title: Gait and model.
+        notes: Notes, one line each.
+        informed: Posterior of its legs and floor; None without fitted walks.
     """
 
     path: WalkPath
@@ -96,11 +96,11 @@ class Walked:
 
 
 def robot_of(request: ModelRequest) -> RobotFile:
-    """Return the robot asked for: from its file or the thesis's, with the arc asked for.
+    """Return the robot of a request: from its file or the thesis's, with the requested arc.
 
     Raises:
         NotFound: There is no such file.
-        SettingsError: The file or the arc describes no robot.
+        SettingsError: The file or the arc has an invalid value.
     """
     described = RobotFile() if request.robot is None else read_robot_file(request.robot)
     if request.arc_deg is None:
@@ -124,21 +124,21 @@ def walk_with(
     angles_are_true: bool = False,
     notes: tuple[str, ...] = (),
 ) -> Walked:
-    """Let the model asked for walk leg angles from time zero on.
+    """Compute the path of a robot from its leg angles, from time zero on.
 
     Args:
-        request: Which model, and on what.
+        request: Model, slip law and options.
         described: The robot.
         reference: Leg angles over time.
-        duration: Time to walk [s].
-        what: What walks, for titles.
+        duration: Duration of the walk [s].
+        what: Name of the gait or log, for titles.
         direction: Side the gait turns to.
-        logs: Files of the leg log; a walk that informed the calibration is known by them.
-        angles_are_true: The angles are those of a walked path: no offset is left to be found.
-        notes: What is known already, for a person.
+        logs: Files of the leg log, by which a walk that was fitted is recognised.
+        angles_are_true: Whether the angles are exact, as those of a walked path, without offsets.
+        notes: Notes to add to, one line each.
 
     Raises:
-        SettingsError: The model needs a slip law and has none, or an option makes no sense.
+        SettingsError: The model needs a slip law and has none, or an option has an invalid value.
         ModelError: The walk cannot be computed.
     """
     model = MODELS[request.model]
@@ -157,7 +157,7 @@ def walk_with(
         )
         notes = (*notes, *informed.notes)
         if request.dt is None:
-            dt = min(dt, FINE.dt)  # the step that its legs were found by
+            dt = min(dt, FINE.dt)  # the time step with which its legs were fitted
             _require_steps(duration, dt)
     run = ModelRun(
         described.robot, reference, slip, duration, dt, request.toe, direction,
@@ -191,7 +191,7 @@ def _run(run: ModelRun, model: WalkModel, slip: NamedSlip | None) -> WalkPath:
 
 
 def _require_steps(duration: float, dt: float) -> None:
-    """Refuse what is no walk, and one that memory does not hold."""
+    """Check that the duration is positive and the number of steps fits into memory."""
     if not (dt > 0 and duration > dt and np.isfinite(duration)):
         raise SettingsError(
             f"{duration:g} s in steps of {dt:g} s is no walk; expected more than a step",
@@ -216,16 +216,16 @@ def write_walk(
     files: tuple[Path, ...] = (),
     extra: Callable[[Path], None] | None = None,
 ) -> None:
-    """Write the walk folder with the pictures asked for.
+    """Write the walk folder with the requested pictures.
 
     Args:
-        request: What is to be written, and where.
+        request: Output folder, and which pictures to draw.
         walked: The finished walk.
-        watcher: Who follows.
+        watcher: Receives progress.
         kind: "walk" or "predict".
-        settings: What decided the numbers beyond model, robot and slip, as JSON can hold it.
-        files: Files read beyond those of robot and slip.
-        extra: Writes what else belongs into the folder.
+        settings: Settings other than model, robot and slip, JSON-serialisable.
+        files: Files read other than those of robot and slip.
+        extra: Function that writes additional files into the folder.
 
     Raises:
         AlreadyExists: The folder is a file, or holds the result of another command.

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: MIT
-"""Fit legs and floor to tracked walks; predict each walk from the others."""
+"""Fit leg offsets and floor parameters to tracked walks; predict each walk from the others."""

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Whether a walk's track keeps the clock of its leg log, by the motion that the legs make."""
+"""Clock offset between a track and its leg log, estimated from the motion."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -18,18 +18,20 @@ from zebro_lab.files.errors import DataError
 from zebro_lab.track.file import TrackFile
 from zebro_lab.validation.shared_clock import estimated_clock
 
-OFF = 0.5  # s, and three standard deviations; legs that are off look like a few tenths
+OFF = 0.5  # s, and three standard deviations; wrong leg offsets look like a few tenths of a second
 
 Legs: TypeAlias = SampledReference | QuantisedLog
 Clock: TypeAlias = Callable[[TrackFile, Legs, Robot], TrackFile]
-"""Brings a track to the clock of leg angles that start at zero, or refuses it."""
+"""Function that shifts a track to the clock of leg angles that start at zero, or raises."""
 
 
 def checked_clock(slip: Slip) -> Clock:
-    """Refuse a track whose clock the motion says is another; an even walk says nothing.
+    """Return a clock function that raises if the motion shows that the clocks differ.
+
+    A walk of constant speed does not determine the offset and is accepted.
 
     Args:
-        slip: The rig's calibration, by which the legs are walked.
+        slip: The rig's calibration, with which the walk is predicted.
     """
 
     def check(track: TrackFile, legs: Legs, robot: Robot) -> TrackFile:
@@ -50,10 +52,10 @@ def checked_clock(slip: Slip) -> Clock:
 
 
 def estimated_clock_of(slip: Slip) -> Clock:
-    """Find in the motion what has to be added to a track's times, and add it.
+    """Return a clock function that estimates a track's clock offset from the motion and adds it.
 
     Args:
-        slip: The rig's calibration, by which the legs are walked.
+        slip: The rig's calibration, with which the walk is predicted.
     """
 
     def estimate(track: TrackFile, legs: Legs, robot: Robot) -> TrackFile:
@@ -64,7 +66,12 @@ def estimated_clock_of(slip: Slip) -> Clock:
 
 
 def since(track: TrackFile, start: float) -> TrackFile:
-    """Count a track's times from another zero [s]."""
+    """Shift a track's times so that they count from `start`.
+
+    Args:
+        track: Tracked poses.
+        start: Time of the new origin, in the track's present time base [s].
+    """
     return replace(track, poses=track.poses.delayed(-start))
 
 

@@ -13,7 +13,16 @@ def fit_walks(
     threads: int,
     estimate_offset: bool,
 ) -> None:
-    """Fit walks beside a finished calibration and print what they said."""
+    """Fit leg offsets and floor parameters to tracked walks, and print the results.
+
+    Args:
+        walks: Run folders with leg logs and tracks.
+        out: Folder of the finished calibration; the fit is written into it.
+        robot: A `robot.toml` in place of those in the run folders; None to use those.
+        seed: Seed of all random numbers.
+        threads: Number of threads.
+        estimate_offset: Whether to estimate the clock offset of each track from the motion.
+    """
     from rich.console import Console
 
     from zebro_lab.calibration.command import wide_console

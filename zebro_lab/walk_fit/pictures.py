@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The pictures of a fit of walks: prior and posterior, and each walk predicted from the others."""
+"""Pictures of a fit of walks: prior and posterior, and each walk predicted from the others."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -13,13 +13,13 @@ PARAMETERS, LEFT_OUT = "walk_parameters", "left_out."
 def draw_walks(
     folder: Path, posterior: WalkPosterior, left_out: Sequence[JudgedRun], *, simulated: bool
 ) -> None:
-    """Draw into a folder.
+    """Draw prior and posterior, and the errors of each left-out walk, as PNG files.
 
     Args:
         folder: Folder to write into.
         posterior: The posterior after walks.
-        left_out: Each walk judged by a fit of the others.
-        simulated: Say so in the titles.
+        left_out: Each walk predicted from a fit of the others, with its errors.
+        simulated: Whether to append "(simulated)" to the titles.
     """
     from zebro_lab.plots import save
     from zebro_lab.plots.path_validation import path_validation

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Tracked walks fitted, and predicted from what other walks say: leave one out."""
+"""Fit tracked walks, and predict each from a fit of the others (leave-one-out)."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
@@ -33,12 +33,13 @@ Progress = Callable[[float], None]
 
 @dataclass(frozen=True)
 class WalksFitted:
-    """What walks said, and how well each is predicted from the others.
+    """Posterior after walks, and leave-one-out predictions.
 
     Attributes:
         walks: The walks.
         posterior: The posterior of legs and floor.
-        left_out: Each walk judged by a fit of the others; empty for a single walk.
+        left_out: Each walk predicted from a fit of the others, with its errors; empty for a single
+            walk.
     """
 
     walks: tuple[WalkOnFile, ...]
@@ -60,10 +61,10 @@ def fit_walks_on_file(
     Args:
         walks: The walks.
         slip: The rig's calibration.
-        prior: What is believed before.
-        rng: Source of randomness.
-        threads: Walks computed at once.
-        progress: Told the fraction done.
+        prior: Prior of legs and floor.
+        rng: Random number generator.
+        threads: Number of walks computed in parallel.
+        progress: Called with the fraction done, 0 to 1 [-].
 
     Raises:
         ModelError: There is no walk, or one diverged.
@@ -91,15 +92,15 @@ def fit_and_leave_out(
     threads: int = 2,
     progress: Progress | None = None,
 ) -> WalksFitted:
-    """Fit all walks, then predict each from what the others say.
+    """Fit all walks, then predict each from a fit of the others.
 
     Args:
         walks: The walks.
         slip: The rig's calibration.
-        prior: What is believed before.
-        rng: Source of randomness.
-        threads: Walks computed at once.
-        progress: Told the fraction done.
+        prior: Prior of legs and floor.
+        rng: Random number generator.
+        threads: Number of walks computed in parallel.
+        progress: Called with the fraction done, 0 to 1 [-].
 
     Raises:
         ModelError: There is no walk, or one diverged.
@@ -125,16 +126,16 @@ def judge_from(
     index: int | None = None,
     threads: int = 2,
 ) -> JudgedRun:
-    """Predict a walk from a posterior and judge it against its track, beside simpler models.
+    """Predict a walk from a posterior, and compute errors against its track, also of baselines.
 
     Args:
-        posterior: What other walks said.
+        posterior: Posterior after other walks.
         walk: The walk.
         slip: The rig's calibration.
-        rng: Source of randomness.
-        draws: Paths in the band.
-        index: The walk's index in the posterior, when it was among those fitted.
-        threads: Walks computed at once.
+        rng: Random number generator.
+        draws: Number of paths in the band.
+        index: The walk's index in the posterior if it was fitted, else None.
+        threads: Number of walks computed in parallel.
     """
     prediction = predict_from(
         posterior, walk, slip, rng=rng, draws=draws, index=index, threads=threads
@@ -152,16 +153,16 @@ def predict_from(
     index: int | None = None,
     threads: int = 2,
 ) -> PredictionFile:
-    """Predict a walk from a posterior, and by simpler models; its track is not looked at.
+    """Predict a walk from a posterior, and by the baselines, without using its track.
 
     Args:
-        posterior: What other walks said.
+        posterior: Posterior after other walks.
         walk: The walk.
         slip: The rig's calibration.
-        rng: Source of randomness.
-        draws: Paths in the band.
-        index: The walk's index in the posterior, when it was among those fitted.
-        threads: Walks computed at once.
+        rng: Random number generator.
+        draws: Number of paths in the band.
+        index: The walk's index in the posterior if it was fitted, else None.
+        threads: Number of walks computed in parallel.
     """
     t = np.linspace(0.0, walk.duration, max(round(walk.duration / SAMPLING), 2) + 1)
     state = posterior.draw(draws, rng=rng, walk=index)
@@ -193,7 +194,7 @@ def _walked(
 def _middle_path(
     walk: WalkOnFile, slip: NamedSlip, state: LegState, t: Array, rng: np.random.Generator
 ) -> Poses:
-    """Walk every unknown at its middle."""
+    """Compute the path with all unknown parameters at their central values."""
     plain = replace(walk, legs=middle(walk.legs))
     robot = walk.robot.robot
     table = slip.traction_table(weight=robot.mass * GRAVITY)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What `calibrate-slip --walks` prints: prior and posterior, wrong legs, walks left out."""
+"""Terminal output of `calibrate-slip --walks`: posterior, wrong legs, left-out walks."""
 
 import numpy as np
 from rich import box
@@ -13,7 +13,7 @@ from zebro_lab.terminal.messages import plain
 from zebro_lab.validation.judged_run import JudgedRun
 from zebro_lab.walk_fit.stage import WalksCalibrated
 
-_LIKELY = 0.01  # probability of a case that is worth a line
+_LIKELY = 0.01  # probability from which on a case is printed
 _SHOWN = {"rad": (180 / np.pi, "deg"), "rad/m": (180 / np.pi, "deg/m"), "-": (100.0, "%")}
 
 
@@ -21,8 +21,8 @@ def print_walks(console: Console, done: WalksCalibrated) -> None:
     """Print a finished fit of walks.
 
     Args:
-        console: Where to print.
-        done: The fit.
+        console: Console to print to.
+        done: The finished fit.
     """
     posterior = done.fitted.posterior
     if "sim:" in done.source:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A rig's calibration and tracked walks in, what the walks said beside the calibration out."""
+"""Stage of `calibrate-slip --walks`: fit legs and floor to tracked walks, write `walks/`."""
 
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -23,16 +23,17 @@ from zebro_lab.walk_fit.tracked_walks import read_walks
 
 @dataclass(frozen=True)
 class WalksRequest:
-    """What is asked of a fit of walks.
+    """Settings of a fit of walks.
 
     Attributes:
         walks: Run folders with leg angles and a track.
         calibration: The rig's calibration folder, into which `walks/` is written.
         robot: A `robot.toml` in place of those in the folders.
-        prior: What is believed before.
-        seed: Seed of everything random.
-        threads: Walks computed at once.
-        estimate_offset: Find in the motion how far each track's clock is behind its leg log's.
+        prior: Prior of legs and floor.
+        seed: Seed of all random numbers.
+        threads: Number of walks computed in parallel.
+        estimate_offset: Whether to estimate from the motion how far each track's clock is behind
+            that of its leg log.
     """
 
     walks: tuple[Path, ...]
@@ -50,9 +51,9 @@ class WalksCalibrated:
 
     Attributes:
         fitted: The fit, with each walk predicted from the others.
-        folder: Where it is.
+        folder: Folder that was written.
         source: Where rig data and walks come from.
-        notes: For a person, one line each.
+        notes: Notes, one line each.
     """
 
     fitted: WalksFitted
@@ -65,8 +66,8 @@ def calibrate_walks(request: WalksRequest, watcher: Watcher) -> WalksCalibrated:
     """Fit legs and floor to walks, predict each from the others, and write `walks/`.
 
     Args:
-        request: What is asked.
-        watcher: Hears of progress.
+        request: Walks, calibration and settings.
+        watcher: Receives progress.
 
     Raises:
         ZebroLabError: A walk or the calibration is missing or cannot be used; nothing was written.

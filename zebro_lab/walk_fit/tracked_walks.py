@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Walks that were logged and tracked: run folders, or folders with a leg log and a track."""
+"""Read tracked walks from run folders, or from folders with a leg log and a track."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -30,17 +30,17 @@ LEGS = ("legs.csv", "legs.csv.gz", "legs.parquet")
 
 @dataclass(frozen=True)
 class WalkOnFile:
-    """A tracked walk as it was read.
+    """A tracked walk as read from files.
 
     Attributes:
         name: Name of its folder.
         robot: The robot that walked.
         legs: Its leg angles from time zero on.
-        track: The track, in the same time; poses outside the log's left out.
-        source: "real", "sim:what", "unknown"; both where log and track differ.
-        files: Every file read, the leg log's first.
-        notes: For a person, one line each.
-        tilt: Roll and pitch by the run's IMU, in the same time; None where it has none.
+        track: The track, in the same time base; poses outside the log's time range are dropped.
+        source: "real", "sim:what", "unknown"; both if log and track differ.
+        files: Every file read, those of the leg log first.
+        notes: Notes, one line each.
+        tilt: Roll and pitch from the run's IMU, in the same time base; None without an IMU.
     """
 
     name: str
@@ -54,26 +54,26 @@ class WalkOnFile:
 
     @property
     def tracked(self) -> TrackedWalk:
-        """The walk as `model.bayes.walks` takes it."""
+        """The walk as input of `model.bayes.walks`."""
         poses = self.track.poses
         states = np.column_stack([poses.position, poses.yaw])
         return TrackedWalk(self.name, self.legs, poses.t, states, self.track.covariance, self.tilt)
 
     @property
     def duration(self) -> float:
-        """Time of its leg log [s]."""
+        """Duration of its leg log [s]."""
         return float(self.legs.t[-1])
 
 
 def read_walks(
     folders: Sequence[Path], *, robot: Path | None = None, clock: Clock | None = None
 ) -> list[WalkOnFile]:
-    """Read tracked walks of one robot; folders of one name are told apart by numbers.
+    """Read tracked walks of one robot; walks with equal folder names get a number.
 
     Args:
-        folders: A folder each, as for `read_walk_on_file`.
+        folders: Folder of each walk, as for `read_walk_on_file`.
         robot: A `robot.toml` in place of those in the folders.
-        clock: Brings each track to its leg log's clock; None to take it as it is.
+        clock: Shifts each track to its leg log's clock; None to keep the track's times.
 
     Raises:
         ZebroLabError: As in `read_walk_on_file`; or the walks are of two robots.
@@ -99,7 +99,7 @@ def read_walks(
 
 
 def _content(walk: WalkOnFile) -> str:
-    """Return what a walk is known by under another name: its leg angles and its track."""
+    """Return a hash of a walk's leg angles and track, by which copies are recognised."""
     poses = walk.track.poses
     return array_hash(walk.legs.theta, poses.position, poses.yaw)
 
@@ -110,15 +110,15 @@ def read_walk_on_file(
     """Read a tracked walk.
 
     Args:
-        folder: A run folder, or one with a leg log `legs.csv`; `track/track.csv` below it, and
-            perhaps its `robot.toml`.
+        folder: A run folder, or a folder with a leg log `legs.csv`; with `track/track.csv` and
+            optionally a `robot.toml` in it.
         robot: A `robot.toml` in place of the folder's.
-        clock: Brings the track to the leg log's clock; None to take it as it is.
+        clock: Shifts the track to the leg log's clock; None to keep the track's times.
 
     Raises:
         NotFound: There is no leg log or no track.
         DataError: One of them cannot be read, the track has no headings or covariance, or too
-            little of it lies within the log's time.
+            few of its poses lie within the log's time range.
     """
     log_file = _legs_of(folder)
     track_file = settle(folder / TRACK) / TRACK_CSV
@@ -152,7 +152,7 @@ def read_walk_on_file(
 def _tilt(
     folder: Path, start: float, end: float
 ) -> tuple[TiltSeen | None, tuple[Path, ...], tuple[str, ...]]:
-    """Read what a run's IMU measured from `start` [s] on, its files, and what to tell of it."""
+    """Read roll and pitch from a run's IMU from `start` to `end` [s]; also files and notes."""
     measured = read_recorded_tilt(folder) if is_recorded(folder) else None
     if measured is None:
         return None, (), ()
@@ -179,7 +179,7 @@ def _legs_of(folder: Path) -> Path:
 
 
 def _inside(end: float, track: TrackFile) -> tuple[TrackFile, tuple[str, ...]]:
-    """Leave out the poses that lie outside the leg log's time, which runs from zero to `end`."""
+    """Drop the poses outside the leg log's time range, zero to `end` [s]; also return notes."""
     t = track.poses.t
     keep = (t >= 0) & (t <= end)
     if keep.sum() < FEWEST_POSES:
@@ -196,7 +196,7 @@ def _inside(end: float, track: TrackFile) -> tuple[TrackFile, tuple[str, ...]]:
 
 
 def _require_states(track: TrackFile) -> None:
-    """Refuse a track that cannot weigh its own errors."""
+    """Check that a track has headings and a covariance."""
     if not track.poses.has_yaw:
         raise DataError("has no headings; a walk can inform a fit only with them", file=track.file)
     if not np.all(np.linalg.eigvalsh(track.covariance) > 0):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Two calibrations compared: the curve at loads that both were tested at, and what walks said."""
+"""Compare two calibrations: slip curves at common loads, and posteriors after walks."""
 
 from pathlib import Path
 
@@ -15,7 +15,7 @@ from zebro_lab.files.errors import DataError
 from zebro_lab.validation.compare.values import Comparison, Curve, Quantity
 
 DRAWS = 1000
-SLIPS = 200  # at which a curve is drawn
+SLIPS = 200  # points of a drawn curve
 _WALK_UNITS = {"rad": (180 / np.pi, "deg"), "rad/m": (180 / np.pi, "deg/m"), "-": (100.0, "%")}
 
 
@@ -26,12 +26,13 @@ def compare_calibrations(
 
     Args:
         first: A calibration folder.
-        second: Another.
-        names: What they are called.
-        rng: Source of randomness.
+        second: Another calibration folder.
+        names: Names to show for them.
+        rng: Random number generator.
 
     Raises:
-        ZebroLabError: One cannot be read, they are of two slip definitions, or share no load.
+        ZebroLabError: One cannot be read, they have different slip definitions, or their tested
+            loads do not overlap.
     """
     slips = (parse_slip(str(first)), parse_slip(str(second)))
     curves = tuple(_curve_of(slip) for slip in slips)
@@ -92,7 +93,7 @@ def _common_loads(curves: tuple[SlipCurve, ...], second: Path) -> Array:
 
 
 def _features(curve: SlipCurve, values: Array, load: float, limit: float) -> tuple[Array, Array]:
-    """Return the largest traction within a slip, and the slope at zero, of each draw [N]."""
+    """Return the largest traction up to a slip limit, and the slope at zero, per draw [N]."""
     columns, n = values.T, len(values)
     peak = np.minimum(curve.law.peak_slip(load, columns), limit)
     largest = curve.law.force(peak, load, columns)
@@ -118,7 +119,7 @@ def _band(curves: tuple[SlipCurve, ...], drawn: list[Array], load: float, limit:
 def _walk_quantities(
     slips: tuple[NamedSlip, ...], rng: np.random.Generator
 ) -> tuple[list[Quantity], list[str]]:
-    """Compare what walks said, where they said anything in either."""
+    """Compare the posteriors after walks if both calibrations have one; also return notes."""
     one, other = (slip.walks for slip in slips)
     if one is None or other is None:
         return [], ["what walks said is not compared: not both have any"] if one or other else []

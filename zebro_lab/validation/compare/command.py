@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""`zebro-lab compare A B`: two calibrations or two runs over each other."""
+"""`zebro-lab compare A B`: compare two calibrations or two runs."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated

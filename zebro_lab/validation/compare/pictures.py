@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Two calibrations or two runs over each other, and their differences."""
+"""Picture of a comparison: overlaid curves or paths, and differences."""
 
 from collections.abc import Sequence
 
@@ -17,12 +17,12 @@ _SHOWN_DRAWS = 40
 
 @styled
 def overlay(compared: Comparison, differences: Sequence[Difference], *, simulated: bool) -> Figure:
-    """Draw both over each other, and below the difference of each quantity in its own spread.
+    """Draw both overlaid, and below the difference of each quantity relative to its interval.
 
     Args:
-        compared: What was compared.
+        compared: The comparison.
         differences: The difference of each of its quantities.
-        simulated: Say so in the title.
+        simulated: Whether to append "(simulated)" to the title.
 
     Returns:
         The figure.
@@ -70,7 +70,7 @@ def _draw_walked(axes: Axes, walked: Sequence[Walked], names: Sequence[str]) -> 
 
 
 def _draw_differences(axes: Axes, compared: Comparison, differences: Sequence[Difference]) -> None:
-    """Draw each difference in units of its own 90 % interval's half width."""
+    """Draw each difference in units of the half width of its 90 % interval."""
     for i, each in enumerate(differences):
         half = 0.5 * (each.high - each.low) or 1.0
         ends = np.array([each.low, each.high]) / half

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Two runs compared: how fast they walked and turned, tracked and predicted."""
+"""Compare two runs: speed, yaw rate and curvature, tracked and predicted."""
 
 from pathlib import Path
 
@@ -18,13 +18,13 @@ from zebro_lab.walk.folder import DRAWS, PREDICTION, read_walk_manifest
 from zebro_lab.walk.path_band import read_draws
 
 TRACK = "track"
-TRACKS = 1000  # drawn from a track's covariance
-EVERY = 1.0  # s between poses of a predicted path that has no track beside it
+TRACKS = 1000  # paths drawn with a track's covariance
+EVERY = 1.0  # s between poses of a predicted path without a track
 _SUMMARY = (("speed", "mm/s", 1e3), ("yaw rate", "deg/s", 180 / np.pi), ("curvature", "1/m", 1.0))
 
 
 def is_walked(folder: Path) -> bool:
-    """Tell whether a folder holds a track or a prediction with draws."""
+    """Return whether a folder has a track or a prediction with draws."""
     track, prediction = settle(folder / TRACK), settle(folder / PREDICTION)
     return (track / TRACK_CSV).is_file() or (prediction / DRAWS).is_file()
 
@@ -36,12 +36,12 @@ def compare_runs(
 
     Args:
         first: A run folder with `track/`, or with `prediction/` that has draws.
-        second: Another.
-        names: What they are called.
-        rng: Source of randomness.
+        second: Another run folder.
+        names: Names to show for them.
+        rng: Random number generator.
 
     Raises:
-        ZebroLabError: A file cannot be read, or one has a track alone and the other none.
+        ZebroLabError: A file cannot be read, or one has only a track and the other has none.
     """
     runs = (_Run(first), _Run(second))
     quantities = [
@@ -66,7 +66,7 @@ def compare_runs(
 
 
 class _Run:
-    """A run's track and prediction, as far as it has them."""
+    """Track and prediction of a run; None for what it does not have."""
 
     def __init__(self, folder: Path) -> None:
         settle(folder / TRACK)
@@ -89,7 +89,7 @@ class _Run:
             raise NotFound(f"{folder} holds neither {TRACK}/{TRACK_CSV} nor {PREDICTION}/{DRAWS}")
 
     def tracks(self, rng: np.random.Generator) -> Array | None:
-        """Summarise the track, again and again with its own noise, shape (n, 3)."""
+        """Draw tracks with the track's noise and summarise each, shape (n, 3)."""
         if self.track is None or not self.track.poses.has_yaw:
             return None
         poses, covariance = self.track.poses, self.track.covariance
@@ -100,7 +100,7 @@ class _Run:
         return _summaries(poses.t, poses.states + noise)
 
     def predicted(self) -> Array | None:
-        """Summarise every predicted path, at the track's times where there is one, shape (n, 3)."""
+        """Summarise each predicted path, at the track's times if there is one, shape (n, 3)."""
         if self.band is None:
             return None
         t = np.arange(self.band.t[0], self.band.t[-1], EVERY)

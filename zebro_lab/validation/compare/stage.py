@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Two calibrations or two runs in, what differs out."""
+"""Stage of `zebro-lab compare`: compare two calibrations or two runs, write the folder."""
 
 from dataclasses import asdict, dataclass
 from pathlib import Path
@@ -23,13 +23,13 @@ COMPARISON = ResultKind("comparison", "compare", (TABLE, PICTURE), SCHEMA)
 
 @dataclass(frozen=True)
 class CompareRequest:
-    """What is to be compared.
+    """Settings of a comparison.
 
     Attributes:
         first: A calibration folder or a run folder.
         second: Another of the same kind.
         out: Folder to write.
-        seed: Seed of everything random.
+        seed: Seed of all random numbers.
     """
 
     first: Path
@@ -43,8 +43,8 @@ class Compared:
     """A finished comparison.
 
     Attributes:
-        comparison: What was compared.
-        differences: The difference of each quantity: the second minus the first.
+        comparison: The quantities of both.
+        differences: Difference of each quantity, the second minus the first.
     """
 
     comparison: Comparison
@@ -52,10 +52,11 @@ class Compared:
 
 
 def compare(request: CompareRequest) -> Compared:
-    """Compare and write the folder.
+    """Compare two calibrations or two runs and write the comparison folder.
 
     Raises:
-        ZebroLabError: The two are not of one kind, cannot be read, or have nothing in common.
+        ZebroLabError: The two are of different kinds, cannot be read, or have no quantity in
+            common.
     """
     require_replaceable(request.out, COMPARISON, inputs=(request.first, request.second))
     rng = np.random.default_rng(request.seed)
@@ -86,7 +87,7 @@ def _kind(path: Path) -> str:
 
 
 def _names(first: Path, second: Path) -> tuple[str, str]:
-    """Name both by as few last parts of their paths as tell them apart."""
+    """Return the shortest distinct names: the last parts of their paths."""
     parts = [path.absolute().parts for path in (first, second)]
     for depth in range(1, max(len(each) for each in parts) + 1):
         one, other = (str(Path(*each[-depth:])) for each in parts)

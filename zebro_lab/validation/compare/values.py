@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Two of a kind side by side: what is compared, by how much they differ, how sure that is."""
+"""Values of a comparison: quantities with draws, and curves and paths to draw."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -16,8 +16,8 @@ class Quantity:
     """A quantity that both have.
 
     Attributes:
-        name: What it is.
-        unit: Its unit as it is shown; empty for none.
+        name: Name of the quantity.
+        unit: Its unit as shown; empty for none.
         draws: Draws of the first's and of the second's, each of shape (n,).
     """
 
@@ -31,13 +31,13 @@ class Quantity:
         return float(median), float(low), float(high)
 
     def difference(self, rng: np.random.Generator) -> Difference:
-        """Return the second minus the first."""
+        """Return the difference, the second minus the first."""
         return difference(*self.draws, rng=rng)
 
 
 @dataclass(frozen=True)
 class Curve:
-    """A slip curve's band at one load, as a picture shows it.
+    """Bands of both slip curves at one load, for the picture.
 
     Attributes:
         slip: Slip ratios, shape (n,) [-].
@@ -52,11 +52,11 @@ class Curve:
 
 @dataclass(frozen=True)
 class Walked:
-    """One run as a picture shows it, started at the origin along x.
+    """Track and prediction of one run for the picture, started at the origin along x.
 
     Attributes:
-        track: Its track; None where it has none.
-        band: Its predicted paths; None where it has none.
+        track: Its track; None if it has none.
+        band: Its predicted paths; None if it has none.
     """
 
     track: Poses | None
@@ -69,14 +69,14 @@ class Comparison:
 
     Attributes:
         kind: "calibrations" or "runs".
-        names: What they are called.
-        quantities: What both have.
-        curves: Their slip curves, load by load; empty for runs.
+        names: Names to show for them.
+        quantities: Quantities that both have.
+        curves: Their slip curves, one per load; empty for runs.
         walked: Their paths; empty for calibrations.
-        definition: Of slip ratios; empty for runs.
-        source: Where they come from.
+        definition: Slip definition; empty for runs.
+        source: Where the data come from.
         files: Files that were read.
-        notes: For a person, one line each.
+        notes: Notes, one line each.
     """
 
     kind: str

@@ -121,10 +121,10 @@ class CyclicReference:
         return (2 * np.pi - self.stance_angle) / (self.flight_time - self.pause)
 
     def mirrored(self) -> "CyclicReference":
-        """Exchange the left and right legs of a six-legged robot: the mirror image of the walk.
+        """Mirror the walk: exchange the left and right legs of a six-legged robot.
 
         Raises:
-            DomainError: The legs are not six.
+            DomainError: The robot does not have six legs.
         """
         if self.n_legs != N_LEGS:
             raise DomainError(f"{self.n_legs} legs have no mirror image; expected {N_LEGS}")

@@ -140,7 +140,7 @@ def _sd_of_blocks(track: Poses, path: Poses, offsets: Array) -> float:
     found = []
     for block in np.array_split(np.arange(len(track)), BLOCKS):
         rest = track.part(np.delete(np.arange(len(track)), block))
-        # Of all its poses: a pose outside the path's time would no longer add to the misfit.
+        # With all poses inside: one that leaves the path's time would no longer add to the misfit.
         misfit = np.array([_misfit(rest, path, each, share=1.0) for each in offsets])
         best = int(np.argmin(misfit))
         if best in (0, len(offsets) - 1):

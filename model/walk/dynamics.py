@@ -238,7 +238,7 @@ def _turn(q: Array, yaw: float) -> Array:
 
 
 def roll_pitch_yaw(q: Array) -> Array:
-    """Read roll, pitch and yaw off unit quaternions (w, x, y, z), R = Rz(yaw) Ry(pitch) Rx(roll).
+    """Convert unit quaternions (w, x, y, z) to roll, pitch and yaw, R = Rz(yaw) Ry(pitch) Rx(roll).
 
     Args:
         q: Quaternions, shape (n, 4).
@@ -253,7 +253,7 @@ def roll_pitch_yaw(q: Array) -> Array:
 
 
 def unwrapped_yaw(q: Array) -> Array:
-    """Read the unwrapped yaw alone off unit quaternions (w, x, y, z) as `roll_pitch_yaw` does.
+    """Compute only the unwrapped yaw of unit quaternions (w, x, y, z), as `roll_pitch_yaw` does.
 
     Args:
         q: Quaternions, shape (n, 4).

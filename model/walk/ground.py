@@ -13,7 +13,7 @@ from model.slip.law import Array
 class Ground(NamedTuple):
     """Heights on a square grid, with bilinear interpolation; constant if the grid has one height.
 
-    A named tuple because numba takes one as it is.
+    It is a named tuple because numba accepts one directly.
 
     Attributes:
         x: Position of the grid's first row [m].

@@ -52,7 +52,7 @@ class WalkPath:
         return self.orientation[:, 2]
 
     def part(self, keep: slice | NDArray[np.bool_] | NDArray[np.intp]) -> "WalkPath":
-        """Return some of the samples."""
+        """Return the path at some of the samples."""
         return WalkPath(**{f.name: getattr(self, f.name)[keep] for f in fields(self)})
 
     @property

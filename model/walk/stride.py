@@ -166,7 +166,7 @@ def _displacement(x: Array, y: Array, yaw: Array) -> Array:
 
 
 def _repeat(x: Array, y: Array, yaw: Array, *, n: int, times: int) -> tuple[Array, Array, Array]:
-    """Append the last n steps' stride again and again."""
+    """Append the stride of the last n steps repeatedly."""
     if times < 1:
         return x, y, yaw
     begin = Planar(float(x[-n - 1]), float(y[-n - 1]), float(yaw[-n - 1]))

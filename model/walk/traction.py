@@ -25,7 +25,7 @@ class TractionTable(NamedTuple):
     r"""Traction over load :math:`\varphi(x, N)` on a grid, odd in x, for the compiled loop.
 
     Cubic Hermite in :math:`w = \operatorname{arsinh}(x / x_0)`, linear in the logarithm of load.
-    A named tuple because numba takes one as it is.
+    It is a named tuple because numba accepts one directly.
 
     Attributes:
         log_load: Logarithm of each row's load, ascending, shape (m,) [log N].

@@ -21,15 +21,15 @@ from scipy.linalg import solve_triangular
 from model.bayes.walks.prior import Case
 from model.slip.law import Array
 
-DRAWS = 200  # a round
+DRAWS = 200  # in a round
 MOST_ROUNDS = 10
 WANTED = 150.0  # effective draws
-TAIL = 5  # degrees of freedom of what is drawn from
+TAIL = 5  # degrees of freedom of the proposals
 ENOUGH = 60.0  # effective draws from which a round's Gaussians are estimated
-BEFORE = 2.0  # draws a dimension by whose weight a case's last covariance enters the new one
+BEFORE = 2.0  # draws a dimension: weight of a case's last covariance in its new one
 PATIENCE = 3  # rounds of Gaussians alone, which are more efficient where they suffice
-CENTRES = 50  # draws that a round's narrower bumps are put around
-WIDTHS = (0.6, 0.3)  # of them, in turn, in standard deviations of their case
+CENTRES = 50  # draws that are centres of a round's narrower proposals
+WIDTHS = (0.6, 0.3)  # of the narrower proposals, in turn, in standard deviations of their case
 _LEAST = 1e-3  # least probability with which each case is drawn
 
 

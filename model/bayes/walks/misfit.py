@@ -39,11 +39,11 @@ from model.walk.traction import TractionTable
 
 RECONSTRUCTIONS = 16  # draws of counted angles, for their spread; or walks at half the step
 LARGEST_STEP = 0.0025  # s; with a wrong leg 5 ms turns by 3 % more and saves a third of the time
-OFFSETS_SD = np.radians(0.2)  # of the legs of those walks
+OFFSETS_SD = np.radians(0.2)  # standard deviation of the leg offsets in those walks [rad]
 FEWEST_POSES = 3  # one to start from and two to compare
 SAMPLING = 0.05  # s between the poses kept of a path
 FINE_SAMPLING = 0.02  # s, where roll and pitch are compared
-_BEND = 1e-3  # of distance and of curvature, to differentiate by
+_BEND = 1e-3  # step in distance and curvature for finite differences
 
 
 @dataclass(frozen=True)

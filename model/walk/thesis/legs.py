@@ -30,10 +30,10 @@ class LegMotion(NamedTuple):
 
 @dataclass(frozen=True)
 class SwitchedLegs:
-    """Legs that turn at one speed between touchdown and lift-off angle, at another elsewhere.
+    """Legs with one speed between touchdown and lift-off angle, and another speed elsewhere.
 
-    Listing A.33: the speed is chosen anew at every step by the angle a leg has reached, so that a
-    cycle takes up to a step longer or shorter than planned.
+    Listing A.33: the speed is chosen anew at every step by the current leg angle, so that a cycle
+    takes up to a step longer or shorter than planned.
 
     Attributes:
         touchdown: Touchdown angles in [0, 2 pi), shape (6,) [rad].

@@ -36,7 +36,7 @@ RUNAWAY = 50.0  # faster than any walking robot [m/s, rad/s]
 
 
 class Machine(NamedTuple):
-    """The robot, as arrays: `model.robot.Robot`."""
+    """The robot as arrays for the compiled loop: `model.robot.Robot`."""
 
     hips: Array
     radius: float
@@ -297,7 +297,7 @@ def walk_slip(leg_speed, ground_speed, signed):
 def lateral_walk_slip(axes, v, signed):
     """Compute the lateral slip of Eq. (4-41), (4-42) from the body's velocity, Listing A.21 [-].
 
-    For a body that goes backward the sign of the listing's is wrong.
+    The listing has the wrong sign for a body that goes backward.
 
     Args:
         axes: Forward, left and up of the contact frames, in rows, shape (3, 3) [-].

@@ -13,7 +13,7 @@ from model.walk.traction import TractionTable, VelocityCoulomb, law_table
 
 
 class Traction(NamedTuple):
-    """A slip law for the compiled loop. A named tuple because numba takes one as it is.
+    """A slip law for the compiled loop, as a named tuple, which numba accepts directly.
 
     Attributes:
         exact: Whether the Magic Formula with these four coefficients is meant, and not the table.

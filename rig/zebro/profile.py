@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Profile of a robot's leg stream: how its bytes are read and its counts become leg angles."""
+"""Profile of a robot's leg stream: frame layout, and conversion of counts to leg angles."""
 
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
@@ -185,7 +185,7 @@ def save_leg_profile(profile: LegProfile, path: Path) -> None:
 
 
 def render_leg_profile(profile: LegProfile) -> str:
-    """Spell a profile as the TOML that `load_leg_profile` reads."""
+    """Return a profile as the TOML that `load_leg_profile` reads."""
     return tomlkit.dumps(_as_document(profile))
 
 

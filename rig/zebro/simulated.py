@@ -216,7 +216,7 @@ class CanRobot:
         self._held: list[can.Message] = []
 
     def poll(self, now: float) -> None:
-        """Obey what is on the bus and send what is due up to a time [s]."""
+        """Execute commands from the bus and send the frames that are due up to a time [s]."""
         while (message := self._bus.recv(0.0)) is not None:
             self._obey(message, now)
         for frame in self.legs.frames(now):

@@ -105,7 +105,7 @@ class BoardProfile:
         counts_per_speed: Counts in 1 rad/s.
         normal_sign: What makes pressing positive.
         traction_sign: What makes driving positive.
-        link: `serial`, or `table` for a file that somebody else wrote.
+        link: `serial`, or `table` for an imported file.
     """
 
     baudrate: int

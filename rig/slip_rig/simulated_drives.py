@@ -45,7 +45,7 @@ class SimulatedDrives:
 
     Args:
         rig: The rig they turn.
-        bus: Their own end of the bus; whoever made it closes it.
+        bus: Their own end of the bus; the caller closes it.
         profile: Nodes, gears and signs.
         watchdog: Silence after which an axis stops by itself [s].
 

@@ -22,7 +22,7 @@ Order: TypeAlias = Literal["little", "big"]
 LINK_OF: dict[str, str] = {
     "packet": "serial", "dump": "serial", "poll": "serial", "can": "can", "table": "table",
 }  # fmt: skip
-"""Link that each layout needs; `table` is no device but a file that somebody else wrote."""
+"""Link that each layout needs; `table` is not a device but an imported file."""
 DUMP_REGISTERS = 256
 
 
@@ -103,7 +103,7 @@ class LegProfile:
     def quantisation(self) -> float:
         """Half a count as an angle: the error is uniform between minus and plus this [rad].
 
-        0 for a table: its numbers have fractions, and nobody said what they were rounded to.
+        0 for a table: its numbers have fractions, and their rounding is unknown.
         """
         return 0.0 if self.layout == "table" else float(np.pi / self.counts_per_revolution)
 

@@ -115,8 +115,8 @@ class DumpLegs(_RegisterStream):
 class PolledLegs(_RegisterStream):
     """Stream of the layout `poll`: read command, first register, number of registers; their values.
 
-    Every reading is asked for, at the profile's rate. Bytes that nobody asked for are thrown away
-    before each request, so that a late answer is never taken for the next one.
+    Readings are requested at the profile's rate. Buffered bytes are discarded before each request,
+    so that a late answer is never taken for the next one.
 
     Args:
         link: Bytes to and from the bridge.

@@ -194,7 +194,7 @@ class CanRobot:
 
     Args:
         legs: The legs.
-        bus: Its own end of the bus; whoever made it closes it.
+        bus: Its own end of the bus; the caller closes it.
         faults: What goes wrong; only `drop`, `duplicate` and `delay` mean anything for frames that
             the bus itself guards.
         rng: Random generator of the transmission errors.

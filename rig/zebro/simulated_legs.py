@@ -98,7 +98,7 @@ class SimulatedLegs:
         """Report everything up to a time, one frame every 1/rate.
 
         Args:
-            now: Time by the clock of whoever serves the twin [s].
+            now: Time by the caller's clock [s].
 
         Returns:
             The frames since the last call.
@@ -133,7 +133,7 @@ class SimulatedLegs:
         Args:
             counts: Targets in the order of the wire.
             duration: How long the motion takes [s].
-            now: Time by the clock of whoever serves the twin [s].
+            now: Time by the caller's clock [s].
         """
         time = self._since_start(now)
         origin = self.angles(time)

@@ -148,7 +148,7 @@ class ExperimentScreen:
         """Draw what has changed, again and again, until closed.
 
         Raises:
-            BrokenPipeError: Nobody reads the output any more.
+            BrokenPipeError: The output pipe is closed.
         """
         try:
             while not self._over.wait(PERIOD):

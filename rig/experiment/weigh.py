@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A load-cell check with known weights: gain and zero of the normal channel, with their errors."""
+"""Check the load cell with known weights: fit gain and zero of the normal channel."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -18,16 +18,16 @@ from rig.safety import REST_SPEED
 
 BATCHES: Final = 10
 REST_LIMIT: Final = 5.0
-"""How long it may take until both discs are proved to stand [s]."""
+"""Timeout for the verification that both discs stand [s]."""
 
 
 @dataclass(frozen=True)
 class Weighing:
-    """What the load cell read under known weights.
+    """Readings of the load cell under known weights.
 
     Attributes:
         forces: True forces, zero among them, shape (n,) [N].
-        readings: What the normal channel read, shape (n,) [N].
+        readings: Readings of the normal channel, shape (n,) [N].
         errors: Standard error of each reading, shape (n,) [N].
     """
 
@@ -38,13 +38,13 @@ class Weighing:
 
 @dataclass(frozen=True)
 class GainCheck:
-    """A straight line through the readings: reading = zero + slope·force.
+    """Linear regression of the readings on the forces: reading = zero + slope·force.
 
     Attributes:
         slope: Reading over force; 1 where the profile's counts are right [-].
-        slope_sd: Its standard error, that of the weights included [-].
+        slope_sd: Standard error of the slope, that of the weights included [-].
         zero: Reading without load [N].
-        zero_sd: Its standard error [N].
+        zero_sd: Standard error of the zero [N].
         misfit: Largest distance of a reading from the line [N].
     """
 
@@ -56,7 +56,7 @@ class GainCheck:
 
     @property
     def gain_sd(self) -> float:
-        """Standard deviation for the gain's prior, as long as the slope is not corrected [-]."""
+        """Standard deviation of the gain's prior where the slope is not corrected [-]."""
         return float(np.hypot(self.slope - 1, self.slope_sd))
 
 
@@ -72,27 +72,27 @@ def weigh(
 ) -> Weighing:
     """Read the normal channel without load and under each weight; nothing is energised.
 
-    Nobody is asked to hang a weight before both discs are proved to stand.
+    Standstill of both discs is verified before each prompt to hang a weight.
 
     Args:
         bench: The rig, entered.
         forces: Weights [N].
-        load: Who hangs them on.
-        prompt: Told again and again what is to be done, and the normal force now [N].
-        duration: How long each is read [s].
+        load: Setter of the load: the operator who hangs the weights.
+        prompt: Called repeatedly with the instruction and the present normal force [N].
+        duration: Duration of each reading [s].
         clock: Host time.
-        period: Between two looks [s].
+        period: Polling period [s].
 
     Raises:
-        NotAtRest: A disc turns, or its speed is not told.
-        ProtocolError: The load cell gives too few samples.
+        NotAtRest: A disc turns, or its speed is unknown.
+        ProtocolError: The load cell sends too few samples.
     """
 
     def look() -> Batch:
         clock.sleep(period)
         return bench.read()
 
-    bench.read()  # what lay in buffers
+    bench.read()  # discard what is in buffers
     readings, errors = [], []
     for force in (0.0, *forces):
         prove_rest(look, REST_SPEED, longest=REST_LIMIT, clock=clock)
@@ -110,7 +110,7 @@ def weigh(
 
 
 def check_gain(weighing: Weighing, *, weight_sd: float = 1e-3) -> GainCheck:
-    """Fit gain and zero of the normal channel.
+    """Fit gain and zero of the normal channel by weighted linear regression.
 
     Args:
         weighing: Readings under at least two different forces.
@@ -128,7 +128,8 @@ def check_gain(weighing: Weighing, *, weight_sd: float = 1e-3) -> GainCheck:
     (zero, slope), *_ = np.linalg.lstsq(weighted, reading / error, rcond=None)
     left = reading - design @ np.array([zero, slope])
     freedom = max(len(force) - 2, 1)
-    # What scatters more than its noise hangs askew: the errors grow with it, and never shrink.
+    # Residuals above the noise come from weights that hang askew: inflate the covariance by the
+    # reduced chi-square where it is above 1.
     scale = max(float(np.sum((left / error) ** 2)) / freedom, 1.0)
     covariance = scale * np.linalg.inv(weighted.T @ weighted)
     return GainCheck(
@@ -141,7 +142,7 @@ def check_gain(weighing: Weighing, *, weight_sd: float = 1e-3) -> GainCheck:
 
 
 def _read(look: Callable[[], Batch], duration: float, clock: Clock) -> tuple[float, float]:
-    """Read for a while; return mean and its error from batch means [N]."""
+    """Average the normal force over a duration; return mean and batch-means error [N]."""
     end = clock.now() + duration
     parts = []
     while clock.now() < end:

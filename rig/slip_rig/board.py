@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The rig on one micro-controller: forces and both speeds in packets, speed commands back."""
+"""Driver of a slip rig on one micro-controller: packets of forces and speeds, speed commands."""
 
 import contextlib
 import math
@@ -17,7 +17,7 @@ from rig.safety import require_within
 from rig.slip_rig.profile import BoardProfile
 
 WATCHDOG_EXPIRED: Final = 1
-"""Status bit: the board heard nothing and stopped both discs; only a stop command releases it."""
+"""Status bit: the board's watchdog expired and stopped both discs; a stop command clears it."""
 
 
 def board_body(profile: BoardProfile) -> struct.Struct:
@@ -73,7 +73,7 @@ class RigBoard(PacketStream):
         return BoardDrive(self, "ground")
 
     def read(self, timeout: float) -> list[Sample]:
-        """Hand on all samples, waiting at most `timeout` for the first [s]; feed the watchdog."""
+        """Return all samples, waiting at most `timeout` for the first [s]; feeds the watchdog."""
         end = self._host_clock.now() + timeout
         while True:
             if self._armed and self._host_clock.now() >= self._feed_at:
@@ -84,10 +84,10 @@ class RigBoard(PacketStream):
                 return [self._with_status(sample) for sample in samples]
 
     def require_healthy(self) -> None:
-        """Check the board.
+        """Check the status of the board.
 
         Raises:
-            DeviceFault: It has stopped the discs by itself.
+            DeviceFault: Its watchdog has stopped the discs.
         """
         if self._status:
             raise DeviceFault(
@@ -141,7 +141,7 @@ class BoardDrive:
         return f"{self._disc} disc"
 
     def arm(self, timeout: float) -> None:
-        """Energise at standstill; the board does not confirm, so nothing is waited for [s]."""
+        """Energise at standstill; `timeout` [s] is not used, because the board does not confirm."""
         del timeout
         self._board._arm(self._disc)
         self.set_speed(0.0)

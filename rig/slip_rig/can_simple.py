@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""ODrive's CANSimple: what the frames of a velocity drive hold, little-endian.
+"""Frame layouts of ODrive's CANSimple protocol for a velocity drive, little-endian.
 
 The layouts are those of `odrive-cansimple.dbc`, which tools can read.
 """
@@ -23,7 +23,7 @@ PASS_THROUGH: Final = 1
 
 
 class Command(IntEnum):
-    """Low five bits of an id."""
+    """Command of a frame: low five bits of its arbitration id."""
 
     HEARTBEAT = 0x01
     EMERGENCY_STOP = 0x02
@@ -36,7 +36,7 @@ class Command(IntEnum):
 
 
 class AxisState(IntEnum):
-    """States that this project asks for."""
+    """Axis states that this project requests."""
 
     IDLE = 1
     CLOSED_LOOP = 8
@@ -69,7 +69,7 @@ ERRORS: Final[dict[str, dict[int, str]]] = {
         0x1000000: "watchdog timer expired",
     },
 }
-"""What the bits of an axis error mean, by firmware."""
+"""Meaning of the bits of an axis error, by firmware."""
 
 
 def can_id(node: int, command: Command) -> int:

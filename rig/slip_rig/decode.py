@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""From raw samples of a rig to speeds, forces and instantaneous slip, in SI."""
+"""Convert raw samples of a rig to speeds, forces and instantaneous slip ratio, in SI."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -85,7 +85,7 @@ def decode_forces(profile: LoadCellProfile, samples: Sequence[Sample]) -> Forces
 def decode_further_loads(
     profile: LoadCellProfile, samples: Sequence[Sample]
 ) -> tuple[Array, Array | None]:
-    """Compute what a load cell feels beside the two forces of the contact.
+    """Compute the lateral force and the largest torque from the counts of a load cell.
 
     Args:
         profile: Profile of the cell.
@@ -154,7 +154,7 @@ def decode_board(profile: BoardProfile, samples: Sequence[Sample]) -> tuple[Forc
 
 @dataclass(frozen=True)
 class Zero:
-    """What an unloaded load cell reads.
+    """Zero offset: reading of an unloaded load cell.
 
     Attributes:
         normal: Mean normal force [N].
@@ -174,7 +174,7 @@ def tare(forces: Forces) -> Zero:
         forces: At least ten readings without load.
 
     Returns:
-        The zero. Its error is taken from batches, because readings next to each other are alike.
+        The zero. Its standard error comes from batch means, because readings are autocorrelated.
 
     Raises:
         ProtocolError: There are too few readings.

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""Two ODrive velocity drives on one CAN bus: a stream of both speeds, and their commands.
+"""Driver of two ODrive velocity drives on one CAN bus: stream of both speeds, and commands.
 
-The watchdog inside each drive is what stops the discs when this program dies. It is fed by the
-thread that reads the stream, on purpose: a program that reads no more must not keep them turning.
+The watchdog inside each drive stops the discs when this program fails. The thread that reads the
+stream feeds it on purpose: a program that no longer reads must not keep the discs turning.
 """
 
 import contextlib
@@ -38,14 +38,14 @@ from rig.slip_rig.can_simple import (
 from rig.slip_rig.profile import DiscDrive, DriveProfile
 
 TEMPERATURE_INTERVAL: Final = 0.1
-"""Between two questions for the drives' temperatures [s]."""
+"""Interval between requests for the drives' temperatures [s]."""
 HELLO_LIMIT: Final = 1.0
-"""How long the heartbeats of both drives may take when the bus is opened [s]."""
+"""Timeout for the heartbeats of both drives when the bus is opened [s]."""
 
 
 @dataclass
 class _Axis:
-    """What is known of one drive."""
+    """State of one drive."""
 
     name: str
     place: DiscDrive
@@ -61,7 +61,7 @@ class DriveBus(LinkedStream[CanLink]):
     """Stream of both drives: counts are position [rev] and velocity [rev/s] of a motor.
 
     A sample's channel is the drive's node, its status the axis error of the last heartbeat.
-    CANSimple numbers nothing and tells no time, so that what is lost is not seen.
+    CANSimple has no sequence numbers and no device time, so that losses are not detected.
 
     Args:
         link: The bus.
@@ -115,7 +115,7 @@ class DriveBus(LinkedStream[CanLink]):
         )
 
     def read(self, timeout: float) -> list[Sample]:
-        """Hand on samples of both drives, waiting at most `timeout` for the first [s].
+        """Return samples of both drives, waiting at most `timeout` for the first [s].
 
         Feeds the watchdogs of armed drives while it waits.
         """
@@ -130,11 +130,11 @@ class DriveBus(LinkedStream[CanLink]):
                 return sorted(samples, key=lambda sample: sample.host_time)
 
     def ask_for_temperatures(self) -> None:
-        """Ask both drives for their temperatures from now on, whenever the stream is read."""
+        """Start to request the temperatures of both drives whenever the stream is read."""
         self._ask_at = -math.inf
 
     def take_temperatures(self) -> dict[int, list[float]]:
-        """Hand on what the drives answered since the last time, by node [degC]."""
+        """Return and clear the temperatures received since the last call, by node [degC]."""
         taken = {node: axis.temperatures for node, axis in self._axes.items()}
         for axis in self._axes.values():
             axis.temperatures = []

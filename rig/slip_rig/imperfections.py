@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What stands between the slip law and the log of a simulated rig: bump, wander, noise, errors."""
+"""Sensor errors, noise, slip wander and bump of a simulated rig."""
 
 from dataclasses import dataclass, fields, replace
 
@@ -11,7 +11,7 @@ from model.slip.law import Array
 
 @dataclass(frozen=True)
 class RigImperfections:
-    """The truth of everything that is not the slip law; the defaults are a perfect rig.
+    """True parameters of a rig besides the slip law; the defaults are an ideal rig.
 
     Attributes:
         gain_traction: Relative gain error g_t of the traction channel [-].
@@ -106,7 +106,7 @@ def draw_imperfections(
 def measured_load(
     load_true: Array, traction_force: Array, *, imperfections: RigImperfections
 ) -> Array:
-    r"""Compute what the normal channel reads: the inverse of `true_load`.
+    r"""Compute the reading of the normal channel from the true load; inverse of `true_load`.
 
     .. math::
         F_{n,measured} = \frac{F_n + b_n - c\,F_t}{1 + g_n}

@@ -28,11 +28,11 @@ from rig.slip_rig.rdt import (
 )
 
 START_AGAIN_AFTER: Final = 0.5
-"""Silence after which a cell is asked to start once more: requests, too, may be lost [s]."""
+"""Silence after which the start request is repeated, because requests can be lost [s]."""
 LATE_DATAGRAMS: Final = 4
-"""Datagrams up to so many back are late or doubled; farther back the cell has begun anew."""
+"""Distance up to which a datagram counts as late or duplicate; farther back is a restart."""
 WHOLE: Final = frozenset(RECORD.size * count for count in range(1, MOST_IN_ONE + 1))
-"""Lengths of datagrams [bytes]."""
+"""Valid lengths of datagrams [bytes]."""
 LONGEST_PAGE: Final = 1 << 20
 
 
@@ -98,7 +98,7 @@ class NetFtCell(LinkedStream[UdpLink]):
         return samples
 
     def bias(self) -> None:
-        """Make what the cell reads now its zero; the cell itself subtracts it from then on."""
+        """Set the present reading as zero, which the cell itself then subtracts."""
         self._link.write(encode_request(Request.BIAS))
 
     def __enter__(self) -> Self:
@@ -117,7 +117,7 @@ class NetFtCell(LinkedStream[UdpLink]):
         super().__exit__(kind, error, trace)
 
     def _samples(self, datagrams: Sequence[bytes], now: float) -> SampleColumns:
-        """Make samples of all records of a read together, column by column."""
+        """Decode all records of a read together, column by column."""
         whole = datagrams
         if not WHOLE.issuperset(map(len, datagrams)):
             whole = [datagram for datagram in datagrams if len(datagram) in WHOLE]
@@ -135,7 +135,7 @@ class NetFtCell(LinkedStream[UdpLink]):
         )
 
     def _listen(self, heard: bool, now: float) -> None:
-        """Ask a silent cell to start again, and count when it does."""
+        """Repeat the start request to a silent cell, and count reconnections."""
         if heard:
             self._heard = now
             self._reconnected += self._silent
@@ -149,7 +149,7 @@ class NetFtCell(LinkedStream[UdpLink]):
 
 
 def read_configuration(host: str, *, port: int = 80, timeout: float = 2.0) -> CellConfiguration:
-    """Ask a cell for its configuration.
+    """Read the configuration of a cell over HTTP.
 
     Args:
         host: Its address.

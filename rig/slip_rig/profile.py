@@ -61,7 +61,7 @@ class ForceAxis:
 
     Attributes:
         index: Channel, from 0.
-        sign: What makes the force positive as `docs/conventions.md` has it, 1 or -1.
+        sign: Sign that makes the force positive as defined in `docs/conventions.md`, 1 or -1.
     """
 
     index: int
@@ -105,7 +105,7 @@ class BoardProfile:
         counts_per_speed: Counts in 1 rad/s.
         normal_sign: What makes pressing positive.
         traction_sign: What makes driving positive.
-        link: `serial`, or `table` for a file that somebody else wrote.
+        link: `serial`, or `table` for an imported file.
     """
 
     baudrate: int
@@ -143,7 +143,7 @@ class RigProfile:
 
     @property
     def measured(self) -> frozenset[str]:
-        """Name those of `FURTHER_LIMITS` that its devices can tell."""
+        """Names of those of `FURTHER_LIMITS` that its devices measure."""
         told = {
             "lateral_force": self.load_cell is not None,
             "torque": self.load_cell is not None and self.load_cell.counts_per_torque is not None,
@@ -153,7 +153,7 @@ class RigProfile:
 
 
 def render_table_profile(*, radius_leg: float, radius_ground: float, rate: float) -> str:
-    """Spell the profile of speeds and forces from a table in SI, as TOML.
+    """Return the TOML of a profile for speeds and forces imported from a table in SI.
 
     Args:
         radius_leg: Radius of the leg disc [m].

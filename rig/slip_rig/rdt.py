@@ -48,7 +48,7 @@ FORCE_UNITS: Final = {"N": 1.0, "kN": 1e3, "lb": 4.4482216152605, "klb": 4448.22
 
 
 class Request(IntEnum):
-    """What a cell can be asked.
+    """Requests to a cell.
 
     START sends each record as soon as it is read. START_BUFFERED sends as many in a datagram as the
     cell is set to (`comrdtbsiz`, 1 to 40), as soon as the last of them is read.
@@ -62,7 +62,7 @@ class Request(IntEnum):
 
 @dataclass(frozen=True)
 class CellConfiguration:
-    """What a cell says of itself.
+    """Configuration that a cell reports.
 
     Attributes:
         counts_per_force: Counts in 1 N.
@@ -74,10 +74,10 @@ class CellConfiguration:
 
 
 def encode_request(request: Request, count: int = 0) -> bytes:
-    """Make the bytes of a request.
+    """Encode a request.
 
     Args:
-        request: What is asked.
+        request: Kind of request.
         count: Records to send; 0 goes on until `STOP`.
 
     >>> encode_request(Request.START).hex()
@@ -87,7 +87,7 @@ def encode_request(request: Request, count: int = 0) -> bytes:
 
 
 def describe_status(status: int) -> str:
-    """Spell out a status word; empty where all is well.
+    """Describe a status word in words; empty without a fault.
 
     >>> describe_status(0x80020000)
     'transducer saturated'

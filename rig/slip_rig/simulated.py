@@ -93,7 +93,7 @@ class RigTruth:
 
 
 class SimulatedRig:
-    """The rig itself; devices look at it through `advance` and `speeds`.
+    """Simulated discs, contact and load cell, which devices read through `advance` and `speeds`.
 
     Args:
         law: The true slip law, in the material slip ratio.
@@ -138,7 +138,7 @@ class SimulatedRig:
         self._history: deque[RigTruth] = deque()
 
     def command(self, disc: str, omega: float) -> None:
-        """Set the speed of a disc; the rig sweeps by itself no more.
+        """Set the speed of a disc, which ends the rig's own sweep.
 
         Args:
             disc: `leg` or `ground`.
@@ -150,7 +150,7 @@ class SimulatedRig:
         self._target[disc] = omega
 
     def advance(self, now: float) -> None:
-        """Let the rig run up to a time by the clock of whoever serves it [s]."""
+        """Simulate the rig up to a time by the caller's clock [s]."""
         if self._switched_on is None:
             self._switched_on = now
         due = math.floor((now - self._switched_on) / GRID + 1e-6)
@@ -166,7 +166,7 @@ class SimulatedRig:
         return 0.0 if self._switched_on is None else now - self._switched_on
 
     def truth(self, since: float = 0.0) -> RigTruth:
-        """Return what really happened, as far back as `MEMORY`.
+        """Return the true states, as far back as `MEMORY`.
 
         Args:
             since: Earliest time of interest; a little before it is returned too [s].
@@ -211,7 +211,7 @@ class SimulatedRig:
         return truth.omega_leg[at] + noise[0], truth.omega_ground[at] + noise[1]
 
     def description(self) -> dict[str, object]:
-        """Say what is true of this rig, as plain values for a manifest."""
+        """Return the true parameters of this rig, as plain values for a manifest."""
         return {
             "law": self._law.name,
             "values": [float(np.asarray(value)) for value in self._values],
@@ -290,7 +290,7 @@ def simulated_rig(
     dynamics: RigDynamics,
     rng: np.random.Generator,
 ) -> SimulatedRig:
-    """Make a rig with one of `TWIN_LAWS`.
+    """Return a simulated rig with one of `TWIN_LAWS`.
 
     Args:
         law: Name of the law.

@@ -45,7 +45,7 @@ class SimulatedDrives:
 
     Args:
         rig: The rig they turn.
-        bus: Their own end of the bus; whoever made it closes it.
+        bus: Their own end of the bus; the caller closes it.
         profile: Nodes, gears and signs.
         watchdog: Silence after which an axis stops by itself [s].
 
@@ -84,7 +84,7 @@ class SimulatedDrives:
                 self._fail(axis, error)
 
     def poll(self, now: float) -> None:
-        """Obey what is on the bus, watch the dog, and send what is due up to a time [s]."""
+        """Execute commands, check the watchdogs, and send the frames due up to a time [s]."""
         while (message := self._bus.recv(0.0)) is not None:
             node, command = split_id(message.arbitration_id)
             if node in self._axes and message.is_remote_frame:

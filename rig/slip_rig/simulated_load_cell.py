@@ -83,7 +83,7 @@ class SimulatedLoadCell:
         self._socket = None
 
     def poll(self, now: float) -> None:
-        """Obey requests and send the records that are due up to a time [s]."""
+        """Execute requests and send the records that are due up to a time [s]."""
         self._rig.advance(now)
         due = int(self._rig.elapsed(now) * self._profile.rate + 1e-6)
         readings = np.arange(self._reading + 1, due + 1)

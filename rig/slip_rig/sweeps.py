@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
-r"""Where a recording of a rig that sweeps by itself passes from one sweep to the next.
+r"""Split the recording of a rig that sweeps by itself into sweeps, by jumps of the slip ratio.
 
-A sweep that is over begins anew at another slip ratio, and as a rule at another load. The mean slip
+After its end a sweep restarts at another slip ratio, and usually at another load. The mean slip
 ratio of the next `WINDOW` less that of the last one,
 
 .. math::
@@ -62,7 +62,7 @@ def _bin_edges(time: Array) -> NDArray[np.intp]:
 
 
 def _jumping(slip: Array) -> NDArray[np.bool_]:
-    """Tell in which bins slip is on its way to the next sweep, shape (n,)."""
+    """Return a mask of the bins in which slip jumps to the next sweep, shape (n,)."""
     w = round(WINDOW / BIN)
     jumping = np.zeros(len(slip), dtype=bool)
     if len(slip) < 2 * w:

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""Finds a robot's leg order, signs and zeros by moving one leg at a time; and its lift-off angle.
+"""Find a robot's leg order, signs and zeros by moving one leg at a time; and its lift-off angle.
 
-A person watches the robot, which stands on a block with its legs free: which leg moved, and which
-way, no stream can know.
+The robot stands on a block with its legs free. A person observes which leg moves and in which
+direction, because the stream does not contain this.
 """
 
 import math
@@ -48,7 +48,7 @@ def check_legs(
     *,
     clock: Clock = SYSTEM_CLOCK,
 ) -> LegProfile:
-    """Fix order and signs: move each channel up in turn, and ask what moved.
+    """Determine leg order and signs: move each channel up in turn and ask which leg moved.
 
     Args:
         robot: The robot, open, its legs free.
@@ -114,7 +114,7 @@ def move_channel(robot: CheckedLegs, channel: int, *, clock: Clock = SYSTEM_CLOC
 
 
 def zero_legs(robot: CheckedLegs, *, clock: Clock = SYSTEM_CLOCK) -> LegProfile:
-    """Fix zeros: what the counts are now, while a person holds every toe straight ahead.
+    """Determine zeros: the present counts, while a person holds every toe straight ahead.
 
     Args:
         robot: The robot, open.
@@ -132,7 +132,7 @@ def zero_legs(robot: CheckedLegs, *, clock: Clock = SYSTEM_CLOCK) -> LegProfile:
 
 
 def latest_counts(robot: CheckedLegs, *, clock: Clock = SYSTEM_CLOCK) -> tuple[float, ...]:
-    """Read until something comes that was not waiting, and return the last counts.
+    """Discard buffered samples, wait for a new one, and return the last counts.
 
     Args:
         robot: The robot, open.

@@ -13,7 +13,7 @@ MILLISECOND: Final = 1e-3
 
 
 class LegCommands(Protocol):
-    """What can be asked of the robot's legs."""
+    """Commands to the robot's legs."""
 
     @property
     def profile(self) -> LegProfile:
@@ -67,10 +67,10 @@ def set_point_body(profile: LegProfile) -> struct.Struct:
 def follow(
     legs: LegCommands, reference: LegReference, *, start: float, now: float, horizon: float
 ) -> bool:
-    """Command where a gait has the legs a little later.
+    """Command the leg angles of a gait at a time `horizon` ahead.
 
-    Called again and again, at most every `horizon`, it walks the robot. A leg moves less than half
-    a turn within the horizon, or it would take the wrong way round.
+    Called repeatedly, at intervals of at most `horizon`, it makes the robot walk. A leg must move
+    less than half a turn within the horizon, or it would turn in the wrong direction.
 
     Args:
         legs: The robot.

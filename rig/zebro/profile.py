@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Profile of a robot's leg stream: how its bytes are read and its counts become leg angles."""
+"""Profile of a robot's leg stream: frame layout, and conversion of counts to leg angles."""
 
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
@@ -22,7 +22,7 @@ Order: TypeAlias = Literal["little", "big"]
 LINK_OF: dict[str, str] = {
     "packet": "serial", "dump": "serial", "poll": "serial", "can": "can", "table": "table",
 }  # fmt: skip
-"""Link that each layout needs; `table` is no device but a file that somebody else wrote."""
+"""Link that each layout needs; `table` is not a device but an imported file."""
 DUMP_REGISTERS = 256
 
 
@@ -103,7 +103,7 @@ class LegProfile:
     def quantisation(self) -> float:
         """Half a count as an angle: the error is uniform between minus and plus this [rad].
 
-        0 for a table: its numbers have fractions, and nobody said what they were rounded to.
+        0 for a table: its numbers have fractions, and their rounding is unknown.
         """
         return 0.0 if self.layout == "table" else float(np.pi / self.counts_per_revolution)
 
@@ -185,7 +185,7 @@ def save_leg_profile(profile: LegProfile, path: Path) -> None:
 
 
 def render_leg_profile(profile: LegProfile) -> str:
-    """Spell a profile as the TOML that `load_leg_profile` reads."""
+    """Return a profile as the TOML that `load_leg_profile` reads."""
     return tomlkit.dumps(_as_document(profile))
 
 

@@ -26,7 +26,7 @@ QUIET_AFTER_FAILURE: Final = 0.1
 
 
 class _RegisterStream(LinkedStream[ByteLink]):
-    """What both forms share: a link, a profile and counters."""
+    """Base of both layouts: link, profile and counters."""
 
     def __init__(self, link: ByteLink, *, profile: LegProfile, name: str, clock: Clock) -> None:
         super().__init__(link)
@@ -115,8 +115,8 @@ class DumpLegs(_RegisterStream):
 class PolledLegs(_RegisterStream):
     """Stream of the layout `poll`: read command, first register, number of registers; their values.
 
-    Every reading is asked for, at the profile's rate. Bytes that nobody asked for are thrown away
-    before each request, so that a late answer is never taken for the next one.
+    Readings are requested at the profile's rate. Buffered bytes are discarded before each request,
+    so that a late answer is never taken for the next one.
 
     Args:
         link: Bytes to and from the bridge.
@@ -188,7 +188,7 @@ class PolledLegs(_RegisterStream):
         return self._write(self.profile.registers.set_points[0], data)
 
     def stop(self) -> bool:
-        """Stop every leg where it is; return whether the link took the command."""
+        """Stop every leg at its present angle; return whether the link took the command."""
         return self._write(self.profile.registers.stop, b"\x01")
 
     def _write(self, first: int, data: bytes) -> bool:

@@ -194,7 +194,7 @@ class CanRobot:
 
     Args:
         legs: The legs.
-        bus: Its own end of the bus; whoever made it closes it.
+        bus: Its own end of the bus; the caller closes it.
         faults: What goes wrong; only `drop`, `duplicate` and `delay` mean anything for frames that
             the bus itself guards.
         rng: Random generator of the transmission errors.
@@ -216,7 +216,7 @@ class CanRobot:
         self._held: list[can.Message] = []
 
     def poll(self, now: float) -> None:
-        """Obey what is on the bus and send what is due up to a time [s]."""
+        """Execute commands from the bus and send the frames that are due up to a time [s]."""
         while (message := self._bus.recv(0.0)) is not None:
             self._obey(message, now)
         for frame in self.legs.frames(now):

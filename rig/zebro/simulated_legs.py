@@ -19,7 +19,7 @@ FASTER: Final = 1.2
 
 @dataclass(frozen=True)
 class RobotImperfections:
-    """How the robot departs from its gait; the defaults follow it exactly.
+    """Deviations of the robot from its gait; the defaults follow it exactly.
 
     Attributes:
         jitter: Standard deviation of when a frame is taken, held below half a frame [s].
@@ -50,7 +50,7 @@ EXACT_ROBOT = RobotImperfections()
 
 @dataclass(frozen=True)
 class Frame:
-    """What the robot reports at one instant.
+    """Leg counts that the robot reports at one instant.
 
     Attributes:
         number: Number of the frame, from 0.
@@ -98,7 +98,7 @@ class SimulatedLegs:
         """Report everything up to a time, one frame every 1/rate.
 
         Args:
-            now: Time by the clock of whoever serves the twin [s].
+            now: Time by the caller's clock [s].
 
         Returns:
             The frames since the last call.
@@ -110,7 +110,7 @@ class SimulatedLegs:
         return frames
 
     def restart(self) -> None:
-        """Begin anew, as after a loss of power: numbers and time from 0."""
+        """Restart, as after a loss of power: numbers and time begin at 0."""
         self._switched_on = None
         self._number = 0
         self._behind = self._paused_until = 0.0
@@ -133,7 +133,7 @@ class SimulatedLegs:
         Args:
             counts: Targets in the order of the wire.
             duration: How long the motion takes [s].
-            now: Time by the clock of whoever serves the twin [s].
+            now: Time by the caller's clock [s].
         """
         time = self._since_start(now)
         origin = self.angles(time)
@@ -167,7 +167,7 @@ class SimulatedLegs:
         return Frame(number, device_time, time, encode_counts(self.profile, by_leg))
 
     def _pause(self, time: float) -> None:
-        """Now and then fall behind the gait when a leg is about to begin its flight."""
+        """Delay the gait at random when a leg is about to begin its swing."""
         if self._imperfections.pause_probability == 0:
             return
         if time < self._paused_until:

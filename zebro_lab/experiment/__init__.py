@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: MIT
-"""Experiments of the slip rig on disk: emergency latch, finished points, keys of the terminal."""
+"""Experiments of the slip rig: run folders, journal, emergency latch, finished points, terminal."""

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Fresh check points and a calibration in, the drift of the rig out."""
+"""Compare new check points with a calibration to detect drift of the rig."""
 
 import logging
 from collections.abc import Sequence
@@ -19,12 +19,12 @@ _LOG = logging.getLogger(__name__)
 STEP: Final = 1e-4
 BATCHES: Final = 8
 SUSPICIOUS: Final = 3.0
-"""So many standard deviations are a drift."""
+"""Deviation that counts as drift [standard deviations]."""
 
 
 @dataclass(frozen=True)
 class CheckedRun:
-    """A run beside the calibration.
+    """Comparison of a run with the calibration.
 
     Attributes:
         name: Name of the run.
@@ -32,7 +32,7 @@ class CheckedRun:
         load: Mean normal force [N].
         traction: Mean measured traction [N].
         expected: Mean traction of the calibrated curve at the same slips and loads [N].
-        sd: Standard deviation of the difference, as far as it is known [N].
+        sd: Standard deviation of the difference, from the known contributions [N].
     """
 
     name: str
@@ -44,12 +44,12 @@ class CheckedRun:
 
     @property
     def deviation(self) -> float:
-        """Difference over its standard deviation [-]."""
+        """Standardised difference: difference over its standard deviation [-]."""
         return (self.traction - self.expected) / self.sd
 
     @property
     def drifted(self) -> bool:
-        """Return whether the rig is no longer the one that was calibrated."""
+        """Return whether the rig has drifted from the calibration."""
         return abs(self.deviation) > SUSPICIOUS
 
 
@@ -64,7 +64,7 @@ def check_runs(
         zero_sd: Spread of the load cell's zero from run to run [N].
 
     Returns:
-        Each run beside the curve.
+        Comparison of each run with the curve.
 
     Raises:
         ZebroLabError: Data or calibration cannot be read.

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""Keeps an experiment: a run folder a point, and the journal.
+"""Store an experiment: one run folder for each point, and the journal.
 
-A thread of its own writes, so that no disk ever holds up the thread that feeds the watchdogs. It
-also looks after the disk: room, and that the folder is still there.
+A separate thread writes, so that the disk never blocks the thread that feeds the watchdogs. It also
+checks the free disk space and that the folder still exists.
 """
 
 import queue
@@ -27,32 +27,32 @@ from zebro_lab.mcap.stream_views import StreamView
 from zebro_lab.recording.recorder import RunDescription, RunRecorder
 
 MOST_WAITING: Final = 20_000
-"""Jobs that may wait for the disk: more than a minute of an experiment."""
+"""Capacity of the queue of write jobs: more than a minute of an experiment."""
 JOIN_LIMIT: Final = 30.0
 DISK_PERIOD: Final = 0.1
-"""Between two looks at the disk, its room and the folder [s]."""
+"""Interval between checks of free disk space and folder [s]."""
 LONGEST_JOB: Final = 10.0
-"""A disk that takes so long for one write has failed [s]."""
+"""Timeout of one write, after which the disk counts as failed [s]."""
 
 
 @dataclass(frozen=True)
 class _Job:
-    """Something to be written."""
+    """Queued write job."""
 
     write: Callable[[], None]
     done: threading.Event = field(default_factory=threading.Event)
 
 
 class ExperimentFolder:
-    """Satisfies `rig.experiment.sink.RunSink`; a context manager.
+    """Recorder of an experiment's runs; satisfies `RunSink`; a context manager.
 
     Args:
         data: Folder of the experiment.
         plan: Fingerprint of the plan.
-        description: What all its runs have in common.
-        views: Makes new views of the streams for a run's log.
+        description: Description that all its runs share.
+        views: Returns new converters of the streams to display messages of a run's log.
         clock: Host time.
-        in_step: Wait for the disk at both ends of every run: for a twin whose time passes at once.
+        in_step: Wait for the disk at both ends of every run, for a twin with simulated time.
     """
 
     def __init__(
@@ -85,7 +85,7 @@ class ExperimentFolder:
         self._thread = threading.Thread(target=self._work, daemon=True, name="writer")
 
     def open_run(self, start: RunStart) -> None:
-        """Begin a run folder; see `RunSink.open_run`."""
+        """Open a run folder; see `RunSink.open_run`."""
         label = start.point.label + (f" attempt {start.attempt}" if start.attempt > 1 else "")
         zero = {"zero_normal": start.zero.normal, "zero_traction": start.zero.traction}
         common = self._description
@@ -149,10 +149,10 @@ class ExperimentFolder:
             self._require_well()
 
     def require_room(self, least: float) -> None:
-        """Raise SinkFailed where the writer has failed; it looks at the disk itself.
+        """Raise SinkFailed where the writer has failed, which itself checks the disk space.
 
         Args:
-            least: Room that must be left [bytes].
+            least: Least free space [bytes].
         """
         self._least_room = least
         self._require_well()
@@ -183,7 +183,7 @@ class ExperimentFolder:
         self._thread.join(JOIN_LIMIT)
         if self._thread.is_alive():
             self._failure = f"the disk of {self._data} did not answer for {JOIN_LIMIT:g} s"
-        else:  # it may have ended by itself: what it left, the end above all, is written here
+        else:  # the thread may have ended early: the remaining jobs are done here
             while not self._jobs.empty():
                 self._do(self._jobs.get_nowait())
         self._journal.__exit__(kind, error, trace)
@@ -196,7 +196,7 @@ class ExperimentFolder:
         )
 
     def _enter(self, description: RunDescription) -> RunRecorder:
-        """Begin a run folder under a name that is free: a point may come again within a second."""
+        """Open a run folder under an unused name: a point may be repeated within a second."""
         again = 1
         while True:
             recorder = RunRecorder(
@@ -217,11 +217,11 @@ class ExperimentFolder:
         kept = recorder.failure is None
         accepted = verdict is not None and verdict.accepted and kept
         why = "" if accepted else _why_not(verdict, reason, recorder.failure)
-        # One step decides: the end record says both what the run is worth and that it counts.
+        # Atomic: the end record holds both the verdict and whether the run counts.
         recorder.judge(excluded=why, point=self._point(start, accepted=accepted))
         recorder.end(reason)
         recorder.__exit__(None, None, None)
-        if recorder.failure is not None:  # the end record says so, too, and leaves the run out
+        if recorder.failure is not None:  # the end record also excludes the run
             accepted, why = False, recorder.failure
         judged: dict[str, Any] = {} if verdict is None else {
             "slip": verdict.slip, "friction": verdict.friction, "normal": verdict.normal_force
@@ -255,12 +255,12 @@ class ExperimentFolder:
             raise SinkFailed(f"data cannot be kept: {self._failure}")
 
     def _fail(self, error: BaseException) -> None:
-        """Keep the first failure, for the acquiring thread, which then stops the rig."""
+        """Store the first failure for the acquiring thread, which then stops the rig."""
         if self._failure is None:
             self._failure = " ".join(f"{type(error).__name__}: {error}".split())
 
     def _work(self) -> None:
-        """Write what comes. A job that fails ends no other: the end of a run is tried as well."""
+        """Carry out queued jobs; after a failure the later ones, such as a run's end, still run."""
         while not (self._ending.is_set() and self._jobs.empty()):
             try:
                 job = self._jobs.get(timeout=DISK_PERIOD)
@@ -280,7 +280,7 @@ class ExperimentFolder:
             job.done.set()
 
     def _look_after_disk(self) -> None:
-        """Raise SinkFailed where the folder is gone, or too little room is left."""
+        """Raise SinkFailed where the folder is gone or too little disk space is free."""
         now = time.monotonic()
         if now - self._looked < DISK_PERIOD:
             return
@@ -298,7 +298,7 @@ class ExperimentFolder:
 
 
 def _identity(folder: Path) -> tuple[int, int] | None:
-    """Return what tells a folder from another of the same name; None where there is none."""
+    """Return device and inode, which identify a folder; None where there is no folder."""
     try:
         found = folder.stat()
     except FileNotFoundError:
@@ -307,7 +307,7 @@ def _identity(folder: Path) -> tuple[int, int] | None:
 
 
 def _why_not(verdict: PointVerdict | None, reason: str, failure: str | None) -> str:
-    """Say why a run does not count."""
+    """Return why a run is left out of calibrations."""
     if failure is not None:
         return failure
     return reason if verdict is None else "; ".join(verdict.problems)

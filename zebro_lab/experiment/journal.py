@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""`experiment.jsonl`: what an experiment did, a line an event.
+"""Read and append to `experiment.jsonl`, the journal of an experiment with one event per line.
 
-The journal is a record for people. Which points are finished is decided by the end records of the
-run folders (`zebro_lab.experiment.points`); an emergency stop is latched by a file of its own as
-well (`zebro_lab.experiment.latch`).
+The journal is a record for people. The end records of the run folders decide which points are
+finished (`zebro_lab.experiment.points`). An emergency stop is also latched by a separate file
+(`zebro_lab.experiment.latch`).
 """
 
 import contextlib
@@ -24,22 +24,22 @@ from zebro_lab.files.provenance import fingerprint
 JOURNAL_FILE: Final = "experiment.jsonl"
 RESERVE_FILE: Final = ".experiment.reserve"
 RESERVE: Final = 1 << 16
-"""Space that is given back when the disk is full, for the end of a run [bytes]."""
+"""Reserved space that is freed when the disk is full, for the end of a run [bytes]."""
 LARGEST: Final = 256 << 20
-"""A longer file is no journal [bytes]."""
+"""Largest size of a journal [bytes]."""
 EMERGENCY: Final = "emergency stop"
-"""How the reason of an emergency stop begins."""
+"""Prefix of the reason of an emergency stop."""
 
 
 @dataclass(frozen=True)
 class Journal:
-    """What a journal says.
+    """Content of a journal.
 
     Attributes:
         plan: Fingerprint of the plan.
         accepted: Names of the run folders whose point was accepted, each with the point's number.
         folders: Names of the run folders that were closed.
-        latched: Reason of an emergency stop that nobody has reset; None where there is none.
+        latched: Reason of an emergency stop that has not been reset; None where there is none.
     """
 
     plan: str
@@ -54,10 +54,10 @@ def plan_fingerprint(text: str) -> str:
 
 
 class JournalWriter:
-    """Appends events; each is on the disk, whole, before the next is taken.
+    """Writer of a journal; each event is flushed to the disk before the next one is written.
 
     Args:
-        data: Folder of the experiment; made when missing.
+        data: Folder of the experiment; created when missing.
     """
 
     def __init__(self, data: Path) -> None:
@@ -77,18 +77,18 @@ class JournalWriter:
             self._reserve.unlink(missing_ok=True)
 
     def append(self, kind: str, text: str, **more: Any) -> None:
-        """Append an event; a full disk takes it from the space that is kept for that.
+        """Append an event; on a full disk the reserved space is used.
 
         Args:
-            kind: What kind of event.
-            text: What happened.
+            kind: Kind of event.
+            text: Description of the event.
             more: Further entries of the line.
 
         Raises:
-            OSError: The disk takes nothing; the journal is as it was.
+            OSError: The write failed; the journal is unchanged.
         """
         entry = {"time": datetime.now(UTC).isoformat(), "kind": kind, "text": text, **more}
-        # Escapes alone: no character of a text ends a line, and none cannot be encoded.
+        # ASCII escapes: no character of a text can end a line or fail to be encoded.
         line = json.dumps(entry).encode("ascii") + b"\n"
         try:
             self._write(line)
@@ -99,7 +99,7 @@ class JournalWriter:
             self._write(line)
 
     def repair(self) -> None:
-        """Take a last line that a crash cut short away, and write down what it held."""
+        """Remove a last line truncated by a crash, and log its content as an event."""
         content = read_bytes(self._file, most=LARGEST)
         whole, _, cut = content.rpartition(b"\n")
         if not cut:
@@ -128,12 +128,12 @@ def _write_all(handle: int, data: bytes) -> None:
 
 
 def read_journal(data: Path) -> Journal:
-    """Read a journal; a last line that a crash cut short is passed over.
+    """Read a journal; a last line truncated by a crash is ignored.
 
-    Another line that cannot be read may have told of an emergency stop, and counts as one.
+    Any other unreadable line may have held an emergency stop, and counts as one.
 
     Raises:
-        NotFound: There is none.
+        NotFound: There is no journal.
         DataError: It cannot be read, or does not begin with a plan.
     """
     file = data / JOURNAL_FILE
@@ -162,19 +162,19 @@ def read_journal(data: Path) -> Journal:
 
 
 def begin_or_resume(data: Path, plan_text: str, *, resume: bool, reset: bool) -> Journal:
-    """Begin a journal, or go on with one.
+    """Start the journal of an experiment, or resume one.
 
     Args:
         data: Folder of the experiment; its lock is held.
         plan_text: Text of the plan.
-        resume: Go on with what is there.
+        resume: Resume the experiment in the folder.
         reset: Reset an emergency stop that is latched.
 
     Returns:
-        What the journal says.
+        Content of the journal.
 
     Raises:
-        AlreadyExists: There is an experiment, and it is not to be gone on with.
+        AlreadyExists: There is an experiment, and `resume` is not set.
         SettingsError: It is of another plan, or an emergency stop is latched.
     """
     writer, latch = JournalWriter(data), EmergencyLatch(data)
@@ -207,7 +207,7 @@ def begin_or_resume(data: Path, plan_text: str, *, resume: bool, reset: bool) ->
 
 
 def _begun(data: Path, plan_text: str) -> Journal:
-    """Read the journal of a plan that was begun; refuse that of another."""
+    """Read the journal and check that it belongs to the plan."""
     journal = read_journal(data)
     if journal.plan != plan_fingerprint(plan_text):
         raise SettingsError(
@@ -218,7 +218,7 @@ def _begun(data: Path, plan_text: str) -> Journal:
 
 
 def _entries(file: Path) -> Iterator[dict[str, Any]]:
-    """Yield the entries of a journal; a whole line that is none is one of kind `damaged`."""
+    """Yield the entries of a journal; an invalid complete line gives one of kind `damaged`."""
     advice = "no experiment to resume; run without --resume"
     content = read_bytes(file, most=LARGEST, advice=advice)
     for number, line in enumerate(content.split(b"\n")[:-1], start=1):

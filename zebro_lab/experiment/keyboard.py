@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Reads the keys that command a run, as bytes: nothing that is typed or pasted ends the reading."""
+"""Read keyboard commands of a run from a terminal as bytes, robust against any input."""
 
 import os
 import select
@@ -11,13 +11,13 @@ from rig.experiment.control import Control
 KEYS: Final = {"p": "pause", "r": "resume", "": "confirm", "s": "soft", "ss": "safe",
                "e": "emergency"}  # fmt: skip
 LONGEST_LINE: Final = 4096
-"""What a line has beyond this is dropped: a terminal hands on no longer one [bytes]."""
+"""Length to which a line is truncated: terminals pass no longer one [bytes]."""
 WAIT: Final = 200
-"""Between two looks whether the run is over [ms]."""
+"""Polling interval for the end of the run [ms]."""
 
 
 class Keyboard:
-    """The keys of a terminal, each line a command.
+    """Keyboard commands of a terminal, one per line.
 
     Args:
         handle: File descriptor of the terminal.
@@ -31,14 +31,14 @@ class Keyboard:
         self._over = False
 
     def close(self) -> None:
-        """Read no more; the terminal stays open."""
+        """Stop reading; the terminal stays open."""
         self._over = True
 
     def listen(self) -> None:
-        """Obey lines until closed.
+        """Read and execute commands until closed.
 
         Raises:
-            LinkError: The terminal is gone: nobody can stop the run by its keys any more.
+            LinkError: The terminal is gone, so that its keys can no longer stop the run.
             OSError: It cannot be read.
         """
         if not hasattr(select, "poll"):  # Windows, whose consoles cannot be waited for
@@ -48,14 +48,14 @@ class Keyboard:
         terminal.register(self._handle, select.POLLIN)
         while not self._over:
             for _, found in terminal.poll(WAIT):
-                # What was typed before the terminal went away is read first.
+                # Input typed before the terminal disappeared is read first.
                 data = os.read(self._handle, LONGEST_LINE) if found & select.POLLIN else b""
                 if not data and found & ~select.POLLIN:  # hung up, or no file any more
                     raise LinkError("the terminal is gone")
                 self.take(data)
 
     def take(self, data: bytes) -> None:
-        """Take bytes as they were typed; an end of input in the middle, Ctrl-D, is passed over."""
+        """Add typed bytes and execute complete lines; an end of input (Ctrl-D) is ignored."""
         *lines, rest = (self._line + data).split(b"\n")
         self._line = rest[:LONGEST_LINE]
         for line in lines:
@@ -65,5 +65,5 @@ class Keyboard:
         key = line.decode("utf-8", "backslashreplace").strip()
         try:
             self._control.obey(KEYS.get(key, key), who="keyboard")
-        except ProtocolError:  # a slip of the finger commands nothing
+        except ProtocolError:  # a mistyped command has no effect
             return

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""The emergency latch of an experiment on disk: a file whose space is taken beforehand.
+"""Latch of an emergency stop on disk: a file with preallocated space.
 
-It is written in place, without new space, so that a full disk keeps no emergency stop from being
-latched; and by the thread that stops the rig, so that no queue does. A file of blanks is open;
-whatever else it holds, or that it cannot be read, counts as latched.
+It is written in place, so that it also works on a full disk, and by the thread that stops the rig,
+without a queue. A file of blanks means not latched; any other content, or an unreadable file,
+counts as latched.
 """
 
 import errno
@@ -17,11 +17,11 @@ LATCH_FILE: Final = "emergency-latch"
 SIZE: Final = 4096
 """Length of the file [bytes]: a block of most disks, and longer than any reason."""
 _NO_WAIT: Final = getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_NOFOLLOW", 0)
-"""A FIFO in its place holds no emergency stop up; a link to another file is refused."""
+"""Flags so that a FIFO in its place does not block, and a symbolic link is rejected."""
 
 
 class EmergencyLatch:
-    """The latch of one experiment.
+    """Emergency latch of one experiment.
 
     Args:
         data: Folder of the experiment.
@@ -32,7 +32,7 @@ class EmergencyLatch:
 
     @property
     def reason(self) -> str | None:
-        """Why it is latched; None where it is open, or was never prepared."""
+        """Reason of the latch; None where it is not latched, or was never prepared."""
         try:
             handle = self._open(os.O_RDONLY)
         except FileNotFoundError:
@@ -49,10 +49,10 @@ class EmergencyLatch:
             return f"{self._file.name} is damaged"
 
     def prepare(self) -> None:
-        """Make the file, open, unless it is there; takes its space on the disk.
+        """Create the file, not latched, unless it exists; allocates its disk space.
 
         Raises:
-            OSError: It cannot be made, or something else is in its place.
+            OSError: It cannot be created, or something else is in its place.
         """
         try:
             os.close(self._open(os.O_WRONLY))
@@ -60,24 +60,24 @@ class EmergencyLatch:
             self._write(b"", os.O_CREAT | os.O_EXCL)
 
     def latch(self, reason: str) -> None:
-        """Latch, without taking any space.
+        """Latch an emergency stop without allocating disk space.
 
         Raises:
-            OSError: The file is gone, or the disk takes nothing.
+            OSError: The file is gone, or the write failed.
         """
         text = json.dumps(reason[: SIZE // 16])  # an escaped character takes up to twelve bytes
         self._write(text.encode("ascii"), 0)
 
     def reset(self) -> None:
-        """Open the latch: only ever at a person's explicit wish.
+        """Reset the latch; only on a person's explicit request.
 
         Raises:
-            OSError: The disk takes nothing.
+            OSError: The write failed.
         """
         self._write(b"", os.O_CREAT)
 
     def _open(self, flags: int) -> int:
-        """Open the file; what is no regular file is refused without waiting for it.
+        """Open the file without blocking, and check that it is a regular file.
 
         Raises:
             OSError: It cannot be opened, or is no regular file.

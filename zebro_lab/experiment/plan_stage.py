@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A plan in, what will happen out; nothing moves."""
+"""Check a plan and list its steps and duration, without motion."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -14,13 +14,13 @@ from zebro_lab.experiment.rig_at_hand import TWIN_PROFILE
 
 @dataclass(frozen=True)
 class Foreseen:
-    """What a plan will do.
+    """Steps and estimated duration of a plan.
 
     Attributes:
         plan: The plan.
         profile: The rig.
         steps: Its steps in order.
-        estimate: How long they take.
+        estimate: Their estimated duration.
     """
 
     plan: Plan
@@ -38,7 +38,7 @@ def foresee(file: Path, rig: str) -> Foreseen:
 
     Raises:
         ZebroLabError: The plan cannot be read.
-        LimitExceeded: It would break a limit.
+        LimitExceeded: It would exceed a limit.
     """
     plan = read_plan(file)
     name = resolve(rig, default=TWIN_PROFILE)[0] if "@" in rig or rig == "sim" else rig

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""Which points of an experiment are finished: the end records of its run folders decide.
+"""Find the finished points of an experiment from the end records of its run folders.
 
-A run is left out of every calibration from its first moment. Its end record, written in one step
-(`run.json`, replaced whole), says what its point is worth and, where it is good, counts it in. So a
-run that a crash cut short, at whatever instant, is either finished and counted or neither.
+A run is excluded from calibrations from its start. Its end record (`run.json`, replaced atomically)
+holds the verdict on its point and includes an accepted one. A run that a crash interrupts is
+therefore either finished and included, or neither.
 """
 
 import re
@@ -18,17 +18,17 @@ from zebro_lab.runs.folder import LOG_FILE, exclude_run, require_recorded, run_s
 from zebro_lab.runs.manifest import MANIFEST_FILE, RECORDING, RunManifest, read_manifest
 
 UNJUDGED: Final = "it ended before it was judged; its point is measured again"
-"""Why a run is left out until its end record says what it is worth."""
+"""Reason for which a run is excluded until its end record holds a verdict."""
 _POINT_LABEL: Final = re.compile(r"(point|check)-\d{4} ")
 
 
 @dataclass(frozen=True)
 class Finished:
-    """What earlier runs of a plan have left.
+    """Finished points of earlier runs of a plan.
 
     Attributes:
         numbers: Numbers of the points that are finished.
-        notices: What a person should know, one line each.
+        notices: Messages to a person, one line each.
     """
 
     numbers: frozenset[int]
@@ -36,13 +36,13 @@ class Finished:
 
 
 def point_record(plan: str, *, number: int, attempt: int, accepted: bool) -> dict[str, Any]:
-    """Make the `point` of an end record.
+    """Return the `point` entry of an end record.
 
     Args:
         plan: Fingerprint of the plan.
         number: Number of the point in it.
-        attempt: Which time it was tried, from 1.
-        accepted: Whether it is good.
+        attempt: Number of the attempt, from 1.
+        accepted: Whether the point passed its quality checks.
     """
     return {"plan": plan, "number": number, "attempt": attempt, "accepted": accepted}
 
@@ -111,7 +111,7 @@ def _is_cut_short(run: Path, manifest: RunManifest) -> bool:
 
 
 def _lost_log(run: Path, manifest: RunManifest) -> str | None:
-    """Say what is wrong with the log of a finished run; None where it is what was recorded."""
+    """Return what is wrong with the log of a finished run; None where it is intact."""
     log = run / LOG_FILE
     if not log.is_file():  # nor is a FIFO one, which would be waited for
         return f"{run.name}/{LOG_FILE} is missing"

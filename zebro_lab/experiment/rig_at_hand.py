@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The rig that a command line names, real or simulated, ready for an experiment."""
+"""Open the rig that a command line names, real or simulated, for an experiment."""
 
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
@@ -32,7 +32,7 @@ from zebro_lab.runs.manifest import RIG
 
 TWIN_PROFILE: Final = "rig-board-serial"
 FAST_PERIOD: Final = 0.02
-"""Between two looks at a twin whose time passes at once: ten times within its watchdog [s]."""
+"""Polling period of a twin with simulated time: a tenth of its watchdog [s]."""
 
 
 @dataclass(frozen=True)
@@ -43,9 +43,9 @@ class RigAtHand:
         bench: The bench.
         profiles: Name and text of its profile, by the name that a run keeps it under.
         clock: Host time.
-        period: Between two looks [s].
+        period: Polling period [s].
         twin: The simulated rig; None for a real one.
-        fast: Whether its time passes at once.
+        fast: Whether it runs in simulated time instead of real time.
     """
 
     bench: Bench
@@ -63,7 +63,7 @@ class RigAtHand:
         return {"radius_leg": profile.radius_leg, "radius_ground": profile.radius_ground}
 
     def views(self) -> dict[str, StreamView]:
-        """Make new views of its streams for a log."""
+        """Return new converters of its streams to display messages of a log."""
         return rig_views(self.bench.profile)
 
     def load_setter(self, setting: LoadSetting, control: Control) -> LoadSetter:
@@ -110,8 +110,8 @@ def rig_at_hand(
         The rig.
 
     Raises:
-        RigError: The address or the profile is not right.
-        SettingsError: It cannot be fast.
+        RigError: The address or the profile is invalid.
+        SettingsError: The rig cannot run in simulated time.
     """
     name, port = resolve(address, default=TWIN_PROFILE)
     profile = load_rig_profile(name)

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""What is seen of an experiment: state, progress, prompts and the slip curve; and its keys.
+"""Terminal display of an experiment: state, progress, prompts, slip curve; and its keys.
 
-The acquiring thread only leaves word here. A thread of its own draws, so that a terminal that is
-stopped or slow keeps no guard waiting.
+The acquiring thread only stores values here. A separate thread draws, so that a stopped or slow
+terminal does not delay the guards.
 """
 
 import sys
@@ -30,7 +30,7 @@ from zebro_lab.terminal.messages import plain
 WIDTH, HEIGHT = 64, 14
 MARKS = "ox+*#@%&"
 PERIOD: Final = 0.125
-"""Between two pictures [s]."""
+"""Refresh interval of the display [s]."""
 LAST_PICTURE: Final = 1.0
 """How long a terminal may take for the last lines; a stopped one shows them when it goes on [s]."""
 _STYLES: Final = {
@@ -148,7 +148,7 @@ class ExperimentScreen:
         """Draw what has changed, again and again, until closed.
 
         Raises:
-            BrokenPipeError: Nobody reads the output any more.
+            BrokenPipeError: The output pipe is closed.
         """
         try:
             while not self._over.wait(PERIOD):
@@ -168,7 +168,7 @@ class ExperimentScreen:
             self._live.update(self._shown.render(), refresh=True)
 
     def close(self) -> None:
-        """Draw no more but what is left."""
+        """Draw the remaining changes and end the display."""
         self._over.set()
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A plan in, run folders and a journal out."""
+"""Run an experiment from a plan file into run folders and a journal."""
 
 import json
 import os
@@ -34,7 +34,7 @@ LOCK_FILE: Final = ".experiment.lock"
 
 @dataclass(frozen=True)
 class RigRunRequest:
-    """What is asked of an experiment.
+    """Settings of an experiment.
 
     Attributes:
         plan: The plan's file.
@@ -60,11 +60,11 @@ def run_experiment(request: RigRunRequest, watcher: ExperimentWatcher, control: 
 
     Args:
         request: What is asked.
-        watcher: Who follows.
+        watcher: Progress display.
         control: Mailbox for pauses, notes and stops; signals and the control socket feed it.
 
     Returns:
-        How it ended.
+        The outcome of the run.
 
     Raises:
         ZebroLabError: The plan, the folder or the request is at fault; nothing moved.
@@ -124,7 +124,7 @@ def _description(plan: Plan, rig: RigAtHand) -> RunDescription:
 
 
 def _require_no_points(data: Path) -> None:
-    """Refuse to measure over points whose journal is gone: each would count twice."""
+    """Check that no points exist without a journal: repeated, each would count twice."""
     if not (data / JOURNAL_FILE).exists() and holds_points(data):
         raise AlreadyExists(
             f"{data} holds points of an experiment without its {JOURNAL_FILE}; restore that, or "

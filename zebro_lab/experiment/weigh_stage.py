@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Known weights in, the gain prior of a fit out."""
+"""Measure the gain of the load cell with known weights, as the gain prior of a fit."""
 
 import math
 from collections.abc import Callable, Sequence
@@ -22,7 +22,7 @@ STANDARD_GRAVITY: Final = 9.80665
 
 @dataclass(frozen=True)
 class WeighRequest:
-    """What is asked of a check with weights.
+    """Settings of a check of the load cell with known weights.
 
     Attributes:
         masses: Known masses [kg].
@@ -57,11 +57,11 @@ def _require_finite(request: WeighRequest) -> None:
 def weigh_masses(
     request: WeighRequest, prompt: Callable[[str, float], None], control: Control
 ) -> tuple[Weighing, GainCheck, Path | None]:
-    """Check the load cell; write what the fit is to take its gain for.
+    """Check the load cell with known weights, and write the gain prior for the fit.
 
     Args:
         request: What is asked.
-        prompt: Told what the operator is to do, and the normal force now [N].
+        prompt: Called with the instruction for the operator and the present normal force [N].
         control: Where the operator confirms.
 
     Returns:
@@ -84,7 +84,7 @@ def weigh_masses(
             require_within(
                 force, rig.bench.profile.limits.normal_force, quantity="weight", unit="N"
             )
-        # Any reading may be right: whether it is, is the question.
+        # No tolerance: the check is to find the error of the reading.
         load = (
             HandShaft(control, tolerance=float("inf"))
             if rig.twin is None

@@ -382,8 +382,8 @@ def track_photos(
         times: CSV with columns `photo` and `t_s`; None to take the photographs' own times.
         start: Moment from which time is counted, with its time zone; None for the first
             photograph.
-        annotations: What a person said about the photographs.
-        without_marker: Track the robot by its own picture, annotated in one photograph.
+        annotations: File of annotations that a person made in the photographs.
+        without_marker: Whether to track the robot by a template, annotated in one photograph.
         merged: How the exposures of a composite picture were merged: "pasted", "darkest" or
             "mean".
 
@@ -406,13 +406,13 @@ def validate_walks(
     time_offset: float | None = 0.0,
     seed: int = 1,
 ) -> Validated:
-    """Judge predictions against tracks, as `zebro-lab validate` does.
+    """Compute errors of predictions against tracks, as `zebro-lab validate` does.
 
     Args:
         walks: Run folders with a prediction and a track, or pairs of the two.
         out: Validation folder to write; None to keep nothing.
-        anchor: Start each path from the first tracked pose, which is then not scored.
-        time_offset: Added to the tracks' times; None to find it in the motion [s].
+        anchor: Whether each path starts from the first tracked pose, which is then not scored.
+        time_offset: Clock offset added to the tracks' times; None to estimate it [s].
         seed: Seed of all random numbers.
 
     Raises:
@@ -431,7 +431,7 @@ def validate_walks(
 def write_report(
     data: PathLike, *, out: PathLike, calibration: PathLike | None = None, title: str | None = None
 ) -> Path:
-    """Write the finished folders of a run, or of several, on one HTML page.
+    """Write an HTML report of one or several runs from their result folders.
 
     Args:
         data: A run folder, or a folder of them.
@@ -472,7 +472,7 @@ def open_devices(
         zebro: The robot: "PROFILE@PORT", "PROFILE@sim" or "sim".
         imus: Inertial measurement units, each in the same way.
         rig: The slip rig, in the same way.
-        seed: Seed of what simulated devices draw.
+        seed: Seed of the random numbers of simulated devices.
 
     Yields:
         The devices, their drivers connected.

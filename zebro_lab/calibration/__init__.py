@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: MIT
-"""Calibrate a slip law from rig data; the calibration folder and what reads it."""
+"""Calibrate a slip law from rig data; read and write the calibration folder."""

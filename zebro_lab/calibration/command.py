@@ -133,7 +133,7 @@ def calibrate_command(fit_walks: FitWalks) -> Callable[..., None]:
         robot: Robot = None,
         estimate_offset: EstimateOffset = False,
     ) -> None:
-        """Fit a slip curve to rig logs by Bayesian inference and say how far to trust it."""
+        """Fit a slip curve to rig data by Bayesian inference and report whether to trust it."""
         from zebro_lab.calibration.stage import CalibrationRequest
 
         if not data:

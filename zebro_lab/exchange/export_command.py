@@ -30,7 +30,7 @@ Out = Annotated[
 
 
 def export(run: RunFolder, out: Out, to: To = ExportFormat.CSV) -> None:
-    """Write a run as tables: raw samples, leg angles, the columns of a calibration; or as MCAP."""
+    """Export a run as tables (raw samples, leg angles, calibration columns) or as MCAP."""
     if to is ExportFormat.MCAP:
         from zebro_lab.exchange.export_mcap_stage import export_mcap
 

@@ -111,7 +111,7 @@ def export_mcap(run: Path, *, out: Path) -> Exported:
         out: File to write.
 
     Raises:
-        AlreadyExists: `out` is there already.
+        AlreadyExists: `out` exists.
         NotFound: There is nothing to export.
         DataError: A file is damaged, or track and prediction do not overlap in time.
     """

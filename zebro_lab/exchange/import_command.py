@@ -66,7 +66,7 @@ def import_files(
     material: Material = "unknown",
     operator: Operator = "unknown",
 ) -> None:
-    """Make run folders of files that others recorded: DIR/RUN/{run.json, log.mcap, track/}."""
+    """Convert files from other software to run folders: DIR/RUN/{run.json, log.mcap, track/}."""
     from rich.console import Console
 
     from zebro_lab.exchange.import_stage import ImportRequest, import_run

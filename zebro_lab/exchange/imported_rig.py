@@ -128,7 +128,7 @@ def write_rig_run(data_dir: Path, run: RigRun) -> Path:
         The run folder.
 
     Raises:
-        AlreadyExists: A run of this start and label is there already.
+        AlreadyExists: A run with this start and label exists.
     """
     return write_slip_rig_run(
         data_dir,

@@ -97,7 +97,7 @@ def write_imported_walk(data_dir: Path, walk: ImportedWalk) -> Path:
         The run folder.
 
     Raises:
-        AlreadyExists: A run of this start and label is there already.
+        AlreadyExists: A run with this start and label exists.
     """
     inputs = file_hashes(walk.files)
     with finished_run_folder(data_dir, kind="walk", label=walk.label, start=walk.start) as (

@@ -15,7 +15,7 @@ def init(
         bool, typer.Option("--force", help="Replace a columns.toml that is there already.")
     ] = False,
 ) -> None:
-    """Write a commented columns.toml beside FILE, guessed from its header."""
+    """Write a commented columns.toml template beside FILE, guessed from its header."""
     from zebro_lab.exchange.init_stage import write_columns_template
     from zebro_lab.tables.columns import CANONICAL, read_columns
 

@@ -110,7 +110,7 @@ def sync_folder(folder: Path) -> None:
         return
     try:
         os.fsync(handle)
-    except OSError:  # some network file systems refuse to do so with a folder
+    except OSError:  # some network file systems cannot fsync a folder
         return
     finally:
         os.close(handle)

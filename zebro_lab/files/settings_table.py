@@ -108,7 +108,7 @@ def read_settings(file: Path, *, advice: str) -> SettingsTable:
 
     Args:
         file: TOML.
-        advice: What to do where there is none.
+        advice: What to do if the file does not exist; part of the error message.
 
     Returns:
         The whole file as a table.

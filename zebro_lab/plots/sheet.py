@@ -22,9 +22,9 @@ from zebro_lab.files.own_file import COMMENT, SOFTWARE
 
 BLUE, RED = "#0072B2", "#D55E00"
 CYCLE = (BLUE, "#E69F00", "#009E73", RED, "#CC79A7", "#56B4E9", "#000000", "#999999")
-NARROW = 0.15  # a peak in the first 15 % of the tested slip is drawn once more, close up
+NARROW = 0.15  # a peak in the first 15 % of the tested slip is drawn in an additional panel
 
-# A decorator. The reader's own matplotlibrc neither shows in the pictures nor is changed by them.
+# A decorator. The user's matplotlibrc neither affects the figures nor is changed by them.
 styled = style.context(
     [
         "default",

@@ -24,7 +24,7 @@ class SeenMarks:
 
     Attributes:
         outlines_px: Corners of each, shape (m, 2), closed by the drawing [px].
-        labels: What to write beside each.
+        labels: Label of each.
         colour: Their colour.
     """
 
@@ -70,7 +70,7 @@ def _outline(axes: Axes, group: SeenMarks) -> None:
         axes.plot(*closed.T, color=group.colour, lw=1.0)
         axes.plot(*outline[0], color=group.colour, marker="o", ms=3, ls="none")
         if label:
-            # Beside the mark, clear of it: a label on a marker hides what is to be checked.
+            # Beside the mark: a label on a marker would hide it.
             axes.annotate(
                 label, (float(outline[:, 0].max()), float(outline[:, 1].mean())), xytext=(5, 0),
                 textcoords="offset points", va="center", color=group.colour, fontsize=8,
@@ -99,7 +99,7 @@ def over_floor(
         extent: Lowest x, highest x, lowest y, highest y of it [m].
         poses: x, y [m] and yaw [rad], shape (n, 3); NaN interrupts the path.
         ellipses: Outline of a region around each pose in which the robot is, shape (m, 2) [m].
-        labels: What to write beside each pose; empty where nothing.
+        labels: Label of each pose; empty for none.
         title: Title of the figure.
         simulated: Whether to append "(simulated)" to the title.
 
@@ -141,7 +141,7 @@ def residual_page(
         t: Times, shape (n,) [s].
         residuals: Observed minus smoothed x, y [m] and yaw [rad], shape (n, 3).
         sd: Standard deviation of each observation, shape (n, 3).
-        score: Similarity of each detection to its template, shape (n,) [-].
+        score: Similarity score of each detection, shape (n,) [-].
         height: Height of the body's origin, shape (n,) [m].
         source: How each was found: "marker", "body" or "hand".
         title: Title of the figure.

@@ -29,7 +29,7 @@ def slip_ratios(path: WalkPath, *, title: str, simulated: bool) -> Figure:
         simulated: Whether to append "(simulated)" to the title.
 
     Returns:
-        The figure: a panel for each leg, where it is on the robot; contact is shaded. A leg on its
+        The figure: a panel for each leg, arranged as on the robot; contact is shaded. A leg on its
         toe does not roll and may have no ratio. Limits leave out the largest few percent: a leg
         that is dragged while it hardly turns has very large ones.
     """
@@ -53,7 +53,7 @@ def normal_forces(path: WalkPath, *, title: str, simulated: bool) -> Figure:
         simulated: Whether to append "(simulated)" to the title.
 
     Returns:
-        The figure: a panel for each leg, where it is on the robot; contact is shaded.
+        The figure: a panel for each leg, arranged as on the robot; contact is shaded.
     """
     figure, panels = _leg_panels(title, simulated)
     _, high = _limits(path.normal_force[path.contact], least=1.0)
@@ -75,7 +75,7 @@ def traction_forces(path: WalkPath, *, title: str, simulated: bool) -> Figure:
         simulated: Whether to append "(simulated)" to the title.
 
     Returns:
-        The figure: a panel for each leg, where it is on the robot, forward and to the left of the
+        The figure: a panel for each leg, arranged as on the robot, forward and to the left of the
         heading; contact is shaded.
     """
     return _draw_traction(path.t, path.traction_force, path.contact, title, simulated)

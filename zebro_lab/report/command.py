@@ -32,7 +32,7 @@ def report(
     out: Annotated[Path, typer.Option(help="Page to write.")] = Path("report.html"),
     title: Annotated[str | None, typer.Option(help="Title; the folder's name without it.")] = None,
 ) -> None:
-    """Put slip curve, track, prediction and validation on one page: report.html."""
+    """Write an HTML report with slip curve, track, prediction and validation: report.html."""
     from datetime import UTC, datetime
 
     from zebro_lab.report.stage import ReportRequest

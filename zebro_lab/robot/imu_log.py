@@ -37,7 +37,7 @@ class ImuLog:
     Attributes:
         t: Time, shape (n,) [s].
         values: Quaternion w, x, y, z, angular rate x, y, z [rad/s], specific force x, y, z [m/s2],
-            NaN where the table has none, shape (n, 10).
+            NaN if the table has none, shape (n, 10).
         source: "real", "sim:what", "replay:what"; None if not stated.
         files: Every file read.
         notes: Notes, one line each.

@@ -15,7 +15,7 @@ Undo = Annotated[bool, typer.Option("--undo", help="Take the run in again.")]
 
 
 def runs(data: DataDir) -> None:
-    """List recorded runs: how each ended, what it holds and where it comes from."""
+    """List recorded runs with their state, duration, samples and source."""
     from zebro_lab.runs.stage import list_runs
 
     listed = list_runs(data)
@@ -28,7 +28,7 @@ def runs(data: DataDir) -> None:
 
 
 def exclude(run: RunFolder, why: Why = None, undo: Undo = False) -> None:
-    """Leave a run out of every calibration, and keep it; or take it in again."""
+    """Exclude a run from every calibration, keeping its data, or undo the exclusion."""
     from zebro_lab.runs.exclusion import exclude_run, take_in_again
     from zebro_lab.runs.folder import require_ended
 

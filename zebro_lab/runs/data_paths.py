@@ -10,7 +10,7 @@ from zebro_lab.runs.folder import LOG_FILE, MANIFEST_FILE
 from zebro_lab.tables.columns import COLUMNS_FILE
 from zebro_lab.tables.table_files import TABLE_SUFFIXES, is_table_file
 
-CALIBRATION_FILE = "slip.toml"  # what marks a folder as a calibration's output, not as data
+CALIBRATION_FILE = "slip.toml"  # a folder with this file is a calibration folder, not data
 
 
 @dataclass(frozen=True)

@@ -96,7 +96,7 @@ def finished_run_folder(
         Path of the final run folder, and the draft folder to write into.
 
     Raises:
-        AlreadyExists: A run of this start and label is there already.
+        AlreadyExists: A run with this start and label exists.
     """
     folder = run_path(data_dir, kind, label, start)
     if folder.exists():
@@ -143,7 +143,7 @@ def new_run_folder(data_dir: Path, *, kind: str, label: str, start: datetime) ->
         start: When it begins, with its time zone.
 
     Raises:
-        AlreadyExists: A run of this start and label is there already.
+        AlreadyExists: A run with this start and label exists.
         RecordingError: Nothing can be written there.
     """
     folder = run_path(data_dir, kind, label, start)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""`zebro-lab plot RUN`: all raw streams of a run in one picture."""
+"""`zebro-lab plot RUN`: plot all raw streams of a run in one picture."""
 
 from pathlib import Path
 from typing import Annotated
@@ -23,7 +23,7 @@ Out = Annotated[
 
 
 def plot(run: Run, out: Out = None) -> None:
-    """Draw everything a run recorded: legs, IMU, forces, speeds, with gaps and events marked."""
+    """Plot all streams of a run: legs, IMU, forces, speeds, with gaps and events marked."""
     from rich.console import Console
 
     from zebro_lab.runs.plot_stage import plot_run

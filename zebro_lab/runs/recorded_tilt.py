@@ -32,7 +32,7 @@ class Tilt:
 
 
 def read_recorded_tilt(folder: Path) -> Tilt | None:
-    """Read roll and pitch of a run; None where no IMU was recorded.
+    """Read roll and pitch of a run; None if no IMU was recorded.
 
     Args:
         folder: The run folder.

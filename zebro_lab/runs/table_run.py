@@ -58,7 +58,7 @@ def write_slip_rig_run(
         table: The samples, at least one.
         label: Name of the run.
         material: Leg and ground material.
-        operator: Who ran it.
+        operator: Name of the operator.
         source: "real", "sim:what", "replay:what" or "import:FILE".
         start: When sample time was 0, with its time zone.
         radius_leg: Radius of the leg disc [m].
@@ -73,7 +73,7 @@ def write_slip_rig_run(
 
     Raises:
         DataError: There is no sample.
-        AlreadyExists: A run of this start and label is there already.
+        AlreadyExists: A run with this start and label exists.
     """
     if len(table) == 0:
         raise DataError(f"run '{label}' has no samples to write")

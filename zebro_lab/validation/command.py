@@ -66,7 +66,7 @@ def validate(
     ] = False,
     seed: Annotated[int, typer.Option(help="Seed of everything random.")] = 1,
 ) -> None:
-    """Judge predicted paths against tracked ones, beside simpler models."""
+    """Compute the errors of predicted paths against tracked ones, with baselines."""
     from rich.console import Console
 
     from zebro_lab.terminal.progress import progress_bar

@@ -114,7 +114,7 @@ def walk(
     animate: Animate = False,
     write_robot: WriteRobot = None,
 ) -> None:
-    """Walk a gait: FOLDER/path.csv, a band, pictures and a film."""
+    """Simulate a gait and write FOLDER/path.csv, a band, pictures and an animation."""
     from zebro_lab.robot.gait_argument import GaitRequest
     from zebro_lab.walk.path_band import BandRequest
     from zebro_lab.walk.screen import run_and_report

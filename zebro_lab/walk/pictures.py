@@ -11,7 +11,7 @@ from model.robot import Robot
 from model.walk.path import WalkPath
 
 _SHOWN_CYCLES = 2.0
-_SHOWN_TIME = 4.0  # s, where no cycle is known
+_SHOWN_TIME = 4.0  # s, for a walk without a known cycle
 
 
 def draw_walk(

@@ -69,7 +69,7 @@ def predict(
     figures: Figures = False,
     animate: Animate = False,
 ) -> None:
-    """Predict where measured leg angles lead: FOLDER/path.csv, a band, pictures and a film."""
+    """Predict the path from leg angles: FOLDER/path.csv, a band, pictures and an animation."""
     from zebro_lab.runs.recorded_legs import is_recorded
     from zebro_lab.walk.folder import PREDICTION
     from zebro_lab.walk.path_band import BandRequest

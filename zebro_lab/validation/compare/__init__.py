@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: MIT
-"""Compare two calibrations or two runs: what differs, and how surely."""
+"""Compare two calibrations or two runs: differences with intervals."""

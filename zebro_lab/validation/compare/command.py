@@ -32,7 +32,7 @@ def compare(
     out: Annotated[Path, typer.Option(help="Folder to write.")] = Path("comparison"),
     seed: Annotated[int, typer.Option(help="Seed of everything random.")] = 1,
 ) -> None:
-    """Lay two calibrations or two runs over each other and say what differs, how surely."""
+    """Compare two calibrations or two runs: overlay them and list differences with intervals."""
     from rich.console import Console
     from rich.text import Text
 

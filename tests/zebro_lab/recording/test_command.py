@@ -49,6 +49,10 @@ def started(*arguments, **options):
     )  # fmt: skip
     try:
         yield process
+    except AssertionError:  # show how it ended, or what it had said
+        process.kill()
+        print(*process.communicate())  # noqa: T201 - pytest shows it
+        raise
     finally:
         process.kill()
         process.communicate()

@@ -24,12 +24,17 @@ COMMAND = str(Path(sys.executable).with_name("zebro-lab"))
 def recording(data, *options, **given):
     """Record the simulated robot in a process of its own, which the end of the body kills."""
     given = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, **given}
+    given["env"] = {**given.get("env", os.environ), "PYTHONFAULTHANDLER": "1"}
     process = subprocess.Popen(
         [COMMAND, "record", "--zebro", "sim", "--label", "x", "--data", str(data), *options],
         **given,
     )
     try:
         yield process
+    except AssertionError:  # show what its threads were doing
+        process.send_signal(signal.SIGABRT)
+        print(*process.communicate(timeout=20))  # noqa: T201 - pytest shows it
+        raise
     finally:
         process.kill()
         process.communicate()

@@ -24,6 +24,7 @@ fcntl: Any = importlib.import_module("fcntl") if os.name == "posix" else None
 
 LONGEST: Final = 300
 """Longest description of an owner that is stored and shown [characters]."""
+_PSEUDO_TERMINALS = "/dev/pts"
 
 
 @dataclass
@@ -134,10 +135,29 @@ def device_lock(name: str) -> Exclusive:
         name: A path, followed through links so that all its names are one device, or a name that
             begins with its kind, such as `socketcan:can0` or `udp:192.168.1.1:49152`.
     """
-    real = os.path.realpath(name) if name.startswith("/") else name
+    real = _device_path(name) if name.startswith("/") else name
     return Exclusive(
         _lock_folder() / hashlib.sha256(os.fsencode(real)).hexdigest()[:32], what=name, shared=True
     )
+
+
+def _device_path(path: str) -> str:
+    """Follow the links of a path to the device, but not the last one to a pseudo-terminal.
+
+    The system gives the number of a pseudo-terminal to another program as soon as it is closed,
+    also while somebody waits for the twin behind it to be plugged in again. The name of the link is
+    the twin's own.
+    """
+    real = os.path.realpath(path)
+    if not Path(real).is_relative_to(_PSEUDO_TERMINALS):
+        return real
+    place = Path(path)
+    while place.is_symlink():
+        target = place.parent / place.readlink()
+        if target.is_relative_to(_PSEUDO_TERMINALS):
+            break
+        place = target
+    return str(place.parent.resolve() / place.name)
 
 
 def _lock_folder() -> Path:

@@ -10,7 +10,7 @@ from typing import Final, cast
 import serial
 
 from rig.clock import SYSTEM_CLOCK, Clock
-from rig.errors import InUse, LinkError, RigTimeout
+from rig.errors import LinkError, RigTimeout
 from rig.exclusive import device_lock
 
 CHUNK: Final = 1 << 16
@@ -18,8 +18,6 @@ MOST_AT_ONCE: Final = 1 << 18
 """Largest number of bytes of one read: nearly a second at 3 Mbaud [bytes]."""
 RETRY_AFTER: Final = 0.25
 WRITE_LIMIT: Final = 1.0
-PSEUDO_TERMINAL_WAIT: Final = 2.0
-"""Longest wait for the lock of a pseudo-terminal [s]."""
 
 
 class SerialLink:
@@ -54,7 +52,7 @@ class SerialLink:
             InUse: Another program has it; the message says which.
             LinkError: There is no such port, or no permission to open it.
         """
-        self._take_lock()
+        self._lock.take()
         try:
             self._serial = self._connect()
         except (OSError, ValueError) as problem:
@@ -98,22 +96,6 @@ class SerialLink:
             self._lose()
             return False
         return True
-
-    def _take_lock(self) -> None:
-        """Lock the port; wait a moment for a pseudo-terminal.
-
-        The system gives the number of a pseudo-terminal to the next one as soon as its other end is
-        closed, which is before its last user has released the lock.
-        """
-        end = self._clock.now() + PSEUDO_TERMINAL_WAIT
-        while True:
-            try:
-                return self._lock.take()
-            except InUse:
-                pseudo = os.path.realpath(self.port).startswith("/dev/pts/")
-                if not pseudo or self._clock.now() >= end:
-                    raise
-            self._clock.sleep(0.05)
 
     def _connect(self) -> serial.Serial:
         opened = serial.serial_for_url(

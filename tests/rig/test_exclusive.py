@@ -86,6 +86,30 @@ def test_a_serial_port_in_use_is_refused_with_its_owner_under_another_name(tmp_p
         require_one_owner(f"SerialLink({server.port!r}, baudrate=115_200)", link)
 
 
+def test_twins_whose_terminals_had_one_number_are_two_devices(tmp_path):
+    """Whoever waits for a twin to be plugged in again keeps nobody from the next with its number."""
+    names = [tmp_path / name for name in ("gone", "next", "other-name-of-gone")]
+    for name, target in zip(names, ("/dev/pts/7", "/dev/pts/7", names[0]), strict=True):
+        name.symlink_to(target)
+    gone, following, same = (device_lock(str(name)) for name in names)
+    code = (
+        f"import sys; from rig.exclusive import device_lock; device_lock({str(names[0])!r}).take()"
+    )
+    waiting = subprocess.Popen(
+        [sys.executable, "-c", f"{code}; print('taken', flush=True); sys.stdin.read()"],
+        stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True,
+    )  # fmt: skip
+    assert waiting.stdout.readline() == "taken\n"
+    try:
+        with following:
+            pass
+        for lock in (gone, same):
+            with pytest.raises(InUse):
+                lock.take()
+    finally:
+        waiting.communicate("")
+
+
 def test_arguments_of_a_foreign_encoding_do_not_keep_a_device_from_its_user(tmp_path, monkeypatch):
     monkeypatch.setattr("sys.argv", ["zebro-lab", "record", "--label", "caf\udce9"])
     with device_lock(str(tmp_path / "tty\udcff")):

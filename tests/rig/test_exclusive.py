@@ -87,7 +87,7 @@ def test_a_serial_port_in_use_is_refused_with_its_owner_under_another_name(tmp_p
 
 
 def test_twins_whose_terminals_had_one_number_are_two_devices(tmp_path):
-    """Whoever waits for a twin to be plugged in again keeps nobody from the next with its number."""
+    """A link that waits for its twin does not block the next twin with the same number."""
     names = [tmp_path / name for name in ("gone", "next", "other-name-of-gone")]
     for name, target in zip(names, ("/dev/pts/7", "/dev/pts/7", names[0]), strict=True):
         name.symlink_to(target)

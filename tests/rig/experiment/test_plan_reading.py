@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-""""""
+"""A plan's file: every key is checked, and faults name it."""
 
 import math
 

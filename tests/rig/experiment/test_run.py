@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-""""""
+"""A plan is run on a twin: order of points, repeats, stops and what is kept."""
 
 import numpy as np
 import pytest

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-""""""
+"""The drives of the slip rig against their twin on a virtual CAN bus."""
 
 import math
 import time

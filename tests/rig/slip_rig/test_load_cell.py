@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-""""""
+"""The load cell's driver against its twin over UDP."""
 
 import http.server
 import threading

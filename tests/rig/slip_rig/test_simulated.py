@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-""""""
+"""The simulated slip rig against the physics that it stands for."""
 
 import numpy as np
 import pytest

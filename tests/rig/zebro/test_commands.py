@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-""""""
+"""Commands to the robot's legs, as bytes and as motion of the twin."""
 
 import math
 

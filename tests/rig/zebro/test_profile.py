@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-""""""
+"""Profiles of the robot: counts to angles, and faults of a profile's file."""
 
 from dataclasses import replace
 

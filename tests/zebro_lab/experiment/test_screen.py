@@ -4,7 +4,6 @@
 import contextlib
 import io
 import os
-from pathlib import Path
 
 import pytest
 from rich.console import Console
@@ -13,31 +12,14 @@ from rig.experiment.control import Control
 from rig.experiment.steps import Point
 from rig.experiment.verdict import PointVerdict
 from rig.safety import StopCategory
+from support.experiment_plans import short_plan
 from zebro_lab.experiment.screen import ExperimentScreen, experiment_screen, slip_chart
 from zebro_lab.experiment.stage import RigRunRequest, run_experiment
-
-THESIS_PLAN = Path(__file__).parents[3] / "examples" / "plan-source.toml"
 
 
 @pytest.fixture(name="plan")
 def _plan(tmp_path):
-    text = THESIS_PLAN.read_text()
-    for old, new in {
-        "loads = [2.13, 6.63, 8.13, 12.75]": "loads = [8.0]",
-        "slips = { first = 0.0, last = 1.0, count = 62 }": "slips = [0.05, 0.6]",
-        "duration = 1.0": "duration = 0.3",
-        "tare_duration = 10.0": "tare_duration = 0.3",
-        "check_every = 62": "check_every = 0",
-        # A busy machine may hold a process up.
-        "silence = 0.25": "silence = 3.0\nreading_age = 3.0\nguards_off = "
-        '["silence", "reading_age", "speed_error_time"]',
-        "speed_error_time = 0.2": "speed_error_time = 2.0",
-    }.items():
-        assert old in text
-        text = text.replace(old, new)
-    file = tmp_path / "plan.toml"
-    file.write_text(text)
-    return file
+    return short_plan(tmp_path)
 
 
 def test_the_chart_puts_the_largest_friction_on_top():

@@ -14,7 +14,6 @@ from hypothesis import strategies as st
 from rig.clock import ManualClock
 from rig.errors import DeviceFault, LimitExceeded, RigTimeout
 from rig.links.can import CanLink
-from rig.links.serve import Ticker
 from rig.links.slcan import SlcanAdapter
 from rig.slip_rig.can_simple import (
     ESTIMATES,
@@ -24,46 +23,10 @@ from rig.slip_rig.can_simple import (
 )
 from rig.slip_rig.drives import DriveBus, disc_speed
 from rig.slip_rig.imperfections import RigImperfections
-from rig.slip_rig.profile import load_rig_profile
 from rig.slip_rig.simulated import RigDynamics, simulated_rig
 from rig.slip_rig.simulated_drives import SimulatedDrives
 from rig.slip_rig.sweep import SweepPlan
-
-PROFILE = load_rig_profile("rig-odrive-netft")
-WATCHDOG = 0.3
-
-
-@contextmanager
-def twin(request, **options):
-    """Serve both drives; yield them and the driver, not yet entered."""
-    channel = request.node.nodeid
-    world = simulated_rig(
-        plan=SweepPlan(),
-        imperfections=RigImperfections(),
-        dynamics=RigDynamics(),
-        rng=np.random.default_rng(0),
-    )
-    with can.Bus(interface="virtual", channel=channel) as bus:
-        axes = SimulatedDrives(world, bus, profile=PROFILE.drives, watchdog=WATCHDOG)
-        with Ticker(axes.poll) as ticker:
-            link = CanLink(f"virtual:{channel}", source=axes.source)
-            yield axes, DriveBus(link, profile=PROFILE.drives, limits=PROFILE.limits, **options)
-        assert ticker.failure is None
-
-
-def turn(drives, leg=10.0, ground=2.0):
-    drives.leg.arm(1.0)
-    drives.ground.arm(1.0)
-    drives.leg.set_speed(leg)
-    drives.ground.set_speed(ground)
-
-
-def healthy(drives):
-    try:
-        drives.require_healthy()
-    except DeviceFault:
-        return False
-    return True
+from support.drive_twins import PROFILE, WATCHDOG, healthy, turn, twin
 
 
 def test_leaving_stops_the_discs(request, wait_until):

@@ -1,42 +1,12 @@
 # SPDX-License-Identifier: MIT
 """The simulated board stops by itself, and its bad line passes nothing wrong."""
 
-import numpy as np
 import pytest
 
-from rig.clock import ManualClock
 from rig.device import iterate
 from rig.errors import DeviceFault
 from rig.links.faults import Faults
-from rig.links.memory import MemoryLink
-from rig.slip_rig.board import RigBoard
-from rig.slip_rig.imperfections import RigImperfections
-from rig.slip_rig.profile import load_rig_profile
-from rig.slip_rig.simulated import RigDynamics, simulated_rig
-from rig.slip_rig.simulated_board import SimulatedBoard
-from rig.slip_rig.sweep import SweepPlan
-
-PROFILE = load_rig_profile("rig-board-serial")
-PERFECT = RigImperfections()
-
-
-def world(law="magic-formula", *, plan=None, imperfections=PERFECT, dynamics=None, seed=0):
-    return simulated_rig(
-        law,
-        plan=plan or SweepPlan(),
-        imperfections=imperfections,
-        dynamics=dynamics or RigDynamics(),
-        rng=np.random.default_rng(seed),
-    )
-
-
-def board(rig, **options):
-    clock = ManualClock()
-    twin = SimulatedBoard(rig, profile=PROFILE.board, rng=np.random.default_rng(0), **options)
-    stream = RigBoard(
-        MemoryLink(twin, clock=clock), profile=PROFILE.board, limits=PROFILE.limits, clock=clock
-    )
-    return stream, clock
+from support.board_twins import PROFILE, board, world
 
 
 def test_a_board_that_hears_nothing_stops_and_stays_stopped_until_it_is_armed_again():

@@ -1,0 +1,39 @@
+# SPDX-License-Identifier: MIT
+"""Recorders of a robot's legs, and what they wrote."""
+
+import time
+
+from rig.device import Sample
+from rig.zebro.profile import load_leg_profile
+from zebro_lab.mcap.raw_log import read_raw_log
+from zebro_lab.mcap.stream_views import LegsView
+from zebro_lab.recording.devices import profile_text
+from zebro_lab.recording.recorder import RunDescription, RunRecorder
+
+PROFILE = "zebro-100-serial"
+
+
+def recorder(data, *, label="test", **changes):
+    description = RunDescription(
+        kind="walk", label=label, source="sim:test",
+        profiles={"legs": (PROFILE, profile_text(PROFILE))}, sources={"legs": "sim:test"},
+    )  # fmt: skip
+    view = LegsView("legs", profile=load_leg_profile(PROFILE))
+    return RunRecorder(data, description=description, views={"legs": view}, **changes)
+
+
+def some(first, count):
+    now = time.monotonic()
+    return [Sample(now, n / 100, n, (n % 100,) * 6) for n in range(first, first + count)]
+
+
+def until(holds, limit=5.0):
+    end = time.monotonic() + limit
+    while not holds() and time.monotonic() < end:
+        time.sleep(0.01)
+    assert holds()
+
+
+def count_in(run):
+    found = read_raw_log(run.folder / "log.mcap").streams
+    return len(found["/legs/raw"]) if found else 0

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""What tests of stages and commands share: a small simulated sweep on disk, and a walked path."""
+"""What tests of stages and commands share: a runner, a simulated sweep on disk, a walked path."""
 
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -11,12 +12,32 @@ from model.slip.thesis import THESIS_LAW, THESIS_VALUES
 from model.walk.path import WalkPath
 from rig.slip_rig.imperfections import TYPICAL_RIG
 from rig.slip_rig.sweep import SweepPlan, simulate_sweep
+from support.commands import COMMAND
+from zebro_lab.main import app
+from zebro_lab.terminal.ending import run as run_app
 
 COLUMNS = """
 source = "sim:rig-sweep"
 runs.by = ["run"]
 load_cell.zero_stability = "0.1 N"
 """
+
+
+@pytest.fixture
+def run(monkeypatch, capsys):
+    """Return a runner of the command in this process: exit code, stdout, stderr."""
+
+    def runner(*arguments: object) -> tuple[int, str, str]:
+        monkeypatch.setattr(sys, "argv", [COMMAND, *map(str, arguments)])
+        try:
+            with pytest.raises(SystemExit) as ended:
+                run_app(app)
+            code = ended.value.code
+        finally:
+            streams = capsys.readouterr()
+        return int(code or 0), streams.out, streams.err
+
+    return runner
 
 
 @pytest.fixture(scope="session")

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: MIT
 """`zebro-lab record`, `sim`, `runs`, `exclude` and `zebro check` as their user meets them."""
 
-import contextlib
 import json
 import os
 import re
@@ -14,48 +13,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from zebro_lab.main import app
+from support.commands import COMMAND, started
 from zebro_lab.mcap.raw_log import read_raw_log
-from zebro_lab.terminal.ending import run as run_app
 from zebro_lab.walk.folder import read_walk
 
-COMMAND = str(Path(sys.executable).with_name("zebro-lab"))
 HEAVY = {"numpy", "scipy", "pandas", "can", "serial", "mcap", "matplotlib", "numba", "rig.device"}
-
-
-@pytest.fixture
-def run(monkeypatch, capsys):
-    """Return a runner of the command in this process: exit code, stdout, stderr."""
-
-    def runner(*arguments: object) -> tuple[int, str, str]:
-        monkeypatch.setattr(sys, "argv", [COMMAND, *map(str, arguments)])
-        try:
-            with pytest.raises(SystemExit) as ended:
-                run_app(app)
-            code = ended.value.code
-        finally:
-            streams = capsys.readouterr()
-        return int(code or 0), streams.out, streams.err
-
-    return runner
-
-
-@contextlib.contextmanager
-def started(*arguments, **options):
-    """Run the command beside this process; it is killed at the latest when the body ends."""
-    process = subprocess.Popen(
-        [COMMAND, *map(str, arguments)], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
-        **options,
-    )  # fmt: skip
-    try:
-        yield process
-    except AssertionError:  # show how it ended, or what it had said
-        process.kill()
-        print(*process.communicate())  # noqa: T201 - pytest shows it
-        raise
-    finally:
-        process.kill()
-        process.communicate()
 
 
 def growing(data: Path) -> Path:

@@ -7,7 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from support.bundled_walk import COMMAND, PHOTOS, WALK
+from support.bundled_walk import PHOTOS, WALK
+from support.commands import COMMAND
 from zebro_lab.track.command import MergedAs
 
 

@@ -3,7 +3,6 @@
 
 import json
 import shutil
-import sys
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
 
@@ -17,12 +16,10 @@ from rig.device import Sample
 from rig.zebro.profile import load_leg_profile
 from support.synthetic import with_time_stamp
 from tracking.images import clock_picture
-from zebro_lab.main import app
 from zebro_lab.mcap.stream_views import LegsView
 from zebro_lab.recording.devices import profile_text
 from zebro_lab.recording.recorder import RunDescription, RunRecorder
 from zebro_lab.runs.folder import read_manifest
-from zebro_lab.terminal.ending import run as run_app
 
 WALK = Path(__file__).parents[3] / "datasets/walk-sim"
 PROFILE = "zebro-100-serial"
@@ -64,20 +61,6 @@ def lab(recorded, tmp_path, monkeypatch) -> Path:
     monkeypatch.setattr("zebro_lab.track.stage.draw_track", lambda *_, **__: None)
     monkeypatch.chdir(tmp_path)
     return tmp_path
-
-
-@pytest.fixture
-def run(monkeypatch, capsys):
-    """Return a runner of the command in this process: exit code, stdout, stderr."""
-
-    def runner(*arguments: object) -> tuple[int, str, str]:
-        monkeypatch.setattr(sys, "argv", ["zebro-lab", *map(str, arguments)])
-        with pytest.raises(SystemExit) as ended:
-            run_app(app)
-        streams = capsys.readouterr()
-        return int(ended.value.code or 0), streams.out, streams.err
-
-    return runner
 
 
 def photographed_clock(lab: Path, *, ahead: timedelta) -> Path:

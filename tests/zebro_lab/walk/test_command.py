@@ -4,35 +4,14 @@
 import json
 import subprocess
 import sys
-from pathlib import Path
 
 import pytest
 
 from model.walk_models import MODELS
-from zebro_lab.main import app
+from support.commands import COMMAND
 from zebro_lab.robot.gait_argument import GAITS
-from zebro_lab.terminal.ending import run as run_app
 from zebro_lab.walk import options as walk_options
 from zebro_lab.walk.command import GaitName
-
-COMMAND = str(Path(sys.executable).with_name("zebro-lab"))
-
-
-@pytest.fixture
-def run(monkeypatch, capsys):
-    """Return a runner of the command in this process: exit code, stdout, stderr."""
-
-    def runner(*arguments: object) -> tuple[int, str, str]:
-        monkeypatch.setattr(sys, "argv", [COMMAND, *map(str, arguments)])
-        try:
-            with pytest.raises(SystemExit) as ended:
-                run_app(app)
-            code = ended.value.code
-        finally:
-            streams = capsys.readouterr()
-        return int(code or 0), streams.out, streams.err
-
-    return runner
 
 
 @pytest.mark.parametrize("command", ["walk", "predict"])

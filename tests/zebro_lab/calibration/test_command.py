@@ -15,6 +15,7 @@ import pandas as pd
 import pytest
 from scipy.stats import chi2
 
+from model.slip.laws import LAWS
 from model.slip.thesis import THESIS_VALUES
 from zebro_lab.calibration.folder import read_slip
 from zebro_lab.main import slip_app as app
@@ -368,6 +369,11 @@ finally:
     assert "Usage:" in printed
     heavy = {"numpy", "scipy", "pandas", "numba", "matplotlib", "emcee", "arviz", "pyarrow", "pint"}
     assert not heavy & set(modules.split())
+
+
+def test_help_names_every_slip_law():
+    shown = calibrate_slip("--help").stdout
+    assert all(name in shown for name in LAWS)
 
 
 def test_help_names_every_exit_code():

@@ -7,8 +7,8 @@ from hypothesis import strategies as st
 from model.errors import DomainError
 from model.gait.quantised import QuantisedLog
 from model.gait.reference import SampledReference
+from model.gait.steering import tripod_angles, tripod_reference
 from model.gait.tetrapod import tetrapod_reference
-from model.gait.tripod import tripod_angles, tripod_reference
 from model.poses import Poses
 from model.predict import (
     STEPS,

@@ -4,8 +4,8 @@ import pytest
 
 from model.errors import DomainError, WalkError
 from model.gait.reference import SampledReference
+from model.gait.steering import tripod_angles, tripod_reference
 from model.gait.tetrapod import tetrapod_reference
-from model.gait.tripod import tripod_angles, tripod_reference
 from model.robot import Robot
 from model.slip import MagicFormula
 from model.walk.dynamics import DynamicsOptions, Start, walk

@@ -17,7 +17,7 @@ def make(**options):
 
 
 @given(steering=st.floats(1.0, 1.8), direction=st.sampled_from(["left", "right"]))
-def test_tripod_is_the_models_tripod(steering, direction):
+def test_steering_is_the_models_tripod(steering, direction):
     found = make(steering=steering, direction=direction, touchdown_deg="50", cycle=1.5)
     angles = tripod_angles(np.radians(50), steering)
     expected = tripod_reference(angles, 1.5, direction=direction)

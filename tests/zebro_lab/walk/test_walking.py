@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from model.gait.tripod import tripod_angles, tripod_reference
+from model.gait.steering import tripod_angles, tripod_reference
 from model.slip.curve import SlipCurve
 from model.slip.definition import SlipDefinition
 from model.slip.thesis import thesis_curve

@@ -6,7 +6,7 @@ from model.bayes.walks.misfit import TrackedWalk, WalkMisfit, from_first
 from model.bayes.walks.prior import WRONG, legs_of
 from model.errors import InsufficientData
 from model.gait.reference import SampledReference
-from model.gait.tripod import tripod_angles, tripod_reference
+from model.gait.steering import tripod_angles, tripod_reference
 from model.predict import ModelSpread
 from model.robot import Robot
 from model.walk.ensemble import WalkDraw, planar_walk

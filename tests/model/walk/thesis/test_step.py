@@ -4,7 +4,7 @@
 import numpy as np
 import pytest
 
-from model.gait.tripod import tripod_angles, tripod_reference
+from model.gait.steering import tripod_angles, tripod_reference
 from model.robot import Robot
 from model.slip.thesis import thesis_curve
 from model.walk.slip import Slip

@@ -8,7 +8,7 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from model.errors import DomainError
-from model.gait.tripod import (
+from model.gait.steering import (
     TripodAngles,
     ideal_liftoff,
     largest_steering_factor,

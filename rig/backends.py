@@ -6,7 +6,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any, Final
 
 from rig.clock import SYSTEM_CLOCK, Clock
-from rig.device import LoadCellStream, Stream
+from rig.device import Stream
 from rig.errors import ProfileError
 from rig.profile import split_address
 
@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from rig.imu.stream import ImuStream
     from rig.slip_rig.board import RigBoard
     from rig.slip_rig.drives import DriveBus
+    from rig.slip_rig.load_cell import NetFtCell
     from rig.slip_rig.profile import RigProfile
     from rig.zebro.profile import LegProfile
 
@@ -144,7 +145,7 @@ class RigDevices:
 
     profile: "RigProfile"
     drives: "DriveBus | None" = None
-    load_cell: LoadCellStream | None = None
+    load_cell: "NetFtCell | None" = None
     board: "RigBoard | None" = None
 
     @property

@@ -3,7 +3,6 @@
 
 import itertools
 from collections.abc import Sequence
-from types import TracebackType
 from typing import Self
 
 from rig.clock import SYSTEM_CLOCK, Clock
@@ -85,12 +84,7 @@ class ReplayStream:
         self._began = self._clock.now()
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *exception: object) -> None:
         self._began = None
 
     def _due(self, index: int) -> float:

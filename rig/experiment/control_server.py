@@ -13,7 +13,6 @@ import socketserver
 import sys
 import threading
 from functools import partial
-from types import TracebackType
 from typing import Final, Self
 
 from rig.errors import LinkError, PartFailed, ProtocolError
@@ -92,12 +91,7 @@ class ControlServer:
             raise
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *exception: object) -> None:
         if self._server is not None and self._thread is not None:
             self._server.shutdown()
             self._server.server_close()

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Base of streams over one link, which is open while the stream is entered."""
 
-from types import TracebackType
 from typing import Generic, Protocol, Self, TypeVar
 
 
@@ -48,10 +47,5 @@ class LinkedStream(Generic[LinkT]):
         self._link.open()
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *exception: object) -> None:
         self._link.close()

@@ -10,7 +10,6 @@ import tempfile
 import threading
 from collections.abc import Callable
 from pathlib import Path
-from types import TracebackType
 from typing import Final, Protocol, Self
 
 from rig.clock import SYSTEM_CLOCK, Clock
@@ -44,12 +43,7 @@ class Ticker:
         self._thread.start()
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *exception: object) -> None:
         self._done.set()
         self._thread.join(JOIN_LIMIT)
 
@@ -209,13 +203,8 @@ class PortServer:
         self._ticker.__enter__()
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
-        self._ticker.__exit__(kind, error, trace)
+    def __exit__(self, *exception: object) -> None:
+        self._ticker.__exit__(*exception)
         self.unplug()
         if self._folder is not None:
             self._folder.cleanup()

@@ -4,7 +4,6 @@
 import contextlib
 import math
 import struct
-from types import TracebackType
 from typing import Final
 
 from rig.clock import SYSTEM_CLOCK, Clock
@@ -39,6 +38,10 @@ class RigBoard(PacketStream):
         limits: What the discs are allowed.
         name: Name of the stream.
         clock: Host time.
+
+    Attributes:
+        leg: Drive of the leg disc.
+        ground: Drive of the ground disc.
     """
 
     def __init__(
@@ -57,20 +60,12 @@ class RigBoard(PacketStream):
         self.profile = profile
         self.limits = limits
         self._host_clock = clock
+        self.leg = BoardDrive(self, "leg")
+        self.ground = BoardDrive(self, "ground")
         self._speeds = {"leg": 0.0, "ground": 0.0}
         self._armed: set[str] = set()
         self._feed_at = -math.inf
         self._status = 0
-
-    @property
-    def leg(self) -> "BoardDrive":
-        """Drive of the leg disc."""
-        return BoardDrive(self, "leg")
-
-    @property
-    def ground(self) -> "BoardDrive":
-        """Drive of the ground disc."""
-        return BoardDrive(self, "ground")
 
     def read(self, timeout: float) -> list[Sample]:
         """Return all samples, waiting at most `timeout` for the first [s]; feeds the watchdog."""
@@ -116,29 +111,20 @@ class RigBoard(PacketStream):
         self._armed.add(disc)
         self._status = 0
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *exception: object) -> None:
         self._armed.clear()
         with contextlib.suppress(RigError):  # the board's watchdog remains
             self.send(Kind.STOP)
-        super().__exit__(kind, error, trace)
+        super().__exit__(*exception)
 
 
 class BoardDrive:
     """One disc of the board; satisfies `rig.device.Drive`."""
 
     def __init__(self, board: RigBoard, disc: str) -> None:
+        self.name = f"{disc} disc"
         self._board = board
         self._disc = disc
-
-    @property
-    def name(self) -> str:
-        """Name of the disc that it turns."""
-        return f"{self._disc} disc"
 
     def arm(self, timeout: float) -> None:
         """Energise at standstill; `timeout` [s] is not used, because the board does not confirm."""

@@ -8,8 +8,6 @@ stream feeds it on purpose: a program that no longer reads must not keep the dis
 import contextlib
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, field
-from types import TracebackType
 from typing import Final, Self
 
 import can
@@ -43,20 +41,6 @@ HELLO_LIMIT: Final = 1.0
 """Timeout for the heartbeats of both drives when the bus is opened [s]."""
 
 
-@dataclass
-class _Axis:
-    """State of one drive."""
-
-    name: str
-    place: DiscDrive
-    velocity: float = 0.0
-    armed: bool = False
-    state: int = 0
-    error: int = 0
-    pending: list[Sample] = field(default_factory=list)
-    temperatures: list[float] = field(default_factory=list)
-
-
 class DriveBus(LinkedStream[CanLink]):
     """Stream of both drives: counts are position [rev] and velocity [rev/s] of a motor.
 
@@ -69,6 +53,10 @@ class DriveBus(LinkedStream[CanLink]):
         limits: What the discs are allowed.
         name: Name of the stream.
         clock: Host time.
+
+    Attributes:
+        leg: Drive of the leg disc.
+        ground: Drive of the ground disc.
     """
 
     def __init__(
@@ -85,24 +73,13 @@ class DriveBus(LinkedStream[CanLink]):
         self.profile = profile
         self.limits = limits
         self._clock = clock
-        self._axes = {
-            profile.leg.node: _Axis("leg disc", profile.leg),
-            profile.ground.node: _Axis("ground disc", profile.ground),
-        }
+        self.leg = OdriveDrive(self, "leg disc", profile.leg)
+        self.ground = OdriveDrive(self, "ground disc", profile.ground)
+        self._axes = {drive.place.node: drive for drive in (self.leg, self.ground)}
         self._feed_at = -math.inf
         self._ask_at = math.inf
         self._received = 0
         self._refused = 0
-
-    @property
-    def leg(self) -> "OdriveDrive":
-        """Drive of the leg disc."""
-        return OdriveDrive(self, self._axes[self.profile.leg.node])
-
-    @property
-    def ground(self) -> "OdriveDrive":
-        """Drive of the ground disc."""
-        return OdriveDrive(self, self._axes[self.profile.ground.node])
 
     @property
     def counters(self) -> Counters:
@@ -147,7 +124,7 @@ class DriveBus(LinkedStream[CanLink]):
             DeviceFault: An armed drive reports an error, or has left closed loop by itself.
         """
         for axis in self._axes.values():
-            self._require_no_error(axis)
+            axis.require_no_error()
             if axis.armed and axis.state != AxisState.CLOSED_LOOP:
                 raise DeviceFault(
                     f"drive of the {axis.name} left closed loop for state {axis.state}",
@@ -167,52 +144,12 @@ class DriveBus(LinkedStream[CanLink]):
             raise
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *exception: object) -> None:
         try:
             for axis in self._axes.values():
-                self._disarm(axis)
+                axis.disarm()
         finally:
-            super().__exit__(kind, error, trace)
-
-    def _arm(self, axis: _Axis, timeout: float) -> None:
-        axis.velocity = 0.0
-        self._send(axis, Command.CLEAR_ERRORS, b"")
-        mode = CONTROLLER_MODE.pack(VELOCITY_CONTROL, PASS_THROUGH)
-        self._send(axis, Command.SET_CONTROLLER_MODE, mode)
-        # Standstill before closed loop: the drive would else begin at its last set-point.
-        self._send(axis, Command.SET_INPUT_VELOCITY, INPUT_VELOCITY.pack(0.0, 0.0))
-        self._send(axis, Command.SET_AXIS_STATE, AXIS_STATE.pack(AxisState.CLOSED_LOOP))
-        axis.armed, axis.error = True, 0
-        try:
-            self._wait(lambda: axis.state == AxisState.CLOSED_LOOP, timeout,
-                       f"drive of the {axis.name} did not enter closed loop")  # fmt: skip
-            self._require_no_error(axis)
-        except RigError:
-            self._disarm(axis)
-            self._require_no_error(axis)  # says more than that time ran out
-            raise
-
-    def _set_speed(self, axis: _Axis, omega: float) -> None:
-        require_within(omega, self.limits.speed, quantity=f"speed of the {axis.name}", unit="rad/s")
-        axis.velocity = axis.place.sign * omega * axis.place.gear / (2 * math.pi)
-        self._send(axis, Command.SET_INPUT_VELOCITY, INPUT_VELOCITY.pack(axis.velocity, 0.0))
-
-    def _disarm(self, axis: _Axis) -> None:
-        axis.velocity, axis.armed = 0.0, False
-        for command, data in (
-            (Command.SET_INPUT_VELOCITY, INPUT_VELOCITY.pack(0.0, 0.0)),
-            (Command.SET_AXIS_STATE, AXIS_STATE.pack(AxisState.IDLE)),
-        ):
-            with contextlib.suppress(RigError, can.CanError, OSError):  # the watchdog remains
-                self._send(axis, command, data)
-
-    def _send(self, axis: _Axis, command: Command, data: bytes) -> None:
-        self._link.write(can_id(axis.place.node, command), data)
+            super().__exit__(*exception)
 
     def _feed(self) -> None:
         now = self._clock.now()
@@ -221,8 +158,7 @@ class DriveBus(LinkedStream[CanLink]):
         self._feed_at = now + self.profile.feed_interval
         for axis in self._axes.values():
             if axis.armed:
-                data = INPUT_VELOCITY.pack(axis.velocity, 0.0)
-                self._send(axis, Command.SET_INPUT_VELOCITY, data)
+                axis.send_velocity()
 
     def _ask(self) -> None:
         now = self._clock.now()
@@ -268,7 +204,7 @@ class DriveBus(LinkedStream[CanLink]):
                 axis.temperatures += [max(known)] if known else []
         return samples
 
-    def _estimate(self, axis: _Axis, message: can.Message, arrived: float) -> list[Sample]:
+    def _estimate(self, axis: "OdriveDrive", message: can.Message, arrived: float) -> list[Sample]:
         if message.dlc == ESTIMATES.size:
             counts = ESTIMATES.unpack(message.data)
             if all(map(math.isfinite, counts)):
@@ -276,38 +212,87 @@ class DriveBus(LinkedStream[CanLink]):
         self._refused += 1
         return []
 
-    def _require_no_error(self, axis: _Axis) -> None:
-        if axis.error:
-            raise DeviceFault(
-                f"drive of the {axis.name} reports "
-                f"{describe_error(axis.error, self.profile.firmware)}",
-                status=axis.error,
-            )
-
 
 class OdriveDrive:
-    """One of the two drives; satisfies `rig.device.Drive`."""
+    """One of the two drives with its state; satisfies `rig.device.Drive`.
 
-    def __init__(self, bus: DriveBus, axis: _Axis) -> None:
+    Args:
+        bus: Driver of both drives.
+        name: Name of the disc that it turns.
+        place: Node on the bus, gear and sign.
+
+    Attributes:
+        armed: Whether it has been energised and not been commanded to idle since.
+        state: Axis state of the last heartbeat; 0 before the first.
+        error: Axis error of the last heartbeat.
+        pending: Samples that arrived while another answer was awaited.
+        temperatures: Temperatures that nobody has read yet [degC].
+    """
+
+    def __init__(self, bus: DriveBus, name: str, place: DiscDrive) -> None:
+        self.name = name
+        self.place = place
+        self.armed = False
+        self.state = 0
+        self.error = 0
+        self.pending: list[Sample] = []
+        self.temperatures: list[float] = []
         self._bus = bus
-        self._axis = axis
-
-    @property
-    def name(self) -> str:
-        """Name of the disc that it turns."""
-        return self._axis.name
+        self._velocity = 0.0
 
     def arm(self, timeout: float) -> None:
         """Energise at standstill, waiting at most `timeout` [s]; see `Drive.arm`."""
-        self._bus._arm(self._axis, timeout)
+        self._velocity = 0.0
+        self._send(Command.CLEAR_ERRORS, b"")
+        self._send(
+            Command.SET_CONTROLLER_MODE, CONTROLLER_MODE.pack(VELOCITY_CONTROL, PASS_THROUGH)
+        )
+        self.send_velocity()  # before closed loop: the drive would else begin at its last set-point
+        self._send(Command.SET_AXIS_STATE, AXIS_STATE.pack(AxisState.CLOSED_LOOP))
+        self.armed, self.error = True, 0
+        try:
+            self._bus._wait(lambda: self.state == AxisState.CLOSED_LOOP, timeout,
+                            f"drive of the {self.name} did not enter closed loop")  # fmt: skip
+            self.require_no_error()
+        except RigError:
+            self.disarm()
+            self.require_no_error()  # says more than that time ran out
+            raise
 
     def set_speed(self, omega: float) -> None:
         """Command an angular speed of the disc [rad/s]; see `Drive.set_speed`."""
-        self._bus._set_speed(self._axis, omega)
+        limit = self._bus.limits.speed
+        require_within(omega, limit, quantity=f"speed of the {self.name}", unit="rad/s")
+        self._velocity = self.place.sign * omega * self.place.gear / (2 * math.pi)
+        self.send_velocity()
 
     def disarm(self) -> None:
         """Command standstill and de-energise."""
-        self._bus._disarm(self._axis)
+        self._velocity, self.armed = 0.0, False
+        with contextlib.suppress(RigError, can.CanError, OSError):  # the watchdog remains
+            self.send_velocity()
+        with contextlib.suppress(RigError, can.CanError, OSError):
+            self._send(Command.SET_AXIS_STATE, AXIS_STATE.pack(AxisState.IDLE))
+
+    def send_velocity(self) -> None:
+        """Send the velocity set-point, which feeds the watchdog."""
+        self._send(Command.SET_INPUT_VELOCITY, INPUT_VELOCITY.pack(self._velocity, 0.0))
+
+    def require_no_error(self) -> None:
+        """Check the axis error of the last heartbeat.
+
+        Raises:
+            DeviceFault: The drive reports an error.
+        """
+        if self.error:
+            raise DeviceFault(
+                f"drive of the {self.name} reports "
+                f"{describe_error(self.error, self._bus.profile.firmware)}",
+                status=self.error,
+            )
+
+    def _send(self, command: Command, data: bytes) -> None:
+        self._bus._link.write(can_id(self.place.node, command), data)
 
 
 def disc_speed(drive: DiscDrive, velocity: float) -> float:

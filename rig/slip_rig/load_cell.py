@@ -3,7 +3,6 @@
 
 import http.client
 from collections.abc import Sequence
-from types import TracebackType
 from typing import Final, Self
 
 import numpy as np
@@ -107,14 +106,9 @@ class NetFtCell(LinkedStream[UdpLink]):
         self._link.write(encode_request(self._start))
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *exception: object) -> None:
         self._link.write(encode_request(Request.STOP))
-        super().__exit__(kind, error, trace)
+        super().__exit__(*exception)
 
     def _samples(self, datagrams: Sequence[bytes], now: float) -> SampleColumns:
         """Decode all records of a read together, column by column."""

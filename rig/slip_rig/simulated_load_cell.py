@@ -6,7 +6,6 @@ Not modelled: its web page, its thresholds, and the low-pass filter inside it.
 
 import contextlib
 import socket
-from types import TracebackType
 from typing import Self
 
 import numpy as np
@@ -72,12 +71,7 @@ class SimulatedLoadCell:
         self.port = self._socket.getsockname()[1]
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *exception: object) -> None:
         if self._socket is not None:
             self._socket.close()
         self._socket = None

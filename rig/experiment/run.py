@@ -17,7 +17,7 @@ from rig.experiment.readings import Batch, Readings, join
 from rig.experiment.sink import RunSink, RunStart, SinkFailed
 from rig.experiment.steps import Point, Step, Tare, estimate, require_allowed, spell_out
 from rig.experiment.verdict import LEAST_COVERED, PointVerdict, is_steady, judge_point, span
-from rig.experiment.watcher import ExperimentWatcher, NobodyWatches
+from rig.experiment.watcher import ExperimentWatcher
 from rig.safety import StopCategory, StopRequested
 from rig.slip_rig.decode import Forces, Zero, require_zero, tare
 
@@ -87,7 +87,9 @@ def run_plan(
     require_allowed(plan, bench.profile)
     if control.stop.latched:
         raise ProtocolError("an emergency stop is latched; look after the rig, then reset it")
-    run = _Run(plan, bench, load, sink, control, watcher or NobodyWatches(), clock, period, done)
+    run = _Run(
+        plan, bench, load, sink, control, watcher or ExperimentWatcher(), clock, period, done
+    )
     return run.go()
 
 

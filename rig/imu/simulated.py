@@ -111,7 +111,7 @@ class SimulatedImu:
         due = int((now - self._switched_on) * self._profile.rate + 1e-9) + 1
         frames = [self._encode(number) for number in range(self._number, due)]
         self._number = due
-        return self._wire.carry(frames)
+        return self._wire.stream(frames)
 
     def _encode(self, number: int) -> bytes:
         time = number / self._profile.rate

@@ -1,31 +1,11 @@
 # SPDX-License-Identifier: MIT
 """Framing of a byte stream: COBS or fixed trailer, resynchronisation, counts of damaged frames."""
 
-from typing import Final, Protocol
+from typing import Final
 
 from cobs import cobs
 
 DELIMITER: Final = b"\0"
-
-
-class Framer(Protocol):
-    """Finds frames in a stream of bytes.
-
-    Attributes:
-        damaged: Number of damaged frames so far.
-        resynchronised: Number of times that a good frame followed damaged ones.
-    """
-
-    damaged: int
-    resynchronised: int
-
-    def feed(self, data: bytes) -> list[bytes]:
-        """Add bytes and return the payloads of the frames that are now complete."""
-        ...
-
-    def reset(self) -> None:
-        """Discard an incomplete frame, after a disconnection."""
-        ...
 
 
 class CobsFramer:

@@ -3,6 +3,8 @@
 
 from typing import Generic, Protocol, Self, TypeVar
 
+from rig.clock import Clock
+
 
 class Link(Protocol):
     """A connection that is opened and closed: a serial port, a CAN bus, a socket."""
@@ -33,10 +35,16 @@ class LinkedStream(Generic[LinkT]):
 
     Args:
         link: The link.
+        name: Name of the stream.
+        clock: Host time.
     """
 
-    def __init__(self, link: LinkT) -> None:
+    def __init__(self, link: LinkT, *, name: str, clock: Clock) -> None:
+        self.name = name
         self._link = link
+        self._clock = clock
+        self._received = 0
+        self._refused = 0
 
     @property
     def source(self) -> str:

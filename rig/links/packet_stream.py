@@ -58,17 +58,13 @@ class PacketStream(LinkedStream[ByteLink]):
         possible: Callable[[tuple[float, ...]], bool] = always,
         clock: Clock = SYSTEM_CLOCK,
     ) -> None:
-        super().__init__(link)
-        self.name = name
+        super().__init__(link, name=name, clock=clock)
         self._kind = kind
         self._body = body
         self._possible = possible
-        self._clock = clock
         self._framer = CobsFramer(longest=LONGEST)
         self._tracker = SequenceTracker(modulus=WRAP, rate=rate)
         self._device_time = TimeUnwrapper(modulus=WRAP, tick=TICK)
-        self._received = 0
-        self._refused = 0
         self._foreign = 0
         self._sent = 0
         self._connections = 0

@@ -36,7 +36,6 @@ class RigBoard(PacketStream):
         link: Bytes to and from the board.
         profile: Its profile.
         limits: What the discs are allowed.
-        name: Name of the stream.
         clock: Host time.
 
     Attributes:
@@ -50,16 +49,14 @@ class RigBoard(PacketStream):
         *,
         profile: BoardProfile,
         limits: Limits,
-        name: str = "board",
         clock: Clock = SYSTEM_CLOCK,
     ) -> None:
         super().__init__(
-            link, name=name, kind=Kind.SLIP_RIG, body=board_body(profile), rate=profile.rate,
+            link, name="board", kind=Kind.SLIP_RIG, body=board_body(profile), rate=profile.rate,
             clock=clock,
         )  # fmt: skip
         self.profile = profile
         self.limits = limits
-        self._host_clock = clock
         self.leg = BoardDrive(self, "leg")
         self.ground = BoardDrive(self, "ground")
         self._speeds = {"leg": 0.0, "ground": 0.0}
@@ -69,11 +66,11 @@ class RigBoard(PacketStream):
 
     def read(self, timeout: float) -> list[Sample]:
         """Return all samples, waiting at most `timeout` for the first [s]; feeds the watchdog."""
-        end = self._host_clock.now() + timeout
+        end = self._clock.now() + timeout
         while True:
-            if self._armed and self._host_clock.now() >= self._feed_at:
+            if self._armed and self._clock.now() >= self._feed_at:
                 self.command_speeds()
-            left = max(end - self._host_clock.now(), 0.0)
+            left = max(end - self._clock.now(), 0.0)
             samples = super().read(min(left, self.profile.feed_interval))
             if samples or left <= 0:
                 return [self._with_status(sample) for sample in samples]
@@ -93,7 +90,7 @@ class RigBoard(PacketStream):
 
     def command_speeds(self) -> bool:
         """Send both speeds; return whether the link took them."""
-        self._feed_at = self._host_clock.now() + self.profile.feed_interval
+        self._feed_at = self._clock.now() + self.profile.feed_interval
         counts = [
             round(self._speeds[disc] * self.profile.counts_per_speed) for disc in ("leg", "ground")
         ]

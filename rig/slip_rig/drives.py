@@ -51,7 +51,6 @@ class DriveBus(LinkedStream[CanLink]):
         link: The bus.
         profile: Both drives.
         limits: What the discs are allowed.
-        name: Name of the stream.
         clock: Host time.
 
     Attributes:
@@ -65,21 +64,16 @@ class DriveBus(LinkedStream[CanLink]):
         *,
         profile: DriveProfile,
         limits: Limits,
-        name: str = "drives",
         clock: Clock = SYSTEM_CLOCK,
     ) -> None:
-        super().__init__(link)
-        self.name = name
+        super().__init__(link, name="drives", clock=clock)
         self.profile = profile
         self.limits = limits
-        self._clock = clock
         self.leg = OdriveDrive(self, "leg disc", profile.leg)
         self.ground = OdriveDrive(self, "ground disc", profile.ground)
         self._axes = {drive.place.node: drive for drive in (self.leg, self.ground)}
         self._feed_at = -math.inf
         self._ask_at = math.inf
-        self._received = 0
-        self._refused = 0
 
     @property
     def counters(self) -> Counters:

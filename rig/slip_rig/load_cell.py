@@ -47,7 +47,6 @@ class NetFtCell(LinkedStream[UdpLink]):
         buffered: Ask for many records in a datagram: a small part of the work, but a few
             milliseconds late, so that nothing that guards a motion should. A cell that sends
             nothing then is asked for single ones.
-        name: Name of the stream.
         clock: Host time.
     """
 
@@ -57,19 +56,15 @@ class NetFtCell(LinkedStream[UdpLink]):
         *,
         profile: LoadCellProfile,
         buffered: bool = False,
-        name: str = "load_cell",
         clock: Clock = SYSTEM_CLOCK,
     ) -> None:
-        super().__init__(link)
-        self.name = name
+        super().__init__(link, name="load_cell", clock=clock)
         self.profile = profile
-        self._clock = clock
         self._start = Request.START_BUFFERED if buffered else Request.START
         self._tracker = SequenceTracker(
             modulus=WRAP, rate=profile.rate, late_window=LATE_DATAGRAMS * MOST_IN_ONE
         )
         self._device_time = TimeUnwrapper(modulus=WRAP, tick=1 / profile.rate)
-        self._received = 0
         self._damaged = 0
         self._reconnected = 0
         self._heard = 0.0

@@ -172,14 +172,20 @@ def render_table_profile(*, radius_leg: float, radius_ground: float, rate: float
     return tomlkit.dumps(document)
 
 
-def require_device(profile: RigProfile) -> None:
-    """Raise where a profile describes a table and no device that could be opened.
+def device_profiles(profile: RigProfile) -> BoardProfile | tuple[DriveProfile, LoadCellProfile]:
+    """Return the profile of a rig's board, or those of its drives and its load cell.
 
     Raises:
-        ProfileError: It does.
+        ProfileError: The profile describes a table and no device that could be opened, or lacks
+            devices.
     """
     if profile.board is not None and profile.board.link == "table":
         raise ProfileError("is of a file and no device; name a device's profile", file=profile.name)
+    if profile.board is not None:
+        return profile.board
+    if profile.drives is None or profile.load_cell is None:
+        raise ProfileError(f"profile '{profile.name}' has neither a board nor drives and load cell")
+    return profile.drives, profile.load_cell
 
 
 def load_rig_profile(name: str) -> RigProfile:

@@ -67,7 +67,7 @@ class SimulatedBoard:
         due = int(self._rig.elapsed(now) * self._profile.rate + 1e-6)
         frames = self._frames(due)
         self._number = max(self._number, due)
-        return self._wire.carry(frames)
+        return self._wire.stream(frames)
 
     def _frames(self, due: int) -> list[bytes]:
         numbers = np.arange(self._number + 1, due + 1)

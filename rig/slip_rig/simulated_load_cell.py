@@ -10,7 +10,7 @@ from typing import Self
 
 import numpy as np
 
-from rig.links.faults import PERFECT_LINE, Faults
+from rig.links.faults import PERFECT_LINE, Faults, FaultyLine
 from rig.slip_rig.profile import LoadCellProfile
 from rig.slip_rig.rdt import MAGIC, MOST_IN_ONE, RECORD, REQUEST, WRAP, Request
 from rig.slip_rig.simulated import SimulatedRig
@@ -53,8 +53,7 @@ class SimulatedLoadCell:
         self.torque = 0.0
         self._rig = rig
         self._profile = profile
-        self._faults = faults
-        self._rng = rng
+        self._line: FaultyLine[bytes] = FaultyLine(faults, rng=rng)
         self._socket: socket.socket | None = None
         self._client: tuple[str, int] | None = None
         self._number = 0
@@ -62,7 +61,6 @@ class SimulatedLoadCell:
         self._zero = np.zeros(6)
         self._each = 1  # records in a datagram
         self._pending: list[bytes] = []
-        self._held: list[bytes] = []
 
     def __enter__(self) -> Self:
         self._socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
@@ -110,27 +108,13 @@ class SimulatedLoadCell:
         self._pending.append(record)
         if len(self._pending) >= self._each:
             datagram, self._pending = b"".join(self._pending), []
-            self._carry(datagram)
-
-    def _carry(self, datagram: bytes) -> None:
-        held, self._held = self._held, []
-        if self._happens(self._faults.delay):
-            self._held = [datagram]
-        elif not self._happens(self._faults.drop):
-            short = self._happens(self._faults.truncate)
-            self._emit(datagram[:-16] if short else datagram)
-            if self._happens(self._faults.duplicate):
-                self._emit(datagram)
-        for late in held:
-            self._emit(late)
+            for arrived in self._line.carry(datagram, lambda whole: whole[:-16]):
+                self._emit(arrived)
 
     def _emit(self, datagram: bytes) -> None:
         if self._socket is not None and self._client is not None:
             with contextlib.suppress(OSError):  # nobody listens any more
                 self._socket.sendto(datagram, self._client)
-
-    def _happens(self, probability: float) -> bool:
-        return probability > 0 and self._rng.random() < probability
 
     def _obey(self, counts: "np.ndarray") -> None:
         if self._socket is None:

@@ -32,27 +32,15 @@ class CanLegs(LinkedStream[CanLink]):
     Args:
         link: The bus.
         profile: Of the layout `can`.
-        name: Name of the stream.
         clock: Host time.
     """
 
-    def __init__(
-        self,
-        link: CanLink,
-        *,
-        profile: LegProfile,
-        name: str = "legs",
-        clock: Clock = SYSTEM_CLOCK,
-    ) -> None:
-        super().__init__(link)
-        self.name = name
+    def __init__(self, link: CanLink, *, profile: LegProfile, clock: Clock = SYSTEM_CLOCK) -> None:
+        super().__init__(link, name="legs", clock=clock)
         self.profile = profile
-        self._clock = clock
         self._tracker = SequenceTracker(modulus=SEQUENCE_WRAP, rate=profile.rate)
         self._device_time = TimeUnwrapper(modulus=TICKS_WRAP, tick=TICK)
         self._stamp: tuple[int, int] | None = None
-        self._received = 0
-        self._refused = 0
 
     @property
     def counters(self) -> Counters:

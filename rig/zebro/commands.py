@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Commands to the robot: leg set-points of a gait, and stop."""
 
-import struct
 from typing import Final, Protocol
 
 from model.gait.reference import LegReference
@@ -57,11 +56,6 @@ def milliseconds(duration: float) -> int:
         raise LimitExceeded("duration of a leg motion", value=duration, limit=LONGEST_MOTION,
                             unit="s")  # fmt: skip
     return round(duration / MILLISECOND)
-
-
-def set_point_body(profile: LegProfile) -> struct.Struct:
-    """Return the layout of a set-point packet: six targets [counts], then the duration [ms]."""
-    return struct.Struct(("<" if profile.byte_order == "little" else ">") + "7H")
 
 
 def follow(

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Profile of a robot's leg stream: frame layout, and conversion of counts to leg angles."""
 
+import struct
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
@@ -106,6 +107,14 @@ class LegProfile:
         0 for a table: its numbers have fractions, and their rounding is unknown.
         """
         return 0.0 if self.layout == "table" else float(np.pi / self.counts_per_revolution)
+
+    def words(self, count: int) -> struct.Struct:
+        """Return the layout of unsigned 16-bit values in the profile's byte order.
+
+        Args:
+            count: Number of values.
+        """
+        return struct.Struct(f"{'<' if self.byte_order == 'little' else '>'}{count}H")
 
     def possible(self, counts: tuple[float, ...]) -> bool:
         """Return whether every count is on the circle."""

@@ -5,7 +5,6 @@ Neither form has a checksum, a number or a device time: what is lost is not seen
 inside a value is seen only where the value leaves the circle. Prefer a bridge that sends packets.
 """
 
-import struct
 from typing import Final
 
 from rig.clock import SYSTEM_CLOCK, Clock
@@ -28,13 +27,9 @@ QUIET_AFTER_FAILURE: Final = 0.1
 class _RegisterStream(LinkedStream[ByteLink]):
     """Base of both layouts: link, profile and counters."""
 
-    def __init__(self, link: ByteLink, *, profile: LegProfile, name: str, clock: Clock) -> None:
-        super().__init__(link)
-        self.name = name
+    def __init__(self, link: ByteLink, *, profile: LegProfile, clock: Clock = SYSTEM_CLOCK) -> None:
+        super().__init__(link, name="legs", clock=clock)
         self.profile = profile
-        self._clock = clock
-        self._received = 0
-        self._refused = 0
 
     def _sample(self, counts: tuple[int, ...]) -> list[Sample]:
         if not self.profile.possible(counts):
@@ -50,19 +45,11 @@ class DumpLegs(_RegisterStream):
     Args:
         link: Bytes from one leg module.
         profile: Of the layout `dump`.
-        name: Name of the stream.
         clock: Host time.
     """
 
-    def __init__(
-        self,
-        link: ByteLink,
-        *,
-        profile: LegProfile,
-        name: str = "legs",
-        clock: Clock = SYSTEM_CLOCK,
-    ) -> None:
-        super().__init__(link, profile=profile, name=name, clock=clock)
+    def __init__(self, link: ByteLink, *, profile: LegProfile, clock: Clock = SYSTEM_CLOCK) -> None:
+        super().__init__(link, profile=profile, clock=clock)
         self._framer = TrailerFramer(length=DUMP_LENGTH, trailer=SYNC)
         self._connections = 0
 
@@ -121,22 +108,12 @@ class PolledLegs(_RegisterStream):
     Args:
         link: Bytes to and from the bridge.
         profile: Of the layout `poll`.
-        name: Name of the stream.
         clock: Host time.
     """
 
-    def __init__(
-        self,
-        link: ByteLink,
-        *,
-        profile: LegProfile,
-        name: str = "legs",
-        clock: Clock = SYSTEM_CLOCK,
-    ) -> None:
-        super().__init__(link, profile=profile, name=name, clock=clock)
-        self._answer = struct.Struct(
-            ("<" if profile.byte_order == "little" else ">") + f"{len(profile.legs)}H"
-        )
+    def __init__(self, link: ByteLink, *, profile: LegProfile, clock: Clock = SYSTEM_CLOCK) -> None:
+        super().__init__(link, profile=profile, clock=clock)
+        self._answer = profile.words(len(profile.legs))
         self._next_at = clock.now()
         self._damaged = 0
         self._resynchronised = 0
@@ -183,8 +160,7 @@ class PolledLegs(_RegisterStream):
             Whether the link took the command.
         """
         values = (*counts, milliseconds(duration))
-        order = self.profile.byte_order
-        data = b"".join(value.to_bytes(2, order) for value in values)
+        data = self.profile.words(len(values)).pack(*values)
         return self._write(self.profile.registers.set_points[0], data)
 
     def stop(self) -> bool:

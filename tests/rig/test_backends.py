@@ -23,9 +23,9 @@ OF_LAYOUT = {
 def test_the_layout_chooses_the_driver(layout):
     profile = load_leg_profile(OF_LAYOUT[layout])
     clock = ManualClock()
-    driver = leg_driver(profile, MemoryLink(None, clock=clock), name="x", clock=clock)
-    assert type(driver).__name__ == LEG_DRIVERS[layout].split(":")[1]
-    assert (driver.name, driver.profile) == ("x", profile)
+    driver = leg_driver(profile, MemoryLink(None, clock=clock), clock=clock)
+    assert type(driver) is LEG_DRIVERS[layout]
+    assert (driver.name, driver.profile) == ("legs", profile)
 
 
 def test_the_layout_chooses_the_link():
@@ -42,8 +42,8 @@ def test_a_rig_is_a_board_or_drives_and_a_load_cell():
     board = open_rig("rig-board-serial@/dev/null")
     assert [stream.name for stream in board.streams] == ["board"]
     assert open_imu("imu-quaternion-serial@/dev/null", name="imu1").name == "imu1"
-    legs = open_legs("zebro-100-serial@/dev/null", name="left")
-    assert (legs.name, legs.source) == ("left", "real")
+    legs = open_legs("zebro-100-serial@/dev/null")
+    assert (legs.name, legs.source) == ("legs", "real")
 
 
 def test_a_profile_of_a_table_opens_nothing(tmp_path):

@@ -12,7 +12,7 @@ from rig.errors import RigError
 from rig.experiment.acquire import GuardedAcquisition
 from rig.experiment.bench import make_bench
 from rig.experiment.load import HandShaft
-from rig.experiment.watcher import NobodyWatches
+from rig.experiment.watcher import ExperimentWatcher
 from rig.links.memory import MemoryLink
 from rig.links.packet import Kind, Packet, encode_packet
 from rig.slip_rig.board import RigBoard
@@ -82,7 +82,7 @@ def test_nobody_is_asked_to_turn_the_shaft_while_a_disc_turns(lab, monkeypatch):
     twin = lab["twin"]()
     keep_turning(twin, monkeypatch, 3.0)
 
-    class Bystander(NobodyWatches):
+    class Bystander(ExperimentWatcher):
         def doing(self, what, *, done, of, left):
             pass
 

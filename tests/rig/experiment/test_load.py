@@ -6,7 +6,7 @@ import pytest
 from rig.errors import RigTimeout
 from rig.experiment.load import DrivenShaft, HandShaft
 from rig.experiment.simulated_load import SimulatedAxis
-from rig.experiment.watcher import NobodyWatches
+from rig.experiment.watcher import ExperimentWatcher
 
 
 def test_a_driven_axis_finds_the_loads_and_the_zero(lab):
@@ -40,7 +40,7 @@ def test_a_person_is_asked_and_believed_only_within_the_tolerance(lab):
     twin.rig.load = 1e-3
     asked = []
 
-    class Operator(NobodyWatches):
+    class Operator(ExperimentWatcher):
         def prompt(self, text, *, normal):
             asked.append(text)
             if asked.count(text) == 5:

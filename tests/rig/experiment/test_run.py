@@ -8,7 +8,7 @@ from model.slip.thesis import THESIS_LAW, THESIS_VALUES
 from rig.errors import DeviceFault, LimitExceeded, ProtocolError, RigTimeout
 from rig.experiment.sink import SinkFailed
 from rig.experiment.verdict import measured_slip
-from rig.experiment.watcher import NobodyWatches
+from rig.experiment.watcher import ExperimentWatcher
 from rig.safety import StopCategory
 from support.memory_sink import MemorySink
 
@@ -256,7 +256,7 @@ def test_guards_that_are_off_are_kept_in_the_log_and_shown(lab):
     twin = lab["twin"]()
     shown = []
 
-    class Screen(NobodyWatches):
+    class Screen(ExperimentWatcher):
         def doing(self, what, *, done, of, left):
             shown.append(what)
 

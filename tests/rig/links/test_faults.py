@@ -16,7 +16,7 @@ PROBABILITIES = [f.name for f in fields(Faults) if f.name != "noise_at_start"]
 
 
 def carried(faults, frames=FRAMES, seed=1):
-    return FaultyWire(faults, rng=np.random.default_rng(seed)).carry(frames)
+    return FaultyWire(faults, rng=np.random.default_rng(seed)).stream(frames)
 
 
 @given(st.lists(st.binary(max_size=20)))
@@ -45,8 +45,8 @@ def test_bits_flip_as_often_as_asked_and_nothing_else_changes():
 def test_a_delayed_frame_comes_after_the_next_one():
     frames = [b"a", b"b", b"c"]
     wire = FaultyWire(Faults(delay=1.0), rng=np.random.default_rng(0))
-    assert wire.carry(frames) == b"ab"  # the last one still waits
-    assert wire.carry([b"d"]) == b"c"
+    assert wire.stream(frames) == b"ab"  # the last one still waits
+    assert wire.stream([b"d"]) == b"c"
 
 
 def test_a_truncated_frame_is_the_beginning_of_it():
@@ -59,8 +59,8 @@ def test_a_truncated_frame_is_the_beginning_of_it():
 
 def test_noise_comes_once_before_the_first_frame():
     wire = FaultyWire(Faults(noise_at_start=7), rng=np.random.default_rng(0))
-    assert wire.carry([b"abc"])[7:] == b"abc"
-    assert wire.carry([b"abc"]) == b"abc"
+    assert wire.stream([b"abc"])[7:] == b"abc"
+    assert wire.stream([b"abc"]) == b"abc"
 
 
 @pytest.mark.parametrize("name", PROBABILITIES)

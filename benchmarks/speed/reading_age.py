@@ -235,7 +235,7 @@ def ramp_ages(
         for k in range(ramps):
             acquire.aim(0.0 if k % 2 else TOP_SPEED, None if k % 2 else 0.2)
             while acquire.ramping:
-                batch = acquire.look()
+                batch = acquire.poll()
                 now = SYSTEM_CLOCK.now()
                 for name, samples in batch.raw.items():
                     true[name] += [true_age(sample, now, switched_on) for sample in samples]

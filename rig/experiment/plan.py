@@ -170,7 +170,7 @@ class RunLimits:
     guards_off: tuple[str, ...]
 
     @property
-    def off_said(self) -> str:
+    def guards_off_text(self) -> str:
         """Text with the guards that are off and their limits; empty where none is."""
         return ", ".join(
             f"{name} ({getattr(self, name):g} {LIMIT_UNITS[name]})" for name in self.guards_off

@@ -96,13 +96,13 @@ def weigh(
     readings, errors = [], []
     for force in (0.0, *forces):
         prove_rest(look, REST_SPEED, longest=REST_LIMIT, clock=clock)
-        text = load.request(force, now=clock.now())
+        text = load.request(force)
         waiting = True
         while waiting:
             normal = look().normal
             if len(normal):
                 prompt(text, float(normal.mean()))
-                waiting = not load.follow(float(normal.mean()), now=clock.now())
+                waiting = not load.follow(float(normal.mean()))
         mean, error = _read(look, duration, clock)
         readings.append(mean)
         errors.append(error)

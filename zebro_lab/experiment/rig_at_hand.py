@@ -86,7 +86,9 @@ class RigAtHand:
                 key="load.set_by",
             )
         axis = SimulatedAxis(self.twin, clock=self.clock)
-        return DrivenShaft(axis, tolerance=setting.tolerance, patience=setting.patience)
+        return DrivenShaft(
+            axis, tolerance=setting.tolerance, patience=setting.patience, clock=self.clock
+        )
 
 
 @contextmanager

@@ -10,6 +10,7 @@ import pytest
 
 from rig.backends import RigDevices
 from rig.clock import ManualClock
+from rig.experiment.acquire import GuardedAcquisition
 from rig.experiment.bench import make_bench
 from rig.experiment.control import Control
 from rig.experiment.plan import Plan
@@ -96,6 +97,19 @@ class Twin:
             "control": self.control, "clock": self.clock, "period": 0.01,
         }  # fmt: skip
         return run_plan(wanted or plan(), **(settings | options))
+
+    def acquisition(self, wanted) -> GuardedAcquisition:
+        return GuardedAcquisition(
+            self.bench, limits=wanted.limits, control=self.control, sink=self.sink,
+            clock=self.clock, period=0.01,
+        )  # fmt: skip
+
+    @staticmethod
+    def turn(acquire):
+        """Energise the discs and wait until they turn at a slip ratio of 0.2."""
+        acquire.arm()
+        acquire.aim(12.0, 0.2)
+        acquire.until(lambda _: not acquire.ramping, 2.0)
 
     def at_rest(self) -> bool:
         """Let half a second pass and tell whether both discs stand."""

@@ -12,7 +12,7 @@ from rig.experiment.watcher import ExperimentWatcher
 def test_a_driven_axis_finds_the_loads_and_the_zero(lab):
     twin = lab["twin"]()
     axis = SimulatedAxis(twin.rig, clock=twin.clock)
-    load = DrivenShaft(axis, tolerance=0.3, patience=30.0)
+    load = DrivenShaft(axis, tolerance=0.3, patience=30.0, clock=twin.clock)
     outcome = twin.run(load=load)
     assert outcome.completed
     zero = twin.sink.runs[0].start.zero
@@ -28,7 +28,7 @@ def test_an_axis_that_brings_no_force_is_given_up(lab):
         def move(self, velocity):
             pass
 
-    load = DrivenShaft(Stuck(), tolerance=0.1, patience=2.0)
+    load = DrivenShaft(Stuck(), tolerance=0.1, patience=2.0, clock=twin.clock)
     twin.rig.load = 2.0
     with pytest.raises(RigTimeout, match="the load axis did not bring 4 N"):
         twin.run(load=load)

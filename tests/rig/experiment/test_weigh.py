@@ -69,7 +69,7 @@ def test_a_gain_error_of_the_twin_is_weighed(lab):
 
 def test_no_weight_is_asked_for_while_a_disc_turns(lab):
     class Bystander:
-        def request(self, target, *, now):
+        def request(self, target):
             raise AssertionError(f"asked to hang {target:g} N on a rig that turns")
 
     twin = lab["twin"]()

@@ -46,7 +46,7 @@ def test_discs_settle_before_the_timeout_or_not_at_all(lab):
 
 def test_a_recording_lasts_as_planned_and_reaches_the_sink_without_its_zero(lab):
     twin, plan = lab["twin"](), lab["plan"]()
-    zero = Zero(100.0, 50.0, 0.0)
+    twin.rig.load, zero = 8.0, Zero(100.0, 50.0, 0.0)
     with twin.bench:
         acquire = twin.acquisition(plan)
         acquire.arm()

@@ -83,6 +83,8 @@ class Acquisition:
         clock: Host time.
 
     Attributes:
+        name: Name of the stream.
+        counters: Counters of the stream, as of its last read.
         tap: The newest samples, for viewers.
         clock_watch: Comparison of the device's clock with the host's.
         first: Host time of the first sample; None before it [s].
@@ -93,6 +95,8 @@ class Acquisition:
     def __init__(
         self, device: Device, *, sink: SampleSink, start: float, clock: Clock = SYSTEM_CLOCK
     ) -> None:
+        self.name = device.name
+        self.counters = Counters()
         self.tap = LossyTap()
         self.clock_watch = ClockWatch(start=start)
         self.first: float | None = None
@@ -100,21 +104,10 @@ class Acquisition:
         self._device = device
         self._sink = sink
         self._clock = clock
-        self._counters = Counters()
         self._silent = False
         self._done = threading.Event()
         self._until = float("inf")
         self._thread = threading.Thread(target=self._run, daemon=True, name=device.name)
-
-    @property
-    def name(self) -> str:
-        """Name of the stream."""
-        return self._device.name
-
-    @property
-    def counters(self) -> Counters:
-        """Counters of the stream, as of its last read."""
-        return self._counters
 
     def start(self) -> None:
         """Start the reader thread.
@@ -171,7 +164,7 @@ class Acquisition:
 
     def _watch(self, counters: Counters) -> None:
         """Log events of the link: losses, reconnections, restarts."""
-        before, self._counters = self._counters, counters
+        before, self.counters = self.counters, counters
         for what in ("reconnected", "restarted"):
             if getattr(counters, what) > getattr(before, what):
                 self._sink.event(f"{self.name}: {what}", level=WARNING)

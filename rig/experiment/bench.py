@@ -39,6 +39,7 @@ class Bench(ABC):
 
     Attributes:
         profile: Profile of the rig.
+        source: Origin of the samples: `real` or `sim:WHAT`.
         streams: Streams of the devices, for their counters.
         watched: Names of the devices and answers that are checked for silence.
     """
@@ -47,17 +48,13 @@ class Bench(ABC):
 
     def __init__(self, motors: DriveBus | RigBoard, *sensors: Stream, profile: RigProfile) -> None:
         self.profile = profile
+        self.source = motors.source
         self.streams: tuple[Stream, ...] = (motors, *sensors)
         self._motors = motors
         self._leg: Drive = motors.leg
         self._ground: Drive = motors.ground
         self._time = HostTime()
         self._stack = ExitStack()
-
-    @property
-    def source(self) -> str:
-        """Origin of the samples: `real` or `sim:WHAT`."""
-        return self._motors.source
 
     @abstractmethod
     def watch(self, limits: Collection[str]) -> None:

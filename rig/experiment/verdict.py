@@ -6,11 +6,10 @@ from typing import Final
 
 import numpy as np
 
-from model.slip.definition import SlipDefinition, slip_ratio
-from model.slip.law import Array
 from rig.experiment.plan import Acceptance, SettleCriterion
 from rig.experiment.readings import Readings
 from rig.experiment.steps import Point
+from rig.slip_rig.decode import measured_slip
 from rig.slip_rig.profile import RigProfile
 
 LEAST_COVERED: Final = 0.8
@@ -61,24 +60,6 @@ def friction(readings: Readings) -> float:
     return float(readings.traction_force.sum()) / load if load > 0 else np.nan
 
 
-def measured_slip(readings: Readings, profile: RigProfile) -> Array:
-    """Compute the instantaneous material slip ratio from both speeds.
-
-    Args:
-        readings: Speeds of both discs.
-        profile: Carries the radii of the discs.
-
-    Returns:
-        Slip ratio, NaN or infinite where the leg disc stands still, shape (n,) [-].
-    """
-    with np.errstate(divide="ignore", invalid="ignore"):
-        return slip_ratio(
-            readings.omega_leg * profile.radius_leg,
-            readings.omega_ground * profile.radius_ground,
-            SlipDefinition.MATERIAL,
-        )
-
-
 def is_steady(window: Readings, wanted: tuple[float, float], criterion: SettleCriterion) -> bool:
     """Return whether speeds are at their set-points and both halves of a window agree.
 
@@ -126,7 +107,7 @@ def judge_point(
     """
     if len(readings) < 8:
         return PointVerdict((f"{len(readings)} samples",), len(readings), np.nan, np.nan, np.nan)
-    slip = measured_slip(readings, profile)
+    slip = measured_slip(readings.omega_leg, readings.omega_ground, profile)
     first, late = halves(readings)
     problems = [] if settled else ["not settled in time"]
     covered = span(readings)

@@ -15,8 +15,8 @@ from rig.experiment.load import LoadSetter
 from rig.experiment.readings import Batch
 from rig.experiment.rest import prove_rest
 from rig.safety import REST_SPEED
+from rig.slip_rig.decode import BATCHES, standard_error
 
-BATCHES: Final = 10
 REST_LIMIT: Final = 5.0
 """Timeout for the verification that both discs stand [s]."""
 
@@ -150,5 +150,4 @@ def _read(look: Callable[[], Batch], duration: float, clock: Clock) -> tuple[flo
     values = np.concatenate(parts)
     if len(values) < 2 * BATCHES:
         raise ProtocolError(f"{len(values)} samples in {duration:g} s; is the load cell running?")
-    means = [batch.mean() for batch in np.array_split(values, BATCHES)]
-    return float(values.mean()), float(np.std(means, ddof=1) / np.sqrt(BATCHES))
+    return float(values.mean()), standard_error(values)

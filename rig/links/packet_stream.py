@@ -29,11 +29,6 @@ FOREIGN_LIMIT: Final = 20
 """Number of packets of another device, with none of the expected one, that is a mismatch."""
 
 
-def always(_: tuple[float, ...]) -> bool:
-    """Return True for any counts."""
-    return True
-
-
 class PacketStream(LinkedStream[ByteLink]):
     """Samples from packets of one kind; satisfies `rig.device.Stream`.
 
@@ -43,7 +38,8 @@ class PacketStream(LinkedStream[ByteLink]):
         kind: Kind of packet that carries the samples.
         body: Layout of the packet's body; its fields are the sample's counts.
         rate: Sample rate; distinguishes a loss from a restart [Hz].
-        possible: Returns whether counts are possible; impossible ones are discarded.
+        possible: Returns whether counts are possible; impossible ones are discarded. None takes
+            any.
         clock: Host time.
     """
 
@@ -55,7 +51,7 @@ class PacketStream(LinkedStream[ByteLink]):
         kind: Kind,
         body: struct.Struct,
         rate: float,
-        possible: Callable[[tuple[float, ...]], bool] = always,
+        possible: Callable[[tuple[float, ...]], bool] | None = None,
         clock: Clock = SYSTEM_CLOCK,
     ) -> None:
         super().__init__(link, name=name, clock=clock)
@@ -94,11 +90,8 @@ class PacketStream(LinkedStream[ByteLink]):
             self._connections = self._link.reconnected
             self._framer.reset()
         now = self._clock.now()
-        samples = []
-        for content in self._framer.feed(data):
-            sample = self._sample(content, now)
-            if sample is not None:
-                samples.append(sample)
+        found = (self._sample(content, now) for content in self._framer.feed(data))
+        samples = [sample for sample in found if sample is not None]
         self._received += len(samples)
         return samples
 
@@ -128,7 +121,7 @@ class PacketStream(LinkedStream[ByteLink]):
             self._refuse_foreign(packet)
             return None
         counts = self._body.unpack(packet.body)
-        if not self._possible(counts):
+        if self._possible is not None and not self._possible(counts):
             self._refused += 1
             return None
         sequence = self._tracker.accept(packet.sequence, now)

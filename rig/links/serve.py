@@ -10,7 +10,7 @@ import tempfile
 import threading
 from collections.abc import Callable
 from pathlib import Path
-from typing import Final, Protocol, Self
+from typing import Final, Self
 
 from rig.clock import SYSTEM_CLOCK, Clock
 from rig.errors import LinkError
@@ -55,20 +55,6 @@ class Ticker:
             self.failure = failure
 
 
-class _End(Protocol):
-    """The twin's end of a port."""
-
-    port: str
-
-    def exchange(self, data: bytes) -> bytes:
-        """Send bytes and return those received."""
-        ...
-
-    def close(self) -> None:
-        """Close the port."""
-        ...
-
-
 class _Terminal:
     """Pseudo-terminal with a name that stays the same when it is unplugged and plugged in."""
 
@@ -84,6 +70,7 @@ class _Terminal:
         self.port = str(link)
 
     def exchange(self, data: bytes) -> bytes:
+        """Send bytes and return those received."""
         with contextlib.suppress(BlockingIOError):  # a full buffer drops bytes, as a UART does
             os.write(self._master, data)
         try:
@@ -168,7 +155,7 @@ class PortServer:
         self._as_socket = as_socket or sys.platform == "win32"
         self._folder: tempfile.TemporaryDirectory[str] | None = None
         self._number = 0
-        self._end: _End | None = None
+        self._end: _Terminal | _Socket | None = None
         self._lock = threading.Lock()
         self._received = b""
         self._ticker = Ticker(self._tick, clock=clock)
@@ -209,7 +196,7 @@ class PortServer:
         if self._folder is not None:
             self._folder.cleanup()
 
-    def _make(self) -> _End:
+    def _make(self) -> _Terminal | _Socket:
         if self._as_socket:
             end = _Socket(self._number)
             self._number = end.number

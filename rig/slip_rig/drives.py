@@ -72,6 +72,7 @@ class DriveBus(LinkedStream[CanLink]):
         self.leg = OdriveDrive(self, "leg disc", profile.leg)
         self.ground = OdriveDrive(self, "ground disc", profile.ground)
         self._axes = {drive.place.node: drive for drive in (self.leg, self.ground)}
+        self._pending: list[Sample] = []  # arrived while another answer was awaited
         self._feed_at = -math.inf
         self._ask_at = math.inf
 
@@ -169,13 +170,10 @@ class DriveBus(LinkedStream[CanLink]):
             if left <= 0:
                 raise RigTimeout(problem, waited=timeout)
             self._feed()
-            for sample in self._receive(min(left, self.profile.feed_interval)):
-                self._axes[sample.channel].pending.append(sample)
+            self._pending += self._receive(min(left, self.profile.feed_interval))
 
     def _take(self, timeout: float) -> list[Sample]:
-        kept = [sample for axis in self._axes.values() for sample in axis.pending]
-        for axis in self._axes.values():
-            axis.pending.clear()
+        kept, self._pending = self._pending, []
         samples = kept + self._receive(0.0 if kept else timeout)
         self._received += len(samples)
         return samples
@@ -219,7 +217,6 @@ class OdriveDrive:
         armed: Whether it has been energised and not been commanded to idle since.
         state: Axis state of the last heartbeat; 0 before the first.
         error: Axis error of the last heartbeat.
-        pending: Samples that arrived while another answer was awaited.
         temperatures: Temperatures that nobody has read yet [degC].
     """
 
@@ -229,7 +226,6 @@ class OdriveDrive:
         self.armed = False
         self.state = 0
         self.error = 0
-        self.pending: list[Sample] = []
         self.temperatures: list[float] = []
         self._bus = bus
         self._velocity = 0.0

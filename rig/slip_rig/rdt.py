@@ -73,17 +73,16 @@ class CellConfiguration:
     rate: float | None
 
 
-def encode_request(request: Request, count: int = 0) -> bytes:
-    """Encode a request.
+def encode_request(request: Request) -> bytes:
+    """Encode a request; after a start, records come until `STOP`.
 
     Args:
         request: Kind of request.
-        count: Records to send; 0 goes on until `STOP`.
 
     >>> encode_request(Request.START).hex()
     '1234000200000000'
     """
-    return REQUEST.pack(MAGIC, request, count)
+    return REQUEST.pack(MAGIC, request, 0)
 
 
 def describe_status(status: int) -> str:

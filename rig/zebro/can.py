@@ -59,11 +59,8 @@ class CanLegs(LinkedStream[CanLink]):
         """Return all samples that have arrived, waiting at most `timeout` for the first [s]."""
         messages = self._link.read(timeout)
         now = self._clock.now()
-        samples = []
-        for message in messages:
-            sample = self._sample(message, now)
-            if sample is not None:
-                samples.append(sample)
+        found = (self._sample(message, now) for message in messages)
+        samples = [sample for sample in found if sample is not None]
         self._received += len(samples)
         return samples
 

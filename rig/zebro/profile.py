@@ -168,7 +168,9 @@ def load_leg_profile(name: str) -> LegProfile:
         name=Path(name).stem,
         layout=layout,
         baudrate=0 if layout == "table" else link.whole("baudrate", least=1, most=20_000_000),
-        byte_order=_byte_order(frame, layout),
+        byte_order="little"
+        if layout in ("can", "table")
+        else frame.choice("byte_order", ("little", "big")),
         legs=order,
         counts_per_revolution=legs.whole(
             "counts_per_revolution", least=2, most=100 if layout == "can" else 65_535
@@ -249,12 +251,6 @@ def encode_counts(profile: LegProfile, theta: Sequence[float] | Array) -> tuple[
     turns = by_channel * profile.sign / (2 * np.pi)
     counts = np.rint(turns * profile.counts_per_revolution + profile.zero_counts)
     return tuple(int(c) for c in np.remainder(counts, profile.counts_per_revolution))
-
-
-def _byte_order(frame: TomlTable, layout: Layout) -> Order:
-    if layout in ("can", "table"):
-        return "little"
-    return frame.choice("byte_order", ("little", "big"))
 
 
 def _order(legs: TomlTable) -> tuple[int, ...]:

@@ -12,9 +12,9 @@ from rig.errors import DeviceFault, LimitExceeded, RigTimeout, StaleReading, Unr
 from rig.experiment.acquire import GuardedAcquisition
 from rig.experiment.bench import make_bench
 from rig.experiment.control import Control
-from rig.experiment.verdict import measured_slip
 from rig.links.can import CanLink
 from rig.slip_rig.can_simple import Command, split_id
+from rig.slip_rig.decode import measured_slip
 from rig.slip_rig.imperfections import RigImperfections
 from rig.slip_rig.profile import load_rig_profile
 from rig.slip_rig.rdt import SATURATED
@@ -76,7 +76,9 @@ def test_forces_and_speeds_are_lined_up(lab, monkeypatch):
     with turning(lab, monkeypatch) as (acquire, _, drives, _):
         parts = []
         acquire.until(lambda batch: parts.append(batch.readings), 0.3)
-        slip = np.concatenate([measured_slip(part, PROFILE) for part in parts])
+        slip = np.concatenate(
+            [measured_slip(part.omega_leg, part.omega_ground, PROFILE) for part in parts]
+        )
         t = np.concatenate([part.t for part in parts])
         assert slip.mean() == pytest.approx(0.2, abs=0.01)
         assert len(t) > 100

@@ -83,7 +83,7 @@ def leg_driver(profile: LegProfile, link: Any, *, clock: Clock = SYSTEM_CLOCK) -
 def _require_device(profile: LegProfile) -> None:
     if profile.layout not in LEG_DRIVERS:
         raise ProfileError(
-            f"has the layout '{profile.layout}', of a file and no device; name a device's profile",
+            f"describes a file (layout '{profile.layout}'), not a device; name a device's profile",
             file=profile.name,
         )
 
@@ -104,7 +104,9 @@ def open_imu(address: str, *, name: str = "imu") -> ImuStream:
     profile_name, port = split_address(address)
     profile = load_imu_profile(profile_name)
     if profile.link == "table":
-        raise ProfileError("is of a file and no device; name a device's profile", file=profile.name)
+        raise ProfileError(
+            "describes a file, not a device; name a device's profile", file=profile.name
+        )
     return ImuStream(SerialLink(port, baudrate=profile.baudrate), profile=profile, name=name)
 
 

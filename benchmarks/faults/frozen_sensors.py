@@ -111,7 +111,7 @@ def freeze(lab: Lab, plan: Plan, channels: tuple[int, ...]) -> float | None:
             period=PERIOD,
         )  # fmt: skip
         acquire.arm()
-        acquire.aim(plan.points.omega_leg, 0.2)
+        acquire.start_ramp(plan.points.omega_leg, 0.2)
         acquire.until(lambda _: False, 3.3)
         lab.board.frozen, began = channels, lab.clock.now()
         try:

@@ -233,7 +233,7 @@ def ramp_ages(
         )  # fmt: skip
         acquire.arm()
         for k in range(ramps):
-            acquire.aim(0.0 if k % 2 else TOP_SPEED, None if k % 2 else 0.2)
+            acquire.start_ramp(0.0 if k % 2 else TOP_SPEED, None if k % 2 else 0.2)
             while acquire.ramping:
                 batch = acquire.poll()
                 now = SYSTEM_CLOCK.now()

@@ -23,7 +23,7 @@ from rig.safety import StopCategory, StopRequested, require_within
 
 PERIOD: Final = 0.004
 """Polling period: waking up for each of 7,000 samples per second is several times slower [s]."""
-UNDERWAY: Final = 0.5
+FAULT_CLEAR_TIME: Final = 0.5
 """How long reports from before arming may still arrive [s]."""
 SPACE_CHECK_PERIOD: Final = 0.1
 """Interval between checks whether data can still be stored [s]."""
@@ -124,7 +124,7 @@ class GuardedAcquisition:
         self._bench.disarm()
         self.energised = False
 
-    def aim(self, leg: float, slip: float | None) -> None:
+    def start_ramp(self, leg: float, slip: float | None) -> None:
         """Start a ramp of the set-points, within the acceleration limit.
 
         Args:
@@ -189,7 +189,7 @@ class GuardedAcquisition:
             RigError: A guard tripped meanwhile.
             StopRequested: A harder stop was requested.
         """
-        self.aim(0.0, None)
+        self.start_ramp(0.0, None)
         self.until(lambda _: not self.ramping, float("inf"))
         try:
             prove_rest(
@@ -248,7 +248,7 @@ class GuardedAcquisition:
 
     def _await_health(self) -> None:
         """Wait until reports of a fault that arming has cleared have passed."""
-        end = self._clock.now() + UNDERWAY
+        end = self._clock.now() + FAULT_CLEAR_TIME
         while True:
             self._clock.sleep(self._period)
             self._bench.read()

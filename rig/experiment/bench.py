@@ -25,7 +25,7 @@ from rig.slip_rig.load_cell import NetFtCell
 from rig.slip_rig.profile import RigProfile
 from rig.slip_rig.rdt import describe_status
 
-ARM_LIMIT: Final = 2.0
+ARM_TIMEOUT: Final = 2.0
 """Timeout for a drive to enter closed-loop control [s]."""
 
 
@@ -70,8 +70,8 @@ class Bench(ABC):
 
     def arm(self) -> None:
         """Energise both drives, at standstill."""
-        self._leg.arm(ARM_LIMIT)
-        self._ground.arm(ARM_LIMIT)
+        self._leg.arm(ARM_TIMEOUT)
+        self._ground.arm(ARM_TIMEOUT)
 
     def turn(self, leg: float, ground: float) -> None:
         """Command the speeds of both discs.
@@ -131,7 +131,7 @@ class BoardBench(Bench):
             normal=forces.normal,
             traction=forces.traction,
             speeds={"leg": speeds.leg, "ground": speeds.ground},
-            heard={"board": samples},
+            arrived={"board": samples},
             further={},
             taken={"board": taken},
             fault="",
@@ -163,7 +163,7 @@ class DrivesBench(Bench):
         self._further = frozenset(limits)
         if "temperature_celsius" in self._further:
             self.watched += ("temperature of the leg drive", "temperature of the ground drive")
-            self._drives.ask_for_temperatures()
+            self._drives.request_temperatures()
 
     def read(self) -> Batch:
         """Return the samples that have arrived; see `Bench.read`."""
@@ -173,23 +173,23 @@ class DrivesBench(Bench):
         taken = {"load cell": self._time.map(weighed)}
         new = np.column_stack([taken["load cell"], forces.normal, forces.traction])
         self._waiting = np.concatenate([self._waiting, new])
-        heard: dict[str, Sequence[object]] = {"load cell": weighed}
+        arrived: dict[str, Sequence[object]] = {"load cell": weighed}
         speeds: dict[str, Array] = {}
         drives = self._drives.profile
         for disc, drive in (("leg", drives.leg), ("ground", drives.ground)):
             own = [sample for sample in turned if sample.channel == drive.node]
-            heard[f"{disc} drive"] = own
+            arrived[f"{disc} drive"] = own
             rows = np.reshape([(s.host_time, disc_speed(drive, s.counts[1])) for s in own], (-1, 2))
             taken[f"{disc} drive"], speeds[disc] = rows.T
             self._speeds[disc] = np.concatenate([self._speeds[disc], rows])
-            heard[f"temperature of the {disc} drive"] = hot[drive.node]
+            arrived[f"temperature of the {disc} drive"] = hot[drive.node]
         status = int(np.bitwise_or.reduce(weighed.status))
         return Batch(
-            readings=self._line_up(),
+            readings=self._interpolate_speeds(),
             normal=forces.normal,
             traction=forces.traction,
             speeds=speeds,
-            heard=heard,
+            arrived=arrived,
             further=self._further_loads(weighed, hot),
             taken=taken,
             fault=f"load cell: {describe_status(status)}" if describe_status(status) else "",
@@ -214,7 +214,7 @@ class DrivesBench(Bench):
         }
         return {k: v for k, v in found.items() if k in self._further and v is not None}
 
-    def _line_up(self) -> Readings:
+    def _interpolate_speeds(self) -> Readings:
         """Interpolate both speeds at the times of the forces; later forces wait for speeds."""
         if not all(len(speeds) for speeds in self._speeds.values()):
             self._waiting = self._waiting[:0]

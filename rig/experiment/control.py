@@ -45,7 +45,7 @@ class Control:
         self._confirmed = False
         self._notes: deque[Note] = deque()
 
-    def obey(self, line: str, *, who: str) -> str:
+    def execute(self, line: str, *, who: str) -> str:
         """Execute a command given as a line of text.
 
         Args:
@@ -62,7 +62,7 @@ class Control:
         if command == "status":
             return self.status
         if command in STOPS:
-            self.stop.request(STOPS[command], storable_note(text) or f"asked for by {who}")
+            self.stop.request(STOPS[command], storable_note(text) or f"requested by {who}")
         elif command == "note" and text:
             self._notes.append(Note("note", f"{who}: {storable_note(text)}"))
         elif command == "pause":
@@ -90,13 +90,13 @@ class Control:
     def pause(self) -> None:
         """Hold after the point that is being measured."""
         self.paused = True
-        self._notes.append(Note("pause", "asked for"))
+        self._notes.append(Note("pause", "requested"))
 
     def resume(self) -> None:
         """Resume after a pause or a soft stop; harder stops stay."""
         self.paused = False
         self.stop.release()
-        self._notes.append(Note("resume", "asked for"))
+        self._notes.append(Note("resume", "requested"))
 
     def confirm(self) -> None:
         """Confirm that the action requested by a prompt is done."""

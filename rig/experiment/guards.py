@@ -86,7 +86,7 @@ class RigGuards:
         if batch.fault:
             raise DeviceFault(batch.fault, status=1)
         for name, guard in self._silence.items():
-            guard.check(batch.heard.get(name, []), now=now)
+            guard.check(batch.arrived.get(name, []), now=now)
         self._bench.require_healthy()
         for name, taken in batch.taken.items():
             self._age[name].check(taken, now=now)

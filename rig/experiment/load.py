@@ -73,7 +73,7 @@ class HandShaft:
         self._target = target
         self._control.take_confirmation()  # a confirmation given before this prompt
         if target == 0:
-            return "take all load off the load cell, then confirm"
+            return "remove all load from the load cell, then confirm"
         return f"set the normal force to {target:g} N +/- {self._tolerance:g} N, then confirm"
 
     def follow(self, normal: float) -> bool:
@@ -153,7 +153,7 @@ class DrivenShaft:
         if now - self._asked > self._patience:
             self.halt()
             raise RigTimeout(
-                f"the load axis did not bring {self._target:g} N but {normal:.3g} N",
+                f"the load axis did not reach {self._target:g} N (it is at {normal:.3g} N)",
                 waited=now - self._asked,
             )
         if now - self._since >= AXIS_PERIOD:

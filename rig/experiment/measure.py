@@ -46,7 +46,7 @@ def settle(acquire: GuardedAcquisition, plan: Plan, point: Point, zero: Zero) ->
         Whether the rig was steady before the plan's timeout.
     """
     criterion = plan.settle
-    acquire.aim(plan.points.omega_leg, point.slips[0])
+    acquire.start_ramp(plan.points.omega_leg, point.slips[0])
     acquire.until(lambda _: not acquire.ramping, float("inf"))
     wanted = acquire.wanted
     window: list[Readings] = []
@@ -96,7 +96,7 @@ def record(
         sink.write(readings, batch)
         if point.kind == "sweep":
             slip = point.slip_at((clock.now() - start) / duration)
-            acquire.aim(plan.points.omega_leg, slip)
+            acquire.start_ramp(plan.points.omega_leg, slip)
 
     acquire.until(keep, duration)
     return join(kept)

@@ -84,7 +84,7 @@ class RestProof:
         if not abs(mean) <= self._limit:
             return f"its mean speed over {WINDOW:g} s is {mean:.3g} rad/s"
         if not scatter <= SCATTER * self._limit:
-            return f"its speed swings about zero by {scatter:.3g} rad/s"
+            return f"its speed oscillates, with a root mean square of {scatter:.3g} rad/s"
         return ""
 
 

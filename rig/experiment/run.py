@@ -22,7 +22,7 @@ from rig.experiment.watcher import ExperimentWatcher
 from rig.safety import StopCategory, StopRequested
 from rig.slip_rig.decode import Zero, require_zero
 
-REST_LIMIT: Final = 5.0
+REST_TIMEOUT: Final = 5.0
 """Timeout for the discs to stand after their set-points are zero [s]."""
 UNLOADED: Final = Zero(0.0, 0.0, 0.0)
 
@@ -86,7 +86,7 @@ def run_plan(
     """
     require_allowed(plan, bench.profile)
     if control.stop.latched:
-        raise ProtocolError("an emergency stop is latched; look after the rig, then reset it")
+        raise ProtocolError("an emergency stop is latched; inspect the rig, then reset it")
     run = _Run(
         plan, bench, load, sink, control, watcher or ExperimentWatcher(), clock, period, done
     )
@@ -149,8 +149,8 @@ class _Run:
             self._show(RigState.RUNNING)
             for step in self._remaining():
                 self._carry_out(step)
-            self._show(RigState.STOPPING, "the plan is done")
-            self._acquire.come_to_rest(REST_LIMIT)
+            self._show(RigState.STOPPING, "the plan is complete")
+            self._acquire.come_to_rest(REST_TIMEOUT)
         except StopRequested as asked:
             self._stop(asked)
             if self._control.failure is not None:
@@ -160,7 +160,7 @@ class _Run:
         except SinkFailed as failed:
             self._show(RigState.STOPPING, str(failed))
             self._acquire.ignore_stops(StopCategory.SAFE)
-            self._acquire.rest_without_sink(REST_LIMIT)
+            self._acquire.rest_without_sink(REST_TIMEOUT)
             raise
         return "completed"
 
@@ -201,14 +201,14 @@ class _Run:
         self._acquire.ignore_stops(StopCategory.SOFT)
         self._sink.event("hold", why)
         self._show(RigState.STOPPING, why)
-        self._acquire.come_to_rest(REST_LIMIT)
+        self._acquire.come_to_rest(REST_TIMEOUT)
         self._show(RigState.HOLDING, why)
 
         def released(_: Batch) -> bool:
             return self._control.stop.pending is None and not self._control.paused
 
         if not self._acquire.until(released, self._plan.limits.hold):
-            waited = f"held for {self._plan.limits.hold:g} s without a word: {why}"
+            waited = f"held for {self._plan.limits.hold:g} s without a command: {why}"
             self._control.stop.request(StopCategory.SAFE, waited)
         self._acquire.ignore_stops(None)
         self._acquire.poll()  # raises if the wait ended in a harder stop
@@ -245,7 +245,7 @@ class _Run:
         if target == self._loaded:
             return
         self._loaded = None
-        self._acquire.come_to_rest(REST_LIMIT)
+        self._acquire.come_to_rest(REST_TIMEOUT)
         prompt = self._load.request(target)
         if prompt:
             self._control.status = prompt
@@ -310,11 +310,11 @@ class _Run:
         self._show(RigState.STOPPING, str(asked))
         self._acquire.ignore_stops(asked.stop.category)
         try:
-            self._acquire.come_to_rest(REST_LIMIT)
+            self._acquire.come_to_rest(REST_TIMEOUT)
         except StopRequested:  # a harder stop
             pass
         except SinkFailed:
-            self._acquire.rest_without_sink(REST_LIMIT)
+            self._acquire.rest_without_sink(REST_TIMEOUT)
             raise
         finally:
             self._acquire.disarm()

@@ -17,7 +17,7 @@ from rig.experiment.rest import prove_rest
 from rig.safety import REST_SPEED
 from rig.slip_rig.decode import BATCHES, standard_error
 
-REST_LIMIT: Final = 5.0
+REST_TIMEOUT: Final = 5.0
 """Timeout for the verification that both discs stand [s]."""
 
 
@@ -95,7 +95,7 @@ def weigh(
     bench.read()  # discard what is in buffers
     readings, errors = [], []
     for force in (0.0, *forces):
-        prove_rest(look, REST_SPEED, longest=REST_LIMIT, clock=clock)
+        prove_rest(look, REST_SPEED, longest=REST_TIMEOUT, clock=clock)
         text = load.request(force)
         waiting = True
         while waiting:
@@ -121,7 +121,7 @@ def check_gain(weighing: Weighing, *, weight_sd: float = 1e-3) -> GainCheck:
     """
     force, reading = np.array(weighing.forces), np.array(weighing.readings)
     if np.ptp(force) <= 0:
-        raise ProtocolError("one weight only; expected at least one beside no load")
+        raise ProtocolError("all forces are the same; expected no load and at least one weight")
     design = np.column_stack([np.ones_like(force), force])
     error = np.maximum(np.array(weighing.errors), 1e-9)
     weighted = design / error[:, None]

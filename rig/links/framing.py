@@ -25,7 +25,7 @@ class CobsFramer:
         self._longest = longest
         self._tail = b""
         self._joined = False
-        self._astray = False
+        self._out_of_sync = False
 
     def feed(self, data: bytes) -> list[bytes]:
         """Add bytes and return the payloads of the frames that are now complete."""
@@ -43,12 +43,12 @@ class CobsFramer:
     def refuse(self) -> None:
         """Count a correctly stuffed frame with invalid content as damaged."""
         self.damaged += 1
-        self._astray = True
+        self._out_of_sync = True
 
     def accept(self) -> None:
         """Count a resynchronisation where a good frame follows damaged ones."""
-        self.resynchronised += self._astray
-        self._astray = False
+        self.resynchronised += self._out_of_sync
+        self._out_of_sync = False
 
     def _decode(self, piece: bytes) -> bytes | None:
         joined, self._joined = self._joined, True
@@ -83,7 +83,7 @@ class TrailerFramer:
         self._trailer = trailer
         self._buffer = b""
         self._aligned = False
-        self._astray = False
+        self._out_of_sync = False
 
     def feed(self, data: bytes) -> list[bytes]:
         """Add bytes and return the frames that are now complete, without their trailers."""
@@ -97,8 +97,8 @@ class TrailerFramer:
                 continue
             frames.append(self._buffer[: self._length - len(self._trailer)])
             self._buffer = self._buffer[self._length :]
-            self.resynchronised += self._astray
-            self._astray = False
+            self.resynchronised += self._out_of_sync
+            self._out_of_sync = False
         return frames
 
     def reset(self) -> None:
@@ -108,7 +108,7 @@ class TrailerFramer:
 
     def _lose_alignment(self) -> None:
         self.damaged += 1
-        self._astray = True
+        self._out_of_sync = True
         self._aligned = False
 
     def _align(self) -> bool:

@@ -25,7 +25,7 @@ from rig.links.packet import (
 from rig.links.sequence import SequenceTracker, TimeUnwrapper
 
 LONGEST: Final = HEADER.size + LONGEST_BODY + CHECKSUM.size + 1
-FOREIGN_LIMIT: Final = 20
+MAX_FOREIGN: Final = 20
 """Number of packets of another device, with none of the expected one, that is a mismatch."""
 
 
@@ -132,7 +132,7 @@ class PacketStream(LinkedStream[ByteLink]):
     def _refuse_foreign(self, packet: Packet) -> None:
         self._refused += 1
         self._foreign += 1
-        if self._received == 0 and self._foreign >= FOREIGN_LIMIT:
+        if self._received == 0 and self._foreign >= MAX_FOREIGN:
             raise DeviceMismatch(
                 f"stream '{self.name}' found {self._foreign} whole packets of kind {packet.kind} "
                 f"with {len(packet.body)} bytes and none of kind {int(self._kind)} with "

@@ -18,7 +18,7 @@ from rig.links.byte_link import ByteTwin
 
 TICK: Final = 0.002
 """Interval at which a served twin is polled [s]."""
-JOIN_LIMIT: Final = 2.0
+JOIN_TIMEOUT: Final = 2.0
 
 
 class Ticker:
@@ -45,7 +45,7 @@ class Ticker:
 
     def __exit__(self, *exception: object) -> None:
         self._done.set()
-        self._thread.join(JOIN_LIMIT)
+        self._thread.join(JOIN_TIMEOUT)
 
     def _run(self) -> None:
         try:
@@ -182,7 +182,7 @@ class PortServer:
             try:
                 self._end = self._make()
             except OSError as problem:
-                raise LinkError(f"cannot make a port for a twin: {problem}") from problem
+                raise LinkError(f"cannot create a port for a twin: {problem}") from problem
             self.port = self._end.port
 
     def __enter__(self) -> Self:

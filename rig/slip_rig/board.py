@@ -84,7 +84,7 @@ class RigBoard(PacketStream):
         if self._status:
             raise DeviceFault(
                 f"the board reports status {self._status:#x}: its watchdog stopped the discs, or "
-                "worse; arm again",
+                "it is faulty; arm again",
                 status=self._status,
             )
 

@@ -37,7 +37,7 @@ from rig.slip_rig.profile import DiscDrive, DriveProfile
 
 TEMPERATURE_INTERVAL: Final = 0.1
 """Interval between requests for the drives' temperatures [s]."""
-HELLO_LIMIT: Final = 1.0
+HEARTBEAT_TIMEOUT: Final = 1.0
 """Timeout for the heartbeats of both drives when the bus is opened [s]."""
 
 
@@ -74,7 +74,7 @@ class DriveBus(LinkedStream[CanLink]):
         self._axes = {drive.place.node: drive for drive in (self.leg, self.ground)}
         self._pending: list[Sample] = []  # arrived while another answer was awaited
         self._feed_at = -math.inf
-        self._ask_at = math.inf
+        self._temperatures_at = math.inf
 
     @property
     def counters(self) -> Counters:
@@ -94,16 +94,16 @@ class DriveBus(LinkedStream[CanLink]):
         end = self._clock.now() + timeout
         while True:
             self._feed()
-            self._ask()
+            self._request_due_temperatures()
             left = max(end - self._clock.now(), 0.0)
             samples = self._take(min(left, self.profile.feed_interval))
             if samples or left <= 0:
                 # Frames of two drives come in one batch; a log's time never runs back.
                 return sorted(samples, key=lambda sample: sample.host_time)
 
-    def ask_for_temperatures(self) -> None:
+    def request_temperatures(self) -> None:
         """Start to request the temperatures of both drives whenever the stream is read."""
-        self._ask_at = -math.inf
+        self._temperatures_at = -math.inf
 
     def take_temperatures(self) -> dict[int, list[float]]:
         """Return and clear the temperatures received since the last call, by node [degC]."""
@@ -122,7 +122,8 @@ class DriveBus(LinkedStream[CanLink]):
             axis.require_no_error()
             if axis.armed and axis.state != AxisState.CLOSED_LOOP:
                 raise DeviceFault(
-                    f"drive of the {axis.name} left closed loop for state {axis.state}",
+                    f"drive of the {axis.name} left closed-loop control for axis state "
+                    f"{axis.state}",
                     status=axis.state,
                 )
 
@@ -131,8 +132,8 @@ class DriveBus(LinkedStream[CanLink]):
         try:
             self._wait(
                 lambda: all(axis.state for axis in self._axes.values()),
-                HELLO_LIMIT,
-                "no heartbeat came from both drives (power, nodes and bit rate as in the profile?)",
+                HEARTBEAT_TIMEOUT,
+                "no heartbeat came from both drives (check power, nodes and bit rate)",
             )
         except BaseException:
             self._link.close()
@@ -155,10 +156,10 @@ class DriveBus(LinkedStream[CanLink]):
             if axis.armed:
                 axis.send_velocity()
 
-    def _ask(self) -> None:
+    def _request_due_temperatures(self) -> None:
         now = self._clock.now()
-        if now >= self._ask_at:
-            self._ask_at = now + TEMPERATURE_INTERVAL
+        if now >= self._temperatures_at:
+            self._temperatures_at = now + TEMPERATURE_INTERVAL
             for node in self._axes:
                 self._link.request(can_id(node, Command.TEMPERATURE), TEMPERATURES.size)
 

@@ -67,7 +67,7 @@ class NetFtCell(LinkedStream[UdpLink]):
         self._device_time = TimeUnwrapper(modulus=WRAP, tick=1 / profile.rate)
         self._damaged = 0
         self._reconnected = 0
-        self._heard = 0.0
+        self._last_arrival = 0.0
         self._silent = False
 
     @property
@@ -87,7 +87,7 @@ class NetFtCell(LinkedStream[UdpLink]):
         datagrams = self._link.read(timeout)
         now = self._clock.now()
         samples = self._samples(datagrams, now)
-        self._listen(bool(samples), now)
+        self._check_silence(bool(samples), now)
         self._received += len(samples)
         return samples
 
@@ -97,7 +97,7 @@ class NetFtCell(LinkedStream[UdpLink]):
 
     def __enter__(self) -> Self:
         super().__enter__()
-        self._heard = self._clock.now()
+        self._last_arrival = self._clock.now()
         self._link.write(encode_request(self._start))
         return self
 
@@ -123,14 +123,14 @@ class NetFtCell(LinkedStream[UdpLink]):
             counts=records["counts"].astype(np.int32),
         )
 
-    def _listen(self, heard: bool, now: float) -> None:
+    def _check_silence(self, heard: bool, now: float) -> None:
         """Repeat the start request to a silent cell, and count reconnections."""
         if heard:
-            self._heard = now
+            self._last_arrival = now
             self._reconnected += self._silent
             self._silent = False
-        elif now - self._heard > START_AGAIN_AFTER:
-            self._heard = now
+        elif now - self._last_arrival > START_AGAIN_AFTER:
+            self._last_arrival = now
             self._silent = self._received > 0
             if not self._received:
                 self._start = Request.START  # which every cell knows

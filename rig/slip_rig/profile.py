@@ -144,12 +144,12 @@ class RigProfile:
     @property
     def measured(self) -> frozenset[str]:
         """Names of those of `FURTHER_LIMITS` that its devices measure."""
-        told = {
+        measures = {
             "lateral_force": self.load_cell is not None,
             "torque": self.load_cell is not None and self.load_cell.counts_per_torque is not None,
             "temperature_celsius": self.drives is not None,
         }
-        return frozenset(key for key, known in told.items() if known)
+        return frozenset(key for key, known in measures.items() if known)
 
 
 def render_table_profile(*, radius_leg: float, radius_ground: float, rate: float) -> str:
@@ -180,7 +180,9 @@ def device_profiles(profile: RigProfile) -> BoardProfile | tuple[DriveProfile, L
             devices.
     """
     if profile.board is not None and profile.board.link == "table":
-        raise ProfileError("is of a file and no device; name a device's profile", file=profile.name)
+        raise ProfileError(
+            "describes a file, not a device; name a device's profile", file=profile.name
+        )
     if profile.board is not None:
         return profile.board
     if profile.drives is None or profile.load_cell is None:

@@ -83,7 +83,7 @@ class SimulatedLoadCell:
             return
         counts = self._counts(readings)
         self._reading = due
-        self._obey(counts[-1])
+        self._execute(counts[-1])
         if self._client is not None:
             for reading, values in zip(readings.tolist(), counts.tolist(), strict=True):
                 self._send(reading, values)
@@ -116,7 +116,7 @@ class SimulatedLoadCell:
             with contextlib.suppress(OSError):  # nobody listens any more
                 self._socket.sendto(datagram, self._client)
 
-    def _obey(self, counts: "np.ndarray") -> None:
+    def _execute(self, counts: "np.ndarray") -> None:
         if self._socket is None:
             return
         with contextlib.suppress(BlockingIOError):

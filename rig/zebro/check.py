@@ -22,7 +22,7 @@ STEP: Final = 0.1
 """How far a leg is moved to be recognised [turns]."""
 DURATION: Final = 0.5
 SETTLING: Final = 0.5
-ANSWER_LIMIT: Final = 2.0
+ANSWER_TIMEOUT: Final = 2.0
 
 
 class CheckedLegs(LegCommands, Stream, Protocol):
@@ -69,7 +69,7 @@ def check_legs(
         if observation.leg in [earlier.leg for earlier in seen]:
             raise DeviceFault(
                 f"leg {observation.leg} was seen to move for two channels, the second "
-                f"{channel + 1}; begin anew",
+                f"{channel + 1}; start again",
                 status=channel,
             )
         seen.append(observation)
@@ -145,12 +145,12 @@ def latest_counts(robot: CheckedLegs, *, clock: Clock = SYSTEM_CLOCK) -> tuple[f
         RigTimeout: The robot sends nothing.
     """
     robot.read(0.0)
-    end = clock.now() + ANSWER_LIMIT
+    end = clock.now() + ANSWER_TIMEOUT
     while (left := end - clock.now()) > 0:
         samples = robot.read(left)
         if samples:
             return samples[-1].counts
-    raise RigTimeout(f"stream '{robot.name}' sent nothing", waited=ANSWER_LIMIT)
+    raise RigTimeout(f"stream '{robot.name}' sent nothing", waited=ANSWER_TIMEOUT)
 
 
 @dataclass(frozen=True)

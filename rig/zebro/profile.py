@@ -276,7 +276,9 @@ def _registers(frame: TomlTable, layout: Layout, channels: int) -> Registers:
     targets = frame.wholes("set_point_registers", most=last)
     for key, found in (("registers", positions), ("set_point_registers", targets)):
         if list(found) != list(range(found[0], found[0] + 2 * channels, 2)):
-            raise frame.fault(f"found {list(found)}; expected one run, two a leg", key)
+            raise frame.fault(
+                f"found {list(found)}; expected consecutive ones, two for each leg", key
+            )
     duration = frame.whole("duration_register", most=last)
     if duration != targets[-1] + 2:
         raise frame.fault(

@@ -18,7 +18,7 @@ from rig.zebro.profile import DUMP_REGISTERS, LegProfile
 
 SYNC: Final = bytes.fromhex("FF4512EA4B")
 DUMP_LENGTH: Final = DUMP_REGISTERS + len(SYNC)
-ANSWER_LIMIT: Final = 0.05
+ANSWER_TIMEOUT: Final = 0.05
 """How long an answer to a poll may take [s]."""
 QUIET_AFTER_FAILURE: Final = 0.1
 """Pause after a poll without a whole answer, so that a late one arrives before the next [s]."""
@@ -117,7 +117,7 @@ class PolledLegs(_RegisterStream):
         self._next_at = clock.now()
         self._damaged = 0
         self._resynchronised = 0
-        self._astray = False
+        self._out_of_sync = False
 
     @property
     def counters(self) -> Counters:
@@ -138,15 +138,15 @@ class PolledLegs(_RegisterStream):
         if wait > timeout:
             return []
         self._next_at = max(self._next_at, now) + 1 / self.profile.rate
-        answer = self._ask()
+        answer = self._request()
         if answer is None:
             self._damaged += 1
-            self._astray = True
+            self._out_of_sync = True
             # Quiet first: an answer carries nothing that tells which request it is to.
             self._next_at = self._clock.now() + QUIET_AFTER_FAILURE
             return []
-        self._resynchronised += self._astray
-        self._astray = False
+        self._resynchronised += self._out_of_sync
+        self._out_of_sync = False
         return self._sample(self._answer.unpack(answer))
 
     def set_points(self, counts: tuple[int, ...], duration: float) -> bool:
@@ -171,13 +171,13 @@ class PolledLegs(_RegisterStream):
         head = bytes((self.profile.registers.write_command, first, len(data)))
         return self._link.write(head + data)
 
-    def _ask(self) -> bytes | None:
+    def _request(self) -> bytes | None:
         self._link.read(0.0)  # leftovers of an answer that came too late
         registers, size = self.profile.registers, self._answer.size
         request = bytes((registers.read_command, registers.positions[0], size))
         if not self._link.write(request):
             return None
-        end = self._clock.now() + ANSWER_LIMIT
+        end = self._clock.now() + ANSWER_TIMEOUT
         answer = b""
         while len(answer) < size and (left := end - self._clock.now()) > 0:
             answer += self._link.read(left)

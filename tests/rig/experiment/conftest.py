@@ -108,7 +108,7 @@ class Twin:
     def turn(acquire):
         """Energise the discs and wait until they turn at a slip ratio of 0.2."""
         acquire.arm()
-        acquire.aim(12.0, 0.2)
+        acquire.start_ramp(12.0, 0.2)
         acquire.until(lambda _: not acquire.ramping, 2.0)
 
     def at_rest(self) -> bool:

@@ -58,7 +58,7 @@ def turning(lab, monkeypatch, *, speed=12.0, slip=0.2, **limits):
             sink=MemorySink(), clock=SYSTEM_CLOCK,
         )  # fmt: skip
         acquire.arm()
-        acquire.aim(speed, slip)
+        acquire.start_ramp(speed, slip)
         acquire.until(lambda _: not acquire.ramping, 2.0)
         acquire.until(lambda _: False, 0.2)
         yield acquire, rig, found[SimulatedDrives], found[SimulatedLoadCell]

@@ -92,5 +92,5 @@ def test_only_this_machine_is_listened_to():
 def test_a_run_that_is_over_does_not_answer():
     with ControlServer(Control()) as server:
         port = server.port
-    with pytest.raises(LinkError, match="is it over"):
+    with pytest.raises(LinkError, match="has it ended"):
         send_command(port, "x", "status")

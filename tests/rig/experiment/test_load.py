@@ -30,7 +30,7 @@ def test_an_axis_that_brings_no_force_is_given_up(lab):
 
     load = DrivenShaft(Stuck(), tolerance=0.1, patience=2.0, clock=twin.clock)
     twin.rig.load = 2.0
-    with pytest.raises(RigTimeout, match="the load axis did not bring 4 N"):
+    with pytest.raises(RigTimeout, match="the load axis did not reach 4 N"):
         twin.run(load=load)
     assert twin.at_rest()
 

@@ -182,7 +182,9 @@ def test_a_soft_stop_holds_and_the_point_is_done_anew(lab):
 
     def passing(duration):
         sleep(duration)
-        if twin.control.status.startswith("HOLDING, discs energised: soft stop: planted; r: go on"):
+        if twin.control.status.startswith(
+            "HOLDING, discs energised: soft stop: planted; r: resume"
+        ):
             held.append(twin.clock.now())
             if twin.clock.now() - held[0] > 2.0:
                 speeds.append(twin.rig.speeds()["leg"][1])
@@ -201,7 +203,7 @@ def test_a_soft_stop_without_a_word_becomes_a_safe_one(lab):
     twin = lab["twin"]()
     twin.sink = lab["At"](10, lambda: twin.control.stop.request(StopCategory.SOFT, "planted"))
     outcome = twin.run()
-    assert outcome.reason.startswith("safe stop: held for 5 s without a word")
+    assert outcome.reason.startswith("safe stop: held for 5 s without a command")
     assert twin.at_rest()
 
 

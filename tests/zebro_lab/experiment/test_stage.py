@@ -117,7 +117,7 @@ class Rig:
             try:
                 status = command_run(self.data, "status")
                 again, before = status == before, status
-                if status.startswith("take all load"):
+                if status.startswith("remove all load"):
                     self.rig.load = 1e-3
                 elif status.startswith("set the normal force"):
                     self.rig.load = float(status.split()[5])

@@ -29,7 +29,13 @@ from rig.links.udp import UdpLink
 from rig.slip_rig.board import RigBoard
 from rig.slip_rig.drives import DriveBus
 from rig.slip_rig.load_cell import NetFtCell
-from rig.slip_rig.profile import BoardProfile, RigProfile, device_profiles
+from rig.slip_rig.profile import (
+    BoardProfile,
+    DriveProfile,
+    LoadCellProfile,
+    RigProfile,
+    device_profiles,
+)
 from rig.slip_rig.simulated import SimulatedRig
 from rig.slip_rig.simulated_board import SimulatedBoard
 from rig.slip_rig.simulated_drives import SimulatedDrives
@@ -155,26 +161,37 @@ def simulated_rig_devices(
             board = RigBoard(serial, profile=found, limits=profile.limits)
             yield RigDevices(profile, board=board)
         return
-    drives, load_cell = found
+    with _served_on_bus(rig, found, watchdog, rng) as (link, datagrams):
+        drives, load_cell = found
+        yield RigDevices(
+            profile,
+            drives=DriveBus(link, profile=drives, limits=profile.limits),
+            load_cell=NetFtCell(datagrams, profile=load_cell, buffered=buffered),
+        )
+
+
+@contextmanager
+def _served_on_bus(
+    rig: SimulatedRig,
+    profiles: tuple[DriveProfile, LoadCellProfile],
+    watchdog: float,
+    rng: np.random.Generator,
+) -> Iterator[tuple[CanLink, UdpLink]]:
+    """Serve simulated drives and load cell; yield the links to them."""
     channel = _new_channel()
     with (
         can.Bus(interface="virtual", channel=channel) as bus,
-        SimulatedLoadCell(rig, profile=load_cell, rng=rng) as cell,
+        SimulatedLoadCell(rig, profile=profiles[1], rng=rng) as cell,
     ):
-        axes = SimulatedDrives(rig, bus, profile=drives, watchdog=watchdog)
+        drives = SimulatedDrives(rig, bus, profile=profiles[0], watchdog=watchdog)
 
         def tick(now: float) -> None:
-            axes.poll(now)
+            drives.poll(now)
             cell.poll(now)
 
         with Ticker(tick):
-            link = CanLink(f"virtual:{channel}", source=axes.source)
-            datagrams = UdpLink(cell.host, cell.port, source=cell.source)
-            yield RigDevices(
-                profile,
-                drives=DriveBus(link, profile=drives, limits=profile.limits),
-                load_cell=NetFtCell(datagrams, profile=load_cell, buffered=buffered),
-            )
+            link = CanLink(f"virtual:{channel}", source=drives.source)
+            yield link, UdpLink(cell.host, cell.port, source=cell.source)
 
 
 def _new_channel() -> str:

@@ -24,7 +24,7 @@ from rig.slip_rig.can_simple import AxisState, Command
 from rig.slip_rig.imperfections import TYPICAL_RIG
 from rig.slip_rig.profile import BoardProfile, load_rig_profile
 from rig.slip_rig.rdt import SATURATED
-from rig.slip_rig.simulated import RigDynamics, SimulatedRig, simulated_rig
+from rig.slip_rig.simulated import RigDynamics, SimulatedRig
 from rig.slip_rig.simulated_board import SimulatedBoard
 from rig.slip_rig.simulated_drives import SimulatedDrives
 from rig.slip_rig.simulated_load_cell import SimulatedLoadCell
@@ -291,7 +291,7 @@ def _serve(kind: str, pipe: Any) -> None:
     # It stands for hardware that waits for no processor: first in turn, where that is allowed.
     with contextlib.suppress(PermissionError):
         os.sched_setscheduler(0, os.SCHED_RR, os.sched_param(1))
-    rig = simulated_rig(
+    rig = SimulatedRig(
         plan=SweepPlan(), imperfections=replace(TYPICAL_RIG, bump_height=0.0),
         dynamics=RigDynamics(ripple=0.005), rng=np.random.default_rng(0),
     )  # fmt: skip

@@ -183,7 +183,7 @@ class DrivesBench(Bench):
             taken[f"{disc} drive"], speeds[disc] = rows.T
             self._speeds[disc] = np.concatenate([self._speeds[disc], rows])
             arrived[f"temperature of the {disc} drive"] = hot[drive.node]
-        status = int(np.bitwise_or.reduce(weighed.status))
+        fault = describe_status(int(np.bitwise_or.reduce(weighed.status)))
         return Batch(
             readings=self._interpolate_speeds(),
             normal=forces.normal,
@@ -192,7 +192,7 @@ class DrivesBench(Bench):
             arrived=arrived,
             further=self._further_loads(weighed, hot),
             taken=taken,
-            fault=f"load cell: {describe_status(status)}" if describe_status(status) else "",
+            fault=f"load cell: {fault}" if fault else "",
             raw={self._drives.name: turned, self._cell.name: weighed},
         )
 

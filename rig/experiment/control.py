@@ -59,18 +59,15 @@ class Control:
             ProtocolError: There is no such command.
         """
         command, _, text = line.strip().partition(" ")
+        actions = {"pause": self.pause, "resume": self.resume, "confirm": self.confirm}
         if command == "status":
             return self.status
         if command in STOPS:
             self.stop.request(STOPS[command], storable_note(text) or f"requested by {who}")
         elif command == "note" and text:
             self._notes.append(Note("note", f"{who}: {storable_note(text)}"))
-        elif command == "pause":
-            self.pause()
-        elif command == "resume":
-            self.resume()
-        elif command == "confirm":
-            self.confirm()
+        elif command in actions:
+            actions[command]()
         else:
             raise ProtocolError(f"found '{line.strip()[:80]}'; expected {', '.join(COMMANDS)}")
         return "done"

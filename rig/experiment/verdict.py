@@ -1,11 +1,13 @@
 # SPDX-License-Identifier: MIT
 """Test for steady state, and quality checks of a recorded point."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
 
+from model.slip.law import Array
 from rig.experiment.plan import Acceptance, SettleCriterion
 from rig.experiment.readings import Readings
 from rig.experiment.steps import Point
@@ -108,26 +110,30 @@ def judge_point(
     if len(readings) < 8:
         return PointVerdict((f"{len(readings)} samples",), len(readings), np.nan, np.nan, np.nan)
     slip = measured_slip(readings.omega_leg, readings.omega_ground, profile)
-    first, late = halves(readings)
     problems = [] if settled else ["not settled in time"]
     covered = span(readings)
     if covered < LEAST_COVERED * duration:
         problems.append(f"samples cover {covered:.2f} s of {duration:g} s")
-    wanted = float(np.mean([point.slip_at(f) for f in np.linspace(0, 1, 101)]))
-    off = float(slip.mean()) - wanted
-    if not abs(off) <= accept.slip:
-        problems.append(f"mean slip is {off:+.4f} off its set-point (limit {accept.slip:g})")
-    if point.kind != "sweep":
-        drift = float(slip[len(first) :].mean() - slip[: len(first)].mean())
-        if not abs(drift) <= accept.slip_drift:
-            problems.append(f"slip drifted by {drift:+.4f} (limit {accept.slip_drift:g})")
-        change = friction(late) - friction(first)
-        if not abs(change) <= accept.friction_drift:
-            problems.append(f"friction drifted by {change:+.3f} (limit {accept.friction_drift:g})")
     return PointVerdict(
-        problems=tuple(problems),
+        problems=(*problems, *_deviations(readings, slip, point, accept)),
         samples=len(readings),
         slip=float(slip.mean()),
         friction=friction(readings),
         normal_force=float(np.median(readings.normal_force)),
     )
+
+
+def _deviations(readings: Readings, slip: Array, point: Point, accept: Acceptance) -> Iterator[str]:
+    """Yield what is wrong with the slip ratio and the friction of a recorded point."""
+    wanted = float(np.mean([point.slip_at(f) for f in np.linspace(0, 1, 101)]))
+    off = float(slip.mean()) - wanted
+    if not abs(off) <= accept.slip:
+        yield f"mean slip is {off:+.4f} off its set-point (limit {accept.slip:g})"
+    if point.kind != "sweep":
+        first, late = halves(readings)
+        drift = float(slip[len(first) :].mean() - slip[: len(first)].mean())
+        if not abs(drift) <= accept.slip_drift:
+            yield f"slip drifted by {drift:+.4f} (limit {accept.slip_drift:g})"
+        change = friction(late) - friction(first)
+        if not abs(change) <= accept.friction_drift:
+            yield f"friction drifted by {change:+.3f} (limit {accept.friction_drift:g})"

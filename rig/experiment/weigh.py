@@ -88,22 +88,16 @@ def weigh(
         ProtocolError: The load cell sends too few samples.
     """
 
-    def look() -> Batch:
+    def poll() -> Batch:
         clock.sleep(period)
         return bench.read()
 
     bench.read()  # discard what is in buffers
     readings, errors = [], []
     for force in (0.0, *forces):
-        prove_rest(look, REST_SPEED, longest=REST_TIMEOUT, clock=clock)
-        text = load.request(force)
-        waiting = True
-        while waiting:
-            normal = look().normal
-            if len(normal):
-                prompt(text, float(normal.mean()))
-                waiting = not load.follow(float(normal.mean()))
-        mean, error = _read(look, duration, clock)
+        prove_rest(poll, REST_SPEED, longest=REST_TIMEOUT, clock=clock)
+        _set_load(poll, load, force, prompt)
+        mean, error = _read(poll, duration, clock)
         readings.append(mean)
         errors.append(error)
     return Weighing((0.0, *forces), tuple(readings), tuple(errors))
@@ -141,12 +135,25 @@ def check_gain(weighing: Weighing, *, weight_sd: float = 1e-3) -> GainCheck:
     )
 
 
-def _read(look: Callable[[], Batch], duration: float, clock: Clock) -> tuple[float, float]:
+def _set_load(
+    poll: Callable[[], Batch], load: LoadSetter, force: float, prompt: Callable[[str, float], None]
+) -> None:
+    """Request a load and wait until it is set."""
+    text = load.request(force)
+    waiting = True
+    while waiting:
+        normal = poll().normal
+        if len(normal):
+            prompt(text, float(normal.mean()))
+            waiting = not load.follow(float(normal.mean()))
+
+
+def _read(poll: Callable[[], Batch], duration: float, clock: Clock) -> tuple[float, float]:
     """Average the normal force over a duration; return mean and batch-means error [N]."""
     end = clock.now() + duration
     parts = []
     while clock.now() < end:
-        parts.append(look().normal)
+        parts.append(poll().normal)
     values = np.concatenate(parts)
     if len(values) < 2 * BATCHES:
         raise ProtocolError(f"{len(values)} samples in {duration:g} s; is the load cell running?")

@@ -282,37 +282,6 @@ class SimulatedRig:
         return size * path
 
 
-def simulated_rig(
-    law: str = "magic-formula",
-    *,
-    plan: SweepPlan,
-    imperfections: RigImperfections,
-    dynamics: RigDynamics,
-    rng: np.random.Generator,
-) -> SimulatedRig:
-    """Return a simulated rig with one of `TWIN_LAWS`.
-
-    Args:
-        law: Name of the law.
-        plan: Radii and the sweep.
-        imperfections: What sensors and bump add.
-        dynamics: How it moves.
-        rng: Random generator.
-
-    Returns:
-        The rig.
-
-    Raises:
-        ProtocolError: There is no such law.
-    """
-    if law not in TWIN_LAWS:
-        raise ProtocolError(f"no twin has the slip law '{law}'; known: {', '.join(TWIN_LAWS)}")
-    chosen, values = TWIN_LAWS[law]
-    return SimulatedRig(
-        chosen, values, plan=plan, imperfections=imperfections, dynamics=dynamics, rng=rng
-    )
-
-
 def _continue_ar1(rho: float, last: float, rng: np.random.Generator, n: int) -> tuple[Array, float]:
     """Continue an AR(1) path of unit marginal variance by n steps; also return its last value."""
     shock = np.sqrt(1 - rho**2) * rng.standard_normal(n)

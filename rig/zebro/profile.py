@@ -306,6 +306,9 @@ def _can_ids(frame: TomlTable) -> CanIds:
 def _as_document(profile: LegProfile) -> dict[str, Any]:
     ascending = sorted(profile.legs)
     channel_of = [profile.legs.index(leg) for leg in ascending]
+    link: dict[str, Any] = {"kind": LINK_OF[profile.layout]}
+    if profile.layout != "table":
+        link["baudrate"] = profile.baudrate
     frame: dict[str, Any] = {"layout": profile.layout}
     if profile.layout == "can":
         frame |= {f"{name}_id": value for name, value in asdict(profile.can_ids).items()}
@@ -324,7 +327,7 @@ def _as_document(profile: LegProfile) -> dict[str, Any]:
     return {
         "schema": SCHEMA,
         "device": "legs",
-        "link": _link(profile),
+        "link": link,
         "frame": frame,
         "legs": {
             "order": list(profile.legs),
@@ -334,8 +337,3 @@ def _as_document(profile: LegProfile) -> dict[str, Any]:
         },
         "stream": {"rate": profile.rate},
     }
-
-
-def _link(profile: LegProfile) -> dict[str, Any]:
-    kind = {"kind": LINK_OF[profile.layout]}
-    return kind if profile.layout == "table" else kind | {"baudrate": profile.baudrate}

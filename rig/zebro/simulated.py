@@ -99,12 +99,8 @@ class DumpRobot(_ByteRobot):
 class PolledRobot(_ByteRobot):
     """Bridge that answers register reads and executes register writes."""
 
-    def __init__(
-        self, legs: SimulatedLegs, *, faults: Faults = PERFECT_LINE, rng: np.random.Generator
-    ) -> None:
-        super().__init__(legs, faults=faults, rng=rng)
-        self._inbox = b""
-        self._counts: tuple[int, ...] = (0,) * len(legs.profile.legs)
+    _inbox = b""
+    _counts: tuple[int, ...]
 
     def _answer(self, now: float, received: bytes) -> list[bytes]:
         for frame in self.legs.frames(now):

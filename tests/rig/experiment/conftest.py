@@ -21,7 +21,7 @@ from rig.links.memory import MemoryLink
 from rig.slip_rig.board import RigBoard
 from rig.slip_rig.imperfections import TYPICAL_RIG
 from rig.slip_rig.profile import load_rig_profile
-from rig.slip_rig.simulated import RigDynamics, SimulatedRig, simulated_rig
+from rig.slip_rig.simulated import RigDynamics, SimulatedRig
 from rig.slip_rig.simulated_board import SimulatedBoard
 from rig.slip_rig.sweep import SweepPlan
 from rig.toml_table import TomlTable
@@ -133,9 +133,7 @@ class At(MemorySink):
 
 def twin(seed=0, *, watchdog=0.2) -> Twin:
     rng = np.random.default_rng(seed)
-    rig = simulated_rig(
-        plan=SweepPlan(), imperfections=TYPICAL_RIG, dynamics=RigDynamics(), rng=rng
-    )
+    rig = SimulatedRig(plan=SweepPlan(), imperfections=TYPICAL_RIG, dynamics=RigDynamics(), rng=rng)
     clock = ManualClock()
     board = SimulatedBoard(rig, profile=PROFILE.board, rng=rng, watchdog=watchdog)
     driver = RigBoard(

@@ -18,7 +18,7 @@ from rig.slip_rig.decode import measured_slip
 from rig.slip_rig.imperfections import RigImperfections
 from rig.slip_rig.profile import load_rig_profile
 from rig.slip_rig.rdt import SATURATED
-from rig.slip_rig.simulated import RigDynamics, simulated_rig
+from rig.slip_rig.simulated import RigDynamics, SimulatedRig
 from rig.slip_rig.simulated_drives import SimulatedDrives
 from rig.slip_rig.simulated_load_cell import SimulatedLoadCell
 from rig.slip_rig.sweep import SweepPlan
@@ -43,7 +43,7 @@ def turning(lab, monkeypatch, *, speed=12.0, slip=0.2, **limits):
             found[_kind] = self
 
         monkeypatch.setattr(kind, "__init__", keep)
-    rig = simulated_rig(
+    rig = SimulatedRig(
         plan=SweepPlan(), imperfections=RigImperfections(),
         dynamics=RigDynamics(), rng=np.random.default_rng(0),
     )  # fmt: skip

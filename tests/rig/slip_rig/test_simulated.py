@@ -6,15 +6,15 @@ import pytest
 
 from rig.errors import ProtocolError
 from rig.slip_rig.imperfections import TYPICAL_RIG, RigImperfections
-from rig.slip_rig.simulated import TWIN_LAWS, RigDynamics, simulated_rig
+from rig.slip_rig.simulated import TWIN_LAWS, RigDynamics, SimulatedRig
 from rig.slip_rig.sweep import SweepPlan
 
 PERFECT = RigImperfections()
 
 
 def world(law="magic-formula", *, plan=None, imperfections=PERFECT, dynamics=None, seed=0):
-    return simulated_rig(
-        law,
+    return SimulatedRig(
+        *TWIN_LAWS[law],
         plan=plan or SweepPlan(),
         imperfections=imperfections,
         dynamics=dynamics or RigDynamics(),

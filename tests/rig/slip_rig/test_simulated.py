@@ -100,9 +100,7 @@ def test_what_is_true_of_a_rig_can_be_written_down():
     assert said["imperfections"]["bump_height"] == TYPICAL_RIG.bump_height
 
 
-def test_an_unknown_law_and_impossible_dynamics_are_refused():
-    with pytest.raises(ProtocolError, match="known: magic-formula"):
-        world("ice")
+def test_impossible_dynamics_are_refused():
     with pytest.raises(ProtocolError, match="speed_lag is 0 s"):
         RigDynamics(speed_lag=0.0)
     with pytest.raises(ProtocolError, match="not run yet"):

@@ -74,7 +74,7 @@ class Device:
 
 
 class Acquisition:
-    """Reader thread of one device, which runs until it is asked to stop.
+    """Reader thread of one device, which runs until a stop is requested.
 
     Args:
         device: The device; its driver has been entered.
@@ -122,7 +122,7 @@ class Acquisition:
         self._until = until
 
     def request_stop(self) -> None:
-        """Ask the thread to read once more and then to end; does not wait for it."""
+        """Request that the thread reads once more and ends; does not wait for it."""
         self._done.set()
 
     def stop(self) -> None:

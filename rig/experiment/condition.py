@@ -22,7 +22,7 @@ class RigState(Enum):
     STOPPED = "stopped"
     """The drives are de-energised; the run is over."""
     LATCHED = "latched"
-    """As STOPPED, after an emergency stop that a person must reset."""
+    """STOPPED after an emergency stop, until a person resets it."""
 
 
 _STOP_NAMES: Final = {

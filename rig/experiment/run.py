@@ -332,7 +332,7 @@ class _Run:
         stop = self._control.stop.pending
         latched = stop is not None and stop.category is StopCategory.EMERGENCY
         if stop is not None and latched:
-            self._sink.latch(stop.reason)  # also one beside a guard, or in the ramp
+            self._sink.latch(stop.reason)  # also one that came with a guard, or during the ramp
         failed = None
         for keep in (self._close, lambda why: self._sink.event("end", why)):
             try:

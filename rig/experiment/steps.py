@@ -68,7 +68,7 @@ Step: TypeAlias = Tare | Point
 
 
 def spell_out(plan: Plan) -> tuple[Step, ...]:
-    """List the steps of a plan in order.
+    """Expand a plan into its steps, in order.
 
     The same plan always gives the same steps, also when shuffled: a resumed run relies on this.
     """

@@ -151,11 +151,11 @@ class CanLink:
         return self._send(can.Message(arbitration_id=can_id, data=data, is_extended_id=False))
 
     def request(self, can_id: int, length: int) -> bool:
-        """Send a remote frame, which asks a node for a frame with this id.
+        """Send a remote frame, which requests a frame with this id.
 
         Args:
             can_id: Arbitration id, 11 bits.
-            length: Length of the data asked for [bytes].
+            length: Length of the requested data [bytes].
 
         Returns:
             Whether the frame was sent; False while the bus is disconnected.

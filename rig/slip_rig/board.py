@@ -35,7 +35,7 @@ class RigBoard(PacketStream):
     Args:
         link: Bytes to and from the board.
         profile: Its profile.
-        limits: What the discs are allowed.
+        limits: Limits of the discs.
         clock: Host time.
 
     Attributes:

@@ -50,7 +50,7 @@ class DriveBus(LinkedStream[CanLink]):
     Args:
         link: The bus.
         profile: Both drives.
-        limits: What the discs are allowed.
+        limits: Limits of the discs.
         clock: Host time.
 
     Attributes:
@@ -164,7 +164,7 @@ class DriveBus(LinkedStream[CanLink]):
                 self._link.request(can_id(node, Command.TEMPERATURE), TEMPERATURES.size)
 
     def _wait(self, holds: Callable[[], bool], timeout: float, problem: str) -> None:
-        """Read, keeping the samples for later, until something holds."""
+        """Read until a condition holds, and keep the samples for the next `read`."""
         end = self._clock.now() + timeout
         while not holds():
             left = end - self._clock.now()
@@ -186,7 +186,7 @@ class DriveBus(LinkedStream[CanLink]):
             node, command = split_id(message.arbitration_id)
             axis = self._axes.get(node)
             if axis is None:
-                continue  # somebody else's, on a shared bus
+                continue  # another device on a shared bus
             if command == Command.HEARTBEAT and message.dlc >= HEARTBEAT.size:
                 axis.error, axis.state = HEARTBEAT.unpack_from(message.data)
             elif command == Command.ENCODER_ESTIMATES:
@@ -218,7 +218,7 @@ class OdriveDrive:
         armed: Whether it has been energised and not been commanded to idle since.
         state: Axis state of the last heartbeat; 0 before the first.
         error: Axis error of the last heartbeat.
-        temperatures: Temperatures that nobody has read yet [degC].
+        temperatures: Temperatures that have not been taken yet [degC].
     """
 
     def __init__(self, bus: DriveBus, name: str, place: DiscDrive) -> None:

@@ -25,17 +25,17 @@ class RigImperfections:
         gain_traction: Relative gain error g_t of the traction channel [-].
         gain_normal: Relative gain error g_n of the normal channel [-].
         bias_normal: Bias b_n of the normal channel, added to what it reads [N].
-        crosstalk: Traction c that the normal channel fails to see as load [-].
+        crosstalk: Share c of the traction that the normal channel subtracts from the load [-].
         offset_sd: Standard deviation tau of the traction zero between runs [N].
         noise_sd0: Traction noise without traction, marginal standard deviation s0 [N].
         noise_sd1: Growth s1 of that standard deviation with the traction [-].
-        noise_correlation_time: Time T in which the noise forgets itself: AR(1) with
+        noise_correlation_time: Correlation time T of the noise, an AR(1) process with
             rho = exp(-dt/T); 0 is white [s].
         speed_noise: Standard deviation of each disc's white speed-sensor noise [rad/s].
         slip_wander_sd: Standard deviation of the true slip ratio about its set-point, seen by
             sensors and force alike; none at slip 1, where the ground disc is held still [-].
         slip_wander_time: Correlation time of that wander, an Ornstein-Uhlenbeck process [s].
-        bump_height: Rise of the load at the top of the ground disc's bump, over the load [-].
+        bump_height: Relative rise of the load at the top of the ground disc's bump [-].
         bump_width: Angle of the ground disc under the whole bump [rad].
 
     Raises:
@@ -127,7 +127,7 @@ def lag_one_correlation(interval: float, correlation_time: float) -> float:
 
     Args:
         interval: Time dt between samples [s].
-        correlation_time: Time T in which the process forgets itself; 0 is white noise [s].
+        correlation_time: Correlation time T of the process; 0 is white noise [s].
 
     >>> round(lag_one_correlation(0.004, 0.05), 4), lag_one_correlation(0.004, 0.0)
     (0.9231, 0.0)

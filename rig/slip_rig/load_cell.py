@@ -39,14 +39,14 @@ class NetFtCell(LinkedStream[UdpLink]):
     """Stream of a Net F/T load cell: counts are Fx, Fy, Fz, Tx, Ty, Tz; status as in `rdt`.
 
     Losses show as gaps in the record numbers. The device time counts the cell's own readings.
-    A datagram of one record or of many is taken, whichever way the cell was asked to send.
+    Datagrams may hold one record or many, whatever was requested.
 
     Args:
         link: Datagrams to and from the cell.
         profile: Its profile.
-        buffered: Ask for many records in a datagram: a small part of the work, but a few
-            milliseconds late, so that nothing that guards a motion should. A cell that sends
-            nothing then is asked for single ones.
+        buffered: Request many records in each datagram, which takes less CPU time but delays
+            them by a few milliseconds: not for guards. From a cell that then sends nothing,
+            single records are requested.
         clock: Host time.
     """
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Profile of a slip rig: discs, limits, and the devices that turn and weigh them."""
+"""Profile of a slip rig: discs, limits, drives, load cell or board."""
 
 import math
 from dataclasses import dataclass
@@ -17,7 +17,7 @@ BoardLink: TypeAlias = Literal["serial", "table"]
 AXES: Final = ("x", "y", "z")
 HIGHEST_NODE: Final = 0x3F
 FURTHER_LIMITS: Final = {"lateral_force": "N", "torque": "N m", "temperature_celsius": "degC"}
-"""Limits that a rig need not have, and their units."""
+"""Optional limits of a rig, and their units."""
 _NO_LIMITS: Final = Limits(speed=math.inf, normal_force=math.inf, traction_force=math.inf)
 
 
@@ -42,8 +42,8 @@ class DriveProfile:
 
     Attributes:
         bitrate: Of the bus [bit/s].
-        firmware: Decides what the error bits mean.
-        feed_interval: Between two set-points that feed the drives' watchdogs [s].
+        firmware: Version of the firmware, which defines the error bits.
+        feed_interval: Interval between two set-points, which feed the drives' watchdogs [s].
         leg: Drive of the leg disc.
         ground: Drive of the ground disc.
     """
@@ -77,7 +77,7 @@ class LoadCellProfile:
         port: Its UDP port.
         rate: Records in a second, also of its internal numbering [Hz].
         counts_per_force: Counts in 1 N.
-        counts_per_torque: Counts in 1 N m; None where torques are not looked at.
+        counts_per_torque: Counts in 1 N m; None where torques are not evaluated.
         normal: Where the normal force is found.
         traction: Where the traction force is found.
     """
@@ -99,12 +99,12 @@ class BoardProfile:
         baudrate: Line rate; 0 for a table [baud].
         rate: Sample rate [Hz].
         byte_order: Of values of several bytes.
-        feed_interval: Between two speed commands that feed the board's watchdog; 0 for a
+        feed_interval: Interval between two speed commands, which feed the board's watchdog; 0 for a
             table [s].
         counts_per_force: Counts in 1 N.
         counts_per_speed: Counts in 1 rad/s.
-        normal_sign: What makes pressing positive.
-        traction_sign: What makes driving positive.
+        normal_sign: Sign that makes pressing positive, 1 or -1.
+        traction_sign: Sign that makes driving positive, 1 or -1.
         link: `serial`, or `table` for an imported file.
     """
 
@@ -127,7 +127,7 @@ class RigProfile:
         name: Name of the profile.
         radius_leg: Radius of the leg disc [m].
         radius_ground: Radius of the ground disc [m].
-        limits: What the rig is allowed.
+        limits: Largest magnitudes allowed.
         drives: Both drives; None where there is a board.
         load_cell: The load cell; None where there is a board.
         board: The board; None where there are drives.

@@ -24,7 +24,7 @@ class SimulatedLoadCell:
     Args:
         rig: The rig it weighs.
         profile: Counts, axes and rate; its address is not used.
-        faults: What goes wrong; `drop`, `duplicate`, `delay` and `truncate` mean whole datagrams.
+        faults: Transmission errors; `drop`, `duplicate`, `delay` and `truncate` apply to datagrams.
         rng: Random generator of the transmission errors.
 
     Attributes:
@@ -113,7 +113,7 @@ class SimulatedLoadCell:
 
     def _emit(self, datagram: bytes) -> None:
         if self._socket is not None and self._client is not None:
-            with contextlib.suppress(OSError):  # nobody listens any more
+            with contextlib.suppress(OSError):  # the client has closed its socket
                 self._socket.sendto(datagram, self._client)
 
     def _execute(self, counts: "np.ndarray") -> None:

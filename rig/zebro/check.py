@@ -19,7 +19,7 @@ from rig.zebro.commands import LegCommands
 from rig.zebro.profile import LegProfile
 
 STEP: Final = 0.1
-"""How far a leg is moved to be recognised [turns]."""
+"""Motion of a leg that a person observes [turns]."""
 DURATION: Final = 0.5
 SETTLING: Final = 0.5
 ANSWER_TIMEOUT: Final = 2.0
@@ -31,7 +31,7 @@ class CheckedLegs(LegCommands, Stream, Protocol):
 
 @dataclass(frozen=True)
 class MovedLeg:
-    """What a person saw when one channel was moved up by some counts.
+    """Observation of the leg that moved when the count of one channel was increased.
 
     Attributes:
         leg: Number of the leg that moved.
@@ -160,7 +160,7 @@ class LiftOff:
     Attributes:
         theta: The angle, a whole number of counts [rad].
         mismatch: Hip height there less that at touchdown [m].
-        measurements: How many heights were measured.
+        measurements: Number of measured heights.
     """
 
     theta: float

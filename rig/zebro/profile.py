@@ -29,11 +29,11 @@ DUMP_REGISTERS = 256
 
 @dataclass(frozen=True)
 class Registers:
-    """Where a register-based robot keeps what; each value takes two registers.
+    """Register map of a robot; each value takes two registers.
 
     Attributes:
         positions: First register of the position of each channel.
-        read_command: Byte that asks for registers.
+        read_command: Byte that requests registers.
         write_command: Byte that writes registers.
         set_points: First register of the set-point of each channel; empty where none is taken.
         duration: First register of the duration of a motion [ms].
@@ -117,7 +117,7 @@ class LegProfile:
         return struct.Struct(f"{'<' if self.byte_order == 'little' else '>'}{count}H")
 
     def possible(self, counts: tuple[float, ...]) -> bool:
-        """Return whether every count is on the circle."""
+        """Return whether every count is between 0 and a revolution."""
         return max(counts) <= self.counts_per_revolution and min(counts) >= 0
 
 
@@ -190,7 +190,7 @@ def save_leg_profile(profile: LegProfile, path: Path) -> None:
 
     Args:
         profile: The profile; its name becomes the file's.
-        path: Where to write; a file that is there is replaced.
+        path: Path of the file; an existing one is replaced.
     """
     path.write_text(render_leg_profile(profile), encoding="utf-8")
 
@@ -203,8 +203,9 @@ def render_leg_profile(profile: LegProfile) -> str:
 def decode_angles(profile: LegProfile, samples: Sequence[Sample]) -> LegAngles:
     """Compute unwrapped leg angles from raw counts.
 
-    A leg is taken to have turned the short way between two samples, so that a gap in which it
-    turned half a revolution or more is bridged wrongly by whole turns; contacts do not mind.
+    A leg is taken to have turned the short way between two samples, so that after a gap in which
+    it turned half a revolution or more its angle is wrong by whole turns, which does not change its
+    contact with the ground.
 
     Args:
         profile: Profile of the stream; a corrected one repairs an old log.
@@ -261,7 +262,7 @@ def _order(legs: TomlTable) -> tuple[int, ...]:
 
 
 def _by_channel(by_leg: tuple[Any, ...], order: tuple[int, ...]) -> tuple[Any, ...]:
-    """Bring values that a person lists by ascending leg number into the order of the wire."""
+    """Reorder values listed by ascending leg number into the order of the channels."""
     ascending = sorted(order)
     return tuple(by_leg[ascending.index(leg)] for leg in order)
 

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""Leg angles from registers: a leg module that dumps them, and a bridge that is asked for them.
+"""Leg angles from registers: a leg module that dumps them, and a bridge that is polled for them.
 
-Neither form has a checksum, a number or a device time: what is lost is not seen, and a bit flipped
-inside a value is seen only where the value leaves the circle. Prefer a bridge that sends packets.
+Neither form has a checksum, a sequence number or a device time: losses are not detected, and a
+flipped bit is detected only where the value leaves the range of counts. Prefer a bridge that
+sends packets.
 """
 
 from typing import Final
@@ -19,9 +20,9 @@ from rig.zebro.profile import DUMP_REGISTERS, LegProfile
 SYNC: Final = bytes.fromhex("FF4512EA4B")
 DUMP_LENGTH: Final = DUMP_REGISTERS + len(SYNC)
 ANSWER_TIMEOUT: Final = 0.05
-"""How long an answer to a poll may take [s]."""
+"""Timeout of an answer to a poll [s]."""
 QUIET_AFTER_FAILURE: Final = 0.1
-"""Pause after a poll without a whole answer, so that a late one arrives before the next [s]."""
+"""Pause after an incomplete answer, so that a late one arrives before the next request [s]."""
 
 
 class _RegisterStream(LinkedStream[ByteLink]):
@@ -121,7 +122,7 @@ class PolledLegs(_RegisterStream):
 
     @property
     def counters(self) -> Counters:
-        """Counters of the stream so far; an answer that did not come whole counts as damaged."""
+        """Counters of the stream so far; an incomplete answer counts as damaged."""
         return Counters(
             received=self._received,
             damaged=self._damaged,
@@ -131,7 +132,7 @@ class PolledLegs(_RegisterStream):
         )
 
     def read(self, timeout: float) -> list[Sample]:
-        """Ask once, when the next reading is due; none where that is beyond `timeout` [s]."""
+        """Request one reading when it is due; none where that is beyond `timeout` [s]."""
         now = self._clock.now()
         wait = self._next_at - now
         self._clock.sleep(min(max(wait, 0.0), timeout))

@@ -143,8 +143,8 @@ class CanRobot:
     Args:
         legs: The legs.
         bus: Its own end of the bus; the caller closes it.
-        faults: What goes wrong; only `drop`, `duplicate` and `delay` mean anything for frames that
-            the bus itself guards.
+        faults: Transmission errors; only `drop`, `duplicate` and `delay` apply, because the bus
+            protects each frame with a checksum.
         rng: Random generator of the transmission errors.
     """
 

@@ -115,8 +115,8 @@ class SimulatedSweep:
     Attributes:
         samples: The log as input of a calibration: slip from both measured disc speeds.
         table: The log as a recorder would write it, canonical columns `t` (runs on through the
-            whole sweep) [s], `omega_leg`, `omega_ground` [rad/s], `normal_force`, `traction_force` [N]
-            and `run` (index of the set-point), each of shape (n,).
+            whole sweep) [s], `omega_leg`, `omega_ground` [rad/s], `normal_force`,
+            `traction_force` [N] and `run` (index of the set-point), each of shape (n,).
         slip_true: True slip ratio, shape (n,) [-].
         load_true: True normal force, shape (n,) [N].
         offset_true: True traction zero b_run of every run, shape (runs,) [N].

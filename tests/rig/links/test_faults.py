@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from rig.errors import ProtocolError
-from rig.links.faults import PERFECT_LINE, Faults, FaultyWire
+from rig.links.faults import PERFECT_LINE, Faults, FaultyLine, FaultyWire
 
 FRAMES = [bytes([k % 256]) * 10 for k in range(2000)]
 PROBABILITIES = [f.name for f in fields(Faults) if f.name != "noise_at_start"]
@@ -67,3 +67,12 @@ def test_noise_comes_once_before_the_first_frame():
 def test_what_is_no_probability_is_refused_by_name(name):
     with pytest.raises(ProtocolError, match=f"{name} is 1.5; expected a probability"):
         Faults(**{name: 1.5})
+
+
+def test_frames_that_cannot_be_cut_arrive_whole_or_not_at_all():
+    sent = [object() for _ in range(200)]
+    rng = np.random.default_rng(0)
+    line: FaultyLine[object] = FaultyLine(Faults(truncate=1.0, drop=0.2, delay=0.2), rng=rng)
+    arrived = [frame for each in sent for frame in line.carry(each)]
+    assert set(arrived) < set(sent)
+    assert len(arrived) == len(set(arrived))

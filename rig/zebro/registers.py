@@ -143,7 +143,7 @@ class PolledLegs(_RegisterStream):
         if answer is None:
             self._damaged += 1
             self._out_of_sync = True
-            # Quiet first: an answer carries nothing that tells which request it is to.
+            # Pause first: an answer does not say to which request it belongs.
             self._next_at = self._clock.now() + QUIET_AFTER_FAILURE
             return []
         self._resynchronised += self._out_of_sync

@@ -156,8 +156,8 @@ def _require_guard(table: TomlTable, limits: RunLimits, name: str, highest: floa
     value, unit = getattr(limits, name), LIMIT_UNITS[name]
     if value > highest and name not in limits.guards_off:
         raise table.fault(
-            f"found {value:g} {unit}; above {highest:g} {unit} the guard has no effect: lower it, "
-            f'or write guards_off = ["{name}"]',
+            f"found {value:g} {unit}, above {highest:g} {unit}, where the guard has no effect; "
+            f'lower it, or write guards_off = ["{name}"]',
             name,
         )
     if value <= highest and name in limits.guards_off:

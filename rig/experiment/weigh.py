@@ -115,7 +115,7 @@ def check_gain(weighing: Weighing, *, weight_sd: float = 1e-3) -> GainCheck:
     """
     force, reading = np.array(weighing.forces), np.array(weighing.readings)
     if np.ptp(force) <= 0:
-        raise ProtocolError("all forces are the same; expected no load and at least one weight")
+        raise ProtocolError("found a single force; expected at least one weight besides no load")
     design = np.column_stack([np.ones_like(force), force])
     error = np.maximum(np.array(weighing.errors), 1e-9)
     weighted = design / error[:, None]

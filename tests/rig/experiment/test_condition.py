@@ -30,7 +30,7 @@ def test_only_stops_harder_than_the_one_obeyed_are_offered():
 def test_a_held_run_can_go_on_and_says_how_long_it_waits():
     keys = Condition(RigState.HOLDING, True, pending=StopCategory.SOFT, hold=5.0).keys
     assert keys.startswith("r: resume; ")
-    assert keys.endswith("a safe stop follows after 5 s")
+    assert keys.endswith("a safe stop follows after 5 s without a command")
 
 
 def test_a_running_one_can_be_confirmed_paused_and_stopped():

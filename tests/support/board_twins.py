@@ -8,7 +8,7 @@ from rig.links.memory import MemoryLink
 from rig.slip_rig.board import RigBoard
 from rig.slip_rig.imperfections import RigImperfections
 from rig.slip_rig.profile import load_rig_profile
-from rig.slip_rig.simulated import RigDynamics, SimulatedRig
+from rig.slip_rig.simulated import TWIN_LAWS, RigDynamics, SimulatedRig
 from rig.slip_rig.simulated_board import SimulatedBoard
 from rig.slip_rig.sweep import SweepPlan
 
@@ -20,7 +20,7 @@ PERFECT = RigImperfections()
 
 def world(law="magic-formula", *, plan=None, imperfections=PERFECT, dynamics=None, seed=0):
     return SimulatedRig(
-        law,
+        *TWIN_LAWS[law],
         plan=plan or SweepPlan(),
         imperfections=imperfections,
         dynamics=dynamics or RigDynamics(),

@@ -214,7 +214,7 @@ def _print_plan(foreseen: "Foreseen", *, steps: bool) -> None:
         said = "not limited" if value is None else f"{value:g}"
         say(f"  {name:<20}{said:>12} {unit}")
     if plan.limits.guards_off:
-        say(f"guards that are off, as the plan wants: {plan.limits.off_said}")
+        say(f"guards that are off, as the plan wants: {plan.limits.guards_off_text}")
     if steps:
         for step in foreseen.steps:
             say(step.label if isinstance(step, Point) else f"zero-{step.number:04d}")

@@ -21,7 +21,7 @@ from rig.openers import SIMULATED, resolve
 from rig.slip_rig.board import RigBoard
 from rig.slip_rig.imperfections import RigImperfections, draw_imperfections
 from rig.slip_rig.profile import RigProfile, load_rig_profile
-from rig.slip_rig.simulated import RigDynamics, SimulatedRig, simulated_rig
+from rig.slip_rig.simulated import RigDynamics, SimulatedRig
 from rig.slip_rig.simulated_board import SimulatedBoard
 from rig.slip_rig.sweep import SweepPlan
 from rig.twins import simulated_rig_devices
@@ -86,7 +86,9 @@ class RigAtHand:
                 key="load.set_by",
             )
         axis = SimulatedAxis(self.twin, clock=self.clock)
-        return DrivenShaft(axis, tolerance=setting.tolerance, patience=setting.patience)
+        return DrivenShaft(
+            axis, tolerance=setting.tolerance, patience=setting.patience, clock=self.clock
+        )
 
 
 @contextmanager
@@ -122,7 +124,7 @@ def rig_at_hand(
         yield RigAtHand(make_bench(open_rig(address)), profiles)
         return
     rng = np.random.default_rng(seed)
-    rig = simulated_rig(
+    rig = SimulatedRig(
         plan=SweepPlan(radius_leg=profile.radius_leg, radius_ground=profile.radius_ground),
         imperfections=imperfections or draw_imperfections(np.random.default_rng([seed, 1])),
         dynamics=RigDynamics(ripple=0.005), rng=rng,

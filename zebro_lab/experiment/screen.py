@@ -23,6 +23,7 @@ from rig.experiment.control import Control
 from rig.experiment.steps import Point
 from rig.experiment.supervision import start_thread
 from rig.experiment.verdict import PointVerdict
+from rig.experiment.watcher import ExperimentWatcher
 from zebro_lab.experiment.keyboard import Keyboard
 from zebro_lab.files.shown_text import shown
 from zebro_lab.terminal.messages import plain
@@ -74,8 +75,8 @@ class ScreenPicture:
         return Group(*parts, chart, Text(shown(self.prompt), style="bold"))
 
 
-class ExperimentScreen:
-    """Follows an experiment; satisfies `ExperimentWatcher`, and never waits for the console.
+class ExperimentScreen(ExperimentWatcher):
+    """Follows an experiment, and never waits for the console.
 
     Args:
         console: Where to draw.

@@ -20,7 +20,7 @@ from rig.safety import SampleGuard
 from rig.sample_columns import as_columns
 from rig.slip_rig.imperfections import TYPICAL_RIG
 from rig.slip_rig.profile import RigProfile, load_rig_profile
-from rig.slip_rig.simulated import RigDynamics, SimulatedRig, simulated_rig
+from rig.slip_rig.simulated import RigDynamics, SimulatedRig
 from rig.slip_rig.sweep import SweepPlan
 from rig.twins import simulated_rig_devices
 from zebro_lab.files.errors import SettingsError
@@ -126,7 +126,7 @@ def default_gait() -> LegReference:
 
 def twin_rig(rng: np.random.Generator) -> SimulatedRig:
     """Return the simulated rig that `sim` selects, which runs `TWIN_SWEEP`."""
-    return simulated_rig(
+    return SimulatedRig(
         plan=TWIN_SWEEP, imperfections=TYPICAL_RIG, dynamics=RigDynamics(ripple=0.005), rng=rng
     )
 

@@ -11,9 +11,9 @@ from model.slip.thesis import THESIS_LAW, THESIS_VALUES
 from rig.slip_rig.imperfections import (
     TYPICAL_RIG,
     lag_one_correlation,
-    true_load,
 )
 from rig.slip_rig.sweep import RigImperfections, SweepPlan, draw_imperfections, simulate_sweep
+from support.true_load import true_load
 
 PERFECT = RigImperfections()
 RADII = SweepPlan().radius_leg / SweepPlan().radius_ground

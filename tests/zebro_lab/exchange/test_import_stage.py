@@ -319,7 +319,7 @@ def test_the_profile_of_a_table_is_no_devices(files, tmp_path):
     folder, _ = everything(files, tmp_path)
     profile = load_leg_profile(str(profile_file(folder, "legs")))
     for make in (lambda: leg_link(profile, "x"), lambda: leg_driver(profile, None)):
-        with pytest.raises(ProfileError, match="no device"):
+        with pytest.raises(ProfileError, match="not a device"):
             make()
 
 

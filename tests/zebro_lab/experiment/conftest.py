@@ -8,7 +8,7 @@ from types import SimpleNamespace
 import pytest
 
 from rig.experiment.control import Control
-from rig.experiment.watcher import NobodyWatches
+from rig.experiment.watcher import ExperimentWatcher
 from zebro_lab.experiment.journal import JOURNAL_FILE
 from zebro_lab.experiment.stage import RigRunRequest, run_experiment
 
@@ -43,10 +43,10 @@ def _plan(tmp_path):
 
 def run(plan, data, *, watcher=None, control=None, **options):
     request = RigRunRequest(plan, "sim", data, fast=True, **options)
-    return run_experiment(request, watcher or NobodyWatches(), control or Control())
+    return run_experiment(request, watcher or ExperimentWatcher(), control or Control())
 
 
-class StopAfter(NobodyWatches):
+class StopAfter(ExperimentWatcher):
     """Asks for a stop after so many points."""
 
     def __init__(self, count, action):

@@ -61,7 +61,7 @@ def test_a_twin_has_an_operator_and_an_axis():
 @pytest.mark.parametrize(("address", "error", "said"), [
     ("rig-board-serial@/dev/null", SettingsError, "only a simulated rig's time"),
     ("rig-odrive-netft@sim", SettingsError, "runs in real time only"),
-    ("replay:RUN", ProfileError, "only plays what was recorded"),
+    ("replay:RUN", ProfileError, "replays a recording"),
 ])  # fmt: skip
 def test_what_cannot_be_fast_says_so(address, error, said):
     with pytest.raises(error, match=said), rig_at_hand(address, fast=True):

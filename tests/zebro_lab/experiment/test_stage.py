@@ -16,7 +16,7 @@ from rig.links.serve import PortServer
 from rig.safety import StopCategory
 from rig.slip_rig.imperfections import TYPICAL_RIG
 from rig.slip_rig.profile import load_rig_profile
-from rig.slip_rig.simulated import RigDynamics, simulated_rig
+from rig.slip_rig.simulated import RigDynamics, SimulatedRig
 from rig.slip_rig.simulated_board import SimulatedBoard
 from rig.slip_rig.sweep import SweepPlan
 from zebro_lab.calibration.rig_data import read_rig_data
@@ -93,7 +93,7 @@ class Rig:
         profile = load_rig_profile("rig-board-serial")
         rng = np.random.default_rng(0)
         self.data = data
-        self.rig = simulated_rig(
+        self.rig = SimulatedRig(
             plan=SweepPlan(), imperfections=TYPICAL_RIG, dynamics=RigDynamics(), rng=rng
         )
         self.rig.load = 1e-3
@@ -117,7 +117,7 @@ class Rig:
             try:
                 status = command_run(self.data, "status")
                 again, before = status == before, status
-                if status.startswith("take all load"):
+                if status.startswith("remove all load"):
                     self.rig.load = 1e-3
                 elif status.startswith("set the normal force"):
                     self.rig.load = float(status.split()[5])

@@ -47,7 +47,7 @@ def ends(data):
 def test_whatever_ends_the_writer_stops_the_experiment(lab, plan, tmp_path, monkeypatch):
     monkeypatch.setattr(JournalWriter, "append", fail_once(JournalWriter.append, "note"))
     data, control = tmp_path / "data", Control()
-    note = lab.StopAfter(2, lambda: control.obey("note hello", who="test"))
+    note = lab.StopAfter(2, lambda: control.execute("note hello", who="test"))
     with pytest.raises(SinkFailed, match="RuntimeError: planted"):
         lab.run(plan, data, watcher=note, control=control)
     assert "RuntimeError: planted" in ends(data)[-1]
@@ -129,7 +129,7 @@ def test_nobody_waits_for_a_writer_that_is_dead(tmp_path, monkeypatch):
 def test_a_note_of_undecodable_bytes_is_kept_and_stops_nothing(lab, plan, tmp_path):
     data, control = tmp_path / "data", Control()
     typed = b"note caf\xe9".decode("utf-8", "surrogateescape")
-    note = lab.StopAfter(2, lambda: control.obey(typed, who="keyboard"))
+    note = lab.StopAfter(2, lambda: control.execute(typed, who="keyboard"))
     assert lab.run(plan, data, watcher=note, control=control).completed
     assert b"caf" in (data / JOURNAL_FILE).read_bytes()
 

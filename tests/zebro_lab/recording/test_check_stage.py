@@ -43,7 +43,7 @@ def test_a_profile_that_is_there_is_kept_and_no_robot_moved(tmp_path):
 
 
 def test_a_replay_is_no_robot(tmp_path):
-    with pytest.raises(ProfileError, match="only plays what was recorded"):
+    with pytest.raises(ProfileError, match="replays a recording"):
         check_zebro(CheckRequest("replay:RUN", tmp_path / "mine.toml"), Person())
     assert list(tmp_path.iterdir()) == []
 

@@ -69,7 +69,7 @@ def test_a_run_that_is_not_there_or_lost_its_profile_is_named(make, tmp_path):
 
 
 def test_a_replay_moves_nothing(make):
-    with pytest.raises(ProfileError, match="only plays what was recorded"):
+    with pytest.raises(ProfileError, match="replays a recording"):
         resolve("replay:RUN", default="rig-board-serial")
     play = DevicesRequest(zebro=f"replay:{make('real')}", play=object())
     with pytest.raises(SettingsError, match="takes no set-points"), open_devices(play):

@@ -29,7 +29,7 @@ from zebro_lab.calibration.rig_data import read_rig_data as read_rig_files
 from zebro_lab.recording.devices import DevicesRequest, OpenDevices
 from zebro_lab.recording.devices import open_devices as open_devices_of
 from zebro_lab.report.stage import ReportRequest, report
-from zebro_lab.robot.gait_argument import GaitRequest
+from zebro_lab.robot.gait_request import GaitName, GaitRequest
 from zebro_lab.robot.leg_log import LegLog
 from zebro_lab.runs.folder import read_manifest
 from zebro_lab.runs.legs import read_leg_log
@@ -40,10 +40,17 @@ from zebro_lab.track.photo_sequence import TimeRequest
 from zebro_lab.track.request import TrackRequest
 from zebro_lab.track.stage import TrackResult, track
 from zebro_lab.validation.stage import Validated, ValidateRequest, pairs_of_run, validate
-from zebro_lab.walk.path_band import BandRequest, read_draws
-from zebro_lab.walk.predict_stage import PredictRequest, predict
-from zebro_lab.walk.stage import WalkRequest, walk
-from zebro_lab.walk.walking import ModelRequest, Walked
+from zebro_lab.walk.path_band import read_draws
+from zebro_lab.walk.predict_stage import predict
+from zebro_lab.walk.request import (
+    BandRequest,
+    ModelName,
+    ModelRequest,
+    PredictRequest,
+    WalkRequest,
+)
+from zebro_lab.walk.stage import walk
+from zebro_lab.walk.walking import Walked
 
 if TYPE_CHECKING:
     import arviz as az
@@ -280,11 +287,11 @@ def read_track(path: PathLike) -> TrackFile:
 
 
 def walk_gait(
-    gait: str = "tripod",
+    gait: GaitName = "tripod",
     *,
     slip: str | None = "thesis",
     duration: float = 10.0,
-    model: str = "dynamics",
+    model: ModelName = "dynamics",
     steering: float | None = None,
     direction: Direction | None = None,
     robot: PathLike | None = None,
@@ -314,9 +321,9 @@ def walk_gait(
     with _folder(out) as folder:
         request = WalkRequest(
             GaitRequest(gait, steering=steering, direction=direction),
-            ModelRequest(folder, slip=slip, model=model, robot=_path(robot)),
             duration,
-            band=BandRequest(draws, seed=seed) if draws else None,
+            folder,
+            ModelRequest(slip, model, robot=_path(robot), band=BandRequest(draws, seed)),
         )
         return _walk_result(walk(request, Silent()), folder, draws)
 
@@ -325,7 +332,7 @@ def predict_walk(
     legs: PathLike,
     *,
     slip: str | None,
-    model: str = "dynamics",
+    model: ModelName = "dynamics",
     robot: PathLike | None = None,
     columns: PathLike | None = None,
     draws: int = 0,
@@ -351,9 +358,9 @@ def predict_walk(
     with _folder(out) as folder:
         request = PredictRequest(
             Path(legs),
-            ModelRequest(folder, slip=slip, model=model, robot=_path(robot)),
-            columns=_path(columns),
-            band=BandRequest(draws, seed=seed) if draws else None,
+            folder,
+            _path(columns),
+            model=ModelRequest(slip, model, robot=_path(robot), band=BandRequest(draws, seed)),
         )
         return _walk_result(predict(request, Silent()), folder, draws)
 

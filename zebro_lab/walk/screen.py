@@ -18,18 +18,18 @@ from zebro_lab.terminal.messages import plain, say
 from zebro_lab.terminal.progress import progress_bar
 from zebro_lab.walk.folder import FILES
 from zebro_lab.walk.summary import WalkSummary, summarise
-from zebro_lab.walk.walking import ModelRequest, Walked, WalkStopped
+from zebro_lab.walk.walking import Walked, WalkStopped
 
 INTERRUPTED = 130
 _MANY_UNTESTED = 0.01  # share of the contacts; a few at touchdown do not matter
 
 
-def run_and_report(run: Callable[[Watcher], Walked], request: ModelRequest) -> None:
+def run_and_report(run: Callable[[Watcher], Walked], folder: Path) -> None:
     """Run a stage with a progress bar and print the results.
 
     Args:
         run: The stage.
-        request: Its settings.
+        folder: Walk folder that it writes.
 
     Raises:
         Exit: The walk was stopped.
@@ -43,7 +43,7 @@ def run_and_report(run: Callable[[Watcher], Walked], request: ModelRequest) -> N
     console = Console(highlight=False)
     if not console.is_terminal:
         console = Console(highlight=False, width=120)
-    print_walk(console, walked, request.out)
+    print_walk(console, walked, folder)
 
 
 def print_walk(console: Console, walked: Walked, out: Path) -> None:

@@ -18,10 +18,10 @@ from zebro_lab.main import app
 from zebro_lab.runs.legs import read_leg_log
 from zebro_lab.terminal.ending import run as run_app
 from zebro_lab.validation.stage import ValidateRequest, pairs_of_run, validate
-from zebro_lab.walk.path_band import BandRequest, read_draws
-from zebro_lab.walk.predict_stage import PredictRequest, predict
+from zebro_lab.walk.path_band import read_draws
+from zebro_lab.walk.predict_stage import predict
 from zebro_lab.walk.prediction_file import read_prediction
-from zebro_lab.walk.walking import ModelRequest
+from zebro_lab.walk.request import BandRequest, ModelRequest, PredictRequest
 
 STEP = np.radians(3.6)
 DURATION = 12.0
@@ -57,9 +57,9 @@ def write_walk_data(folder, *, steering=1.2, offset_deg=0.0, seed=3):
 
 def predicted(folder, legs, *, draws=60, name="prediction"):
     request = PredictRequest(
-        log=legs,
-        model=ModelRequest(out=folder / name, slip="coulomb:0.38"),
-        band=BandRequest(draws) if draws else None,
+        legs,
+        folder / name,
+        model=ModelRequest(slip="coulomb:0.38", band=BandRequest(draws)),
     )
     predict(request, Nobody())
     return folder / name
@@ -188,7 +188,7 @@ def test_a_run_without_a_track_says_what_to_do(walk, tmp_path):
 def test_a_band_needs_the_model_that_has_one(tmp_path):
     legs, _ = write_walk_data(tmp_path)
     request = PredictRequest(
-        legs, ModelRequest(out=tmp_path / "out", model="no-slip"), band=BandRequest(10)
+        legs, tmp_path / "out", model=ModelRequest(model="no-slip", band=BandRequest(10))
     )
     with pytest.raises(SettingsError, match="dynamics"):
         predict(request, Nobody())

@@ -8,12 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from model.walk_models import MODELS
 from zebro_lab.main import app
-from zebro_lab.robot.gait_argument import GAITS
 from zebro_lab.terminal.ending import run as run_app
-from zebro_lab.walk import options as walk_options
-from zebro_lab.walk.command import GaitName
 
 COMMAND = str(Path(sys.executable).with_name("zebro-lab"))
 
@@ -129,8 +125,3 @@ def test_wrong_usage_is_exit_2(arguments, run):
     code, stdout, stderr = run(*arguments)
     assert (code, stdout) == (2, "")
     assert "Usage: " in stderr
-
-
-def test_options_offer_what_there_is():
-    assert {name.value for name in walk_options.Model} == set(MODELS)
-    assert {name.value for name in GaitName} == set(GAITS)

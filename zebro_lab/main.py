@@ -5,7 +5,6 @@ from typing import Annotated
 
 import typer
 
-from zebro_lab.calibration.command import EPILOG, calibrate_command
 from zebro_lab.exchange.export_command import export
 from zebro_lab.exchange.import_command import EPILOG as IMPORT_EPILOG
 from zebro_lab.exchange.import_command import import_files
@@ -36,9 +35,7 @@ from zebro_lab.walk.command import EPILOG as WALK_EPILOG
 from zebro_lab.walk.command import walk
 from zebro_lab.walk.predict_command import EPILOG as PREDICT_EPILOG
 from zebro_lab.walk.predict_command import predict
-from zebro_lab.walk_fit.command import fit_walks
-
-calibrate = calibrate_command(fit_walks)
+from zebro_lab.walk_fit.command import EPILOG, calibrate
 
 app = typer.Typer(
     add_completion=False,

@@ -114,12 +114,10 @@ def rig(
 def _serve(
     serving: "AbstractContextManager[Served]", request: "TwinRequest", duration: float | None
 ) -> None:
-    from rich.console import Console
-
     from zebro_lab.recording.simulate_stage import wait_until
     from zebro_lab.terminal.progress import progress_bar
 
-    with progress_bar(Console(stderr=True)) as watcher, serving as served:
+    with progress_bar() as watcher, serving as served:
         for what, place in served.places.items():
             say(f"SIMULATED {what} ({served.source}), profile {request.profile}: {place}")
         say(f"record it as {served.address}")

@@ -24,12 +24,10 @@ Out = Annotated[
 
 def plot(run: Run, out: Out = None) -> None:
     """Plot all streams of a run: legs, IMU, forces, speeds, with gaps and events marked."""
-    from rich.console import Console
-
     from zebro_lab.runs.plot_stage import plot_run
     from zebro_lab.terminal.progress import progress_bar
 
-    with progress_bar(Console(stderr=True)) as watcher:
+    with progress_bar() as watcher:
         watcher.step("drawing", None)
         drawn = plot_run(run, out=out)
     for note in drawn.signals.notes:

@@ -2,59 +2,125 @@
 """Options of a track."""
 
 from dataclasses import dataclass, field
-from datetime import datetime
+from datetime import UTC, datetime
 from pathlib import Path
+from typing import Annotated, Literal, TypeAlias
 
-from tracking.composite import Merged
+import typer
+
 from zebro_lab.files.errors import SettingsError
-from zebro_lab.track.folder import KIND
-from zebro_lab.track.photo_sequence import VIDEOS, TimeRequest
-from zebro_lab.track.robot import WALKING_HEIGHT_SD
+from zebro_lab.files.units import quantity_to_si
+
+MergedAs: TypeAlias = Literal["pasted", "darkest", "mean"]
+KIND = "track"
+VIDEOS = (".mp4", ".mov", ".m4v", ".avi", ".mkv", ".webm")
+
+
+def _moment(text: str) -> datetime:
+    try:
+        moment = datetime.fromisoformat(text)
+    except ValueError as error:
+        raise typer.BadParameter(
+            f"'{text}' is no time; expected one such as 2020-06-01T12:00:00",
+            param_hint="'--start'",
+        ) from error
+    if moment.utcoffset():
+        raise typer.BadParameter(
+            f"'{text}' has a time zone, which the camera's clock does not tell; give the time as "
+            f"that clock shows it, {moment:%Y-%m-%dT%H:%M:%S} or another, without a zone",
+            param_hint="'--start'",
+        )
+    return moment.replace(tzinfo=UTC)
+
+
+@dataclass(frozen=True)
+class TimeRequest:
+    """Where the times of photographs come from."""
+
+    interval: Annotated[
+        float | None, typer.Option(help="Interval of the timer, where there is no EXIF [s].")
+    ] = None
+    table: Annotated[
+        Path | None,
+        typer.Option("--times", metavar="CSV", help="Times: columns photo, t_s, maybe t_sigma."),
+    ] = None
+    every: Annotated[
+        float | None,
+        typer.Option(min=0.0, help="Time between a video's frames; 0.5, 0 takes all [s]."),
+    ] = None
+    clock: Annotated[
+        Path | None, typer.Option(metavar="PHOTO", help="Photograph of `zebro-lab camera clock`.")
+    ] = None
+
+    def __post_init__(self) -> None:
+        if self.interval is not None and self.table is not None:
+            raise SettingsError("not together with --interval; give one of them", key="--times")
+
+    @property
+    def frame_step(self) -> float:
+        """Least time between two frames of a video; 0 takes all [s]."""
+        return 0.5 if self.every is None else self.every
 
 
 @dataclass(frozen=True)
 class TrackRequest:
-    """Options of a track: photographs, files and settings.
+    """Options of `zebro-lab track`."""
 
-    Attributes:
-        photos: Folder of photographs, video, or one composite picture.
-        camera: The `camera.toml`.
-        floor: The `floor.toml`.
-        robot: The `robot.toml`; the thesis's robot when None.
-        out: Folder to write; None for the run's own `track/`.
-        run: Run folder the photographs belong to.
-        times: How the photographs get their times.
-        start: Moment from which time is counted; None for the run's start or the first photograph.
-        marker: The robot's marker: dictionary, number and side; None to take that of the robot's
-            file.
-        without_marker: Track the robot by a template, annotated in one photograph.
-        merged: How the exposures of a composite picture were merged; None for other photographs.
-        annotations: An `annotations.toml`, a person's annotations of the photographs.
-        body_height: Height of the body's origin while the robot stands; None to take the marker's
-            [m].
-        height_sd: Standard deviation of that height over a walk [m].
-        gap: Interval longer than which the path is interrupted; None for 3.5 usual ones [s].
-        source: Source of the photographs; None to take that of the files or of the run.
-        workers: Processes to use.
-    """
-
-    photos: Path
-    camera: Path
-    floor: Path
-    robot: Path | None = None
-    out: Path | None = None
-    run: Path | None = None
+    photos: Annotated[
+        Path, typer.Argument(help="Folder of photographs, a video, or one composite picture.")
+    ]
+    camera: Annotated[Path, typer.Option("--camera", help="camera.toml.")]
+    floor: Annotated[Path, typer.Option("--floor", help="floor.toml.")]
+    robot: Annotated[
+        Path | None, typer.Option("--robot", help="robot.toml; the thesis's robot without it.")
+    ] = None
+    out: Annotated[Path | None, typer.Option(help="Folder to write; RUN/track without it.")] = None
+    run: Annotated[Path | None, typer.Option(metavar="RUN", help="Run folder they belong to.")] = (
+        None
+    )
     times: TimeRequest = field(default_factory=TimeRequest)
-    start: datetime | None = None
-    marker: str | None = None
-    without_marker: bool = False
-    merged: Merged | None = None
-    annotations: Path | None = None
-    body_height: float | None = None
-    height_sd: float = WALKING_HEIGHT_SD
-    gap: float | None = None
-    source: str | None = None
-    workers: int = 1
+    start: Annotated[
+        datetime | None,
+        typer.Option(
+            metavar="TIME",
+            parser=_moment,
+            help="Moment to count time from, as the camera shows it.",
+        ),
+    ] = None
+    marker: Annotated[
+        str | None,
+        typer.Option(
+            metavar="DICTIONARY:NUMBER:SIDE",
+            help="What is printed on the robot, as in 4x4_50:0:120mm; robot.toml's without it.",
+        ),
+    ] = None
+    without_marker: Annotated[
+        bool,
+        typer.Option("--without-marker", help="Track the robot by its own annotated picture."),
+    ] = False
+    merged: Annotated[
+        MergedAs | None,
+        typer.Option("--merged", help="How one composite picture was made of its exposures."),
+    ] = None
+    annotations: Annotated[
+        Path | None, typer.Option("--annotations", help="What `zebro-lab annotate` wrote.")
+    ] = None
+    body_height: Annotated[
+        str | None,
+        typer.Option(
+            metavar="LENGTH", help="Height of the body's centre; the marker's without it."
+        ),
+    ] = None
+    height_sd: Annotated[
+        str, typer.Option("--height-sd", metavar="LENGTH", help="How far a walk strays from it.")
+    ] = "5mm"
+    gap: Annotated[
+        float | None, typer.Option(help="Pause that interrupts the path; 3.5 usual ones [s].")
+    ] = None
+    source: Annotated[
+        str | None, typer.Option(help="real, or sim:WHAT; the files' or the run's without it.")
+    ] = None
+    workers: Annotated[int, typer.Option(min=1, help="Processes to use.")] = 2
 
     def __post_init__(self) -> None:
         is_picture = self.photos.is_file() and self.photos.suffix.lower() not in VIDEOS
@@ -73,6 +139,16 @@ class TrackRequest:
         if self.run is None:
             raise SettingsError("needed: --run RUN, to write RUN/track, or --out FOLDER")
         return self.run / KIND
+
+    @property
+    def standing_height(self) -> float | None:
+        """Height of the body's centre while the robot stands; None for the marker's [m]."""
+        return None if self.body_height is None else quantity_to_si(self.body_height, "m")
+
+    @property
+    def walking_height_sd(self) -> float:
+        """Standard deviation of that height over a walk [m]."""
+        return quantity_to_si(self.height_sd, "m")
 
     @property
     def named(self) -> tuple[Path, ...]:

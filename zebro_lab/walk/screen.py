@@ -14,7 +14,7 @@ from rich.text import Text
 from model.gait import CyclicReference
 from model.progress import Watcher
 from zebro_lab.files.result_folder import MANIFEST
-from zebro_lab.terminal.messages import plain, say
+from zebro_lab.terminal.messages import plain, say, wide_console
 from zebro_lab.terminal.progress import progress_bar
 from zebro_lab.walk.folder import FILES
 from zebro_lab.walk.summary import WalkSummary, summarise
@@ -35,15 +35,12 @@ def run_and_report(run: Callable[[Watcher], Walked], folder: Path) -> None:
         Exit: The walk was stopped.
     """
     try:
-        with progress_bar(Console(stderr=True)) as watcher:
+        with progress_bar() as watcher:
             walked = run(watcher)
     except WalkStopped as stopped:
         say(str(stopped), err=True)
         raise typer.Exit(INTERRUPTED) from None
-    console = Console(highlight=False)
-    if not console.is_terminal:
-        console = Console(highlight=False, width=120)
-    print_walk(console, walked, folder)
+    print_walk(wide_console(), walked, folder)
 
 
 def print_walk(console: Console, walked: Walked, out: Path) -> None:

@@ -17,7 +17,8 @@ from support.watchers import Nobody
 from zebro_lab.calibration.slip_argument import parse_slip
 from zebro_lab.calibration.walks_folder import FOLDER, WalksToWrite, read_walks_beside, write_walks
 from zebro_lab.files.errors import DataError, SettingsError
-from zebro_lab.report.stage import ReportRequest, report
+from zebro_lab.report.request import ReportRequest
+from zebro_lab.report.stage import report
 from zebro_lab.robot.robot_file import RobotFile
 from zebro_lab.walk.folder import read_walk, read_walk_manifest
 from zebro_lab.walk.informed_legs import informed_legs

@@ -17,7 +17,8 @@ from rig.zebro.profile import load_leg_profile
 from support.watchers import Nobody
 from zebro_lab.calibration.rig_data import read_rig_data
 from zebro_lab.exchange.export_stage import export_run
-from zebro_lab.exchange.import_stage import ImportRequest, import_run
+from zebro_lab.exchange.import_request import ImportRequest
+from zebro_lab.exchange.import_stage import import_run
 from zebro_lab.files.errors import AlreadyExists, DataError, NotFound, SettingsError
 from zebro_lab.files.provenance import file_hash
 from zebro_lab.mcap.raw_log import read_raw_log

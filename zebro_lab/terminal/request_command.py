@@ -23,35 +23,30 @@ def request_command(*, first: tuple[str, ...] = ()) -> Callable[[Command], Comma
             in the order of the function and of the fields.
     """
 
-    def rank(parameter: Parameter) -> int:
-        return first.index(parameter.name) if parameter.name in first else len(first)
-
     def decorate(function: Command) -> Command:
         hints = get_type_hints(function, include_extras=True)
         own = inspect.signature(function).parameters
-        shown = [
-            each
-            for name, parameter in own.items()
-            for each in _parameters(name, hints[name], parameter.default)
-        ]
+        options = [each for name in own for each in _options(name, hints[name], own[name].default)]
+        options.sort(key=lambda each: first.index(each.name) if each.name in first else len(first))
 
         @wraps(function)
         def command(**given: Any) -> None:
             function(**{name: _value(name, hints[name], given) for name in own})
 
-        shown.sort(key=rank)
-        command.__annotations__ = {each.name: each.annotation for each in shown}
-        vars(command)["__signature__"] = inspect.Signature(shown)
+        # Typer reads both.
+        command.__annotations__ = {each.name: each.annotation for each in options}
+        vars(command)["__signature__"] = inspect.Signature(options)
         return command
 
     return decorate
 
 
-def _parameters(name: str, hint: Any, default: Any) -> Iterator[Parameter]:
+def _options(name: str, hint: Any, default: Any) -> Iterator[Parameter]:
     """Yield the parameters that stand for one of a function, or for one field of a dataclass."""
     if is_dataclass(hint):
         for field, inner in _fields(hint):
-            yield from _parameters(field.name, inner, _default(field))
+            missing = field.default is MISSING
+            yield from _options(field.name, inner, Parameter.empty if missing else field.default)
         return
     if _is_repeatable(hint):
         of, *metadata = get_args(hint)
@@ -63,20 +58,16 @@ def _parameters(name: str, hint: Any, default: Any) -> Iterator[Parameter]:
 def _value(name: str, hint: Any, given: Mapping[str, Any]) -> Any:
     """Return the value of a parameter or field, its dataclass filled with what was given."""
     if is_dataclass(hint):
-        filled: Any = hint
-        return filled(
-            **{each.name: _value(each.name, inner, given) for each, inner in _fields(hint)}
-        )
+        values = {field.name: _value(field.name, inner, given) for field, inner in _fields(hint)}
+        request: Any = hint
+        return request(**values)
     return tuple(given[name] or ()) if _is_repeatable(hint) else given[name]
 
 
-def _fields(of: Any) -> list[tuple[Field[Any], Any]]:
-    hints = get_type_hints(of, include_extras=True)
-    return [(field, hints[field.name]) for field in fields(of)]
-
-
-def _default(field: Field[Any]) -> Any:
-    return Parameter.empty if field.default is MISSING else field.default
+def _fields(request: Any) -> list[tuple[Field[Any], Any]]:
+    """Return the fields of a dataclass with their annotations."""
+    hints = get_type_hints(request, include_extras=True)
+    return [(field, hints[field.name]) for field in fields(request)]
 
 
 def _is_repeatable(hint: Any) -> bool:

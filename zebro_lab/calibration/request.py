@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
 
-import typer
+from typer import Argument, Option
 
 
 @dataclass(frozen=True)
@@ -13,47 +13,51 @@ class CalibrationRequest:
     """Options of `calibrate-slip`."""
 
     data: Annotated[
-        tuple[Path, ...],
-        typer.Argument(help="Run folders, or files or folders of CSV or Parquet."),
+        tuple[Path, ...], Argument(help="Run folders, or files or folders of CSV or Parquet.")
     ] = ()
-    out: Annotated[Path, typer.Option(help="Calibration folder to write.")] = Path("calibration")
+    out: Annotated[Path, Option(help="Calibration folder to write.")] = Path("calibration")
     columns: Annotated[
-        Path | None, typer.Option(help="columns.toml to use in place of those beside the tables.")
+        Path | None, Option(help="columns.toml to use in place of those beside the tables.")
     ] = None
     slip_definition: Annotated[
-        str | None, typer.Option(help="Fit in this definition: material, travel or larger.")
+        str | None,
+        Option(
+            help="Definition of the slip ratio to fit in: material, travel or larger; default: "
+            "that of the data."
+        ),
     ] = None
-    law: Annotated[
-        str, typer.Option(help="Slip law: magic-formula, brush or coulomb-stribeck.")
-    ] = "magic-formula"
+    law: Annotated[str, Option(help="Slip law: magic-formula, brush or coulomb-stribeck.")] = (
+        "magic-formula"
+    )
     curvature: Annotated[
         str,
-        typer.Option(
-            help="Curvature E of the Magic Formula: auto compares; peak (the peak's slip grows "
-            "with load); constant; or a fixed number."
+        Option(
+            help="Curvature E of the Magic Formula: auto (compares peak and constant); peak (the "
+            "slip of the peak grows with load); constant; or a fixed number."
         ),
     ] = "auto"
     load_sensitivity: Annotated[
-        bool, typer.Option("--load-sensitivity", help="Friction and stiffness vary with load.")
+        bool, Option("--load-sensitivity", help="Let friction and stiffness vary with load.")
     ] = False
     block_length: Annotated[
-        int | None, typer.Option(min=1, help="Samples in a block mean; chosen from the data.")
+        int | None, Option(min=1, help="Samples in a block mean; default: chosen from the data.")
     ] = None
     zero_stability: Annotated[
-        float | None, typer.Option(min=0.0, help="Scale of the run offsets' spread [N].")
+        float | None, Option(min=0.0, help="Prior scale of the zero offsets' spread [N].")
     ] = None
     gain_sd: Annotated[
-        float | None, typer.Option(min=0.0, help="Relative gain error of the load cell (sd).")
+        float | None, Option(min=0.0, help="Relative gain error of the load cell (sd) [-].")
     ] = None
-    ensembles: Annotated[int, typer.Option(min=4, help="Independent emcee ensembles.")] = 4
+    ensembles: Annotated[int, Option(min=4, help="Independent ensembles of walkers.")] = 4
     max_steps: Annotated[
-        int, typer.Option(min=1, help="Give up on convergence after so many sampler moves.")
+        int,
+        Option(
+            min=1, help="Largest number of sampler moves; a fit that has not converged ends then."
+        ),
     ] = 30_000
-    seed: Annotated[int, typer.Option(help="Seed of everything random.")] = 1
-    threads: Annotated[int, typer.Option(min=1, help="Ensembles advanced at once.")] = 2
-    resume: Annotated[
-        bool, typer.Option("--resume", help="Go on with the stopped fit in --out.")
-    ] = False
+    seed: Annotated[int, Option(help="Seed of all random numbers.")] = 1
+    threads: Annotated[int, Option(min=1, help="Ensembles advanced in parallel.")] = 2
+    resume: Annotated[bool, Option("--resume", help="Resume the stopped fit in --out.")] = False
 
     @property
     def load_cell(self) -> dict[str, float]:

@@ -16,7 +16,7 @@ To = Annotated[
     typer.Option(help="Tables, or one MCAP file of legs, frames, track and band for Foxglove."),
 ]
 Out = Annotated[
-    Path, typer.Option(metavar="PATH", help="Folder of tables to make; of mcap, the file.")
+    Path, typer.Option(metavar="PATH", help="Folder of tables to write; for mcap, the file.")
 ]
 
 

@@ -135,11 +135,13 @@ def weigh(request: WeighRequest) -> None:
 @app.command()
 def check(
     data: Annotated[list[Path], typer.Argument(help="Fresh runs, or folders of them.")],
-    slip: Annotated[
-        Path, typer.Option(help="The calibration: slip.toml or its folder.")
-    ] = Path("calibration"),
-    zero_sd: Annotated[float, typer.Option(min=0.0, help="Spread of the zero [N].")] = 0.1,
-) -> None:  # fmt: skip
+    slip: Annotated[Path, typer.Option(help="The calibration: slip.toml or its folder.")] = Path(
+        "calibration"
+    ),
+    zero_sd: Annotated[
+        float, typer.Option(min=0.0, help="Standard deviation of the zero between runs [N].")
+    ] = 0.1,
+) -> None:
     """Compare fresh check points with a calibration: has the rig drifted?"""
     from zebro_lab.experiment.check_stage import check_runs
 

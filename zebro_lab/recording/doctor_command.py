@@ -18,7 +18,7 @@ zebro-lab doctor --data /mnt/recordings
 Exit code 1 where something that is needed is broken; notes are only for those whom they concern.
 """
 
-Data = Annotated[Path, typer.Option(metavar="DIR", help="Folder that recordings go to.")]
+Data = Annotated[Path, typer.Option(metavar="DIR", help="Folder that recordings are written to.")]
 
 
 def doctor(data: Data = Path()) -> None:

@@ -18,7 +18,7 @@ app = typer.Typer(
 )
 
 Duration = Annotated[
-    float | None, typer.Option(min=0.0, help="How long; without it until Ctrl-C [s].")
+    float | None, typer.Option(min=0.0, help="Duration [s]; default: until Ctrl-C.")
 ]
 
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
 
-import typer
+from typer import Argument, Option
 
 
 @dataclass(frozen=True)
@@ -14,11 +14,11 @@ class ReportRequest:
 
     data: Annotated[
         Path,
-        typer.Argument(
+        Argument(
             metavar="RUN",
             help="Run folder, folder with track, prediction, validation, or folder of runs.",
         ),
     ]
-    calibration: Annotated[Path, typer.Option(help="Calibration folder.")] = Path("calibration")
-    out: Annotated[Path, typer.Option(help="Page to write.")] = Path("report.html")
-    title: Annotated[str | None, typer.Option(help="Title; the folder's name without it.")] = None
+    calibration: Annotated[Path, Option(help="Calibration folder.")] = Path("calibration")
+    out: Annotated[Path, Option(help="Page to write.")] = Path("report.html")
+    title: Annotated[str | None, Option(help="Title; default: the folder's name.")] = None

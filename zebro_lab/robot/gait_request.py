@@ -4,7 +4,7 @@
 from dataclasses import asdict, dataclass
 from typing import Annotated, Literal, TypeAlias
 
-import typer
+from typer import Option
 
 GaitName: TypeAlias = Literal["tripod", "suriana", "maxplus", "tetrapod", "buehler"]
 Side: TypeAlias = Literal["left", "right"]
@@ -15,33 +15,32 @@ _PAIR = "INNER[,OUTER]"
 class GaitRequest:
     """Parameters of a gait; None for the gait's default."""
 
-    name: Annotated[GaitName, typer.Option("--gait", help="How the legs take turns.")] = "tripod"
+    name: Annotated[GaitName, Option("--gait", help="Pattern of the legs.")] = "tripod"
     steering: Annotated[
-        float | None,
-        typer.Option(help="Outer over inner stance angle of the tripod; 1 is straight."),
+        float | None, Option(help="Outer over inner stance angle of the tripod; 1 is straight.")
     ] = None
     direction: Annotated[
-        Side | None, typer.Option(help="Where to turn, for tripod, suriana, maxplus.")
+        Side | None, Option(help="Side to turn to, for tripod, suriana and maxplus.")
     ] = None
     touchdown_deg: Annotated[
-        str | None, typer.Option(metavar=_PAIR, help="Leg angle at touchdown [deg].")
+        str | None, Option(metavar=_PAIR, help="Leg angle at touchdown [deg].")
     ] = None
     liftoff_deg: Annotated[
         str | None,
-        typer.Option(metavar=_PAIR, help="Leg angle at lift-off; the tripod's is computed [deg]."),
+        Option(metavar=_PAIR, help="Leg angle at lift-off [deg]; computed for the tripod."),
     ] = None
-    cycle: Annotated[float | None, typer.Option(help="Cycle of tripod, tetrapod, buehler [s].")] = (
-        None
-    )
+    cycle: Annotated[
+        float | None, Option(help="Duration of a cycle, for tripod, tetrapod and buehler [s].")
+    ] = None
     tau_ground: Annotated[
-        float | None, typer.Option(help="Time on the ground, for suriana, maxplus, buehler [s].")
+        float | None, Option(help="Time on the ground, for suriana, maxplus and buehler [s].")
     ] = None
     tau_flight: Annotated[
-        float | None, typer.Option(help="Time in flight, suriana, maxplus [s].")
+        float | None, Option(help="Time in flight, for suriana and maxplus [s].")
     ] = None
     tau_turn: Annotated[
         float | None,
-        typer.Option(help="How much longer inner legs stand, suriana, maxplus [s]."),
+        Option(help="Extra stance time of the inner legs, for suriana and maxplus [s]."),
     ] = None
 
     def given(self) -> dict[str, object]:

@@ -10,8 +10,8 @@ from zebro_lab.terminal.messages import say
 
 DataDir = Annotated[Path, typer.Argument(metavar="DATA", help="Folder of run folders.")]
 RunFolder = Annotated[Path, typer.Argument(metavar="RUN", help="Run folder.")]
-Why = Annotated[str | None, typer.Option(help="Reason, kept with the run and those of before.")]
-Undo = Annotated[bool, typer.Option("--undo", help="Take the run in again.")]
+Why = Annotated[str | None, typer.Option(help="Reason, kept with the run and earlier reasons.")]
+Undo = Annotated[bool, typer.Option("--undo", help="Include the run again.")]
 
 
 def runs(data: DataDir) -> None:

@@ -30,10 +30,11 @@ zebro-lab annotate photos --from clicked-elsewhere.toml
 """
 
 Grid = Annotated[
-    Path | None, typer.Option(metavar="PNG", help="Draw --photo with a grid of pixels, and stop.")
+    Path | None,
+    typer.Option(metavar="PNG", help="Draw --photo with a grid of pixel coordinates, and exit."),
 ]
-Around = Annotated[str | None, typer.Option(metavar="U,V", help="Enlarge the grid there.")]
-Reach = Annotated[int, typer.Option(min=5, help="How far from there [px].")]
+Around = Annotated[str | None, typer.Option(metavar="U,V", help="Enlarge around this pixel.")]
+Reach = Annotated[int, typer.Option(min=5, help="Half the width of the enlarged part [px].")]
 
 
 @request_command()

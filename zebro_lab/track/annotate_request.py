@@ -5,59 +5,53 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
 
-import typer
+from typer import Argument, Option
 
 
 @dataclass(frozen=True)
 class AnnotateRequest:
     """Options of `zebro-lab annotate`: the annotations to write."""
 
-    photos: Annotated[Path, typer.Argument(help="What track is given.")]
-    out: Annotated[Path, typer.Option(help="File to write or to add to.")] = Path(
-        "annotations.toml"
-    )
+    photos: Annotated[Path, Argument(help="Photographs, as given to track.")]
+    out: Annotated[Path, Option(help="File to write or to add to.")] = Path("annotations.toml")
     photo: Annotated[
-        str | None, typer.Option(metavar="NAME", help="Photograph, for the others.")
+        str | None, Option(metavar="NAME", help="Photograph of --corners and --grid.")
     ] = None
     corners: Annotated[
         str | None,
-        typer.Option(
+        Option(
             metavar="U,V U,V U,V U,V",
             help="Robot's top: front left, front right, rear right, rear left [px].",
         ),
     ] = None
     plate: Annotated[
-        str | None,
-        typer.Option(metavar="LENGTHxWIDTH@HEIGHT", help="The top; the robot's body without it."),
+        str | None, Option(metavar="LENGTHxWIDTH@HEIGHT", help="Robot's top; default: its body.")
     ] = None
     margin: Annotated[
-        str, typer.Option(metavar="LENGTH", help="How much around it belongs to its picture.")
+        str, Option(metavar="LENGTH", help="Width around the top that belongs to the template.")
     ] = "20mm"
-    robot: Annotated[
-        Path | None, typer.Option("--robot", help="robot.toml; the thesis's robot without it.")
-    ] = None
+    robot: Annotated[Path | None, Option(help="robot.toml; default: the thesis's robot.")] = None
     clicks: Annotated[
         tuple[str, ...],
-        typer.Option("--click", metavar="PHOTO:NAME=U,V", help="A point of floor.toml [px]."),
+        Option("--click", metavar="PHOTO:NAME=U,V", help="Point of floor.toml [px]; repeatable."),
     ] = ()
     moves: Annotated[
         tuple[str, ...],
-        typer.Option("--move", metavar="PHOTO:X,Y,YAW", help="Where the robot is [m, m, deg]."),
+        Option("--move", metavar="PHOTO:X,Y,YAW", help="Pose of the robot [m, m, deg]."),
     ] = ()
     flips: Annotated[
         tuple[str, ...],
-        typer.Option("--flip", metavar="PHOTO", help="Head and tail are exchanged."),
+        Option("--flip", metavar="PHOTO", help="Head and tail are exchanged; repeatable."),
     ] = ()
     deletes: Annotated[
         tuple[str, ...],
-        typer.Option("--delete", metavar="PHOTO", help="That is not the robot."),
+        Option("--delete", metavar="PHOTO", help="Detection is not the robot; repeatable."),
     ] = ()
     order: Annotated[
-        str | None,
-        typer.Option("--order", metavar="PHOTO,PHOTO,…", help="Taken in this order."),
+        str | None, Option(metavar="PHOTO,PHOTO,…", help="Order in which they were taken.")
     ] = None
     added: Annotated[
-        Path | None, typer.Option("--from", metavar="TOML", help="Add what this file says.")
+        Path | None, Option("--from", metavar="TOML", help="File of annotations to add.")
     ] = None
 
     @property

@@ -37,7 +37,9 @@ zebro-lab track composite.jpg --camera camera.toml --floor floor.toml --robot ro
 
 PreviewPng = Annotated[
     Path | None,
-    typer.Option(metavar="PNG", help="Only look at the first photograph, and draw what is found."),
+    typer.Option(
+        metavar="PNG", help="Analyse only the first photograph, and draw what is found in it."
+    ),
 ]
 
 

@@ -6,7 +6,7 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import Annotated, Literal, TypeAlias
 
-import typer
+from typer import Argument, BadParameter, Option
 
 from zebro_lab.files.errors import SettingsError
 from zebro_lab.files.units import quantity_to_si
@@ -20,12 +20,11 @@ def _moment(text: str) -> datetime:
     try:
         moment = datetime.fromisoformat(text)
     except ValueError as error:
-        raise typer.BadParameter(
-            f"'{text}' is no time; expected one such as 2020-06-01T12:00:00",
-            param_hint="'--start'",
+        raise BadParameter(
+            f"'{text}' is no time; expected one such as 2020-06-01T12:00:00", param_hint="'--start'"
         ) from error
     if moment.utcoffset():
-        raise typer.BadParameter(
+        raise BadParameter(
             f"'{text}' has a time zone, which the camera's clock does not tell; give the time as "
             f"that clock shows it, {moment:%Y-%m-%dT%H:%M:%S} or another, without a zone",
             param_hint="'--start'",
@@ -38,18 +37,25 @@ class TimeRequest:
     """Where the times of photographs come from."""
 
     interval: Annotated[
-        float | None, typer.Option(help="Interval of the timer, where there is no EXIF [s].")
+        float | None,
+        Option(help="Interval of the camera's timer, for photographs without EXIF times [s]."),
     ] = None
     table: Annotated[
         Path | None,
-        typer.Option("--times", metavar="CSV", help="Times: columns photo, t_s, maybe t_sigma."),
+        Option(
+            "--times",
+            metavar="CSV",
+            help="Table of times, with columns photo, t_s and optionally t_sigma.",
+        ),
     ] = None
     every: Annotated[
         float | None,
-        typer.Option(min=0.0, help="Time between a video's frames; 0.5, 0 takes all [s]."),
+        Option(
+            min=0.0, help="Least time between frames of a video [s]; default: 0.5; 0 takes all."
+        ),
     ] = None
     clock: Annotated[
-        Path | None, typer.Option(metavar="PHOTO", help="Photograph of `zebro-lab camera clock`.")
+        Path | None, Option(metavar="PHOTO", help="Photograph of `zebro-lab camera clock`.")
     ] = None
 
     def __post_init__(self) -> None:
@@ -67,60 +73,64 @@ class TrackRequest:
     """Options of `zebro-lab track`."""
 
     photos: Annotated[
-        Path, typer.Argument(help="Folder of photographs, a video, or one composite picture.")
+        Path, Argument(help="Folder of photographs, a video, or one composite picture.")
     ]
-    camera: Annotated[Path, typer.Option("--camera", help="camera.toml.")]
-    floor: Annotated[Path, typer.Option("--floor", help="floor.toml.")]
-    robot: Annotated[
-        Path | None, typer.Option("--robot", help="robot.toml; the thesis's robot without it.")
-    ] = None
-    out: Annotated[Path | None, typer.Option(help="Folder to write; RUN/track without it.")] = None
-    run: Annotated[Path | None, typer.Option(metavar="RUN", help="Run folder they belong to.")] = (
-        None
-    )
+    camera: Annotated[Path, Option(help="camera.toml.")]
+    floor: Annotated[Path, Option(help="floor.toml.")]
+    robot: Annotated[Path | None, Option(help="robot.toml; default: the thesis's robot.")] = None
+    out: Annotated[Path | None, Option(help="Folder to write; default: RUN/track.")] = None
+    run: Annotated[Path | None, Option(metavar="RUN", help="Run folder of the photographs.")] = None
     times: TimeRequest = field(default_factory=TimeRequest)
     start: Annotated[
         datetime | None,
-        typer.Option(
+        Option(
             metavar="TIME",
             parser=_moment,
-            help="Moment to count time from, as the camera shows it.",
+            help="Moment from which time is counted, as the camera's clock shows it.",
         ),
     ] = None
     marker: Annotated[
         str | None,
-        typer.Option(
+        Option(
             metavar="DICTIONARY:NUMBER:SIDE",
-            help="What is printed on the robot, as in 4x4_50:0:120mm; robot.toml's without it.",
+            help="Marker on the robot, as in 4x4_50:0:120mm; default: that of robot.toml.",
         ),
     ] = None
     without_marker: Annotated[
         bool,
-        typer.Option("--without-marker", help="Track the robot by its own annotated picture."),
+        Option(
+            "--without-marker", help="Track the robot by a template, annotated in one photograph."
+        ),
     ] = False
     merged: Annotated[
-        MergedAs | None,
-        typer.Option("--merged", help="How one composite picture was made of its exposures."),
+        MergedAs | None, Option(help="How the exposures of a composite picture were merged.")
     ] = None
-    annotations: Annotated[
-        Path | None, typer.Option("--annotations", help="What `zebro-lab annotate` wrote.")
-    ] = None
+    annotations: Annotated[Path | None, Option(help="File of `zebro-lab annotate`.")] = None
     body_height: Annotated[
         str | None,
-        typer.Option(
-            metavar="LENGTH", help="Height of the body's centre; the marker's without it."
+        Option(
+            metavar="LENGTH",
+            help="Height of the body's centre while the robot stands; default: the marker's.",
         ),
     ] = None
     height_sd: Annotated[
-        str, typer.Option("--height-sd", metavar="LENGTH", help="How far a walk strays from it.")
+        str, Option(metavar="LENGTH", help="Standard deviation of that height over a walk.")
     ] = "5mm"
     gap: Annotated[
-        float | None, typer.Option(help="Pause that interrupts the path; 3.5 usual ones [s].")
+        float | None,
+        Option(
+            help="Longest time between two poses of an uninterrupted path [s]; default: 3.5 usual "
+            "ones."
+        ),
     ] = None
     source: Annotated[
-        str | None, typer.Option(help="real, or sim:WHAT; the files' or the run's without it.")
+        str | None,
+        Option(
+            help="Source of the photographs: real or sim:WHAT; default: that of the files or of "
+            "the run."
+        ),
     ] = None
-    workers: Annotated[int, typer.Option(min=1, help="Processes to use.")] = 2
+    workers: Annotated[int, Option(min=1, help="Processes to use.")] = 2
 
     def __post_init__(self) -> None:
         is_picture = self.photos.is_file() and self.photos.suffix.lower() not in VIDEOS

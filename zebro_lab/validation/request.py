@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
 
-import typer
+from typer import Argument, Option
 
 
 @dataclass(frozen=True)
@@ -13,38 +13,40 @@ class ValidateRequest:
     """Options of `zebro-lab validate`."""
 
     runs: Annotated[
-        tuple[Path, ...], typer.Argument(help="Run folders with prediction/ and track/.")
+        tuple[Path, ...], Argument(help="Run folders with prediction/ and track/.")
     ] = ()
     predicted: Annotated[
         tuple[Path, ...],
-        typer.Option(help="Walk folder of predict, or a table with t, x, y, yaw; repeatable."),
+        Option(help="Walk folder of predict, or a table with t, x, y, yaw; repeatable."),
     ] = ()
     track: Annotated[
-        tuple[Path, ...], typer.Option(help="track.csv, or its folder; one a --predicted.")
+        tuple[Path, ...], Option(help="track.csv or its folder; one for each --predicted.")
     ] = ()
     out: Annotated[
         Path | None,
-        typer.Option(help="Validation folder; RUN/validation of one run, else validation."),
+        Option(
+            help="Validation folder to write; default: RUN/validation for one run, else validation."
+        ),
     ] = None
     anchor: Annotated[
         bool,
-        typer.Option(
+        Option(
             "--anchor/--no-anchor",
-            help="Start from the first tracked pose; or take paths where they are.",
+            help="Start each path from the first tracked pose, or leave it where it is.",
         ),
     ] = True
     time_offset: Annotated[
-        float, typer.Option(help="Added to the track's times: its clock is so far behind [s].")
+        float, Option(help="Offset added to the track's times, whose clock is behind by that [s].")
     ] = 0.0
     estimate_offset: Annotated[
         bool,
-        typer.Option(
+        Option(
             "--estimate-offset",
-            help="Find in the motion how far the track's clock is behind: starts, stops and turns "
-            "tell it, an even walk does not.",
+            help="Estimate from the motion how far the track's clock is behind; the walk must "
+            "have starts, stops or turns.",
         ),
     ] = False
-    seed: Annotated[int, typer.Option(help="Seed of everything random.")] = 1
+    seed: Annotated[int, Option(help="Seed of all random numbers.")] = 1
 
     @property
     def folder(self) -> Path:

@@ -26,7 +26,7 @@ zebro-lab walk --write-robot robot.toml
 """
 
 WriteRobot = Annotated[
-    Path | None, typer.Option(metavar="FILE", help="Write a robot.toml to edit, and stop.")
+    Path | None, typer.Option(metavar="FILE", help="Write a robot.toml to edit, and exit.")
 ]
 
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Annotated, Literal, TypeAlias
 
-import typer
+from typer import Argument, BadParameter, Option
 
 from zebro_lab.files.errors import SettingsError
 from zebro_lab.robot.gait_request import GaitRequest, Side
@@ -20,28 +20,29 @@ class BandRequest:
 
     draws: Annotated[
         int,
-        typer.Option(
-            min=0, help="Paths drawn for the band: draws.npz, band.csv, band.png; 0 for none."
+        Option(
+            min=0, help="Number of draws for the band (draws.npz, band.csv, band.png); 0 for none."
         ),
     ] = 0
-    seed: Annotated[int, typer.Option(help="Seed of the band's draws.")] = 1
+    seed: Annotated[int, Option(help="Seed of the band's draws.")] = 1
     offset_sd_deg: Annotated[
         float | None,
-        typer.Option(
+        Option(
             min=0.0,
-            help="Unknown offset of each leg (sd) [deg]; that of a count, or 0.3, without it.",
+            help="Standard deviation of the unknown leg offsets [deg]; default: that of an "
+            "encoder count, or 0.3.",
         ),
     ] = None
     start_sd: Annotated[
         tuple[float, float, float],
-        typer.Option(help="Start pose's sd: x y [m] yaw [deg].", metavar="X Y YAW"),
+        Option(help="Standard deviation of the start pose: x y [m] yaw [deg].", metavar="X Y YAW"),
     ] = (0.0, 0.0, 0.0)
-    threads: Annotated[int, typer.Option(min=1, help="Draws walked at once.")] = 2
+    threads: Annotated[int, Option(min=1, help="Draws computed in parallel.")] = 2
 
     def __post_init__(self) -> None:
         """Check the number of draws and the standard deviations."""
-        if self.draws == 1:
-            raise SettingsError("1 draws make no band; ask for 200", key="--draws")
+        if self.draws < 2 and self.draws != 0:
+            raise SettingsError(f"{self.draws} draws make no band; ask for 200", key="--draws")
         if self.draws and any(sd < 0 for sd in (*self.start_sd, self.offset_sd_deg or 0.0)):
             raise SettingsError("a standard deviation is negative", key="--start-sd")
 
@@ -52,39 +53,36 @@ class ModelRequest:
 
     slip: Annotated[
         str | None,
-        typer.Option(
-            help="How legs slip: a slip.toml, its folder, coulomb:MU[:V] (V in m/s) or thesis. "
-            "Needed by the models that slip.",
+        Option(
+            help="Slip law: a slip.toml, its folder, coulomb:MU[:V] (V in m/s) or thesis. "
+            "Required by models with slip.",
             metavar="SLIP",
         ),
     ] = None
     model: Annotated[
         ModelName,
-        typer.Option(
-            help="dynamics: ours; thesis: the thesis's, with its faults; no-slip: exact "
-            "kinematics; no-slip-simple: wheels."
+        Option(
+            help="Walking model. dynamics: rigid body on slipping legs; thesis: the thesis's, "
+            "with its errors; no-slip: exact kinematics; no-slip-simple: wheels."
         ),
     ] = "dynamics"
     toe: Annotated[
-        ToeName,
-        typer.Option(help="Traction of a leg on its toe, for dynamics: no rig measures it."),
+        ToeName, Option(help="Traction law of a leg on its toe, for dynamics; no rig measures it.")
     ] = "saturated"
-    robot: Annotated[
-        Path | None, typer.Option("--robot", help="robot.toml; the thesis's robot without it.")
-    ] = None
+    robot: Annotated[Path | None, Option(help="robot.toml; default: the thesis's robot.")] = None
     arc_deg: Annotated[
-        float | None,
-        typer.Option(help="Arc of the legs, 180 to 200, in place of the robot's [deg]."),
+        float | None, Option(help="Arc of the legs, 180 to 200, in place of the robot's [deg].")
     ] = None
     dt: Annotated[
-        float | None,
-        typer.Option("--dt", min=0.0, help="Length of a step; the model's own [s]."),
+        float | None, Option(min=0.0, help="Time step [s]; default: that of the model.")
     ] = None
     band: BandRequest = field(default_factory=BandRequest)
     figures: Annotated[
-        bool, typer.Option("--figures", help="Draw path, motion, forces, contacts.")
+        bool, Option("--figures", help="Draw figures of path, motion, forces and contacts.")
     ] = False
-    animate: Annotated[bool, typer.Option("--animate", help="Film the robot: mp4, or gif.")] = False
+    animate: Annotated[
+        bool, Option("--animate", help="Write an animation of the robot: mp4, or gif.")
+    ] = False
 
     @property
     def inputs(self) -> tuple[Path, ...]:
@@ -99,7 +97,7 @@ class ModelRequest:
             BadParameter: The model has slipping legs and `--slip` is missing.
         """
         if self.slip is None and self.model in ("dynamics", "thesis"):
-            raise typer.BadParameter(
+            raise BadParameter(
                 f"needed: legs slip in the model '{self.model}'; name a slip.toml, the folder that "
                 "holds it, coulomb:MU[:V] or thesis",
                 param_hint="'--slip'",
@@ -111,8 +109,8 @@ class WalkRequest:
     """Options of `zebro-lab walk`."""
 
     gait: GaitRequest = field(default_factory=GaitRequest)
-    duration: Annotated[float | None, typer.Option(help="Time to walk [s].")] = None
-    out: Annotated[Path, typer.Option(help="Walk folder to write.")] = Path("walk")
+    duration: Annotated[float | None, Option(help="Duration of the walk [s].")] = None
+    out: Annotated[Path, Option(help="Walk folder to write.")] = Path("walk")
     model: ModelRequest = field(default_factory=ModelRequest)
 
 
@@ -122,20 +120,20 @@ class PredictRequest:
 
     log: Annotated[
         Path,
-        typer.Argument(
-            metavar="leglog",
+        Argument(
+            metavar="LEGLOG",
             help="Leg angles over time: CSV, Parquet, a recorded run or a walk folder.",
         ),
     ]
     out: Annotated[
         Path | None,
-        typer.Option(help="Walk folder to write; RUN/prediction of a run, else prediction."),
+        Option(help="Walk folder to write; default: RUN/prediction for a run, else prediction."),
     ] = None
     columns: Annotated[
-        Path | None, typer.Option(help="columns.toml to use in place of that beside LEGLOG.")
+        Path | None, Option(help="columns.toml to use in place of that beside LEGLOG.")
     ] = None
     direction: Annotated[
-        Side, typer.Option(help="Side the gait turns to; only --model thesis asks.")
+        Side, Option(help="Side the gait turns to; used by --model thesis only.")
     ] = "left"
     model: ModelRequest = field(default_factory=ModelRequest)
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
 
-import typer
+from typer import Option
 
 
 @dataclass(frozen=True)
@@ -14,16 +14,16 @@ class WalksRequest:
 
     walks: Annotated[
         tuple[Path, ...],
-        typer.Option(help="Run folder of a tracked walk that informs the fit; repeatable."),
+        Option(help="Run folder of a tracked walk, to fit legs and floor to; repeatable."),
     ] = ()
     robot: Annotated[
-        Path | None,
-        typer.Option(help="robot.toml of the walks, in place of those in their folders."),
+        Path | None, Option(help="robot.toml of the walks, in place of those in their folders.")
     ] = None
     estimate_offset: Annotated[
         bool,
-        typer.Option(
+        Option(
             "--estimate-offset",
-            help="Find in the motion how far each walk's track is behind its leg log's clock.",
+            help="Estimate from the motion how far each track's clock is behind that of its leg "
+            "log.",
         ),
     ] = False

@@ -85,7 +85,7 @@ def calibration_lines(result: "CameraResult") -> list[str]:
 @app.command()
 def clock(
     duration: Annotated[
-        float | None, typer.Option(min=0.0, help="How long; without it until Ctrl-C [s].")
+        float | None, typer.Option(min=0.0, help="Duration [s]; default: until Ctrl-C.")
     ] = None,
 ) -> None:
     """Show the computer's time as a QR code to photograph; give the photograph to track --clock."""

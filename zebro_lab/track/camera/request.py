@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Literal, TypeAlias
 
-import typer
+from typer import Argument, Option
 
 LensModel: TypeAlias = Literal["auto", "none", "k1", "k1-k2", "full"]
 
@@ -14,17 +14,20 @@ LensModel: TypeAlias = Literal["auto", "none", "k1", "k1-k2", "full"]
 class CameraRequest:
     """Options of `zebro-lab camera calibrate`."""
 
-    photos: Annotated[Path, typer.Argument(help="Folder of photographs of the board.")]
+    photos: Annotated[Path, Argument(help="Folder of photographs of the board.")]
     board: Annotated[
         str,
-        typer.Option(
+        Option(
             metavar="BOARD",
             help="kit, checkerboard:COLUMNSxROWS:SQUARE (inner corners) or "
             "charuco:COLUMNSxROWS:SQUARE:MARKER:DICTIONARY (squares).",
         ),
     ] = "kit"
-    out: Annotated[Path, typer.Option(help="File to write.")] = Path("camera.toml")
+    out: Annotated[Path, Option(help="File to write.")] = Path("camera.toml")
     lens: Annotated[
-        LensModel, typer.Option(help="Distortion to fit; auto: no more than the photographs show.")
+        LensModel,
+        Option(
+            help="Lens distortion to fit; auto: the simplest model that the photographs support."
+        ),
     ] = "auto"
-    workers: Annotated[int, typer.Option(min=1, help="Processes to use.")] = 2
+    workers: Annotated[int, Option(min=1, help="Processes to use.")] = 2

@@ -185,14 +185,14 @@ def _print_plan(foreseen: "Foreseen", *, steps: bool) -> None:
         "and check points"
     )
     say(f"the normal force is set {foreseen.estimate.loads} times, by {plan.load.set_by}")
-    say(f"takes about {minutes} min {seconds} s where no point is repeated")
+    say(f"takes about {minutes} min {seconds} s if no point is repeated")
     say("every set-point lies within the limits:")
     for name, unit in LIMIT_UNITS.items():
         value = getattr(plan.limits, name)
         said = "not limited" if value is None else f"{value:g}"
         say(f"  {name:<20}{said:>12} {unit}")
     if plan.limits.guards_off:
-        say(f"guards that are off, as the plan wants: {plan.limits.off_said}")
+        say(f"guards switched off by the plan: {plan.limits.off_said}")
     if steps:
         for step in foreseen.steps:
             say(step.label if isinstance(step, Point) else f"zero-{step.number:04d}")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""`zebro-lab doctor`: what of this machine fits, and what to do about the rest."""
+"""`zebro-lab doctor`: check that this machine has what zebro-lab needs."""
 
 from pathlib import Path
 from typing import Annotated

@@ -48,7 +48,7 @@ def annotate(
         _annotate(request)
         return
     if request.photo is None:
-        raise typer.BadParameter("needed: which photograph to draw", param_hint="'--photo'")
+        raise typer.BadParameter("missing: the photograph to draw", param_hint="'--photo'")
     annotate_stage.draw_grid(request.photos, request.photo, grid, around=around, reach=reach)
     say(f"wrote {grid}")
 
@@ -59,8 +59,8 @@ def _annotate(request: AnnotateRequest) -> None:
 
     if request.is_empty:
         raise typer.BadParameter(
-            "nothing is said; give --corners, --click, --move, --flip, --delete, --order, --from "
-            "or --grid",
+            "no annotation is given; use --corners, --click, --move, --flip, --delete, --order, "
+            "--from or --grid",
             param_hint="'annotate'",
         )
     written, out = annotate_stage.annotate(request), request.out

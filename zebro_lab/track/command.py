@@ -50,7 +50,7 @@ def track(request: TrackRequest, preview: PreviewPng = None) -> None:
         _preview(request, preview)
         return
     if request.out is None and request.run is None:
-        raise typer.BadParameter("needed, or --out FOLDER", param_hint="'--run'")
+        raise typer.BadParameter("missing: name --run RUN or --out FOLDER", param_hint="'--run'")
     _track(request)
 
 
@@ -109,7 +109,7 @@ def _preview(request: TrackRequest, file: Path) -> None:
     for line in preview_lines(seen):
         say(line)
     if any(check.is_off for check in seen.tape):
-        sys.stderr.write("tape and photograph disagree; measure the floor again\n")
+        sys.stderr.write("the tape and the photograph disagree; measure the floor again\n")
 
 
 def preview_lines(seen: "Preview") -> list[str]:

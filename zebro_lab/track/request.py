@@ -147,7 +147,7 @@ class TrackRequest:
         if self.out is not None:
             return self.out
         if self.run is None:
-            raise SettingsError("needed: --run RUN, to write RUN/track, or --out FOLDER")
+            raise SettingsError("missing: name --run RUN, to write RUN/track, or --out FOLDER")
         return self.run / KIND
 
     @property

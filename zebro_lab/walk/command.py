@@ -40,6 +40,6 @@ def walk(request: WalkRequest, write_robot: WriteRobot = None) -> None:
         say(f"wrote {stage.write_robot(write_robot, request.model)}")
         return
     if request.duration is None:
-        raise typer.BadParameter("needed: how long to walk, in seconds", param_hint="'--duration'")
+        raise typer.BadParameter("missing: the duration of the walk [s]", param_hint="'--duration'")
     request.model.require_slip()
     run_and_report(lambda watcher: stage.walk(request, watcher), request.out)

@@ -98,8 +98,8 @@ class ModelRequest:
         """
         if self.slip is None and self.model in ("dynamics", "thesis"):
             raise BadParameter(
-                f"needed: legs slip in the model '{self.model}'; name a slip.toml, the folder that "
-                "holds it, coulomb:MU[:V] or thesis",
+                f"missing: legs slip in the model '{self.model}'; name a slip.toml, the folder "
+                "that holds it, coulomb:MU[:V] or thesis",
                 param_hint="'--slip'",
             )
 

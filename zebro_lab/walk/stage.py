@@ -32,7 +32,7 @@ def walk(request: WalkRequest, watcher: Watcher) -> Walked:
         ModelError: The gait is impossible, or the walk cannot be computed.
     """
     if request.duration is None:
-        raise SettingsError("missing: how long to walk, in seconds", key="--duration")
+        raise SettingsError("missing: the duration of the walk [s]", key="--duration")
     require_replaceable(request.out, WALKED["walk"], inputs=request.model.inputs)
     described = robot_of(request.model)
     gait = make_gait(request.gait, leg_arc=described.robot.leg_arc)

@@ -36,7 +36,9 @@ and marked), 130 stopped (a checkpoint is kept for --resume).
 def calibrate(request: CalibrationRequest, tracked: WalksRequest) -> None:
     """Fit a slip curve to rig data by Bayesian inference and report whether to trust it."""
     if not (request.data or tracked.walks):
-        raise typer.BadParameter("needed: rig data, or --walks and the --out of a calibration")
+        raise typer.BadParameter(
+            "missing: rig data, or --walks and the --out of a finished calibration"
+        )
     converged = fit_and_report(request) if request.data else True
     if tracked.walks:
         _fit_walks(tracked, request)

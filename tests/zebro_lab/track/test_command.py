@@ -87,7 +87,7 @@ def test_nowhere_to_write_and_nothing_to_say_are_wrong_usage(run, files):
     assert "--out FOLDER" in err
     code, _, err = run("annotate", PHOTOS, "--out", files / "said.toml")
     assert code == 2
-    assert "nothing is said" in err
+    assert "no annotation is given" in err
 
 
 def test_how_a_composite_was_merged_is_asked_for_with_a_line_for_each_way(run, files):

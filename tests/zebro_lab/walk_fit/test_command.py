@@ -12,4 +12,4 @@ def test_the_command_needs_rig_data_or_walks(monkeypatch, capsys):
     with pytest.raises(SystemExit) as ended:
         run_app(app)
     assert ended.value.code == 2
-    assert "needed: rig data" in capsys.readouterr().err
+    assert "missing: rig data" in capsys.readouterr().err

@@ -189,8 +189,8 @@ def _print_plan(foreseen: "Foreseen", *, steps: bool) -> None:
     say("every set-point lies within the limits:")
     for name, unit in LIMIT_UNITS.items():
         value = getattr(plan.limits, name)
-        said = "not limited" if value is None else f"{value:g}"
-        say(f"  {name:<20}{said:>12} {unit}")
+        limit = "not limited" if value is None else f"{value:g}"
+        say(f"  {name:<20}{limit:>12} {unit}")
     if plan.limits.guards_off:
         say(f"guards switched off by the plan: {plan.limits.off_said}")
     if steps:

@@ -24,32 +24,39 @@ from model.slip.curve import SlipCurve
 from model.walk.path import WalkPath
 from zebro_lab.calibration import folder as calibration_folder
 from zebro_lab.calibration import stage as calibration_stage
+from zebro_lab.calibration.request import CalibrationRequest
 from zebro_lab.calibration.rig_data import RigData
 from zebro_lab.calibration.rig_data import read_rig_data as read_rig_files
 from zebro_lab.recording.devices import DevicesRequest, OpenDevices
 from zebro_lab.recording.devices import open_devices as open_devices_of
-from zebro_lab.report.stage import ReportRequest, report
-from zebro_lab.robot.gait_argument import GaitRequest
+from zebro_lab.report.request import ReportRequest
+from zebro_lab.report.stage import report
+from zebro_lab.robot.gait_request import GaitName, GaitRequest
 from zebro_lab.robot.leg_log import LegLog
 from zebro_lab.runs.folder import read_manifest
 from zebro_lab.runs.legs import read_leg_log
 from zebro_lab.runs.manifest import RunManifest
 from zebro_lab.track.file import TrackFile
 from zebro_lab.track.file import read_track as read_track_file
-from zebro_lab.track.photo_sequence import TimeRequest
-from zebro_lab.track.request import TrackRequest
+from zebro_lab.track.request import MergedAs, TimeRequest, TrackRequest
 from zebro_lab.track.stage import TrackResult, track
-from zebro_lab.validation.stage import Validated, ValidateRequest, pairs_of_run, validate
-from zebro_lab.walk.path_band import BandRequest, read_draws
-from zebro_lab.walk.predict_stage import PredictRequest, predict
-from zebro_lab.walk.stage import WalkRequest, walk
-from zebro_lab.walk.walking import ModelRequest, Walked
+from zebro_lab.validation.request import ValidateRequest
+from zebro_lab.validation.stage import Validated, pairs_of_run, validate
+from zebro_lab.walk.path_band import read_draws
+from zebro_lab.walk.predict_stage import predict
+from zebro_lab.walk.request import (
+    BandRequest,
+    ModelName,
+    ModelRequest,
+    PredictRequest,
+    WalkRequest,
+)
+from zebro_lab.walk.stage import walk
+from zebro_lab.walk.walking import Walked
 
 if TYPE_CHECKING:
     import arviz as az
     import pandas as pd
-
-    from tracking.composite import Merged
 
 PathLike: TypeAlias = str | os.PathLike[str]
 
@@ -228,7 +235,7 @@ def calibrate(
         ModelError: The fit failed.
     """
     with _folder(out) as folder:
-        request = calibration_stage.CalibrationRequest(
+        request = CalibrationRequest(
             data=tuple(Path(each) for each in data),
             out=folder,
             columns=_path(columns),
@@ -280,11 +287,11 @@ def read_track(path: PathLike) -> TrackFile:
 
 
 def walk_gait(
-    gait: str = "tripod",
+    gait: GaitName = "tripod",
     *,
     slip: str | None = "thesis",
     duration: float = 10.0,
-    model: str = "dynamics",
+    model: ModelName = "dynamics",
     steering: float | None = None,
     direction: Direction | None = None,
     robot: PathLike | None = None,
@@ -314,9 +321,9 @@ def walk_gait(
     with _folder(out) as folder:
         request = WalkRequest(
             GaitRequest(gait, steering=steering, direction=direction),
-            ModelRequest(folder, slip=slip, model=model, robot=_path(robot)),
             duration,
-            band=BandRequest(draws, seed=seed) if draws else None,
+            folder,
+            ModelRequest(slip, model, robot=_path(robot), band=BandRequest(draws, seed)),
         )
         return _walk_result(walk(request, Silent()), folder, draws)
 
@@ -325,7 +332,7 @@ def predict_walk(
     legs: PathLike,
     *,
     slip: str | None,
-    model: str = "dynamics",
+    model: ModelName = "dynamics",
     robot: PathLike | None = None,
     columns: PathLike | None = None,
     draws: int = 0,
@@ -351,9 +358,9 @@ def predict_walk(
     with _folder(out) as folder:
         request = PredictRequest(
             Path(legs),
-            ModelRequest(folder, slip=slip, model=model, robot=_path(robot)),
-            columns=_path(columns),
-            band=BandRequest(draws, seed=seed) if draws else None,
+            folder,
+            _path(columns),
+            model=ModelRequest(slip, model, robot=_path(robot), band=BandRequest(draws, seed)),
         )
         return _walk_result(predict(request, Silent()), folder, draws)
 
@@ -369,7 +376,7 @@ def track_photos(
     start: datetime | None = None,
     annotations: PathLike | None = None,
     without_marker: bool = False,
-    merged: "Merged | None" = None,
+    merged: MergedAs | None = None,
 ) -> TrackResult:
     """Track the robot in photographs, as `zebro-lab track` does.
 
@@ -394,7 +401,7 @@ def track_photos(
     request = TrackRequest(
         Path(photos), Path(camera), Path(floor), robot=_path(robot), out=Path(out),
         times=TimeRequest(table=_path(times)), start=start, annotations=_path(annotations),
-        without_marker=without_marker, merged=merged,
+        without_marker=without_marker, merged=merged, workers=1,
     )  # fmt: skip
     return track(request, Silent())
 
@@ -424,7 +431,15 @@ def validate_walks(
         for each in walks
     )
     with _folder(out) as folder:
-        request = ValidateRequest(pairs, folder, anchor, time_offset, seed)
+        request = ValidateRequest(
+            predicted=tuple(predicted for predicted, _ in pairs),
+            track=tuple(track for _, track in pairs),
+            out=folder,
+            anchor=anchor,
+            time_offset=time_offset or 0.0,
+            estimate_offset=time_offset is None,
+            seed=seed,
+        )
         return validate(request, Silent())
 
 

@@ -25,7 +25,8 @@ import numpy as np
 from rig.experiment.control import Control
 from rig.experiment.watcher import ExperimentWatcher
 from zebro_lab.experiment.journal import JournalWriter
-from zebro_lab.experiment.stage import RigRunRequest, run_experiment
+from zebro_lab.experiment.request import RigRunRequest
+from zebro_lab.experiment.stage import run_experiment
 from zebro_lab.runs.folder import find_runs, read_slip_rig_run
 from zebro_lab.runs.manifest import read_manifest
 

@@ -21,7 +21,8 @@ from rig.slip_rig.simulated_load_cell import SimulatedLoadCell
 from zebro_lab.calibration.rig_data import read_rig_data
 from zebro_lab.experiment.folder import ExperimentFolder
 from zebro_lab.experiment.journal import JOURNAL_FILE, read_journal
-from zebro_lab.experiment.stage import RigRunRequest, run_experiment
+from zebro_lab.experiment.request import RigRunRequest
+from zebro_lab.experiment.stage import run_experiment
 from zebro_lab.runs.folder import find_runs, read_manifest
 
 pytestmark = pytest.mark.long

@@ -12,6 +12,7 @@ import numpy as np
 from model.progress import Watcher
 from model.slip.law import Array
 from zebro_lab.exchange.import_columns import IMU, LEGS, RIG, TRACK, foreign_columns
+from zebro_lab.exchange.import_request import ImportRequest
 from zebro_lab.exchange.imported_rig import RigRun, rig_runs, write_rig_run
 from zebro_lab.exchange.imported_walk import ImportedWalk, write_imported_walk
 from zebro_lab.exchange.joint_log import read_joint_log
@@ -35,37 +36,6 @@ _UNIX: Final = 1e9
 """Times from this value on are taken as Unix time: no run lasts for 30 years [s]."""
 _FIRST: Final = datetime(1970, 1, 1, tzinfo=UTC)
 _LAST: Final = datetime(2262, 1, 1, tzinfo=UTC)  # largest time in nanoseconds in 64 bits
-
-
-@dataclass(frozen=True)
-class ImportRequest:
-    """Files to import, and settings.
-
-    Attributes:
-        data: Folder of run folders.
-        legs: Leg angles: CSV, Parquet or a ROS 2 log in MCAP; None for none.
-        track: The robot's path: CSV, Parquet or TUM.
-        imu: Orientation of the body: CSV or Parquet.
-        rig: Table of a slip rig: CSV or Parquet.
-        robot: A `robot.toml`, kept with the run.
-        columns: A `columns.toml` in place of those beside the files.
-        label: Name of the run; the stem of the legs' or the rig's file when None.
-        start: Date of the files' time 0, with its time zone; None if unknown.
-        material: Leg and ground material.
-        operator: Name of the operator.
-    """
-
-    data: Path
-    legs: Path | None = None
-    track: Path | None = None
-    imu: Path | None = None
-    rig: Path | None = None
-    robot: Path | None = None
-    columns: Path | None = None
-    label: str | None = None
-    start: datetime | None = None
-    material: str = "unknown"
-    operator: str = "unknown"
 
 
 @dataclass(frozen=True)
@@ -202,8 +172,8 @@ def _start(given: datetime | None, first: float) -> tuple[datetime, float, tuple
         began = datetime(1970, 1, 1, tzinfo=UTC) + timedelta(seconds=first)
         return began, first, (f"times are taken as seconds since 1970: begun {began.isoformat()}",)
     now = datetime.now(UTC)
-    note = f"nobody said when it was recorded: {now.isoformat()}, now, stands as its start"
-    return now, 0.0, (f"{note} (--start)",)
+    note = f"the time of the recording is unknown; its start is set to now, {now.isoformat()}"
+    return now, 0.0, (f"{note} (set it with --start)",)
 
 
 def _apart(
@@ -215,8 +185,8 @@ def _apart(
         TRACK: None if track is None else track.track.poses.t,
     }
     return tuple(
-        f"{name}: its times, {other[0]:g} to {other[-1]:g} s, share nothing with the legs', "
-        f"{t[0]:g} to {t[-1]:g} s; do they have one clock?"
+        f"{name}: its times, {other[0]:g} to {other[-1]:g} s, do not overlap the legs', "
+        f"{t[0]:g} to {t[-1]:g} s; are both on one clock?"
         for name, other in others.items()
         if other is not None and not np.any((other >= t[0]) & (other <= t[-1]))
     )

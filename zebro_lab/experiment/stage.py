@@ -5,7 +5,6 @@ import json
 import os
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
@@ -23,6 +22,7 @@ from zebro_lab.experiment.folder import ExperimentFolder
 from zebro_lab.experiment.journal import JOURNAL_FILE, begin_or_resume
 from zebro_lab.experiment.plan_file import read_plan
 from zebro_lab.experiment.points import finished_points, holds_points
+from zebro_lab.experiment.request import RigRunRequest
 from zebro_lab.experiment.rig_at_hand import RigAtHand, rig_at_hand
 from zebro_lab.files.documents import read_json_document, require_object
 from zebro_lab.files.errors import AlreadyExists, DataError, NotFound, RecordingError, ZebroLabError
@@ -30,29 +30,6 @@ from zebro_lab.recording.recorder import RunDescription
 
 CONTROL_FILE: Final = "control.json"
 LOCK_FILE: Final = ".experiment.lock"
-
-
-@dataclass(frozen=True)
-class RigRunRequest:
-    """Settings of an experiment.
-
-    Attributes:
-        plan: The plan's file.
-        rig: `PROFILE@PORT`, `PROFILE@sim` or `sim`.
-        data: Folder of the experiment.
-        resume: Go on from the last finished point.
-        reset_emergency: Reset an emergency stop that is latched.
-        fast: Let a simulated rig's time pass at once.
-        seed: Of a simulated rig's randomness.
-    """
-
-    plan: Path
-    rig: str
-    data: Path
-    resume: bool = False
-    reset_emergency: bool = False
-    fast: bool = False
-    seed: int = 0
 
 
 def run_experiment(request: RigRunRequest, watcher: ExperimentWatcher, control: Control) -> Outcome:

@@ -18,6 +18,7 @@ from zebro_lab.mcap.ros_messages import WARNING
 from zebro_lab.recording.devices import DevicesRequest, OpenDevices, open_devices
 from zebro_lab.recording.display import Display
 from zebro_lab.recording.recorder import RunDescription, RunRecorder
+from zebro_lab.recording.request import RecordRequest
 from zebro_lab.recording.threads import needing_threads
 from zebro_lab.robot.gait_player import LEAD_IN
 from zebro_lab.runs.legs import read_leg_log
@@ -27,38 +28,6 @@ LOOK_EVERY: Final = 0.05
 COUNT_EVERY: Final = 1.0
 FIRST_SAMPLE: Final = 10.0
 """Timeout for the first sample of every stream, from which a duration counts [s]."""
-
-
-@dataclass(frozen=True)
-class RecordRequest:
-    """Settings of a recording.
-
-    Attributes:
-        data: Folder of run folders.
-        label: Name of the run.
-        zebro: Robot: `PROFILE@PORT`, `PROFILE@sim`, `sim` or `replay:RUN`; None for none.
-        imus: Inertial measurement units, the same.
-        rig: Slip rig, the same.
-        play: Table or walk folder with leg angles that the robot follows.
-        duration: Duration of the recording, from the first sample of the stream that begins last;
-            None until it is stopped, or the played gait or the replayed run ends [s].
-        material: Leg and ground material.
-        operator: Name of the operator.
-        robot: Name of the robot.
-        seed: Seed of the random generator of simulated devices.
-    """
-
-    data: Path
-    label: str
-    zebro: str | None = None
-    imus: tuple[str, ...] = ()
-    rig: str | None = None
-    play: Path | None = None
-    duration: float | None = None
-    material: str = "unknown"
-    operator: str = "unknown"
-    robot: str | None = None
-    seed: int = 0
 
 
 @dataclass(frozen=True)

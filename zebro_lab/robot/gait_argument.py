@@ -2,7 +2,7 @@
 """Parse gait options of a command line and construct the gait."""
 
 from collections.abc import Callable, Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from types import MappingProxyType
 
 import numpy as np
@@ -23,42 +23,7 @@ from model.gait import (
 )
 from rig.nearest_name import nearest
 from zebro_lab.files.errors import SettingsError
-
-
-@dataclass(frozen=True)
-class GaitRequest:
-    """Parameters of a requested gait; None for the gait's default.
-
-    Attributes:
-        name: Name of the gait, a key of `GAITS`.
-        steering: Steering factor of the tripod [-].
-        direction: Where to turn, "left" or "right".
-        touchdown_deg: Touchdown angle, "INNER" or "INNER,OUTER" [deg].
-        liftoff_deg: Lift-off angle, in the same way [deg].
-        cycle: Time of a cycle [s].
-        tau_ground: Time on the ground tau_g [s].
-        tau_flight: Time in flight tau_f [s].
-        tau_turn: Longer stance of inner legs tau_p [s].
-    """
-
-    name: str = "tripod"
-    steering: float | None = None
-    direction: str | None = None
-    touchdown_deg: str | None = None
-    liftoff_deg: str | None = None
-    cycle: float | None = None
-    tau_ground: float | None = None
-    tau_flight: float | None = None
-    tau_turn: float | None = None
-
-    def given(self) -> dict[str, object]:
-        """Return the options that were given, by name, without the name of the gait."""
-        return {k: v for k, v in asdict(self).items() if v is not None and k != "name"}
-
-    @property
-    def side(self) -> Direction:
-        """Side to turn to."""
-        return "right" if self.direction == "right" else "left"
+from zebro_lab.robot.gait_request import GaitRequest
 
 
 @dataclass(frozen=True)

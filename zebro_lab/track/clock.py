@@ -8,7 +8,7 @@ from tracking.errors import TimesError
 from tracking.images import PhotoTimes
 from zebro_lab.files.errors import SettingsError
 from zebro_lab.runs.manifest import RunManifest
-from zebro_lab.track.photo_sequence import TimeRequest
+from zebro_lab.track.request import TimeRequest
 
 _CLOCK = 1e8  # larger times are a clock's, counted from 1970 [s]
 _ROUND_A_RUN = 60.0  # tolerance before and after a run for photographs of it [s]

@@ -11,9 +11,9 @@ from zebro_lab.files.replacement import settle
 from zebro_lab.files.result_folder import MANIFEST, ResultKind, result_folder
 from zebro_lab.track.annotations import ANNOTATIONS_FILE
 from zebro_lab.track.floor_file import FLOOR_FILE
+from zebro_lab.track.request import KIND
 
 SCHEMA = 1
-KIND = "track"
 TRACK_CSV = "track.csv"
 TRACK_TUM = "track.tum"
 PICTURES = ("overlay.png", "map.png", "residuals.png")

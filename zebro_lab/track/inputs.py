@@ -4,6 +4,7 @@
 from dataclasses import dataclass, replace
 
 from tracking import Scene
+from tracking.composite import Merged
 from tracking.images import open_picture
 from zebro_lab.files.errors import SettingsError
 from zebro_lab.robot.marker_numbers import require_apart
@@ -100,7 +101,9 @@ def read_inputs(request: TrackRequest) -> TrackInputs:
     described = RobotFile() if request.robot is None else read_robot_file(request.robot)
     camera, floor = read_camera_file(request.camera).camera, read_floor_file(request.floor)
     said = Annotations() if request.annotations is None else read_annotations(request.annotations)
-    prior = body_prior(described, height=request.body_height, height_sd=request.height_sd)
+    prior = body_prior(
+        described, height=request.standing_height, height_sd=request.walking_height_sd
+    )
     robot = None
     if not request.without_marker:
         robot = tracked_robot(described, request.marker, prior=prior)
@@ -108,6 +111,8 @@ def read_inputs(request: TrackRequest) -> TrackInputs:
     length, width = described.robot.body_size[:2]
     scene = Scene(
         camera, floor, prior, robot, top=said.template, clicks=said.clicks,
-        corrections=said.corrections, merged=request.merged, body_size=(length, width),
+        corrections=said.corrections,
+        merged=None if request.merged is None else Merged(request.merged),
+        body_size=(length, width),
     )  # fmt: skip
     return TrackInputs(request, scene, said, manifest)

@@ -28,34 +28,10 @@ from tracking.images import (
 from tracking.photos.scene import Photo
 from tracking.photos.workers import Progress, report_step
 from zebro_lab.files.errors import DataError, NotFound, SettingsError
-
-VIDEOS = (".mp4", ".mov", ".m4v", ".avi", ".mkv", ".webm")
-FRAME_STEP = 0.5
-"""Default interval between the frames taken from a video [s]."""
+from zebro_lab.track.request import VIDEOS, TimeRequest
 
 _ORIENTATION = 0x0112
 _LYING = {5, 6, 7, 8}
-
-
-@dataclass(frozen=True)
-class TimeRequest:
-    """Options for the times of photographs.
-
-    Attributes:
-        interval: Interval of the timer; None to take another source [s].
-        table: CSV with columns `photo`, `t_s` and maybe `t_sigma`; None for another source.
-        clock: Photograph of the QR clock, which ties the camera's clock to the computer's.
-        every: Least time between two frames of a video; 0 takes all [s].
-    """
-
-    interval: float | None = None
-    table: Path | None = None
-    clock: Path | None = None
-    every: float = FRAME_STEP
-
-    def __post_init__(self) -> None:
-        if self.interval is not None and self.table is not None:
-            raise SettingsError("not together with --interval; give one of them", key="--times")
 
 
 @dataclass(frozen=True)
@@ -123,7 +99,7 @@ def open_photos(
     elif origin.suffix.lower() in VIDEOS:
         _require_no_times(request)
         with TemporaryDirectory(prefix="zebro-lab-") as folder:
-            yield _of_video(origin, Path(folder), request.every, frames, progress)
+            yield _of_video(origin, Path(folder), request.frame_step, frames, progress)
     else:
         yield PhotoSequence((origin.name,), (origin,), None, _simulated(origin), origin)
 

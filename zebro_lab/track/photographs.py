@@ -23,7 +23,8 @@ from zebro_lab.track.annotations import ANNOTATIONS_FILE, Annotations, read_anno
 from zebro_lab.track.camera_file import read_camera_file
 from zebro_lab.track.floor_file import FLOOR_FILE, read_floor_file
 from zebro_lab.track.folder import TRACK_CSV, read_track_manifest
-from zebro_lab.track.photo_sequence import VIDEOS, upright_size
+from zebro_lab.track.photo_sequence import upright_size
+from zebro_lab.track.request import VIDEOS
 
 
 @dataclass(frozen=True)

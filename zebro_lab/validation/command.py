@@ -2,11 +2,13 @@
 """`zebro-lab validate`: errors of predicted paths against tracked ones."""
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING
 
 import typer
 
-from zebro_lab.terminal.messages import plain
+from zebro_lab.terminal.messages import plain, wide_console
+from zebro_lab.terminal.request_command import request_command
+from zebro_lab.validation.request import ValidateRequest
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -31,66 +33,23 @@ from the first tracked pose, which is not scored.
 """
 
 
-def validate(
-    runs: Annotated[
-        list[Path] | None, typer.Argument(help="Run folders with prediction/ and track/.")
-    ] = None,
-    predicted: Annotated[
-        list[Path] | None,
-        typer.Option(help="Walk folder of predict, or a table with t, x, y, yaw; repeatable."),
-    ] = None,
-    track: Annotated[
-        list[Path] | None, typer.Option(help="track.csv, or its folder; one a --predicted.")
-    ] = None,
-    out: Annotated[
-        Path | None,
-        typer.Option(help="Validation folder; RUN/validation of one run, else validation."),
-    ] = None,
-    anchor: Annotated[
-        bool,
-        typer.Option(
-            "--anchor/--no-anchor",
-            help="Start from the first tracked pose; or take paths where they are.",
-        ),
-    ] = True,
-    time_offset: Annotated[
-        float, typer.Option(help="Added to the track's times: its clock is so far behind [s].")
-    ] = 0.0,
-    estimate_offset: Annotated[
-        bool,
-        typer.Option(
-            "--estimate-offset",
-            help="Find in the motion how far the track's clock is behind: starts, stops and turns "
-            "tell it, an even walk does not.",
-        ),
-    ] = False,
-    seed: Annotated[int, typer.Option(help="Seed of everything random.")] = 1,
-) -> None:
+@request_command()
+def validate(request: ValidateRequest) -> None:
     """Compute the errors of predicted paths against tracked ones, with baselines."""
-    from rich.console import Console
-
     from zebro_lab.terminal.progress import progress_bar
-    from zebro_lab.validation.stage import ValidateRequest, pairs_of_run
-    from zebro_lab.validation.stage import validate as run
+    from zebro_lab.validation import stage
 
-    runs, predicted, track = runs or [], predicted or [], track or []
-    if len(predicted) != len(track) or not (runs or predicted):
+    n_predicted, n_tracks = len(request.predicted), len(request.track)
+    if n_predicted != n_tracks or not (request.runs or n_predicted):
         raise typer.BadParameter(
-            f"{len(predicted)} --predicted and {len(track)} --track; name as many of both, or "
+            f"{n_predicted} --predicted and {n_tracks} --track; name as many of both, or "
             "run folders"
         )
-    if estimate_offset and time_offset:
+    if request.estimate_offset and request.time_offset:
         raise typer.BadParameter("give --time-offset, or let --estimate-offset find it; not both")
-    pairs = [pairs_of_run(each) for each in runs] + list(zip(predicted, track, strict=True))
-    if out is None:
-        out = runs[0] / "validation" if len(runs) == 1 and not predicted else Path("validation")
-    with progress_bar(Console(stderr=True)) as watcher:
-        offset = None if estimate_offset else time_offset
-        validated = run(ValidateRequest(tuple(pairs), out, anchor, offset, seed), watcher)
-    console = Console(highlight=False)
-    if not console.is_terminal:
-        console = Console(highlight=False, width=120)
-    print_validated(console, validated, out)
+    with progress_bar() as watcher:
+        validated = stage.validate(request, watcher)
+    print_validated(wide_console(), validated, request.folder)
 
 
 def print_validated(console: "Console", validated: "Validated", out: Path) -> None:

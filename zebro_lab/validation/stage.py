@@ -24,30 +24,12 @@ from zebro_lab.track.photographs import photos_of_track
 from zebro_lab.validation.folder import VALIDATION, Summary, summarise_runs, write_validation
 from zebro_lab.validation.judged_run import JudgedRun, judge_run
 from zebro_lab.validation.pictures import ShownRun
+from zebro_lab.validation.request import ValidateRequest
 from zebro_lab.validation.shared_clock import estimated_clock, given_clock
 from zebro_lab.walk.folder import PREDICTION
 from zebro_lab.walk.prediction_file import PredictionFile, read_prediction
 
 TRACK = "track"
-
-
-@dataclass(frozen=True)
-class ValidateRequest:
-    """Settings of a validation.
-
-    Attributes:
-        pairs: Prediction and track of each walk.
-        out: Folder to write.
-        anchor: Whether each path starts from the first tracked pose, which is then not scored.
-        time_offset: Offset added to the tracks' times; None to estimate it for each track [s].
-        seed: Seed of all random numbers.
-    """
-
-    pairs: tuple[tuple[Path, Path], ...]
-    out: Path
-    anchor: bool = True
-    time_offset: float | None = 0.0
-    seed: int = 1
 
 
 @dataclass(frozen=True)
@@ -93,11 +75,13 @@ def validate(request: ValidateRequest, watcher: Watcher) -> Validated:
         ZebroLabError: A file is missing, or prediction and track do not overlap in time.
         ModelError: The errors of a path cannot be computed.
     """
-    if not request.pairs:
+    given = zip(request.predicted, request.track, strict=True)
+    asked = (*map(pairs_of_run, request.runs), *given)
+    if not asked:
         raise SettingsError("missing: nothing to validate", key="--predicted, --track")
-    inputs = [path for pair in request.pairs for path in pair]
-    require_replaceable(request.out, VALIDATION, inputs=inputs)
-    pairs, repeated = first_of_each(request.pairs, key=_content)
+    inputs = [path for pair in asked for path in pair]
+    require_replaceable(request.folder, VALIDATION, inputs=inputs)
+    pairs, repeated = first_of_each(asked, key=_content)
     told = told_once("walks", [(one[0], other[0]) for one, other in repeated])
     rng = np.random.default_rng(request.seed)
     shown, files, sources = [], [], []
@@ -107,7 +91,7 @@ def validate(request: ValidateRequest, watcher: Watcher) -> Validated:
         prediction, track = read_prediction(predicted), read_track(tracked)
         clock = (
             estimated_clock(track, prediction.prediction.path)
-            if request.time_offset is None
+            if request.estimate_offset
             else given_clock(track, request.time_offset)
         )
         judged = judge_run(name, prediction, clock.track, anchor=request.anchor, rng=rng)
@@ -119,13 +103,13 @@ def validate(request: ValidateRequest, watcher: Watcher) -> Validated:
     summary = tuple(summarise_runs(runs, rng=rng)) if len(runs) > 1 else ()
     source = ", ".join(sorted(set(sources)))
     write_validation(
-        request.out,
+        request.folder,
         shown,
         summary=summary,
         settings={
             "anchor": request.anchor,
             "time_offset": {each.run.name: each.time_offset for each in shown},
-            "time_offset_estimated": request.time_offset is None,
+            "time_offset_estimated": request.estimate_offset,
             "seed": request.seed,
         },
         inputs=file_hashes(dict.fromkeys(files)),

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The band of a predicted path: compute draws, write and read draws, quantiles and picture."""
 
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict
 from pathlib import Path
 
 import numpy as np
@@ -29,43 +29,16 @@ from zebro_lab.files.errors import DataError, SettingsError
 from zebro_lab.files.opening import parsing
 from zebro_lab.walk.folder import BAND_CSV, BAND_PICTURE, DRAWS
 from zebro_lab.walk.informed_legs import InformedLegs
+from zebro_lab.walk.request import BandRequest
 
 SAMPLING = 0.1  # s between the poses kept of each draw
 ASSUMED_OFFSET_DEG = 0.3  # of legs whose zero was set by hand
 _TOLD = 50  # progress reports
 
 
-@dataclass(frozen=True)
-class BandRequest:
-    """Settings of a band.
-
-    Attributes:
-        draws: Number of paths.
-        seed: Seed of all random numbers.
-        offset_sd_deg: Standard deviation of each leg's unknown offset; None for that of
-            quantisation, or `ASSUMED_OFFSET_DEG` if angles are not encoder counts [deg].
-        start_sd: Standard deviation of the start pose: x, y [m] and yaw [deg].
-        spread: Error of the walking model itself.
-        threads: Number of draws computed in parallel.
-    """
-
-    draws: int
-    seed: int = 1
-    offset_sd_deg: float | None = None
-    start_sd: tuple[float, float, float] = (0.0, 0.0, 0.0)
-    spread: ModelSpread = field(default_factory=ModelSpread)
-    threads: int = 2
-
-    def __post_init__(self) -> None:
-        """Check the number of draws and the standard deviations."""
-        if self.draws < 2:
-            raise SettingsError(f"{self.draws} draws make no band; ask for 200", key="--draws")
-        if any(sd < 0 for sd in (*self.start_sd, self.offset_sd_deg or 0.0)):
-            raise SettingsError("a standard deviation is negative", key="--start-sd")
-
-    def settings(self) -> dict[str, object]:
-        """Return the settings, JSON-serialisable."""
-        return asdict(self)
+def band_settings(request: BandRequest) -> dict[str, object]:
+    """Return the settings of a band, JSON-serialisable."""
+    return {**asdict(request), "spread": asdict(ModelSpread())}
 
 
 def predict_band(
@@ -109,7 +82,7 @@ def predict_band(
             watcher.step("predicting the band", fraction)
 
     paths = predict_paths(
-        draws, t, state=state, error=request.spread, rng=rng, threads=request.threads, progress=tell
+        draws, t, state=state, error=ModelSpread(), rng=rng, threads=request.threads, progress=tell
     )
     x, y, yaw_deg = request.start_sd
     covariance = np.diag([x, y, np.radians(yaw_deg)]) ** 2

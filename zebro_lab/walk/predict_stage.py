@@ -1,13 +1,12 @@
 # SPDX-License-Identifier: MIT
 """Stage of `zebro-lab predict`: read leg angles, compute the path, write the walk folder."""
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
 import numpy as np
 
-from model.gait.direction import Direction
 from model.gait.quantised import QuantisedLog
 from model.progress import Watcher
 from model.robot import N_LEGS
@@ -18,36 +17,19 @@ from zebro_lab.robot.leg_log import LegLog
 from zebro_lab.robot.robot_file import ROBOT_FILE, RobotFile
 from zebro_lab.runs.legs import read_leg_log
 from zebro_lab.runs.recorded_legs import is_recorded
-from zebro_lab.walk.folder import WALKED
+from zebro_lab.walk.folder import PREDICTION, WALKED
 from zebro_lab.walk.leg_angles import angles_from
-from zebro_lab.walk.path_band import BandRequest, write_band
+from zebro_lab.walk.path_band import band_settings, write_band
+from zebro_lab.walk.request import PredictRequest
 from zebro_lab.walk.walked_band import band_of
-from zebro_lab.walk.walking import ModelRequest, Walked, robot_of, walk_with, write_walk
+from zebro_lab.walk.walking import Walked, robot_of, walk_with, write_walk
 
 
-@dataclass(frozen=True)
-class PredictRequest:
-    """Settings of a prediction.
-
-    Attributes:
-        log: Leg angles: CSV, Parquet, a recorded run or a walk folder.
-        model: Model, slip law, robot, and what to write.
-        columns: A `columns.toml` in place of the one beside the log.
-        direction: Side the gait turns to; only the thesis's model uses it.
-        band: Settings of the band; None for the path alone.
-    """
-
-    log: Path
-    model: ModelRequest
-    columns: Path | None = None
-    direction: Direction = "left"
-    band: BandRequest | None = None
-
-    @property
-    def inputs(self) -> tuple[Path, ...]:
-        """Files and folders that are read, as named."""
-        columns = () if self.columns is None else (self.columns,)
-        return (self.log, *columns, *self.model.inputs)
+def prediction_folder(request: PredictRequest) -> Path:
+    """Return the walk folder to write: `prediction`, in the run if a run is read, by default."""
+    if request.out is not None:
+        return request.out
+    return request.log / PREDICTION if is_recorded(request.log) else Path(PREDICTION)
 
 
 def predict(request: PredictRequest, watcher: Watcher) -> Walked:
@@ -69,7 +51,8 @@ def predict(request: PredictRequest, watcher: Watcher) -> Walked:
     """
     settle(request.log)
     request = _with_own_robot(request)
-    require_replaceable(request.model.out, WALKED["predict"], inputs=request.inputs)
+    out = prediction_folder(request)
+    require_replaceable(out, WALKED["predict"], inputs=request.inputs)
     described = robot_of(request.model)
     walked_before = request.log.is_dir() or request.log.name == PATH_CSV
     walked_before = walked_before and not is_recorded(request.log)
@@ -93,15 +76,15 @@ def predict(request: PredictRequest, watcher: Watcher) -> Walked:
     walked = replace(walked, path=replace(walked.path, t=walked.path.t + start))
     settings: dict[str, object] = {"leg_angles": log.source, "direction": request.direction}
     extra = None
-    if request.band is not None:
+    if request.model.band.draws:
         paths = band_of(
-            request.band, walked, legs,
+            request.model.band, walked, legs,
             duration=end - start, toe=request.model.toe, watcher=watcher,
         )  # fmt: skip
-        settings["band"] = request.band.settings()
+        settings["band"] = band_settings(request.model.band)
         extra = partial(write_band, paths=paths.delayed(start), title=walked.title)
     write_walk(
-        request.model, walked, watcher,
+        out, request.model, walked, watcher,
         kind="predict", settings=settings, files=log.files, extra=extra,
     )  # fmt: skip
     return walked

@@ -14,36 +14,33 @@ from rich.text import Text
 from model.gait import CyclicReference
 from model.progress import Watcher
 from zebro_lab.files.result_folder import MANIFEST
-from zebro_lab.terminal.messages import plain, say
+from zebro_lab.terminal.messages import plain, say, wide_console
 from zebro_lab.terminal.progress import progress_bar
 from zebro_lab.walk.folder import FILES
 from zebro_lab.walk.summary import WalkSummary, summarise
-from zebro_lab.walk.walking import ModelRequest, Walked, WalkStopped
+from zebro_lab.walk.walking import Walked, WalkStopped
 
 INTERRUPTED = 130
 _MANY_UNTESTED = 0.01  # share of the contacts; a few at touchdown do not matter
 
 
-def run_and_report(run: Callable[[Watcher], Walked], request: ModelRequest) -> None:
+def run_and_report(run: Callable[[Watcher], Walked], folder: Path) -> None:
     """Run a stage with a progress bar and print the results.
 
     Args:
         run: The stage.
-        request: Its settings.
+        folder: Walk folder that it writes.
 
     Raises:
         Exit: The walk was stopped.
     """
     try:
-        with progress_bar(Console(stderr=True)) as watcher:
+        with progress_bar() as watcher:
             walked = run(watcher)
     except WalkStopped as stopped:
         say(str(stopped), err=True)
         raise typer.Exit(INTERRUPTED) from None
-    console = Console(highlight=False)
-    if not console.is_terminal:
-        console = Console(highlight=False, width=120)
-    print_walk(console, walked, request.out)
+    print_walk(wide_console(), walked, folder)
 
 
 def print_walk(console: Console, walked: Walked, out: Path) -> None:

@@ -1,37 +1,20 @@
 # SPDX-License-Identifier: MIT
 """Stage of `zebro-lab walk`: construct a gait, compute the path, write the walk folder."""
 
-from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 
 from model.progress import Watcher
 from zebro_lab.files.atomic import atomic_write_text
-from zebro_lab.files.errors import AlreadyExists
+from zebro_lab.files.errors import AlreadyExists, SettingsError
 from zebro_lab.files.result_folder import require_replaceable
-from zebro_lab.robot.gait_argument import GaitRequest, make_gait
+from zebro_lab.robot.gait_argument import make_gait
 from zebro_lab.robot.robot_file import render_robot_file
 from zebro_lab.walk.folder import WALKED
-from zebro_lab.walk.path_band import BandRequest, write_band
+from zebro_lab.walk.path_band import band_settings, write_band
+from zebro_lab.walk.request import ModelRequest, WalkRequest
 from zebro_lab.walk.walked_band import band_of
-from zebro_lab.walk.walking import ModelRequest, Walked, robot_of, walk_with, write_walk
-
-
-@dataclass(frozen=True)
-class WalkRequest:
-    """Settings of a walk.
-
-    Attributes:
-        gait: The gait.
-        model: Model, slip law, robot, and what to write.
-        duration: Duration of the walk [s].
-        band: Settings of the band; None for the path alone.
-    """
-
-    gait: GaitRequest
-    model: ModelRequest
-    duration: float
-    band: BandRequest | None = None
+from zebro_lab.walk.walking import Walked, robot_of, walk_with, write_walk
 
 
 def walk(request: WalkRequest, watcher: Watcher) -> Walked:
@@ -48,7 +31,9 @@ def walk(request: WalkRequest, watcher: Watcher) -> Walked:
         ZebroLabError: A file or an option has an invalid value.
         ModelError: The gait is impossible, or the walk cannot be computed.
     """
-    require_replaceable(request.model.out, WALKED["walk"], inputs=request.model.inputs)
+    if request.duration is None:
+        raise SettingsError("missing: the duration of the walk [s]", key="--duration")
+    require_replaceable(request.out, WALKED["walk"], inputs=request.model.inputs)
     described = robot_of(request.model)
     gait = make_gait(request.gait, leg_arc=described.robot.leg_arc)
     watcher.step("walking", None)
@@ -66,14 +51,16 @@ def walk(request: WalkRequest, watcher: Watcher) -> Walked:
         "direction": gait.direction,
     }
     extra = None
-    if request.band is not None:
+    if request.model.band.draws:
         paths = band_of(
-            request.band, walked, gait.reference,
+            request.model.band, walked, gait.reference,
             duration=request.duration, toe=request.model.toe, watcher=watcher,
         )  # fmt: skip
-        settings["band"] = request.band.settings()
+        settings["band"] = band_settings(request.model.band)
         extra = partial(write_band, paths=paths, title=walked.title)
-    write_walk(request.model, walked, watcher, kind="walk", settings=settings, extra=extra)
+    write_walk(
+        request.out, request.model, walked, watcher, kind="walk", settings=settings, extra=extra
+    )
     return walked
 
 

@@ -15,15 +15,15 @@ from model.predict import FINE
 from model.progress import Watcher
 from model.robot import Robot
 from model.walk.path import WalkPath
-from model.walk.traction import ToeLaw
 from model.walk_models import MODELS, ModelRun, WalkModel
-from zebro_lab.calibration.slip_argument import EXPECTED_SLIP, THESIS, NamedSlip, parse_slip
+from zebro_lab.calibration.slip_argument import EXPECTED_SLIP, NamedSlip, parse_slip
 from zebro_lab.files.errors import SettingsError, ZebroLabError
 from zebro_lab.files.provenance import file_hashes
 from zebro_lab.robot.robot_file import RobotFile, read_robot_file
 from zebro_lab.walk.folder import walk_folder
 from zebro_lab.walk.informed_legs import InformedLegs, informed_legs
 from zebro_lab.walk.pictures import animate_walk, draw_walk
+from zebro_lab.walk.request import ModelRequest
 
 INFORMED_MODEL = "dynamics"  # the model with which legs and floor were fitted to walks
 
@@ -33,39 +33,6 @@ MOST_STEPS: Final = 500_000
 
 class WalkStopped(ZebroLabError):
     """A walk was stopped on request; nothing was written."""
-
-
-@dataclass(frozen=True)
-class ModelRequest:
-    """Model, slip law and robot of a walk, and what is to be written.
-
-    Attributes:
-        out: Walk folder to write.
-        slip: Value of `--slip`; None for a model without slip.
-        model: Name of the model.
-        toe: Traction of a leg on its toe.
-        robot: A `robot.toml`; the thesis's robot when None.
-        arc_deg: Angle of the legs' arc in place of the robot's [deg].
-        dt: Time step; the model's default when None [s].
-        figures: Whether to draw the pictures.
-        animate: Whether to write the animation.
-    """
-
-    out: Path
-    slip: str | None = None
-    model: str = "dynamics"
-    toe: ToeLaw = "saturated"
-    robot: Path | None = None
-    arc_deg: float | None = None
-    dt: float | None = None
-    figures: bool = False
-    animate: bool = False
-
-    @property
-    def inputs(self) -> tuple[Path, ...]:
-        """Files and folders that are read, as named."""
-        slip = () if self.slip in (None, THESIS) else (Path(str(self.slip)),)
-        return (*slip, *((self.robot,) if self.robot is not None else ()))
 
 
 @dataclass(frozen=True)
@@ -207,6 +174,7 @@ def _require_steps(duration: float, dt: float) -> None:
 
 
 def write_walk(
+    out: Path,
     request: ModelRequest,
     walked: Walked,
     watcher: Watcher,
@@ -219,7 +187,8 @@ def write_walk(
     """Write the walk folder with the requested pictures.
 
     Args:
-        request: Output folder, and which pictures to draw.
+        out: Folder to write.
+        request: Which pictures to draw.
         walked: The finished walk.
         watcher: Receives progress.
         kind: "walk" or "predict".
@@ -243,7 +212,7 @@ def write_walk(
         **settings,
     }
     with walk_folder(
-        request.out,
+        out,
         walked.path,
         kind=kind,
         source=f"sim:{walked.model}",

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Stage of `calibrate-slip --walks`: fit legs and floor to tracked walks, write `walks/`."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -9,6 +9,7 @@ import numpy as np
 from model.bayes.walks.prior import WalkPrior
 from model.progress import Watcher
 from zebro_lab.calibration.folder import SLIP_TOML
+from zebro_lab.calibration.request import CalibrationRequest
 from zebro_lab.calibration.slip_argument import parse_slip
 from zebro_lab.calibration.walks_folder import FOLDER, WALKS, WalksToWrite, write_walks
 from zebro_lab.files.errors import NotFound, SettingsError
@@ -18,31 +19,8 @@ from zebro_lab.validation.folder import metrics
 from zebro_lab.walk_fit.clocks import checked_clock, estimated_clock_of
 from zebro_lab.walk_fit.pictures import draw_walks
 from zebro_lab.walk_fit.prediction import WalksFitted, fit_and_leave_out
+from zebro_lab.walk_fit.request import WalksRequest
 from zebro_lab.walk_fit.tracked_walks import read_walks
-
-
-@dataclass(frozen=True)
-class WalksRequest:
-    """Settings of a fit of walks.
-
-    Attributes:
-        walks: Run folders with leg angles and a track.
-        calibration: The rig's calibration folder, into which `walks/` is written.
-        robot: A `robot.toml` in place of those in the folders.
-        prior: Prior of legs and floor.
-        seed: Seed of all random numbers.
-        threads: Number of walks computed in parallel.
-        estimate_offset: Whether to estimate from the motion how far each track's clock is behind
-            that of its leg log.
-    """
-
-    walks: tuple[Path, ...]
-    calibration: Path
-    robot: Path | None = None
-    prior: WalkPrior = field(default_factory=WalkPrior)
-    seed: int = 1
-    threads: int = 2
-    estimate_offset: bool = False
 
 
 @dataclass(frozen=True)
@@ -62,19 +40,23 @@ class WalksCalibrated:
     notes: tuple[str, ...]
 
 
-def calibrate_walks(request: WalksRequest, watcher: Watcher) -> WalksCalibrated:
+def calibrate_walks(
+    request: WalksRequest, calibration: CalibrationRequest, watcher: Watcher
+) -> WalksCalibrated:
     """Fit legs and floor to walks, predict each from the others, and write `walks/`.
 
     Args:
-        request: Walks, calibration and settings.
+        request: Walks and settings.
+        calibration: Folder of the finished calibration, into which `walks/` is written, seed and
+            number of threads.
         watcher: Receives progress.
 
     Raises:
         ZebroLabError: A walk or the calibration is missing or cannot be used; nothing was written.
         ModelError: A walk diverged; nothing was written.
     """
-    slip_toml = _slip_of(request)
-    require_replaceable(request.calibration / FOLDER, WALKS, inputs=request.walks)
+    slip_toml = _slip_of(request, calibration.out)
+    require_replaceable(calibration.out / FOLDER, WALKS, inputs=request.walks)
     slip = parse_slip(str(slip_toml), with_walks=False)
     watcher.step("reading walks", None)
     clock = estimated_clock_of(slip) if request.estimate_offset else checked_clock(slip)
@@ -82,16 +64,16 @@ def calibrate_walks(request: WalksRequest, watcher: Watcher) -> WalksCalibrated:
     fitted = fit_and_leave_out(
         walks,
         slip,
-        prior=request.prior,
-        rng=np.random.default_rng(request.seed),
-        threads=request.threads,
+        prior=WalkPrior(),
+        rng=np.random.default_rng(calibration.seed),
+        threads=calibration.threads,
         progress=lambda done: watcher.step("fitting walks", done),
     )
     notes = (*slip.notes, *(f"{walk.name}: {note}" for walk in walks for note in walk.notes))
     source = ", ".join(sorted({slip.source, *(walk.source for walk in walks)}))
     watcher.step("drawing", None)
     folder = write_walks(
-        request.calibration,
+        calibration.out,
         WalksToWrite(
             posterior=fitted.posterior,
             left_out={
@@ -100,7 +82,7 @@ def calibrate_walks(request: WalksRequest, watcher: Watcher) -> WalksCalibrated:
             robot=walks[0].robot,
             logs=tuple(walk.files[0] for walk in walks),
             inputs=(slip_toml, *(file for walk in walks for file in walk.files)),
-            settings={"seed": request.seed, "estimate_offset": request.estimate_offset},
+            settings={"seed": calibration.seed, "estimate_offset": request.estimate_offset},
             source=source,
             notes=notes,
         ),
@@ -111,10 +93,10 @@ def calibrate_walks(request: WalksRequest, watcher: Watcher) -> WalksCalibrated:
     return WalksCalibrated(fitted, folder, source, notes)
 
 
-def _slip_of(request: WalksRequest) -> Path:
+def _slip_of(request: WalksRequest, calibration: Path) -> Path:
     if not request.walks:
         raise SettingsError("missing: no walk to fit", key="--walks")
-    slip_toml = settle(request.calibration) / SLIP_TOML
+    slip_toml = settle(calibration) / SLIP_TOML
     if not slip_toml.is_file():
         raise NotFound(
             f"{slip_toml}: no such file; name rig data to calibrate from, or the --out of a "

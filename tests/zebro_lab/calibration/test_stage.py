@@ -14,7 +14,8 @@ import pytest
 from model.errors import DefinitionMismatch
 from zebro_lab.calibration import stage
 from zebro_lab.calibration.folder import read_slip
-from zebro_lab.calibration.stage import CalibrationRequest, Stopped, calibrate
+from zebro_lab.calibration.request import CalibrationRequest
+from zebro_lab.calibration.stage import Stopped, calibrate
 from zebro_lab.files.errors import AlreadyExists, SettingsError
 
 PICTURES = {f"{name}.png" for name in ("curves", "surface", "corner", "traces", "residuals")}

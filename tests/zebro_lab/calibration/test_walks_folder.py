@@ -17,14 +17,15 @@ from support.watchers import Nobody
 from zebro_lab.calibration.slip_argument import parse_slip
 from zebro_lab.calibration.walks_folder import FOLDER, WalksToWrite, read_walks_beside, write_walks
 from zebro_lab.files.errors import DataError, SettingsError
-from zebro_lab.report.stage import ReportRequest, report
+from zebro_lab.report.request import ReportRequest
+from zebro_lab.report.stage import report
 from zebro_lab.robot.robot_file import RobotFile
 from zebro_lab.walk.folder import read_walk, read_walk_manifest
 from zebro_lab.walk.informed_legs import informed_legs
-from zebro_lab.walk.path_band import BandRequest, read_draws
-from zebro_lab.walk.predict_stage import PredictRequest, predict
+from zebro_lab.walk.path_band import read_draws
+from zebro_lab.walk.predict_stage import predict
 from zebro_lab.walk.prediction_file import read_prediction
-from zebro_lab.walk.walking import ModelRequest
+from zebro_lab.walk.request import BandRequest, ModelRequest, PredictRequest
 from zebro_lab.walk_fit.pictures import draw_walks
 
 SLIP_TOML = """
@@ -106,9 +107,9 @@ def stored(calibration, legs, posterior):
 
 def predicted(tmp_path, log, slip, *, name="prediction", robot=None, draws=0, model="dynamics"):
     request = PredictRequest(
-        log=log,
-        model=ModelRequest(out=tmp_path / name, slip=slip, robot=robot, model=model),
-        band=BandRequest(draws) if draws else None,
+        log,
+        tmp_path / name,
+        model=ModelRequest(slip=slip, model=model, robot=robot, band=BandRequest(draws)),
     )
     return predict(request, Nobody())
 
@@ -221,8 +222,8 @@ def test_baselines_know_the_legs_as_described_not_as_fitted(calibration, legs, t
 def test_offsets_that_walks_told_are_not_asked_for_again(calibration, legs, tmp_path):
     stored(calibration, legs, posterior_of(None))
     request = PredictRequest(
-        legs[0], ModelRequest(tmp_path / "out", slip=str(calibration)),
-        band=BandRequest(5, offset_sd_deg=1.0),
+        legs[0], tmp_path / "out",
+        model=ModelRequest(slip=str(calibration), band=BandRequest(5, offset_sd_deg=1.0)),
     )  # fmt: skip
     with pytest.raises(SettingsError, match="offset-sd-deg"):
         predict(request, Nobody())

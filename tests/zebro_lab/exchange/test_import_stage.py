@@ -17,7 +17,8 @@ from rig.zebro.profile import load_leg_profile
 from support.watchers import Nobody
 from zebro_lab.calibration.rig_data import read_rig_data
 from zebro_lab.exchange.export_stage import export_run
-from zebro_lab.exchange.import_stage import ImportRequest, import_run
+from zebro_lab.exchange.import_request import ImportRequest
+from zebro_lab.exchange.import_stage import import_run
 from zebro_lab.files.errors import AlreadyExists, DataError, NotFound, SettingsError
 from zebro_lab.files.provenance import file_hash
 from zebro_lab.mcap.raw_log import read_raw_log
@@ -27,8 +28,8 @@ from zebro_lab.runs.manifest import profile_file
 from zebro_lab.runs.stage import list_runs
 from zebro_lab.track.file import read_track
 from zebro_lab.validation.stage import pairs_of_run
-from zebro_lab.walk.predict_stage import PredictRequest, predict
-from zebro_lab.walk.walking import ModelRequest
+from zebro_lab.walk.predict_stage import predict
+from zebro_lab.walk.request import ModelRequest, PredictRequest
 
 T = np.arange(0.0, 2.0, 0.02)
 THETA = 4.0 * T[:, None] + np.arange(6)
@@ -137,12 +138,12 @@ def test_a_track_is_what_validate_takes(files, tmp_path, track):
 
 def test_a_run_is_walked_by_the_robot_it_keeps(files, tmp_path):
     folder, _ = everything(files, tmp_path)
-    model = ModelRequest(out=tmp_path / "out", model="no-slip-simple")
-    walked = predict(PredictRequest(log=folder, model=model), Nobody())
+    model = ModelRequest(model="no-slip-simple")
+    walked = predict(PredictRequest(folder, tmp_path / "out", model=model), Nobody())
     assert walked.described.robot.mass == 3.0
-    other = ModelRequest(out=tmp_path / "other", model="no-slip-simple", robot=files / "r.toml")
+    other = ModelRequest(model="no-slip-simple", robot=files / "r.toml")
     (files / "r.toml").write_text("mass = 2.0")
-    walked = predict(PredictRequest(log=folder, model=other), Nobody())
+    walked = predict(PredictRequest(folder, tmp_path / "other", model=other), Nobody())
     assert walked.described.robot.mass == 2.0
 
 

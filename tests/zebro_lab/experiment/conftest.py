@@ -10,7 +10,8 @@ import pytest
 from rig.experiment.control import Control
 from rig.experiment.watcher import ExperimentWatcher
 from zebro_lab.experiment.journal import JOURNAL_FILE
-from zebro_lab.experiment.stage import RigRunRequest, run_experiment
+from zebro_lab.experiment.request import RigRunRequest
+from zebro_lab.experiment.stage import run_experiment
 
 THESIS_PLAN = Path(__file__).parents[3] / "examples" / "plan-source.toml"
 SMALL = {

@@ -19,12 +19,14 @@ from zebro_lab.files import replacement
 from zebro_lab.files.errors import ZebroLabError
 from zebro_lab.files.result_folder import require_replaceable
 from zebro_lab.mcap.slip_rig_log import SlipRigTable
-from zebro_lab.report.stage import ReportRequest, report
+from zebro_lab.report.request import ReportRequest
+from zebro_lab.report.stage import report
 from zebro_lab.runs.plot_stage import plot_run
 from zebro_lab.runs.table_run import write_slip_rig_run
 from zebro_lab.track.annotate_stage import draw_grid
 from zebro_lab.track.folder import TRACKED, read_track_manifest, track_folder
-from zebro_lab.validation.compare.stage import CompareRequest, compare
+from zebro_lab.validation.compare.request import CompareRequest
+from zebro_lab.validation.compare.stage import compare
 
 START = datetime(2026, 3, 4, 5, 6, 7, tzinfo=UTC)
 SLIP_TOML = """

@@ -8,7 +8,8 @@ from rig.errors import ProfileError
 from rig.zebro.check import MovedLeg
 from rig.zebro.profile import load_leg_profile
 from zebro_lab.files.errors import AlreadyExists
-from zebro_lab.recording.check_stage import CheckRequest, check_zebro, latest_counts_as_targets
+from zebro_lab.recording.check_stage import check_zebro, latest_counts_as_targets
+from zebro_lab.recording.request import CheckRequest
 
 
 class Person:

@@ -14,7 +14,8 @@ from zebro_lab.mcap.raw_log import read_raw_log
 from zebro_lab.mcap.slip_rig_log import SlipRigTable
 from zebro_lab.recording.devices import DevicesRequest, open_devices
 from zebro_lab.recording.replayed import read_replay
-from zebro_lab.recording.stage import RecordRequest, record
+from zebro_lab.recording.request import RecordRequest
+from zebro_lab.recording.stage import record
 from zebro_lab.runs.folder import read_slip_rig_run
 from zebro_lab.runs.table_run import write_slip_rig_run
 
@@ -36,7 +37,7 @@ def make(tmp_path):
 
 def test_a_replay_is_recorded_to_the_last_sample_and_says_what_it_is(make, tmp_path):
     run = make("real")
-    recorded = record(RecordRequest(tmp_path / "again", "b", rig=f"replay:{run}"), Onlooker())
+    recorded = record(RecordRequest("b", tmp_path / "again", rig=f"replay:{run}"), Onlooker())
     assert recorded.manifest.source == f"replay:{run.name}"
     assert recorded.manifest.sources == {"board": f"replay:{run.name}"}
     assert recorded.manifest.exit_status == "completed"

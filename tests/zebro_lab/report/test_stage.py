@@ -15,7 +15,8 @@ from PIL import Image
 
 from zebro_lab.files.errors import AlreadyExists, DataError, NotFound
 from zebro_lab.report.numbers import spelled
-from zebro_lab.report.stage import ReportRequest, report
+from zebro_lab.report.request import ReportRequest
+from zebro_lab.report.stage import report
 
 MADE = datetime(2026, 1, 2, 3, 4, 5, tzinfo=UTC)
 VOID = {"meta", "img", "br", "link", "input", "hr"}

@@ -9,7 +9,8 @@ from hypothesis import strategies as st
 from model.errors import DomainError
 from model.gait import tripod_angles, tripod_reference
 from zebro_lab.files.errors import SettingsError
-from zebro_lab.robot.gait_argument import GAITS, GaitRequest, make_gait
+from zebro_lab.robot.gait_argument import GAITS, make_gait
+from zebro_lab.robot.gait_request import GaitRequest
 
 
 def make(**options):

@@ -9,7 +9,8 @@ from hypothesis.extra.numpy import arrays
 
 from support.watchers import Onlooker
 from zebro_lab.files.errors import NotFound, SettingsError
-from zebro_lab.recording.stage import RecordRequest, record
+from zebro_lab.recording.request import RecordRequest
+from zebro_lab.recording.stage import record
 from zebro_lab.runs.folder import exclude_run, read_slip_rig_run
 from zebro_lab.runs.pictures import extremes, raw_streams
 from zebro_lab.runs.plot_stage import plot_run
@@ -23,7 +24,7 @@ T = np.arange(0.0, 10.0, 0.01)
 def recorded(tmp_path_factory):
     """Return a run of all devices, two seconds long."""
     data = tmp_path_factory.mktemp("runs")
-    request = RecordRequest(data, "all", zebro="sim", imus=("sim",), rig="sim", duration=2.0)
+    request = RecordRequest("all", data, zebro="sim", imus=("sim",), rig="sim", duration=2.0)
     return record(request, Onlooker()).folder
 
 

@@ -13,7 +13,7 @@ from tracking.images import PhotoTimes
 from zebro_lab.files.errors import SettingsError
 from zebro_lab.runs.manifest import RunManifest
 from zebro_lab.track.clock import counted_from
-from zebro_lab.track.photo_sequence import TimeRequest
+from zebro_lab.track.request import TimeRequest
 
 START = datetime(2020, 6, 1, 12, 0, 0, tzinfo=UTC)
 STARTED = START.timestamp()

@@ -14,7 +14,8 @@ from tracking.camera import Camera
 from tracking.errors import TimesError
 from tracking.images import clock_picture
 from zebro_lab.files.errors import DataError, NotFound, SettingsError
-from zebro_lab.track.photo_sequence import TimeRequest, calibrated_for, exposure_times, open_photos
+from zebro_lab.track.photo_sequence import calibrated_for, exposure_times, open_photos
+from zebro_lab.track.request import TimeRequest
 
 START = datetime(2020, 6, 1, 12, 0, 0, tzinfo=UTC)
 STARTED = START.timestamp()

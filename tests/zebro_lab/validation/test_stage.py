@@ -17,11 +17,12 @@ from zebro_lab.files.errors import AlreadyExists, DataError, NotFound, SettingsE
 from zebro_lab.main import app
 from zebro_lab.runs.legs import read_leg_log
 from zebro_lab.terminal.ending import run as run_app
-from zebro_lab.validation.stage import ValidateRequest, pairs_of_run, validate
-from zebro_lab.walk.path_band import BandRequest, read_draws
-from zebro_lab.walk.predict_stage import PredictRequest, predict
+from zebro_lab.validation.request import ValidateRequest
+from zebro_lab.validation.stage import pairs_of_run, validate
+from zebro_lab.walk.path_band import read_draws
+from zebro_lab.walk.predict_stage import predict
 from zebro_lab.walk.prediction_file import read_prediction
-from zebro_lab.walk.walking import ModelRequest
+from zebro_lab.walk.request import BandRequest, ModelRequest, PredictRequest
 
 STEP = np.radians(3.6)
 DURATION = 12.0
@@ -55,11 +56,16 @@ def write_walk_data(folder, *, steering=1.2, offset_deg=0.0, seed=3):
     return folder / "legs.csv", folder / "track.csv"
 
 
+def request_of(pairs, out, **options):
+    predicted, track = zip(*pairs, strict=True)
+    return ValidateRequest(predicted=predicted, track=track, out=out, **options)
+
+
 def predicted(folder, legs, *, draws=60, name="prediction"):
     request = PredictRequest(
-        log=legs,
-        model=ModelRequest(out=folder / name, slip="coulomb:0.38"),
-        band=BandRequest(draws) if draws else None,
+        legs,
+        folder / name,
+        model=ModelRequest(slip="coulomb:0.38", band=BandRequest(draws)),
     )
     predict(request, Nobody())
     return folder / name
@@ -78,7 +84,7 @@ def walk(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def validated(walk):
-    request = ValidateRequest((pairs_of_run(walk),), walk / "validation")
+    request = ValidateRequest((walk,), out=walk / "validation")
     return validate(request, Nobody())
 
 
@@ -152,7 +158,7 @@ def test_several_walks_get_a_mean_with_an_interval(tmp_path):
         folder.mkdir()
         legs, track = write_walk_data(folder, steering=steering, seed=i)
         pairs.append((predicted(folder, legs, draws=0), track))
-    done = validate(ValidateRequest(tuple(pairs), tmp_path / "out"), Nobody())
+    done = validate(request_of(pairs, tmp_path / "out"), Nobody())
     assert {run.name for run in done.runs} == {"walk0", "walk1", "walk2"}
     ate = next(s for s in done.summary if (s.model, s.metric) == ("prediction", "ate_m"))
     assert ate.interval.low <= ate.interval.mean <= ate.interval.high
@@ -165,16 +171,16 @@ def test_clocks_apart_are_refused_and_an_offset_brings_them_together(walk, tmp_p
     late.to_csv(tmp_path / "late.csv", index=False)
     pair = ((prediction, tmp_path / "late.csv"),)
     with pytest.raises(DataError, match="--time-offset"):
-        validate(ValidateRequest(pair, tmp_path / "out"), Nobody())
+        validate(request_of(pair, tmp_path / "out"), Nobody())
     assert not (tmp_path / "out").exists()
-    done = validate(ValidateRequest(pair, tmp_path / "out", time_offset=-1000.0), Nobody())
+    done = validate(request_of(pair, tmp_path / "out", time_offset=-1000.0), Nobody())
     assert rows_of(done)["prediction"].errors.ate_of_length < 0.02
 
 
 def test_another_command_s_folder_is_not_renewed(walk):
     prediction, _ = pairs_of_run(walk)
     with pytest.raises(AlreadyExists, match="another command"):
-        validate(ValidateRequest((pairs_of_run(walk),), prediction), Nobody())
+        validate(ValidateRequest((walk,), out=prediction), Nobody())
 
 
 def test_a_run_without_a_track_says_what_to_do(walk, tmp_path):
@@ -188,7 +194,7 @@ def test_a_run_without_a_track_says_what_to_do(walk, tmp_path):
 def test_a_band_needs_the_model_that_has_one(tmp_path):
     legs, _ = write_walk_data(tmp_path)
     request = PredictRequest(
-        legs, ModelRequest(out=tmp_path / "out", model="no-slip"), band=BandRequest(10)
+        legs, tmp_path / "out", model=ModelRequest(model="no-slip", band=BandRequest(10))
     )
     with pytest.raises(SettingsError, match="dynamics"):
         predict(request, Nobody())
@@ -226,7 +232,7 @@ def test_a_stranger_s_wheeled_robot_goes_through_unbent(shared, tmp_path):
     truth = np.array([row[1:4] for row in rows if row[0] == "point2"], dtype=float)
     pd.DataFrame(truth, columns=["t", "x", "y"]).to_csv(tmp_path / "truth.csv", index=False)
     pair = ((tmp_path / "wheels.csv", tmp_path / "truth.csv"),)
-    done = validate(ValidateRequest(pair, tmp_path / "out", anchor=False), Nobody())
+    done = validate(request_of(pair, tmp_path / "out", anchor=False), Nobody())
     errors = rows_of(done)["prediction"].errors
     assert 0.05 < errors.ate_aligned < 0.07
     assert errors.ate > errors.ate_aligned
@@ -260,7 +266,7 @@ def standing_walk(folder, *, behind):
 
 def test_another_clock_s_offset_is_found_and_told(tmp_path):
     pair = standing_walk(tmp_path, behind=1234.5)
-    done = validate(ValidateRequest((pair,), tmp_path / "out", time_offset=None), Nobody())
+    done = validate(request_of((pair,), tmp_path / "out", estimate_offset=True), Nobody())
     assert rows_of(done)["prediction"].errors.ate < 0.01
     assert any(note.startswith("clock: +1234.") and "±" in note for note in done.runs[0].notes)
     settings = json.loads((tmp_path / "out/manifest.json").read_text())["settings"]
@@ -270,7 +276,7 @@ def test_another_clock_s_offset_is_found_and_told(tmp_path):
 
 def test_an_offset_that_the_motion_does_not_tell_is_asked_for(walk, tmp_path):
     prediction, track = pairs_of_run(walk)  # an even walk: neither starts nor stops in view
-    request = ValidateRequest(((prediction, track),), tmp_path / "out", time_offset=None)
+    request = request_of(((prediction, track),), tmp_path / "out", estimate_offset=True)
     with pytest.raises(DataError, match="--time-offset"):
         validate(request, Nobody())
     assert not (tmp_path / "out").exists()
@@ -281,13 +287,12 @@ def test_a_track_of_two_poses_is_refused(walk, tmp_path):
     pd.read_csv(track / "track.csv").iloc[:2].to_csv(tmp_path / "two.csv", index=False)
     pair = ((prediction, tmp_path / "two.csv"),)
     with pytest.raises(DataError, match="has 2 poses; expected 3 or more"):
-        validate(ValidateRequest(pair, tmp_path / "out"), Nobody())
+        validate(request_of(pair, tmp_path / "out"), Nobody())
 
 
 def test_a_run_under_two_names_is_averaged_once_and_told(walk, tmp_path):
     copy = shutil.copytree(walk, tmp_path / "copy")
-    pairs = tuple(pairs_of_run(folder) for folder in (walk, copy))
-    done = validate(ValidateRequest(pairs, tmp_path / "out"), Nobody())
+    done = validate(ValidateRequest((walk, copy), out=tmp_path / "out"), Nobody())
     assert len(done.runs) == 1
     assert not done.summary
     assert any("copy" in note and "once" in note for note in done.runs[0].notes)

@@ -7,11 +7,7 @@ import sys
 
 import pytest
 
-from model.walk_models import MODELS
 from support.commands import COMMAND
-from zebro_lab.robot.gait_argument import GAITS
-from zebro_lab.walk import options as walk_options
-from zebro_lab.walk.command import GaitName
 
 
 @pytest.mark.parametrize("command", ["walk", "predict"])
@@ -108,8 +104,3 @@ def test_wrong_usage_is_exit_2(arguments, run):
     code, stdout, stderr = run(*arguments)
     assert (code, stdout) == (2, "")
     assert "Usage: " in stderr
-
-
-def test_options_offer_what_there_is():
-    assert {name.value for name in walk_options.Model} == set(MODELS)
-    assert {name.value for name in GaitName} == set(GAITS)

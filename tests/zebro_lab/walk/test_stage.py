@@ -12,20 +12,21 @@ from model.gait import tripod_angles, tripod_reference
 from model.walk_models import MODELS
 from support.watchers import Impatient, Nobody
 from zebro_lab.files.errors import AlreadyExists, SettingsError
-from zebro_lab.robot.gait_argument import GaitRequest
+from zebro_lab.robot.gait_request import GaitRequest
 from zebro_lab.robot.leg_log import ANGLES
 from zebro_lab.robot.robot_file import read_robot_file
 from zebro_lab.walk.folder import PICTURES, read_walk, read_walk_manifest
-from zebro_lab.walk.path_band import BandRequest, read_draws
-from zebro_lab.walk.predict_stage import PredictRequest, predict
-from zebro_lab.walk.stage import WalkRequest, walk, write_robot
+from zebro_lab.walk.path_band import read_draws
+from zebro_lab.walk.predict_stage import predict
+from zebro_lab.walk.request import BandRequest, ModelRequest, PredictRequest, WalkRequest
+from zebro_lab.walk.stage import walk, write_robot
 from zebro_lab.walk.summary import summarise
-from zebro_lab.walk.walking import ModelRequest, WalkStopped
+from zebro_lab.walk.walking import WalkStopped
 
 
 def request(out, **model) -> WalkRequest:
     gait = GaitRequest(steering=1.3, direction="left")
-    return WalkRequest(gait, ModelRequest(out, **{"slip": "coulomb:0.4", **model}), duration=4.0)
+    return WalkRequest(gait, 4.0, out, ModelRequest(**{"slip": "coulomb:0.4", **model}))
 
 
 def write_log(folder, *, start=0.0, sign=1, **gait):
@@ -38,7 +39,7 @@ def write_log(folder, *, start=0.0, sign=1, **gait):
 
 
 def test_a_gait_has_a_band_around_its_path(tmp_path):
-    asked = replace(request(tmp_path / "out", dt=0.005), band=BandRequest(12, offset_sd_deg=1.0))
+    asked = request(tmp_path / "out", dt=0.005, band=BandRequest(12, offset_sd_deg=1.0))
     walked = walk(asked, Nobody())
     draws = read_draws(tmp_path / "out")
     assert draws.position.shape[0] == 12
@@ -49,7 +50,7 @@ def test_a_gait_has_a_band_around_its_path(tmp_path):
 
 
 def test_a_gait_walked_by_a_model_without_a_band_is_refused_and_leaves_nothing(tmp_path):
-    asked = replace(request(tmp_path / "out", model="no-slip"), band=BandRequest(12))
+    asked = request(tmp_path / "out", model="no-slip", band=BandRequest(12))
     with pytest.raises(SettingsError, match="dynamics"):
         walk(asked, Nobody())
     assert not (tmp_path / "out").exists()
@@ -73,8 +74,14 @@ def test_right_turn_mirrors_the_left_one_in_its_log(model, tmp_path):
     ends = []
     for side in ("left", "right"):
         log = write_log(tmp_path, direction=side)
-        asked = ModelRequest(tmp_path / side, slip="coulomb:0.4", model=model)
-        ends.append(summarise(predict(PredictRequest(log, asked, direction=side), Nobody()).path))
+        asked = ModelRequest(slip="coulomb:0.4", model=model)
+        ends.append(
+            summarise(
+                predict(
+                    PredictRequest(log, tmp_path / side, direction=side, model=asked), Nobody()
+                ).path
+            )
+        )
     assert np.sign(ends[0].yaw_rate) == 1
     assert np.sign(ends[1].yaw_rate) == -1
 
@@ -83,7 +90,8 @@ def test_predicting_a_gaits_own_log_walks_the_gait(tmp_path):
     walked = walk(request(tmp_path / "walk"), Nobody()).path
     log = write_log(tmp_path, start=100.0)
     predicted = predict(
-        PredictRequest(log, ModelRequest(tmp_path / "predicted", slip="coulomb:0.4")), Nobody()
+        PredictRequest(log, tmp_path / "predicted", model=ModelRequest(slip="coulomb:0.4")),
+        Nobody(),
     ).path
     assert predicted.t[0] == 100.0
     np.testing.assert_allclose(predicted.t - 100, walked.t, atol=1e-9)
@@ -96,8 +104,8 @@ def test_walked_path_leads_where_it_led_though_legs_are_offset(name, tmp_path):
     robot = tmp_path / "robot.toml"
     robot.write_text("[legs]\noffset_deg = [0, 0, -5, 0, 0, 0]\nsign = [-1, 1, 1, 1, 1, 1]\n")
     walked = walk(request(tmp_path / "walk", robot=robot), Nobody()).path
-    asked = ModelRequest(tmp_path / "again", slip="coulomb:0.4", robot=robot)
-    again = predict(PredictRequest(tmp_path / name, asked), Nobody()).path
+    asked = ModelRequest(slip="coulomb:0.4", robot=robot)
+    again = predict(PredictRequest(tmp_path / name, tmp_path / "again", model=asked), Nobody()).path
     np.testing.assert_allclose(again.theta, walked.theta, atol=1e-9)
     np.testing.assert_allclose(again.position, walked.position, atol=1e-6)
 
@@ -106,13 +114,14 @@ def test_robot_file_changes_robot_and_reading_of_the_log(tmp_path):
     robot = tmp_path / "robot.toml"
     robot.write_text("mass = 3.0\n[legs]\nsign = [-1, -1, -1, -1, -1, -1]\n")
     plain = predict(
-        PredictRequest(write_log(tmp_path), ModelRequest(tmp_path / "a", slip="coulomb:0.4")),
+        PredictRequest(write_log(tmp_path), tmp_path / "a", model=ModelRequest(slip="coulomb:0.4")),
         Nobody(),
     )
     signed = predict(
         PredictRequest(
             write_log(tmp_path, sign=-1),
-            ModelRequest(tmp_path / "b", slip="coulomb:0.4", robot=robot),
+            tmp_path / "b",
+            model=ModelRequest(slip="coulomb:0.4", robot=robot),
         ),
         Nobody(),
     )
@@ -177,10 +186,10 @@ def test_a_walk_of_more_steps_than_memory_holds_is_refused(model, tmp_path):
 
 
 def test_robot_written_out_is_the_robot_asked_for(tmp_path):
-    file = write_robot(tmp_path / "robot.toml", ModelRequest(tmp_path, arc_deg=200.0))
+    file = write_robot(tmp_path / "robot.toml", ModelRequest(arc_deg=200.0))
     assert np.degrees(read_robot_file(file).robot.leg_arc) == pytest.approx(200)
     with pytest.raises(AlreadyExists, match="edit it, or name another"):
-        write_robot(file, ModelRequest(tmp_path))
+        write_robot(file, ModelRequest())
 
 
 @pytest.mark.reference
@@ -195,7 +204,8 @@ def test_log_of_the_virtual_world_leads_where_its_robot_went(shared, tmp_path):
     walked = predict(
         PredictRequest(
             shared / "virtual-world" / "walks" / name,
-            ModelRequest(tmp_path / "out", slip="coulomb:0.38:0.001", arc_deg=200.0),
+            tmp_path / "out",
+            model=ModelRequest(slip="coulomb:0.38:0.001", arc_deg=200.0),
             columns=columns,
         ),
         Nobody(),

@@ -13,13 +13,14 @@ from model.errors import ModelError
 from model.gait import tripod_angles, tripod_reference
 from model.gait.quantised import QuantisedLog
 from support.watchers import Nobody
+from zebro_lab.calibration.request import CalibrationRequest
 from zebro_lab.calibration.slip_argument import parse_slip
-from zebro_lab.exchange.import_stage import ImportRequest, import_run
+from zebro_lab.exchange.import_request import ImportRequest
+from zebro_lab.exchange.import_stage import import_run
 from zebro_lab.files.errors import DataError, NotFound, SettingsError
-from zebro_lab.main import slip_app as app
-from zebro_lab.terminal.ending import run as run_app
 from zebro_lab.walk_fit.prediction import fit_walks_on_file
-from zebro_lab.walk_fit.stage import WalksRequest, calibrate_walks
+from zebro_lab.walk_fit.request import WalksRequest
+from zebro_lab.walk_fit.stage import calibrate_walks
 from zebro_lab.walk_fit.tracked_walks import read_walk_on_file, read_walks
 
 WALK = Path(__file__).parents[3] / "datasets" / "walk-sim"
@@ -158,19 +159,11 @@ def test_walks_of_one_name_are_told_apart(tmp_path):
 
 
 def test_walks_need_a_calibration(tmp_path):
-    folder = write_walk(tmp_path / "walk")
+    folder, none = write_walk(tmp_path / "walk"), CalibrationRequest(out=tmp_path / "none")
     with pytest.raises(NotFound, match="finished calibration"):
-        calibrate_walks(WalksRequest((folder,), tmp_path / "none"), Nobody())
+        calibrate_walks(WalksRequest((folder,)), none, Nobody())
     with pytest.raises(SettingsError, match="--walks"):
-        calibrate_walks(WalksRequest((), tmp_path / "none"), Nobody())
-
-
-def test_the_command_needs_rig_data_or_walks(monkeypatch, capsys):
-    monkeypatch.setattr("sys.argv", ["calibrate-slip"])
-    with pytest.raises(SystemExit) as ended:
-        run_app(app)
-    assert ended.value.code == 2
-    assert "needed: rig data" in capsys.readouterr().err
+        calibrate_walks(WalksRequest(), none, Nobody())
 
 
 def test_a_walk_under_two_names_counts_once_and_is_told(tmp_path):

@@ -13,29 +13,13 @@ from zebro_lab.files.provenance import file_hashes
 from zebro_lab.files.replacement import settle
 from zebro_lab.files.result_folder import ResultKind, require_replaceable, result_folder
 from zebro_lab.validation.compare.calibrations import compare_calibrations
+from zebro_lab.validation.compare.request import CompareRequest
 from zebro_lab.validation.compare.runs import compare_runs, is_walked
 from zebro_lab.validation.compare.values import Comparison
 
 SCHEMA = 1
 TABLE, PICTURE = "comparison.csv", "comparison.png"
 COMPARISON = ResultKind("comparison", "compare", (TABLE, PICTURE), SCHEMA)
-
-
-@dataclass(frozen=True)
-class CompareRequest:
-    """Settings of a comparison.
-
-    Attributes:
-        first: A calibration folder or a run folder.
-        second: Another of the same kind.
-        out: Folder to write.
-        seed: Seed of all random numbers.
-    """
-
-    first: Path
-    second: Path
-    out: Path
-    seed: int = 1
 
 
 @dataclass(frozen=True)

@@ -10,8 +10,9 @@ import pytest
 from zebro_lab.files.errors import AlreadyExists, DataError, NotFound, SettingsError
 from zebro_lab.main import app
 from zebro_lab.terminal.ending import run as run_app
+from zebro_lab.validation.compare.request import CompareRequest
 from zebro_lab.validation.compare.runs import compare_runs
-from zebro_lab.validation.compare.stage import CompareRequest, compare
+from zebro_lab.validation.compare.stage import compare
 
 SLIP_TOML = """
 schema = 1

@@ -31,9 +31,8 @@ from zebro_lab.recording.devices import open_devices as open_devices_of
 from zebro_lab.report.stage import ReportRequest, report
 from zebro_lab.robot.gait_argument import GaitRequest
 from zebro_lab.robot.leg_log import LegLog
-from zebro_lab.runs.folder import read_manifest
 from zebro_lab.runs.legs import read_leg_log
-from zebro_lab.runs.manifest import RunManifest
+from zebro_lab.runs.manifest import RunManifest, read_manifest
 from zebro_lab.track.file import TrackFile
 from zebro_lab.track.file import read_track as read_track_file
 from zebro_lab.track.photo_sequence import TimeRequest

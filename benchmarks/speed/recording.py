@@ -32,7 +32,7 @@ from rig.zebro.profile import load_leg_profile
 from rig.zebro.serial import PacketLegs
 from zebro_lab.mcap.stream_views import ImuView, LegsView, LoadCellView
 from zebro_lab.recording.devices import PAUSE, ForceCheck, default_gait
-from zebro_lab.recording.recorder import RunDescription, RunRecorder
+from zebro_lab.recording.recorder import RunRecorder
 from zebro_lab.runs.manifest import RunManifest, read_manifest
 
 LEGS = load_leg_profile("zebro-100-serial")
@@ -94,8 +94,8 @@ def measure(
         Device(stream, check, pause=PAUSE)
         for stream, check in zip(streams, (None, None, ForceCheck(RIG)), strict=True)
     ]
-    description = RunDescription(kind="walk", label="bench", source="sim:bench")
-    recorder = RunRecorder(folder, description=description, views=views)
+    manifest = RunManifest(kind="walk", label="bench", source="sim:bench")
+    recorder = RunRecorder(folder, manifest=manifest, views=views)
     with streams[0], streams[1], streams[2], recorder:
         with acquiring(devices, sink=recorder, start=recorder.start) as readers:
             time.sleep(0.5)

@@ -17,8 +17,8 @@ from model.slip.law import Array
 from zebro_lab.files.errors import DataError, SettingsError, ZebroLabError
 from zebro_lab.runs.counted_once import content_hash, first_of_each, run_keys, told_once
 from zebro_lab.runs.data_paths import DataSource, find_sources
-from zebro_lab.runs.folder import LOG_FILE, read_manifest, read_slip_rig_run
-from zebro_lab.runs.manifest import RIG, TABLE
+from zebro_lab.runs.folder import LOG_FILE, read_slip_rig_run
+from zebro_lab.runs.manifest import RIG, TABLE, read_manifest
 from zebro_lab.runs.recorded_sweeps import SWEEP, recorded_sweeps
 from zebro_lab.tables.columns import (
     Columns,

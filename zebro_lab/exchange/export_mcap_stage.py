@@ -15,7 +15,6 @@
 import io
 from collections.abc import Sequence
 from dataclasses import dataclass
-from datetime import datetime
 from pathlib import Path
 
 import numpy as np
@@ -43,7 +42,8 @@ from zebro_lab.mcap.ros_poses import (
 )
 from zebro_lab.mcap.stream_views import FASTEST
 from zebro_lab.robot.leg_log import ANGLES
-from zebro_lab.runs.folder import epoch_ns, read_manifest
+from zebro_lab.runs.folder import epoch_ns
+from zebro_lab.runs.manifest import read_manifest
 from zebro_lab.runs.recorded_legs import is_recorded, read_recorded_legs
 from zebro_lab.track.file import TrackFile, read_track
 from zebro_lab.track.folder import TRACK_CSV
@@ -124,7 +124,7 @@ def export_mcap(run: Path, *, out: Path) -> Exported:
     recorded = read_manifest(run) if is_recorded(run) else None
     if track is None and predicted is None:
         raise NotFound(f"{run} holds neither {TRACK}/ nor {PREDICTION}/; track or predict first")
-    start = 0 if recorded is None else epoch_ns(datetime.fromisoformat(recorded.start))
+    start = 0 if recorded is None else epoch_ns(recorded.began)
     content = io.BytesIO()
     log = MessageLog(content)
     sources = {

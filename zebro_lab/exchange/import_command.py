@@ -70,7 +70,7 @@ def import_files(
     from rich.console import Console
 
     from zebro_lab.exchange.import_stage import ImportRequest, import_run
-    from zebro_lab.runs.folder import read_manifest
+    from zebro_lab.runs.manifest import read_manifest
     from zebro_lab.terminal.progress import progress_bar
 
     request = ImportRequest(

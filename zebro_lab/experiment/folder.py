@@ -24,7 +24,8 @@ from zebro_lab.experiment.latch import EmergencyLatch
 from zebro_lab.experiment.points import UNJUDGED, point_record
 from zebro_lab.files.errors import AlreadyExists
 from zebro_lab.mcap.stream_views import StreamView
-from zebro_lab.recording.recorder import RunDescription, RunRecorder
+from zebro_lab.recording.recorder import RunRecorder
+from zebro_lab.runs.manifest import RunManifest
 
 MOST_WAITING: Final = 20_000
 """Capacity of the queue of write jobs: more than a minute of an experiment."""
@@ -49,8 +50,9 @@ class ExperimentFolder:
     Args:
         data: Folder of the experiment.
         plan: Fingerprint of the plan.
-        description: Description that all its runs share.
+        manifest: What the manifests of all its runs have in common.
         views: Returns new converters of the streams to display messages of a run's log.
+        profiles: Name and text of the rig's profile, by its name in a run folder.
         clock: Host time.
         in_step: Wait for the disk at both ends of every run, for a twin with simulated time.
     """
@@ -59,16 +61,18 @@ class ExperimentFolder:
         self,
         data: Path,
         *,
-        description: RunDescription,
+        manifest: RunManifest,
         views: Callable[[], Mapping[str, StreamView]],
+        profiles: Mapping[str, tuple[str, str]] | None = None,
         plan: str = "",
         clock: Clock = SYSTEM_CLOCK,
         in_step: bool = False,
     ) -> None:
         self._data = data
         self._plan = plan
-        self._description = description
+        self._manifest = manifest
         self._views = views
+        self._profiles = profiles
         self._clock = clock
         self._in_step = in_step
         self._journal = JournalWriter(data)
@@ -88,14 +92,13 @@ class ExperimentFolder:
         """Open a run folder; see `RunSink.open_run`."""
         label = start.point.label + (f" attempt {start.attempt}" if start.attempt > 1 else "")
         zero = {"zero_normal": start.zero.normal, "zero_traction": start.zero.traction}
-        common = self._description
-        description = replace(
-            common, label=label, constants={**common.constants, **zero}, excluded=UNJUDGED,
-            point=self._point(start, accepted=False),
+        manifest = replace(
+            self._manifest, label=label, constants={**self._manifest.constants, **zero},
+            excluded={"why": UNJUDGED}, point=self._point(start, accepted=False),
         )  # fmt: skip
 
         def open_now() -> None:
-            self._recorder = self._enter(description)
+            self._recorder = self._enter(manifest)
             self._start = start
 
         self._require_well()
@@ -195,19 +198,20 @@ class ExperimentFolder:
             self._plan, number=start.point.number, attempt=start.attempt, accepted=accepted
         )
 
-    def _enter(self, description: RunDescription) -> RunRecorder:
+    def _enter(self, manifest: RunManifest) -> RunRecorder:
         """Open a run folder under an unused name: a point may be repeated within a second."""
         again = 1
         while True:
             recorder = RunRecorder(
-                self._data, description=description, views=self._views(), clock=self._clock
-            )
+                self._data, manifest=manifest, views=self._views(), profiles=self._profiles,
+                clock=self._clock,
+            )  # fmt: skip
             try:
                 return recorder.__enter__()
             except AlreadyExists:
                 again += 1
-                label = f"{description.label.partition(' again')[0]} again {again}"
-                description = replace(description, label=label)
+                label = f"{manifest.label.partition(' again')[0]} again {again}"
+                manifest = replace(manifest, label=label)
 
     def _close_now(self, verdict: PointVerdict | None, reason: str) -> None:
         recorder, self._recorder = self._recorder, None

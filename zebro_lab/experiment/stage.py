@@ -26,7 +26,7 @@ from zebro_lab.experiment.points import finished_points, holds_points
 from zebro_lab.experiment.rig_at_hand import RigAtHand, rig_at_hand
 from zebro_lab.files.documents import read_json_document, require_object
 from zebro_lab.files.errors import AlreadyExists, DataError, NotFound, RecordingError, ZebroLabError
-from zebro_lab.recording.recorder import RunDescription
+from zebro_lab.runs.manifest import RunManifest
 
 CONTROL_FILE: Final = "control.json"
 LOCK_FILE: Final = ".experiment.lock"
@@ -86,8 +86,8 @@ def run_experiment(request: RigRunRequest, watcher: ExperimentWatcher, control: 
             for notice in finished.notices:
                 watcher.notice(notice)
             folder = ExperimentFolder(
-                request.data, plan=journal.plan, description=_description(plan, rig),
-                views=rig.views, clock=rig.clock, in_step=rig.fast,
+                request.data, plan=journal.plan, manifest=_manifest(plan, rig), views=rig.views,
+                profiles=rig.profiles, clock=rig.clock, in_step=rig.fast,
             )  # fmt: skip
             with (
                 signal_stops(control.stop),
@@ -108,16 +108,15 @@ def run_experiment(request: RigRunRequest, watcher: ExperimentWatcher, control: 
                         folder.latch(stop.reason)
 
 
-def _description(plan: Plan, rig: RigAtHand) -> RunDescription:
-    """Describe what all runs of an experiment have in common."""
-    return RunDescription(
+def _manifest(plan: Plan, rig: RigAtHand) -> RunManifest:
+    """Return what the manifests of all runs of an experiment have in common."""
+    return RunManifest(
         kind="slip-rig",
         label=plan.name,
         source=rig.bench.source,
         material=plan.material,
         operator=plan.operator or "unknown",
         constants=rig.constants,
-        profiles=rig.profiles,
         sources={stream.name: stream.source for stream in rig.bench.streams},
         truth=rig.truth,
     )

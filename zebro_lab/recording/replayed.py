@@ -6,16 +6,14 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
-from rig.imu.profile import load_imu_profile
 from rig.openers import REPLAY
 from rig.replay import ReplayStream
-from rig.slip_rig.profile import load_rig_profile
-from rig.zebro.profile import load_leg_profile
 from zebro_lab.files.errors import DataError, NotFound
 from zebro_lab.mcap.raw_log import read_raw_log
-from zebro_lab.mcap.stream_views import ImuView, LegsView, StreamView, rig_views
-from zebro_lab.runs.folder import LOG_FILE, read_manifest
-from zebro_lab.runs.manifest import RIG, RunManifest, profile_file
+from zebro_lab.mcap.stream_views import StreamView
+from zebro_lab.runs.folder import LOG_FILE
+from zebro_lab.runs.manifest import RunManifest, profile_file, read_manifest
+from zebro_lab.runs.profile_views import profile_views
 from zebro_lab.runs.recorded_legs import LEGS
 
 IMU: Final = "imu"
@@ -70,7 +68,7 @@ def read_replay(address: str, what: str, *, name: str | None = None) -> Replayed
     file = profile_file(folder, kept)
     if not file.is_file():
         raise NotFound(f"{file}: missing; restore it from where the run was recorded")
-    views = _views(what, name or kept, file)
+    views = profile_views(file, name)
     streams = {name or each: (each, found[names[each]]) for each in chosen}
     for each in streams:
         if each not in views:
@@ -99,11 +97,3 @@ def _chosen(what: str, name: str | None, found: tuple[str, ...]) -> tuple[str, .
 def _source(folder: Path, manifest: RunManifest, stream: str) -> str:
     simulated = "sim:" in manifest.sources.get(stream, manifest.source)
     return f"{'sim:' * simulated}{REPLAY}{folder.absolute().name}"
-
-
-def _views(what: str, name: str, file: Path) -> Mapping[str, StreamView]:
-    if what == LEGS:
-        return {LEGS: LegsView(LEGS, profile=load_leg_profile(str(file)))}
-    if what == RIG:
-        return rig_views(load_rig_profile(str(file)))
-    return {name: ImuView(name, profile=load_imu_profile(str(file)))}

@@ -17,7 +17,7 @@ from zebro_lab.files.source_names import joined_source
 from zebro_lab.mcap.ros_messages import WARNING
 from zebro_lab.recording.devices import DevicesRequest, OpenDevices, open_devices
 from zebro_lab.recording.display import Display
-from zebro_lab.recording.recorder import RunDescription, RunRecorder
+from zebro_lab.recording.recorder import RunRecorder
 from zebro_lab.recording.threads import needing_threads
 from zebro_lab.robot.gait_player import LEAD_IN
 from zebro_lab.runs.legs import read_leg_log
@@ -148,8 +148,9 @@ def record(
         if opened.lasts is not None:
             duration = min(opened.lasts, opened.lasts if duration is None else duration)
         recorder = RunRecorder(
-            request.data, description=_description(request, opened), views=opened.views, clock=clock
-        )
+            request.data, manifest=_manifest(request, opened), views=opened.views,
+            profiles=opened.profiles, clock=clock,
+        )  # fmt: skip
         kept.enter_context(recorder)  # left after the devices: they wait for no disk
         problem = _run(recorder, opened, watcher, duration, clock)
     if problem is not None or recorder.failure is not None:
@@ -329,16 +330,15 @@ def _duration(request: RecordRequest, play: SampledReference | None) -> float | 
     return min(wanted, default=None)
 
 
-def _description(request: RecordRequest, opened: OpenDevices) -> RunDescription:
+def _manifest(request: RecordRequest, opened: OpenDevices) -> RunManifest:
     sources = {device.name: device.stream.source for device in opened.devices}
-    return RunDescription(
+    return RunManifest(
         kind="walk" if request.rig is None else "slip-rig",
         label=request.label,
         source=joined_source(list(sources.values())),
         material=request.material,
         operator=request.operator,
         constants=opened.constants,
-        profiles=opened.profiles,
         sources=sources,
         robot=request.robot,
         truth=opened.truth,

@@ -8,8 +8,8 @@ import numpy as np
 from rig.sample_columns import SampleColumns
 from zebro_lab.files.errors import DataError, NotFound
 from zebro_lab.mcap.raw_log import raw_topic, read_raw_log
-from zebro_lab.runs.folder import LOG_FILE, MANIFEST_FILE, read_manifest, require_recorded
-from zebro_lab.runs.manifest import profile_file
+from zebro_lab.runs.folder import LOG_FILE, require_recorded
+from zebro_lab.runs.manifest import MANIFEST_FILE, profile_file, read_manifest
 from zebro_lab.tables.raw_table import RawTable
 
 LEGS = "legs"

@@ -8,8 +8,8 @@ from pathlib import Path
 from zebro_lab.files.errors import ZebroLabError
 from zebro_lab.mcap.raw_log import read_raw_log
 from zebro_lab.runs.exclusion import UNSAID, past_reasons
-from zebro_lab.runs.folder import LOG_FILE, find_runs, read_manifest, run_state
-from zebro_lab.runs.manifest import RunManifest
+from zebro_lab.runs.folder import LOG_FILE, find_runs, run_state
+from zebro_lab.runs.manifest import RunManifest, read_manifest
 
 
 @dataclass(frozen=True)

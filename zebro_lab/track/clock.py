@@ -50,7 +50,7 @@ def counted_from(
     if start is not None:
         zero, what = start.timestamp(), f"{start:%Y-%m-%d %H:%M:%S} by the camera's clock"
     elif manifest is not None and asked.clock is not None:
-        zero = datetime.fromisoformat(manifest.start).timestamp()
+        zero = manifest.began.timestamp()
         what = f"the run's start, {manifest.start}"
     elif manifest is not None:
         notes = (untied(f"give --clock (docs/tracking-howto.md) or --start, or {LATER}"),)
@@ -110,8 +110,7 @@ def _beside(counted: PhotoTimes, manifest: RunManifest) -> tuple[str, ...]:
     """Note photographs outside the run's duration; raise if all are far from it."""
     length = float("inf")
     if manifest.stop is not None:
-        begun, ended = map(datetime.fromisoformat, (manifest.start, manifest.stop))
-        length = (ended - begun).total_seconds()
+        length = (datetime.fromisoformat(manifest.stop) - manifest.began).total_seconds()
     first, last = float(counted.t.min()), float(counted.t.max())
     if last < -_ROUND_A_RUN or first > length + _ROUND_A_RUN:
         raise TimesError(

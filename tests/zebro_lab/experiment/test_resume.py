@@ -7,8 +7,8 @@ from collections import Counter
 
 import pytest
 
-from zebro_lab.runs.folder import find_runs, read_manifest
-from zebro_lab.runs.manifest import MANIFEST_FILE
+from zebro_lab.runs.folder import find_runs
+from zebro_lab.runs.manifest import MANIFEST_FILE, read_manifest
 
 KILLED_BEFORE_A_POINTS_LINE = """
 import os, signal, sys

@@ -25,13 +25,13 @@ from zebro_lab.mcap.raw_log import read_raw_log
 from zebro_lab.mcap.stream_views import LegsView
 from zebro_lab.recording import stage as module
 from zebro_lab.recording.devices import OpenDevices, default_gait
-from zebro_lab.recording.recorder import RunDescription, RunRecorder
+from zebro_lab.recording.recorder import RunRecorder
 from zebro_lab.recording.simulate_stage import TwinRequest, serve_zebro
 from zebro_lab.recording.stage import RecordRequest, record
 from zebro_lab.robot.gait_player import LEAD_IN
 from zebro_lab.runs.folder import read_slip_rig_run
 from zebro_lab.runs.legs import read_leg_log
-from zebro_lab.runs.manifest import profile_file
+from zebro_lab.runs.manifest import RunManifest, profile_file
 from zebro_lab.runs.stage import list_runs
 
 LEGS = load_leg_profile("zebro-100-serial")
@@ -195,11 +195,11 @@ def wait_until(met, limit=20.0):
 
 def test_an_unplugged_robot_is_a_gap_that_is_counted_and_the_run_goes_on(tmp_path):
     twin = robot_twin(LEGS, default_gait(), rng=np.random.default_rng(0))
-    description = RunDescription(kind="walk", label="gap", source=twin.source)
+    manifest = RunManifest(kind="walk", label="gap", source=twin.source)
     with PortServer(twin) as server:
         legs = leg_driver(LEGS, leg_link(LEGS, server.port, source=twin.source))
         views = {"legs": LegsView("legs", profile=LEGS)}
-        recorder = RunRecorder(tmp_path, description=description, views=views)
+        recorder = RunRecorder(tmp_path, manifest=manifest, views=views)
         with (
             legs,
             recorder,

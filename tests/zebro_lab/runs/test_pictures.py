@@ -10,7 +10,8 @@ from hypothesis.extra.numpy import arrays
 from support.watchers import Onlooker
 from zebro_lab.files.errors import NotFound, SettingsError
 from zebro_lab.recording.stage import RecordRequest, record
-from zebro_lab.runs.folder import exclude_run, read_slip_rig_run
+from zebro_lab.runs.exclusion import exclude_run
+from zebro_lab.runs.folder import read_slip_rig_run
 from zebro_lab.runs.pictures import extremes, raw_streams
 from zebro_lab.runs.plot_stage import plot_run
 from zebro_lab.runs.signals import Event, Panel, RunSignals, find_gaps, read_signals

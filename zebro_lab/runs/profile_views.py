@@ -6,7 +6,7 @@ from pathlib import Path
 from rig.imu.profile import load_imu_profile
 from rig.slip_rig.profile import load_rig_profile
 from rig.zebro.profile import load_leg_profile
-from zebro_lab.mcap.stream_views import ImuView, LegsView, StreamView, rig_views
+from zebro_lab.mcap.stream_views import StreamView, imu_view, legs_view, rig_views
 from zebro_lab.runs.manifest import RIG
 from zebro_lab.runs.recorded_legs import LEGS
 
@@ -22,8 +22,8 @@ def profile_views(file: Path, stream: str | None = None) -> dict[str, StreamView
         RigError: The profile is invalid.
     """
     if file.stem == LEGS:
-        return {LEGS: LegsView(LEGS, profile=load_leg_profile(str(file)))}
+        return {LEGS: legs_view(LEGS, profile=load_leg_profile(str(file)))}
     if file.stem == RIG:
         return rig_views(load_rig_profile(str(file)))
     name = stream or file.stem
-    return {name: ImuView(name, profile=load_imu_profile(str(file)))}
+    return {name: imu_view(name, profile=load_imu_profile(str(file)))}

@@ -22,8 +22,9 @@ from rig.zebro.profile import load_leg_profile
 from support.watchers import RecordWatcher
 from zebro_lab.files.errors import DataError, RecordingError
 from zebro_lab.mcap.raw_log import read_raw_log
-from zebro_lab.mcap.stream_views import LegsView
+from zebro_lab.mcap.stream_views import legs_view
 from zebro_lab.recording import stage as module
+from zebro_lab.recording import status
 from zebro_lab.recording.devices import OpenDevices, default_gait
 from zebro_lab.recording.recorder import RunRecorder
 from zebro_lab.recording.simulate_stage import TwinRequest, serve_zebro
@@ -198,7 +199,7 @@ def test_an_unplugged_robot_is_a_gap_that_is_counted_and_the_run_goes_on(tmp_pat
     manifest = RunManifest(kind="walk", label="gap", source=twin.source)
     with PortServer(twin) as server:
         legs = leg_driver(LEGS, leg_link(LEGS, server.port, source=twin.source))
-        views = {"legs": LegsView("legs", profile=LEGS)}
+        views = {"legs": legs_view("legs", profile=LEGS)}
         recorder = RunRecorder(tmp_path, manifest=manifest, views=views)
         with (
             legs,
@@ -286,14 +287,14 @@ def given(monkeypatch):
 
     def give(*streams, **changes):
         devices = [Device(s, **changes) for s in streams]
-        views = {s.name: LegsView(s.name, profile=LEGS) for s in streams}
+        views = {s.name: legs_view(s.name, profile=LEGS) for s in streams}
 
         @contextmanager
         def opened(_request):
             for device in devices:
                 device.stream.__enter__()
             try:
-                yield OpenDevices(tuple(devices), views, {})
+                yield OpenDevices(devices, views)
             finally:
                 for device in devices:
                     device.stream.__exit__(None, None, None)
@@ -330,7 +331,7 @@ def test_the_duration_counts_from_the_first_sample_of_the_stream_that_begins_las
 
 
 def test_a_device_without_a_first_sample_ends_a_run_with_a_duration(tmp_path, given, monkeypatch):
-    monkeypatch.setattr(module, "FIRST_SAMPLE", 0.3, raising=False)
+    monkeypatch.setattr(status, "FIRST_SAMPLE", 0.3)
     given(Legs("legs"), Legs("silent", late=1e6))
     with pytest.raises(RecordingError, match=r"no sample of silent within 0\.3 s"):
         record(RecordRequest(tmp_path, "x", zebro="sim", duration=0.2), RecordWatcher())

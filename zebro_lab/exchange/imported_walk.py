@@ -117,7 +117,8 @@ def _write_track(out: Path, walk: ImportedWalk, track: ForeignTrack) -> None:
     report = {"notes": list(track.track.notes), "tracked": len(track.track.poses)}
     with track_folder(
         out,
-        track,
+        track.columns,
+        tum=track.tum,
         source=track.track.source,
         settings={"imported": str(track.track.file), "zero_s": walk.zero},
         inputs=file_hashes(track.files),

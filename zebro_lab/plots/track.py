@@ -125,11 +125,11 @@ def over_floor(
     )  # fmt: skip
     axes.set(xlabel="x [m]", ylabel="y [m]", xlim=extent[:2], ylim=extent[2:], aspect="equal")
     labelled = [k for k, label in enumerate(labels) if label]
-    _label_apart(axes, poses[labelled, :2], [labels[k] for k in labelled])
+    _label_apart(figure, axes, poses[labelled, :2], [labels[k] for k in labelled])
     return figure
 
 
-def _label_apart(axes: Axes, points: Array, labels: Sequence[str]) -> None:
+def _label_apart(figure: Figure, axes: Axes, points: Array, labels: Sequence[str]) -> None:
     """Write every n-th label below its point, with the least n at which none overlap."""
     texts = [
         axes.annotate(
@@ -138,7 +138,7 @@ def _label_apart(axes: Axes, points: Array, labels: Sequence[str]) -> None:
         )
         for (x, y), label in zip(points, labels, strict=True)
     ]  # fmt: skip
-    axes.get_figure(root=True).draw_without_rendering()  # extents are known once it is laid out
+    figure.draw_without_rendering()  # extents are known once it is laid out
     boxes = [text.get_window_extent() for text in texts]
     n = 1
     while any(one.overlaps(other) for one, other in combinations(boxes[::n], 2)):

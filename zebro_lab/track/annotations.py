@@ -58,9 +58,9 @@ def read_annotations(file: Path) -> Annotations:
     template = _template(table.table("template")) if "template" in table else None
     clicks = table.table("clicks")
     by_photo = {photo: _clicks(clicks.table(photo)) for photo in clicks.left}
-    said = Annotations(template, by_photo, _corrections(table))
+    annotations = Annotations(template, by_photo, _corrections(table))
     table.finish()
-    return said
+    return annotations
 
 
 def _template(table: SettingsTable) -> MarkedTop:
@@ -108,16 +108,16 @@ def _corrections(table: SettingsTable) -> tuple[Correction, ...]:
     return tuple(corrections)
 
 
-def render_annotations(said: Annotations) -> str:
+def render_annotations(annotations: Annotations) -> str:
     """Format annotations as commented TOML; inverse of `read_annotations`."""
     template, values = _HEADING, {}
-    if said.template is not None:
+    if annotations.template is not None:
         template += _TEMPLATE_SECTION
-        values["template"] = _template_values(said.template)
-    if said.clicks:
-        values["clicks"] = said.clicks
-    if said.corrections:
-        values["correction"] = [plain(correction) for correction in said.corrections]
+        values["template"] = _template_values(annotations.template)
+    if annotations.clicks:
+        values["clicks"] = annotations.clicks
+    if annotations.corrections:
+        values["correction"] = [plain(correction) for correction in annotations.corrections]
     return fill_in(template, values)
 
 

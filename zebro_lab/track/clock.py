@@ -20,12 +20,12 @@ class CountedTimes:
 
     Attributes:
         times: Times and their standard deviations; None for exposures that are not found yet.
-        said: Their source, in words.
+        description: Their source and origin, in words.
         notes: Notes for the user, one line each.
     """
 
     times: PhotoTimes | None
-    said: str
+    description: str
     notes: tuple[str, ...] = ()
 
 

@@ -68,7 +68,7 @@ class TrackInputs:
             SettingsError: The robot carries no marker and its top is not annotated.
         """
         if sequence.is_composite and self.request.merged is None:
-            with open_picture(sequence.paths[0]):
+            with open_picture(sequence.photos[0].path):
                 pass  # files that are no pictures have their own error
             raise HowMergedUnknown(_HOW_MERGED, key="--merged")
         if self.scene.robot is None and self.scene.top is None:
@@ -98,8 +98,10 @@ def read_inputs(request: TrackRequest) -> TrackInputs:
     """
     manifest = None if request.run is None else read_manifest(request.run)
     described = RobotFile() if request.robot is None else read_robot_file(request.robot)
-    camera, floor = read_camera_file(request.camera).camera, read_floor_file(request.floor)
-    said = Annotations() if request.annotations is None else read_annotations(request.annotations)
+    camera, floor = read_camera_file(request.camera), read_floor_file(request.floor)
+    annotations = Annotations()
+    if request.annotations is not None:
+        annotations = read_annotations(request.annotations)
     prior = body_prior(described, height=request.body_height, height_sd=request.height_sd)
     robot = None
     if not request.without_marker:
@@ -107,7 +109,7 @@ def read_inputs(request: TrackRequest) -> TrackInputs:
         require_apart(robot, floor)
     length, width = described.robot.body_size[:2]
     scene = Scene(
-        camera, floor, prior, robot, top=said.template, clicks=said.clicks,
-        corrections=said.corrections, merged=request.merged, body_size=(length, width),
+        camera, floor, prior, robot, top=annotations.template, clicks=annotations.clicks,
+        corrections=annotations.corrections, merged=request.merged, body_size=(length, width),
     )  # fmt: skip
-    return TrackInputs(request, scene, said, manifest)
+    return TrackInputs(request, scene, annotations, manifest)

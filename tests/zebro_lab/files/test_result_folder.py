@@ -74,16 +74,14 @@ def void(_: object) -> None:
     """Forget what a stage returns."""
 
 
-class Track:
-    """A track of two poses, told apart by where it begins."""
-
-    def __init__(self, x: float) -> None:
-        self.columns = {"t_s": [0.0, 1.0], "x_m": [x, x + 1.0], "y_m": [0.0, 0.0]}
-        self.tum = (f"0 {x} 0 0 0 0 0 1", f"1 {x + 1} 0 0 0 0 0 1")
+def path_from(x: float) -> dict[str, object]:
+    """Return the table and the TUM lines of a path that begins at x [m]."""
+    columns = {"t_s": [0.0, 1.0], "x_m": [x, x + 1.0], "y_m": [0.0, 0.0]}
+    return {"columns": columns, "tum": (f"0 {x} 0 0 0 0 0 1", f"1 {x + 1} 0 0 0 0 0 1")}
 
 
 def write_track(out: Path, x: float) -> None:
-    with track_folder(out, Track(x), source="real", settings={"x": x}, inputs={}, report={}):
+    with track_folder(out, **path_from(x), source="real", settings={"x": x}, inputs={}, report={}):
         pass
 
 
@@ -311,7 +309,7 @@ def test_a_linked_folder_is_replaced_behind_its_link(tmp_path):
 
 def test_a_manifest_that_names_a_file_of_a_foreign_encoding_is_read_back(tmp_path):
     with track_folder(
-        tmp_path / "track", Track(0.0), source="real", settings={}, inputs={"caf\udce9": "0"},
+        tmp_path / "track", **path_from(0.0), source="real", settings={}, inputs={"caf\udce9": "0"},
         report={},
     ):  # fmt: skip
         pass
@@ -362,7 +360,7 @@ def test_drafts_of_killed_writers_are_removed_and_those_of_living_ones_kept(tmp_
     (tmp_path / ".track.0123abcd.part").mkdir()
     (tmp_path / ".tracks.0123abcd.part").mkdir()
     with track_folder(
-        tmp_path / "track", Track(0.0), source="real", settings={}, inputs={}, report={}
+        tmp_path / "track", **path_from(0.0), source="real", settings={}, inputs={}, report={}
     ) as draft:
         write_track(tmp_path / "track", 1.0)
         assert draft.is_dir()

@@ -35,7 +35,7 @@ def test_time_is_counted_from_the_run_only_where_the_clocks_are_tied():
 
     tied = counted(manifest=manifest, clock=Path("clock.jpg"))
     np.testing.assert_allclose(tied.times.t, [3, 5])
-    assert "the run's start" in tied.said
+    assert "the run's start" in tied.description
     assert tied.notes == ()
     loose = counted(manifest=manifest)
     np.testing.assert_allclose(loose.times.t, [0, 2])

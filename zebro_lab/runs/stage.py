@@ -69,8 +69,4 @@ def _with_exclusions(state: str, manifest: RunManifest) -> str:
 def _lasted(manifest: RunManifest) -> str:
     if manifest.stop is None:
         return "-"
-    try:
-        start, stop = map(datetime.fromisoformat, (manifest.start, manifest.stop))
-        return f"{(stop - start).total_seconds():.1f} s"
-    except (ValueError, TypeError):
-        return "-"
+    return f"{(datetime.fromisoformat(manifest.stop) - manifest.began).total_seconds():.1f} s"

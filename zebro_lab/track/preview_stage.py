@@ -12,6 +12,7 @@ from zebro_lab.files.atomic import atomic_write_bytes
 from zebro_lab.files.own_file import picture, require_own
 from zebro_lab.track.inputs import read_inputs
 from zebro_lab.track.photo_sequence import open_photos
+from zebro_lab.track.photographs import PlacedPhoto
 from zebro_lab.track.pictures import draw_preview
 from zebro_lab.track.request import TrackRequest
 
@@ -49,7 +50,7 @@ def preview(request: TrackRequest, file: Path) -> Preview:
         found = preview_photo(scene, photo)
         drawn = BytesIO()
         draw_preview(
-            drawn, read_pixels(photo.path), camera=scene.camera, view=found.pose,
+            drawn, PlacedPhoto(read_pixels(photo.path), scene.camera, found.pose),
             floor=scene.floor, detection=found.detection, title=f"Preview: {photo.name}",
             simulated=inputs.source_of(sequence).startswith("sim:"), command=PREVIEW.command,
         )  # fmt: skip

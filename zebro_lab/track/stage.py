@@ -21,6 +21,7 @@ from zebro_lab.track.photo_sequence import (
     exposure_times,
     open_photos,
 )
+from zebro_lab.track.photographs import PlacedPhoto
 from zebro_lab.track.pictures import draw_track
 from zebro_lab.track.request import TrackRequest
 
@@ -125,7 +126,7 @@ def _draw(draft: Path, result: TrackResult, scene: Scene, sequence: PhotoSequenc
     path = next(photo.path for photo in sequence.photos if photo.name == shown)
     detection = next((each for each in seen.detections if each.photo == shown), None)
     draw_track(
-        draft, track, read_pixels(path), camera=scene.camera, view=seen.fit.pose_of(shown),
+        draft, track, PlacedPhoto(read_pixels(path), scene.camera, seen.fit.pose_of(shown)),
         floor=seen.fit.floor, detection=detection,
         title=sequence.origin.name,
         simulated=result.source.startswith("sim:"),

@@ -202,8 +202,8 @@ def _start(given: datetime | None, first: float) -> tuple[datetime, float, tuple
         began = datetime(1970, 1, 1, tzinfo=UTC) + timedelta(seconds=first)
         return began, first, (f"times are taken as seconds since 1970: begun {began.isoformat()}",)
     now = datetime.now(UTC)
-    note = f"nobody said when it was recorded: {now.isoformat()}, now, stands as its start"
-    return now, 0.0, (f"{note} (--start)",)
+    note = f"the start is unknown: the present time, {now.isoformat()}, is stored instead (--start)"
+    return now, 0.0, (note,)
 
 
 def _apart(
@@ -215,8 +215,8 @@ def _apart(
         TRACK: None if track is None else track.track.poses.t,
     }
     return tuple(
-        f"{name}: its times, {other[0]:g} to {other[-1]:g} s, share nothing with the legs', "
-        f"{t[0]:g} to {t[-1]:g} s; do they have one clock?"
+        f"{name}: its times, {other[0]:g} to {other[-1]:g} s, do not overlap those of the "
+        f"legs, {t[0]:g} to {t[-1]:g} s; were they recorded by one clock?"
         for name, other in others.items()
         if other is not None and not np.any((other >= t[0]) & (other <= t[-1]))
     )

@@ -81,7 +81,7 @@ class ExperimentFolder:
         self._ending = threading.Event()
         self._failure: str | None = None
         self._least_room = 0.0
-        self._looked = 0.0
+        self._checked_at = 0.0
         self._busy_since: float | None = None
         self._identity: tuple[int, int] | None = None
         self._recorder: RunRecorder | None = None
@@ -101,7 +101,7 @@ class ExperimentFolder:
             self._recorder = self._enter(manifest)
             self._start = start
 
-        self._require_well()
+        self._require_working()
         self._put(open_now, wait=True)
 
     def write(self, readings: Readings, batch: Batch) -> None:
@@ -120,7 +120,7 @@ class ExperimentFolder:
                     if samples:
                         self._recorder.write(stream, samples)
 
-        self._require_well()
+        self._require_working()
         self._put(write_now)
 
     def close_run(self, verdict: PointVerdict | None, *, reason: str) -> None:
@@ -149,7 +149,7 @@ class ExperimentFolder:
 
         self._put(note)
         if kind != "end":
-            self._require_well()
+            self._require_working()
 
     def require_room(self, least: float) -> None:
         """Raise SinkFailed where the writer has failed, which itself checks the disk space.
@@ -158,7 +158,7 @@ class ExperimentFolder:
             least: Least free space [bytes].
         """
         self._least_room = least
-        self._require_well()
+        self._require_working()
 
     def latch(self, reason: str) -> None:
         """Latch an emergency stop on disk, from this thread; see `RunSink.latch`."""
@@ -191,7 +191,7 @@ class ExperimentFolder:
                 self._do(self._jobs.get_nowait())
         self._journal.__exit__(kind, error, trace)
         if error is None:
-            self._require_well()
+            self._require_working()
 
     def _point(self, start: RunStart, *, accepted: bool) -> dict[str, Any]:
         return point_record(
@@ -220,7 +220,7 @@ class ExperimentFolder:
         start, point = self._start, self._start.point
         kept = recorder.failure is None
         accepted = verdict is not None and verdict.accepted and kept
-        why = "" if accepted else _why_not(verdict, reason, recorder.failure)
+        why = "" if accepted else _why_excluded(verdict, reason, recorder.failure)
         # Atomic: the end record holds both the verdict and whether the run counts.
         recorder.judge(excluded=why, point=self._point(start, accepted=accepted))
         recorder.end(reason)
@@ -245,10 +245,10 @@ class ExperimentFolder:
             ) from None
         if wait and self._in_step:
             while not job.done.wait(DISK_PERIOD):
-                self._require_well()
-            self._require_well()
+                self._require_working()
+            self._require_working()
 
-    def _require_well(self) -> None:
+    def _require_working(self) -> None:
         started = self._thread.ident is not None
         if started and not (self._ending.is_set() or self._thread.is_alive()):
             self._failure = self._failure or "the writer has ended by itself"
@@ -276,19 +276,19 @@ class ExperimentFolder:
         self._busy_since = time.monotonic()
         try:
             job.write()
-            self._look_after_disk()
+            self._check_disk()
         except BaseException as error:  # noqa: BLE001, RUF100 - whatever it is, the rig stops
             self._fail(error)
         finally:
             self._busy_since = None
             job.done.set()
 
-    def _look_after_disk(self) -> None:
+    def _check_disk(self) -> None:
         """Raise SinkFailed where the folder is gone or too little disk space is free."""
         now = time.monotonic()
-        if now - self._looked < DISK_PERIOD:
+        if now - self._checked_at < DISK_PERIOD:
             return
-        self._looked = now
+        self._checked_at = now
         if _identity(self._data) != self._identity:
             raise SinkFailed(f"the folder {self._data} was removed or replaced")
         if self._recorder is not None and self._recorder.failure is not None:
@@ -310,7 +310,7 @@ def _identity(folder: Path) -> tuple[int, int] | None:
     return found.st_dev, found.st_ino
 
 
-def _why_not(verdict: PointVerdict | None, reason: str, failure: str | None) -> str:
+def _why_excluded(verdict: PointVerdict | None, reason: str, failure: str | None) -> str:
     """Return why a run is left out of calibrations."""
     if failure is not None:
         return failure

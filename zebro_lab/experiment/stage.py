@@ -187,14 +187,14 @@ def _address(file: Path) -> tuple[int, str]:
     port, token = content.get("port"), content.get("token")
     if type(port) is not int or not 0 < port < 1 << 16 or not isinstance(token, str):
         raise DataError(
-            "does not say where to reach the experiment; stop it at its own keyboard", file=file
+            "has no valid port and token of the experiment; stop it at its own keyboard", file=file
         )
     return port, token
 
 
 @contextmanager
 def _commandable(data: Path, control: Control) -> Iterator[None]:
-    """Serve the control socket, and say where in a file that only its owner may read."""
+    """Serve the control socket; its address is in a file that only its owner may read."""
     file, draft = data / CONTROL_FILE, data / f".{CONTROL_FILE}.new"
     with ControlServer(control) as server:
         draft.unlink(missing_ok=True)

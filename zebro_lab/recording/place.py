@@ -1,14 +1,17 @@
 # SPDX-License-Identifier: MIT
-"""Detect that a folder is removed, renamed or replaced while a file in it is being written.
+"""Detect that a folder is removed, renamed or full while a file in it is being written.
 
 Writing to a file whose name is gone succeeds on Linux and macOS, so that the path must be checked.
 """
 
 import os
+import shutil
 from collections.abc import Iterable
 from contextlib import ExitStack
 from pathlib import Path
 from typing import IO
+
+from zebro_lab.files.errors import RecordingError
 
 
 class OpenPlace:
@@ -32,9 +35,9 @@ class OpenPlace:
         except FileNotFoundError:
             return f"{self._path} is gone: its folder was removed or renamed"
         except OSError as error:
-            return f"{self._path} cannot be seen any more: {error.strerror}"
+            return f"{self._path} cannot be read any more: {error.strerror}"
         if _identity(found) != self._file:
-            return f"{self._path} is another file now: it was removed or renamed, and made anew"
+            return f"{self._path} is another file now: it was removed or renamed, and created again"
         return None
 
     def folder(self) -> Path | None:
@@ -53,6 +56,27 @@ class OpenPlace:
             return [Path(f"/proc/self/fd/{self._number}").readlink().parent]
         except OSError:
             return []
+
+
+def require_space(folder: Path, least: float) -> None:
+    """Check the free disk space of a folder.
+
+    Args:
+        folder: The folder.
+        least: Least free space [bytes].
+
+    Raises:
+        RecordingError: There is less.
+    """
+    try:
+        free = shutil.disk_usage(folder).free
+    except OSError as error:
+        raise RecordingError(f"{folder}: free space unknown: {error.strerror}") from error
+    if free < least:
+        raise RecordingError(
+            f"{folder} has {free / 1e6:.0f} MB free; expected at least {least / 1e6:.0f} MB: make "
+            "room, or name another folder as --data"
+        )
 
 
 def sync_files(paths: Iterable[Path]) -> None:

@@ -24,6 +24,7 @@ from zebro_lab.files.errors import RecordingError
 from zebro_lab.mcap.log_writer import LogWriter
 from zebro_lab.mcap.ros_messages import INFO
 from zebro_lab.mcap.stream_views import StreamView
+from zebro_lab.recording.place import require_space
 from zebro_lab.recording.run_files import RunFiles
 from zebro_lab.recording.threads import needing_threads
 from zebro_lab.runs.folder import LOG_FILE, new_run_folder
@@ -177,22 +178,6 @@ class RunRecorder:
         why = {"why": excluded} if excluded else None
         self._manifest = replace(self._manifest, excluded=why, point=point)
 
-    def require_space(self) -> None:
-        """Check the free disk space.
-
-        Raises:
-            RecordingError: It is less than the limit.
-        """
-        try:
-            free = shutil.disk_usage(self._data_dir).free
-        except OSError as error:
-            raise RecordingError(f"cannot see {self._data_dir}: {error.strerror}") from error
-        if free < self._least_free:
-            raise RecordingError(
-                f"{self._data_dir} has {free / 1e6:.0f} MB free; expected at least "
-                f"{self._least_free / 1e6:.0f} MB: make room, or name another folder as --data"
-            )
-
     def __enter__(self) -> Self:
         began = datetime.now(UTC)
         self.start = self._clock.now()
@@ -201,14 +186,14 @@ class RunRecorder:
             self._data_dir, kind=given.kind, label=given.label, start=began
         )
         try:
-            self.require_space()
+            require_space(self._data_dir, self._least_free)
             self._files = RunFiles(
                 self.folder, given, profiles=self._texts, views=self._views, start=self.start
             )
-            for task in (self._write_on, self._sync_on, self._look_on):
+            for task in (self._write_loop, self._sync_loop, self._check_loop):
                 self._start_thread(task, self._files)
         except (RecordingError, OSError) as error:
-            self._leave_nothing()
+            self._undo()
             if isinstance(error, RecordingError):
                 raise
             raise RecordingError(f"cannot write {self.folder}: {error.strerror}") from error
@@ -247,7 +232,7 @@ class RunRecorder:
         self._threads.append(thread)
         return thread
 
-    def _leave_nothing(self) -> None:
+    def _undo(self) -> None:
         self._ending.set()
         for thread in self._threads:
             thread.join(JOIN_LIMIT)
@@ -262,34 +247,34 @@ class RunRecorder:
                 self._failure = why
 
     @contextmanager
-    def _failing_at(self, where: object) -> Iterator[None]:
+    def _storing_failure(self, where: object) -> Iterator[None]:
         """Store any exception as the failure, for the owner, who ends the run."""
         try:
             yield
         except RecordingError as error:
             self._fail(str(error))
-        except BaseException as error:  # noqa: BLE001, RUF100 - a thread has nobody else to tell
+        except BaseException as error:  # noqa: BLE001, RUF100 - the owner reads it and ends the run
             self._fail(f"{where}: {_one_line(error)}")
 
-    def _write_on(self, files: RunFiles) -> None:
-        with self._failing_at(files.folder / LOG_FILE):
+    def _write_loop(self, files: RunFiles) -> None:
+        with self._storing_failure(files.folder / LOG_FILE):
             while not self._ending.wait(FLUSH_EVERY):
                 self._drain(files.log)
             self._drain(files.log)
 
-    def _look_on(self, files: RunFiles) -> None:
+    def _check_loop(self, files: RunFiles) -> None:
         """Check folder and disk space periodically, in a thread that a slow disk does not delay."""
         seen = self._clock.now()
-        with self._failing_at(files.folder):
+        with self._storing_failure(files.folder):
             while not self._ending.wait(FLUSH_EVERY):
                 files.require_place()
                 if self._clock.now() - seen >= SYNC_EVERY:
                     seen = self._clock.now()
-                    self.require_space()
+                    require_space(self._data_dir, self._least_free)
             files.require_place()
 
-    def _sync_on(self, files: RunFiles) -> None:
-        with self._failing_at(f"the disk does not keep {files.folder}"):
+    def _sync_loop(self, files: RunFiles) -> None:
+        with self._storing_failure(f"the disk does not keep {files.folder}"):
             files.sync_first()
             while not self._ending.wait(SYNC_EVERY):
                 files.sync_log()
@@ -310,14 +295,14 @@ class RunRecorder:
         for thread in before:
             thread.join(JOIN_LIMIT)
         whole = False
-        with self._failing_at(files.folder / LOG_FILE):
+        with self._storing_failure(files.folder / LOG_FILE):
             if any(thread.is_alive() for thread in before):
                 raise RecordingError(f"the disk took nothing for {JOIN_LIMIT:g} s")
             files.free_reserve()
             if self._failure is None:
                 self._finish_log(files)
                 whole = True
-        with self._failing_at(f"{files.folder}: its end record cannot be written"):
+        with self._storing_failure(f"{files.folder}: its end record cannot be written"):
             files.write_end(self._end_record(whole=whole), whole=whole)
         self.folder = files.folder
         if not any(thread.is_alive() for thread in before):

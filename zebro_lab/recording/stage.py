@@ -119,9 +119,9 @@ def record(
         problem = _run(recorder, opened, watcher, duration, clock)
     if problem is not None or recorder.failure is not None:
         what = recorder.failure or problem
-        where = f"what came before is in {recorder.folder}"
+        where = f"the samples until then are in {recorder.folder}"
         if not recorder.folder.is_dir():
-            where = "what came before is gone with it"
+            where = "the samples until then are gone with it"
         raise RecordingError(f"recording ended early: {what}; {where}")
     return Recorded(recorder.folder, read_manifest(recorder.folder))
 

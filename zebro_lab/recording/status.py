@@ -90,8 +90,8 @@ class StreamWatch:
             silent = [name for name, reader in self._readers.items() if reader.first is None]
             if silent:
                 return (
-                    f"no sample of {', '.join(silent)} within {FIRST_SAMPLE:g} s, from which the "
-                    "duration would count; switch it on, or leave it out"
+                    f"no sample of {', '.join(silent)} within {FIRST_SAMPLE:g} s, and --duration "
+                    "counts from the first samples; switch it on, or leave it out"
                 )
         return problem
 

@@ -122,7 +122,7 @@ def render_annotations(annotations: Annotations) -> str:
 
 
 _HEADING = """\
-# What a person said about photographs; `zebro-lab track --annotations` replays it.
+# A person's annotations of photographs; `zebro-lab track --annotations` applies them.
 # Pixels: the centre of the first one is (0, 0). Lengths in m, angles in rad.
 """
 _TEMPLATE_SECTION = """

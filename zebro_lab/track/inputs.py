@@ -80,10 +80,12 @@ class TrackInputs:
 
     def counted_times(self, sequence: PhotoSequence) -> CountedTimes:
         """Compute photographs' times from the track's origin; exposures get theirs once found."""
-        times, asked = sequence.times, self.request.times
+        times, request = sequence.times, self.request.times
         if times is None:
-            return counted_later(manifest=self.manifest, asked=asked)
-        return counted_from(times, start=self.request.start, manifest=self.manifest, asked=asked)
+            return counted_later(manifest=self.manifest, request=request)
+        return counted_from(
+            times, start=self.request.start, manifest=self.manifest, request=request
+        )
 
 
 def read_inputs(request: TrackRequest) -> TrackInputs:

@@ -34,7 +34,7 @@ FRAME_STEP = 0.5
 """Default interval between the frames taken from a video [s]."""
 
 _ORIENTATION = 0x0112
-_LYING = {5, 6, 7, 8}
+_ROTATED = {5, 6, 7, 8}
 
 
 @dataclass(frozen=True)
@@ -145,10 +145,10 @@ def upright_size(path: Path) -> tuple[int, int] | None:
     try:
         with open_picture(path) as picture:
             width, height = picture.size
-            lying = picture.getexif().get(_ORIENTATION) in _LYING
+            rotated = picture.getexif().get(_ORIENTATION) in _ROTATED
     except PhotoError:
         return None
-    return (height, width) if lying else (width, height)
+    return (height, width) if rotated else (width, height)
 
 
 def exposure_times(names: Sequence[str], request: TimeRequest) -> PhotoTimes:
@@ -260,7 +260,7 @@ def _require_no_times(request: TimeRequest) -> None:
     }  # fmt: skip
     for key, value in given.items():
         if value is not None:
-            raise SettingsError("not with a video, whose frames tell their own times", key=key)
+            raise SettingsError("not with a video, whose frames have their own times", key=key)
 
 
 def _simulated(path: Path) -> str | None:

@@ -112,14 +112,14 @@ def test_nobody_waits_for_a_writer_that_is_dead(tmp_path, monkeypatch):
         contextlib.suppress(SinkFailed),  # which leaving the folder raises too
         folder_without_writer(tmp_path, monkeypatch, in_step=True) as folder,
     ):
-        require_well, looks = folder._require_well, iter(range(20))
+        require_well, looks = folder._require_working, iter(range(20))
 
         def look():
             if next(looks, None) is None:
                 raise WaitsOn
             require_well()
 
-        monkeypatch.setattr(folder, "_require_well", look)
+        monkeypatch.setattr(folder, "_require_working", look)
         with pytest.raises(SinkFailed, match="the writer has ended"):
             folder.close_run(None, reason="failed")
         monkeypatch.undo()

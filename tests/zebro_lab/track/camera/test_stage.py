@@ -57,7 +57,7 @@ def test_the_kit_comes_with_a_floor_to_edit_and_never_over_an_edited_one(tmp_pat
     pdf, floor = write_kit(tmp_path / "kit")
     assert pdf.read_bytes()[:5] == b"%PDF-"
     assert len(read_floor_file(floor).markers) == 4
-    with pytest.raises(AlreadyExists, match="tape"):
+    with pytest.raises(AlreadyExists, match="measured positions"):
         write_kit(tmp_path / "kit")
 
 

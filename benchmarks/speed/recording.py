@@ -30,8 +30,7 @@ from rig.slip_rig.rdt import MOST_IN_ONE, RECORD, REQUEST, Request
 from rig.twins import robot_twin
 from rig.zebro.profile import load_leg_profile
 from rig.zebro.serial import PacketLegs
-from zebro_lab.mcap.stream_views import imu_view, legs_view, load_cell_view
-from zebro_lab.recording.devices import PAUSE, ForceCheck, default_gait
+from zebro_lab.recording.devices import PAUSE, ForceCheck, default_gait, profile_text
 from zebro_lab.recording.recorder import RunRecorder
 from zebro_lab.runs.manifest import RunManifest, read_manifest
 
@@ -88,14 +87,14 @@ def measure(
         ImuStream(SerialLink(imu_port, baudrate=IMU.baudrate), profile=IMU),
         NetFtCell(UdpLink(*address), profile=CELL, buffered=buffered),
     )
-    views = {"legs": legs_view("legs", profile=LEGS), "imu": imu_view("imu", profile=IMU),
-             "load_cell": load_cell_view("load_cell", profile=CELL)}  # fmt: skip
+    profiles = {name: (profile.name, profile_text(profile.name))
+                for name, profile in (("legs", LEGS), ("imu", IMU), ("rig", RIG))}  # fmt: skip
     devices = [
         Device(stream, check, pause=PAUSE)
         for stream, check in zip(streams, (None, None, ForceCheck(RIG)), strict=True)
     ]
     manifest = RunManifest(kind="walk", label="bench", source="sim:bench")
-    recorder = RunRecorder(folder, manifest=manifest, views=views)
+    recorder = RunRecorder(folder, manifest=manifest, profiles=profiles)
     with streams[0], streams[1], streams[2], recorder:
         with acquiring(devices, sink=recorder, start=recorder.start) as readers:
             time.sleep(0.5)

@@ -4,9 +4,7 @@
 import time
 
 from rig.device import Sample
-from rig.zebro.profile import load_leg_profile
 from zebro_lab.mcap.raw_log import read_raw_log
-from zebro_lab.mcap.stream_views import legs_view
 from zebro_lab.recording.devices import profile_text
 from zebro_lab.recording.recorder import RunRecorder
 from zebro_lab.runs.manifest import RunManifest
@@ -19,8 +17,7 @@ def recorder(data, *, label="test", **changes):
         kind="walk", label=label, source="sim:test", sources={"legs": "sim:test"}
     )
     profiles = {"legs": (PROFILE, profile_text(PROFILE))}
-    views = {"legs": legs_view("legs", profile=load_leg_profile(PROFILE))}
-    return RunRecorder(data, manifest=manifest, profiles=profiles, views=views, **changes)
+    return RunRecorder(data, manifest=manifest, profiles=profiles, **changes)
 
 
 def some(first, count):

@@ -23,7 +23,6 @@ from zebro_lab.experiment.journal import EMERGENCY, JournalWriter
 from zebro_lab.experiment.latch import EmergencyLatch
 from zebro_lab.experiment.points import UNJUDGED, point_record
 from zebro_lab.files.errors import AlreadyExists
-from zebro_lab.mcap.stream_views import StreamView
 from zebro_lab.recording.recorder import RunRecorder
 from zebro_lab.runs.manifest import RunManifest
 
@@ -51,7 +50,6 @@ class ExperimentFolder:
         data: Folder of the experiment.
         plan: Fingerprint of the plan.
         manifest: What the manifests of all its runs have in common.
-        views: Returns new converters of the streams to display messages of a run's log.
         profiles: Name and text of the rig's profile, by its name in a run folder.
         clock: Host time.
         in_step: Wait for the disk at both ends of every run, for a twin with simulated time.
@@ -62,8 +60,7 @@ class ExperimentFolder:
         data: Path,
         *,
         manifest: RunManifest,
-        views: Callable[[], Mapping[str, StreamView]],
-        profiles: Mapping[str, tuple[str, str]] | None = None,
+        profiles: Mapping[str, tuple[str, str]],
         plan: str = "",
         clock: Clock = SYSTEM_CLOCK,
         in_step: bool = False,
@@ -71,7 +68,6 @@ class ExperimentFolder:
         self._data = data
         self._plan = plan
         self._manifest = manifest
-        self._views = views
         self._profiles = profiles
         self._clock = clock
         self._in_step = in_step
@@ -203,7 +199,7 @@ class ExperimentFolder:
         again = 1
         while True:
             recorder = RunRecorder(
-                self._data, manifest=manifest, views=self._views(), profiles=self._profiles,
+                self._data, manifest=manifest, profiles=self._profiles,
                 clock=self._clock,
             )  # fmt: skip
             try:

@@ -86,7 +86,7 @@ def run_experiment(request: RigRunRequest, watcher: ExperimentWatcher, control: 
             for notice in finished.notices:
                 watcher.notice(notice)
             folder = ExperimentFolder(
-                request.data, plan=journal.plan, manifest=_manifest(plan, rig), views=rig.views,
+                request.data, plan=journal.plan, manifest=_manifest(plan, rig),
                 profiles=rig.profiles, clock=rig.clock, in_step=rig.fast,
             )  # fmt: skip
             with (

@@ -25,7 +25,6 @@ from rig.slip_rig.simulated import RigDynamics, SimulatedRig, simulated_rig
 from rig.slip_rig.sweep import SweepPlan
 from rig.twins import simulated_rig_devices
 from zebro_lab.files.errors import SettingsError
-from zebro_lab.mcap.stream_views import StreamView, imu_view, legs_view, rig_views
 from zebro_lab.recording.replayed import IMU, read_replay
 from zebro_lab.robot.gait_argument import GaitRequest, make_gait
 from zebro_lab.robot.gait_player import GaitPlayer
@@ -67,7 +66,6 @@ class OpenDevices:
 
     Attributes:
         devices: The devices.
-        views: Converter of each stream to display messages, by the stream's name.
         profiles: Name and text of each profile, by its name in the run folder.
         constants: Radii of the rig's discs [m].
         truth: True parameters of simulated devices.
@@ -75,7 +73,6 @@ class OpenDevices:
     """
 
     devices: list[Device] = field(default_factory=list)
-    views: dict[str, StreamView] = field(default_factory=dict)
     profiles: dict[str, tuple[str, str]] = field(default_factory=dict)
     constants: dict[str, float] = field(default_factory=dict)
     truth: dict[str, Any] = field(default_factory=dict)
@@ -161,7 +158,6 @@ def _add_legs(
             pause=PAUSE if player is None and profile.layout == "packet" else 0.0,
         )
     )
-    opened.views[LEGS] = legs_view(LEGS, profile=profile)
     opened.profiles[LEGS] = (profile.name, profile_text(resolve(address, default=LEGS_PROFILE)[0]))
 
 
@@ -175,7 +171,6 @@ def _add_imu(
     profile = load_imu_profile(name)
     unit = stack.enter_context(imu_at(address, name=stream, rng=rng))
     opened.devices.append(Device(unit, pause=PAUSE))
-    opened.views[stream] = imu_view(stream, profile=profile)
     opened.profiles[stream] = (profile.name, profile_text(name))
 
 
@@ -195,7 +190,6 @@ def _add_rig(opened: OpenDevices, stack: ExitStack, address: str, rng: np.random
     for device in devices.streams:
         is_drives = device is devices.drives
         opened.devices.append(Device(device) if is_drives else Device(device, check, pause=PAUSE))
-    opened.views.update(rig_views(profile))
     opened.profiles[RIG] = (profile.name, profile_text(name))
     opened.constants.update(radius_leg=profile.radius_leg, radius_ground=profile.radius_ground)
 
@@ -204,7 +198,6 @@ def _replay(opened: OpenDevices, address: str, what: str, *, name: str | None = 
     """Add the streams of a recorded run in place of a device."""
     replayed = read_replay(address, what, name=name)
     opened.devices.extend(Device(stream, pause=PAUSE) for stream in replayed.streams)
-    opened.views.update(replayed.views)
     opened.profiles[name or what] = replayed.profile
     opened.replayed.append(replayed.lasts)
     if what == RIG:

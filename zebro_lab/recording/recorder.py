@@ -23,7 +23,6 @@ from rig.sample_queue import SampleQueue
 from zebro_lab.files.errors import RecordingError
 from zebro_lab.mcap.log_writer import LogWriter
 from zebro_lab.mcap.ros_messages import INFO
-from zebro_lab.mcap.stream_views import StreamView
 from zebro_lab.recording.place import require_space
 from zebro_lab.recording.run_files import RunFiles
 from zebro_lab.recording.threads import needing_threads
@@ -53,7 +52,6 @@ class RunRecorder:
     Args:
         data_dir: Folder of run folders; created when missing.
         manifest: What is known of the run before it begins.
-        views: Converter of each stream to display messages, by the stream's name.
         profiles: Name and TOML text of each device's profile, by its name in the run folder.
         limit: Capacity of the queue of each stream [samples].
         least_free: Free space below which a run does not start, or ends [bytes].
@@ -69,26 +67,23 @@ class RunRecorder:
         data_dir: Path,
         *,
         manifest: RunManifest,
-        views: Mapping[str, StreamView],
-        profiles: Mapping[str, tuple[str, str]] | None = None,
+        profiles: Mapping[str, tuple[str, str]],
         limit: int = LIMIT,
         least_free: int = LEAST_FREE,
         clock: Clock = SYSTEM_CLOCK,
     ) -> None:
-        profiles = profiles or {}
         self.folder = Path(data_dir)
         self.start = 0.0
         self._data_dir = Path(data_dir)
         names = {stream: name for stream, (name, _) in profiles.items()}
         self._manifest = replace(manifest, profiles=names)
         self._texts = {stream: text for stream, (_, text) in profiles.items()}
-        self._views = views
         self._limit = limit
         self._least_free = least_free
         self._clock = clock
-        self._queues = {name: SampleQueue(limit=limit) for name in views}
+        self._queues: dict[str, SampleQueue] = {}
         self._notes: deque[Callable[[LogWriter], None]] = deque()
-        self._counters = dict.fromkeys(views, Counters())
+        self._counters: dict[str, Counters] = {}
         self._failure: str | None = None
         self._failing = threading.Lock()
         self._reason = "completed"
@@ -187,9 +182,10 @@ class RunRecorder:
         )
         try:
             require_space(self._data_dir, self._least_free)
-            self._files = RunFiles(
-                self.folder, given, profiles=self._texts, views=self._views, start=self.start
-            )
+            self._files = RunFiles(self.folder, given, profiles=self._texts, start=self.start)
+            for name in self._files.streams:
+                self._queues[name] = SampleQueue(limit=self._limit)
+                self._counters[name] = Counters()
             for task in (self._write_loop, self._sync_loop, self._check_loop):
                 self._start_thread(task, self._files)
         except (RecordingError, OSError) as error:

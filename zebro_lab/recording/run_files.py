@@ -11,7 +11,6 @@ from typing import Final
 from zebro_lab.files.errors import RecordingError
 from zebro_lab.files.provenance import file_hash
 from zebro_lab.mcap.log_writer import LogWriter
-from zebro_lab.mcap.stream_views import StreamView
 from zebro_lab.recording.place import OpenPlace, sync_files
 from zebro_lab.runs.folder import LOG_FILE, epoch_ns
 from zebro_lab.runs.manifest import (
@@ -21,6 +20,7 @@ from zebro_lab.runs.manifest import (
     profile_file,
     write_manifest,
 )
+from zebro_lab.runs.profile_views import stored_views
 
 RESERVE: Final = 1 << 16
 """Space reserved in the run folder for the end record on a full disk [bytes]."""
@@ -34,12 +34,12 @@ class RunFiles:
         folder: The run folder, empty.
         manifest: Manifest of the run that begins.
         profiles: TOML text of each profile, by its name in the run folder.
-        views: Converter of each stream to display messages, by the stream's name.
         start: Host time at which the run began [s].
 
     Attributes:
         folder: The run folder; its new path if it was renamed before its end was written.
         log: The log.
+        streams: Names of the streams that the profiles describe.
 
     Raises:
         OSError: A file cannot be written.
@@ -51,7 +51,6 @@ class RunFiles:
         manifest: RunManifest,
         *,
         profiles: Mapping[str, str],
-        views: Mapping[str, StreamView],
         start: float,
     ) -> None:
         self.folder = folder
@@ -59,6 +58,8 @@ class RunFiles:
             profile_file(folder, name).parent.mkdir(exist_ok=True)
             profile_file(folder, name).write_text(text, encoding="utf-8", newline="")
         self._first = [folder / MANIFEST_FILE, *(profile_file(folder, name) for name in profiles)]
+        views = stored_views(folder, profiles)
+        self.streams = tuple(views)
         (folder / _RESERVE_FILE).write_bytes(os.urandom(RESERVE))
         self._file = (folder / LOG_FILE).open("xb")
         try:
@@ -97,8 +98,7 @@ class RunFiles:
 
     def free_reserve(self) -> None:
         """Free the reserved space, for the end of the run."""
-        with contextlib.suppress(FileNotFoundError):
-            (self.folder / _RESERVE_FILE).unlink()
+        (self.folder / _RESERVE_FILE).unlink(missing_ok=True)
 
     def finish_log(self) -> None:
         """Write the end of the log and flush it to the disk."""

@@ -112,7 +112,7 @@ def record(
             lasts = max(opened.replayed)
             duration = lasts if duration is None else min(lasts, duration)
         recorder = RunRecorder(
-            request.data, manifest=_manifest(request, opened), views=opened.views,
+            request.data, manifest=_manifest(request, opened),
             profiles=opened.profiles, clock=clock,
         )  # fmt: skip
         kept.enter_context(recorder)  # left after the devices: they wait for no disk

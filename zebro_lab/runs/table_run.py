@@ -23,7 +23,7 @@ from zebro_lab.mcap.raw_log import raw_topic
 from zebro_lab.mcap.slip_rig_log import SlipRigTable
 from zebro_lab.runs.folder import LOG_FILE, epoch_ns, require_new, run_path
 from zebro_lab.runs.manifest import RIG, TABLE, RunManifest, profile_file, write_manifest
-from zebro_lab.runs.profile_views import profile_views
+from zebro_lab.runs.profile_views import stored_views
 
 _BOARD: Final = "board"
 _BLOCK: Final = 1000  # samples per chunk; a truncated file loses at most one chunk
@@ -82,11 +82,6 @@ def _write_log(
     profiles: Mapping[str, str],
     event: str,
 ) -> None:
-    views = {
-        stream: view
-        for name in profiles
-        for stream, view in profile_views(profile_file(draft, name)).items()
-    }
     blocks = [
         (name, columns[first : first + _BLOCK])
         for name, columns in samples.items()
@@ -94,7 +89,7 @@ def _write_log(
     ]
     with (draft / LOG_FILE).open("wb") as file:
         log = LogWriter(
-            file, views=views, start=0.0, start_ns=epoch_ns(manifest.began),
+            file, views=stored_views(draft, profiles), start=0.0, start_ns=epoch_ns(manifest.began),
             attachments={f"profiles/{name}.toml": text for name, text in profiles.items()},
         )  # fmt: skip
         if event:

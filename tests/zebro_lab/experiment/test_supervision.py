@@ -91,7 +91,7 @@ def folder_without_writer(data, monkeypatch, *, in_step):
     manifest = RunManifest(kind="slip-rig", label="test", source="sim:rig")
     with (
         supervised(Control()),
-        ExperimentFolder(data, manifest=manifest, views=dict, in_step=in_step) as folder,
+        ExperimentFolder(data, manifest=manifest, profiles={}, in_step=in_step) as folder,
     ):
         folder._thread.join(PATIENCE)
         assert not folder._thread.is_alive()
@@ -182,7 +182,7 @@ def test_a_full_queue_cannot_block_the_stop(tmp_path, monkeypatch):
     manifest = RunManifest(kind="slip-rig", label="test", source="sim:rig")
 
     def overfill():
-        with ExperimentFolder(tmp_path, manifest=manifest, views=dict) as folder:
+        with ExperimentFolder(tmp_path, manifest=manifest, profiles={}) as folder:
             for number in range(10):
                 folder.event("note", str(number))
                 assert entered.wait(PATIENCE)

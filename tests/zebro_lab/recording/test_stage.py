@@ -22,10 +22,9 @@ from rig.zebro.profile import load_leg_profile
 from support.watchers import RecordWatcher
 from zebro_lab.files.errors import DataError, RecordingError
 from zebro_lab.mcap.raw_log import read_raw_log
-from zebro_lab.mcap.stream_views import legs_view
 from zebro_lab.recording import stage as module
 from zebro_lab.recording import status
-from zebro_lab.recording.devices import OpenDevices, default_gait
+from zebro_lab.recording.devices import OpenDevices, default_gait, profile_text
 from zebro_lab.recording.recorder import RunRecorder
 from zebro_lab.recording.simulate_stage import TwinRequest, serve_zebro
 from zebro_lab.recording.stage import RecordRequest, record
@@ -199,8 +198,8 @@ def test_an_unplugged_robot_is_a_gap_that_is_counted_and_the_run_goes_on(tmp_pat
     manifest = RunManifest(kind="walk", label="gap", source=twin.source)
     with PortServer(twin) as server:
         legs = leg_driver(LEGS, leg_link(LEGS, server.port, source=twin.source))
-        views = {"legs": legs_view("legs", profile=LEGS)}
-        recorder = RunRecorder(tmp_path, manifest=manifest, views=views)
+        profiles = {"legs": (LEGS.name, profile_text(LEGS.name))}
+        recorder = RunRecorder(tmp_path, manifest=manifest, profiles=profiles)
         with (
             legs,
             recorder,
@@ -287,14 +286,14 @@ def given(monkeypatch):
 
     def give(*streams, **changes):
         devices = [Device(s, **changes) for s in streams]
-        views = {s.name: legs_view(s.name, profile=LEGS) for s in streams}
+        profiles = {s.name: (LEGS.name, profile_text(LEGS.name)) for s in streams}
 
         @contextmanager
         def opened(_request):
             for device in devices:
                 device.stream.__enter__()
             try:
-                yield OpenDevices(devices, views)
+                yield OpenDevices(devices, profiles)
             finally:
                 for device in devices:
                     device.stream.__exit__(None, None, None)

@@ -14,11 +14,9 @@ import pytest
 
 from rig.clock import ManualClock
 from rig.device import Sample
-from rig.zebro.profile import load_leg_profile
 from support.synthetic import with_time_stamp
 from tracking.images import clock_picture
 from zebro_lab.main import app
-from zebro_lab.mcap.stream_views import legs_view
 from zebro_lab.recording.devices import profile_text
 from zebro_lab.recording.recorder import RunRecorder
 from zebro_lab.runs.manifest import RunManifest, read_manifest
@@ -48,7 +46,6 @@ def recorded(tmp_path_factory) -> Path:
             kind="walk", label="circle", source="sim:walk-sim", sources={"legs": "sim:walk-sim"}
         ),
         profiles={"legs": (PROFILE, profile_text(PROFILE))},
-        views={"legs": legs_view("legs", profile=load_leg_profile(PROFILE))},
     )  # fmt: skip
     with recorder as run:
         run.write("legs", [

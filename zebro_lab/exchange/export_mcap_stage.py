@@ -88,15 +88,13 @@ class _Stamped:
 
     def __init__(self, log: MessageLog, start_ns: int) -> None:
         self._log, self._start = log, start_ns
-        self.counts: dict[str, int] = {}
 
     def stamps(self, t: Array) -> list[int]:
         return (self._start + np.rint(1e9 * t).astype(np.int64)).tolist()
 
     def add(self, topic: str, schema: Schema, stamp: int, message: bytes) -> None:
-        if topic not in self.counts:
+        if topic not in self._log.counts:
             self._log.register(topic, schema)
-        self.counts[topic] = self.counts.get(topic, 0) + 1
         self._log.add(topic, stamp, message)
 
 
@@ -127,12 +125,11 @@ def export_mcap(run: Path, *, out: Path) -> Exported:
     start = 0 if recorded is None else epoch_ns(recorded.began)
     content = io.BytesIO()
     log = MessageLog(content)
-    sources = {
+    log.describe("source", {
         "run": recorded.source if recorded else "nothing was recorded here",
         TRACK: track.source if track else "none",
         PREDICTION: _source(run / PREDICTION) if predicted else "none",
-    }
-    log.describe("source", sources)
+    })  # fmt: skip
     stamped = _Stamped(log, start)
     _write_legs(stamped, run if recorded else None, predicted)
     if track is not None:
@@ -141,7 +138,7 @@ def export_mcap(run: Path, *, out: Path) -> Exported:
         _write_prediction(stamped, predicted)
     log.finish()
     atomic_write_bytes(out, content.getvalue())
-    return Exported(out, stamped.counts, tuple(_notes(run, track, predicted)))
+    return Exported(out, log.counts, tuple(_notes(run, track, predicted)))
 
 
 def _read_predicted(folder: Path, track: TrackFile | None) -> _Predicted | None:

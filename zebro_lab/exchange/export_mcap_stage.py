@@ -79,6 +79,7 @@ class _Predicted:
 
     walk: WalkPath
     robot: Robot
+    source: str
     path: Poses
     draws: Poses | None
 
@@ -128,7 +129,7 @@ def export_mcap(run: Path, *, out: Path) -> Exported:
     log.describe("source", {
         "run": recorded.source if recorded else "nothing was recorded here",
         TRACK: track.source if track else "none",
-        PREDICTION: _source(run / PREDICTION) if predicted else "none",
+        PREDICTION: predicted.source if predicted else "none",
     })  # fmt: skip
     stamped = _Stamped(log, start)
     _write_legs(stamped, run if recorded else None, predicted)
@@ -155,8 +156,9 @@ def _read_predicted(folder: Path, track: TrackFile | None) -> _Predicted | None:
         if draws is not None:
             spread = track.covariance[first]
             draws = anchored(draws, pose, at=at, covariance=spread, rng=rng)
-    robot = robot_of_walk(read_walk_manifest(folder))
-    return _Predicted(walk, robot, single.draws(0), draws)
+    manifest = read_walk_manifest(folder)
+    source = str(manifest.get("source", "unknown"))
+    return _Predicted(walk, robot_of_walk(manifest), source, single.draws(0), draws)
 
 
 def _write_legs(log: _Stamped, run: Path | None, predicted: _Predicted | None) -> None:
@@ -251,10 +253,6 @@ def _thinned(t: Array, rate: float) -> Sequence[int]:
     usual = float(np.median(np.diff(t)))
     rows = list(range(0, len(t), max(int(np.ceil(1 / (rate * usual) - 1e-6)), 1)))
     return rows if rows[-1] == len(t) - 1 else [*rows, len(t) - 1]
-
-
-def _source(folder: Path) -> str:
-    return str(read_walk_manifest(folder).get("source", "unknown"))
 
 
 def _notes(run: Path, track: TrackFile | None, predicted: _Predicted | None) -> list[str]:

@@ -12,19 +12,17 @@ from model.slip.law import Array
 from rig.device import Counters
 from rig.imu.profile import render_table_profile
 from rig.zebro.profile import LegProfile, render_leg_profile
+from zebro_lab.exchange.import_columns import IMU, LEGS, TRACK
 from zebro_lab.files.atomic import atomic_write_text
 from zebro_lab.files.provenance import file_hashes
 from zebro_lab.robot.imu_log import ImuLog
 from zebro_lab.robot.leg_log import LegLog
 from zebro_lab.robot.robot_file import ROBOT_FILE, RobotFile
 from zebro_lab.runs.manifest import RunManifest
-from zebro_lab.runs.recorded_legs import LEGS
 from zebro_lab.runs.table_run import table_samples, write_table_run
 from zebro_lab.track.folder import track_folder
 from zebro_lab.track.foreign import ForeignTrack
 
-IMU: Final = "imu"
-TRACK: Final = "track"
 _DEGREES: Final = 360
 """Counts per revolution in the profile of imported angles: they are stored in degrees."""
 

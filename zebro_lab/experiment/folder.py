@@ -23,6 +23,7 @@ from zebro_lab.experiment.journal import EMERGENCY, JournalWriter
 from zebro_lab.experiment.latch import EmergencyLatch
 from zebro_lab.experiment.points import UNJUDGED, point_record
 from zebro_lab.files.errors import AlreadyExists
+from zebro_lab.recording.place import identity
 from zebro_lab.recording.recorder import RunRecorder
 from zebro_lab.runs.manifest import RunManifest
 
@@ -164,7 +165,7 @@ class ExperimentFolder:
             self._fail(error)
 
     def __enter__(self) -> Self:
-        self._identity = _identity(self._data)
+        self._identity = identity(self._data.stat())
         self._journal.__enter__()
         try:
             self._thread.start()
@@ -285,7 +286,7 @@ class ExperimentFolder:
         if now - self._checked_at < DISK_PERIOD:
             return
         self._checked_at = now
-        if _identity(self._data) != self._identity:
+        if not self._data.exists() or identity(self._data.stat()) != self._identity:
             raise SinkFailed(f"the folder {self._data} was removed or replaced")
         if self._recorder is not None and self._recorder.failure is not None:
             raise SinkFailed(self._recorder.failure)
@@ -295,15 +296,6 @@ class ExperimentFolder:
                 f"room for data in {self._data} is {free / 1e6:.0f} MB; its limit is "
                 f"{self._least_room / 1e6:.0f} MB"
             )
-
-
-def _identity(folder: Path) -> tuple[int, int] | None:
-    """Return device and inode, which identify a folder; None where there is no folder."""
-    try:
-        found = folder.stat()
-    except FileNotFoundError:
-        return None
-    return found.st_dev, found.st_ino
 
 
 def _why_excluded(verdict: PointVerdict | None, reason: str, failure: str | None) -> str:

@@ -25,8 +25,8 @@ class OpenPlace:
     def __init__(self, path: Path, file: IO[bytes]) -> None:
         self._path = path
         self._number = file.fileno()
-        self._file = _identity(os.fstat(self._number))
-        self._folder = _identity(path.parent.stat())
+        self._file = identity(os.fstat(self._number))
+        self._folder = identity(path.parent.stat())
 
     def problem(self) -> str | None:
         """Return why the file can no longer be found under its path; None where it can."""
@@ -36,7 +36,7 @@ class OpenPlace:
             return f"{self._path} is gone: its folder was removed or renamed"
         except OSError as error:
             return f"{self._path} cannot be read any more: {error.strerror}"
-        if _identity(found) != self._file:
+        if identity(found) != self._file:
             return f"{self._path} is another file now: it was removed or renamed, and created again"
         return None
 
@@ -44,7 +44,7 @@ class OpenPlace:
         """Return the folder's path, also after a rename; None where it is gone or not found."""
         for place in (self._path.parent, *self._renamed()):
             try:
-                if _identity(place.stat()) == self._folder:
+                if identity(place.stat()) == self._folder:
                     return place
             except OSError:
                 continue
@@ -90,5 +90,6 @@ def sync_files(paths: Iterable[Path]) -> None:
             os.fsync(file.fileno())
 
 
-def _identity(status: os.stat_result) -> tuple[int, int]:
+def identity(status: os.stat_result) -> tuple[int, int]:
+    """Return device and inode, which identify a file or folder."""
     return status.st_dev, status.st_ino

@@ -57,7 +57,10 @@ def read_annotations(file: Path) -> Annotations:
     table = read_settings(file, advice="`zebro-lab annotate PHOTOS` writes one")
     template = _template(table.table("template")) if "template" in table else None
     clicks = table.table("clicks")
-    by_photo = {photo: _clicks(clicks.table(photo)) for photo in clicks.left}
+    points = {photo: clicks.table(photo) for photo in clicks.left}
+    by_photo = {
+        photo: {name: _pixel(own, name) for name in own.left} for photo, own in points.items()
+    }
     annotations = Annotations(template, by_photo, _corrections(table))
     table.finish()
     return annotations
@@ -81,10 +84,6 @@ def _template(table: SettingsTable) -> MarkedTop:
     except TrackingError as error:
         raise table.fault(str(error)) from error
     return MarkedTop(table.text("photo", least=1), corners, plate)
-
-
-def _clicks(table: SettingsTable) -> dict[str, Click]:
-    return {name: _pixel(table, name) for name in table.left}
 
 
 def _pixel(table: SettingsTable, key: str) -> Click:

@@ -186,11 +186,11 @@ def _of_folder(folder: Path, request: TimeRequest) -> PhotoSequence:
     left_out: Mapping[str, str] = {}
     times = _given_times(paths, request)
     if times is None:
-        left_out = _without_time(paths)
-        paths = tuple(path for path in paths if path.name not in left_out)
         # A file that is no picture has no EXIF either; its error is reported later.
         readable = [path for path in paths if upright_size(path) is not None]
-        times = _spread(readable, paths)
+        left_out = _without_time(readable)
+        paths = tuple(path for path in paths if path.name not in left_out)
+        times = _spread([path for path in readable if path.name not in left_out], paths)
     if request.clock is not None:
         times = _by_computer(times, request.clock)
     order = np.argsort(times.t, kind="stable")
@@ -200,9 +200,8 @@ def _of_folder(folder: Path, request: TimeRequest) -> PhotoSequence:
     return PhotoSequence(photos, ordered, source, folder, left_out)
 
 
-def _without_time(paths: tuple[Path, ...]) -> Mapping[str, str]:
+def _without_time(readable: Sequence[Path]) -> Mapping[str, str]:
     """Find the few pictures without EXIF time where most have one."""
-    readable = [path for path in paths if upright_size(path) is not None]
     without = [path for path in readable if exif_time(path) is None]
     if 2 * len(without) >= len(readable):
         return {}

@@ -53,9 +53,7 @@ def counted_from(
         zero = manifest.began.timestamp()
         what = f"the run's start, {manifest.start}"
     elif manifest is not None:
-        notes = (
-            unknown_start_note(f"give --clock (docs/tracking-howto.md) or --start, or {LATER}"),
-        )
+        notes = unknown_start("give --clock (docs/tracking-howto.md) or --start, or ")
     counted = PhotoTimes(times.t - zero, times.sd, times.source)
     if manifest is not None and not notes:
         notes = _outside_run(counted, manifest)
@@ -74,18 +72,15 @@ def counted_later(*, manifest: RunManifest | None, request: TimeRequest) -> Coun
     """
     notes = ()
     if manifest is not None and request.table is None:
-        notes = (unknown_start_note(f"give seconds since the run's start as --times, or {LATER}"),)
+        notes = unknown_start("give seconds since the run's start as --times, or ")
     return CountedTimes(None, "times of exposures as given", notes)
 
 
-LATER = "bring it to the run's clock with `validate --time-offset`"
-
-
-def unknown_start_note(advice: str) -> str:
-    """Format the note that the photographs' times are not tied to the run's."""
+def unknown_start(advice: str) -> tuple[str, ...]:
+    """Note that the photographs' times are not tied to the run's, and what to do about it."""
     return (
         "time is counted from the first photograph; when it was taken within the run is unknown: "
-        f"{advice}"
+        f"{advice}bring it to the run's clock with `validate --time-offset`",
     )
 
 
@@ -104,8 +99,8 @@ def _as_given(
         )
     if manifest is None or request.table is not None:
         return CountedTimes(times, times.source)
-    advice = LATER if request.interval is None else f"give --times, or {LATER}"
-    return CountedTimes(times, times.source, (unknown_start_note(advice),))
+    advice = "" if request.interval is None else "give --times, or "
+    return CountedTimes(times, times.source, unknown_start(advice))
 
 
 def _outside_run(counted: PhotoTimes, manifest: RunManifest) -> tuple[str, ...]:

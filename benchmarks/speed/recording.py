@@ -111,7 +111,8 @@ def measure(
 def report(manifest: RunManifest, share: float, size: int) -> None:
     """Print counters by stream, the share of a core, and bytes a sample."""
     print("| stream | received | lost | rejected | dropped |\n|---|---|---|---|---|")
-    for name, counters in manifest.counters.items():
+    read = {name: each for name, each in manifest.counters.items() if each["received"]}
+    for name, counters in read.items():
         rejected = sum(counters[key] for key in ("damaged", "repeated", "refused"))
         print(f"| {name} | {counters['received']} | {counters['lost']} | {rejected} | "
               f"{counters['dropped']} |")  # fmt: skip

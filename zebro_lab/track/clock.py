@@ -93,7 +93,7 @@ def _as_given(
 ) -> CountedTimes:
     if start is not None:
         raise SettingsError(
-            f"the photographs' times are not a camera clock's ({times.source}), which a moment "
+            f"these photographs' times are not a camera clock's ({times.source}), which a moment "
             "needs; leave it out",
             key="--start",
         )

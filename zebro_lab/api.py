@@ -33,9 +33,8 @@ from zebro_lab.report.request import ReportRequest
 from zebro_lab.report.stage import report
 from zebro_lab.robot.gait_request import GaitName, GaitRequest
 from zebro_lab.robot.leg_log import LegLog
-from zebro_lab.runs.folder import read_manifest
 from zebro_lab.runs.legs import read_leg_log
-from zebro_lab.runs.manifest import RunManifest
+from zebro_lab.runs.manifest import RunManifest, read_manifest
 from zebro_lab.track.file import TrackFile
 from zebro_lab.track.file import read_track as read_track_file
 from zebro_lab.track.request import MergedAs, TimeRequest, TrackRequest

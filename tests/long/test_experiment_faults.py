@@ -23,7 +23,8 @@ from zebro_lab.experiment.folder import ExperimentFolder
 from zebro_lab.experiment.journal import JOURNAL_FILE, read_journal
 from zebro_lab.experiment.request import RigRunRequest
 from zebro_lab.experiment.stage import run_experiment
-from zebro_lab.runs.folder import find_runs, read_manifest
+from zebro_lab.runs.folder import find_runs
+from zebro_lab.runs.manifest import read_manifest
 
 pytestmark = pytest.mark.long
 

@@ -25,7 +25,7 @@ docs/formats.md says more.
 def import_files(request: ImportRequest) -> None:
     """Convert files from other software to run folders: DIR/RUN/{run.json, log.mcap, track/}."""
     from zebro_lab.exchange.import_stage import import_run
-    from zebro_lab.runs.folder import read_manifest
+    from zebro_lab.runs.manifest import read_manifest
     from zebro_lab.terminal.progress import progress_bar
 
     with progress_bar() as watcher:

@@ -16,12 +16,13 @@ from zebro_lab.exchange.import_request import ImportRequest
 from zebro_lab.exchange.imported_rig import RigRun, rig_runs, write_rig_run
 from zebro_lab.exchange.imported_walk import ImportedWalk, write_imported_walk
 from zebro_lab.exchange.joint_log import read_joint_log
-from zebro_lab.files.errors import AlreadyExists, DataError, SettingsError
+from zebro_lab.files.errors import DataError, SettingsError
 from zebro_lab.files.source_names import joined_source, stated_source
 from zebro_lab.robot.imu_log import ImuLog, imu_of_table
 from zebro_lab.robot.leg_log import LegLog, legs_of_table
 from zebro_lab.robot.robot_file import RobotFile, read_robot_file
-from zebro_lab.runs.folder import run_path
+from zebro_lab.runs.folder import require_new, run_path
+from zebro_lab.runs.manifest import IMPORTED, RunManifest
 from zebro_lab.tables.mapped_columns import canonical_columns
 from zebro_lab.tables.table_files import read_table_file, table_stem
 from zebro_lab.track.foreign import (
@@ -112,21 +113,20 @@ def _walk(request: ImportRequest) -> tuple[ImportedWalk, tuple[str, ...]]:
     imu = None if request.imu is None else _imu(request.imu, request.columns)
     track = None if request.track is None else _track(request.track, request.columns, zero)
     first = legs.files[0]
-    sources = [stated_source(legs.source, first)]
+    sources = {LEGS: stated_source(legs.source, first)}
     if imu is not None:
-        sources.append(stated_source(imu.source, imu.files[0]))
-    walk = ImportedWalk(
+        sources[IMU] = stated_source(imu.source, imu.files[0])
+    manifest = RunManifest(
+        kind="walk",
         label=request.label or table_stem(first) or first.stem,
-        source=joined_source(sources),
-        start=start,
-        zero=zero,
-        legs=legs,
-        imu=imu,
-        track=track,
-        robot=robot,
         material=request.material,
         operator=request.operator,
+        source=joined_source(list(sources.values())),
+        start=start.isoformat(),
+        exit_status=IMPORTED,
+        sources=sources,
     )
+    walk = ImportedWalk(manifest, zero, legs, imu, track, robot)
     parts = [legs.notes, imu.notes if imu else (), track.track.notes if track else ()]
     notes = [*note, *(line for part in parts for line in part)]
     return walk, (*notes, *_apart(t - zero, imu, track, zero))
@@ -193,11 +193,10 @@ def _apart(
 
 
 def _require_new(data: Path, walk: ImportedWalk | None, rig: Sequence[RigRun]) -> None:
-    paths = [] if walk is None else [run_path(data, "walk", walk.label, walk.start)]
-    paths += [run_path(data, "slip-rig", run.label, run.start) for run in rig]
+    manifests = [each.manifest for each in (*([walk] if walk else []), *rig)]
+    paths = [run_path(data, each.kind, each.label, each.began) for each in manifests]
     for path in paths:
-        if path.exists():
-            raise AlreadyExists(f"{path} exists already; give the run another label")
+        require_new(path)
     if len(set(paths)) < len(paths):
         twice = next(path for path in paths if paths.count(path) > 1)
         raise DataError(f"two runs would both be written to {twice}; give them different names")

@@ -26,7 +26,6 @@ from rig.slip_rig.simulated_board import SimulatedBoard
 from rig.slip_rig.sweep import SweepPlan
 from rig.twins import simulated_rig_devices
 from zebro_lab.files.errors import SettingsError
-from zebro_lab.mcap.stream_views import StreamView, rig_views
 from zebro_lab.recording.devices import profile_text
 from zebro_lab.runs.manifest import RIG
 
@@ -61,10 +60,6 @@ class RigAtHand:
         """Radii of the discs [m]."""
         profile = self.bench.profile
         return {"radius_leg": profile.radius_leg, "radius_ground": profile.radius_ground}
-
-    def views(self) -> dict[str, StreamView]:
-        """Return new converters of its streams to display messages of a log."""
-        return rig_views(self.bench.profile)
 
     def load_setter(self, setting: LoadSetting, control: Control) -> LoadSetter:
         """Return the setter of the normal force: the operator or a driven axis, real or simulated.

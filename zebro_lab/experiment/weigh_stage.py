@@ -6,8 +6,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from rig.experiment.control import Control
-from rig.experiment.load import HandShaft
-from rig.experiment.simulated_load import SimulatedOperator
+from rig.experiment.plan import LoadSetting
 from rig.experiment.weigh import GainCheck, Weighing, check_gain, weigh
 from rig.safety import require_within
 from zebro_lab.experiment.request import WeighRequest
@@ -59,11 +58,7 @@ def weigh_masses(
                 force, rig.bench.profile.limits.normal_force, quantity="weight", unit="N"
             )
         # No tolerance: the check is to find the error of the reading.
-        load = (
-            HandShaft(control, tolerance=float("inf"))
-            if rig.twin is None
-            else SimulatedOperator(rig.twin)
-        )
+        load = rig.load_setter(LoadSetting("hand", math.inf, patience=0.0), control)
         with rig.bench:
             weighing = weigh(
                 rig.bench, forces, load=load, prompt=prompt, clock=rig.clock, period=rig.period

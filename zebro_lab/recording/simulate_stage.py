@@ -12,7 +12,6 @@ import can
 import numpy as np
 import tomlkit
 
-from model.gait.reference import LegReference
 from rig.clock import SYSTEM_CLOCK, Clock
 from rig.imu.profile import load_imu_profile
 from rig.imu.simulated import SimulatedImu
@@ -63,7 +62,7 @@ def serve_zebro(request: ZebroTwinRequest) -> Iterator[Served]:
     """
     profile = load_leg_profile(request.profile)
     rng = np.random.default_rng(request.seed)
-    gait = _gait(request.play)
+    gait = default_gait() if request.play is None else read_leg_log(request.play).reference
     imperfections = RobotImperfections(jitter=request.jitter, pause_probability=request.pause)
     faults = Faults(flip=request.flip, drop=request.drop, garbage=request.garbage)
     if profile.layout == "can":
@@ -170,10 +169,6 @@ def _bus(
         raise SettingsError(f"cannot open {request.can}: {error}", key="--can") from error
     with bus:
         yield bus, request.can
-
-
-def _gait(play: Path | None) -> LegReference:
-    return default_gait() if play is None else read_leg_log(play).reference
 
 
 def wait_until(

@@ -19,7 +19,7 @@ from zebro_lab.files.shown_text import shown
 from zebro_lab.report.numbers import number
 from zebro_lab.report.pictures import Picture, embed
 from zebro_lab.report.sources import Part, Run, Sources
-from zebro_lab.runs.folder import MANIFEST_FILE
+from zebro_lab.runs.manifest import MANIFEST_FILE
 
 PAGES = "pages"
 TEMPLATE, STYLE = "report.html.jinja", "report.css"

@@ -15,7 +15,8 @@ from zebro_lab.files.errors import DataError, NotFound
 from zebro_lab.files.opening import parsing, read_text
 from zebro_lab.files.replacement import settle
 from zebro_lab.report.pictures import VALIDATION, lies_in, place_of
-from zebro_lab.runs.folder import MANIFEST_FILE, find_runs
+from zebro_lab.runs.folder import find_runs
+from zebro_lab.runs.manifest import MANIFEST_FILE
 from zebro_lab.walk.folder import PREDICTION
 
 MANIFEST, SUMMARY = "manifest.json", "summary.csv"

@@ -48,14 +48,14 @@ def annotate(request: AnnotateRequest) -> Annotations:
     if request.added is not None and request.out.exists() and request.out.samefile(request.added):
         raise AlreadyExists(f"{request.out} is read as --from; name another --out")
     names = photo_names(request.photos)
-    new = Annotations(_template(request, names), _clicks(request, names), _corrections(request))
+    new = Annotations(_template(request), _clicks(request), _corrections(request))
     if request.added is not None:
         new = new.merged(read_annotations(request.added))
     _require_photos(new, names)
     before = read_annotations(request.out) if request.out.exists() else Annotations()
-    said = before.merged(new)
-    atomic_write_text(request.out, render_annotations(said))
-    return said
+    merged = before.merged(new)
+    atomic_write_text(request.out, render_annotations(merged))
+    return merged
 
 
 def photo_names(origin: Path) -> tuple[str, ...]:
@@ -90,7 +90,7 @@ def draw_grid(origin: Path, photo: str, file: Path, *, around: str | None = None
     from zebro_lab.plots import save
     from zebro_lab.plots.pixel_grid import pixel_grid
 
-    _known(photo, photo_names(origin))
+    _require_photo(photo, photo_names(origin))
     path = origin / photo if origin.is_dir() else origin
     target = require_own(file, GRID, inputs=(path,))
     if origin.is_dir() and target.parent.samefile(origin):
@@ -105,12 +105,11 @@ def draw_grid(origin: Path, photo: str, file: Path, *, around: str | None = None
     atomic_write_bytes(target, drawn.getvalue())
 
 
-def _template(request: AnnotateRequest, names: Sequence[str]) -> MarkedTop | None:
+def _template(request: AnnotateRequest) -> MarkedTop | None:
     if request.corners is None:
         return None
     if request.photo is None:
         raise SettingsError("needed: the photograph in which they are", key="--photo")
-    _known(request.photo, names)
     corners = tuple(_pair(text, "--corners") for text in request.corners.split())
     if len(corners) != 4:
         raise SettingsError(
@@ -126,7 +125,7 @@ def _plate(request: AnnotateRequest) -> TopPlate:
     if request.plate is None:
         described = RobotFile() if request.robot is None else read_robot_file(request.robot)
         length, width, height = described.robot.body_size
-        return _with_margin(length, width, height / 2, margin)
+        return TopPlate(length, width, height / 2, margin=margin, front_margin=margin)
     sides, _, height = request.plate.partition("@")
     length, _, width = sides.partition("x")
     if not (length and width and height):
@@ -135,21 +134,16 @@ def _plate(request: AnnotateRequest) -> TopPlate:
             key="--plate",
         )
     sizes = [quantity_to_si(text, "m") for text in (length, width, height)]
-    return _with_margin(sizes[0], sizes[1], sizes[2], margin)
+    return TopPlate(*sizes, margin=margin, front_margin=margin)
 
 
-def _with_margin(length: float, width: float, height: float, margin: float) -> TopPlate:
-    return TopPlate(length, width, height, margin=margin, front_margin=margin)
-
-
-def _clicks(request: AnnotateRequest, names: Sequence[str]) -> Mapping[str, Mapping[str, Click]]:
+def _clicks(request: AnnotateRequest) -> Mapping[str, Mapping[str, Click]]:
     clicks: dict[str, dict[str, Click]] = {}
     for text in request.clicks:
         place, _, pixel = text.rpartition("=")
         photo, _, name = place.rpartition(":")
         if not (photo and name):
             raise SettingsError(f"'{text}'; expected PHOTO:NAME=U,V", key="--click")
-        _known(photo, names)
         clicks.setdefault(photo, {})[name] = _pair(pixel, "--click")
     return clicks
 
@@ -184,18 +178,16 @@ def _numbers(text: str, key: str) -> list[float]:
         raise SettingsError(f"'{text}' holds what is no number", key=key) from error
 
 
-def _require_photos(said: Annotations, names: Sequence[str]) -> None:
-    if said.template is not None:
-        _known(said.template.photo, names)
-    for photo in said.clicks:
-        _known(photo, names)
-    for correction in said.corrections:
-        photos = correction.photos if isinstance(correction, Order) else (correction.photo,)
-        for photo in photos:
-            _known(photo, names)
+def _require_photos(annotations: Annotations, names: Sequence[str]) -> None:
+    template = annotations.template
+    photos = [*([template.photo] if template else []), *annotations.clicks]
+    for each in annotations.corrections:
+        photos += each.photos if isinstance(each, Order) else (each.photo,)
+    for photo in photos:
+        _require_photo(photo, names)
 
 
-def _known(photo: str, names: Sequence[str]) -> None:
+def _require_photo(photo: str, names: Sequence[str]) -> None:
     # Exposures and frames are known only after tracking: walk.jpg#3 is one of walk.jpg.
     if photo in names or photo.rpartition(_EXPOSURE)[0] in names:
         return

@@ -15,7 +15,7 @@ from zebro_lab.files.names import PATH_CSV
 from zebro_lab.files.provenance import file_hashes
 from zebro_lab.files.replacement import settle
 from zebro_lab.files.result_folder import require_replaceable
-from zebro_lab.runs.counted_once import content_hash, first_of_each, told_once
+from zebro_lab.runs.counted_once import content_hash, duplicates_note, first_of_each
 from zebro_lab.runs.recorded_legs import is_recorded
 from zebro_lab.runs.recorded_tilt import read_recorded_tilt
 from zebro_lab.track.file import read_track
@@ -82,7 +82,7 @@ def validate(request: ValidateRequest, watcher: Watcher) -> Validated:
     inputs = [path for pair in asked for path in pair]
     require_replaceable(request.folder, VALIDATION, inputs=inputs)
     pairs, repeated = first_of_each(asked, key=_content)
-    told = told_once("walks", [(one[0], other[0]) for one, other in repeated])
+    told = duplicates_note("walks", [(one[0], other[0]) for one, other in repeated])
     rng = np.random.default_rng(request.seed)
     shown, files, sources = [], [], []
     names = _names([predicted for predicted, _ in pairs])

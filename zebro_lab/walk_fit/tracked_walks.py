@@ -15,7 +15,7 @@ from zebro_lab.calibration.walks_folder import describe_legs
 from zebro_lab.files.errors import DataError, NotFound, SettingsError
 from zebro_lab.files.replacement import settle
 from zebro_lab.robot.robot_file import ROBOT_FILE, RobotFile, read_robot_file
-from zebro_lab.runs.counted_once import array_hash, first_of_each, told_once
+from zebro_lab.runs.counted_once import array_hash, duplicates_note, first_of_each
 from zebro_lab.runs.legs import read_leg_log
 from zebro_lab.runs.recorded_legs import is_recorded
 from zebro_lab.runs.recorded_tilt import read_recorded_tilt
@@ -87,7 +87,7 @@ def read_walks(
                 file=walk.robot.file,
             )
     walks, repeated = first_of_each(read, key=_content)
-    told = told_once("walks", [(one.name, other.name) for one, other in repeated])
+    told = duplicates_note("walks", [(one.name, other.name) for one, other in repeated])
     walks[:1] = [replace(walk, notes=(*walk.notes, *told)) for walk in walks[:1]]
     names = [walk.name for walk in walks]
     return [

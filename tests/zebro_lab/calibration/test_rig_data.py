@@ -10,10 +10,10 @@ import pandas as pd
 import pytest
 
 from model.slip import convert_slip
+from support.table_runs import slip_rig_run
 from zebro_lab.calibration.rig_data import RigData, read_rig_data
 from zebro_lab.files.errors import DataError, SettingsError
 from zebro_lab.mcap.slip_rig_log import SlipRigTable
-from zebro_lab.runs.table_run import write_slip_rig_run
 
 RADII = '[constants]\nradius_leg = "35 mm"\nradius_ground = 0.12\n'
 N = 40
@@ -139,7 +139,7 @@ def test_radii_may_be_columns(tmp_path, plain):
 
 def test_run_folder_reads_as_its_table(tmp_path, plain):
     table = SlipRigTable(*speeds().to_numpy().T)
-    folder = write_slip_rig_run(
+    folder = slip_rig_run(
         tmp_path / "DATA", table, label="rig", material="steel", operator="a", source="sim:test",
         start=datetime(2026, 1, 2, tzinfo=UTC), radius_leg=0.035, radius_ground=0.12,
     )  # fmt: skip
@@ -153,7 +153,7 @@ def test_run_folder_reads_as_its_table(tmp_path, plain):
 
 def test_row_conditions_and_load_cell_apply_to_run_folders(tmp_path):
     table = SlipRigTable(*speeds().to_numpy().T)
-    folder = write_slip_rig_run(
+    folder = slip_rig_run(
         tmp_path / "DATA", table, label="rig", material="steel", operator="a", source="sim:test",
         start=datetime(2026, 1, 2, tzinfo=UTC), radius_leg=0.035, radius_ground=0.12,
     )  # fmt: skip

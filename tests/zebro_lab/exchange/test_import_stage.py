@@ -22,9 +22,8 @@ from zebro_lab.exchange.import_stage import import_run
 from zebro_lab.files.errors import AlreadyExists, DataError, NotFound, SettingsError
 from zebro_lab.files.provenance import file_hash
 from zebro_lab.mcap.raw_log import read_raw_log
-from zebro_lab.runs.folder import read_manifest
 from zebro_lab.runs.legs import read_leg_log
-from zebro_lab.runs.manifest import profile_file
+from zebro_lab.runs.manifest import profile_file, read_manifest
 from zebro_lab.runs.stage import list_runs
 from zebro_lab.track.file import read_track
 from zebro_lab.validation.stage import pairs_of_run

@@ -65,7 +65,7 @@ def test_an_experiment_is_not_begun_twice_nor_resumed_with_another_plan(lab, pla
     with pytest.raises(AlreadyExists, match="--resume"):
         lab.run(plan, data)
     plan.write_text(plan.read_text() + "# changed\n")
-    with pytest.raises(SettingsError, match="not the plan that was begun here"):
+    with pytest.raises(SettingsError, match="was started with another plan"):
         lab.run(plan, data, resume=True)
 
 
@@ -73,7 +73,7 @@ def test_an_emergency_stop_stays_latched_on_disk_until_it_is_reset(lab, plan, tm
     data, control = tmp_path / "data", Control()
     stop = lab.StopAfter(2, lambda: control.stop.request(StopCategory.EMERGENCY, "planted"))
     assert lab.run(plan, data, watcher=stop, control=control).reason == "emergency stop: planted"
-    with pytest.raises(SettingsError, match="latched; look after the rig"):
+    with pytest.raises(SettingsError, match="latched; inspect the rig"):
         lab.run(plan, data, resume=True)
     assert lab.run(plan, data, resume=True, reset_emergency=True).completed
     assert lab.run(plan, data, resume=True).attempts == 0  # the latch is gone

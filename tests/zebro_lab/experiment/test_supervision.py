@@ -17,8 +17,8 @@ from rig.experiment.supervision import supervised
 from zebro_lab.experiment import folder as experiment_folder
 from zebro_lab.experiment.folder import ExperimentFolder
 from zebro_lab.experiment.journal import JOURNAL_FILE, JournalWriter
-from zebro_lab.recording.recorder import RunDescription
-from zebro_lab.runs.folder import find_runs, read_manifest
+from zebro_lab.runs.folder import find_runs
+from zebro_lab.runs.manifest import RunManifest, read_manifest
 
 PATIENCE = 30.0
 """Longest time that a run of the small plan may take on a busy machine [s]."""
@@ -88,10 +88,10 @@ def folder_without_writer(data, monkeypatch, *, in_step):
         return get(self, *args, **kwargs)
 
     monkeypatch.setattr(queue.Queue, "get", fail)
-    description = RunDescription("slip-rig", "test", "sim:rig")
+    manifest = RunManifest(kind="slip-rig", label="test", source="sim:rig")
     with (
         supervised(Control()),
-        ExperimentFolder(data, description=description, views=dict, in_step=in_step) as folder,
+        ExperimentFolder(data, manifest=manifest, profiles={}, in_step=in_step) as folder,
     ):
         folder._thread.join(PATIENCE)
         assert not folder._thread.is_alive()
@@ -112,14 +112,14 @@ def test_nobody_waits_for_a_writer_that_is_dead(tmp_path, monkeypatch):
         contextlib.suppress(SinkFailed),  # which leaving the folder raises too
         folder_without_writer(tmp_path, monkeypatch, in_step=True) as folder,
     ):
-        require_well, looks = folder._require_well, iter(range(20))
+        require_well, looks = folder._require_working, iter(range(20))
 
         def look():
             if next(looks, None) is None:
                 raise WaitsOn
             require_well()
 
-        monkeypatch.setattr(folder, "_require_well", look)
+        monkeypatch.setattr(folder, "_require_working", look)
         with pytest.raises(SinkFailed, match="the writer has ended"):
             folder.close_run(None, reason="failed")
         monkeypatch.undo()
@@ -179,10 +179,10 @@ def test_a_full_queue_cannot_block_the_stop(tmp_path, monkeypatch):
     monkeypatch.setattr(JournalWriter, "append", hang)
     monkeypatch.setattr(experiment_folder, "MOST_WAITING", 4)
     monkeypatch.setattr(experiment_folder, "JOIN_LIMIT", 0.2)
-    description = RunDescription("slip-rig", "test", "sim:rig")
+    manifest = RunManifest(kind="slip-rig", label="test", source="sim:rig")
 
     def overfill():
-        with ExperimentFolder(tmp_path, description=description, views=dict) as folder:
+        with ExperimentFolder(tmp_path, manifest=manifest, profiles={}) as folder:
             for number in range(10):
                 folder.event("note", str(number))
                 assert entered.wait(PATIENCE)

@@ -15,6 +15,7 @@ import pytest
 from PIL import Image
 from PIL.PngImagePlugin import PngInfo
 
+from support.table_runs import slip_rig_run
 from zebro_lab.files import replacement
 from zebro_lab.files.errors import ZebroLabError
 from zebro_lab.files.result_folder import require_replaceable
@@ -22,7 +23,6 @@ from zebro_lab.mcap.slip_rig_log import SlipRigTable
 from zebro_lab.report.request import ReportRequest
 from zebro_lab.report.stage import report
 from zebro_lab.runs.plot_stage import plot_run
-from zebro_lab.runs.table_run import write_slip_rig_run
 from zebro_lab.track.annotate_stage import draw_grid
 from zebro_lab.track.folder import TRACKED, read_track_manifest, track_folder
 from zebro_lab.validation.compare.request import CompareRequest
@@ -53,7 +53,7 @@ def run(tmp_path) -> Path:
         np.arange(n) * 1e-3, 12 + rng.normal(size=n) / 10, 2 + rng.normal(size=n) / 10,
         6 + rng.normal(size=n) / 10, rng.normal(size=n),
     )  # fmt: skip
-    return write_slip_rig_run(
+    return slip_rig_run(
         tmp_path / "data", table, label="sweep", material="POM", operator="a", source="real",
         start=START, radius_leg=0.035, radius_ground=0.12,
     )  # fmt: skip
@@ -76,16 +76,14 @@ def void(_: object) -> None:
     """Forget what a stage returns."""
 
 
-class Track:
-    """A track of two poses, told apart by where it begins."""
-
-    def __init__(self, x: float) -> None:
-        self.columns = {"t_s": [0.0, 1.0], "x_m": [x, x + 1.0], "y_m": [0.0, 0.0]}
-        self.tum = (f"0 {x} 0 0 0 0 0 1", f"1 {x + 1} 0 0 0 0 0 1")
+def path_from(x: float) -> dict[str, object]:
+    """Return the table and the TUM lines of a path that begins at x [m]."""
+    columns = {"t_s": [0.0, 1.0], "x_m": [x, x + 1.0], "y_m": [0.0, 0.0]}
+    return {"columns": columns, "tum": (f"0 {x} 0 0 0 0 0 1", f"1 {x + 1} 0 0 0 0 0 1")}
 
 
 def write_track(out: Path, x: float) -> None:
-    with track_folder(out, Track(x), source="real", settings={"x": x}, inputs={}, report={}):
+    with track_folder(out, **path_from(x), source="real", settings={"x": x}, inputs={}, report={}):
         pass
 
 
@@ -313,7 +311,7 @@ def test_a_linked_folder_is_replaced_behind_its_link(tmp_path):
 
 def test_a_manifest_that_names_a_file_of_a_foreign_encoding_is_read_back(tmp_path):
     with track_folder(
-        tmp_path / "track", Track(0.0), source="real", settings={}, inputs={"caf\udce9": "0"},
+        tmp_path / "track", **path_from(0.0), source="real", settings={}, inputs={"caf\udce9": "0"},
         report={},
     ):  # fmt: skip
         pass
@@ -364,7 +362,7 @@ def test_drafts_of_killed_writers_are_removed_and_those_of_living_ones_kept(tmp_
     (tmp_path / ".track.0123abcd.part").mkdir()
     (tmp_path / ".tracks.0123abcd.part").mkdir()
     with track_folder(
-        tmp_path / "track", Track(0.0), source="real", settings={}, inputs={}, report={}
+        tmp_path / "track", **path_from(0.0), source="real", settings={}, inputs={}, report={}
     ) as draft:
         write_track(tmp_path / "track", 1.0)
         assert draft.is_dir()

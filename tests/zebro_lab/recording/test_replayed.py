@@ -8,6 +8,7 @@ import pytest
 
 from rig.errors import ProfileError
 from rig.openers import resolve
+from support.table_runs import slip_rig_run
 from support.watchers import Onlooker
 from zebro_lab.files.errors import DataError, NotFound, SettingsError
 from zebro_lab.mcap.raw_log import read_raw_log
@@ -17,7 +18,6 @@ from zebro_lab.recording.replayed import read_replay
 from zebro_lab.recording.request import RecordRequest
 from zebro_lab.recording.stage import record
 from zebro_lab.runs.folder import read_slip_rig_run
-from zebro_lab.runs.table_run import write_slip_rig_run
 
 
 @pytest.fixture
@@ -27,7 +27,7 @@ def make(tmp_path):
     def write(source):
         t = np.arange(100) * 2e-3
         table = SlipRigTable(t, 12 + t, 3.5 - t, 6 + np.sin(t), np.cos(t))
-        return write_slip_rig_run(
+        return slip_rig_run(
             tmp_path / "first", table, label="a", material="", operator="", source=source,
             start=datetime(2026, 1, 1, tzinfo=UTC), radius_leg=0.035, radius_ground=0.12,
         )  # fmt: skip

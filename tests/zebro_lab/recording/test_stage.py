@@ -23,17 +23,17 @@ from rig.zebro.profile import load_leg_profile
 from support.watchers import RecordWatcher
 from zebro_lab.files.errors import DataError, RecordingError
 from zebro_lab.mcap.raw_log import read_raw_log
-from zebro_lab.mcap.stream_views import LegsView
 from zebro_lab.recording import stage as module
-from zebro_lab.recording.devices import OpenDevices, default_gait
-from zebro_lab.recording.recorder import RunDescription, RunRecorder
+from zebro_lab.recording import status
+from zebro_lab.recording.devices import OpenDevices, default_gait, profile_text
+from zebro_lab.recording.recorder import RunRecorder
 from zebro_lab.recording.request import RecordRequest, ZebroTwinRequest
 from zebro_lab.recording.simulate_stage import serve_zebro
 from zebro_lab.recording.stage import record
 from zebro_lab.robot.gait_player import LEAD_IN
 from zebro_lab.runs.folder import read_slip_rig_run
 from zebro_lab.runs.legs import read_leg_log
-from zebro_lab.runs.manifest import profile_file
+from zebro_lab.runs.manifest import RunManifest, profile_file
 from zebro_lab.runs.stage import list_runs
 
 LEGS = load_leg_profile("zebro-100-serial")
@@ -198,11 +198,11 @@ def wait_until(met, limit=20.0):
 
 def test_an_unplugged_robot_is_a_gap_that_is_counted_and_the_run_goes_on(tmp_path):
     twin = robot_twin(LEGS, default_gait(), rng=np.random.default_rng(0))
-    description = RunDescription(kind="walk", label="gap", source=twin.source)
+    manifest = RunManifest(kind="walk", label="gap", source=twin.source)
     with PortServer(twin) as server:
         legs = leg_driver(LEGS, leg_link(LEGS, server.port, source=twin.source))
-        views = {"legs": LegsView("legs", profile=LEGS)}
-        recorder = RunRecorder(tmp_path, description=description, views=views)
+        profiles = {"legs": (LEGS.name, profile_text(LEGS.name))}
+        recorder = RunRecorder(tmp_path, manifest=manifest, profiles=profiles)
         with (
             legs,
             recorder,
@@ -289,14 +289,14 @@ def given(monkeypatch):
 
     def give(*streams, **changes):
         devices = [Device(s, **changes) for s in streams]
-        views = {s.name: LegsView(s.name, profile=LEGS) for s in streams}
+        profiles = {s.name: (LEGS.name, profile_text(LEGS.name)) for s in streams}
 
         @contextmanager
         def opened(_request):
             for device in devices:
                 device.stream.__enter__()
             try:
-                yield OpenDevices(tuple(devices), views, {})
+                yield OpenDevices(devices, profiles)
             finally:
                 for device in devices:
                     device.stream.__exit__(None, None, None)
@@ -333,7 +333,7 @@ def test_the_duration_counts_from_the_first_sample_of_the_stream_that_begins_las
 
 
 def test_a_device_without_a_first_sample_ends_a_run_with_a_duration(tmp_path, given, monkeypatch):
-    monkeypatch.setattr(module, "FIRST_SAMPLE", 0.3, raising=False)
+    monkeypatch.setattr(status, "FIRST_SAMPLE", 0.3)
     given(Legs("legs"), Legs("silent", late=1e6))
     with pytest.raises(RecordingError, match=r"no sample of silent within 0\.3 s"):
         record(RecordRequest("x", tmp_path, zebro="sim", duration=0.2), RecordWatcher())

@@ -4,11 +4,13 @@
 import json
 import os
 from datetime import UTC, datetime, timedelta, timezone
+from importlib.metadata import version
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from support.table_runs import slip_rig_run
 from zebro_lab.calibration.rig_data import read_rig_data
 from zebro_lab.files.errors import AlreadyExists, DataError, NotFound
 from zebro_lab.main import app
@@ -16,8 +18,8 @@ from zebro_lab.mcap.cdr import CdrWriter
 from zebro_lab.mcap.message_log import MessageLog
 from zebro_lab.mcap.ros_messages import Schema
 from zebro_lab.mcap.slip_rig_log import SCHEMA_NAME, SCHEMA_TEXT, TOPIC, SlipRigTable
-from zebro_lab.runs.folder import read_manifest, read_slip_rig_run
-from zebro_lab.runs.table_run import write_slip_rig_run
+from zebro_lab.runs.folder import read_slip_rig_run
+from zebro_lab.runs.manifest import read_manifest
 from zebro_lab.terminal.ending import run as run_app
 
 START = datetime(2026, 3, 4, 5, 6, 7, tzinfo=UTC)
@@ -38,7 +40,7 @@ def make_run(data_dir: Path, n: int = 200, **change) -> Path:
         "label": "Delrin, steel", "material": "POM on steel", "operator": "a",
         "source": "sim:noise", "start": START, "radius_leg": 0.035, "radius_ground": 0.12,
     }  # fmt: skip
-    return write_slip_rig_run(data_dir, make_table(n), **(settings | change))
+    return slip_rig_run(data_dir, make_table(n), **(settings | change))
 
 
 def edit(folder: Path, **change) -> None:
@@ -73,7 +75,7 @@ def test_a_run_of_an_earlier_version_is_read_to_the_last_bit(tmp_path):
 
 
 def test_manifest_tells_what_was_recorded(tmp_path):
-    folder = make_run(tmp_path, 200, commit="abc")
+    folder = make_run(tmp_path, 200)
     manifest = read_manifest(folder)
     assert folder.name == "20260304T050607Z_slip-rig_Delrin-steel"
     assert sorted(path.name for path in folder.iterdir()) == ["log.mcap", "profiles", "run.json"]
@@ -82,7 +84,7 @@ def test_manifest_tells_what_was_recorded(tmp_path):
     )  # fmt: skip
     assert manifest.constants == {"radius_leg": 0.035, "radius_ground": 0.12}
     assert manifest.streams == {"/board/raw": 200}
-    assert manifest.software["commit"] == "abc"
+    assert manifest.software["version"] == version("zebro-lab")
     assert datetime.fromisoformat(manifest.stop) - START == timedelta(seconds=0.199)
 
 

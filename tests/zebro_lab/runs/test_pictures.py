@@ -11,7 +11,8 @@ from support.watchers import Onlooker
 from zebro_lab.files.errors import NotFound, SettingsError
 from zebro_lab.recording.request import RecordRequest
 from zebro_lab.recording.stage import record
-from zebro_lab.runs.folder import exclude_run, read_slip_rig_run
+from zebro_lab.runs.exclusion import exclude_run
+from zebro_lab.runs.folder import read_slip_rig_run
 from zebro_lab.runs.pictures import extremes, raw_streams
 from zebro_lab.runs.plot_stage import plot_run
 from zebro_lab.runs.signals import Event, Panel, RunSignals, find_gaps, read_signals

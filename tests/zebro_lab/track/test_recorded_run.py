@@ -13,13 +13,11 @@ import pytest
 
 from rig.clock import ManualClock
 from rig.device import Sample
-from rig.zebro.profile import load_leg_profile
 from support.synthetic import with_time_stamp
 from tracking.images import clock_picture
-from zebro_lab.mcap.stream_views import LegsView
 from zebro_lab.recording.devices import profile_text
-from zebro_lab.recording.recorder import RunDescription, RunRecorder
-from zebro_lab.runs.folder import read_manifest
+from zebro_lab.recording.recorder import RunRecorder
+from zebro_lab.runs.manifest import RunManifest, read_manifest
 
 WALK = Path(__file__).parents[3] / "datasets/walk-sim"
 PROFILE = "zebro-100-serial"
@@ -38,12 +36,15 @@ def recorded(tmp_path_factory) -> Path:
         shutil.copy(WALK / f"photos/simulated_{number:02d}.jpg", folder / "photos")
     legs = pd.read_csv(WALK / "legs.csv").query(f"t < {2 * SOME}")
     counts = legs[[f"count{leg}" for leg in range(1, 7)]].to_numpy()
-    description = RunDescription(
-        kind="walk", label="circle", source="sim:walk-sim", sources={"legs": "sim:walk-sim"},
+    clock = ManualClock()
+    recorder = RunRecorder(
+        folder / "data", clock=clock,
+        manifest=RunManifest(
+            kind="walk", label="circle", source="sim:walk-sim", sources={"legs": "sim:walk-sim"}
+        ),
         profiles={"legs": (PROFILE, profile_text(PROFILE))},
     )  # fmt: skip
-    views, clock = {"legs": LegsView("legs", profile=load_leg_profile(PROFILE))}, ManualClock()
-    with RunRecorder(folder / "data", description=description, views=views, clock=clock) as run:
+    with recorder as run:
         run.write("legs", [
             Sample(t, t, n, tuple(row))
             for n, (t, row) in enumerate(zip(legs["t"].tolist(), counts.tolist(), strict=True))

@@ -112,7 +112,7 @@ def write_kit(out: Path, *, paper: str = "a4") -> tuple[Path, ...]:
     pages = kit_pages(paper)
     if (out / FLOOR_FILE).exists():
         raise AlreadyExists(
-            f"{out / FLOOR_FILE} exists already and may hold what a tape said; name another --out"
+            f"{out / FLOOR_FILE} exists already and may hold measured positions; name another --out"
         )
     drawn = BytesIO()
     save_pages(pages, drawn)
@@ -134,5 +134,5 @@ def _require_same(file: Path, content: bytes) -> None:
 
 
 _HEADING = """\
-The floor's markers. Replace x, y and yaw_deg by what the tape says; delete what is not laid.
-Markers as `zebro-lab camera kit` prints them; the places are an advice, not a measurement."""
+The floor's markers. Replace x, y and yaw_deg by what was measured; delete markers not used.
+Markers as `zebro-lab camera kit` prints them; the positions are a suggestion, not measured."""

@@ -14,7 +14,7 @@ import numpy as np
 from model.errors import DomainError
 from model.gait.quantised import QuantisedLog
 from model.gait.reference import LegReference
-from model.poses import Poses
+from model.poses import Poses, moved_onto
 from model.robot import N_LEGS, Robot
 from model.slip.law import Array
 from model.walk.dynamics import DynamicsOptions
@@ -353,15 +353,10 @@ def anchored(
             f"the known pose is of {at:g} s, but paths run from {paths.t[0]:g} to {paths.t[-1]:g} s"
         )
     here = states_at(paths, np.array([at]))[:, 0]
-    wanted = np.broadcast_to(pose, here.shape)
+    wanted = pose
     if covariance is not None:
         wanted = rng.multivariate_normal(pose, covariance, size=len(here), method="eigh")
-    turn = wanted[:, 2] - here[:, 2]
-    away = paths.position - here[:, None, :2]
-    c, s = np.cos(turn)[:, None], np.sin(turn)[:, None]
-    x = wanted[:, :1] + c * away[..., 0] - s * away[..., 1]
-    y = wanted[:, 1:2] + s * away[..., 0] + c * away[..., 1]
-    return Poses(paths.t, np.stack([x, y], axis=-1), paths.yaw + turn[:, None])
+    return Poses.of_states(paths.t, moved_onto(paths.states, here, wanted))
 
 
 def states_at(paths: Poses, t: Array) -> Array:

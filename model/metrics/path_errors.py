@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from model.metrics.alignment import align
 from model.metrics.turning import fitted_radius, mean_yaw_rate
-from model.poses import Poses, overlap, travel_direction, wrap
+from model.poses import Poses, overlap, relative, travel_direction, wrap
 from model.slip.law import Array
 
 DISTANCES = (0.25, 0.5, 1.0)  # m over which relative errors are taken
@@ -187,10 +187,10 @@ def relative_error(predicted: Poses, tracked: Poses, *, distance: float) -> Rela
     start, end = pairs_by_distance(tracked.travelled, distance)
     if len(start) == 0 or not (predicted.has_yaw and tracked.has_yaw):
         return RelativeError(distance, len(start), float("nan"), float("nan"))
-    seen, seen_turn = _relative_motion(tracked, start, end)
-    said, said_turn = _relative_motion(predicted, start, end)
-    error = np.linalg.norm(said - seen, axis=1)  # a rotation of the frame does not change the norm
-    return RelativeError(distance, len(start), _rms(error), _rms(wrap(said_turn - seen_turn)))
+    moves = (relative(poses.states[end], poses.states[start]) for poses in (predicted, tracked))
+    shift, turn = np.split(np.subtract(*moves), [2], axis=1)
+    error = np.linalg.norm(shift, axis=1)  # a rotation of the frame does not change the norm
+    return RelativeError(distance, len(start), _rms(error), _rms(wrap(turn)))
 
 
 def pairs_by_distance(travelled: Array, distance: float) -> tuple[Indices, Indices]:
@@ -208,14 +208,6 @@ def pairs_by_distance(travelled: Array, distance: float) -> tuple[Indices, Indic
     end = gap.argmin(axis=1)
     start = np.flatnonzero(gap[np.arange(len(travelled)), end] <= CLOSE * distance)
     return start, end[start]
-
-
-def _relative_motion(poses: Poses, start: Indices, end: Indices) -> tuple[Array, Array]:
-    """Return shift and turn from poses to later ones, in the frames of the first."""
-    step = poses.position[end] - poses.position[start]
-    c, s = np.cos(poses.yaw[start]), np.sin(poses.yaw[start])
-    forward, left = c * step[:, 0] + s * step[:, 1], c * step[:, 1] - s * step[:, 0]
-    return np.column_stack([forward, left]), poses.yaw[end] - poses.yaw[start]
 
 
 def _rms(values: Array) -> float:

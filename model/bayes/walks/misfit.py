@@ -20,7 +20,7 @@ from model.bayes.walks.tilt import TiltMisfit, TiltSeen
 from model.errors import InsufficientData
 from model.gait.quantised import QuantisedLog
 from model.gait.reference import LegReference
-from model.poses import Poses, wrap
+from model.poses import Poses, moved_onto, wrap
 from model.predict import (
     FINE,
     LegState,
@@ -216,7 +216,8 @@ class WalkMisfit:
 
     def _difference(self, paths: Poses) -> Array:
         """Subtract the tracked poses from paths started at the first; shape (m, 3 (n - 1))."""
-        states = from_first(states_at(paths, self.walk.t), self.walk.states[0])
+        states = states_at(paths, self.walk.t)
+        states = moved_onto(states, states[:, 0], self.walk.states[0])
         difference = states[:, 1:] - self.walk.states[1:]
         difference[..., 2] = wrap(difference[..., 2])
         return difference.reshape(len(states), -1)
@@ -287,21 +288,6 @@ class WalkMisfit:
         paths = self._difference(self._walked(draws, threads).poses)
         moved = 0.5 * (paths[::2] - paths[1::2])
         return moved.T @ moved
-
-
-def from_first(states: Array, first: Array) -> Array:
-    """Move paths rigidly so that they begin at a pose.
-
-    Args:
-        states: x, y, yaw of m paths at n times, shape (m, n, 3) [m, m, rad].
-        first: The pose, shape (3,).
-    """
-    turn = first[2] - states[:, :1, 2]
-    away = states[..., :2] - states[:, :1, :2]
-    c, s = np.cos(turn), np.sin(turn)
-    x = first[0] + c * away[..., 0] - s * away[..., 1]
-    y = first[1] + s * away[..., 0] + c * away[..., 1]
-    return np.stack([x, y, states[..., 2] + turn], axis=-1)
 
 
 def middle(legs: LegReference | QuantisedLog) -> LegReference:

@@ -6,7 +6,7 @@ import pytest
 
 from model.robot import GRAVITY, N_LEGS, Robot
 from model.walk.arrays import Contacts, body_arrays
-from model.walk.dynamics import DEFAULT_OPTIONS, Start, start_state
+from model.walk.dynamics import DEFAULT_OPTIONS, start_state
 from model.walk.ground import FLAT
 from model.walk.step import run_steps
 from model.walk.traction import VelocityCoulomb
@@ -19,7 +19,7 @@ STANDING = np.full(N_LEGS, np.pi / 2)
 def run(*, n=200, dt=0.001, height=None, velocity=(0.0, 0.0, 0.0), friction=0.38, theta=None):
     """Return the poses and the final state after n steps with legs held, or turned by `theta`."""
     theta = np.tile(STANDING, (n + 1, 1)) if theta is None else theta
-    state = start_state(ROBOT, theta[0], FLAT, Start(), DEFAULT_OPTIONS)
+    state = start_state(ROBOT, theta[0], DEFAULT_OPTIONS)
     if height is not None:
         state.p[2] = height
     state.v[:] = velocity

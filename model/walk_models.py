@@ -12,8 +12,9 @@ from model.errors import DomainError, WalkError
 from model.gait.cyclic import CyclicReference
 from model.gait.direction import Direction
 from model.gait.reference import LegReference, SampledReference
+from model.leg_state import LegState, law_in, robot_in
+from model.path_draws import bent_walk
 from model.poses import Poses
-from model.predict import LegState, bent_walk, law_in, robot_in
 from model.robot import GRAVITY, Robot
 from model.slip.thesis import thesis_curve
 from model.walk.path import WalkPath

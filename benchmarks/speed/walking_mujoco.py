@@ -25,8 +25,9 @@ from mujoco import rollout
 from model.gait import LegReference
 from model.robot import GRAVITY, N_LEGS, Robot
 from model.slip.law import Array
-from model.walk.dynamics import DEFAULT_OPTIONS, roll_pitch_yaw, start_state
+from model.walk.dynamics import DEFAULT_OPTIONS, start_state
 from model.walk.path import turning_radius
+from model.walk.quaternion import roll_pitch_yaw
 
 Shape = Literal["spheres", "capsules", "half disc"]
 

@@ -12,7 +12,6 @@ from model.poses import wrap
 from model.slip.law import Array
 
 LEVELS = (0.5, 0.9, 0.95)
-STATES = ("x", "y", "yaw")
 
 
 @dataclass(frozen=True)

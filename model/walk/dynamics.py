@@ -16,11 +16,11 @@ from model.errors import DomainError, WalkError
 from model.gait.reference import LegReference
 from model.robot import N_LEGS, Robot
 from model.slip.law import Array
-from model.walk.arrays import Contacts, State, body_arrays
-from model.walk.ground import FLAT, Ground
-from model.walk.kernel import N_CONTACTS, ground_at
+from model.walk.arrays import N_CONTACTS, Contacts, State, body_arrays
+from model.walk.ground import FLAT, Ground, ground_at
+from model.walk.loop import run_steps
 from model.walk.path import WalkPath
-from model.walk.step import run_steps
+from model.walk.quaternion import roll_pitch_yaw, turned_about_vertical
 from model.walk.traction import TractionTable, VelocityCoulomb
 
 SETTLE_STEP = 0.005  # s
@@ -244,46 +244,11 @@ def _settled(
     turned = yaw - roll_pitch_yaw(state.q[None])[0, 2]
     state.p[2] += ground_at(ground, x, y)[0] - ground_at(ground, state.p[0], state.p[1])[0]
     state.p[:2] = x, y
-    state.q[:] = _turn(state.q, turned)
+    state.q[:] = turned_about_vertical(state.q, turned)
     state.v[:] = velocity
     state.w[:] = 0.0
     state.stretch[:] = 0.0
     return state
-
-
-def _turn(q: Array, yaw: float) -> Array:
-    """Rotate an orientation about the vertical."""
-    c, s = np.cos(0.5 * yaw), np.sin(0.5 * yaw)
-    w, x, y, z = q
-    return np.array([c * w - s * z, c * x - s * y, c * y + s * x, c * z + s * w])
-
-
-def roll_pitch_yaw(q: Array) -> Array:
-    """Convert unit quaternions (w, x, y, z) to roll, pitch and yaw, R = Rz(yaw) Ry(pitch) Rx(roll).
-
-    Args:
-        q: Quaternions, shape (n, 4).
-
-    Returns:
-        Angles, yaw unwrapped, shape (n, 3) [rad].
-    """
-    w, x, y, z = q.T
-    roll = np.arctan2(2 * (y * z + w * x), 1 - 2 * (x * x + y * y))
-    pitch = np.arcsin(np.clip(2 * (w * y - x * z), -1.0, 1.0))
-    return np.column_stack([roll, pitch, unwrapped_yaw(q)])
-
-
-def unwrapped_yaw(q: Array) -> Array:
-    """Compute only the unwrapped yaw of unit quaternions (w, x, y, z), as `roll_pitch_yaw` does.
-
-    Args:
-        q: Quaternions, shape (n, 4).
-
-    Returns:
-        Yaw, shape (n,) [rad].
-    """
-    w, x, y, z = q.T
-    return np.unwrap(np.arctan2(2 * (x * y + w * z), 1 - 2 * (y * y + z * z)))
 
 
 def _path(t: Array, pose: Array, theta: Array, legs: Array) -> WalkPath:

@@ -16,11 +16,10 @@ from model.walk.dynamics import (
     DEFAULT_OPTIONS,
     DynamicsOptions,
     integrate,
-    roll_pitch_yaw,
     start_state,
     step_times,
-    unwrapped_yaw,
 )
+from model.walk.quaternion import roll_pitch_yaw, unwrapped_yaw
 from model.walk.stride import walk_by_strides
 from model.walk.traction import TractionTable
 

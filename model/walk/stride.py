@@ -20,8 +20,8 @@ from model.walk.dynamics import (
     integrate,
     start_state,
     step_times,
-    unwrapped_yaw,
 )
+from model.walk.quaternion import unwrapped_yaw
 from model.walk.traction import TractionTable
 
 SETTLED = 1e-4  # of a stride's length: change from one stride to the next

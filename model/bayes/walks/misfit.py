@@ -20,17 +20,10 @@ from model.bayes.walks.tilt import TiltMisfit, TiltSeen
 from model.errors import InsufficientData
 from model.gait.quantised import QuantisedLog
 from model.gait.reference import LegReference
+from model.leg_state import LegState, law_in, robot_in
+from model.path_draws import bent, states_at
 from model.poses import Poses, moved_onto, wrap
-from model.predict import (
-    FINE,
-    LegState,
-    ModelSpread,
-    bent,
-    ensemble_step,
-    law_in,
-    robot_in,
-    states_at,
-)
+from model.predict import FINE, ModelSpread, ensemble_step
 from model.robot import N_LEGS, Robot
 from model.slip.law import Array
 from model.walk.dynamics import DynamicsOptions

@@ -38,7 +38,7 @@ class Consistency:
     p_value: float
 
     @property
-    def plausible(self) -> bool:
+    def consistent(self) -> bool:
         """Whether the track's value lies within the ensemble's interval."""
         return self.low <= self.value <= self.high
 
@@ -73,8 +73,7 @@ def consistency(
     """
     if len(draws) < FEWEST_DRAWS:
         raise InsufficientData(
-            f"an ensemble of {len(draws)} draws has no band to speak of; draw {FEWEST_DRAWS} or "
-            "more"
+            f"{len(draws)} draws are too few for an interval; draw {FEWEST_DRAWS} or more"
         )
     k = 3 if np.isfinite(observed[:, 2]).all() else 2
     seen = with_tracker_noise(draws, covariance, rng=rng)[..., :k]

@@ -23,22 +23,22 @@ class PoseErrors:
 
     Attributes:
         t: Times, those of the track, shape (n,) [s].
-        xy: Errors along the floor's axes, shape (n, 2) [m].
-        yaw: Errors of heading in [-pi, pi); NaN where one has none, shape (n,) [rad].
+        translation: Errors along the floor's axes, shape (n, 2) [m].
+        rotation: Errors of heading in [-pi, pi); NaN where one has none, shape (n,) [rad].
         along: Errors in the direction the track travels, positive ahead, shape (n,) [m].
         cross: Errors across it, positive to its left, shape (n,) [m].
     """
 
     t: Array
-    xy: Array
-    yaw: Array
+    translation: Array
+    rotation: Array
     along: Array
     cross: Array
 
     @property
     def distance(self) -> Array:
         """Distances between predicted and tracked positions, shape (n,) [m]."""
-        return np.linalg.norm(self.xy, axis=1)
+        return np.linalg.norm(self.translation, axis=1)
 
 
 @dataclass(frozen=True)
@@ -120,8 +120,8 @@ def pose_errors(predicted: Poses, tracked: Poses) -> PoseErrors:
     c, s = np.cos(direction), np.sin(direction)
     return PoseErrors(
         t=tracked.t,
-        xy=xy,
-        yaw=wrap(predicted.yaw - tracked.yaw),
+        translation=xy,
+        rotation=wrap(predicted.yaw - tracked.yaw),
         along=c * xy[:, 0] + s * xy[:, 1],
         cross=c * xy[:, 1] - s * xy[:, 0],
     )
@@ -154,14 +154,14 @@ def path_errors(
         length=length,
         length_ratio=predicted.length / length if length > 0 else float("nan"),
         ate=_rms(errors.distance),
-        x=_rms(errors.xy[:, 0]),
-        y=_rms(errors.xy[:, 1]),
+        x=_rms(errors.translation[:, 0]),
+        y=_rms(errors.translation[:, 1]),
         along=_rms(errors.along),
         cross=_rms(errors.cross),
-        yaw=_rms(errors.yaw),
+        yaw=_rms(errors.rotation),
         largest=float(errors.distance.max()),
         final_distance=float(errors.distance[-1]),
-        final_yaw=float(errors.yaw[-1]),
+        final_yaw=float(errors.rotation[-1]),
         ate_aligned=_rms(pose_errors(moved, tracked).distance),
         alignment_yaw=motion.rotation,
         alignment_shift=float(np.linalg.norm(moved.position[0] - predicted.position[0])),

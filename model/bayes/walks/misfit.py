@@ -16,7 +16,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from model.bayes.walks.terms import Terms
-from model.bayes.walks.tilt import TiltMisfit, TiltSeen
+from model.bayes.walks.tilt import MeasuredTilt, TiltMisfit
 from model.errors import InsufficientData
 from model.gait.quantised import QuantisedLog
 from model.gait.reference import LegReference
@@ -61,7 +61,7 @@ class TrackedWalk:
     t: Array
     states: Array
     covariance: Array
-    tilt: TiltSeen | None = None
+    tilt: MeasuredTilt | None = None
 
     def __post_init__(self) -> None:
         """Check that there are enough tracked poses."""

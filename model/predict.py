@@ -74,20 +74,27 @@ def walk_draws(
         state: Draws of the legs' state; their number is the ensemble's.
         rng: Source of randomness.
     """
-    motions = _motions(legs, min(len(state), MOST_MOTIONS), rng)
+    drawn = motions(legs, min(len(state), MOST_MOTIONS), rng)
     return [
         WalkDraw(
             robot_in(robot, state, i),
-            motions[i % len(motions)],
+            drawn[i % len(drawn)],
             law_in(tables[i % len(tables)], state, i),
         )
         for i in range(len(state))
     ]
 
 
-def _motions(
+def motions(
     legs: LegReference | QuantisedLog, n: int, rng: np.random.Generator
 ) -> Sequence[LegReference]:
+    """Draw n motions that counted leg angles allow; angles that are not counted are one motion.
+
+    Args:
+        legs: Leg angles.
+        n: Number of motions.
+        rng: Source of randomness.
+    """
     return [legs.smooth(rng) for _ in range(n)] if isinstance(legs, QuantisedLog) else [legs]
 
 

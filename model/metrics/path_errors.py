@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import TypeAlias
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from model.metrics.alignment import align
 from model.metrics.turning import fitted_radius, mean_yaw_rate
@@ -127,9 +127,7 @@ def pose_errors(predicted: Poses, tracked: Poses) -> PoseErrors:
     )
 
 
-def path_errors(
-    predicted: Poses, tracked: Poses, *, distances: ArrayLike = DISTANCES
-) -> PathErrors:
+def path_errors(predicted: Poses, tracked: Poses) -> PathErrors:
     """Compute summary errors of a predicted path against a tracked one.
 
     The predicted path, sampled densely, is interpolated at the track's times; tracked poses
@@ -138,7 +136,6 @@ def path_errors(
     Args:
         predicted: Predicted path.
         tracked: Track, at any times of the same clock.
-        distances: Distances over which relative errors are taken [m].
 
     Raises:
         InsufficientData: Fewer than two tracked poses lie within the predicted time.
@@ -165,9 +162,7 @@ def path_errors(
         ate_aligned=_rms(pose_errors(moved, tracked).distance),
         alignment_yaw=motion.rotation,
         alignment_shift=float(np.linalg.norm(moved.position[0] - predicted.position[0])),
-        relative=tuple(
-            relative_error(predicted, tracked, distance=float(d)) for d in np.atleast_1d(distances)
-        ),
+        relative=tuple(relative_error(predicted, tracked, distance=d) for d in DISTANCES),
         radius=(fitted_radius(predicted), fitted_radius(tracked)),
         yaw_rate=(mean_yaw_rate(predicted), mean_yaw_rate(tracked)),
     )

@@ -23,7 +23,7 @@ from model.gait.reference import LegReference
 from model.leg_state import LegState, law_in, robot_in
 from model.path_draws import bent, states_at
 from model.poses import Poses, moved_onto, wrap
-from model.predict import FINE, ModelSpread, ensemble_step
+from model.predict import FINE, ModelSpread, ensemble_step, motions
 from model.robot import N_LEGS, Robot
 from model.slip.law import Array
 from model.walk.dynamics import DynamicsOptions
@@ -216,12 +216,7 @@ class WalkMisfit:
         return difference.reshape(len(states), -1)
 
     def _covariance(self, spread: ModelSpread, rng: np.random.Generator, threads: int) -> Array:
-        legs = self.walk.legs
-        several = (
-            [legs.smooth(rng) for _ in range(RECONSTRUCTIONS)]
-            if isinstance(legs, QuantisedLog)
-            else [legs]
-        )
+        several = motions(self.walk.legs, RECONSTRUCTIONS, rng)
         draws = [WalkDraw(self.robot, each, self.table) for each in several]
         paths = self._walked(draws, threads).poses
         one = paths.draws(slice(1))

@@ -35,13 +35,14 @@ def print_calibration(console: Console, calibration: Calibration, data: RigData,
 
 def _print_data(console: Console, calibration: Calibration, data: RigData) -> None:
     blocks, choice = calibration.posterior.blocks, calibration.fit.block_choice
+    correlation = choice.correlation
     kind = "SIMULATED data" if calibration.simulated else "data"
     lines = [
         f"{kind}, source '{data.source}': {len(data.samples)} samples in {blocks.n_runs} runs",
         *data.notes,
         f"slip definition: {blocks.definition}",
-        f"{len(blocks)} block means of about {choice.length} samples, set by {choice.reason}"
-        + ("" if choice.correlation is None else f" (correlated over {choice.correlation:.0f})"),
+        f"Samples are averaged in {len(blocks)} blocks of about {choice.length} ({choice.reason})"
+        + (f"; the noise is correlated over {correlation:.0f} samples." if correlation else "."),
     ]
     if calibration.comparison is not None:
         lines += _comparison_lines(calibration)
@@ -126,13 +127,13 @@ def _print_quality(console: Console, calibration: Calibration) -> None:
         )
     if agreement.comparable:
         lines.append(
-            f"second engine (Laplace + PSIS, k = {agreement.pareto_k:.2f}): means agree to "
-            f"{agreement.mean:.2f} sd, spreads to {agreement.spread:.0%}"
+            f"importance sampling (Laplace + PSIS, Pareto k = {agreement.pareto_k:.2f}) differs by "
+            f"{agreement.mean:.2f} sd in the mean, {agreement.spread:.0%} in the standard deviation"
         )
     else:
         lines.append(
-            f"second engine (Laplace + PSIS): no comparison, Pareto k = {agreement.pareto_k:.2f} "
-            "is above 0.7"
+            "importance sampling (Laplace + PSIS) is not compared: its Pareto k = "
+            f"{agreement.pareto_k:.2f} is above 0.7"
         )
     lines.append(f"sampled in {calibration.seconds:.0f} s")
     for line in lines:

@@ -20,8 +20,8 @@ from pathlib import Path
 import numpy as np
 from scipy.spatial.transform import Rotation
 
+from model.path_draws import anchored, mean_path, states_at
 from model.poses import Poses
-from model.predict import anchored, mean_path, states_at
 from model.robot import N_LEGS, Robot
 from model.slip.law import Array
 from model.walk.path import WalkPath

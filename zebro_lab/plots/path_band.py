@@ -4,8 +4,8 @@
 import numpy as np
 from matplotlib.figure import Figure
 
+from model.path_draws import quantiles
 from model.poses import Poses
-from model.predict import quantiles
 from zebro_lab.plots.sheet import BLUE, RED, legend_below, new_figure, styled
 
 _SHOWN_DRAWS = 60

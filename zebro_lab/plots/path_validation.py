@@ -46,7 +46,7 @@ def path_validation(
     for (name, path), colour in zip(moving.items(), CYCLE, strict=False):
         above.plot(*path.position.T, color=colour, lw=1.2, label=name)
         errors = pose_errors(path.at(track.t), track)
-        values = (1000 * errors.along, 1000 * errors.cross, np.degrees(errors.yaw))
+        values = (1000 * errors.along, 1000 * errors.cross, np.degrees(errors.rotation))
         for axes, value in zip(panels, values, strict=True):
             axes.plot(track.t, value, color=colour, lw=1.0, marker=".", ms=3, label=name)
     above.plot(*track.position.T, ls="none", marker="o", ms=4, color="black", label="track")

@@ -53,8 +53,10 @@ def _report(recorded: "Recorded") -> str:
             f"{rejected} rejected, {counters['dropped']} dropped"
         )
     for name, clock in manifest.clocks.items():
+        pace = "slow" if clock["drift"] > 0 else "fast"
         lines.append(
-            f"clock of {name}: offset {clock['offset']:.6f} s, drift {1e6 * clock['drift']:+.1f} "
-            f"ppm, read {1e3 * clock['delay']:.2f} ms late"
+            f"clock of {name}: offset {clock['offset']:.6f} s, {1e6 * abs(clock['drift']):.1f} ppm "
+            f"{pace}; half of the samples arrive more than {1e3 * clock['delay']:.2f} ms after the "
+            "fastest"
         )
     return "\n".join([*lines, f"{manifest.exit_status}: {recorded.folder}"])

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """`zebro-lab validate`: errors of predicted paths against tracked ones."""
 
+import math
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -31,6 +32,14 @@ zebro-lab validate data/RUN --estimate-offset
 Unaligned errors come first: alignment hides a wrong start and a wrong heading. Every path starts
 from the first tracked pose, which is not scored.
 """
+
+_STATISTICS = {
+    "nees": ("Error relative to predicted uncertainty (NEES)", "", 1.0),
+    "along": ("Mean error along the path", " mm", 1e3),
+    "cross": ("Mean error across the path", " mm", 1e3),
+    "yaw": ("Mean error of heading", " deg", 180 / math.pi),
+}
+"""Statistics of the band's consistency: words, unit, and factor from SI units."""
 
 
 @request_command()
@@ -130,9 +139,11 @@ def _verdict(run: "JudgedRun") -> list[str]:
         for level, cover in zip(row.scores.levels, row.scores.coverage, strict=True)
     ]
     for each in row.consistency:
-        word = "plausible" if each.plausible else "NOT plausible"
+        what, unit, scale = _STATISTICS[each.name]
+        value, low, high = (scale * x for x in (each.value, each.low, each.high))
+        word = "consistent" if each.consistent else "NOT consistent"
         lines.append(
-            f"{each.name}: {each.value:.3g}, the ensemble's own draws {each.low:.3g} to "
-            f"{each.high:.3g}: {word} (p {each.p_value:.2g})"
+            f"{what} {value:.3g}{unit}, expected {low:.2g} to {high:.2g}{unit}: {word} "
+            f"(p = {each.p_value:.2g})."
         )
     return lines

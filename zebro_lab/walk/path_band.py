@@ -8,17 +8,10 @@ import numpy as np
 
 from model.gait.quantised import QuantisedLog
 from model.gait.reference import LegReference
+from model.leg_state import LegState
+from model.path_draws import LEVELS, STATES, anchored, quantiles
 from model.poses import Poses
-from model.predict import (
-    LEVELS,
-    STATES,
-    LegState,
-    ModelSpread,
-    anchored,
-    predict_paths,
-    quantiles,
-    walk_draws,
-)
+from model.predict import ModelSpread, predict_paths, walk_draws
 from model.progress import Watcher
 from model.robot import GRAVITY, Robot
 from model.walk.traction import ToeLaw

@@ -13,8 +13,9 @@ from model.bayes.walks.prior import WalkPrior
 from model.errors import InsufficientData
 from model.gait.reference import SampledReference
 from model.judgement import Prediction
+from model.leg_state import LegState
 from model.poses import Poses
-from model.predict import FINE, LegState, ModelSpread, predict_paths, walk_draws
+from model.predict import FINE, ModelSpread, predict_paths, walk_draws
 from model.robot import GRAVITY
 from model.slip.law import Array
 from model.walk_models import baseline_paths

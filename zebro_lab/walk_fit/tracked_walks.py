@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from model.bayes.walks.misfit import FEWEST_POSES, TrackedWalk
-from model.bayes.walks.tilt import FEWEST, TIME, TiltSeen
+from model.bayes.walks.tilt import FEWEST, TIME, MeasuredTilt
 from model.gait.quantised import QuantisedLog
 from model.gait.reference import SampledReference
 from zebro_lab.calibration.walks_folder import describe_legs
@@ -50,7 +50,7 @@ class WalkOnFile:
     source: str
     files: tuple[Path, ...]
     notes: tuple[str, ...]
-    tilt: TiltSeen | None = None
+    tilt: MeasuredTilt | None = None
 
     @property
     def tracked(self) -> TrackedWalk:
@@ -151,7 +151,7 @@ def read_walk_on_file(
 
 def _tilt(
     folder: Path, start: float, end: float
-) -> tuple[TiltSeen | None, tuple[Path, ...], tuple[str, ...]]:
+) -> tuple[MeasuredTilt | None, tuple[Path, ...], tuple[str, ...]]:
     """Read roll and pitch from a run's IMU from `start` to `end` [s]; also files and notes."""
     measured = read_recorded_tilt(folder) if is_recorded(folder) else None
     if measured is None:
@@ -160,7 +160,7 @@ def _tilt(
     if not inside.any() or np.ptp(measured.t[inside]) < FEWEST * TIME:
         note = f"roll and pitch do not inform: no IMU from {start:g} to {end:g} s, as the log is"
         return None, (), (note,)
-    seen = TiltSeen(measured.t[inside] - start, measured.angles[inside])
+    seen = MeasuredTilt(measured.t[inside] - start, measured.angles[inside])
     return seen, measured.files, ("roll and pitch by the IMU inform which leg is off",)
 
 

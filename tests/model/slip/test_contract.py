@@ -10,7 +10,6 @@ from hypothesis import strategies as st
 
 from model.errors import DomainError
 from model.slip import LAWS, Brush, CoulombStribeck, MagicFormula, slip_law
-from model.slip.law import inside_support
 
 WITH_OPTIONS = (
     MagicFormula(curvature="constant"),
@@ -143,7 +142,6 @@ def test_force_rises_to_its_peak_and_never_after(drawn, load):
 @given(laws_with_values(), LOADS)
 def test_values_inside_the_support_are_valid(drawn, load):
     law, values = drawn
-    assert inside_support(law, values)
     assert law.valid(load, values)
 
 
@@ -186,26 +184,8 @@ def test_parameters_are_named_once_and_described(law):
 
 
 @pytest.mark.parametrize("law", LAWS_UNDER_TEST, ids=repr)
-def test_values_on_or_past_a_bound_are_outside_the_support(law):
-    inside = [sum(interior(parameter)) / 2 for parameter in law.parameters]
-    for index, parameter in enumerate(law.parameters):
-        for bound in (parameter.lower, parameter.upper):
-            assert not inside_support(law, [*inside[:index], bound, *inside[index + 1 :]])
-
-
-@pytest.mark.parametrize("law", LAWS_UNDER_TEST, ids=repr)
 def test_name_and_fields_make_the_same_law_again(law):
     assert slip_law(law.name, **asdict(law)) == law
-
-
-def test_support_is_judged_walker_by_walker():
-    verdict = inside_support(Brush(), (np.array([1.0, -1.0]), np.array([0.4, 0.4])))
-    assert verdict.tolist() == [True, False]
-
-
-def test_values_of_the_wrong_number_are_refused():
-    with pytest.raises(ValueError, match="zip"):
-        inside_support(Brush(), (20.0,))
 
 
 def test_every_law_is_under_its_own_name():

@@ -6,8 +6,8 @@ from pathlib import Path
 import numpy as np
 
 from model.metrics.turning import mean_yaw_rate
+from model.path_draws import states_at
 from model.poses import Poses
-from model.predict import states_at
 from model.slip.law import Array
 from zebro_lab.files.errors import DataError, NotFound
 from zebro_lab.files.replacement import settle

@@ -3,10 +3,9 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from scipy.spatial.transform import Rotation
 
 from model.leg import HIP, ROLLING, TOE
-from model.walk.kernel import add_contact, lowest_point, rotate, rotation_matrix, solve_positive
+from model.walk.contact_points import lowest_point
 
 R = 0.035
 ARC = st.floats(90.0, 359.0).map(np.radians)
@@ -26,9 +25,6 @@ def arc_points(theta, arc, n=2001):
     """Return points from toe to hip, shape (n, 2)."""
     angle = theta + np.linspace(np.pi - arc, np.pi, n)
     return R * np.column_stack([np.cos(theta) + np.cos(angle), -np.sin(theta) - np.sin(angle)])
-
-
-# --- legs of any arc
 
 
 @given(THETA, TILT, ARC)
@@ -65,39 +61,3 @@ def test_a_turning_legs_depth_never_jumps(arc_deg):
     found = (lowest(a, 0.1, np.radians(arc_deg)) for a in theta)
     depth = np.array([point @ down for point, down, _ in found])
     assert np.abs(np.diff(depth)).max() <= 2 * R * (theta[1] - theta[0])
-
-
-# --- algebra
-
-
-@given(st.integers(0, 2**32 - 1))
-def test_a_contact_adds_its_jacobians_square(seed):
-    rng = np.random.default_rng(seed)
-    place, force, root = rng.normal(size=3), rng.normal(size=3), rng.normal(size=(3, 3))
-    P = root @ root.T
-    A, b = np.zeros((6, 6)), np.zeros(6)
-    add_contact(A, b, 0.1, place, P, force)
-    x, y, z = place
-    J = np.hstack([np.eye(3), -np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])])
-    np.testing.assert_allclose(np.tril(A), np.tril(0.1 * J.T @ P @ J), atol=1e-12)
-    np.testing.assert_allclose(b, 0.1 * J.T @ force, atol=1e-12)
-
-
-@given(st.integers(0, 2**32 - 1))
-def test_the_solver_solves_from_the_lower_half_alone(seed):
-    rng = np.random.default_rng(seed)
-    root, b = rng.normal(size=(6, 6)), rng.normal(size=6)
-    A = root @ root.T + np.eye(6)
-    x = b.copy()
-    solve_positive(np.tril(A), x, 6)
-    np.testing.assert_allclose(A @ x, b, atol=1e-9)
-
-
-@given(st.lists(st.floats(-30.0, 30.0), min_size=3, max_size=3), st.floats(1e-5, 0.1))
-def test_turning_by_a_vector_is_its_rotation(w, dt):
-    q = Rotation.from_euler("ZYX", [0.4, -0.3, 0.2]).as_quat(scalar_first=True)
-    expected = Rotation.from_rotvec(np.array(w) * dt) * Rotation.from_quat(q, scalar_first=True)
-    matrix = np.empty((3, 3))
-    rotate(q, np.array(w), dt)
-    rotation_matrix(q, matrix)
-    np.testing.assert_allclose(matrix, expected.as_matrix(), atol=1e-12)

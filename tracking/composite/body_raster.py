@@ -6,9 +6,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from tracking.body.plane import Plane
 from tracking.body.template import BodyTemplate, TopPlate, sample
 from tracking.camera.lens import Array
-from tracking.composite.plane import Plane
 
 Window = tuple[slice, slice]
 

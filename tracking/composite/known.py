@@ -16,11 +16,11 @@ from tracking.body import (
     make_template,
     pixel_on_top,
 )
+from tracking.body.plane import Plane
 from tracking.body.template import MOST_POINTS, sample
 from tracking.camera.lens import Array, Camera, CameraPose, project, to_floor
 from tracking.composite.body_box import BodyBox
 from tracking.composite.body_raster import BodyRaster
-from tracking.composite.plane import Plane
 from tracking.errors import BodyError, CompositeError
 from tracking.pose import BodyPose, BodyPrior
 

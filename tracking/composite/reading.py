@@ -8,10 +8,10 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from tracking.body.plane import Plane
 from tracking.camera.lens import Array
 from tracking.composite.body_raster import BodyRaster
 from tracking.composite.exposure import Exposure
-from tracking.composite.plane import Plane
 
 
 class Merged(StrEnum):

@@ -15,12 +15,12 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from tracking.body import Alignment, BodyTemplate, TopPlate, align, floor_in_view
+from tracking.body.plane import Plane
 from tracking.camera.lens import Array, Camera, CameraPose
 from tracking.composite.exposure import Exposure, is_new
 from tracking.composite.known import KnownExposure
 from tracking.composite.match import CELLS, Match, match_whole
 from tracking.composite.pasted_alignment import PastedReading
-from tracking.composite.plane import Plane
 from tracking.composite.reading import Merged
 from tracking.errors import CompositeError
 from tracking.pose import BodyPrior

@@ -13,7 +13,7 @@ from scipy.stats import chi2
 from tracking.camera.lens import Array
 
 _TRUSTED = 0.7  # share of the points from which the floor's covariance is estimated
-_ODD = 12.0  # squared distance beyond which a colour is an outlier for the floor's light
+_OUTLIER = 12.0  # squared distance beyond which a colour is an outlier for the floor's light
 _ROUNDS = 5
 _SHADOW = 0.4  # least share of the floor's light that is left in shadow
 _NO_FLOOR = 20.0  # squared distance beyond which a colour is not the floor's
@@ -23,6 +23,9 @@ _RARE = 0.1  # share of colours that may be any
 
 NOISE = 12.0
 """Standard deviation of a colour of the robot from one exposure to another [grey levels]."""
+
+SCALE = 8.0
+"""Standard deviation of the floor's pattern after whitening [grey levels]."""
 
 
 @dataclass(frozen=True)
@@ -57,10 +60,10 @@ class FloorColours:
         covariance = np.cov((picture - light)[used].T)
         for _ in range(_ROUNDS):
             floor = cls(light, covariance + noise**2 * np.eye(3))
-            far = floor.oddness(picture)
+            far = floor.floor_distance(picture)
             usual = used & (far < np.quantile(far[used], _TRUSTED))
             covariance = np.cov((picture - light)[usual].T) / inner
-            light = smooth(picture, used & (far < max(_ODD, np.median(far[used]))), width)
+            light = smooth(picture, used & (far < max(_OUTLIER, np.median(far[used]))), width)
         return cls(light, covariance + noise**2 * np.eye(3))
 
     @cached_property
@@ -68,7 +71,7 @@ class FloorColours:
         """Whitening matrix of the pattern's colours, shape (3, 3)."""
         return np.linalg.cholesky(np.linalg.inv(self.covariance))
 
-    def oddness(self, picture: NDArray[np.float32]) -> NDArray[np.float32]:
+    def floor_distance(self, picture: NDArray[np.float32]) -> NDArray[np.float32]:
         """Compute the squared Mahalanobis distance of colours from the floor's."""
         return (((picture - self.light) @ self.whitening) ** 2).sum(axis=-1).astype(np.float32)
 
@@ -82,7 +85,7 @@ class FloorColours:
     def density(self, picture: NDArray[np.float32]) -> Array:
         """Compute the density of colours on the floor, per cubed grey level."""
         scale = np.sqrt((2 * np.pi) ** 3 * np.linalg.det(self.covariance))
-        return np.exp(-0.5 * self.oddness(picture)) / scale
+        return np.exp(-0.5 * self.floor_distance(picture)) / scale
 
 
 @dataclass(frozen=True)

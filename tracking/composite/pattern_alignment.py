@@ -28,7 +28,7 @@ _ITERATIONS = 6
 _HUBER = 1.5
 _LIMIT = np.array([0.01, 0.01, 0.05])  # m, m, rad: longest step
 _LEAST_POINTS = 200
-_TOLD = [2, 3, 4]  # height, roll and pitch in a state
+_ASSUMED = [2, 3, 4]  # height, roll and pitch in a state
 _ALL, _CAMERA = list(range(12)), slice(6, 12)  # of a state, then of the camera's pose
 
 
@@ -103,11 +103,11 @@ class PatternAlignment:
         """
         pose = self.start.copy()
         for _ in range(_ITERATIONS):
-            look = self.look(pose, PLANAR)
+            look = self.residual_at(pose, PLANAR)
             if look is None:
                 return None
             pose = pose + look.step()
-        look = self.look(pose, _ALL)
+        look = self.residual_at(pose, _ALL)
         return None if look is None else self.concluded(pose, look)
 
     @cached_property
@@ -118,7 +118,7 @@ class PatternAlignment:
     @cached_property
     def seen(self) -> NDArray[np.float32]:
         """Prediction error of the photograph by the floor's pattern, in the window."""
-        return self.pattern.new_in(self.alone[self.window[0]])
+        return self.pattern.prediction_error(self.residuals[self.window[0]])
 
     @cached_property
     def shown(self) -> NDArray[np.bool_]:
@@ -127,7 +127,7 @@ class PatternAlignment:
         side = 2 * REACH_PX + 1
         return cv2.dilate(hidden, np.ones((side, side), np.uint8)) == 0
 
-    def look(self, pose: Array, by: list[int]) -> PatternResidual | None:
+    def residual_at(self, pose: Array, by: list[int]) -> PatternResidual | None:
         """Compute residual and Jacobian at a pose; None where little is visible.
 
         Args:
@@ -141,8 +141,8 @@ class PatternAlignment:
         if used.sum() < _LEAST_POINTS:
             return None
         drawn = self.drawn(body)
-        expected = self.pattern.new_in(drawn)[used]
-        slopes = self.pattern.new_in(self.slopes(drawn, body, pose)[..., by])[used]
+        expected = self.pattern.prediction_error(drawn)[used]
+        slopes = self.pattern.prediction_error(self.slopes(drawn, body, pose)[..., by])[used]
         return PatternResidual(
             self.seen[used].ravel().astype(float),
             expected.ravel().astype(float),
@@ -197,14 +197,14 @@ class PatternAlignment:
         follow = spread @ weighed.T @ look.slopes  # x, y and yaw by state and camera's pose
         covariance, by_camera = np.zeros((6, 6)), np.zeros((6, 6))
         covariance[np.ix_(PLANAR, PLANAR)] = spread
-        by_told = np.zeros((6, 3))
-        by_told[PLANAR], by_told[_TOLD] = follow[:, _TOLD], -np.eye(3)
+        by_assumed = np.zeros((6, 3))
+        by_assumed[PLANAR], by_assumed[_ASSUMED] = follow[:, _ASSUMED], -np.eye(3)
         by_camera[PLANAR] = follow[:, _CAMERA]
-        told = np.square([prior.height_sd, prior.tilt_sd, prior.tilt_sd])
+        assumed = np.square([prior.height_sd, prior.tilt_sd, prior.tilt_sd])
         return Alignment(
             BodyPose(
                 self.picture.level(pose),
-                covariance + by_told * told @ by_told.T,
+                covariance + by_assumed * assumed @ by_assumed.T,
                 by_camera @ self.picture.view.covariance @ by_camera.T,
                 0.0,
                 float(look.seen.size),

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Places where an exposure may be lie along a walk."""
+"""Steps lead there and back, and chains of them are the same from anywhere."""
 
 import numpy as np
 import pytest
@@ -7,17 +7,44 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from support.drawn_board import STEPS
-from tracking.composite.candidates import (
+from tracking.composite.steps import (
     LEAST_STEP,
     REACH,
     apart,
     are_apart,
     beside,
     headed,
+    is_beside,
     is_near,
     nearby,
+    steady_chain,
+    step_between,
+    stepped,
+    unsteadiness,
 )
-from tracking.composite.chain import stepped
+
+POSES = st.tuples(st.floats(-1, 1), st.floats(-1, 1), st.floats(-3, 3)).map(np.array)
+
+
+@given(pose=POSES, step=STEPS)
+def test_a_step_there_and_back_ends_where_it_began(pose, step):
+    np.testing.assert_allclose(step_between(pose, stepped(pose, step)), step, atol=1e-9)
+    np.testing.assert_allclose(stepped(stepped(pose, step), -step), pose, atol=1e-9)
+
+
+@given(pose=POSES, step=STEPS, more=st.floats(-0.05, 0.05))
+def test_a_chain_is_the_same_from_any_of_its_exposures(pose, step, more):
+    chain = steady_chain(pose, step, more, 4, 0)
+    first = step_between(chain[2], chain[3])
+    again = steady_chain(chain[2], first, more, 2, 2)
+    np.testing.assert_allclose(again[[4, 3, 0, 1, 2]], chain, atol=1e-9)
+
+
+def test_steady_steps_are_steady_and_a_slip_is_not():
+    walk = steady_chain(np.zeros(3), np.array([0.1, 0.0, 0.1]), 0.0, 6, 0)
+    assert unsteadiness(walk) == pytest.approx(0.0, abs=1e-12)
+    walk[3, 0] += 0.02
+    assert unsteadiness(walk) > 10
 
 
 @given(step=STEPS, turned=st.integers(0, 3))
@@ -53,3 +80,11 @@ def test_the_best_of_places_in_one_place_is_taken():
     np.testing.assert_array_equal(kept, poses[[2, 1]])
     assert are_apart(poses[[0, 2]], 0.2)
     assert not are_apart(poses[:2], 0.2)
+
+
+def test_an_exposure_beside_another_has_nearly_its_heading_and_is_a_step_away():
+    pose = np.array([0.1, 0.2, 0.4])
+    assert is_beside(np.add(pose, [0.2, 0, 0.3]), [pose], 0.2)
+    assert not is_beside(np.add(pose, [0.2, 0, 0.7]), [pose], 0.2)
+    assert not is_beside(np.add(pose, [0.3, 0, 0.0]), [pose], 0.2)
+    assert not is_beside(pose, [], 0.2)

@@ -177,7 +177,7 @@ def match_turned(
             row, column = np.unravel_index(np.argmax(match), match.shape)
             if match[row, column] < LEAST_MATCH:
                 break
-            planar = pose_of_match(template, plane, row, column, yaw)
+            planar = pose_of_match(template, plane, int(row), int(column), yaw)
             peaks.append((float(match[row, column]), planar))
             match[max(row - 6, 0) : row + 7, max(column - 6, 0) : column + 7] = -1.0
     return _apart(peaks, most, template.plate.length)
@@ -209,9 +209,7 @@ def correlations(
         yield yaw, np.where(np.isfinite(match) & (match <= 1.0001), match, np.float32(-1.0))
 
 
-def pose_of_match(
-    template: BodyTemplate, plane: Plane, row: float, column: float, yaw: float
-) -> Array:
+def pose_of_match(template: BodyTemplate, plane: Plane, row: int, column: int, yaw: float) -> Array:
     """Compute the pose of the robot whose template matches at a heading.
 
     Args:

@@ -88,32 +88,24 @@ class FloorColours:
         return np.exp(-0.5 * self.floor_distance(picture)) / scale
 
 
-@dataclass(frozen=True)
-class ColourDensity:
-    """Density of the colours in a part of a picture, per cubed grey level.
+def colour_density(
+    samples: NDArray[np.float32], colours: NDArray[np.float32], *, blur: float
+) -> Array:
+    """Estimate the density of colours, per cubed grey level, by a blurred histogram of samples.
 
-    Attributes:
-        table: By blue, green and red, shape (32, 32, 32).
+    Args:
+        samples: BGR, shape (n, 3) [grey levels].
+        colours: BGR of the points where the density is wanted, shape (..., 3) [grey levels].
+        blur: Standard deviation of the Gaussian blur [bins, of 32 a channel].
+
+    Returns:
+        Density, shape (...).
     """
-
-    table: Array
-
-    @classmethod
-    def of(cls, colours: NDArray[np.float32], *, blur: float) -> "ColourDensity":
-        """Estimate the density of colours by a blurred histogram.
-
-        Args:
-            colours: BGR samples, shape (n, 3) [grey levels].
-            blur: Standard deviation of the Gaussian blur [bins, of 32 a channel].
-        """
-        counts, _ = np.histogramdd(colours, bins=(_LEVELS,) * 3, range=[(0, 256)] * 3)
-        known = gaussian_filter(counts, blur) / max(len(colours), 1) / (256 / _LEVELS) ** 3
-        return cls((1 - _RARE) * known + _RARE / 256**3)
-
-    def __call__(self, colours: NDArray[np.float32]) -> Array:
-        """Return the density of colours, shape (..., 3)."""
-        cell = np.clip(colours * (_LEVELS / 256), 0, _LEVELS - 1).astype(int)
-        return self.table[cell[..., 0], cell[..., 1], cell[..., 2]]
+    counts, _ = np.histogramdd(samples, bins=(_LEVELS,) * 3, range=[(0, 256)] * 3)
+    known = gaussian_filter(counts, blur) / max(len(samples), 1) / (256 / _LEVELS) ** 3
+    table = (1 - _RARE) * known + _RARE / 256**3
+    cell = np.clip(colours * (_LEVELS / 256), 0, _LEVELS - 1).astype(int)
+    return table[cell[..., 0], cell[..., 1], cell[..., 2]]
 
 
 def robot_density(difference: Array) -> Array:

@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from tracking.body.template import sample
 from tracking.camera.lens import Array
 from tracking.composite.body_raster import BodyRaster
-from tracking.composite.colours import NOISE, ColourDensity, FloorColours, robot_density
+from tracking.composite.colours import NOISE, FloorColours, colour_density, robot_density
 from tracking.composite.reading import Reading
 
 LEAST_CLAIM = 0.12
@@ -74,8 +74,8 @@ class DarkestModel(Reading):
     @cached_property
     def dark_things(self) -> Array:
         """Density of the colours that are not the floor's, at every point."""
-        odd = self.used & (self.floor_distance > _OUTLIER)
-        return ColourDensity.of(self.picture[odd], blur=1.2)(self.picture)
+        other = self.used & (self.floor_distance > _OUTLIER)
+        return colour_density(self.picture[other], self.picture, blur=1.2)
 
     @cached_property
     def bare(self) -> NDArray[np.float32]:

@@ -23,7 +23,7 @@ from numpy.typing import NDArray
 from tracking.body.template import sample
 from tracking.camera.lens import Array
 from tracking.composite.body_raster import BodyRaster
-from tracking.composite.colours import NOISE, ColourDensity, FloorColours, robot_density
+from tracking.composite.colours import NOISE, FloorColours, colour_density, robot_density
 from tracking.composite.exposure import Exposure
 from tracking.composite.known import LEAST_SCORE
 from tracking.composite.match import match_whole
@@ -95,8 +95,8 @@ class PastedReading(Reading):
     @cached_property
     def usual(self) -> NDArray[np.float32]:
         """Density, in the whole picture, of the colour of every point."""
-        density = ColourDensity.of(self.picture[self.used], blur=1.0)
-        return density(self.picture).astype(np.float32)
+        density = colour_density(self.picture[self.used], self.picture, blur=1.0)
+        return density.astype(np.float32)
 
     @cached_property
     def floor(self) -> NDArray[np.bool_]:

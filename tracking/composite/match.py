@@ -63,11 +63,8 @@ def match_whole(
     if best is None or yaws is None:
         return []
     around = np.ones((2 * _PEAK_CELLS + 1,) * 2, np.uint8)
-    peaks = np.argwhere((best >= cv2.dilate(best, around)) & (best >= least))
-    found = [
-        Match(
-            float(best[row, column]), pose_of_match(template, plane, row, column, yaws[row, column])
-        )
-        for row, column in peaks
-    ]
+    found = []
+    for row, column in np.argwhere((best >= cv2.dilate(best, around)) & (best >= least)):
+        planar = pose_of_match(template, plane, int(row), int(column), float(yaws[row, column]))
+        found.append(Match(float(best[row, column]), planar))
     return sorted(found, key=lambda match: -match.score)

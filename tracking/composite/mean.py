@@ -20,7 +20,6 @@ from tracking.composite.colours import SCALE, FloorColours, smooth
 from tracking.composite.exposure import Exposure
 from tracking.composite.match import Match, match_whole
 from tracking.composite.mean_alignment import MeanAlignment, fine_whitening, floor_pattern
-from tracking.composite.order import order_exposures
 from tracking.composite.reading import Reading
 from tracking.composite.steps import (
     CLIMB,
@@ -28,12 +27,12 @@ from tracking.composite.steps import (
     MOST_EXPOSURES,
     REACH,
     are_apart,
-    continued,
     distances,
     headed,
     improved,
     is_apart,
     is_beside,
+    shifted_sets,
     usual_step,
 )
 from tracking.composite.superposition import solve_robot, superposed
@@ -146,13 +145,18 @@ class MeanReading(Reading):
         return self.accepted(self.fitted(best.poses, rounds=3))
 
     def align(self, poses: Array) -> tuple[Exposure, ...]:
-        """Align each exposure with the residual that the others leave of the picture."""
+        """Align each exposure with the residual that the others leave of the picture.
+
+        Where exposures overlap, those that are unclear are dropped.
+        """
         known = self.known
         fine = fine_whitening(known)
         weighed = (known.pixels @ fine).astype(np.float32)
         residuals = self.residuals(poses, weighed, np.linalg.inv(self.weighing) @ fine)
+        if usual_step(poses) < self.length:
+            return MeanAlignment(known, residuals, poses).exposures()
         pattern = floor_pattern(known, weighed, poses)
-        flat = [pattern.flat(alone) for alone in residuals]
+        flat = [pattern.flat(residual) for residual in residuals]
         return MeanAlignment(known, flat, poses, pattern).exposures()
 
     def residuals(
@@ -261,7 +265,7 @@ class MeanReading(Reading):
         new = self.candidates(self.matches(left, fit.robot), fit.poses)
         sets = [np.concatenate((fit.poses, pose[None])) for pose in new[:_TRIED]]
         if len(fit.poses) > 1:
-            sets += _shifted(fit.poses)
+            sets += shifted_sets(fit.poses)
             weakest = 1 + int(np.argmin(fit.scores[1:]))
             sets.append(np.delete(fit.poses, weakest, axis=0))
         return [poses for poses in sets if are_apart(poses, self.length)]
@@ -339,18 +343,3 @@ class MeanReading(Reading):
         cross, power = float((seen * own).sum()), float((own * own).sum())
         spread = float((seen * seen).sum())
         return cross / np.sqrt(max(power * spread, 1e-9)), cross / max(power, 1e-9)
-
-
-def _shifted(poses: Array) -> list[Array]:
-    """List chains shifted by one exposure at either end; the first exposure is kept."""
-    chain = [poses[k] for k in order_exposures(poses)]
-    before, after = continued(chain[1], chain[0]), continued(chain[-2], chain[-1])
-    starts: Sequence[list[Array]] = (chain, chain[1:], [before, *chain])
-    sets = []
-    for start in starts:
-        for end in (start, start[:-1], [*start, after]):
-            rest = [pose for pose in end if not np.array_equal(pose, poses[0])]
-            kept = len(rest) < len(end)
-            if kept and rest and end is not chain:
-                sets.append(np.array([poses[0], *rest]))
-    return sets

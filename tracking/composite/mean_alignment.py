@@ -14,17 +14,20 @@ import numpy as np
 from numpy.typing import NDArray
 
 from tracking.body import Alignment, BodyTemplate
-from tracking.body.template import sample
+from tracking.body.template import MOST_POINTS, sample
 from tracking.camera.lens import Array, project
 from tracking.composite.colours import SCALE, FloorColours
 from tracking.composite.exposure import Exposure
 from tracking.composite.floor_pattern import FloorPattern
 from tracking.composite.known import LEVER, KnownExposure
 from tracking.composite.pattern_alignment import AROUND, PatternAlignment
-from tracking.composite.steps import step_between, stepped, usual_step
+from tracking.composite.steps import step_between, stepped
 from tracking.pose import PLANAR, BodyPose, rotation_with_derivatives
 
-LEAST_SCORE = 0.1
+LEAST_CLEAR_SCORE, LEAST_FAINT_SCORE = 0.4, 0.2
+"""Least correlation of an exposure's edges to use an alignment, and not to reject it [-]."""
+
+LEAST_NEW_SCORE = 0.1
 """Least correlation of an exposure's part that the floor's pattern does not predict [-]."""
 
 MEAN_SD, MEAN_OVERLAP_SD = 1 / 1200, 1 / 220
@@ -71,32 +74,40 @@ class MeanAlignment:
 
     Attributes:
         known: The picture and the known exposure.
-        residuals: What the others leave of the picture around each, without slow variation
-            (`FloorPattern.flat`), shape (height, width, 3).
+        residuals: What the others leave of the picture around each, shape (height, width, 3);
+            without slow variation (`FloorPattern.flat`) where there is a pattern.
         poses: Where they are on a raster, the known one first, shape (n, 3).
-        pattern: Of the floor; the prediction error of the robot's top is aligned.
+        pattern: Of the floor, where exposures are apart: the prediction error of their tops is
+            aligned. None where they overlap: edges of bodies are aligned.
     """
 
     known: KnownExposure
     residuals: Sequence[NDArray[np.float32]]
     poses: Array
-    pattern: FloorPattern
+    pattern: FloorPattern | None = None
+
+    @property
+    def least_clear(self) -> float:
+        """Least correlation of an exposure to use its alignment."""
+        return LEAST_CLEAR_SCORE if self.pattern is None else LEAST_NEW_SCORE
 
     def exposures(self) -> tuple[Exposure, ...]:
-        """Align all exposures, the known one first; those that fail keep the raster's pose."""
-        overlap = usual_step(self.poses) < self.known.size[0]
+        """Align all exposures, the known one first.
+
+        Those that are unclear keep the raster's pose; where exposures overlap they are dropped, but
+        only if the known one is clear, since without it the others cannot be judged.
+        """
+        overlap, found, exposures = self.pattern is None, self.with_others(), []
         slip, lever = (MEAN_OVERLAP_SD, _HALF_LEVER) if overlap else (MEAN_SD, LEVER)
-        alignments = [
-            self.known.rough(pose) if each is None else self.known.widened(each, slip, lever=lever)
-            for each, pose in zip(self.with_others(), self.poses, strict=True)
-        ]
-        return tuple(Exposure(alignment, 1.0) for alignment in alignments)
+        for k, (each, pose) in enumerate(zip(found, self.poses, strict=True)):
+            if each is not None and each.score >= self.least_clear:
+                exposures.append(Exposure(self.known.widened(each, slip, lever=lever), 1.0))
+            elif not overlap or k == 0 or found[0] is None:
+                exposures.append(Exposure(self.known.rough(pose), 1.0))
+        return tuple(exposures)
 
     def with_others(self) -> list[Alignment | None]:
-        """Align the top with its mean in the other exposures; None where one diverges.
-
-        What is around the top lies lower, and its parallax differs.
-        """
+        """Align each exposure with the mean of the others; None where one diverges."""
         poses, found = self.poses, []
         share = (len(poses) - 1) / len(poses)
         for _ in range(_ROUNDS):
@@ -114,20 +125,25 @@ class MeanAlignment:
         ]
 
     def aligned(
-        self, pose: Array, alone: NDArray[np.float32], template: BodyTemplate
+        self, pose: Array, residual: NDArray[np.float32], template: BodyTemplate
     ) -> Alignment | None:
-        """Align one exposure by what the floor's pattern does not predict.
+        """Align one exposure by what the floor's pattern does not predict, or by its edges.
 
         Args:
             pose: Pose to start from, shape (3,) [m, m, rad].
-            alone: What the others leave of the picture, shape (height, width, 3).
+            residual: What the others leave of the picture, shape (height, width, 3).
             template: Template of the robot.
 
         Returns:
             The alignment, or None where it diverges.
         """
-        found = PatternAlignment(self.known, alone, template, self.pattern, pose).solved()
-        diverged = found is None or self.known.has_diverged(found, pose, LEAST_SCORE)
+        if self.pattern is None:
+            return self.known.aligned(
+                pose, residual, template, ~self.known.hidden, least=LEAST_FAINT_SCORE,
+                shines_through=True,
+            )  # fmt: skip
+        found = PatternAlignment(self.known, residual, template, self.pattern, pose).solved()
+        diverged = found is None or self.known.has_diverged(found, pose, LEAST_NEW_SCORE)
         return None if diverged else found
 
     def others_templates(self, poses: Array) -> list[BodyTemplate]:
@@ -138,19 +154,22 @@ class MeanAlignment:
         Args:
             poses: The exposures, shape (n, 3) [m, m, rad].
         """
-        picture, around = self.known, AROUND * self.known.plate.length
-        plate = replace(picture.plate, margin=around, front_margin=around)
-        first = picture.template(self.residuals[0], plate, most_points=_EVERY_PIXEL)
+        picture, plate, most = self.known, self.known.body_plate, MOST_POINTS
+        if self.pattern is not None:
+            # What is around the top lies lower, and its parallax differs.
+            around, most = AROUND * picture.plate.length, _EVERY_PIXEL
+            plate = replace(picture.plate, margin=around, front_margin=around)
+        first = picture.template(self.residuals[0], plate, most_points=most)
         shape, points = first.points_body.shape[:2], first.points_body.reshape(-1, 3)
         shown = (~picture.hidden).astype(np.float32)
         looks, weights = [], []
-        for alone, pose in zip(self.residuals, poses, strict=True):
+        for residual, pose in zip(self.residuals, poses, strict=True):
             state = picture.level(pose)
             R, _ = rotation_with_derivatives(*state[3:])
             seen = project(picture.camera, picture.view, points @ R.T + state[:3])
             seen = seen.reshape(*shape, 2)
             weight = (sample(shown, seen) > 0.99)[..., None].astype(float)  # 0 outside, too
-            look = sample(alone, seen) * weight
+            look = sample(residual, seen) * weight
             usual = look.sum(axis=(0, 1)) / max(float(weight.sum()), 1.0)
             looks.append(look - usual * weight)
             weights.append(weight)
@@ -164,11 +183,11 @@ class MeanAlignment:
     def anchored(self, found: Sequence[Alignment | None]) -> list[Alignment | None]:
         """Move all exposures in their own frames so that the first is where it is known to be.
 
-        Its error of alignment becomes that of the others; where it diverges, all become None.
+        Its error of alignment becomes that of the others; where it is unclear, all become None.
         The error of the known pose is not in their covariance.
         """
         first = found[0]
-        if first is None:
+        if first is None or first.score < self.least_clear:
             return [None] * len(found)
         off = step_between(self.known.pose.planar, first.pose.planar)
         common = np.zeros((6, 6))

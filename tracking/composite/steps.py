@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike
 from scipy.optimize import minimize
 
 from tracking.camera.lens import Array
+from tracking.composite.order import order_exposures
 
 REACH = 1.25
 """Largest distance between exposures that count as neighbours, in lengths of the robot [-]."""
@@ -33,6 +34,7 @@ _SIDEWAYS = np.radians(40.0)  # largest direction of a step off the heading
 _NEARBY = 0.16  # of the length: largest change from one step to the next
 _NEARBY_TURNS = np.radians([-8.0, 0.0, 8.0])
 _NEAR, _NEAR_TURN = 0.3, np.radians(16.0)
+_MOST_TRIED = 200  # of candidates, of which the best that are apart are selected
 _STEP_SD, _TURN_SD = 0.1, np.radians(4.0)
 
 
@@ -131,6 +133,26 @@ def usual_step(poses: Array) -> float:
         return 0.0
     nearest = [distances(np.delete(poses, k, axis=0), pose).min() for k, pose in enumerate(poses)]
     return float(np.median(nearest))
+
+
+def shifted_sets(poses: Array) -> list[Array]:
+    """List sets of exposures with one more or one less at either end of the walk.
+
+    Args:
+        poses: x, y [m] and yaw [rad] of at least two exposures, of which the first is kept, shape
+            (n, 3).
+    """
+    chain = [poses[k] for k in order_exposures(poses)]
+    before, after = continued(chain[1], chain[0]), continued(chain[-2], chain[-1])
+    starts: Sequence[list[Array]] = (chain, chain[1:], [before, *chain])
+    sets = []
+    for start in starts:
+        for end in (start, start[:-1], [*start, after]):
+            rest = [pose for pose in end if not np.array_equal(pose, poses[0])]
+            kept = len(rest) < len(end)
+            if kept and rest and end is not chain:
+                sets.append(np.array([poses[0], *rest]))
+    return sets
 
 
 def improved(
@@ -283,7 +305,8 @@ def apart(
     """
     kept: list[Array] = []
     scores = np.asarray(values)
-    for k in np.argsort(-scores, kind="stable"):
+    best = np.argsort(-scores)
+    for k in best if most is None else best[:_MOST_TRIED]:
         if len(kept) == most or not np.isfinite(scores[k]):
             break
         if is_apart(poses[k], kept, distance):

@@ -17,6 +17,7 @@ from tracking.composite.steps import (
     is_beside,
     is_near,
     nearby,
+    shifted_sets,
     steady_chain,
     step_between,
     stepped,
@@ -88,3 +89,12 @@ def test_an_exposure_beside_another_has_nearly_its_heading_and_is_a_step_away():
     assert not is_beside(np.add(pose, [0.2, 0, 0.7]), [pose], 0.2)
     assert not is_beside(np.add(pose, [0.3, 0, 0.0]), [pose], 0.2)
     assert not is_beside(pose, [], 0.2)
+
+
+def test_shifted_sets_gain_or_lose_an_exposure_at_the_ends_of_the_walk():
+    walk = steady_chain(np.zeros(3), np.array([0.1, 0.0, 0.1]), 0.0, 3, 0)
+    longer = steady_chain(np.zeros(3), np.array([0.1, 0.0, 0.1]), 0.0, 4, 1)
+    for poses in shifted_sets(walk[[1, 0, 2, 3]]):
+        np.testing.assert_array_equal(poses[0], walk[1])
+        assert 2 <= len(poses) <= 6
+        assert all(np.abs(longer - pose).max(axis=1).min() < 1e-9 for pose in poses)

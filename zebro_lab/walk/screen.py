@@ -17,8 +17,9 @@ from zebro_lab.files.result_folder import MANIFEST
 from zebro_lab.terminal.messages import plain, say
 from zebro_lab.terminal.progress import progress_bar
 from zebro_lab.walk.folder import FILES
+from zebro_lab.walk.output import WalkStopped
 from zebro_lab.walk.summary import WalkSummary, summarise
-from zebro_lab.walk.walking import ModelRequest, Walked, WalkStopped
+from zebro_lab.walk.walking import ModelRequest, Walked
 
 INTERRUPTED = 130
 _MANY_UNTESTED = 0.01  # share of the contacts; a few at touchdown do not matter

@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Stage of `zebro-lab walk`: construct a gait, compute the path, write the walk folder."""
 
-from dataclasses import dataclass
-from functools import partial
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from model.progress import Watcher
@@ -12,9 +11,9 @@ from zebro_lab.files.result_folder import require_replaceable
 from zebro_lab.robot.gait_argument import GaitRequest, make_gait
 from zebro_lab.robot.robot_file import render_robot_file
 from zebro_lab.walk.folder import WALKED
-from zebro_lab.walk.path_band import BandRequest, write_band
-from zebro_lab.walk.walked_band import band_of
-from zebro_lab.walk.walking import ModelRequest, Walked, robot_of, walk_with, write_walk
+from zebro_lab.walk.output import write_walk
+from zebro_lab.walk.path_band import BandRequest, predict_band
+from zebro_lab.walk.walking import ModelRequest, Walked, robot_of, walk_with
 
 
 @dataclass(frozen=True)
@@ -52,28 +51,23 @@ def walk(request: WalkRequest, watcher: Watcher) -> Walked:
     described = robot_of(request.model)
     gait = make_gait(request.gait, leg_arc=described.robot.leg_arc)
     watcher.step("walking", None)
+    duration = request.duration
     walked = walk_with(
-        request.model,
-        described,
-        gait.reference,
-        duration=request.duration,
-        what=gait.what,
-        direction=gait.direction,
-    )
-    settings: dict[str, object] = {
+        request.model, described, gait.reference,
+        duration=duration, what=gait.what, direction=gait.direction,
+    )  # fmt: skip
+    if request.band is not None:
+        band = predict_band(
+            request.band, walked, gait.reference,
+            duration=duration, toe=request.model.toe, watcher=watcher,
+        )  # fmt: skip
+        walked = replace(walked, band=band)
+    settings = {
         "gait": {"name": request.gait.name, **request.gait.given()},
-        "duration": request.duration,
+        "duration": duration,
         "direction": gait.direction,
     }
-    extra = None
-    if request.band is not None:
-        paths = band_of(
-            request.band, walked, gait.reference,
-            duration=request.duration, toe=request.model.toe, watcher=watcher,
-        )  # fmt: skip
-        settings["band"] = request.band.settings()
-        extra = partial(write_band, paths=paths, title=walked.title)
-    write_walk(request.model, walked, watcher, kind="walk", settings=settings, extra=extra)
+    write_walk(request.model, walked, watcher, kind="walk", settings=settings, band=request.band)
     return walked
 
 

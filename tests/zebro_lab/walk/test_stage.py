@@ -16,11 +16,12 @@ from zebro_lab.robot.gait_argument import GaitRequest
 from zebro_lab.robot.leg_log import ANGLES
 from zebro_lab.robot.robot_file import read_robot_file
 from zebro_lab.walk.folder import PICTURES, read_walk, read_walk_manifest
+from zebro_lab.walk.output import WalkStopped
 from zebro_lab.walk.path_band import BandRequest, read_draws
 from zebro_lab.walk.predict_stage import PredictRequest, predict
 from zebro_lab.walk.stage import WalkRequest, walk, write_robot
 from zebro_lab.walk.summary import summarise
-from zebro_lab.walk.walking import ModelRequest, WalkStopped
+from zebro_lab.walk.walking import ModelRequest
 
 
 def request(out, **model) -> WalkRequest:

@@ -39,7 +39,8 @@ from zebro_lab.track.file import read_track as read_track_file
 from zebro_lab.track.photo_sequence import TimeRequest
 from zebro_lab.track.request import TrackRequest
 from zebro_lab.track.stage import TrackResult, track
-from zebro_lab.validation.stage import Validated, ValidateRequest, pairs_of_run, validate
+from zebro_lab.validation.predicted_walks import pairs_of_run
+from zebro_lab.validation.stage import Validated, ValidateRequest, validate
 from zebro_lab.walk.path_band import BandRequest, read_draws
 from zebro_lab.walk.predict_stage import PredictRequest, predict
 from zebro_lab.walk.stage import WalkRequest, walk

@@ -6,7 +6,7 @@ Only this module depends on the format of these files.
 
 import csv
 import io
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -18,6 +18,7 @@ from model.slip.definition import SlipDefinition
 from model.slip.laws import slip_law
 from zebro_lab.files.documents import read_toml_document
 from zebro_lab.files.errors import DataError, NotFound
+from zebro_lab.files.names import shortest_distinct
 from zebro_lab.files.opening import parsing
 from zebro_lab.files.replacement import settle
 from zebro_lab.files.result_folder import ResultKind
@@ -186,17 +187,10 @@ def _slip_toml(calibration: "Calibration", inputs: Mapping[str, str]) -> str:
             "runs": blocks.n_runs,
             "block_length": calibration.fit.block_choice.length,
         },
-        "data": dict(zip(_distinct_names(list(inputs)), inputs.values(), strict=True)),
+        "data": dict(zip(shortest_distinct([*map(Path, inputs)]), inputs.values(), strict=True)),
     }  # fmt: skip
     document.update(content)
     return tomlkit.dumps(document)
-
-
-def _distinct_names(paths: Sequence[str]) -> list[str]:
-    """Shorten paths to their last parts, as few as keep them distinct: every run has a log.mcap."""
-    depths = range(1, max((len(Path(path).parts) for path in paths), default=1) + 1)
-    shortened = ([str(Path(*Path(path).parts[-depth:])) for path in paths] for depth in depths)
-    return next((names for names in shortened if len(set(names)) == len(names)), list(paths))
 
 
 def summary_csv(calibration: "Calibration") -> str:

@@ -15,7 +15,7 @@ from model.errors import ModelError
 from model.slip.definition import SlipDefinition
 from model.slip.law import Array
 from zebro_lab.files.errors import DataError, SettingsError, ZebroLabError
-from zebro_lab.runs.counted_once import content_hash, first_of_each, run_keys, told_once
+from zebro_lab.runs.counted_once import content_hash, duplicates_note, first_of_each, run_keys
 from zebro_lab.runs.data_paths import DataSource, find_sources
 from zebro_lab.runs.folder import LOG_FILE, read_manifest, read_slip_rig_run
 from zebro_lab.runs.manifest import RIG, TABLE
@@ -111,7 +111,7 @@ def read_rig_data(
     known = _known(excluded, maps, labels) if parts else {}
     parts, repeated_runs = _once(parts, known)
     files = [(labels[one], labels[other]) for one, other in repeated]
-    twice = told_once("runs and tables", [*files, *repeated_runs])
+    twice = duplicates_note("runs and tables", [*files, *repeated_runs])
     if not parts:
         raise DataError(f"every run is left out: {'; '.join((*skipped, *twice))}")
     samples = _joined(parts)

@@ -97,7 +97,7 @@ def first_of_each(
     return list(first.values()), repeated
 
 
-def told_once(what: str, repeated: Sequence[tuple[object, object]]) -> tuple[str, ...]:
+def duplicates_note(what: str, repeated: Sequence[tuple[object, object]]) -> tuple[str, ...]:
     """Format a note on duplicates that were dropped.
 
     Args:
@@ -107,7 +107,7 @@ def told_once(what: str, repeated: Sequence[tuple[object, object]]) -> tuple[str
     Returns:
         One line, or nothing if there are no duplicates.
 
-    >>> told_once("tables", [("b.csv", "a.csv")])
+    >>> duplicates_note("tables", [("b.csv", "a.csv")])
     ('1 of the tables is there twice and counts once: b.csv is a.csv',)
     """
     if not repeated:

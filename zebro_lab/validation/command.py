@@ -2,18 +2,9 @@
 """`zebro-lab validate`: errors of predicted paths against tracked ones."""
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
-
-from zebro_lab.terminal.messages import plain
-
-if TYPE_CHECKING:
-    from rich.console import Console
-    from rich.table import Table
-
-    from zebro_lab.validation.judged_run import JudgedRun
-    from zebro_lab.validation.stage import Validated
 
 EPILOG = """
 Examples:
@@ -70,7 +61,9 @@ def validate(
     from rich.console import Console
 
     from zebro_lab.terminal.progress import progress_bar
-    from zebro_lab.validation.stage import ValidateRequest, pairs_of_run
+    from zebro_lab.validation.predicted_walks import pairs_of_run
+    from zebro_lab.validation.screen import print_validated
+    from zebro_lab.validation.stage import ValidateRequest
     from zebro_lab.validation.stage import validate as run
 
     runs, predicted, track = runs or [], predicted or [], track or []
@@ -91,89 +84,3 @@ def validate(
     if not console.is_terminal:
         console = Console(highlight=False, width=120)
     print_validated(console, validated, out)
-
-
-def print_validated(console: "Console", validated: "Validated", out: Path) -> None:
-    """Print a table for each walk, the means over walks, and the output folder.
-
-    Args:
-        console: Console to print to.
-        validated: Results of the validation.
-        out: Folder that was written.
-    """
-    from rich.text import Text
-
-    if "sim:" in validated.source:
-        console.print(plain(f"SIMULATED: {validated.source}"))
-    for run in validated.runs:
-        console.print(_table(run))
-        for line in (*_verdict(run), *_tilt(run), *run.notes):
-            console.print(plain(line))
-    for each in validated.summary:
-        mean, low, high = each.interval
-        console.print(plain(f"{each.model}: {each.metric} {mean:.4g} ({low:.4g} to {high:.4g})"))
-    if validated.summary:
-        console.print(plain(f"means over {len(validated.runs)} walks, 90 % intervals over walks"))
-    console.print(Text(f"\nwritten to {out}"))
-
-
-def _table(run: "JudgedRun") -> "Table":
-    import numpy as np
-    from rich import box
-    from rich.table import Table
-
-    length = run.rows[0].errors.length
-    title = f"{run.name}: {run.rows[0].errors.poses} poses, {length:.3f} m"
-    table = Table(title=title, box=box.SIMPLE, title_justify="left")
-    table.add_column("model")
-    for name in (
-        "ATE [mm]", "of path", "along [mm]", "across [mm]", "yaw [deg]", "end [mm]",
-        "aligned [mm]", "radius [m]", "CRPS x, y [mm]",
-    ):  # fmt: skip
-        table.add_column(name, justify="right")
-    for row in run.rows:
-        e = row.errors
-        crps = " ".join(f"{1000 * value:.1f}" for value in row.scores.crps[:2])
-        table.add_row(
-            row.name, f"{1000 * e.ate:.1f}", f"{e.ate_of_length:.2%}", f"{1000 * e.along:.1f}",
-            f"{1000 * e.cross:.1f}", f"{np.degrees(e.yaw):.2f}", f"{1000 * e.final_distance:.1f}",
-            f"{1000 * e.ate_aligned:.1f}", f"{e.radius[0]:.3f}", crps,
-        )  # fmt: skip
-    table.add_row("track", *[""] * 7, f"{run.rows[0].errors.radius[1]:.3f}", "")
-    return table
-
-
-def _tilt(run: "JudgedRun") -> list[str]:
-    """Format lines on the errors of roll and pitch against the IMU."""
-    import numpy as np
-
-    if run.tilt is None:
-        return []
-    errors = run.tilt.errors
-    return [
-        f"{name}: {rms:.2f} deg rms off the IMU's, of a swing of {swing:.2f}; bias {bias:+.2f} deg"
-        for name, rms, swing, bias in zip(
-            ("roll", "pitch"), np.degrees(errors.rms_unbiased), np.degrees(errors.swing),
-            np.degrees(errors.bias), strict=True,
-        )
-    ]  # fmt: skip
-
-
-def _verdict(run: "JudgedRun") -> list[str]:
-    """Format lines on coverage and consistency (NEES) of the band."""
-    row = run.rows[0]
-    if run.band is None:
-        return []
-    states = ("x", "y", "yaw")
-    lines = [
-        f"the {level:.0%} band holds "
-        + ", ".join(f"{c:.0%} of {s}" for s, c in zip(states, cover, strict=True))
-        for level, cover in zip(row.scores.levels, row.scores.coverage, strict=True)
-    ]
-    for each in row.consistency:
-        word = "plausible" if each.plausible else "NOT plausible"
-        lines.append(
-            f"{each.name}: {each.value:.3g}, the ensemble's own draws {each.low:.3g} to "
-            f"{each.high:.3g}: {word} (p {each.p_value:.2g})"
-        )
-    return lines

@@ -13,18 +13,19 @@ from model.gait.quantised import QuantisedLog
 from model.gait.reference import SampledReference
 from zebro_lab.calibration.walks_folder import describe_legs
 from zebro_lab.files.errors import DataError, NotFound, SettingsError
+from zebro_lab.files.names import TRACK, numbered
 from zebro_lab.files.replacement import settle
 from zebro_lab.robot.robot_file import ROBOT_FILE, RobotFile, read_robot_file
-from zebro_lab.runs.counted_once import array_hash, first_of_each, told_once
+from zebro_lab.runs.counted_once import array_hash, duplicates_note, first_of_each
 from zebro_lab.runs.legs import read_leg_log
 from zebro_lab.runs.recorded_legs import is_recorded
 from zebro_lab.runs.recorded_tilt import read_recorded_tilt
 from zebro_lab.track.file import TrackFile, read_track
 from zebro_lab.track.folder import TRACK_CSV
+from zebro_lab.validation.shared_clock import shifted
 from zebro_lab.walk.leg_angles import angles_from
-from zebro_lab.walk_fit.clocks import Clock, since
+from zebro_lab.walk_fit.clocks import Clock
 
-TRACK = "track"
 LEGS = ("legs.csv", "legs.csv.gz", "legs.parquet")
 
 
@@ -87,15 +88,10 @@ def read_walks(
                 file=walk.robot.file,
             )
     walks, repeated = first_of_each(read, key=_content)
-    told = told_once("walks", [(one.name, other.name) for one, other in repeated])
-    walks[:1] = [replace(walk, notes=(*walk.notes, *told)) for walk in walks[:1]]
-    names = [walk.name for walk in walks]
-    return [
-        walk
-        if names.count(walk.name) == 1
-        else replace(walk, name=f"{walk.name}-{names[: i + 1].count(walk.name)}")
-        for i, walk in enumerate(walks)
-    ]
+    duplicates = duplicates_note("walks", [(one.name, other.name) for one, other in repeated])
+    walks[:1] = [replace(walk, notes=(*walk.notes, *duplicates)) for walk in walks[:1]]
+    names = numbered([walk.name for walk in walks])
+    return [replace(walk, name=name) for walk, name in zip(walks, names, strict=True)]
 
 
 def _content(walk: WalkOnFile) -> str:
@@ -131,7 +127,7 @@ def read_walk_on_file(
     log = read_leg_log(log_file, leg_sign=described.leg_sign)
     start = float(log.reference.t[0])
     legs, counted = angles_from(log, start)
-    track = since(read_track(track_file), start)
+    track = shifted(read_track(track_file), -start)
     track = track if clock is None else clock(track, legs, described.robot)
     inside, notes = _inside(float(legs.t[-1]), track)
     _require_states(inside)

@@ -249,7 +249,7 @@ def test_a_report_tells_what_walks_said_and_what_they_did_not(calibration, legs,
     page = tmp_path / "report.html"
     report(ReportRequest(run, calibration, page), made=datetime(2026, 1, 2, tzinfo=UTC))
     text = page.read_text()
-    assert "What walks said of legs and floor" in text
+    assert "Legs and floor estimated from tracked walks" in text
     assert "Mounted wrong: leg 3" in text
     assert "SIMULATED: sim:dynamics, sim:test" in text
     assert text.count("data:image/png") >= 1

@@ -9,8 +9,9 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 
+from model.bayes.blocks import SlipBlocks
 from model.slip.law import Array
-from zebro_lab.plots.sheet import BLUE, RED, Blocks, new_figure, slip_label, styled
+from zebro_lab.plots.sheet import BLUE, RED, new_figure, slip_label, styled
 
 _MAX_LAG = 20
 _LAG_LIMIT = 0.05
@@ -20,7 +21,7 @@ _NORMAL_90, _NORMAL_95 = 1.6449, 1.96  # half-widths of a standard normal's cent
 
 @styled
 def residuals(
-    blocks: Blocks, *, whitened: Array, run_score: Array, title: str, simulated: bool
+    blocks: SlipBlocks, *, whitened: Array, run_score: Array, title: str, simulated: bool
 ) -> Figure:
     """Draw the residuals of a fit, as four checks of the noise model.
 

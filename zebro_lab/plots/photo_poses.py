@@ -12,12 +12,11 @@ from numpy.typing import NDArray
 from model.poses import Poses
 from model.robot import Robot
 from model.slip.law import Array
-from zebro_lab.plots.sheet import BLUE, RED, legend_below, new_figure, styled
+from zebro_lab.plots.sheet import BLUE, RED, draw_band, legend_below, new_figure, styled
 from zebro_lab.plots.walk_robot import leg_arcs, outline, to_world
 
 _COLUMN = 2.6  # inches
 _IN_AIR = "0.55"
-_SHOWN_DRAWS = 60
 
 
 @dataclass(frozen=True)
@@ -133,8 +132,7 @@ def band_over_floor(
     axes = figure.add_subplot()
     # The photograph is drawn paler, so that the paths stand out.
     axes.imshow(floor[:, :, ::-1], extent=extent, interpolation="antialiased", alpha=0.55)
-    for i, position in enumerate(band.position[:_SHOWN_DRAWS] if band is not None else ()):
-        axes.plot(*position.T, color=BLUE, lw=0.5, alpha=0.25, label="draws" if i == 0 else None)
+    draw_band(axes, band, label="draws", color=BLUE, lw=0.5, alpha=0.25)
     axes.plot(*path.position.T, color="black", lw=1.4, label="predicted path")
     axes.plot(*track.position.T, ls="none", marker="o", ms=4, color=RED, label="track")
     axes.set(xlabel="x [m]", ylabel="y [m]", xlim=extent[:2], ylim=extent[2:], aspect="equal")

@@ -11,12 +11,12 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 from numpy.typing import ArrayLike, NDArray
 
+from model.bayes.blocks import SlipBlocks
 from model.slip.law import Array, SlipLaw
 from zebro_lab.plots.sheet import (
     BLUE,
     NARROW,
     RED,
-    Blocks,
     legend_below,
     new_figure,
     plain,
@@ -32,7 +32,7 @@ _NEAR_LOAD = 0.1  # relative load difference beyond which a block is not compara
 
 @styled
 def slip_curves(
-    blocks: Blocks,
+    blocks: SlipBlocks,
     law: SlipLaw,
     *,
     draws: Array,
@@ -108,7 +108,7 @@ class _LoadCurve:
         return float(self.slip[peaks[0]]), float(self.bands[2, peaks[0]])
 
 
-def _load_curves(blocks: Blocks, law: SlipLaw, draws: Array, levels: Array) -> list[_LoadCurve]:
+def _load_curves(blocks: SlipBlocks, law: SlipLaw, draws: Array, levels: Array) -> list[_LoadCurve]:
     nearest = np.argmin(np.abs(blocks.normal_force[:, None] - levels), axis=1)
     values = draws.T[:, :, None]
     curves = []
@@ -120,7 +120,7 @@ def _load_curves(blocks: Blocks, law: SlipLaw, draws: Array, levels: Array) -> l
     return curves
 
 
-def _narrow_reach(blocks: Blocks, curves: Sequence[_LoadCurve]) -> tuple[float, float] | None:
+def _narrow_reach(blocks: SlipBlocks, curves: Sequence[_LoadCurve]) -> tuple[float, float] | None:
     """Return the slip range of the additional panel; None if no peak is narrow."""
     reach = NARROW * float(np.abs(blocks.slip).max())
     peaks = [peak for curve in curves if (peak := curve.main_peak())]
@@ -130,7 +130,7 @@ def _narrow_reach(blocks: Blocks, curves: Sequence[_LoadCurve]) -> tuple[float, 
     return max(-reach, min(low, 0.0)), min(reach, max(high, 0.0))
 
 
-def _draw_load_curve(axes: Axes, blocks: Blocks, curve: _LoadCurve) -> None:
+def _draw_load_curve(axes: Axes, blocks: SlipBlocks, curve: _LoadCurve) -> None:
     near = np.abs(blocks.normal_force - curve.load) <= _NEAR_LOAD * curve.load
     slip, force = blocks.slip, blocks.traction_force
     on, off = curve.rows & near, curve.rows & ~near
@@ -158,7 +158,7 @@ def _draw_load_curve(axes: Axes, blocks: Blocks, curve: _LoadCurve) -> None:
 
 
 def _draw_close_up(
-    axes: Axes, blocks: Blocks, curve: _LoadCurve, reach: tuple[float, float]
+    axes: Axes, blocks: SlipBlocks, curve: _LoadCurve, reach: tuple[float, float]
 ) -> None:
     _draw_load_curve(axes, blocks, curve)
     margin = 0.02 * (reach[1] - reach[0])
@@ -168,7 +168,7 @@ def _draw_close_up(
     axes.xaxis.set_major_locator(MaxNLocator(4))
 
 
-def _load_text(blocks: Blocks, curve: _LoadCurve) -> str:
+def _load_text(blocks: SlipBlocks, curve: _LoadCurve) -> str:
     loads = blocks.normal_force[curve.rows]
     if not len(loads):
         return f"load {curve.load:.4g} N (no blocks)"

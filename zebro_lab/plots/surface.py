@@ -9,9 +9,9 @@ from matplotlib.ticker import MaxNLocator
 from mpl_toolkits.mplot3d import Axes3D
 from numpy.typing import ArrayLike
 
+from model.bayes.blocks import SlipBlocks
 from model.slip.law import SlipLaw
 from zebro_lab.plots.sheet import (
-    Blocks,
     legend_below,
     new_figure,
     point_alpha,
@@ -23,7 +23,7 @@ from zebro_lab.plots.sheet import (
 
 @styled
 def slip_surface(
-    blocks: Blocks, law: SlipLaw, *, values: ArrayLike, title: str, simulated: bool
+    blocks: SlipBlocks, law: SlipLaw, *, values: ArrayLike, title: str, simulated: bool
 ) -> Figure:
     """Draw traction over slip and load as a surface, with the block means (compare Fig. 4-15).
 

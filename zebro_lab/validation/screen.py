@@ -53,7 +53,7 @@ def _table(run: JudgedRun) -> Table:
         "ATE [mm]", "of path", "along [mm]", "across [mm]", "yaw [deg]", "end [mm]",
         "aligned [mm]", "radius [m]", "CRPS x, y [mm]",
     ):  # fmt: skip
-        table.add_column(name, justify="right")
+        table.add_column(plain(name), justify="right")
     for row in run.rows:
         e = row.errors
         crps = " ".join(f"{1000 * value:.1f}" for value in row.scores.crps[:2])

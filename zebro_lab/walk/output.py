@@ -10,7 +10,7 @@ from zebro_lab.files.errors import ZebroLabError
 from zebro_lab.files.provenance import file_hashes
 from zebro_lab.walk.folder import walk_folder
 from zebro_lab.walk.path_band import BandRequest, write_band
-from zebro_lab.walk.pictures import animate_walk, draw_walk
+from zebro_lab.walk.pictures import draw_walk
 from zebro_lab.walk.walking import ModelRequest, Walked
 
 
@@ -71,12 +71,13 @@ def _draw(request: ModelRequest, walked: Walked, folder: Path, watcher: Watcher)
         watcher.step("drawing", None)
         draw_walk(folder, walked.path, robot, title=title, period=walked.reference.period)
     if request.animate:
+        from zebro_lab.plots.animation import animate  # matplotlib takes most of a second
 
         def follow(fraction: float) -> None:
             watcher.step("filming", fraction)
             _raise_if_stopped(watcher)
 
-        animate_walk(folder, walked.path, robot, title=title, progress=follow)
+        animate(walked.path, robot, folder, title=title, progress=follow)
 
 
 def _raise_if_stopped(watcher: Watcher) -> None:

@@ -175,7 +175,7 @@ def write_band(folder: Path, paths: Poses, *, title: str) -> None:
     pd.DataFrame(columns).to_csv(
         folder / BAND_CSV, index=False, float_format="%.8g", lineterminator="\n"
     )
-    figure = path_band.path_band(paths, title=f"Predicted path: {title}", simulated=True)
+    figure = path_band.path_band(paths, title=f"Predicted path: {title}")
     save(figure, folder / BAND_PICTURE)
 
 

@@ -117,7 +117,7 @@ def gait_table(reference: CyclicReference) -> Table:
         "touchdown [deg]", "lift-off [deg]", "ground [s]", "flight [s]", "ground [deg/s]",
         "flight [deg/s]", "at t = 0 [deg]",
     ):  # fmt: skip
-        table.add_column(name, justify="right")
+        table.add_column(plain(name), justify="right")
     start = np.degrees(reference.angles(0.0)[0]) % 360
     columns = (
         np.degrees(reference.touchdown), np.degrees(reference.liftoff), reference.ground_time,

@@ -106,7 +106,7 @@ def _left_out_table(left_out: tuple[JudgedRun, ...]) -> Table:
         "error, rms [mm]", "of path", "yaw [deg]", "radius [m]", "tracked [m]",
         "coverage of 90 % band, x, y, yaw", "CRPS x, y [mm]", "best baseline's",
     ):  # fmt: skip
-        table.add_column(name, justify="right")
+        table.add_column(plain(name), justify="right")
     for run in left_out:
         prediction, *others = run.rows
         e, scores = prediction.errors, prediction.scores

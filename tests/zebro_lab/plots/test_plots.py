@@ -59,7 +59,7 @@ class Scene:
             case "surface":
                 return slip_surface(self.blocks, self.law, values=self.truth, **marks)
             case "corner":
-                return corner(self.draws, labels=labels, truth=self.truth, **marks)
+                return corner(self.draws, labels=labels, **marks)
             case "traces":
                 return traces(self.draws.reshape(4, 50, -1), labels=labels, **marks)
         whitened, run_score = (
@@ -273,14 +273,6 @@ def test_regions_of_highest_density_hold_the_draws_they_name():
     outer, inner = (path.contains_points(draws).mean() for path in regions.get_paths())
     assert outer == pytest.approx(0.9, abs=0.04)  # contains_points fills the hole in the outer
     assert inner == pytest.approx(0.5, abs=0.06)
-
-
-def test_the_corner_marks_known_truths_alone(rig):
-    labels = parameter_labels(rig.law.parameters)
-    marks = {"labels": labels, "title": "A fit", "simulated": True}
-    known = np.array([20.4, np.nan, np.nan, np.nan])
-    assert len(labelled_lines(corner(rig.draws, truth=known, **marks), "truth")) == 1
-    assert not labelled_lines(corner(rig.draws, **marks), "truth")
 
 
 def test_a_posterior_of_one_point_or_one_parameter_is_drawn(tmp_path):

@@ -8,7 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from model.metrics.difference import Difference
-from zebro_lab.plots.sheet import BLUE, RED, legend_below, new_figure, styled
+from zebro_lab.plots.sheet import BLUE, RED, legend_below, map_axes, new_figure, styled
 from zebro_lab.validation.compare.values import Comparison, Curve, RunPaths
 
 _COLOURS = (BLUE, RED)
@@ -64,9 +64,8 @@ def _draw_paths(axes: Axes, runs: Sequence[RunPaths], names: Sequence[str]) -> N
                 *run.track.position.T, ls="none", marker="o", ms=4, color=colour,
                 label=f"{name}, tracked",
             )  # fmt: skip
-    axes.set(xlabel="x from the start [m]", ylabel="y [m]", aspect="equal")
-    axes.set_adjustable("datalim")
-    axes.grid(color="0.92", lw=0.6)
+    map_axes(axes)
+    axes.set_xlabel("x from the start [m]")
 
 
 def _draw_differences(axes: Axes, compared: Comparison, differences: Sequence[Difference]) -> None:

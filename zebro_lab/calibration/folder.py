@@ -146,24 +146,37 @@ def _numbers(found: object, shape: tuple[int, ...]) -> np.ndarray:
 def _slip_toml(calibration: "Calibration", inputs: Mapping[str, str]) -> str:
     import tomlkit
 
-    blocks, law = calibration.posterior.blocks, calibration.posterior.law
-    k = len(law.parameters)
     document = tomlkit.document()
     document.add(tomlkit.comment("Slip curve fitted by calibrate-slip. SI units."))
     if calibration.simulated:
         document.add(tomlkit.comment("SIMULATED data: nothing here was measured."))
-    verdict = calibration.verdict
-    content: dict[str, Any] = {
+    document.update({
         "schema": SCHEMA,
         "source": calibration.source,
-        "slip_definition": str(blocks.definition),
-        "verdict": {
-            "headline": verdict.headline(),
-            "converged": verdict.converged,
-            "trustworthy": verdict.trustworthy,
-            "weakly_identified": list(verdict.weak),
-            "next_steps": list(verdict.next_steps()),
-        },
+        "slip_definition": str(calibration.posterior.blocks.definition),
+        "verdict": _verdict_content(calibration),
+        **_law_content(calibration),
+        "tested": _tested_content(calibration),
+        "data": dict(zip(shortest_distinct([*map(Path, inputs)]), inputs.values(), strict=True)),
+    })  # fmt: skip
+    return tomlkit.dumps(document)
+
+
+def _verdict_content(calibration: "Calibration") -> dict[str, Any]:
+    verdict = calibration.verdict
+    return {
+        "headline": verdict.headline(),
+        "converged": verdict.converged,
+        "trustworthy": verdict.trustworthy,
+        "weakly_identified": list(verdict.weak),
+        "next_steps": list(verdict.next_steps()),
+    }
+
+
+def _law_content(calibration: "Calibration") -> dict[str, Any]:
+    law = calibration.posterior.law
+    k = len(law.parameters)
+    return {
         "law": {"name": law.name, **asdict(law)},  # pyright: ignore[reportArgumentType]
         "parameters": {
             e.parameter.name: {
@@ -180,17 +193,18 @@ def _slip_toml(calibration: "Calibration", inputs: Mapping[str, str]) -> str:
             {"normal_force": float(load), **{e.parameter.name: e.median for e in row}}
             for load, row in zip(calibration.levels, calibration.curves, strict=True)
         ],
-        "tested": {
-            "normal_force": [float(blocks.normal_force.min()), float(blocks.normal_force.max())],
-            "slip_ratio": [float(blocks.slip.min()), float(blocks.slip.max())],
-            "samples": int(blocks.count.sum()),
-            "runs": blocks.n_runs,
-            "block_length": calibration.fit.block_choice.length,
-        },
-        "data": dict(zip(shortest_distinct([*map(Path, inputs)]), inputs.values(), strict=True)),
     }  # fmt: skip
-    document.update(content)
-    return tomlkit.dumps(document)
+
+
+def _tested_content(calibration: "Calibration") -> dict[str, Any]:
+    blocks = calibration.posterior.blocks
+    return {
+        "normal_force": [float(blocks.normal_force.min()), float(blocks.normal_force.max())],
+        "slip_ratio": [float(blocks.slip.min()), float(blocks.slip.max())],
+        "samples": int(blocks.count.sum()),
+        "runs": blocks.n_runs,
+        "block_length": calibration.fit.block_choice.length,
+    }
 
 
 def summary_csv(calibration: "Calibration") -> str:
@@ -220,11 +234,12 @@ def inference_data(calibration: "Calibration") -> "az.InferenceData":
 
     posterior, draws = calibration.posterior, calibration.draws
     blocks = posterior.blocks
-    attributes = {
-        "source": calibration.source,
-        "slip_definition": str(blocks.definition),
-        "law": posterior.law.name,
-        "verdict": calibration.verdict.headline(),
+    observed = {"traction_force": blocks.traction_force}
+    given = {
+        "slip_ratio": blocks.slip,
+        "normal_force": blocks.normal_force,
+        "run": blocks.run,
+        "samples": blocks.count,
     }
     return az.from_dict(
         posterior={
@@ -233,17 +248,14 @@ def inference_data(calibration: "Calibration") -> "az.InferenceData":
             if p.name not in posterior.fixed
         },
         sample_stats={"lp": draws.log_density},
-        observed_data={"traction_force": blocks.traction_force},
-        constant_data={
-            "slip_ratio": blocks.slip,
-            "normal_force": blocks.normal_force,
-            "run": blocks.run,
-            "samples": blocks.count,
-        },
+        observed_data=observed,
+        constant_data=given,
         coords={"block": np.arange(len(blocks))},
-        dims={
-            name: ["block"]
-            for name in ("traction_force", "slip_ratio", "normal_force", "run", "samples")
+        dims={name: ["block"] for name in (*observed, *given)},
+        attrs={
+            "source": calibration.source,
+            "slip_definition": str(blocks.definition),
+            "law": posterior.law.name,
+            "verdict": calibration.verdict.headline(),
         },
-        attrs=attributes,
     )

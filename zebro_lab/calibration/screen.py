@@ -40,11 +40,12 @@ def _print_data(console: Console, calibration: Calibration, data: RigData) -> No
         f"{kind}, source '{data.source}': {len(data.samples)} samples in {blocks.n_runs} runs",
         *data.notes,
         f"slip definition: {blocks.definition}",
-        f"{len(blocks)} block means of about {choice.length} samples, set by {choice.reason}"
-        + ("" if choice.correlation is None else f" (correlated over {choice.correlation:.0f})"),
+        f"Samples are averaged in blocks of about {choice.length} ({len(blocks)} block means), a "
+        f"length set by {choice.reason}.",
     ]
-    if calibration.comparison is not None:
-        lines += _comparison_lines(calibration)
+    if choice.correlation is not None:
+        lines.append(f"The noise is correlated over {choice.correlation:.0f} samples.")
+    lines += _comparison_lines(calibration)
     for line in lines:
         console.print(plain(line))
 
@@ -56,7 +57,7 @@ def _comparison_lines(calibration: Calibration) -> list[str]:
     chosen = comparison.names[comparison.chosen]
     others = [
         f"'{name}' predicts left-out runs {'worse' if difference < 0 else 'better, not clearly,'} "
-        f"by {abs(difference):.0f} ± {error:.0f} log units"
+        f"by {abs(difference):.0f} ± {error:.0f} in log probability"
         for i, (name, difference, error) in enumerate(
             zip(comparison.names, comparison.difference, comparison.standard_error, strict=True)
         )
@@ -99,7 +100,7 @@ def _interval(e: Estimate) -> str:
 
 def _curve_table(calibration: Calibration) -> Table:
     table = Table(
-        title="the curve at each tested load: median, 90 % interval below",
+        title="slip curve at each tested load: median, and 90 % interval on the second line",
         box=box.SIMPLE,
         title_justify="left",
     )
@@ -116,25 +117,26 @@ def _curve_table(calibration: Calibration) -> Table:
 def _print_quality(console: Console, calibration: Calibration) -> None:
     residuals, agreement = calibration.residuals, calibration.agreement
     lines = [
-        f"in sample: R² {residuals.r_squared:.4f}, RMSE {residuals.rmse:.3g} N, RMSE of F/Fn "
-        f"{residuals.rmse_over_load:.3g}, of block means",
+        f"Fit of the block means: R² {residuals.r_squared:.4f}, RMSE {residuals.rmse:.3g} N, RMSE "
+        f"of F/Fn {residuals.rmse_over_load:.3g}",
     ]
     if calibration.fit.cross_validation is not None and calibration.r_squared is not None:
         lines.append(
-            f"cross-validated: R² {calibration.r_squared:.4f} of samples "
+            f"Cross-validation: R² {calibration.r_squared:.4f} of samples "
             f"({calibration.fit.cross_validation.scheme})"
         )
     if agreement.comparable:
         lines.append(
-            f"second engine (Laplace + PSIS, k = {agreement.pareto_k:.2f}): means agree to "
-            f"{agreement.mean:.2f} sd, spreads to {agreement.spread:.0%}"
+            f"Laplace approximation with importance weights (Pareto k = {agreement.pareto_k:.2f}): "
+            f"means agree with the sampler's to {agreement.mean:.2f} sd, spreads to "
+            f"{agreement.spread:.0%}"
         )
     else:
         lines.append(
-            f"second engine (Laplace + PSIS): no comparison, Pareto k = {agreement.pareto_k:.2f} "
-            "is above 0.7"
+            f"Laplace approximation with importance weights: not compared with the sampler, "
+            f"Pareto k = {agreement.pareto_k:.2f} is above 0.7"
         )
-    lines.append(f"sampled in {calibration.seconds:.0f} s")
+    lines.append(f"Sampling took {calibration.seconds:.0f} s.")
     for line in lines:
         console.print(plain(line))
 

@@ -18,13 +18,12 @@ _REGIONS = ("#CCE3F0", "#66AAD1")  # blue, mixed with white: 90 % and 50 % of th
 
 
 @styled
-def corner(draws: Array, *, labels: Sequence[str], title: str, simulated: bool) -> Figure:
+def corner(draws: Array, *, labels: Sequence[str], simulated: bool) -> Figure:
     """Draw every marginal and every pair of parameters of a posterior.
 
     Args:
         draws: Posterior draws, shape (n_draws, k).
         labels: Axis label of each parameter with its unit, k of them; see `parameter_labels`.
-        title: Title of the figure.
         simulated: Whether to append "(simulated)" to the title.
 
     Returns:
@@ -33,7 +32,7 @@ def corner(draws: Array, *, labels: Sequence[str], title: str, simulated: bool) 
     """
     k = draws.shape[1]
     side = max(7.0, 1.75 * k)
-    figure = new_figure(title, simulated, width=side, height=side)
+    figure = new_figure("Posterior of the slip law", simulated, width=side, height=side)
     panels = figure.subplots(k, k, squeeze=False, sharex="col")
     edges = [_edges(values) for values in draws.T]
     for row in range(k):
@@ -53,13 +52,12 @@ def corner(draws: Array, *, labels: Sequence[str], title: str, simulated: bool) 
 
 
 @styled
-def traces(chains: Array, *, labels: Sequence[str], title: str, simulated: bool = False) -> Figure:
+def traces(chains: Array, *, labels: Sequence[str], simulated: bool) -> Figure:
     """Draw the draws of every parameter in order, one colour for each independent ensemble.
 
     Args:
         chains: Draws, shape (n_ensembles, n_draws, k).
         labels: Axis label of each parameter with its unit, k of them; see `parameter_labels`.
-        title: Title of the figure.
         simulated: Whether to append "(simulated)" to the title.
 
     Returns:
@@ -67,7 +65,7 @@ def traces(chains: Array, *, labels: Sequence[str], title: str, simulated: bool 
         lie on one another. Long chains are thinned to about 2,000 points a line.
     """
     n_ensembles, n_draws, k = chains.shape
-    figure = new_figure(title, simulated, width=7.5, height=1.2 + 1.35 * k)
+    figure = new_figure("Traces by ensemble", simulated, width=7.5, height=1.2 + 1.35 * k)
     panels = figure.subplots(k, 2, squeeze=False, width_ratios=(1, 2.4))
     kept = np.arange(0, n_draws, max(1, n_draws // 2000))
     for row, (density, trace) in enumerate(panels):

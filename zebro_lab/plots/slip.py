@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.gridspec import SubplotSpec
 from matplotlib.ticker import MaxNLocator
 from numpy.typing import ArrayLike, NDArray
 
@@ -37,7 +38,6 @@ def slip_curves(
     *,
     draws: Array,
     load_levels: ArrayLike,
-    title: str,
     simulated: bool,
 ) -> Figure:
     """Draw data and posterior slip curves, one panel for each tested load.
@@ -52,7 +52,6 @@ def slip_curves(
         law: Slip law of the draws.
         draws: Posterior draws of the law's parameters, shape (n_draws, k).
         load_levels: Nominal loads, shape (n_levels,) [N].
-        title: Title of the figure.
         simulated: Whether to append "(simulated)" to the title.
 
     Returns:
@@ -62,23 +61,15 @@ def slip_curves(
     reach = _narrow_reach(blocks, curves)
     groups = math.ceil(math.sqrt(len(curves))) if reach is None else 1 + (len(curves) > 4)
     rows, width = math.ceil(len(curves) / groups), 1 if reach is None else 2
-    figure = new_figure(
-        title, simulated, width=max(7.0, 3.2 * groups * width), height=1.2 + 2.2 * max(rows, 1.6)
-    )
+    sides = max(7.0, 3.2 * groups * width), 1.2 + 2.2 * max(rows, 1.6)
+    figure = new_figure("Slip curve by load", simulated, width=sides[0], height=sides[1])
     grid = figure.add_gridspec(rows, groups * width)
     for index, curve in enumerate(curves):
         row, column = index // groups, index % groups * width
-        whole = figure.add_subplot(grid[row, column])
-        _draw_load_curve(whole, blocks, curve)
-        panels = [whole]
-        if reach is None:
-            whole.set_title(f"{_load_text(blocks, curve)}\n{_peak_text(curve)}", loc="left")
-        else:
-            whole.set_title(_load_text(blocks, curve), loc="left")
-            panels.append(figure.add_subplot(grid[row, column + 1], sharey=whole))
-            _draw_close_up(panels[1], blocks, curve, reach)
+        cells = [grid[row, column + i] for i in range(width)]
+        panels = _draw_load(figure, cells, blocks, curve, reach)
         if column == 0:
-            whole.set_ylabel("traction force [N]")
+            panels[0].set_ylabel("traction force [N]")
         if index + groups >= len(curves):  # nothing below
             for axes in panels:
                 axes.set_xlabel(slip_label(blocks))
@@ -106,6 +97,28 @@ class _LoadCurve:
         if not (peaks := self.peaks()):
             return None
         return float(self.slip[peaks[0]]), float(self.bands[2, peaks[0]])
+
+
+def _draw_load(
+    figure: Figure, cells: Sequence[SubplotSpec], blocks: SlipBlocks, curve: _LoadCurve,
+    reach: tuple[float, float] | None,
+) -> list[Axes]:  # fmt: skip
+    """Draw the curve at one load, in a second panel its part within `reach`."""
+    whole = figure.add_subplot(cells[0])
+    _draw_load_curve(whole, blocks, curve)
+    load, peak = _load_text(blocks, curve), _peak_text(curve)
+    if reach is None:
+        whole.set_title(f"{load}\n{peak}", loc="left")
+        return [whole]
+    whole.set_title(load, loc="left")
+    close = figure.add_subplot(cells[1], sharey=whole)
+    _draw_load_curve(close, blocks, curve)
+    margin = 0.02 * (reach[1] - reach[0])
+    close.set_xlim(reach[0] - margin, reach[1])
+    close.set_title(peak, loc="left")
+    close.tick_params(labelleft=False)
+    close.xaxis.set_major_locator(MaxNLocator(4))
+    return [whole, close]
 
 
 def _load_curves(blocks: SlipBlocks, law: SlipLaw, draws: Array, levels: Array) -> list[_LoadCurve]:
@@ -155,17 +168,6 @@ def _draw_load_curve(axes: Axes, blocks: SlipBlocks, curve: _LoadCurve) -> None:
             mec="white", mew=0.6, label="peak",
         )  # fmt: skip
     axes.axhline(0, color="0.6", lw=0.5, zorder=0)
-
-
-def _draw_close_up(
-    axes: Axes, blocks: SlipBlocks, curve: _LoadCurve, reach: tuple[float, float]
-) -> None:
-    _draw_load_curve(axes, blocks, curve)
-    margin = 0.02 * (reach[1] - reach[0])
-    axes.set_xlim(reach[0] - margin, reach[1])
-    axes.set_title(_peak_text(curve), loc="left")
-    axes.tick_params(labelleft=False)
-    axes.xaxis.set_major_locator(MaxNLocator(4))
 
 
 def _load_text(blocks: SlipBlocks, curve: _LoadCurve) -> str:

@@ -95,7 +95,7 @@ def test_simulated_data_is_called_simulated_wherever_it_is_read(converged):
 def test_printed_report_has_definition_coefficients_verdict_and_paths(converged):
     process, out = converged
     assert "slip definition: material" in process.stdout
-    assert "120 block means of about 30 samples, set by the length asked for" in process.stdout
+    assert "averaged in blocks of about 30 (120 block means)" in " ".join(process.stdout.split())
     header = next(line for line in process.stdout.splitlines() if "Fn [N]" in line)
     assert {"B", "C", "D", "E", "x_m", "BCD"} <= set(header.split())
     assert "verdict: converged" in process.stdout

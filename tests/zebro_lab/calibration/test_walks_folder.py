@@ -15,7 +15,7 @@ from model.gait import tripod_angles, tripod_reference
 from model.robot import Robot
 from support.watchers import Nobody
 from zebro_lab.calibration.slip_argument import parse_slip
-from zebro_lab.calibration.walks_folder import FOLDER, WalksToWrite, read_walks_beside, write_walks
+from zebro_lab.calibration.walks_folder import FOLDER, WalksToWrite, read_stored_walks, write_walks
 from zebro_lab.files.errors import DataError, SettingsError
 from zebro_lab.report.stage import ReportRequest, report
 from zebro_lab.robot.robot_file import RobotFile
@@ -101,7 +101,7 @@ def stored(calibration, legs, posterior):
         ),
         draw=lambda draft: draw_walks(draft, posterior, (), simulated=True),
     )  # fmt: skip
-    return read_walks_beside(slip)
+    return read_stored_walks(slip)
 
 
 def predicted(tmp_path, log, slip, *, name="prediction", robot=None, draws=0, model="dynamics"):
@@ -253,6 +253,6 @@ def test_a_report_tells_what_walks_said_and_what_they_did_not(calibration, legs,
     assert "Mounted wrong: leg 3" in text
     assert "SIMULATED: sim:dynamics, sim:test" in text
     assert text.count("data:image/png") >= 1
-    told = read_walks_beside(calibration / "slip.toml").posterior.contractions()
+    told = read_stored_walks(calibration / "slip.toml").posterior.contractions()
     silent = next(each.name for each in told if not each.informed)
     assert silent.replace("_", " ") in text

@@ -10,8 +10,6 @@ import typer
 from zebro_lab.terminal.messages import say
 
 if TYPE_CHECKING:
-    from rich.console import Console
-
     from zebro_lab.calibration.stage import CalibrationRequest
 
 NOT_CONVERGED = 3
@@ -181,6 +179,7 @@ def _fit_and_report(request: "CalibrationRequest") -> bool:
     from zebro_lab.calibration.stage import Stopped
     from zebro_lab.calibration.stage import calibrate as fit
     from zebro_lab.terminal.progress import progress_bar
+    from zebro_lab.terminal.tables import wide_console
 
     try:
         with progress_bar(Console(stderr=True)) as watcher:
@@ -190,11 +189,3 @@ def _fit_and_report(request: "CalibrationRequest") -> bool:
         raise typer.Exit(INTERRUPTED) from None
     print_calibration(wide_console(), calibration, read, request.out)
     return calibration.verdict.converged
-
-
-def wide_console() -> "Console":
-    """Return a console; 120 columns wide if the output is not a terminal."""
-    from rich.console import Console
-
-    console = Console(highlight=False)
-    return console if console.is_terminal else Console(highlight=False, width=120)

@@ -101,11 +101,11 @@ def _column_maps(sources: Sequence[DataSource], override: Path | None) -> dict[D
 
 def _labels(sources: Sequence[DataSource]) -> list[str]:
     """Return the shortest labels of tables that are distinct."""
-    below = [source.path.relative_to(source.root).parent for source in sources]
+    folders = [source.path.relative_to(source.root).parent for source in sources]
     stems = [table_stem(source.path) for source in sources]
     schemes = (
         stems,
-        [str(folder / stem) for folder, stem in zip(below, stems, strict=True)],
+        [str(folder / stem) for folder, stem in zip(folders, stems, strict=True)],
         [str(source.path) for source in sources],
     )
     return next((names for names in schemes if len(set(names)) == len(names)), schemes[-1])

@@ -3,7 +3,6 @@
 
 from pathlib import Path
 
-from rich import box
 from rich.console import Console
 from rich.table import Table
 from rich.text import Text
@@ -12,6 +11,7 @@ from model.bayes.calibration import Calibration
 from model.bayes.estimate import Estimate
 from zebro_lab.calibration.rig_data import RigData
 from zebro_lab.terminal.messages import plain
+from zebro_lab.terminal.tables import plain_table
 
 
 def print_calibration(console: Console, calibration: Calibration, data: RigData, out: Path) -> None:
@@ -70,11 +70,8 @@ def _parameter_table(calibration: Calibration) -> Table:
     title = f"parameters of '{calibration.posterior.law.name}' and of the measurement"
     if calibration.simulated:
         title += " (simulated)"
-    table = Table(title=title, box=box.SIMPLE, title_justify="left")
-    for name in ("parameter", "symbol"):
-        table.add_column(name, no_wrap=True)
-    for name in ("median", "90 % interval", "unit", "informed", "R-hat", "ESS"):
-        table.add_column(name, justify="right", no_wrap=True)
+    numbers = ("median", "90 % interval", "unit", "informed", "R-hat", "ESS")
+    table = plain_table(title, ("parameter", "symbol"), numbers, no_wrap=True)
     free = {p.name: i for i, p in enumerate(calibration.posterior.free)}
     for e in calibration.parameters:
         i = free.get(e.parameter.name)
@@ -99,16 +96,13 @@ def _interval(e: Estimate) -> str:
 
 
 def _curve_table(calibration: Calibration) -> Table:
-    table = Table(
-        title="slip curve at each tested load: median, and 90 % interval on the second line",
-        box=box.SIMPLE,
-        title_justify="left",
-    )
-    table.add_column("Fn [N]", justify="right")
+    title = "slip curve at each tested load: median, and 90 % interval on the second line"
     units = {"dimensionless": "", "newton": " [N]"}
-    for e in calibration.curves[0]:
-        unit = units.get(e.parameter.unit, f" [{e.parameter.unit}]")
-        table.add_column(f"{e.parameter.symbol}{unit}", justify="right")
+    headings = (
+        f"{e.parameter.symbol}{units.get(e.parameter.unit, f' [{e.parameter.unit}]')}"
+        for e in calibration.curves[0]
+    )
+    table = plain_table(title, (), ("Fn [N]", *headings))
     for load, row in zip(calibration.levels, calibration.curves, strict=True):
         table.add_row(f"{load:.4g}", *(f"{e.median:.4g}\n{e.low:.3g}…{e.high:.3g}" for e in row))
     return table

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What the functions for notebooks do unless told otherwise: no progress, no files kept."""
+"""Defaults of the functions for notebooks: no progress shown, no files kept."""
 
 import os
 from collections.abc import Iterator

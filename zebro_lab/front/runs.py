@@ -26,7 +26,7 @@ class Run:
 
     Attributes:
         folder: Its folder.
-        manifest: What `run.json` says.
+        manifest: Content of `run.json`.
     """
 
     folder: Path

@@ -65,17 +65,17 @@ def photos_beside_poses(
     )  # fmt: skip
     panels = figure.subplots(2, len(shots), squeeze=False)
     taken = "simulated photograph" if simulated_photos else "photograph"
-    for (above, below), shot in zip(panels.T, shots, strict=True):
-        above.imshow(shot.picture[:, :, ::-1], extent=shot.extent, interpolation="antialiased")
-        above.set_title(f"t = {shot.t:.2f} s", loc="left")
-        _draw_robot(below, shot, robot)
+    for (photograph, drawn), shot in zip(panels.T, shots, strict=True):
+        photograph.imshow(shot.picture[:, :, ::-1], extent=shot.extent, interpolation="antialiased")
+        photograph.set_title(f"t = {shot.t:.2f} s", loc="left")
+        _draw_robot(drawn, shot, robot)
         off = 1e3 * np.linalg.norm(shot.position[:2] - shot.tracked[:2])
         turned = np.degrees(np.angle(np.exp(1j * (shot.orientation[2] - shot.tracked[2]))))
-        below.set_title(f"{off:.0f} mm, {turned:+.1f} deg off", loc="left")
-        for axes in (above, below):
+        drawn.set_title(f"{off:.0f} mm, {turned:+.1f} deg off", loc="left")
+        for axes in (photograph, drawn):
             axes.set(xlim=shot.extent[:2], ylim=shot.extent[2:], aspect="equal")
             axes.tick_params(labelsize=7)
-        below.set_xlabel("x [m]")
+        drawn.set_xlabel("x [m]")
     panels[0, 0].set_ylabel(f"{taken}\ny [m]")
     panels[1, 0].set_ylabel("predicted (simulated)\ny [m]")
     legend_below(figure, columns=4)

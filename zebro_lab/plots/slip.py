@@ -70,7 +70,7 @@ def slip_curves(
         panels = _draw_load(figure, cells, blocks, curve, reach)
         if column == 0:
             panels[0].set_ylabel("traction force [N]")
-        if index + groups >= len(curves):  # nothing below
+        if index + groups >= len(curves):  # the last panel of its column
             for axes in panels:
                 axes.set_xlabel(slip_label(blocks))
     legend_below(figure, columns=3)

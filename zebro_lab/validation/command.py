@@ -61,6 +61,7 @@ def validate(
     from rich.console import Console
 
     from zebro_lab.terminal.progress import progress_bar
+    from zebro_lab.terminal.tables import wide_console
     from zebro_lab.validation.predicted_walks import pairs_of_run
     from zebro_lab.validation.screen import print_validated
     from zebro_lab.validation.stage import ValidateRequest
@@ -80,7 +81,4 @@ def validate(
     with progress_bar(Console(stderr=True)) as watcher:
         offset = None if estimate_offset else time_offset
         validated = run(ValidateRequest(tuple(pairs), out, anchor, offset, seed), watcher)
-    console = Console(highlight=False)
-    if not console.is_terminal:
-        console = Console(highlight=False, width=120)
-    print_validated(console, validated, out)
+    print_validated(wide_console(), validated, out)

@@ -4,13 +4,13 @@
 from pathlib import Path
 
 import numpy as np
-from rich import box
 from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
 from model.metrics.consistency import Consistency
 from zebro_lab.terminal.messages import plain
+from zebro_lab.terminal.tables import plain_table
 from zebro_lab.validation.judged_run import JudgedRun
 from zebro_lab.validation.stage import Validated
 
@@ -47,13 +47,11 @@ def print_validated(console: Console, validated: Validated, out: Path) -> None:
 def _table(run: JudgedRun) -> Table:
     length = run.rows[0].errors.length
     title = f"{run.name}: {run.rows[0].errors.poses} poses, {length:.3f} m"
-    table = Table(title=title, box=box.SIMPLE, title_justify="left")
-    table.add_column("model")
-    for name in (
+    numbers = (
         "ATE [mm]", "of path", "along [mm]", "across [mm]", "yaw [deg]", "end [mm]",
         "aligned [mm]", "radius [m]", "CRPS x, y [mm]",
-    ):  # fmt: skip
-        table.add_column(plain(name), justify="right")
+    )  # fmt: skip
+    table = plain_table(title, ("model",), numbers)
     for row in run.rows:
         e = row.errors
         crps = " ".join(f"{1000 * value:.1f}" for value in row.scores.crps[:2])

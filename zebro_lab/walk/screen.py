@@ -6,7 +6,6 @@ from pathlib import Path
 
 import numpy as np
 import typer
-from rich import box
 from rich.console import Console
 from rich.table import Table
 from rich.text import Text
@@ -16,6 +15,7 @@ from model.progress import Watcher
 from zebro_lab.files.result_folder import MANIFEST
 from zebro_lab.terminal.messages import plain, say
 from zebro_lab.terminal.progress import progress_bar
+from zebro_lab.terminal.tables import plain_table, wide_console
 from zebro_lab.walk.folder import FILES
 from zebro_lab.walk.output import WalkStopped
 from zebro_lab.walk.summary import WalkSummary, summarise
@@ -41,10 +41,7 @@ def run_and_report(run: Callable[[Watcher], Walked], request: ModelRequest) -> N
     except WalkStopped as stopped:
         say(str(stopped), err=True)
         raise typer.Exit(INTERRUPTED) from None
-    console = Console(highlight=False)
-    if not console.is_terminal:
-        console = Console(highlight=False, width=120)
-    print_walk(console, walked, request.out)
+    print_walk(wide_console(), walked, request.out)
 
 
 def print_walk(console: Console, walked: Walked, out: Path) -> None:
@@ -111,13 +108,11 @@ def slip_lines(walked: Walked, summary: WalkSummary) -> list[str]:
 def gait_table(reference: CyclicReference) -> Table:
     """Return a table of a gait's parameters, one row per leg."""
     title = f"the gait, with a cycle of {reference.period:.4g} s"
-    table = Table(title=title, box=box.SIMPLE, title_justify="left")
-    table.add_column("leg")
-    for name in (
+    numbers = (
         "touchdown [deg]", "lift-off [deg]", "ground [s]", "flight [s]", "ground [deg/s]",
         "flight [deg/s]", "at t = 0 [deg]",
-    ):  # fmt: skip
-        table.add_column(plain(name), justify="right")
+    )  # fmt: skip
+    table = plain_table(title, ("leg",), numbers)
     start = np.degrees(reference.angles(0.0)[0]) % 360
     columns = (
         np.degrees(reference.touchdown), np.degrees(reference.liftoff), reference.ground_time,

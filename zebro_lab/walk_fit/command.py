@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""`calibrate-slip --walks`: fit legs and floor to tracked walks beside a calibration."""
+"""`calibrate-slip --walks`: fit legs and floor to tracked walks."""
 
 from pathlib import Path
 
@@ -25,8 +25,8 @@ def fit_walks(
     """
     from rich.console import Console
 
-    from zebro_lab.calibration.command import wide_console
     from zebro_lab.terminal.progress import progress_bar
+    from zebro_lab.terminal.tables import wide_console
     from zebro_lab.walk_fit.screen import print_walks
     from zebro_lab.walk_fit.stage import WalksRequest, calibrate_walks
 

@@ -2,7 +2,6 @@
 """Terminal output of `calibrate-slip --walks`: posterior, wrong legs, left-out walks."""
 
 import numpy as np
-from rich import box
 from rich.console import Console
 from rich.table import Table
 from rich.text import Text
@@ -11,6 +10,7 @@ from model.bayes.walks.posterior import Contraction, WalkPosterior
 from model.bayes.walks.prior import FALL, UNITS
 from zebro_lab.files.units import shown_unit
 from zebro_lab.terminal.messages import plain
+from zebro_lab.terminal.tables import plain_table
 from zebro_lab.validation.judged_run import JudgedRun
 from zebro_lab.walk_fit.stage import WalksCalibrated
 
@@ -41,10 +41,8 @@ def print_walks(console: Console, done: WalksCalibrated) -> None:
 
 def _parameter_table(posterior: WalkPosterior) -> Table:
     title = f"legs and floor fitted to {len(posterior.walks)} walk(s): {', '.join(posterior.walks)}"
-    table = Table(title=plain(title), box=box.SIMPLE, title_justify="left")
-    table.add_column("parameter", no_wrap=True)
-    for name in ("prior", "posterior", "unit", "informed"):
-        table.add_column(name, justify="right", no_wrap=True)
+    numbers = ("prior", "posterior", "unit", "informed")
+    table = plain_table(title, ("parameter",), numbers, no_wrap=True)
     for each, unit in zip(posterior.contractions(), UNITS, strict=True):
         table.add_row(each.name, *_cells(each, unit))
     return table
@@ -98,15 +96,11 @@ def _quality(posterior: WalkPosterior) -> list[str]:
 
 
 def _left_out_table(left_out: tuple[JudgedRun, ...]) -> Table:
-    table = Table(
-        title="each walk predicted from a fit of the others", box=box.SIMPLE, title_justify="left"
-    )
-    table.add_column("walk", overflow="fold")
-    for name in (
+    numbers = (
         "error, rms [mm]", "of path", "yaw [deg]", "radius [m]", "tracked [m]",
         "coverage of 90 % band, x, y, yaw", "CRPS x, y [mm]", "best baseline's",
-    ):  # fmt: skip
-        table.add_column(plain(name), justify="right")
+    )  # fmt: skip
+    table = plain_table("each walk predicted from a fit of the others", ("walk",), numbers)
     for run in left_out:
         prediction, *others = run.rows
         e, scores = prediction.errors, prediction.scores

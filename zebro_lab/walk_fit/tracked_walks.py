@@ -119,9 +119,7 @@ def read_walk_on_file(
     log_file = _legs_of(folder)
     track_file = settle(folder / TRACK) / TRACK_CSV
     if not track_file.is_file():
-        raise NotFound(
-            f"{folder}: a walk without a track; zebro-lab track --out {folder / TRACK} makes one"
-        )
+        raise NotFound(f"{folder}: no track; zebro-lab track --out {folder / TRACK} makes one")
     own = folder / ROBOT_FILE
     described = read_robot_file(robot or own) if robot is not None or own.is_file() else RobotFile()
     log = read_leg_log(log_file, leg_sign=described.leg_sign)
@@ -131,7 +129,7 @@ def read_walk_on_file(
     track = track if clock is None else clock(track, legs, described.robot)
     inside, notes = _inside(float(legs.t[-1]), track)
     _require_states(inside)
-    tilt, imu_files, told = _tilt(folder, start, float(log.reference.t[-1]))
+    tilt, imu_files, imu_notes = _tilt(folder, start, float(log.reference.t[-1]))
     sources = sorted({log.source, track.source})
     return WalkOnFile(
         name=folder.absolute().name,
@@ -140,7 +138,7 @@ def read_walk_on_file(
         track=inside,
         source=", ".join(sources),
         files=(*log.files, track.file, *([described.file] if described.file else []), *imu_files),
-        notes=(*log.notes, *counted, *track.notes, *notes, *told),
+        notes=(*log.notes, *counted, *track.notes, *notes, *imu_notes),
         tilt=tilt,
     )
 
@@ -154,10 +152,10 @@ def _tilt(
         return None, (), ()
     inside = (measured.t >= start) & (measured.t <= end)
     if not inside.any() or np.ptp(measured.t[inside]) < FEWEST * TIME:
-        note = f"roll and pitch do not inform: no IMU from {start:g} to {end:g} s, as the log is"
+        note = f"roll and pitch are not used: no IMU data from {start:g} to {end:g} s, as the legs"
         return None, (), (note,)
     seen = TiltSeen(measured.t[inside] - start, measured.angles[inside])
-    return seen, measured.files, ("roll and pitch by the IMU inform which leg is off",)
+    return seen, measured.files, ("roll and pitch of the IMU inform which leg is mounted wrong",)
 
 
 def _legs_of(folder: Path) -> Path:
@@ -194,10 +192,9 @@ def _inside(end: float, track: TrackFile) -> tuple[TrackFile, tuple[str, ...]]:
 def _require_states(track: TrackFile) -> None:
     """Check that a track has headings and a covariance."""
     if not track.poses.has_yaw:
-        raise DataError("has no headings; a walk can inform a fit only with them", file=track.file)
+        raise DataError("has no headings, which a fit of walks needs", file=track.file)
     if not np.all(np.linalg.eigvalsh(track.covariance) > 0):
         raise DataError(
-            "has no covariance; a walk can inform a fit only when its track says how far it may be "
-            "off: add cov_xx to cov_yawyaw",
+            "has no covariance, which a fit of walks needs: add columns cov_xx to cov_yawyaw",
             file=track.file,
         )

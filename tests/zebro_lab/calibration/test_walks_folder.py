@@ -169,7 +169,7 @@ def test_steering_that_walks_found_turns_the_predicted_path(calibration, legs, t
     informed = predicted(tmp_path, other, str(calibration))
     turned = informed.path.yaw[-1] - plain.path.yaw[-1]
     assert turned == pytest.approx(0.1 * plain.path.length, rel=0.03)
-    assert "legs and floor as one, two have them" in " ".join(informed.notes)
+    assert "legs and floor are those fitted to one, two" in " ".join(informed.notes)
 
 
 def test_a_leg_knocked_off_in_one_walk_is_off_where_that_walk_is_predicted(
@@ -180,7 +180,7 @@ def test_a_leg_knocked_off_in_one_walk_is_off_where_that_walk_is_predicted(
     assert (own.index, other.index) == (1, 0)
     assert own.middle.offset[0, 2] == pytest.approx(OFF)
     assert not other.middle.offset.any()
-    assert "can confirm but not test" in own.notes[1]
+    assert "no independent test" in own.notes[1]
     to_come = informed_legs(walks, RobotFile())
     assert to_come.index is None
     assert not to_come.middle.offset.any()

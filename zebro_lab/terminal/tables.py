@@ -1,0 +1,37 @@
+# SPDX-License-Identifier: MIT
+"""Console and tables of results; text is shown as it is, also units in brackets."""
+
+from collections.abc import Sequence
+
+from rich import box
+from rich.console import Console
+from rich.table import Table
+
+from zebro_lab.terminal.messages import plain
+
+
+def wide_console() -> Console:
+    """Return a console; 120 columns wide if the output is not a terminal."""
+    console = Console(highlight=False)
+    return console if console.is_terminal else Console(highlight=False, width=120)
+
+
+def plain_table(
+    title: str, names: Sequence[str], numbers: Sequence[str], *, no_wrap: bool = False
+) -> Table:
+    """Create a table without rows.
+
+    Rich takes a unit such as `[mm]` in a plain string for markup and hides it.
+
+    Args:
+        title: Title of the table.
+        names: Headings of columns of text, which come first.
+        numbers: Headings of columns of numbers, aligned to the right.
+        no_wrap: Whether cells are kept on one line.
+    """
+    table = Table(title=plain(title), box=box.SIMPLE, title_justify="left")
+    for name in names:
+        table.add_column(plain(name), no_wrap=no_wrap)
+    for name in numbers:
+        table.add_column(plain(name), justify="right", no_wrap=no_wrap)
+    return table

@@ -62,18 +62,18 @@ def read_rig_data(
         ZebroLabError: A path, a column map or the data is at fault; the one-line message names
             file, column and row.
     """
-    wanted = slip_definition
-    if wanted is not None:
-        wanted = parse_definition(wanted, file=None, key="slip definition")
     named = find_sources(paths)
-    labels = dict(zip(named, _labels(named), strict=True))
     excluded = {source: why for source in named if (why := _exclusion(source)) is not None}
     counted = [source for source in named if source not in excluded]
     sources, repeated = first_of_each(counted, key=_bytes_of) if len(counted) > 1 else (counted, [])
+    wanted = slip_definition
+    if wanted is not None:
+        wanted = parse_definition(wanted, file=None, key="slip definition")
+    labels = dict(zip(named, _labels(named), strict=True))
     maps = _column_maps(named, columns)
     parts = [read_part(source, maps[source], labels[source], wanted) for source in sources]
     if parts:
-        _require_one_definition(parts)  # under two definitions, copies are not recognised as such
+        _require_one_definition(parts)  # the same forces under two definitions contradict each other
     known = _known(excluded, maps, labels) if parts else {}
     parts, repeated_runs = _without_duplicates(parts, known)
     files = [(labels[one], labels[other]) for one, other in repeated]

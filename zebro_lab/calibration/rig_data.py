@@ -72,8 +72,8 @@ def read_rig_data(
     labels = dict(zip(named, _labels(named), strict=True))
     maps = _column_maps(named, columns)
     parts = [read_part(source, maps[source], labels[source], wanted) for source in sources]
-    if parts:
-        _require_one_definition(parts)  # the same forces under two definitions contradict each other
+    if parts:  # the same forces under two definitions contradict each other
+        _require_one_definition(parts)
     known = _known(excluded, maps, labels) if parts else {}
     parts, repeated_runs = _without_duplicates(parts, known)
     files = [(labels[one], labels[other]) for one, other in repeated]

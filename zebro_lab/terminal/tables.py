@@ -17,7 +17,12 @@ def wide_console() -> Console:
 
 
 def plain_table(
-    title: str, names: Sequence[str], numbers: Sequence[str], *, no_wrap: bool = False
+    title: str,
+    names: Sequence[str],
+    numbers: Sequence[str],
+    *,
+    fold: bool = False,
+    no_wrap: bool = False,
 ) -> Table:
     """Create a table without rows.
 
@@ -27,11 +32,12 @@ def plain_table(
         title: Title of the table.
         names: Headings of columns of text, which come first.
         numbers: Headings of columns of numbers, aligned to the right.
-        no_wrap: Whether cells are kept on one line.
+        fold: Whether long text is folded; otherwise it is kept on one line.
+        no_wrap: Whether numbers and their headings are kept on one line.
     """
     table = Table(title=plain(title), box=box.SIMPLE, title_justify="left")
     for name in names:
-        table.add_column(plain(name), no_wrap=no_wrap)
+        table.add_column(plain(name), no_wrap=not fold, overflow="fold")
     for name in numbers:
         table.add_column(plain(name), justify="right", no_wrap=no_wrap)
     return table

@@ -100,7 +100,9 @@ def _left_out_table(left_out: tuple[JudgedRun, ...]) -> Table:
         "error, rms [mm]", "of path", "yaw [deg]", "radius [m]", "tracked [m]",
         "coverage of 90 % band, x, y, yaw", "CRPS x, y [mm]", "best baseline's",
     )  # fmt: skip
-    table = plain_table("each walk predicted from a fit of the others", ("walk",), numbers)
+    table = plain_table(
+        "each walk predicted from a fit of the others", ("walk",), numbers, fold=True
+    )
     for run in left_out:
         prediction, *others = run.rows
         e, scores = prediction.errors, prediction.scores

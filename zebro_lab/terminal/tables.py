@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from rich import box
 from rich.console import Console
 from rich.table import Table
+from rich.text import Text
 
 from zebro_lab.terminal.messages import plain
 
@@ -31,7 +32,8 @@ def plain_table(
     Args:
         title: Title of the table.
         names: Headings of columns of text, which come first.
-        numbers: Headings of columns of numbers, aligned to the right.
+        numbers: Headings of columns of numbers, aligned to the right; a line break keeps a column
+            of a long heading narrow.
         fold: Whether long text is folded; otherwise it is kept on one line.
         no_wrap: Whether numbers and their headings are kept on one line.
     """
@@ -39,5 +41,6 @@ def plain_table(
     for name in names:
         table.add_column(plain(name), no_wrap=not fold, overflow="fold")
     for name in numbers:
-        table.add_column(plain(name), justify="right", no_wrap=no_wrap)
+        heading = Text("\n").join(map(plain, name.split("\n")))
+        table.add_column(heading, justify="right", no_wrap=no_wrap)
     return table

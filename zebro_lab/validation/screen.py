@@ -48,8 +48,8 @@ def _table(run: JudgedRun) -> Table:
     length = run.rows[0].errors.length
     title = f"{run.name}: {run.rows[0].errors.poses} poses, {length:.3f} m"
     numbers = (
-        "ATE [mm]", "of path", "along [mm]", "across [mm]", "yaw [deg]", "end [mm]",
-        "aligned [mm]", "radius [m]", "CRPS x, y [mm]",
+        "ATE\n[mm]", "of path", "along\n[mm]", "across\n[mm]", "yaw\n[deg]", "end\n[mm]",
+        "aligned\n[mm]", "radius\n[m]", "CRPS x, y\n[mm]",
     )  # fmt: skip
     table = plain_table(title, ("model",), numbers)
     for row in run.rows:

@@ -109,8 +109,8 @@ def gait_table(reference: CyclicReference) -> Table:
     """Return a table of a gait's parameters, one row per leg."""
     title = f"the gait, with a cycle of {reference.period:.4g} s"
     numbers = (
-        "touchdown [deg]", "lift-off [deg]", "ground [s]", "flight [s]", "ground [deg/s]",
-        "flight [deg/s]", "at t = 0 [deg]",
+        "touchdown\n[deg]", "lift-off\n[deg]", "ground\n[s]", "flight\n[s]", "ground\n[deg/s]",
+        "flight\n[deg/s]", "at t = 0\n[deg]",
     )  # fmt: skip
     table = plain_table(title, ("leg",), numbers)
     start = np.degrees(reference.angles(0.0)[0]) % 360

@@ -97,8 +97,8 @@ def _quality(posterior: WalkPosterior) -> list[str]:
 
 def _left_out_table(left_out: tuple[JudgedRun, ...]) -> Table:
     numbers = (
-        "error, rms [mm]", "of path", "yaw [deg]", "radius [m]", "tracked [m]",
-        "coverage of 90 % band, x, y, yaw", "CRPS x, y [mm]", "best baseline's",
+        "error, rms\n[mm]", "of path", "yaw\n[deg]", "radius\n[m]", "tracked\n[m]",
+        "90 % band\nholds x, y, yaw", "CRPS x, y\n[mm]", "best baseline's\n[mm]",
     )  # fmt: skip
     table = plain_table(
         "each walk predicted from a fit of the others", ("walk",), numbers, fold=True

@@ -27,7 +27,7 @@ from model.slip.law import Array
 from model.walk.path import WalkPath
 from zebro_lab.files.atomic import atomic_write_bytes
 from zebro_lab.files.errors import AlreadyExists, NotFound
-from zebro_lab.files.names import PATH_CSV
+from zebro_lab.files.names import PATH_CSV, TRACK
 from zebro_lab.files.replacement import settle
 from zebro_lab.mcap.message_log import MessageLog
 from zebro_lab.mcap.ros_messages import JOINT_STATE, Schema, joint_state
@@ -48,7 +48,6 @@ from zebro_lab.runs.recorded_legs import is_recorded, read_recorded_legs
 from zebro_lab.track.file import TrackFile, read_track
 from zebro_lab.track.folder import TRACK_CSV
 from zebro_lab.validation.shared_clock import shared_time
-from zebro_lab.validation.stage import TRACK
 from zebro_lab.walk.folder import DRAWS, PREDICTION, read_walk, read_walk_manifest
 from zebro_lab.walk.path_band import read_draws
 from zebro_lab.walk.prediction_file import robot_of_walk

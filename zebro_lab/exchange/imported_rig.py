@@ -143,7 +143,7 @@ def _require_columns(table: RigTable) -> None:
                     f"{_ELSE}",
                     file=table.raw.path,
                 )
-            raise table.missing(name)
+            table.required(name)
 
 
 def _radius(table: RigTable, name: str) -> float:

@@ -12,11 +12,10 @@ from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 
 from tracking.camera.lens import Array
-from zebro_lab.plots.sheet import BLUE, CYCLE, RED, new_figure, styled
+from zebro_lab.plots.sheet import BLUE, CYCLE, RED, legend_below, new_figure, styled
 
 _WIDTH = 9.0  # inches
 _GREEN = CYCLE[2]
-_MOST_NUMBERS = 40
 
 
 @dataclass(frozen=True)
@@ -190,8 +189,7 @@ def residual_page(
         axes.grid(color="0.93", lw=0.6)
         axes.set_axisbelow(True)
     figure.align_ylabels(panels)
-    handles, labels = panels[0].get_legend_handles_labels()
-    figure.legend(handles, labels, loc="outside lower center", ncols=4)
+    legend_below(figure, columns=4)
     return figure
 
 

@@ -1,26 +1,29 @@
 # SPDX-License-Identifier: MIT
 """Stage of `calibrate-slip --walks`: fit legs and floor to tracked walks, write `walks/`."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
+from model.bayes.walks.posterior import WalkPosterior
 from model.bayes.walks.prior import WalkPrior
 from model.progress import Watcher
 from zebro_lab.calibration.folder import SLIP_TOML
 from zebro_lab.calibration.request import CalibrationRequest
-from zebro_lab.calibration.slip_argument import parse_slip
+from zebro_lab.calibration.slip_argument import NamedSlip, parse_slip
 from zebro_lab.calibration.walks_folder import FOLDER, WALKS, WalksToWrite, write_walks
 from zebro_lab.files.errors import NotFound, SettingsError
 from zebro_lab.files.replacement import settle
 from zebro_lab.files.result_folder import require_replaceable
 from zebro_lab.validation.folder import metrics
+from zebro_lab.validation.judged_run import JudgedRun
 from zebro_lab.walk_fit.clocks import checked_clock, estimated_clock_of
 from zebro_lab.walk_fit.pictures import draw_walks
-from zebro_lab.walk_fit.prediction import WalksFitted, fit_and_leave_out
+from zebro_lab.walk_fit.prediction import fit_walks_on_file, judge_left_out
 from zebro_lab.walk_fit.request import WalksRequest
-from zebro_lab.walk_fit.tracked_walks import read_walks
+from zebro_lab.walk_fit.tracked_walks import WalkOnFile, read_walks
 
 
 @dataclass(frozen=True)
@@ -28,13 +31,16 @@ class WalksCalibrated:
     """A finished fit of walks and where it was written.
 
     Attributes:
-        fitted: The fit, with each walk predicted from the others.
+        posterior: The posterior of legs and floor.
+        left_out: Each walk predicted from a fit of the others, with its errors; empty for a single
+            walk.
         folder: Folder that was written.
         source: Where rig data and walks come from.
         notes: Notes, one line each.
     """
 
-    fitted: WalksFitted
+    posterior: WalkPosterior
+    left_out: tuple[JudgedRun, ...]
     folder: Path
     source: str
     notes: tuple[str, ...]
@@ -61,24 +67,15 @@ def calibrate_walks(
     watcher.step("reading walks", None)
     clock = estimated_clock_of(slip) if request.estimate_offset else checked_clock(slip)
     walks = read_walks(request.walks, robot=request.robot, clock=clock)
-    fitted = fit_and_leave_out(
-        walks,
-        slip,
-        prior=WalkPrior(),
-        rng=np.random.default_rng(calibration.seed),
-        threads=calibration.threads,
-        progress=lambda done: watcher.step("fitting walks", done),
-    )
+    posterior, left_out = _fit(calibration, slip, walks, watcher)
     notes = (*slip.notes, *(f"{walk.name}: {note}" for walk in walks for note in walk.notes))
     source = ", ".join(sorted({slip.source, *(walk.source for walk in walks)}))
     watcher.step("drawing", None)
     folder = write_walks(
         calibration.out,
         WalksToWrite(
-            posterior=fitted.posterior,
-            left_out={
-                run.name: {row.name: metrics(row) for row in run.rows} for run in fitted.left_out
-            },
+            posterior=posterior,
+            left_out={run.name: {row.name: metrics(row) for row in run.rows} for run in left_out},
             robot=walks[0].robot,
             logs=tuple(walk.files[0] for walk in walks),
             inputs=(slip_toml, *(file for walk in walks for file in walk.files)),
@@ -86,11 +83,25 @@ def calibrate_walks(
             source=source,
             notes=notes,
         ),
-        draw=lambda draft: draw_walks(
-            draft, fitted.posterior, fitted.left_out, simulated="sim:" in source
-        ),
+        draw=lambda draft: draw_walks(draft, posterior, left_out, simulated="sim:" in source),
     )
-    return WalksCalibrated(fitted, folder, source, notes)
+    return WalksCalibrated(posterior, left_out, folder, source, notes)
+
+
+def _fit(
+    request: CalibrationRequest, slip: NamedSlip, walks: Sequence[WalkOnFile], watcher: Watcher
+) -> tuple[WalkPosterior, tuple[JudgedRun, ...]]:
+    """Fit all walks, then predict each from a fit of the others."""
+    rng = np.random.default_rng(request.seed)
+    fit = fit_walks_on_file(
+        walks, slip, prior=WalkPrior(), rng=rng, threads=request.threads,
+        progress=lambda done: watcher.step("fitting walks", 0.7 * done),
+    )  # fmt: skip
+    left_out = judge_left_out(
+        fit, walks, slip, rng=rng, threads=request.threads,
+        progress=lambda done: watcher.step("fitting walks", 0.7 + 0.3 * done),
+    )  # fmt: skip
+    return fit.posterior, left_out
 
 
 def _slip_of(request: WalksRequest, calibration: Path) -> Path:

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from model.slip import Brush, MagicFormula
-from zebro_lab.calibration.folder import _distinct_names, read_slip
+from zebro_lab.calibration.folder import read_slip
 from zebro_lab.files.errors import DataError
 
 GOOD = """
@@ -84,11 +84,3 @@ def test_what_is_no_calibration_says_what_to_name(tmp_path, content):
         (tmp_path / "slip.toml").write_bytes(content)
     with pytest.raises(DataError, match=r"name a slip\.toml or the folder"):
         read_slip(tmp_path)
-
-
-def test_files_of_one_name_are_told_apart_by_as_few_folders_as_needed():
-    assert _distinct_names(["data/a.csv", "data/b.csv"]) == ["a.csv", "b.csv"]
-    runs = ["data/run1/log.mcap", "data/run2/log.mcap"]
-    assert _distinct_names(runs) == ["run1/log.mcap", "run2/log.mcap"]
-    assert _distinct_names(["x/r/log.mcap", "y/r/log.mcap"]) == ["x/r/log.mcap", "y/r/log.mcap"]
-    assert _distinct_names([]) == []

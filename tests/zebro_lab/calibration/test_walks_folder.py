@@ -15,7 +15,7 @@ from model.gait import tripod_angles, tripod_reference
 from model.robot import Robot
 from support.watchers import Nobody
 from zebro_lab.calibration.slip_argument import parse_slip
-from zebro_lab.calibration.walks_folder import FOLDER, WalksToWrite, read_walks_beside, write_walks
+from zebro_lab.calibration.walks_folder import FOLDER, WalksToWrite, read_stored_walks, write_walks
 from zebro_lab.files.errors import DataError, SettingsError
 from zebro_lab.report.request import ReportRequest
 from zebro_lab.report.stage import report
@@ -102,7 +102,7 @@ def stored(calibration, legs, posterior):
         ),
         draw=lambda draft: draw_walks(draft, posterior, (), simulated=True),
     )  # fmt: skip
-    return read_walks_beside(slip)
+    return read_stored_walks(slip)
 
 
 def predicted(tmp_path, log, slip, *, name="prediction", robot=None, draws=0, model="dynamics"):
@@ -170,7 +170,7 @@ def test_steering_that_walks_found_turns_the_predicted_path(calibration, legs, t
     informed = predicted(tmp_path, other, str(calibration))
     turned = informed.path.yaw[-1] - plain.path.yaw[-1]
     assert turned == pytest.approx(0.1 * plain.path.length, rel=0.03)
-    assert "legs and floor as one, two have them" in " ".join(informed.notes)
+    assert "legs and floor are those fitted to one, two" in " ".join(informed.notes)
 
 
 def test_a_leg_knocked_off_in_one_walk_is_off_where_that_walk_is_predicted(
@@ -181,7 +181,7 @@ def test_a_leg_knocked_off_in_one_walk_is_off_where_that_walk_is_predicted(
     assert (own.index, other.index) == (1, 0)
     assert own.middle.offset[0, 2] == pytest.approx(OFF)
     assert not other.middle.offset.any()
-    assert "can confirm but not test" in own.notes[1]
+    assert "no independent test" in own.notes[1]
     to_come = informed_legs(walks, RobotFile())
     assert to_come.index is None
     assert not to_come.middle.offset.any()
@@ -250,10 +250,10 @@ def test_a_report_tells_what_walks_said_and_what_they_did_not(calibration, legs,
     page = tmp_path / "report.html"
     report(ReportRequest(run, calibration, page), made=datetime(2026, 1, 2, tzinfo=UTC))
     text = page.read_text()
-    assert "What walks said of legs and floor" in text
+    assert "Legs and floor estimated from tracked walks" in text
     assert "Mounted wrong: leg 3" in text
     assert "SIMULATED: sim:dynamics, sim:test" in text
     assert text.count("data:image/png") >= 1
-    told = read_walks_beside(calibration / "slip.toml").posterior.contractions()
+    told = read_stored_walks(calibration / "slip.toml").posterior.contractions()
     silent = next(each.name for each in told if not each.informed)
     assert silent.replace("_", " ") in text

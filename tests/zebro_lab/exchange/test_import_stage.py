@@ -26,7 +26,7 @@ from zebro_lab.runs.legs import read_leg_log
 from zebro_lab.runs.manifest import profile_file, read_manifest
 from zebro_lab.runs.stage import list_runs
 from zebro_lab.track.file import read_track
-from zebro_lab.validation.stage import pairs_of_run
+from zebro_lab.validation.predicted_walks import pairs_of_run
 from zebro_lab.walk.predict_stage import predict
 from zebro_lab.walk.request import ModelRequest, PredictRequest
 

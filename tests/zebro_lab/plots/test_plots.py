@@ -52,14 +52,14 @@ class Scene:
     def picture(self, name: str, *, simulated: bool = True) -> Figure:
         rng = np.random.default_rng(1)
         labels = parameter_labels(self.law.parameters)
-        marks = {"title": "A fit", "simulated": simulated}
+        marks = {"simulated": simulated}
         match name:
             case "curves":
                 return self.curves(simulated=simulated)
             case "surface":
                 return slip_surface(self.blocks, self.law, values=self.truth, **marks)
             case "corner":
-                return corner(self.draws, labels=labels, truth=self.truth, **marks)
+                return corner(self.draws, labels=labels, **marks)
             case "traces":
                 return traces(self.draws.reshape(4, 50, -1), labels=labels, **marks)
         whitened, run_score = (
@@ -70,7 +70,7 @@ class Scene:
     def curves(self, *, simulated: bool = True) -> Figure:
         return slip_curves(
             self.blocks, self.law, draws=self.draws, load_levels=self.load_levels,
-            title="A fit", simulated=simulated,
+            simulated=simulated,
         )  # fmt: skip
 
 
@@ -171,8 +171,8 @@ def test_the_slip_axis_names_its_definition(tyre):
 
 def test_simulated_pictures_say_so_and_measured_ones_do_not(one_load):
     for name in PICTURES:
-        assert one_load.picture(name, simulated=True).get_suptitle() == "A fit (simulated)"
-        assert one_load.picture(name, simulated=False).get_suptitle() == "A fit"
+        title = one_load.picture(name, simulated=False).get_suptitle()
+        assert one_load.picture(name, simulated=True).get_suptitle() == f"{title} (simulated)"
 
 
 def test_no_figure_is_left_with_pyplot(one_load, tmp_path):
@@ -267,7 +267,7 @@ def test_the_slip_grid_spans_the_tested_slip_and_no_more(low, width, count):
 
 def test_regions_of_highest_density_hold_the_draws_they_name():
     draws = np.random.default_rng(3).normal(size=(4000, 2)) @ [[1.0, 0.6], [0.0, 0.8]]
-    figure = corner(draws, labels=("a [-]", "b [-]"), title="Two", simulated=True)
+    figure = corner(draws, labels=("a [-]", "b [-]"), simulated=True)
     pair = next(axes for axes in figure.axes if axes.get_xlabel() and axes.get_ylabel())
     (regions,) = [each for each in pair.collections if len(each.get_paths()) == 2]
     outer, inner = (path.contains_points(draws).mean() for path in regions.get_paths())
@@ -275,17 +275,9 @@ def test_regions_of_highest_density_hold_the_draws_they_name():
     assert inner == pytest.approx(0.5, abs=0.06)
 
 
-def test_the_corner_marks_known_truths_alone(rig):
-    labels = parameter_labels(rig.law.parameters)
-    marks = {"labels": labels, "title": "A fit", "simulated": True}
-    known = np.array([20.4, np.nan, np.nan, np.nan])
-    assert len(labelled_lines(corner(rig.draws, truth=known, **marks), "truth")) == 1
-    assert not labelled_lines(corner(rig.draws, **marks), "truth")
-
-
 def test_a_posterior_of_one_point_or_one_parameter_is_drawn(tmp_path):
-    point = corner(np.ones((50, 2)), labels=("a [-]", "b [-]"), title="Point", simulated=True)
-    line = corner(np.linspace(0, 1, 50)[:, None], labels=("a [N]",), title="L", simulated=True)
+    point = corner(np.ones((50, 2)), labels=("a [-]", "b [-]"), simulated=True)
+    line = corner(np.linspace(0, 1, 50)[:, None], labels=("a [N]",), simulated=True)
     save(point, tmp_path / "point.png")
     save(line, tmp_path / "line.png")
     assert (len(point.axes), len(line.axes)) == (3, 1)
@@ -293,7 +285,7 @@ def test_a_posterior_of_one_point_or_one_parameter_is_drawn(tmp_path):
 
 def test_long_chains_are_thinned_and_every_ensemble_has_a_line():
     chains = np.random.default_rng(4).normal(size=(5, 30_000, 2))
-    figure = traces(chains, labels=("a [-]", "b [N]"), title="Chains")
+    figure = traces(chains, labels=("a [-]", "b [N]"), simulated=False)
     for density, trace in zip(figure.axes[::2], figure.axes[1::2], strict=True):
         assert len(density.lines) == len(trace.lines) == 5
         assert all(len(line.get_xdata()) <= 4000 for line in trace.lines)
@@ -320,7 +312,7 @@ def test_runs_of_one_block_leave_a_note_in_place_of_lags(few):
 
 def test_wild_residuals_are_counted_and_do_not_squeeze_the_histogram(one_load):
     whitened = np.append(np.zeros(60), [50.0, -1e6])
-    marks = {"run_score": np.array([0.0, 3.0]), "title": "Bad", "simulated": True}
+    marks = {"run_score": np.array([0.0, 3.0]), "simulated": True}
     figure = residuals(one_load.blocks, whitened=whitened, **marks)
     assert figure.axes[1].get_xlim()[1] < 10
     legends = [axes.get_legend() for axes in figure.axes]

@@ -17,8 +17,9 @@ from zebro_lab.files.errors import AlreadyExists, DataError, NotFound, SettingsE
 from zebro_lab.main import app
 from zebro_lab.runs.legs import read_leg_log
 from zebro_lab.terminal.ending import run as run_app
+from zebro_lab.validation.predicted_walks import pairs_of_run
 from zebro_lab.validation.request import ValidateRequest
-from zebro_lab.validation.stage import pairs_of_run, validate
+from zebro_lab.validation.stage import validate
 from zebro_lab.walk.path_band import read_draws
 from zebro_lab.walk.predict_stage import predict
 from zebro_lab.walk.prediction_file import read_prediction
@@ -212,7 +213,8 @@ def test_the_command_prints_a_table_and_says_simulated(walk, tmp_path, monkeypat
     assert not ended.value.code
     assert "SIMULATED" in printed
     assert "no-slip-simple" in printed
-    assert "90% band holds" in printed
+    assert "coverage of the 90% band: x " in printed
+    assert "predicted uncertainty (NEES)" in printed
 
 
 @pytest.mark.reference

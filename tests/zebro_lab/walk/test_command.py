@@ -62,7 +62,7 @@ ERRORS = {
     "option of another gait": (("--tau-turn", 0.1), "--tau-turn: means nothing to the gait 'trip"),
     "no such robot": (("--robot", "none.toml"), "none.toml: no such file"),
     "no slip law": (("--slip", "ice"), "--slip: 'ice' is no file or folder"),
-    "no friction": (("--slip", "coulomb:0"), "'coulomb:0' is no friction"),
+    "no friction": (("--slip", "coulomb:0"), "'coulomb:0' is not a friction law"),
     "no time": (("--duration", 0), "is no walk"),
     "no arc": (("--arc-deg", 10), "leg_arc is 10 degrees"),
 }  # fmt: skip

@@ -16,12 +16,12 @@ from zebro_lab.robot.gait_request import GaitRequest
 from zebro_lab.robot.leg_log import ANGLES
 from zebro_lab.robot.robot_file import read_robot_file
 from zebro_lab.walk.folder import PICTURES, read_walk, read_walk_manifest
+from zebro_lab.walk.output import WalkStopped
 from zebro_lab.walk.path_band import read_draws
 from zebro_lab.walk.predict_stage import predict
 from zebro_lab.walk.request import BandRequest, ModelRequest, PredictRequest, WalkRequest
 from zebro_lab.walk.stage import walk, write_robot
 from zebro_lab.walk.summary import summarise
-from zebro_lab.walk.walking import WalkStopped
 
 
 def request(out, **model) -> WalkRequest:

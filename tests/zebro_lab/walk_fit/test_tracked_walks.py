@@ -99,7 +99,7 @@ def test_what_is_missing_is_named(tmp_path):
         read_walk_on_file(tmp_path / "none")
     folder = write_walk(tmp_path / "walk")
     (folder / "track" / "track.csv").unlink()
-    with pytest.raises(NotFound, match="without a track"):
+    with pytest.raises(NotFound, match="no track; zebro-lab track"):
         read_walk_on_file(folder)
     (folder / "legs.csv").unlink()
     with pytest.raises(NotFound, match="no leg angles"):

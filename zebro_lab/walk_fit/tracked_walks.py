@@ -89,7 +89,7 @@ def read_walks(
             )
     walks, repeated = first_of_each(read, key=_content)
     duplicates = duplicates_note("walks", [(one.name, other.name) for one, other in repeated])
-    walks[:1] = [replace(walk, notes=(*walk.notes, *duplicates)) for walk in walks[:1]]
+    walks[0] = replace(walks[0], notes=(*walks[0].notes, *duplicates))
     names = numbered([walk.name for walk in walks])
     return [replace(walk, name=name) for walk, name in zip(walks, names, strict=True)]
 

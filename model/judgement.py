@@ -104,7 +104,10 @@ def judge(
     seen = track.part(overlap(track, prediction.path))
     target = seen.part(slice(1, None) if anchor else slice(None))
     if len(target) < 2:
-        raise InsufficientData("leaves fewer than two poses to score")
+        raise InsufficientData(
+            f"{len(target)} pose is left to score, without the first if paths start from it; "
+            "expected two or more"
+        )
     first, at = seen.states[0], float(seen.t[0])
     if anchor and not np.isfinite(first[2]):
         raise InsufficientData("the track has no headings, so its first pose cannot start a path")

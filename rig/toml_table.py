@@ -215,7 +215,9 @@ class TomlTable:
         value = self.value(key)
         items: list[Any] = value if isinstance(value, list) else [None]
         if any(type(item) is not int or not 0 <= item <= most for item in items):
-            raise self.fault(f"found {value!r}; expected whole numbers, 0 to {most}", key)
+            raise self.fault(
+                f"found {value!r}; expected a list of whole numbers from 0 to {most}", key
+            )
         return tuple(items)
 
     def signs(self, key: str, count: int) -> tuple[int, ...]:

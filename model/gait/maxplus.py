@@ -107,8 +107,8 @@ def plus(A: Array) -> Array:
         heaviest = np.diagonal(paths).max()
         if heaviest > _ROUNDING:
             raise DomainError(
-                f"a circuit of the max-plus matrix has the positive sum {heaviest:g}; expected "
-                "none: these events would wait for each other within one cycle"
+                f"a circuit of the max-plus matrix has the sum {heaviest:g}; expected at most 0: "
+                "an event would wait for itself within one cycle; check the order of leg groups"
             )
     return paths
 

@@ -219,7 +219,7 @@ def load_rig_profile(name: str) -> RigProfile:
     table.finish()
     for key in FURTHER_LIMITS:
         if getattr(profile.limits, key) is not None and key not in profile.measured:
-            raise limits.fault("is a limit of something that no device of this rig measures", key)
+            raise limits.fault("is set, but no device of this rig measures it; remove it", key)
     return profile
 
 

@@ -91,7 +91,11 @@ FAULTS = {
     "true number": (lambda t: t.number("k"), True, "expected a finite number"),
     "zero": (lambda t: t.positive("k"), 0, "found 0; expected a number above 0"),
     "two of three": (lambda t: t.numbers("k", 3), [1, 2], "expected a list of 3 numbers"),
-    "negative": (lambda t: t.wholes("k", most=5), [-1], "expected whole numbers, 0 to 5"),
+    "negative": (
+        lambda t: t.wholes("k", most=5),
+        [-1],
+        "expected a list of whole numbers from 0 to 5",
+    ),
     "two": (lambda t: t.signs("k", 2), [1, 2], "expected 2 times 1 or -1"),
     "sign": (lambda t: t.sign("k"), 0, "found 0; expected 1 or -1"),
     "series": (lambda t: t.series("k"), [], "expected numbers, or"),

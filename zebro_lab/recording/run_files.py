@@ -119,7 +119,10 @@ class RunFiles:
         """
         folder = self._place.folder()
         if folder is None:
-            raise RecordingError(f"{self.folder}: gone; its end record cannot be written")
+            raise RecordingError(
+                f"{self.folder}: removed or moved while recording; its end record cannot be "
+                "written. Look for the folder under another name, or record again"
+            )
         self.folder = folder
         log_sha256 = file_hash(folder / LOG_FILE) if whole else None
         write_manifest(folder, replace(manifest, streams=self.log.written, log_sha256=log_sha256))

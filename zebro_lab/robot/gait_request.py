@@ -33,7 +33,11 @@ class GaitRequest:
         float | None, Option(help="Duration of a cycle, for tripod, tetrapod and buehler [s].")
     ] = None
     tau_ground: Annotated[
-        float | None, Option(help="Time on the ground, for suriana, maxplus and buehler [s].")
+        float | None,
+        Option(
+            help="Stance time in a cycle without --tau-turn, for suriana and buehler; for maxplus "
+            "the shortest [s]."
+        ),
     ] = None
     tau_flight: Annotated[
         float | None, Option(help="Time in flight, for suriana and maxplus [s].")

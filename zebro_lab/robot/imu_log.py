@@ -81,8 +81,8 @@ def _orientation(table: RawTable, mapping: MappedColumns) -> tuple[Array, tuple[
         return quaternion, ()
     if not mapping.has(table, "roll"):
         raise DataError(
-            f"holds no orientation; expected {', '.join(_QUATERNION)}, or roll and pitch, among "
-            f"{', '.join(table.columns)}: map them in [imu.columns] of a columns.toml",
+            f"holds no orientation; expected {', '.join(_QUATERNION)}, or roll and pitch; its "
+            f"columns are {', '.join(table.columns)}: map them in [imu.columns] of a columns.toml",
             file=table.path,
         )
     roll, pitch = (_numbers(table, mapping, name) for name in ("roll", "pitch"))

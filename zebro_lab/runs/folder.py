@@ -187,7 +187,7 @@ def require_recorded(path: Path, manifest: RunManifest) -> None:
     if manifest.log_sha256 is not None and file_hash(path) != manifest.log_sha256:
         raise DataError(
             f"is not the log that was recorded: its SHA-256 differs from {MANIFEST_FILE}; "
-            f"restore it, or exclude the run in {MANIFEST_FILE}",
+            "restore the log, or leave the run out with: zebro-lab exclude RUN --why REASON",
             file=path,
         )
 

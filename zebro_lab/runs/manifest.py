@@ -187,7 +187,7 @@ def _checked(document: Mapping[str, Any], file: Path) -> RunManifest:
             continue
         if not isinstance(document.get(name), expected):
             raise DataError(
-                f"'{name}' is {document.get(name)!r}, expected {expected.__name__}", file=file
+                f"'{name}' is {document.get(name)!r}, expected {_KINDS[expected]}", file=file
             )
     for each in document.get("exclusions") or ():
         if not (isinstance(each, dict) and {"did", "why"} <= each.keys()):
@@ -201,6 +201,15 @@ def _checked(document: Mapping[str, Any], file: Path) -> RunManifest:
             _require_moment(name, document[name], file)
     known = {name: document[name] for name in _FIELD_TYPES if document.get(name) is not None}
     return RunManifest(**known)
+
+
+_KINDS: Mapping[type, str] = {
+    str: "a text",
+    int: "a whole number",
+    float: "a number",
+    dict: "an object",
+    list: "a list",
+}
 
 
 def _require_entries(document: Mapping[str, Any], file: Path) -> None:
@@ -217,8 +226,7 @@ def _require_entry(name: str, key: str, value: object, kinds: tuple[type, ...], 
     if value is None and kinds != (str,) and kinds != (dict,):
         return
     if not isinstance(value, kinds) or isinstance(value, bool):
-        expected = " or ".join(kind.__name__ for kind in kinds)
-        raise DataError(f"'{name}' has {key!r}: {value!r}, expected {expected}", file=file)
+        raise DataError(f"'{name}' has {key!r}: {value!r}, expected {_KINDS[kinds[-1]]}", file=file)
 
 
 def _require_moment(name: str, text: str, file: Path) -> None:

@@ -26,7 +26,7 @@ from zebro_lab.runs.manifest import RIG, TABLE, RunManifest, profile_file, write
 from zebro_lab.runs.profile_views import stored_views
 
 _BOARD: Final = "board"
-_BLOCK: Final = 1000  # samples per chunk; a truncated file loses at most one chunk
+_BLOCKS: Final = {"walk": 100, "slip-rig": 1000}  # samples per chunk; a truncated file loses one
 
 
 def write_table_run(
@@ -82,10 +82,11 @@ def _write_log(
     profiles: Mapping[str, str],
     event: str,
 ) -> None:
+    size = _BLOCKS[manifest.kind]
     blocks = [
-        (name, columns[first : first + _BLOCK])
+        (name, columns[first : first + size])
         for name, columns in samples.items()
-        for first in range(0, len(columns), _BLOCK)
+        for first in range(0, len(columns), size)
     ]
     with (draft / LOG_FILE).open("wb") as file:
         log = LogWriter(

@@ -50,7 +50,11 @@ def judge_run(
     """
     inside = shared_time(track.poses, predicted.prediction.path, file=track.file)
     if inside.sum() - anchor < 2:
-        raise DataError("leaves fewer than two poses to score", file=track.file)
+        raise DataError(
+            f"leaves {max(int(inside.sum()) - anchor, 0)} poses to score, without the first if "
+            "paths start from it; expected two or more: track more photographs, or try --no-anchor",
+            file=track.file,
+        )
     if anchor and not np.isfinite(track.poses.yaw[inside][0]):
         raise SettingsError(
             "the track has no headings, so its first pose cannot start a prediction; use "

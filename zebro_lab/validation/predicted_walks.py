@@ -60,9 +60,15 @@ def pairs_of_run(run: Path) -> tuple[Path, Path]:
     """
     prediction, track = settle(run / PREDICTION), settle(run / TRACK)
     if not (prediction / PATH_CSV).is_file():
-        raise NotFound(f"{prediction}: no prediction; predict {run} --out {prediction} makes it")
+        raise NotFound(
+            f"{prediction}: no prediction; make one with: zebro-lab predict {run} --slip "
+            f"CALIBRATION --out {prediction}"
+        )
     if not (track / TRACK_CSV).is_file():
-        raise NotFound(f"{track}: no {TRACK_CSV}; track the run's photographs into it first")
+        raise NotFound(
+            f"{track}: no {TRACK_CSV}; make one with: zebro-lab track PHOTOS --run {run} "
+            "--camera camera.toml --floor floor.toml"
+        )
     return prediction, track
 
 

@@ -162,7 +162,8 @@ def _require_steps(duration: float, dt: float) -> None:
     """Check that the duration is positive and the number of steps fits into memory."""
     if not (dt > 0 and duration > dt and np.isfinite(duration)):
         raise SettingsError(
-            f"{duration:g} s in steps of {dt:g} s is no walk; expected more than a step",
+            f"found {duration:g} s in steps of {dt:g} s; expected a step above 0 and a finite "
+            "duration longer than one step",
             key="--duration, --dt",
         )
     if duration / dt > MOST_STEPS:

@@ -97,10 +97,17 @@ class WalkPrior:
 
     def __post_init__(self) -> None:
         """Check that standard deviations are positive and that `wrong` is a probability."""
-        if not np.all(self.scale > 0):
-            raise DomainError("a standard deviation of the prior is not above zero")
+        names = (*NAMES, "wrong_leg")
+        bad = [f"{name} {sd:g}" for name, sd in zip(names, self.scale, strict=True) if not sd > 0]
+        if bad:
+            raise DomainError(
+                f"standard deviations of the prior: found {', '.join(bad)}; expected above 0"
+            )
         if not 0 < self.wrong < 1:
-            raise DomainError(f"a leg is wrong with probability {self.wrong:g}; expected 0 to 1")
+            raise DomainError(
+                f"found {self.wrong:g} as the probability of a wrongly mounted leg; expected a "
+                "number between 0 and 1"
+            )
 
     @property
     def scale(self) -> Array:

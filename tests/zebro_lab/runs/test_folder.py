@@ -162,7 +162,7 @@ def test_log_of_another_run_is_refused(tmp_path):
         ({"kind": "slip_rig"}, "unknown kind 'slip_rig'; did you mean 'slip-rig'"),
         ({"constants": {}}, "constants.radius_leg is None, expected a radius in m"),
         ({"constants": {"radius_leg": 0.0}}, "column 'radius_leg': is 0 m, expected more than 0"),
-        ({"operator": 3}, "'operator' is 3, expected str"),
+        ({"operator": 3}, "'operator' is 3, expected a text"),
     ],
 )
 def test_wrong_manifest_is_named(tmp_path, change, message):

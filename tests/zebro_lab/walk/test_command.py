@@ -63,7 +63,7 @@ ERRORS = {
     "no such robot": (("--robot", "none.toml"), "none.toml: no such file"),
     "no slip law": (("--slip", "ice"), "--slip: 'ice' is no file or folder"),
     "no friction": (("--slip", "coulomb:0"), "'coulomb:0' is not a friction law"),
-    "no time": (("--duration", 0), "is no walk"),
+    "no time": (("--duration", 0), "finite duration longer than one step"),
     "no arc": (("--arc-deg", 10), "leg_arc is 10 degrees"),
 }  # fmt: skip
 

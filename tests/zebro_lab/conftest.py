@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""What tests of stages and commands share: a small simulated sweep on disk, and a walked path."""
+"""What tests of stages and commands share: running a command, a simulated sweep, a walked path."""
 
+from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -11,12 +13,36 @@ from model.slip.thesis import THESIS_LAW, THESIS_VALUES
 from model.walk.path import WalkPath
 from rig.slip_rig.imperfections import TYPICAL_RIG
 from rig.slip_rig.sweep import SweepPlan, simulate_sweep
+from zebro_lab.main import app
+from zebro_lab.terminal.ending import run
 
 COLUMNS = """
 source = "sim:rig-sweep"
 runs.by = ["run"]
 load_cell.zero_stability = "0.1 N"
 """
+
+
+@dataclass(frozen=True)
+class Ended:
+    """How a command ended: exit code, and what it printed."""
+
+    code: int
+    out: str
+    err: str
+
+
+@pytest.fixture
+def run_command(monkeypatch, capsys) -> Callable[..., Ended]:
+    """Return what runs `zebro-lab` with arguments in this process."""
+
+    def run_with(*arguments: object) -> Ended:
+        monkeypatch.setattr("sys.argv", ["zebro-lab", *map(str, arguments)])
+        with pytest.raises(SystemExit) as ended:
+            run(app)
+        return Ended(int(ended.value.code or 0), *capsys.readouterr())
+
+    return run_with
 
 
 @pytest.fixture(scope="session")

@@ -9,10 +9,10 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from model.bayes.walks.posterior import WalkPosterior
-from model.bayes.walks.prior import LINEAR, NAMES, WRONG, WalkPrior, WrongLeg, all_cases
+from model.bayes.walks.prior import NAMES, WrongLeg, all_cases
 from model.gait import tripod_angles, tripod_reference
 from model.robot import Robot
+from support.walk_posteriors import KNOCKED, OFF, posterior_of
 from support.watchers import Nobody
 from zebro_lab.calibration.slip_argument import parse_slip
 from zebro_lab.calibration.walks_folder import FOLDER, WalksToWrite, read_walks_beside, write_walks
@@ -41,30 +41,6 @@ matrix = [[1.0, 0.0], [0.0, 0.0001]]
 normal_force = [2.0, 13.0]
 slip_ratio = [0.0, 1.0]
 """
-STEERING, STRIDE = LINEAR
-GRIP = NAMES.index("grip")
-KNOCKED = WrongLeg(2, walk=1)
-OFF = np.radians(5.0)
-
-
-def posterior_of(case, *, steering=0.0):
-    """Return a posterior that is sure: leg 3 off by 5 degrees in `case`, all else as described."""
-    cases = all_cases(2)
-    values = np.zeros((40, WRONG + 1))
-    values[:, WRONG], values[:, STEERING] = OFF, steering
-    values[:, GRIP] = WalkPrior().grip_sd * np.linspace(-1.7, 1.7, len(values))  # not informed
-    n = len(values)
-    return WalkPosterior(
-        prior=WalkPrior(),
-        walks=("one", "two"),
-        cases=cases,
-        values=values,
-        case=np.full(n, cases.index(case)),
-        weight=np.full(n, 1 / n),
-        best=values[20],
-        best_case=case,
-        misfit=(0.9, 1.1),
-    )
 
 
 @pytest.fixture

@@ -16,7 +16,6 @@ from model.poses import Poses
 from model.robot import Robot
 from zebro_lab.files.errors import DataError, NotFound
 from zebro_lab.files.provenance import file_hash
-from zebro_lab.plots.photo_poses import Shot, photos_beside_poses
 from zebro_lab.runs.recorded_tilt import Tilt
 from zebro_lab.track.file import TrackFile
 from zebro_lab.track.photographs import photos_of_track
@@ -110,24 +109,6 @@ def test_a_photograph_without_the_floor_s_marks_is_said_and_the_rest_drawn(track
     (why,) = draw_validation(tmp_path, judged(track, walked), simulated=True)
     assert "photographs are not shown" in why
     assert {file.name for file in tmp_path.glob("*.png")} == {"walk.png"}
-
-
-def test_a_robot_is_drawn_where_it_was_predicted(walked):
-    orientation = np.array([0.0, 0.0, 0.5])
-    shot = Shot(
-        t=1.0, picture=np.zeros((4, 4, 3), np.uint8), extent=(0.0, 1.0, 0.0, 1.0),
-        tracked=np.array([0.5, 0.4, 0.4]), position=np.array([0.5, 0.43, 0.06]),
-        orientation=orientation, theta=walked.theta[0], contact=walked.contact[0],
-    )  # fmt: skip
-    figure = photos_beside_poses([shot], Robot(), title="w", simulated_photos=False)
-    above, below = figure.axes
-    assert "30 mm, +5.7 deg off" in below.get_title(loc="left")
-    assert above.get_ylabel().startswith("photograph")
-    lines = {line.get_label(): line for line in below.lines}
-    assert {"predicted body", "tracked body", "leg on the ground", "leg in the air"} <= set(lines)
-    for label, middle in (("predicted body", [0.5, 0.43]), ("tracked body", [0.5, 0.4])):
-        rear_and_front = lines[label].get_xydata()[[0, 1, 2, 4]]  # without the tip
-        np.testing.assert_allclose(rear_and_front.mean(axis=0), middle, atol=1e-6)
 
 
 def test_simulated_photographs_are_called_so(track):

@@ -8,12 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from model.walk_models import MODELS
 from zebro_lab.main import app
-from zebro_lab.robot.gait_argument import GAITS
 from zebro_lab.terminal.ending import run as run_app
-from zebro_lab.walk import options as walk_options
-from zebro_lab.walk.command import GaitName
 
 COMMAND = str(Path(sys.executable).with_name("zebro-lab"))
 
@@ -66,15 +62,6 @@ def test_walk_in_a_pipe_prints_gait_and_end_and_writes_its_folder(tmp_path):
     assert json.loads((out / "manifest.json").read_text())["kind"] == "walk"
 
 
-def test_predict_takes_what_walk_wrote(run, tmp_path):
-    walk = tmp_path / "walk"
-    assert run("walk", "--slip", "coulomb:0.4", "--duration", 3, "--out", walk)[0] == 0
-    code, out, _ = run("predict", walk, "--model", "no-slip", "--out", tmp_path / "predicted")
-    assert code == 0
-    assert "logged leg angles, model 'no-slip'" in out
-    assert "straight ahead" in out
-
-
 def test_robot_file_is_started(run, tmp_path):
     code, out, _ = run("walk", "--write-robot", tmp_path / "robot.toml", "--arc-deg", 200)
     assert (code, out) == (0, f"wrote {tmp_path / 'robot.toml'}\n")
@@ -105,15 +92,6 @@ def test_error_is_one_line_and_exit_1_and_nothing_is_written(options, message, r
     assert not out.exists()
 
 
-def test_leg_log_with_a_gap_is_one_line_with_its_place(run, tmp_path):
-    log = tmp_path / "legs.csv"
-    rows = [f"{t / 100},{','.join([str(t / 50)] * 6)}" for t in (*range(30), *range(60, 90))]
-    log.write_text("\n".join(["t,theta1,theta2,theta3,theta4,theta5,theta6", *rows]) + "\n")
-    code, _, stderr = run("predict", log, "--slip", "thesis", "--out", tmp_path / "out")
-    assert code == 1
-    assert stderr.startswith(f"error: {log}, column 't', row 31 (line 32): time jumps from 0.29")
-
-
 USAGE = {
     "no duration": ("walk", "--slip", "thesis"),
     "no slip law": ("walk", "--duration", "3"),
@@ -129,8 +107,3 @@ def test_wrong_usage_is_exit_2(arguments, run):
     code, stdout, stderr = run(*arguments)
     assert (code, stdout) == (2, "")
     assert "Usage: " in stderr
-
-
-def test_options_offer_what_there_is():
-    assert {name.value for name in walk_options.Model} == set(MODELS)
-    assert {name.value for name in GaitName} == set(GAITS)

@@ -80,8 +80,9 @@ def test_a_manifest_is_read_back_as_it_was_written(tmp_path):
     ("change", "message"),
     [
         ({"schema_version": 2}, "schema_version is 2, expected 1"),
+        ({"schema_version": None}, "schema_version is None"),
         ({"operator": 3}, "'operator' is 3, expected str"),
-        ({"kind": "wakl"}, "unknown kind 'wakl'; did you mean 'walk'"),
+        ({"kind": "slip_rig"}, "unknown kind 'slip_rig'; did you mean 'slip-rig'"),
         ({"exclusions": [{"did": "excluded"}]}, "expected did and why"),
     ],
 )

@@ -2,8 +2,9 @@
 """Decorators that compile numeric loops: cached on disk, without the GIL, dividing as numpy does.
 
 numba stores a compiled function beside its source and compiles it again when that file changes, but
-not when a file that it calls changes. After editing such a file, remove the `__pycache__` folders
-of `model`.
+not when a file that it calls changes. What is stored names the modules of the functions that it
+calls and of the named tuples that it takes: it cannot be loaded when one of these has been renamed
+or moved. After such an edit, remove the `__pycache__` folders of `model`.
 """
 
 import numba

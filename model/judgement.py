@@ -11,8 +11,8 @@ from model.metrics.consistency import FEWEST_DRAWS, Consistency, consistency
 from model.metrics.path_errors import PathErrors, path_errors
 from model.metrics.scores import EnsembleScores, ensemble_scores, with_tracker_noise
 from model.metrics.tilt import TiltErrors, tilt_errors
+from model.path_draws import anchored, states_at
 from model.poses import Poses, overlap
-from model.predict import anchored, states_at
 from model.slip.law import Array
 from model.walk.path import WalkPath
 

@@ -183,6 +183,52 @@ def travel_direction(poses: Poses) -> Array:
     return np.arctan2(chord[last, 1], chord[last, 0])
 
 
+def compose(pose: Array, moves: Array) -> Array:
+    """Move from a pose by displacements in its frame: composition in SE(2).
+
+    Args:
+        pose: x, y and yaw, shape (3,) [m, m, rad].
+        moves: Displacements forward and to the left, and turns, shape (n, 3) [m, m, rad].
+
+    Returns:
+        Poses in the frame that `pose` is given in, shape (n, 3) [m, m, rad].
+    """
+    c, s = np.cos(pose[2]), np.sin(pose[2])
+    x, y, yaw = moves.T
+    return np.column_stack([pose[0] + c * x - s * y, pose[1] + s * x + c * y, pose[2] + yaw])
+
+
+def relative(states: Array, first: Array) -> Array:
+    """Express poses in the frame of another pose, the inverse of `compose`.
+
+    Args:
+        states: x, y and yaw, shape (..., 3) [m, m, rad].
+        first: x, y and yaw of the other pose, or of one for each, shape (3,) or (..., 3).
+
+    Returns:
+        Displacements forward and to the left, and turns, shape (..., 3) [m, m, rad].
+    """
+    c, s = np.cos(first[..., 2]), np.sin(first[..., 2])
+    x, y, yaw = np.moveaxis(states - first, -1, 0)
+    return np.stack([c * x + s * y, c * y - s * x, yaw], axis=-1)
+
+
+def moved_onto(states: Array, own: Array, wanted: Array) -> Array:
+    """Move paths rigidly, each such that a pose of its own becomes a wanted one.
+
+    Args:
+        states: x, y and yaw of m paths at n times, shape (m, n, 3) [m, m, rad].
+        own: Pose of each path, shape (m, 3).
+        wanted: Pose that it becomes, shape (3,), or (m, 3) for one of each path.
+    """
+    to = np.broadcast_to(wanted, own.shape)[:, None]
+    turn = to[..., 2] - own[:, None, 2]
+    c, s = np.cos(turn), np.sin(turn)
+    x, y = np.moveaxis(states[..., :2] - own[:, None, :2], -1, 0)
+    moved = to[..., 0] + c * x - s * y, to[..., 1] + s * x + c * y, states[..., 2] + turn
+    return np.stack(moved, axis=-1)
+
+
 def wrap(angle: ArrayLike) -> Array:
     """Return angles in [-pi, pi), the way errors of headings are compared [rad].
 

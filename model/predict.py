@@ -14,22 +14,20 @@ import numpy as np
 from model.errors import DomainError
 from model.gait.quantised import QuantisedLog
 from model.gait.reference import LegReference
+from model.leg_state import LegState, law_in, robot_in
+from model.path_draws import bent
 from model.poses import Poses
-from model.robot import N_LEGS, Robot
+from model.robot import Robot
 from model.slip.law import Array
 from model.walk.dynamics import DynamicsOptions
 from model.walk.ensemble import WalkDraw, walk_ensemble
-from model.walk.path import WalkPath
 from model.walk.traction import TractionTable
 
 STEPS = (0.005, 0.0025, 0.00125)  # s; an ensemble uses the largest that has converged
 SAME_PATH = 0.005  # of the path's length: mean distance of ends at one step and at half of it
 COMPARED, COMPARED_TIMES = 8, 101  # draws, and their poses, that are compared to choose the step
-LEVELS = (0.025, 0.05, 0.25, 0.5, 0.75, 0.95, 0.975)
-STATES = ("x", "y", "yaw")
 FINE = DynamicsOptions(dt=0.001)  # of the single path; with a wrong leg its turn is within 1 %
 MOST_MOTIONS = 300  # a motion costs as much as its walk, and contributes least to the spread
-ARCS = (np.pi / 2, np.radians(359.0))  # a robot's legs are arcs of these angles
 
 
 @dataclass(frozen=True)
@@ -58,85 +56,6 @@ class ModelSpread:
                 raise DomainError(f"{name} of the model's error is {getattr(self, name):g}")
 
 
-@dataclass(frozen=True)
-class LegState:
-    """Draws of what differs from the description of the robot and the slip law.
-
-    They come from a prior or a posterior.
-
-    Attributes:
-        offset: Further offset of each leg, shape (m, 6) [rad].
-        grip: Factor on traction, shape (m,) [-].
-        stiffness: Factor on slip stiffness, shape (m,) [-].
-        fall: Factor on the post-peak drop, shape (m,) [-].
-        arc: Further angle of the legs' arc, shape (m,) [rad].
-        steering: Constant curvature added to the path, whatever the legs do, shape (m,) [rad/m].
-        stride: Relative error of distance: legs that are longer or shorter, shape (m,) [-].
-    """
-
-    offset: Array
-    grip: Array
-    stiffness: Array
-    fall: Array
-    arc: Array
-    steering: Array
-    stride: Array
-
-    def __len__(self) -> int:
-        """Return the number of draws."""
-        return len(self.grip)
-
-    @staticmethod
-    def of_prior(n: int, *, offset_sd: float, rng: np.random.Generator) -> "LegState":
-        """Draw leg offsets from a uniform prior, with every other unknown at its described value.
-
-        An encoder's zero known to one count is uniform over it: standard deviation count/sqrt(12).
-
-        Args:
-            n: Number of draws.
-            offset_sd: Standard deviation of an offset [rad].
-            rng: Source of randomness.
-        """
-        reach = np.sqrt(3.0) * offset_sd
-        offset = rng.uniform(-reach, reach, (n, N_LEGS))
-        one, no = np.ones(n), np.zeros(n)
-        return LegState(offset, one, one, one, no, no, no)
-
-
-def scaled_table(
-    table: TractionTable, *, grip: float, stiffness: float, fall: float = 1.0
-) -> TractionTable:
-    """Scale a law's traction and, independently, its slip stiffness and its post-peak drop.
-
-    A rig measures the post-peak drop under legs that slide for seconds. A walking leg lifts off
-    earlier, and its slip is a velocity as much as a ratio. The post-peak drop is therefore the part
-    of a law that applies least to a walk.
-
-    Args:
-        table: The law.
-        grip: Factor on traction at large slip [-].
-        stiffness: Factor on traction per slip at zero slip [-].
-        fall: Factor on the post-peak drop; there is none at zero [-].
-    """
-    table = _with_fall(table, fall)
-    shrink = stiffness / grip
-    return table._replace(
-        phi=table.phi * grip,
-        slope=table.slope * grip,
-        toe=table.toe * grip,
-        scale=table.scale if table.by_velocity else table.scale / shrink,
-        speed_scale=table.speed_scale / shrink,
-    )
-
-
-def _with_fall(table: TractionTable, fall: float) -> TractionTable:
-    top = table.phi.max(axis=1)
-    beyond = np.arange(table.phi.shape[1]) >= table.phi.argmax(axis=1)[:, None]
-    phi = np.where(beyond, top[:, None] - fall * (top[:, None] - table.phi), table.phi)
-    slope = np.where(beyond, fall * table.slope, table.slope)
-    return table._replace(phi=phi, slope=slope, toe=top - fall * (top - table.toe))
-
-
 def walk_draws(
     robot: Robot,
     legs: LegReference | QuantisedLog,
@@ -155,52 +74,28 @@ def walk_draws(
         state: Draws of the legs' state; their number is the ensemble's.
         rng: Source of randomness.
     """
-    motions = _motions(legs, min(len(state), MOST_MOTIONS), rng)
+    drawn = motions(legs, min(len(state), MOST_MOTIONS), rng)
     return [
         WalkDraw(
             robot_in(robot, state, i),
-            motions[i % len(motions)],
+            drawn[i % len(drawn)],
             law_in(tables[i % len(tables)], state, i),
         )
         for i in range(len(state))
     ]
 
 
-def _motions(
+def motions(
     legs: LegReference | QuantisedLog, n: int, rng: np.random.Generator
 ) -> Sequence[LegReference]:
+    """Draw n motions that counted leg angles allow; angles that are not counted are one motion.
+
+    Args:
+        legs: Leg angles.
+        n: Number of motions.
+        rng: Source of randomness.
+    """
     return [legs.smooth(rng) for _ in range(n)] if isinstance(legs, QuantisedLog) else [legs]
-
-
-def robot_in(robot: Robot, state: LegState, i: int) -> Robot:
-    """Return the robot with the leg offsets and arc of one draw.
-
-    Args:
-        robot: The robot as described.
-        state: Draws of the legs' state.
-        i: Index of the draw.
-    """
-    return replace(
-        robot,
-        leg_offset=robot.leg_offset + state.offset[i],
-        leg_arc=float(np.clip(robot.leg_arc + state.arc[i], *ARCS)),
-    )
-
-
-def law_in(table: TractionTable, state: LegState, i: int) -> TractionTable:
-    """Return the slip law scaled by the grip, slip stiffness and post-peak drop of one draw.
-
-    Args:
-        table: The slip law as calibrated.
-        state: Draws of the legs' state.
-        i: Index of the draw.
-    """
-    return scaled_table(
-        table,
-        grip=float(state.grip[i]),
-        stiffness=float(state.stiffness[i]),
-        fall=float(state.fall[i]),
-    )
 
 
 def ensemble_step(
@@ -290,114 +185,3 @@ def with_contacts(
         replace(draw, stiffness=float(stiffness), damping=float(damping))
         for draw, (stiffness, damping) in zip(draws, factors, strict=True)
     ]
-
-
-def bent(paths: Poses, *, distance: Array, curvature: Array) -> Poses:
-    r"""Stretch and bend paths: :math:`d s' = (1 + \epsilon) ds, \; d\psi' = d\psi + \kappa\, ds`.
-
-    Args:
-        paths: Paths of m draws.
-        distance: Relative error of distance of each, shape (m,) [-].
-        curvature: Curvature added to each, shape (m,) [rad/m].
-    """
-    step = np.diff(paths.position, axis=1)
-    forward = step[..., 0] + 1j * step[..., 1]
-    travelled = _from_zero(np.abs(forward))
-    turned = curvature[:, None] * travelled
-    middle = 0.5 * (turned[:, 1:] + turned[:, :-1])
-    steps = (1 + distance[:, None]) * forward * np.exp(1j * middle)
-    moved = np.stack([_from_zero(np.real(steps)), _from_zero(np.imag(steps))], axis=-1)
-    position = paths.position[:, :1] + moved
-    return Poses(paths.t, position, paths.yaw + turned)
-
-
-def bent_walk(path: WalkPath, *, distance: float, curvature: float) -> WalkPath:
-    """Stretch and bend one walked path as `bent` does; slip and forces in its heading frame stay.
-
-    Args:
-        path: The path.
-        distance: Relative error of distance [-].
-        curvature: Curvature added [rad/m].
-    """
-    one = path.poses.draws()
-    moved = bent(one, distance=np.array([distance]), curvature=np.array([curvature]))
-    return replace(
-        path,
-        position=np.column_stack([moved.position[0], path.position[:, 2]]),
-        orientation=np.column_stack([path.orientation[:, :2], moved.yaw[0]]),
-    )
-
-
-def anchored(
-    paths: Poses,
-    pose: Array,
-    *,
-    at: float,
-    covariance: Array | None = None,
-    rng: np.random.Generator,
-) -> Poses:
-    """Move every path rigidly so that it passes a known pose, or a draw of an uncertain one.
-
-    Args:
-        paths: Paths.
-        pose: x, y [m] and yaw [rad] at that time, shape (3,).
-        at: The time, within the paths' [s].
-        covariance: Covariance of the pose, shape (3, 3); None when it is exact.
-        rng: Source of randomness.
-
-    Raises:
-        DomainError: The time lies outside the paths'.
-    """
-    if not paths.t[0] <= at <= paths.t[-1]:
-        raise DomainError(
-            f"the known pose is of {at:g} s, but paths run from {paths.t[0]:g} to {paths.t[-1]:g} s"
-        )
-    here = states_at(paths, np.array([at]))[:, 0]
-    wanted = np.broadcast_to(pose, here.shape)
-    if covariance is not None:
-        wanted = rng.multivariate_normal(pose, covariance, size=len(here), method="eigh")
-    turn = wanted[:, 2] - here[:, 2]
-    away = paths.position - here[:, None, :2]
-    c, s = np.cos(turn)[:, None], np.sin(turn)[:, None]
-    x = wanted[:, :1] + c * away[..., 0] - s * away[..., 1]
-    y = wanted[:, 1:2] + s * away[..., 0] + c * away[..., 1]
-    return Poses(paths.t, np.stack([x, y], axis=-1), paths.yaw + turn[:, None])
-
-
-def states_at(paths: Poses, t: Array) -> Array:
-    """Interpolate x, y and yaw of every draw linearly at given times.
-
-    Args:
-        paths: The draws.
-        t: Times, shape (k,) [s]; outside the paths the ends are extrapolated.
-
-    Returns:
-        States, shape (draws, k, 3) [m, m, rad].
-    """
-    values = paths.states
-    after = np.clip(np.searchsorted(paths.t, t, side="right"), 1, len(paths.t) - 1)
-    share = (t - paths.t[after - 1]) / (paths.t[after] - paths.t[after - 1])
-    return values[:, after - 1] + share[:, None] * (values[:, after] - values[:, after - 1])
-
-
-def quantiles(paths: Poses, levels: Sequence[float] = LEVELS) -> Array:
-    """Compute quantiles over the draws of x, y and yaw at every time.
-
-    Args:
-        paths: The draws.
-        levels: Levels of the quantiles, from 0 to 1 [-].
-
-    Returns:
-        Quantiles, shape (levels, n, 3) [m, m, rad].
-    """
-    return np.quantile(paths.states, np.asarray(levels), axis=0)
-
-
-def mean_path(paths: Poses) -> Poses:
-    """Return the mean position and heading at every time."""
-    return Poses(paths.t, paths.position.mean(axis=0), paths.yaw.mean(axis=0))
-
-
-def _from_zero(steps: Array) -> Array:
-    """Return the cumulative sum of steps along axis 1, starting at zero."""
-    return np.concatenate([np.zeros((len(steps), 1)), np.cumsum(steps, axis=1)], axis=1)

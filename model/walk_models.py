@@ -6,14 +6,13 @@ from dataclasses import dataclass
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from model.errors import DomainError, WalkError
 from model.gait.cyclic import CyclicReference
 from model.gait.direction import Direction
 from model.gait.reference import LegReference, SampledReference
+from model.leg_state import LegState, law_in, robot_in
+from model.path_draws import bent_walk
 from model.poses import Poses
-from model.predict import LegState, bent_walk, law_in, robot_in
 from model.robot import GRAVITY, Robot
 from model.slip.thesis import thesis_curve
 from model.walk.path import WalkPath
@@ -126,15 +125,16 @@ def _thesis(run: ModelRun) -> WalkPath:
 def _legs_of_the_thesis(reference: LegReference) -> "LegReference | SwitchedLegs":
     """Convert a gait's legs to ones that switch speed by angle, as the thesis's do.
 
-    Other legs are returned as they are.
+    Legs of a log, and gaits that pause or whose angles leave a turn, are followed by the clock.
     """
     from model.walk.thesis import SwitchedLegs
 
     if not isinstance(reference, CyclicReference):
         return reference
-    waits = np.any(reference.pause) or np.any(reference.offset)
-    in_turn = reference.touchdown.min() >= 0 and reference.liftoff.max() < 2 * np.pi
-    return SwitchedLegs.of(reference) if in_turn and not waits else reference
+    try:
+        return SwitchedLegs.of(reference)
+    except DomainError:
+        return reference
 
 
 def _no_slip(run: ModelRun) -> WalkPath:

@@ -19,7 +19,7 @@ READ_WAIT: Final = 0.1
 """Longest single wait of a read [s]."""
 SILENCE: Final = 1.0
 """Silence after which an event is logged [s]."""
-JOIN_LIMIT: Final = 5.0
+JOIN_TIMEOUT: Final = 5.0
 
 
 class SampleSink(Protocol):
@@ -74,7 +74,7 @@ class Device:
 
 
 class Acquisition:
-    """Reader thread of one device, which runs until it is asked to stop.
+    """Reader thread of one device, which runs until a stop is requested.
 
     Args:
         device: The device; its driver has been entered.
@@ -83,6 +83,8 @@ class Acquisition:
         clock: Host time.
 
     Attributes:
+        name: Name of the stream.
+        counters: Counters of the stream, as of its last read.
         tap: The newest samples, for viewers.
         clock_watch: Comparison of the device's clock with the host's.
         first: Host time of the first sample; None before it [s].
@@ -93,6 +95,8 @@ class Acquisition:
     def __init__(
         self, device: Device, *, sink: SampleSink, start: float, clock: Clock = SYSTEM_CLOCK
     ) -> None:
+        self.name = device.name
+        self.counters = Counters()
         self.tap = LossyTap()
         self.clock_watch = ClockWatch(start=start)
         self.first: float | None = None
@@ -100,21 +104,10 @@ class Acquisition:
         self._device = device
         self._sink = sink
         self._clock = clock
-        self._counters = Counters()
         self._silent = False
         self._done = threading.Event()
         self._until = float("inf")
         self._thread = threading.Thread(target=self._run, daemon=True, name=device.name)
-
-    @property
-    def name(self) -> str:
-        """Name of the stream."""
-        return self._device.name
-
-    @property
-    def counters(self) -> Counters:
-        """Counters of the stream, as of its last read."""
-        return self._counters
 
     def start(self) -> None:
         """Start the reader thread.
@@ -128,17 +121,17 @@ class Acquisition:
         """Set the host time at which reading ends without a call of `stop` [s]."""
         self._until = until
 
-    def ask_to_stop(self) -> None:
-        """Ask the thread to read once more and then to end; does not wait for it."""
+    def request_stop(self) -> None:
+        """Request that the thread reads once more and ends; does not wait for it."""
         self._done.set()
 
     def stop(self) -> None:
         """Stop the thread; waits for the read in progress, which has a timeout."""
         self._done.set()
         if self._thread.is_alive():
-            self._thread.join(JOIN_LIMIT)
+            self._thread.join(JOIN_TIMEOUT)
             if self._thread.is_alive() and self.failure is None:
-                self.failure = RigTimeout("a read has not ended", waited=JOIN_LIMIT)
+                self.failure = RigTimeout("the reader thread did not end", waited=JOIN_TIMEOUT)
 
     def _run(self) -> None:
         device = self._device
@@ -166,12 +159,12 @@ class Acquisition:
             self.clock_watch.add(samples)
             if device.check is not None:
                 device.check(samples)
-        self._watch(device.stream.counters)
-        self._listen(guard, samples)
+        self._log_link_events(device.stream.counters)
+        self._check_silence(guard, samples)
 
-    def _watch(self, counters: Counters) -> None:
+    def _log_link_events(self, counters: Counters) -> None:
         """Log events of the link: losses, reconnections, restarts."""
-        before, self._counters = self._counters, counters
+        before, self.counters = self.counters, counters
         for what in ("reconnected", "restarted"):
             if getattr(counters, what) > getattr(before, what):
                 self._sink.event(f"{self.name}: {what}", level=WARNING)
@@ -179,7 +172,7 @@ class Acquisition:
             missing = counters.lost - before.lost
             self._sink.event(f"{self.name}: {missing} samples lost", level=WARNING)
 
-    def _listen(self, guard: SilenceGuard, samples: Sequence[Sample]) -> None:
+    def _check_silence(self, guard: SilenceGuard, samples: Sequence[Sample]) -> None:
         """Log one event when a silence begins and one when it ends."""
         try:
             guard.check(samples, now=self._clock.now())
@@ -189,7 +182,7 @@ class Acquisition:
             self._silent = True
         else:
             if self._silent:
-                self._sink.event(f"{self.name}: sends again", level=WARNING)
+                self._sink.event(f"{self.name}: samples arrive again", level=WARNING)
             self._silent = False
 
 
@@ -223,4 +216,4 @@ def acquiring(
             yield readers
         finally:
             for reader in readers.values():
-                reader.ask_to_stop()  # all at once, so that their streams end together
+                reader.request_stop()  # all at once, so that their streams end together

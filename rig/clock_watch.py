@@ -13,7 +13,7 @@ from rig.sample_columns import SampleColumns
 
 BUCKET: Final = 0.05
 """Interval in which one comparison of the clocks is kept [s]."""
-RESTARTED: Final = 1.0
+RESTART_JUMP: Final = 1.0
 """Jump of the clock difference between samples that means a restart of the device [s]."""
 
 
@@ -60,14 +60,14 @@ def _last_clock(device: Array, host: Array) -> tuple[Array, Array]:
     """Select the comparisons since the last restart that has enough of them, shape (n,) [s].
 
     A sample can be read late but never early. The device has therefore restarted where all later
-    comparisons are more than `RESTARTED` later.
+    comparisons are more than `RESTART_JUMP` later.
     """
     while len(device) >= FEWEST:
         lag = host - device
         least_after = np.minimum.accumulate(lag[::-1])[::-1]
-        began = np.flatnonzero(np.diff(least_after) > RESTARTED)
+        began = np.flatnonzero(np.diff(least_after) > RESTART_JUMP)
         first = began[-1] + 1 if len(began) else 0
-        in_time = np.flatnonzero(lag - least_after <= RESTARTED)
+        in_time = np.flatnonzero(lag - least_after <= RESTART_JUMP)
         kept = in_time[in_time >= first]
         if len(kept) >= FEWEST:
             return device[kept], host[kept]
@@ -89,7 +89,7 @@ def sample_times(stream: SampleColumns) -> Array:
     if device is None:
         return times
     lag = stream.host_time - device
-    ends = np.flatnonzero(np.abs(np.diff(lag)) > RESTARTED) + 1
+    ends = np.flatnonzero(np.abs(np.diff(lag)) > RESTART_JUMP) + 1
     for part in np.split(np.arange(len(times)), ends):
         if len(part) >= FEWEST and device[part[-1]] > device[part[0]]:
             fit = fit_clock(device[part], stream.host_time[part])

@@ -7,7 +7,6 @@ speeds and forces are computed from the counts with the device's profile, at any
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from types import TracebackType
 from typing import NamedTuple, Protocol, Self
 
 from rig.clock import SYSTEM_CLOCK, Clock
@@ -103,12 +102,7 @@ class Stream(Protocol):
 
     def __enter__(self) -> Self: ...
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None: ...
+    def __exit__(self, *exception: object) -> None: ...
 
 
 class Drive(Protocol):
@@ -141,14 +135,6 @@ class Drive(Protocol):
 
     def disarm(self) -> None:
         """Command standstill and de-energise; does not raise for a disconnected drive."""
-        ...
-
-
-class LoadCellStream(Stream, Protocol):
-    """Stream of forces from a device that can set its own zero."""
-
-    def bias(self) -> None:
-        """Set the present reading of the cell as its zero."""
         ...
 
 

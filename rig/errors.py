@@ -91,12 +91,12 @@ class FrozenReading(RigError, ValueError):
         limit: Longest time allowed [s].
 
     >>> str(FrozenReading("speed of the leg disc", value=0.3, limit=0.25))
-    'speed of the leg disc did not change by a bit for 0.3 s; its limit is 0.25 s'
+    'speed of the leg disc stayed the same, bit for bit, for 0.3 s; its limit is 0.25 s'
     """
 
     def __init__(self, what: str, *, value: float, limit: float) -> None:
         super().__init__(
-            f"{what} did not change by a bit for {value:.3g} s; its limit is {limit:g} s"
+            f"{what} stayed the same, bit for bit, for {value:.3g} s; its limit is {limit:g} s"
         )
         self.value = value
         self.limit = limit

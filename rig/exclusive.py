@@ -13,7 +13,7 @@ import shlex
 import sys
 import tempfile
 import threading
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any, Final
@@ -35,15 +35,9 @@ class _Held:
     count: int = 1
 
 
-@dataclass
-class _Registry:
-    """The locks that this process holds, by their file."""
-
-    held: dict[str, _Held] = field(default_factory=dict)
-    guard: threading.Lock = field(default_factory=threading.Lock)
-
-
-_REGISTRY: Final = _Registry()
+_HELD: Final[dict[str, _Held]] = {}
+"""The locks that this process holds, by their file."""
+_HELD_GUARD: Final = threading.Lock()
 
 
 class Exclusive:
@@ -70,12 +64,12 @@ class Exclusive:
         """
         if self._taken or fcntl is None:
             return
-        with _REGISTRY.guard:
-            held = _REGISTRY.held.get(str(self._file))
+        with _HELD_GUARD:
+            held = _HELD.get(str(self._file))
             if held is not None and self._shared:
                 held.count += 1
             else:  # a process's second handle of a file is refused the lock like another's
-                _REGISTRY.held[str(self._file)] = _Held(self._lock())
+                _HELD[str(self._file)] = _Held(self._lock())
         self._taken = True
 
     def release(self) -> None:
@@ -83,11 +77,11 @@ class Exclusive:
         if not self._taken:
             return
         self._taken = False
-        with _REGISTRY.guard:
-            held = _REGISTRY.held[str(self._file)]
+        with _HELD_GUARD:
+            held = _HELD[str(self._file)]
             held.count -= 1
             if held.count == 0:
-                del _REGISTRY.held[str(self._file)]
+                del _HELD[str(self._file)]
                 os.close(held.handle)
 
     def __enter__(self) -> "Exclusive":

@@ -42,7 +42,8 @@ def resolve(address: str, *, default: str) -> tuple[str, str]:
     """
     if address.startswith(REPLAY):
         raise ProfileError(
-            f"'{address}' only plays what was recorded; `record` takes it, what moves does not"
+            f"'{address}' replays a recording: `record` accepts it, commands that move a device do "
+            "not"
         )
     return (default, SIMULATED) if address == SIMULATED else split_address(address)
 

@@ -3,7 +3,6 @@
 
 import itertools
 from collections.abc import Sequence
-from types import TracebackType
 from typing import Self
 
 from rig.clock import SYSTEM_CLOCK, Clock
@@ -21,11 +20,10 @@ class ReplayStream:
         samples: The recording, in order.
         name: Name of the stream.
         source: Where the samples come from, such as `replay:RUN`.
-        speed: Factor by which the replay is faster than the recording [-].
         clock: Host time.
 
     Raises:
-        ProtocolError: The host times decrease, or the speed is not positive.
+        ProtocolError: The host times decrease.
     """
 
     def __init__(
@@ -34,11 +32,8 @@ class ReplayStream:
         *,
         name: str,
         source: str,
-        speed: float = 1.0,
         clock: Clock = SYSTEM_CLOCK,
     ) -> None:
-        if not speed > 0:
-            raise ProtocolError(f"replay speed is {speed:g}; expected above 0")
         for before, after in itertools.pairwise(samples):
             if after.host_time < before.host_time:
                 raise ProtocolError(
@@ -48,7 +43,6 @@ class ReplayStream:
         self.name = name
         self.source = source
         self._samples = samples
-        self._speed = speed
         self._clock = clock
         self._began: float | None = None
         self._next = 0
@@ -85,17 +79,12 @@ class ReplayStream:
         self._began = self._clock.now()
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *exception: object) -> None:
         self._began = None
 
     def _due(self, index: int) -> float:
         after = self._samples[index].host_time - self._samples[0].host_time
-        return (self._began or 0.0) + after / self._speed
+        return (self._began or 0.0) + after
 
     def _count_gap(self, index: int) -> None:
         last = self._samples[index - 1].sequence if index else None

@@ -130,7 +130,7 @@ class SilenceGuard:
     def __init__(self, name: str, *, limit: float, now: float) -> None:
         self._name = name
         self._limit = limit
-        self._heard = now
+        self._last_arrival = now
 
     def check(self, samples: Sequence[object], *, now: float) -> None:
         """Check the time since the last sample.
@@ -143,9 +143,9 @@ class SilenceGuard:
             RigTimeout: No sample has arrived for longer than the limit.
         """
         if samples:
-            self._heard = now
-        elif now - self._heard > self._limit:
-            raise RigTimeout(f"stream '{self._name}' sent nothing", waited=now - self._heard)
+            self._last_arrival = now
+        elif now - self._last_arrival > self._limit:
+            raise RigTimeout(f"stream '{self._name}' sent nothing", waited=now - self._last_arrival)
 
 
 class StopCategory(IntEnum):
@@ -192,7 +192,7 @@ class StopSwitch:
     """
 
     def __init__(self) -> None:
-        self._asked: list[Stop] = []
+        self._requests: list[Stop] = []
 
     def request(self, category: StopCategory, reason: str) -> None:
         """Request a stop; safe to call from a signal handler and from any thread.
@@ -201,12 +201,12 @@ class StopSwitch:
             category: How to stop.
             reason: Why, for the log.
         """
-        self._asked.append(Stop(category, reason))
+        self._requests.append(Stop(category, reason))
 
     @property
     def pending(self) -> Stop | None:
         """Hardest stop requested, the first of its category; None where there is none."""
-        return max(self._asked, key=lambda stop: stop.category, default=None)
+        return max(self._requests, key=lambda stop: stop.category, default=None)
 
     @property
     def latched(self) -> bool:
@@ -216,8 +216,8 @@ class StopSwitch:
 
     def release(self) -> None:
         """Clear soft stops; safe and emergency stops stay."""
-        self._asked[:] = [s for s in self._asked if s.category is not StopCategory.SOFT]
+        self._requests[:] = [s for s in self._requests if s.category is not StopCategory.SOFT]
 
     def reset(self) -> None:
         """Clear every stop, an emergency stop included; only on a person's explicit request."""
-        self._asked.clear()
+        self._requests.clear()

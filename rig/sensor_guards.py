@@ -15,22 +15,22 @@ Values: TypeAlias = NDArray[np.float64]
 TURNING: Final = 1.0
 """Set-point above which a disc's sensors must change, and set-point change that they must show
 [rad/s]."""
-FEWEST_SAME: Final = 8
+MIN_REPEATS: Final = 8
 """Least number of equal consecutive readings of a frozen sensor."""
 LARGE: Final = 3.0
 """Factor on a sensor's smallest step above which a change is more than its rounding [-]."""
-LATEST_LOOKS: Final = 9
+SCATTER_BATCHES: Final = 9
 SCATTER_TIME: Final = 1.0
 """Time over which the fraction of batches with a large change is averaged [s]."""
 SINGLE_PRECISION: Final = 2.0**-22
 """Relative resolution of values sent in single precision [-]."""
 RESTART_WINDOW: Final = 10.0
 """Time within which a device may restart its record numbers once [s]."""
-SHARE_WINDOW: Final = 0.25
+BAD_FRACTION_WINDOW: Final = 0.25
 """Time over which the fraction of missing and refused records is computed [s]."""
-LARGEST_SHARE: Final = 0.5
+MAX_BAD_FRACTION: Final = 0.5
 """Largest allowed fraction of missing and refused records [-]."""
-FEWEST_RECORDS: Final = 20
+MIN_RECORDS: Final = 20
 """Least number of records from which the fraction is computed."""
 
 
@@ -82,11 +82,11 @@ class FrozenGuard:
         self._limit = limit
         self._follows = follows
         self._last: Values | None = None
-        self._looked = self._changed = 0.0
+        self._checked_at = self._changed = 0.0
         self._same = 0
         self._wanted = self._steady = 0.0
-        self._smallest = self._share = np.zeros(0)
-        self._large: deque[NDArray[np.bool_]] = deque(maxlen=LATEST_LOOKS)
+        self._smallest = self._large_fraction = np.zeros(0)
+        self._large: deque[NDArray[np.bool_]] = deque(maxlen=SCATTER_BATCHES)
         self._scattered = False
 
     def check(self, values: Values, *, wanted: float, now: float) -> None:
@@ -107,33 +107,34 @@ class FrozenGuard:
                 self._changed, self._wanted, self._same = now, wanted, 0
             if self._last is not None and wanted == self._steady:
                 self._learn(values, self._last, now)
-            self._last, self._steady, self._looked = values[-1].copy(), wanted, now
+            self._last, self._steady, self._checked_at = values[-1].copy(), wanted, now
             self._same += len(values)
             ramped = self._follows and abs(wanted - self._wanted) > TURNING
             must_change = self._scattered or ramped
-            if must_change and self._same >= FEWEST_SAME and now - self._changed > self._limit:
+            if must_change and self._same >= MIN_REPEATS and now - self._changed > self._limit:
                 raise FrozenReading(self._what, value=now - self._changed, limit=self._limit)
 
     def _learn(self, values: Values, last: Values, now: float) -> None:
         """Update the resolution and scatter of the channels at a steady set-point."""
         steps = np.abs(np.diff(values, axis=0, prepend=last[None]))
         if not len(self._smallest):
-            self._smallest, self._share = np.full(len(last), np.inf), np.zeros(len(last))
+            self._smallest, self._large_fraction = np.full(len(last), np.inf), np.zeros(len(last))
         self._smallest = np.minimum(self._smallest, np.where(steps > 0, steps, np.inf).min(axis=0))
         resolution = np.maximum(self._smallest, SINGLE_PRECISION * np.abs(last))
         large = np.abs(values[-1] - last) >= LARGE * resolution
-        self._share += -np.expm1((self._looked - now) / SCATTER_TIME) * (large - self._share)
+        weight = -np.expm1((self._checked_at - now) / SCATTER_TIME)
+        self._large_fraction += weight * (large - self._large_fraction)
         if steps.any():
             self._large.append(large)
             often = np.mean(self._large, axis=0) > 0.5
-            self._scattered = bool((often & (self._share > 0.5)).any())
+            self._scattered = bool((often & (self._large_fraction > 0.5)).any())
 
 
 class RecordGuard:
     """Check for a stream whose record numbers restart repeatedly or that mostly gets lost.
 
     Random record numbers count as restarts. A single restart is tolerated, and so are losses of up
-    to `LARGEST_SHARE`.
+    to `MAX_BAD_FRACTION`.
 
     Args:
         name: Name of the stream, for the message.
@@ -168,15 +169,15 @@ class RecordGuard:
                 f"stream '{self._name}' restarted its numbering {len(self._restarts)} times within "
                 f"{RESTART_WINDOW:g} s; its limit is 1"
             )
-        if now - self._since >= SHARE_WINDOW:
+        if now - self._since >= BAD_FRACTION_WINDOW:
             self._require_most(counters, self._base)
             self._base, self._since = counters, now
 
     def _require_most(self, counters: Counters, base: Counters) -> None:
         received = counters.received - base.received
         bad = counters.lost + counters.rejected - base.lost - base.rejected
-        if bad + received >= FEWEST_RECORDS and bad > LARGEST_SHARE * (bad + received):
+        if bad + received >= MIN_RECORDS and bad > MAX_BAD_FRACTION * (bad + received):
             raise UnreliableRecords(
                 f"stream '{self._name}': {100 * bad / (bad + received):.0f} % of its records are "
-                f"missing or refused; its limit is {100 * LARGEST_SHARE:g} %"
+                f"missing or refused; its limit is {100 * MAX_BAD_FRACTION:g} %"
             )

@@ -230,14 +230,9 @@ class TomlTable:
             raise self.fault(f"found {values}; expected {count} times 1 or -1", key)
         return tuple(int(value) for value in values)
 
-    def sign(self, key: str, default: int = 1) -> int:
-        """Read a sign, 1 or -1.
-
-        Args:
-            key: Name of the key.
-            default: Value of an absent key.
-        """
-        value = self.value(key, default)
+    def sign(self, key: str) -> int:
+        """Read a sign, 1 or -1; an absent one is 1."""
+        value = self.value(key, 1)
         if isinstance(value, bool) or value not in (-1, 1):
             raise self.fault(f"found {value!r}; expected 1 or -1", key)
         return int(value)

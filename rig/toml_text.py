@@ -91,6 +91,6 @@ def _require_plain(*values: object) -> None:
                 value.encode()
             except UnicodeEncodeError as error:
                 raise ValueError(
-                    f"the text {ascii(value)[:60]} holds half a pair of surrogates, which no file "
-                    "can hold"
+                    f"the text {ascii(value)[:60]} holds an unpaired surrogate, which no file can "
+                    "hold"
                 ) from error

@@ -8,7 +8,7 @@ it is simulated. To let other programs reach a twin, serve a byte twin such as `
 
 import itertools
 from collections.abc import Iterator
-from contextlib import ExitStack, contextmanager
+from contextlib import contextmanager
 from typing import Any, Final
 
 import can
@@ -18,7 +18,7 @@ from model.gait.reference import LegReference
 from rig.backends import RigDevices, leg_driver, leg_link
 from rig.errors import ProfileError
 from rig.imu.profile import ImuProfile
-from rig.imu.simulated import PERFECT_UNIT, Attitude, ImuImperfections, SimulatedImu, rocking
+from rig.imu.simulated import SimulatedImu
 from rig.imu.stream import ImuStream
 from rig.links.byte_link import ByteTwin
 from rig.links.can import CanLink
@@ -34,7 +34,7 @@ from rig.slip_rig.profile import (
     DriveProfile,
     LoadCellProfile,
     RigProfile,
-    require_device,
+    device_profiles,
 )
 from rig.slip_rig.simulated import SimulatedRig
 from rig.slip_rig.simulated_board import SimulatedBoard
@@ -82,68 +82,47 @@ def robot_twin(
 
 @contextmanager
 def simulated_legs(
-    profile: LegProfile,
-    reference: LegReference,
-    *,
-    imperfections: RobotImperfections = EXACT_ROBOT,
-    faults: Faults = PERFECT_LINE,
-    rng: np.random.Generator,
-    name: str = "legs",
+    profile: LegProfile, reference: LegReference, *, rng: np.random.Generator
 ) -> Iterator[Any]:
     """Serve a simulated robot of any layout and yield its driver.
 
     Args:
         profile: Counts, layout and rate of the robot.
         reference: Gait that it walks.
-        imperfections: Its deviations from the gait.
-        faults: Transmission errors of the line.
         rng: Random generator.
-        name: Name of the stream.
 
     Yields:
         A `Stream` that also takes `LegCommands`.
     """
     if profile.layout == "can":
         channel = _new_channel()
-        legs = SimulatedLegs(reference, profile=profile, imperfections=imperfections, rng=rng)
+        legs = SimulatedLegs(reference, profile=profile, rng=rng)
         with can.Bus(interface="virtual", channel=channel) as bus:
-            robot = CanRobot(legs, bus, faults=faults, rng=rng)
+            robot = CanRobot(legs, bus, rng=rng)
             with Ticker(robot.poll):
-                yield leg_driver(
-                    profile, leg_link(profile, f"virtual:{channel}", source="sim:zebro"), name=name
-                )
+                link = leg_link(profile, f"virtual:{channel}", source=robot.source)
+                yield leg_driver(profile, link)
         return
-    twin = robot_twin(profile, reference, imperfections=imperfections, faults=faults, rng=rng)
+    twin = robot_twin(profile, reference, rng=rng)
     with PortServer(twin) as server:
-        yield leg_driver(profile, leg_link(profile, server.port, source=twin.source), name=name)
+        yield leg_driver(profile, leg_link(profile, server.port, source=twin.source))
 
 
 @contextmanager
 def simulated_imu(
-    profile: ImuProfile,
-    attitude: Attitude = rocking,
-    *,
-    imperfections: ImuImperfections = PERFECT_UNIT,
-    faults: Faults = PERFECT_LINE,
-    rng: np.random.Generator,
-    name: str = "imu",
+    profile: ImuProfile, *, rng: np.random.Generator, name: str = "imu"
 ) -> Iterator[ImuStream]:
     """Serve a simulated inertial measurement unit and yield its driver.
 
     Args:
         profile: Scale of the counts, mounting and rate of the unit.
-        attitude: Motion of the body that carries it.
-        imperfections: Its noise and drift.
-        faults: Transmission errors of the line.
         rng: Random generator.
         name: Name of the stream.
 
     Yields:
         The driver.
     """
-    twin = SimulatedImu(
-        attitude, profile=profile, imperfections=imperfections, faults=faults, rng=rng
-    )
+    twin = SimulatedImu(profile=profile, rng=rng)
     with PortServer(twin) as server:
         link = SerialLink(server.port, baudrate=profile.baudrate, source=twin.source)
         yield ImuStream(link, profile=profile, name=name)
@@ -156,7 +135,6 @@ def simulated_rig_devices(
     *,
     watchdog: float = 0.2,
     buffered: bool = False,
-    faults: Faults = PERFECT_LINE,
     rng: np.random.Generator,
 ) -> Iterator[RigDevices]:
     """Serve a simulated slip rig and yield its drivers.
@@ -166,7 +144,6 @@ def simulated_rig_devices(
         rig: The simulated rig; it runs its own sweep until a drive is commanded.
         watchdog: Silence after which drives or board stop the discs [s].
         buffered: Let the load cell send many records per packet, see `NetFtCell`.
-        faults: Transmission errors of the load cell's or the board's line.
         rng: Random generator of the transmission errors.
 
     Yields:
@@ -176,65 +153,45 @@ def simulated_rig_devices(
         ProfileError: The profile has neither a board nor drives and load cell, or describes a
             table.
     """
-    require_device(profile)
-    if profile.board is not None:
-        with _board(profile, profile.board, rig, watchdog, faults, rng) as devices:
-            yield devices
-    elif profile.drives is not None and profile.load_cell is not None:
-        with _drives_and_cell(
-            profile, profile.drives, profile.load_cell, rig, watchdog, buffered, faults, rng
-        ) as devices:
-            yield devices
-    else:
-        raise ProfileError(f"profile '{profile.name}' has neither a board nor drives and load cell")
-
-
-@contextmanager
-def _board(
-    profile: RigProfile,
-    board: BoardProfile,
-    rig: SimulatedRig,
-    watchdog: float,
-    faults: Faults,
-    rng: np.random.Generator,
-) -> Iterator[RigDevices]:
-    twin = SimulatedBoard(rig, profile=board, watchdog=watchdog, faults=faults, rng=rng)
-    with PortServer(twin) as server:
-        link = SerialLink(server.port, baudrate=board.baudrate, source=twin.source)
-        yield RigDevices(profile, board=RigBoard(link, profile=board, limits=profile.limits))
-
-
-@contextmanager
-def _drives_and_cell(
-    profile: RigProfile,
-    drives: DriveProfile,
-    load_cell: LoadCellProfile,
-    rig: SimulatedRig,
-    watchdog: float,
-    buffered: bool,
-    faults: Faults,
-    rng: np.random.Generator,
-) -> Iterator[RigDevices]:
-    channel = _new_channel()
-    with ExitStack() as stack:
-        bus = stack.enter_context(can.Bus(interface="virtual", channel=channel))
-        axes = SimulatedDrives(rig, bus, profile=drives, watchdog=watchdog)
-        cell = stack.enter_context(
-            SimulatedLoadCell(rig, profile=load_cell, faults=faults, rng=rng)
-        )
-
-        def tick(now: float) -> None:
-            axes.poll(now)
-            cell.poll(now)
-
-        stack.enter_context(Ticker(tick))
-        link = CanLink(f"virtual:{channel}", source=axes.source)
-        datagrams = UdpLink(cell.host, cell.port, source=cell.source)
+    found = device_profiles(profile)
+    if isinstance(found, BoardProfile):
+        twin = SimulatedBoard(rig, profile=found, watchdog=watchdog, rng=rng)
+        with PortServer(twin) as server:
+            serial = SerialLink(server.port, baudrate=found.baudrate, source=twin.source)
+            board = RigBoard(serial, profile=found, limits=profile.limits)
+            yield RigDevices(profile, board=board)
+        return
+    with _served_on_bus(rig, found, watchdog, rng) as (link, datagrams):
+        drives, load_cell = found
         yield RigDevices(
             profile,
             drives=DriveBus(link, profile=drives, limits=profile.limits),
             load_cell=NetFtCell(datagrams, profile=load_cell, buffered=buffered),
         )
+
+
+@contextmanager
+def _served_on_bus(
+    rig: SimulatedRig,
+    profiles: tuple[DriveProfile, LoadCellProfile],
+    watchdog: float,
+    rng: np.random.Generator,
+) -> Iterator[tuple[CanLink, UdpLink]]:
+    """Serve simulated drives and load cell; yield the links to them."""
+    channel = _new_channel()
+    with (
+        can.Bus(interface="virtual", channel=channel) as bus,
+        SimulatedLoadCell(rig, profile=profiles[1], rng=rng) as cell,
+    ):
+        drives = SimulatedDrives(rig, bus, profile=profiles[0], watchdog=watchdog)
+
+        def tick(now: float) -> None:
+            drives.poll(now)
+            cell.poll(now)
+
+        with Ticker(tick):
+            link = CanLink(f"virtual:{channel}", source=drives.source)
+            yield link, UdpLink(cell.host, cell.port, source=cell.source)
 
 
 def _new_channel() -> str:

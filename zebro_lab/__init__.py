@@ -11,23 +11,17 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     __version__: str
-    from zebro_lab.api import (
+    from zebro_lab.front.calibrations import (
         CalibrationResult,
-        Run,
-        WalkResult,
         calibrate,
-        open_devices,
-        open_run,
-        predict_walk,
-        read_legs,
         read_rig_data,
         read_slip_curve,
-        read_track,
-        track_photos,
-        validate_walks,
-        walk_gait,
-        write_report,
     )
+    from zebro_lab.front.runs import Run, open_devices, open_run, write_report
+    from zebro_lab.front.tracks import read_track, track_photos, validate_walks
+    from zebro_lab.front.walks import WalkResult, predict_walk, read_legs, walk_gait
+
+_FRONT = ("calibrations", "walks", "tracks", "runs")
 
 __all__ = [
     "CalibrationResult",
@@ -57,7 +51,8 @@ def __getattr__(name: str) -> Any:
         return version("zebro-lab")
     if name in __all__:
         import_module("zebro_lab.start").require_own_packages()
-        return getattr(import_module("zebro_lab.api"), name)
+        rooms = (import_module(f"zebro_lab.front.{each}") for each in _FRONT)
+        return next(getattr(room, name) for room in rooms if hasattr(room, name))
     raise AttributeError(f"module 'zebro_lab' has no attribute '{name}'")
 
 

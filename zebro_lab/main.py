@@ -5,40 +5,22 @@ from typing import Annotated
 
 import typer
 
-from zebro_lab.calibration.command import EPILOG, calibrate_command
-from zebro_lab.exchange.export_command import export
-from zebro_lab.exchange.import_command import EPILOG as IMPORT_EPILOG
-from zebro_lab.exchange.import_command import import_files
-from zebro_lab.exchange.init_command import init
-from zebro_lab.experiment.command import app as rig
-from zebro_lab.recording.check_command import app as zebro
-from zebro_lab.recording.command import EPILOG as RECORD_EPILOG
-from zebro_lab.recording.command import record
-from zebro_lab.recording.doctor_command import EPILOG as DOCTOR_EPILOG
-from zebro_lab.recording.doctor_command import doctor
-from zebro_lab.recording.simulate_command import app as sim
-from zebro_lab.report.command import EPILOG as REPORT_EPILOG
-from zebro_lab.report.command import report
-from zebro_lab.runs.command import exclude, runs
-from zebro_lab.runs.plot_command import EPILOG as PLOT_EPILOG
-from zebro_lab.runs.plot_command import plot
+from zebro_lab.exchange import export_command, import_command, init_command
+from zebro_lab.experiment import command as rig
+from zebro_lab.recording import check_command, doctor_command, simulate_command
+from zebro_lab.recording import command as record
+from zebro_lab.report import command as report
+from zebro_lab.runs import command as runs
+from zebro_lab.runs import plot_command
 from zebro_lab.terminal.ending import run
-from zebro_lab.track.annotate_command import EPILOG as ANNOTATE_EPILOG
-from zebro_lab.track.annotate_command import annotate
-from zebro_lab.track.camera.command import app as camera
-from zebro_lab.track.command import EPILOG as TRACK_EPILOG
-from zebro_lab.track.command import track
-from zebro_lab.validation.command import EPILOG as VALIDATE_EPILOG
-from zebro_lab.validation.command import validate
-from zebro_lab.validation.compare.command import EPILOG as COMPARE_EPILOG
-from zebro_lab.validation.compare.command import compare
-from zebro_lab.walk.command import EPILOG as WALK_EPILOG
-from zebro_lab.walk.command import walk
-from zebro_lab.walk.predict_command import EPILOG as PREDICT_EPILOG
-from zebro_lab.walk.predict_command import predict
-from zebro_lab.walk_fit.command import fit_walks
-
-calibrate = calibrate_command(fit_walks)
+from zebro_lab.track import annotate_command
+from zebro_lab.track import command as track
+from zebro_lab.track.camera import command as camera
+from zebro_lab.validation import command as validate
+from zebro_lab.validation.compare import command as compare
+from zebro_lab.walk import command as walk
+from zebro_lab.walk import predict_command
+from zebro_lab.walk_fit import command as calibrate
 
 app = typer.Typer(
     add_completion=False,
@@ -46,29 +28,29 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     no_args_is_help=True,
 )
-app.command(epilog=EPILOG)(calibrate)
-app.command()(init)
-app.command(epilog=WALK_EPILOG)(walk)
-app.command(epilog=PREDICT_EPILOG)(predict)
-app.command(epilog=VALIDATE_EPILOG)(validate)
-app.command(epilog=COMPARE_EPILOG)(compare)
-app.command(epilog=REPORT_EPILOG)(report)
-app.command(epilog=RECORD_EPILOG)(record)
-app.command("import", epilog=IMPORT_EPILOG)(import_files)
-app.command()(runs)
-app.command(epilog=PLOT_EPILOG)(plot)
-app.command()(exclude)
-app.command()(export)
-app.command(epilog=TRACK_EPILOG)(track)
-app.command(epilog=ANNOTATE_EPILOG)(annotate)
-app.command(epilog=DOCTOR_EPILOG)(doctor)
-app.add_typer(camera, name="camera")
-app.add_typer(rig, name="rig")
-app.add_typer(sim, name="sim")
-app.add_typer(zebro, name="zebro")
+app.command(epilog=calibrate.EPILOG)(calibrate.calibrate)
+app.command()(init_command.init)
+app.command(epilog=walk.EPILOG)(walk.walk)
+app.command(epilog=predict_command.EPILOG)(predict_command.predict)
+app.command(epilog=validate.EPILOG)(validate.validate)
+app.command(epilog=compare.EPILOG)(compare.compare)
+app.command(epilog=report.EPILOG)(report.report)
+app.command(epilog=record.EPILOG)(record.record)
+app.command("import", epilog=import_command.EPILOG)(import_command.import_files)
+app.command()(runs.runs)
+app.command(epilog=plot_command.EPILOG)(plot_command.plot)
+app.command()(runs.exclude)
+app.command()(export_command.export)
+app.command(epilog=track.EPILOG)(track.track)
+app.command(epilog=annotate_command.EPILOG)(annotate_command.annotate)
+app.command(epilog=doctor_command.EPILOG)(doctor_command.doctor)
+app.add_typer(camera.app, name="camera")
+app.add_typer(rig.app, name="rig")
+app.add_typer(simulate_command.app, name="sim")
+app.add_typer(check_command.app, name="zebro")
 
 slip_app = typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions_enable=False)
-slip_app.command(epilog=EPILOG)(calibrate)
+slip_app.command(epilog=calibrate.EPILOG)(calibrate.calibrate)
 
 
 def _print_version(wanted: bool) -> None:

@@ -168,7 +168,9 @@ def _measured_traction() -> Iterator[None]:
     """Put the measured traction into the load, with no Jacobian."""
     whole = likelihood_module.predict_blocks
 
-    def changed(blocks: SlipBlocks, law: SlipLaw, values: Array) -> likelihood_module.Prediction:
+    def changed(
+        blocks: SlipBlocks, law: SlipLaw, values: Array
+    ) -> likelihood_module.PredictedForces:
         k = len(law.parameters)
         gain, crosstalk = 1 + values[:, k + 1, None], values[:, k + 3, None]
         load = blocks.normal_force + crosstalk * blocks.traction_force / gain

@@ -16,7 +16,7 @@ from benchmarks.accuracy.engine_walks import SHARED, EngineWalk, radius, read_wa
 from model.bayes.walks.fit import WalkFit
 from model.bayes.walks.posterior import WalkPosterior
 from model.bayes.walks.prior import WalkPrior
-from model.bayes.walks.tilt import TiltSeen
+from model.bayes.walks.tilt import MeasuredTilt
 from model.gait.reference import SampledReference
 from model.robot import N_LEGS, Robot
 from zebro_lab.calibration.slip_argument import NamedSlip, parse_slip
@@ -153,7 +153,7 @@ class Bench:
         rng = np.random.default_rng(200 + len(name))
         angles = truth[["roll", "pitch"]].to_numpy() + MOUNTED
         angles += IMU_NOISE * rng.standard_normal(angles.shape)
-        return replace(self.walk(name), tilt=TiltSeen(truth["t"].to_numpy(), angles))
+        return replace(self.walk(name), tilt=MeasuredTilt(truth["t"].to_numpy(), angles))
 
     def fit(self, walks: Sequence[WalkOnFile]) -> WalkFit:
         """Fit walks, and say how long it took."""

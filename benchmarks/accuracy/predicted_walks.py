@@ -34,7 +34,7 @@ from benchmarks.accuracy.lab_walks import Bench, Scored, short
 from model.bayes.walks import importance, modes
 from model.bayes.walks.misfit import middle
 from model.bayes.walks.posterior import WalkPosterior
-from model.bayes.walks.tilt import SD, TiltMisfit, TiltSeen
+from model.bayes.walks.tilt import SD, MeasuredTilt, TiltMisfit
 from model.robot import GRAVITY
 from model.walk.dynamics import DynamicsOptions
 from model.walk.ensemble import WalkDraw, walk_ensemble
@@ -129,7 +129,7 @@ def tilt(bench: Bench, fits: Sequence[int] = range(1)) -> Iterator[Scored]:
         walked = walk_ensemble([draw], t, options=DynamicsOptions(dt=0.005), tilt=True)
         engine = np.column_stack([np.interp(t, seen["t"], seen[c]) for c in ("roll", "pitch")])
         assert walked.tilt is not None
-        errors = TiltMisfit.of(TiltSeen(t, engine), t, walk.legs)
+        errors = TiltMisfit.of(MeasuredTilt(t, engine), t, walk.legs)
         away = errors.residuals(walked.tilt) * SD * np.sqrt(errors.strides)
         rms = np.degrees(np.sqrt((away.reshape(-1, 2) ** 2).mean(axis=0)))
         swing = np.degrees(errors.measured.std(axis=0))

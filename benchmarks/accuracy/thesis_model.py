@@ -13,8 +13,8 @@ from benchmarks.accuracy.wobble import wobble
 from model.gait.cyclic import CyclicReference
 from model.gait.direction import Direction
 from model.gait.reference import SampledReference
+from model.gait.steering import tripod_angles, tripod_reference
 from model.gait.tetrapod import tetrapod_reference
-from model.gait.tripod import tripod_angles, tripod_reference
 from model.robot import Robot
 from model.slip.magic_formula import curvature_from_peak
 from model.walk.no_slip import walk_no_slip, walk_wheels

@@ -14,8 +14,8 @@ from pathlib import Path
 import matplotlib as mpl
 import numpy as np
 
+from model.gait.steering import TripodAngles, tripod_angles, tripod_reference
 from model.gait.suriana import suriana_reference
-from model.gait.tripod import TripodAngles, tripod_angles, tripod_reference
 from model.robot import Robot
 from model.slip import MagicFormula
 from model.walk.dynamics import walk

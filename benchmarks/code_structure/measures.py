@@ -172,14 +172,35 @@ def public_functions(module: Module) -> Iterator[tuple[str, Function]]:
                     yield f"{node.name}.{each.name}", each
 
 
+def _is_command(module: Module, node: Function) -> bool:
+    """Return whether Typer makes options of all parameters of a function."""
+    if any("command(" in ast.unparse(each) for each in node.decorator_list):
+        return True
+    aliases = {
+        target.id: ast.unparse(each.value)
+        for each in module.tree.body
+        if isinstance(each, ast.Assign)
+        for target in each.targets
+        if isinstance(target, ast.Name)
+    }
+    written = [ast.unparse(each.annotation) for each in node.args.args if each.annotation]
+    options = [text for text in written if "typer." in aliases.get(text, text)]
+    return bool(options) and len(options) == len(node.args.args)
+
+
 def without_args(checkout: Checkout) -> Measured:
-    """Find public functions of two or more parameters whose docstring has no section of Args."""
+    """Find public functions of two or more parameters whose docstring has no section of Args.
+
+    Commands are left out: the help texts of their options describe their parameters.
+    """
     found = []
     for module in checkout.modules.values():
         for name, node in public_functions(module):
             given = [*node.args.posonlyargs, *node.args.args, *node.args.kwonlyargs]
             named = [each for each in given if each.arg not in ("self", "cls")]
-            if len(named) >= 2 and "Args:" not in (ast.get_docstring(node) or ""):
+            if "Args:" in (ast.get_docstring(node) or "") or _is_command(module, node):
+                continue
+            if len(named) >= 2:
                 found.append(f"{module.path}:{node.lineno} {name}")
     return _places(found)
 

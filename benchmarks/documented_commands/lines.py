@@ -130,11 +130,14 @@ _TRACK = (
     ".to_csv('track.csv', index=False)\""
 )  # fmt: skip
 _START = "--start 2026-03-04T05:06:07+00:00"
+_TAKEN = "--start 2020-06-01T12:00:00+00:00"  # when the bundled photographs were taken
 _LOGS = f"cp {_WALK}/legs.csv {_WALK}/imu.csv {_WALK}/robot.toml ."
 PREPARED = {
     "README.md": (_RIG_TABLE.format("data/bench.csv"), _LOGS, _TUM),
     "docs/calibration.md": (_RIG_TABLE.format("data/bench.csv"),),
-    "docs/experiments.md": (),
+    "docs/experiments.md": (
+        "mkdir fresh && cp datasets/rig-sim/*.parquet datasets/rig-sim/columns.toml fresh",
+    ),
     "docs/recording.md": (
         _LOGS, _TUM, _RIG_TABLE.format("sweep.csv"),
         "sed 's/^\\[/[rig./' datasets/rig-sim/columns.toml > columns.toml",
@@ -144,11 +147,11 @@ PREPARED = {
     "docs/validation.md": (
         _LOGS, _TRACK, "calibrate-slip datasets/rig-sim --out calibration",
         "cp -r calibration calibration-tiles && cp -r calibration calibration-carpet",
-        f"zebro-lab import --legs legs.csv --imu imu.csv --robot robot.toml {_START} --data new",
+        f"zebro-lab import --legs legs.csv --imu imu.csv --robot robot.toml {_TAKEN} --data new",
         "mkdir data && mv new/* data/RUN && cp datasets/rig-sim/*.parquet "
         "datasets/rig-sim/columns.toml data",
         f"zebro-lab track {_WALK}/photos --camera {_WALK}/camera.toml --floor {_WALK}/floor.toml "
-        f"--robot robot.toml {_START} --run data/RUN",
+        f"--robot robot.toml {_TAKEN} --run data/RUN",
         "cp -r data/RUN data/RUN1 && cp -r data/RUN data/RUN2",
         "zebro-lab predict legs.csv --slip calibration --draws 100 --out prediction",
     ),

@@ -28,7 +28,7 @@ from rig.slip_rig.rdt import RECORD, Request, encode_request, parse_configuratio
 from rig.zebro.can import CLOCK, POSITIONS, SET_POINTS, CanLegs
 from rig.zebro.profile import LegProfile, load_leg_profile
 from rig.zebro.registers import SYNC, DumpLegs, PolledLegs
-from rig.zebro.serial import PacketLegs, leg_body
+from rig.zebro.serial import PacketLegs
 from rig.zebro.simulated import CanRobot, PacketRobot, PolledRobot
 from rig.zebro.simulated_legs import SimulatedLegs
 from zebro_lab.mcap.cdr import CdrWriter
@@ -259,7 +259,7 @@ def of_streams() -> dict[str, Parser]:
     rng = np.random.default_rng(1)
     quaternions = [(16384, 0, 0, 0, *row) for row in rng.integers(-999, 999, (40, 6)).tolist()]
     forces = [(*row, 0) for row in rng.integers(-999_999, 999_999, (40, 4)).tolist()]
-    legs = packets(Kind.LEGS, leg_body(LEGS), leg_counts())
+    legs = packets(Kind.LEGS, LEGS.words(6), leg_counts())
     imu = packets(Kind.ORIENTATION, IMU.body, quaternions)
     board = packets(Kind.SLIP_RIG, board_body(BOARD), forces)
     answers = [struct.pack(">6H", *row) for row in rng.integers(0, 910, (40, 6)).tolist()]

@@ -29,7 +29,7 @@ from rig.links.memory import MemoryLink
 from rig.slip_rig.board import RigBoard
 from rig.slip_rig.imperfections import draw_imperfections
 from rig.slip_rig.profile import load_rig_profile
-from rig.slip_rig.simulated import RigDynamics, SimulatedRig, simulated_rig
+from rig.slip_rig.simulated import RigDynamics, SimulatedRig
 from rig.slip_rig.simulated_board import SimulatedBoard
 from rig.slip_rig.sweep import SweepPlan
 from support.memory_sink import MemorySink
@@ -78,7 +78,7 @@ def make_lab(seed: int, newtons: float, speed: float) -> Lab:
     settings = replace(profile.board, counts_per_force=1 / newtons, counts_per_speed=1 / speed)
     profile = replace(profile, board=settings)
     rng, clock = np.random.default_rng(seed), ManualClock()
-    rig = simulated_rig(
+    rig = SimulatedRig(
         plan=SweepPlan(), imperfections=draw_imperfections(np.random.default_rng([seed, 1])),
         dynamics=RigDynamics(ripple=0.005), rng=rng,
     )  # fmt: skip
@@ -111,7 +111,7 @@ def freeze(lab: Lab, plan: Plan, channels: tuple[int, ...]) -> float | None:
             period=PERIOD,
         )  # fmt: skip
         acquire.arm()
-        acquire.aim(plan.points.omega_leg, 0.2)
+        acquire.start_ramp(plan.points.omega_leg, 0.2)
         acquire.until(lambda _: False, 3.3)
         lab.board.frozen, began = channels, lab.clock.now()
         try:

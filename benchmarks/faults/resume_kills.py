@@ -23,9 +23,10 @@ from typing import Final
 import numpy as np
 
 from rig.experiment.control import Control
-from rig.experiment.watcher import NobodyWatches
+from rig.experiment.watcher import ExperimentWatcher
 from zebro_lab.experiment.journal import JournalWriter
-from zebro_lab.experiment.stage import RigRunRequest, run_experiment
+from zebro_lab.experiment.request import RigRunRequest
+from zebro_lab.experiment.stage import run_experiment
 from zebro_lab.runs.folder import find_runs, read_slip_rig_run
 from zebro_lab.runs.manifest import read_manifest
 
@@ -98,7 +99,7 @@ def in_a_process(work: Callable[[], object]) -> int:
 def run(plan: Path, data: Path, seed: int, *, resume: bool = False) -> object:
     """Run the plan on a twin whose time passes at once."""
     request = RigRunRequest(plan, "sim", data, resume=resume, fast=True, seed=seed)
-    return run_experiment(request, NobodyWatches(), Control())
+    return run_experiment(request, ExperimentWatcher(), Control())
 
 
 def die_before_line(number: int) -> None:

@@ -24,7 +24,7 @@ from rig.slip_rig.can_simple import AxisState, Command
 from rig.slip_rig.imperfections import TYPICAL_RIG
 from rig.slip_rig.profile import BoardProfile, load_rig_profile
 from rig.slip_rig.rdt import SATURATED
-from rig.slip_rig.simulated import RigDynamics, SimulatedRig, simulated_rig
+from rig.slip_rig.simulated import RigDynamics, SimulatedRig
 from rig.slip_rig.simulated_board import SimulatedBoard
 from rig.slip_rig.simulated_drives import SimulatedDrives
 from rig.slip_rig.simulated_load_cell import SimulatedLoadCell
@@ -40,7 +40,7 @@ RESTART_EVERY: Final = 100
 SLOWER: Final = 4
 """A lagging link hands on one reading in so many that come."""
 REST: Final = 0.1
-ANSWER_LIMIT: Final = 20.0
+ANSWER_TIMEOUT: Final = 20.0
 """Longest wait for the twin [s]."""
 
 
@@ -164,7 +164,7 @@ class PlantedBoard(SimulatedBoard):
         if abs(leg - TOP_SPEED) > SPEED_ERROR:
             self._log.beyond((self._rig._switched_on or 0.0) + number / self._profile.rate)
 
-    def _obey(self, packet: Packet, now: float) -> None:
+    def _execute(self, packet: Packet, now: float) -> None:
         at = time.monotonic()
         if packet.kind == Kind.STOP:
             self._log.commands.append((at, 0.0, True))
@@ -172,7 +172,7 @@ class PlantedBoard(SimulatedBoard):
             leg, ground = self._command.unpack(packet.body)
             speed = leg / self._profile.counts_per_speed
             self._log.commands.append((at, speed, leg == 0 == ground))
-        super()._obey(packet, now)
+        super()._execute(packet, now)
         if self._log.fault == "departure" and not self._status:
             self._rig.command("leg", 1.5 * self._log.commands[-1][1])  # it runs away by a half
 
@@ -210,9 +210,9 @@ class PlantedDrives(SimulatedDrives):
         if self._log.fault != "silent temperature":
             super()._answer(axis, command, now)
 
-    def _obey(self, axis: Any, command: int, data: bytes, now: float) -> None:
+    def _execute(self, axis: Any, command: int, data: bytes, now: float) -> None:
         at = time.monotonic()
-        super()._obey(axis, command, data, now)
+        super()._execute(axis, command, data, now)
         leg = next(a for a in self._axes.values() if a.disc == "leg")
         speed = abs(leg.velocity) * 2 * np.pi / leg.place.gear
         self._log.commands.append((at, speed, self._told_to_stop()))
@@ -264,8 +264,8 @@ class Twin:
 
     def _ask(self, what: str, value: Any = None) -> Any:
         self._pipe.send((what, value))
-        if not self._pipe.poll(ANSWER_LIMIT):
-            raise TimeoutError(f"the twin did not answer within {ANSWER_LIMIT:g} s")
+        if not self._pipe.poll(ANSWER_TIMEOUT):
+            raise TimeoutError(f"the twin did not answer within {ANSWER_TIMEOUT:g} s")
         return self._pipe.recv()
 
 
@@ -291,7 +291,7 @@ def _serve(kind: str, pipe: Any) -> None:
     # It stands for hardware that waits for no processor: first in turn, where that is allowed.
     with contextlib.suppress(PermissionError):
         os.sched_setscheduler(0, os.SCHED_RR, os.sched_param(1))
-    rig = simulated_rig(
+    rig = SimulatedRig(
         plan=SweepPlan(), imperfections=replace(TYPICAL_RIG, bump_height=0.0),
         dynamics=RigDynamics(ripple=0.005), rng=np.random.default_rng(0),
     )  # fmt: skip

@@ -24,7 +24,7 @@ from rig.slip_rig.rdt import RECORD
 from rig.zebro.can import CLOCK, POSITIONS, CanLegs
 from rig.zebro.profile import LegProfile, load_leg_profile
 from rig.zebro.registers import DUMP_LENGTH, SYNC, DumpLegs
-from rig.zebro.serial import PacketLegs, leg_body
+from rig.zebro.serial import PacketLegs
 
 CHUNK = 3000
 PROFILE = load_leg_profile("zebro-100-serial")
@@ -60,7 +60,7 @@ class Feed:
 def packets(count: int, rng: np.random.Generator) -> tuple[list[bytes], np.ndarray]:
     """Make the frames of a leg stream, and the counts in each."""
     counts = rng.integers(0, 100, (count, 6))
-    body = leg_body(PROFILE)
+    body = PROFILE.words(6)
     frames = [
         encode_packet(Packet(Kind.LEGS, n, 10_000 * n, body.pack(*row)))
         for n, row in enumerate(counts.tolist())
@@ -154,7 +154,7 @@ def damage(count: int) -> None:
     frames, counts = packets(count, rng)
     for flip in (1e-6, 1e-5, 1e-4, 1e-3, 1e-2):
         wire = FaultyWire(Faults(flip=flip), rng=rng)
-        data = b"".join(wire.carry(frames[i : i + 1000]) for i in range(0, count, 1000))
+        data = b"".join(wire.stream(frames[i : i + 1000]) for i in range(0, count, 1000))
         samples, _, counters = read_all(data)
         wrong = sum(tuple(counts[s.sequence]) != s.counts for s in samples)
         print(f"| {flip:.0e} | {count} | {len(samples)} | {wrong} | {counters.lost} | "

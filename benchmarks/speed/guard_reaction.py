@@ -34,7 +34,7 @@ def main() -> None:
                     clock=SYSTEM_CLOCK,
                 )  # fmt: skip
                 acquire.arm()
-                acquire.aim(1.0, 0.5)
+                acquire.start_ramp(1.0, 0.5)
                 acquire.until(lambda _: False, 0.1)
                 began = SYSTEM_CLOCK.now()
                 rig.twin.load = 60.0

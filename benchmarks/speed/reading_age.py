@@ -50,7 +50,7 @@ from rig.slip_rig.drives import DriveBus
 from rig.slip_rig.imperfections import TYPICAL_RIG
 from rig.slip_rig.load_cell import NetFtCell
 from rig.slip_rig.profile import load_rig_profile
-from rig.slip_rig.simulated import RigDynamics, SimulatedRig, simulated_rig
+from rig.slip_rig.simulated import RigDynamics, SimulatedRig
 from rig.slip_rig.simulated_board import SimulatedBoard
 from rig.slip_rig.simulated_drives import SimulatedDrives
 from rig.slip_rig.simulated_load_cell import SimulatedLoadCell
@@ -84,7 +84,7 @@ def serve(link: str, channel: str) -> None:
     with contextlib.suppress(PermissionError):
         os.sched_setscheduler(0, os.SCHED_RR, os.sched_param(1))
     rng = np.random.default_rng(0)
-    rig = simulated_rig(
+    rig = SimulatedRig(
         plan=SweepPlan(), imperfections=TYPICAL_RIG, dynamics=RigDynamics(ripple=0.005), rng=rng
     )
     rig.load = 5.0
@@ -233,9 +233,9 @@ def ramp_ages(
         )  # fmt: skip
         acquire.arm()
         for k in range(ramps):
-            acquire.aim(0.0 if k % 2 else TOP_SPEED, None if k % 2 else 0.2)
+            acquire.start_ramp(0.0 if k % 2 else TOP_SPEED, None if k % 2 else 0.2)
             while acquire.ramping:
-                batch = acquire.look()
+                batch = acquire.poll()
                 now = SYSTEM_CLOCK.now()
                 for name, samples in batch.raw.items():
                     true[name] += [true_age(sample, now, switched_on) for sample in samples]

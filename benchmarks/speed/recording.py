@@ -30,9 +30,8 @@ from rig.slip_rig.rdt import MOST_IN_ONE, RECORD, REQUEST, Request
 from rig.twins import robot_twin
 from rig.zebro.profile import load_leg_profile
 from rig.zebro.serial import PacketLegs
-from zebro_lab.mcap.stream_views import ImuView, LegsView, LoadCellView
-from zebro_lab.recording.devices import PAUSE, ForceCheck, default_gait
-from zebro_lab.recording.recorder import RunDescription, RunRecorder
+from zebro_lab.recording.devices import PAUSE, ForceCheck, default_gait, profile_text
+from zebro_lab.recording.recorder import RunRecorder
 from zebro_lab.runs.manifest import RunManifest, read_manifest
 
 LEGS = load_leg_profile("zebro-100-serial")
@@ -88,14 +87,14 @@ def measure(
         ImuStream(SerialLink(imu_port, baudrate=IMU.baudrate), profile=IMU),
         NetFtCell(UdpLink(*address), profile=CELL, buffered=buffered),
     )
-    views = {"legs": LegsView("legs", profile=LEGS), "imu": ImuView("imu", profile=IMU),
-             "load_cell": LoadCellView("load_cell", profile=CELL)}  # fmt: skip
+    profiles = {name: (profile.name, profile_text(profile.name))
+                for name, profile in (("legs", LEGS), ("imu", IMU), ("rig", RIG))}  # fmt: skip
     devices = [
         Device(stream, check, pause=PAUSE)
         for stream, check in zip(streams, (None, None, ForceCheck(RIG)), strict=True)
     ]
-    description = RunDescription(kind="walk", label="bench", source="sim:bench")
-    recorder = RunRecorder(folder, description=description, views=views)
+    manifest = RunManifest(kind="walk", label="bench", source="sim:bench")
+    recorder = RunRecorder(folder, manifest=manifest, profiles=profiles)
     with streams[0], streams[1], streams[2], recorder:
         with acquiring(devices, sink=recorder, start=recorder.start) as readers:
             time.sleep(0.5)
@@ -112,7 +111,8 @@ def measure(
 def report(manifest: RunManifest, share: float, size: int) -> None:
     """Print counters by stream, the share of a core, and bytes a sample."""
     print("| stream | received | lost | rejected | dropped |\n|---|---|---|---|---|")
-    for name, counters in manifest.counters.items():
+    read = {name: each for name, each in manifest.counters.items() if each["received"]}
+    for name, counters in read.items():
         rejected = sum(counters[key] for key in ("damaged", "repeated", "refused"))
         print(f"| {name} | {counters['received']} | {counters['lost']} | {rejected} | "
               f"{counters['dropped']} |")  # fmt: skip

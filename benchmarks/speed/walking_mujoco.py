@@ -25,9 +25,9 @@ from mujoco import rollout
 from model.gait import LegReference
 from model.robot import GRAVITY, N_LEGS, Robot
 from model.slip.law import Array
-from model.walk.dynamics import DEFAULT_OPTIONS, ORIGIN, roll_pitch_yaw, start_state
-from model.walk.ground import FLAT
+from model.walk.dynamics import DEFAULT_OPTIONS, start_state
 from model.walk.path import turning_radius
+from model.walk.quaternion import roll_pitch_yaw
 
 Shape = Literal["spheres", "capsules", "half disc"]
 
@@ -181,7 +181,7 @@ def _start(
 ) -> tuple[Array, mujoco.MjData]:
     """Stand the robot as our own walk starts, its legs already at speed."""
     data = mujoco.MjData(engine)
-    state = start_state(robot, theta, FLAT, ORIGIN, DEFAULT_OPTIONS)
+    state = start_state(robot, theta, DEFAULT_OPTIONS)
     data.qpos[:] = np.concatenate([state.p, state.q, theta])
     data.qvel[6:] = speed
     kind = mujoco.mjtState.mjSTATE_FULLPHYSICS

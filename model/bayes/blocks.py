@@ -8,7 +8,7 @@ wander is in the true slip and changes the force: a curve fitted to its mean has
 as a variance of each block's slip, the wander as a variance within the block.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -87,21 +87,20 @@ class SlipBlocks:
             keep: Which runs to keep, shape (n_runs,).
         """
         rows = keep[self.run]
-        return SlipBlocks(
-            slip=self.slip[rows],
-            normal_force=self.normal_force[rows],
-            traction_force=self.traction_force[rows],
-            count=self.count[rows],
+        per_block = {name: getattr(self, name)[rows] for name in _PER_BLOCK}
+        return replace(
+            self,
+            **per_block,
             run=(np.cumsum(keep) - 1)[self.run[rows]],
             run_names=tuple(np.array(self.run_names, dtype=object)[keep]),
-            definition=self.definition,
-            slip_wander=self.slip_wander[rows],
-            slip_error=self.slip_error[rows],
-            load_variance=self.load_variance[rows],
-            load_skewness=self.load_skewness[rows],
-            slip_load_covariance=self.slip_load_covariance[rows],
             run_slip_error=self.run_slip_error[keep],
         )
+
+
+_PER_BLOCK = (
+    "slip", "normal_force", "traction_force", "count", "slip_wander", "slip_error",
+    "load_variance", "load_skewness", "slip_load_covariance",
+)  # fmt: skip
 
 
 def slip_noise_variance(samples: SlipSamples) -> Array:

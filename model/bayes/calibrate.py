@@ -9,10 +9,10 @@ import numpy as np
 from model.bayes.calibration import Calibration, conclude
 from model.bayes.convergence import Convergence, assess
 from model.bayes.fit import (
-    Comparison,
+    LawComparison,
     PreparedFit,
-    breakdown_told,
     compare,
+    explain_numerical_errors,
     prepare_fit,
     require_forces,
 )
@@ -99,7 +99,7 @@ def calibrate(
     fit, comparison = _choose_law(samples, laws, load_cell, settings, rng, watcher)
     began = clock()
     judging = rng.spawn(1)[0]  # its draws are the same whether or not the fit was resumed
-    with breakdown_told(samples, fit.posterior.law):
+    with explain_numerical_errors(samples, fit.posterior.law):
         chains, convergence = _sample(fit, earlier, settings, rng, watcher, keep)
         seconds = clock() - began
         watcher.step("judging", None)
@@ -117,11 +117,11 @@ def _choose_law(
     settings: SamplerSettings,
     rng: np.random.Generator,
     watcher: Watcher,
-) -> tuple[PreparedFit, Comparison | None]:
+) -> tuple[PreparedFit, LawComparison | None]:
     """Prepare the fit of every law and choose the one with the best cross-validation."""
     fits: list[PreparedFit] = []
     asked = settings.block_length
-    choice = None if asked is None else BlockChoice(asked, None, "the length asked for")
+    choice = None if asked is None else BlockChoice(asked, None, "as asked for")
     for name, law in laws.items():
         watcher.step(f"preparing: {name}", None)
         if watcher.stop_requested():

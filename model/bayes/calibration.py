@@ -18,7 +18,7 @@ from model.bayes.estimate import (
     estimate,
     thin_draws,
 )
-from model.bayes.fit import Comparison, PreparedFit
+from model.bayes.fit import LawComparison, PreparedFit
 from model.bayes.laplace import importance_draws
 from model.bayes.posterior import SlipPosterior
 from model.bayes.residuals import Residuals, analyse_residuals, largest_slips, load_levels
@@ -54,7 +54,7 @@ class Calibration:
     """
 
     fit: PreparedFit
-    comparison: Comparison | None
+    comparison: LawComparison | None
     draws: Draws
     parameters: Sequence[Estimate]
     levels: np.ndarray
@@ -81,7 +81,7 @@ class Calibration:
 
 def conclude(
     fit: PreparedFit,
-    comparison: Comparison | None,
+    comparison: LawComparison | None,
     chains: Chains,
     convergence: Convergence,
     samples: SlipSamples,

@@ -93,12 +93,12 @@ def prepare_fit(
     """
     _require_enough(samples, law)
     require_forces(samples, load_cell)
-    with breakdown_told(samples, law):
+    with explain_numerical_errors(samples, law):
         return _prepared(samples, law, load_cell, rng, block_choice, validate, threads)
 
 
 @contextmanager
-def breakdown_told(samples: SlipSamples, law: SlipLaw) -> Iterator[None]:
+def explain_numerical_errors(samples: SlipSamples, law: SlipLaw) -> Iterator[None]:
     """Convert a failure of the linear algebra into an error that describes the data.
 
     Args:
@@ -234,7 +234,7 @@ def _starting_points(posterior: SlipPosterior, rng: np.random.Generator) -> np.n
 
 
 @dataclass(frozen=True)
-class Comparison:
+class LawComparison:
     """Comparison of laws by cross-validation.
 
     Attributes:
@@ -252,7 +252,7 @@ class Comparison:
     chosen: int
 
 
-def compare(names: Sequence[str], fits: Sequence[PreparedFit]) -> Comparison:
+def compare(names: Sequence[str], fits: Sequence[PreparedFit]) -> LawComparison:
     """Choose the law with the best cross-validation; the first unless another is clearly better.
 
     All fits must have the same blocks. A single run cannot be left out: the first law is kept.
@@ -279,7 +279,7 @@ def compare(names: Sequence[str], fits: Sequence[PreparedFit]) -> Comparison:
         if gain.sum() > CLEAR_WIN * _standard_error(gain):
             chosen = index
     excess = density - density[chosen]
-    return Comparison(
+    return LawComparison(
         names=tuple(names),
         log_density=tuple(density.sum(axis=1)),
         difference=tuple(excess.sum(axis=1)),

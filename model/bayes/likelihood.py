@@ -42,7 +42,7 @@ NUISANCE = (
 
 
 @dataclass(frozen=True)
-class Prediction:
+class PredictedForces:
     """Predicted block means for parameter vectors, each of shape (w, n).
 
     Attributes:
@@ -56,7 +56,7 @@ class Prediction:
     noise: Array
 
 
-def predict_blocks(blocks: SlipBlocks, law: SlipLaw, values: Array) -> Prediction:
+def predict_blocks(blocks: SlipBlocks, law: SlipLaw, values: Array) -> PredictedForces:
     r"""Compute expected force, its slope in slip and the noise size of every block.
 
     The mean of the law over a block is that over its loads, slip following load by regression, plus
@@ -95,7 +95,7 @@ def predict_blocks(blocks: SlipBlocks, law: SlipLaw, values: Array) -> Predictio
     slope = (above - below) / (2 * half_width)
     slope_in_load = (heavy - light) / (rule.heavy - rule.light) - slope * rule.slip_per_load
     force = mean + slope_in_load / (1 + g_n) * c * mean
-    return Prediction(force, slope, s_0 + s_1 * np.abs(force))
+    return PredictedForces(force, slope, s_0 + s_1 * np.abs(force))
 
 
 @dataclass(frozen=True)

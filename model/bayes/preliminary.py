@@ -105,7 +105,7 @@ class BlockChoice:
         length: Samples in a block.
         correlation: Integrated autocorrelation time of the residuals; None where the length was
             not chosen from it [samples].
-        reason: One line for the person.
+        reason: What determined the length, in a few words.
     """
 
     length: int
@@ -137,16 +137,16 @@ def choose_block_length(
     slip_scale = _slip_scale(law, values, float(np.median(samples.normal_force)))
     noise = float(np.median(slip_noise_variance(samples)))
     wanted = {
-        "the residuals' correlation time": int(np.ceil(correlation)),
-        "the slip sensors' noise": int(np.ceil(noise * (10 / slip_scale) ** 2)),
-        f"the limit of {MAX_BLOCKS} blocks": int(np.ceil(len(samples) / MAX_BLOCKS)),
+        "the correlation time of the noise": int(np.ceil(correlation)),
+        "to average out the slip sensors' noise": int(np.ceil(noise * (10 / slip_scale) ** 2)),
+        f"at most {MAX_BLOCKS} blocks": int(np.ceil(len(samples) / MAX_BLOCKS)),
     }
     reason, length = max(wanted.items(), key=lambda item: item[1])
     if length > longest:
-        reason, length = f"the need for {MIN_BLOCKS_PER_RUN} blocks a run", longest
+        reason, length = f"at least {MIN_BLOCKS_PER_RUN} blocks a run", longest
     steady = _steady_length(samples, length, MAX_SLIP_SPREAD * slip_scale)
     if steady < length:
-        reason, length = "the pace at which slip is swept", steady
+        reason, length = "so that slip changes little within a block", steady
     return BlockChoice(length, correlation, reason)
 
 

@@ -8,7 +8,7 @@ from scipy.linalg import solve_triangular, toeplitz
 from scipy.stats import binomtest, f, norm
 
 from model.bayes.blocks import SlipBlocks
-from model.bayes.likelihood import Prediction, predict_blocks
+from model.bayes.likelihood import PredictedForces, predict_blocks
 from model.slip.law import Array, SlipLaw
 
 SLIP_BINS = 8
@@ -79,7 +79,9 @@ def analyse_residuals(blocks: SlipBlocks, law: SlipLaw, values: Array) -> Residu
     )
 
 
-def _covariance_factors(blocks: SlipBlocks, predicted: Prediction, values: Array) -> list[Array]:
+def _covariance_factors(
+    blocks: SlipBlocks, predicted: PredictedForces, values: Array
+) -> list[Array]:
     """Return the Cholesky factor of each run's covariance at the posterior mean, offset included.
 
     The covariance is built densely from its definition and not by the likelihood's filter, so that

@@ -7,7 +7,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from model.slip.definition import SlipDefinition, convert_slip
+from model.slip.definition import SlipDefinition
 from model.slip.law import Array
 
 
@@ -50,32 +50,3 @@ class SlipSamples:
         """Return one slice a run."""
         edges = np.searchsorted(self.run, np.arange(self.n_runs + 1))
         return [slice(int(a), int(b)) for a, b in pairwise(edges)]
-
-    def sample_interval(self) -> float | None:
-        """Return the median time between samples of one run, None without time stamps [s]."""
-        if self.time is None:
-            return None
-        steps = np.diff(self.time)[np.diff(self.run) == 0]
-        return float(np.median(steps)) if len(steps) else None
-
-    def with_definition(self, definition: SlipDefinition | str) -> "SlipSamples":
-        """Return the same samples with their slip ratios in another definition."""
-        slip = convert_slip(self.slip, self.definition, definition)
-        return SlipSamples(
-            slip, self.normal_force, self.traction_force, self.run, self.run_names,
-            SlipDefinition(definition), self.time,
-        )  # fmt: skip
-
-    def only_runs(self, keep: NDArray[np.bool_]) -> "SlipSamples":
-        """Return the samples of some runs.
-
-        Args:
-            keep: Which runs to keep, shape (n_runs,).
-        """
-        rows = keep[self.run]
-        renumbered = np.cumsum(keep) - 1
-        return SlipSamples(
-            self.slip[rows], self.normal_force[rows], self.traction_force[rows],
-            renumbered[self.run[rows]], tuple(np.array(self.run_names, dtype=object)[keep]),
-            self.definition, None if self.time is None else self.time[rows],
-        )  # fmt: skip

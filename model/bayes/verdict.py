@@ -130,8 +130,8 @@ def _whiteness(residuals: Residuals, blocks: SlipBlocks) -> Check:
         name,
         abs(residuals.lag_one) < limit,
         f"lag-1 correlation of whitened residuals {residuals.lag_one:+.3f}, limit {limit:.2f}",
-        "residuals of successive blocks still go together: look at residuals.png for what the "
-        "law misses; intervals are too narrow",
+        "residuals of successive blocks are correlated, so intervals are too narrow: look at "
+        "residuals.png for what the law misses",
     )
 
 
@@ -141,17 +141,18 @@ def _run_means(residuals: Residuals, blocks: SlipBlocks) -> Check:
         residuals.inside_p > MIN_P,
         f"{residuals.inside:.0%} of {blocks.n_runs} run means inside their 90 % interval "
         f"(p = {residuals.inside_p:.2g})",
-        "run means scatter otherwise than the model says: look for runs that do not belong",
+        "run means scatter more, or less, than the model predicts: look for runs of another "
+        "material or with a lost zero",
     )
 
 
 def _shape(residuals: Residuals, values: Array, law: SlipLaw, blocks: SlipBlocks) -> Check:
     return Check(
-        "the law has the data's shape",
+        "the law fits the shape of the curve",
         not (residuals.misfit > MAX_MISFIT and residuals.misfit_p < MISFIT_P),
-        f"misfit that repeats along the curve {residuals.misfit:.1%} of the peak force, limit "
+        f"the misfit that all runs share is {residuals.misfit:.1%} of the peak force, limit "
         f"{MAX_MISFIT:.0%} (p = {residuals.misfit_p:.2g})",
-        "a bad fit: the curve misses the data by the same amount again and again; check the slip "
+        "the law does not fit: all runs deviate from the curve in the same way; check the slip "
         "definition, fit driving and braking apart, or try another --law",
     )
 
@@ -162,12 +163,12 @@ def _offsets(blocks: SlipBlocks, law: SlipLaw, values: Array, scale: float) -> C
     curve = float(np.std(predict_blocks(blocks, law, values).force.mean(axis=0)))
     share = tau**2 / (tau**2 + curve**2) if tau > 0 else 0.0
     return Check(
-        "the curve, not the run offsets, carries the data",
+        "zero offsets between runs are small",
         share <= MAX_OFFSET_SHARE and tau <= MAX_OFFSET_RATIO * scale,
-        f"run offsets {tau:.3g} N against {curve:.3g} N of curve "
-        f"({share:.0%} of the variance, limit {MAX_OFFSET_SHARE:.0%}); prior scale {scale:.3g} N",
-        "the run offsets carry the curve: tare before each run and state the load cell's zero "
-        "stability, or vary slip within runs",
+        f"they explain {share:.0%} of the force variance, limit {MAX_OFFSET_SHARE:.0%}; their "
+        f"standard deviation is {tau:.3g} N, limit {MAX_OFFSET_RATIO * scale:.3g} N",
+        "zero offsets between runs cannot be separated from the curve: tare before each run and "
+        "state the load cell's zero stability, or vary slip within runs",
     )
 
 
@@ -176,7 +177,7 @@ def _weak(
 ) -> dict[str, str]:
     names = [parameter.name for parameter in law.parameters]
     weak = {
-        name: f"{name}: the data narrow its prior by {max(contraction[name], 0):.0%} only; read "
+        name: f"{name}: the data narrow its prior by {max(contraction[name], 0):.0%} only; use "
         "F_max and BCD, peak force and initial slope, instead"
         for name in names
         if contraction.get(name, 1.0) < MIN_CONTRACTION
@@ -184,8 +185,8 @@ def _weak(
     reach = slip_reach(blocks, law, values)
     if "shape" in names and reach < MIN_REACH:
         reason = (
-            f"shape C and peak factor D cannot be told apart: slip ends at {reach:.1f} times the "
-            f"peak's slip, {MIN_REACH:g} are needed; read F_max and BCD, peak force and initial "
+            f"shape C and peak factor D cannot be separated: slip ends at {reach:.1f} times the "
+            f"peak's slip, {MIN_REACH:g} are needed; use F_max and BCD, peak force and initial "
             "slope, instead"
         )
         weak |= {"shape": reason, "friction": reason}

@@ -9,9 +9,9 @@ from model.gait.notation import TETRAPOD, TRIPOD, Gait, parse_gait
 from model.gait.reference import LegReference, SampledReference
 from model.gait.scheduler import straight_system
 from model.gait.stance import stance_intervals
+from model.gait.steering import TripodAngles, ideal_liftoff, tripod_angles, tripod_reference
 from model.gait.suriana import suriana_reference
 from model.gait.tetrapod import tetrapod_reference
-from model.gait.tripod import TripodAngles, ideal_liftoff, tripod_angles, tripod_reference
 from model.gait.turning import turning_system
 
 __all__ = [

@@ -9,7 +9,7 @@ from model.poses import Poses
 from model.slip.law import Array
 
 
-class Motion(NamedTuple):
+class RigidMotion(NamedTuple):
     """A rigid motion of the plane: rotation about the origin, then translation.
 
     Attributes:
@@ -21,7 +21,7 @@ class Motion(NamedTuple):
     translation: Array
 
 
-def align(predicted: Poses, tracked: Poses) -> Motion:
+def align(predicted: Poses, tracked: Poses) -> RigidMotion:
     r"""Find the motion that brings positions closest to those of the same instants.
 
     .. math::
@@ -38,15 +38,4 @@ def align(predicted: Poses, tracked: Poses) -> Motion:
     a, b = x - x.mean(axis=0), y - y.mean(axis=0)
     rotation = float(np.arctan2((a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]).sum(), (a * b).sum()))
     c, s = np.cos(rotation), np.sin(rotation)
-    return Motion(rotation, y.mean(axis=0) - np.array([[c, -s], [s, c]]) @ x.mean(axis=0))
-
-
-def aligned(predicted: Poses, tracked: Poses) -> Poses:
-    """Return the predicted poses moved by the rigid motion that `align` fits to the tracked ones.
-
-    Args:
-        predicted: Predicted poses.
-        tracked: Tracked poses.
-    """
-    motion = align(predicted, tracked)
-    return predicted.moved(rotation=motion.rotation, translation=motion.translation)
+    return RigidMotion(rotation, y.mean(axis=0) - np.array([[c, -s], [s, c]]) @ x.mean(axis=0))

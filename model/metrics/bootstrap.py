@@ -8,6 +8,8 @@ import numpy as np
 from model.errors import InsufficientData
 from model.slip.law import Array
 
+LEVEL = 0.9  # of the interval
+
 
 class Interval(NamedTuple):
     """A mean with its central interval.
@@ -23,9 +25,7 @@ class Interval(NamedTuple):
     high: float
 
 
-def bootstrap_mean(
-    values: Array, *, rng: np.random.Generator, level: float = 0.9, draws: int = 4000
-) -> Interval:
+def bootstrap_mean(values: Array, *, rng: np.random.Generator, draws: int = 4000) -> Interval:
     """Compute the mean over runs and its bootstrap interval, resampling whole runs.
 
     Poses of one walk share its errors, so they are never separated. With three walks there are
@@ -34,7 +34,6 @@ def bootstrap_mean(
     Args:
         values: One value a run, shape (runs,).
         rng: Source of randomness.
-        level: Level of the interval [-].
         draws: Number of resamples.
 
     Raises:
@@ -43,5 +42,5 @@ def bootstrap_mean(
     if len(values) < 2:
         raise InsufficientData(f"{len(values)} run; a spread over runs needs two or more")
     chosen = rng.integers(len(values), size=(draws, len(values)))
-    low, high = np.quantile(values[chosen].mean(axis=1), [(1 - level) / 2, (1 + level) / 2])
+    low, high = np.quantile(values[chosen].mean(axis=1), [(1 - LEVEL) / 2, (1 + LEVEL) / 2])
     return Interval(float(values.mean()), float(low), float(high))

@@ -58,7 +58,7 @@ def estimate_offset(track: Poses, path: Poses) -> ClockOffset:
     """
     if len(track) < FEWEST:
         raise InsufficientData(
-            f"{len(track)} tracked poses do not tell the clocks' offset; {FEWEST} are needed"
+            f"{len(track)} tracked poses cannot determine the clock offset; {FEWEST} are needed"
         )
     offsets = _possible(track, path)
     misfit = np.array([_misfit(track, path, each) for each in offsets])
@@ -72,7 +72,7 @@ def estimate_offset(track: Poses, path: Poses) -> ClockOffset:
     sd = max(_sd_of_fit(misfit[best], curvature), _sd_of_blocks(inside, path, near))
     if not sd < LARGEST_SD:
         raise InsufficientData(
-            f"the motion tells the clocks' offset only to {sd:.2g} s; let the robot start and "
+            f"the motion determines the clock offset only to {sd:.2g} s; let the robot start and "
             "stop in view, or give the offset"
         )
     at = track.t + offsets[:, None]

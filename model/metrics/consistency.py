@@ -17,6 +17,7 @@ from model.slip.law import Array
 
 STATISTICS = ("nees", "along", "cross", "yaw")
 FEWEST_DRAWS = 50
+LEVEL = 0.95  # of the intervals
 
 
 @dataclass(frozen=True)
@@ -38,7 +39,7 @@ class Consistency:
     p_value: float
 
     @property
-    def plausible(self) -> bool:
+    def consistent(self) -> bool:
         """Whether the track's value lies within the ensemble's interval."""
         return self.low <= self.value <= self.high
 
@@ -49,7 +50,6 @@ def consistency(
     covariance: Array,
     *,
     rng: np.random.Generator,
-    level: float = 0.95,
 ) -> tuple[Consistency, ...]:
     r"""Compare statistics of a track with those of the ensemble's draws with tracker noise.
 
@@ -63,7 +63,6 @@ def consistency(
         observed: Tracked x, y, yaw; yaw NaN throughout where unknown, shape (n, 3).
         covariance: The tracker's covariance at each time, shape (n, 3, 3).
         rng: Source of randomness.
-        level: Level of the intervals [-].
 
     Returns:
         One result a statistic; yaw is left out where it is not known.
@@ -73,8 +72,7 @@ def consistency(
     """
     if len(draws) < FEWEST_DRAWS:
         raise InsufficientData(
-            f"an ensemble of {len(draws)} draws has no band to speak of; draw {FEWEST_DRAWS} or "
-            "more"
+            f"{len(draws)} draws are too few for an interval; draw {FEWEST_DRAWS} or more"
         )
     k = 3 if np.isfinite(observed[:, 2]).all() else 2
     seen = with_tracker_noise(draws, covariance, rng=rng)[..., :k]
@@ -82,9 +80,7 @@ def consistency(
     own = _statistics(seen, seen)
     its = _statistics(track[None], seen)
     return tuple(
-        _compared(name, float(its[i, 0]), own[i], level)
-        for i, name in enumerate(STATISTICS)
-        if i <= k
+        _compared(name, float(its[i, 0]), own[i]) for i, name in enumerate(STATISTICS) if i <= k
     )
 
 
@@ -123,8 +119,8 @@ def _statistics(points: Array, draws: Array) -> Array:
     return np.stack(rows)
 
 
-def _compared(name: str, value: float, own: Array, level: float) -> Consistency:
-    low, high = np.quantile(own, [(1 - level) / 2, (1 + level) / 2])
+def _compared(name: str, value: float, own: Array) -> Consistency:
+    low, high = np.quantile(own, [(1 - LEVEL) / 2, (1 + LEVEL) / 2])
     below = (1 + np.sum(own <= value)) / (len(own) + 1)
     above = (1 + np.sum(own >= value)) / (len(own) + 1)
     return Consistency(name, value, float(low), float(high), float(min(1.0, 2 * min(below, above))))

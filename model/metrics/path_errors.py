@@ -5,11 +5,11 @@ from dataclasses import dataclass
 from typing import TypeAlias
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from model.metrics.alignment import align
 from model.metrics.turning import fitted_radius, mean_yaw_rate
-from model.poses import Poses, overlap, travel_direction, wrap
+from model.poses import Poses, overlap, relative, travel_direction, wrap
 from model.slip.law import Array
 
 DISTANCES = (0.25, 0.5, 1.0)  # m over which relative errors are taken
@@ -23,22 +23,22 @@ class PoseErrors:
 
     Attributes:
         t: Times, those of the track, shape (n,) [s].
-        xy: Errors along the floor's axes, shape (n, 2) [m].
-        yaw: Errors of heading in [-pi, pi); NaN where one has none, shape (n,) [rad].
+        translation: Errors along the floor's axes, shape (n, 2) [m].
+        rotation: Errors of heading in [-pi, pi); NaN where one has none, shape (n,) [rad].
         along: Errors in the direction the track travels, positive ahead, shape (n,) [m].
         cross: Errors across it, positive to its left, shape (n,) [m].
     """
 
     t: Array
-    xy: Array
-    yaw: Array
+    translation: Array
+    rotation: Array
     along: Array
     cross: Array
 
     @property
     def distance(self) -> Array:
         """Distances between predicted and tracked positions, shape (n,) [m]."""
-        return np.linalg.norm(self.xy, axis=1)
+        return np.linalg.norm(self.translation, axis=1)
 
 
 @dataclass(frozen=True)
@@ -120,16 +120,14 @@ def pose_errors(predicted: Poses, tracked: Poses) -> PoseErrors:
     c, s = np.cos(direction), np.sin(direction)
     return PoseErrors(
         t=tracked.t,
-        xy=xy,
-        yaw=wrap(predicted.yaw - tracked.yaw),
+        translation=xy,
+        rotation=wrap(predicted.yaw - tracked.yaw),
         along=c * xy[:, 0] + s * xy[:, 1],
         cross=c * xy[:, 1] - s * xy[:, 0],
     )
 
 
-def path_errors(
-    predicted: Poses, tracked: Poses, *, distances: ArrayLike = DISTANCES
-) -> PathErrors:
+def path_errors(predicted: Poses, tracked: Poses) -> PathErrors:
     """Compute summary errors of a predicted path against a tracked one.
 
     The predicted path, sampled densely, is interpolated at the track's times; tracked poses
@@ -138,7 +136,6 @@ def path_errors(
     Args:
         predicted: Predicted path.
         tracked: Track, at any times of the same clock.
-        distances: Distances over which relative errors are taken [m].
 
     Raises:
         InsufficientData: Fewer than two tracked poses lie within the predicted time.
@@ -154,20 +151,18 @@ def path_errors(
         length=length,
         length_ratio=predicted.length / length if length > 0 else float("nan"),
         ate=_rms(errors.distance),
-        x=_rms(errors.xy[:, 0]),
-        y=_rms(errors.xy[:, 1]),
+        x=_rms(errors.translation[:, 0]),
+        y=_rms(errors.translation[:, 1]),
         along=_rms(errors.along),
         cross=_rms(errors.cross),
-        yaw=_rms(errors.yaw),
+        yaw=_rms(errors.rotation),
         largest=float(errors.distance.max()),
         final_distance=float(errors.distance[-1]),
-        final_yaw=float(errors.yaw[-1]),
+        final_yaw=float(errors.rotation[-1]),
         ate_aligned=_rms(pose_errors(moved, tracked).distance),
         alignment_yaw=motion.rotation,
         alignment_shift=float(np.linalg.norm(moved.position[0] - predicted.position[0])),
-        relative=tuple(
-            relative_error(predicted, tracked, distance=float(d)) for d in np.atleast_1d(distances)
-        ),
+        relative=tuple(relative_error(predicted, tracked, distance=d) for d in DISTANCES),
         radius=(fitted_radius(predicted), fitted_radius(tracked)),
         yaw_rate=(mean_yaw_rate(predicted), mean_yaw_rate(tracked)),
     )
@@ -187,10 +182,10 @@ def relative_error(predicted: Poses, tracked: Poses, *, distance: float) -> Rela
     start, end = pairs_by_distance(tracked.travelled, distance)
     if len(start) == 0 or not (predicted.has_yaw and tracked.has_yaw):
         return RelativeError(distance, len(start), float("nan"), float("nan"))
-    seen, seen_turn = _relative_motion(tracked, start, end)
-    said, said_turn = _relative_motion(predicted, start, end)
-    error = np.linalg.norm(said - seen, axis=1)  # a rotation of the frame does not change the norm
-    return RelativeError(distance, len(start), _rms(error), _rms(wrap(said_turn - seen_turn)))
+    moves = (relative(poses.states[end], poses.states[start]) for poses in (predicted, tracked))
+    shift, turn = np.split(np.subtract(*moves), [2], axis=1)
+    error = np.linalg.norm(shift, axis=1)  # a rotation of the frame does not change the norm
+    return RelativeError(distance, len(start), _rms(error), _rms(wrap(turn)))
 
 
 def pairs_by_distance(travelled: Array, distance: float) -> tuple[Indices, Indices]:
@@ -208,14 +203,6 @@ def pairs_by_distance(travelled: Array, distance: float) -> tuple[Indices, Indic
     end = gap.argmin(axis=1)
     start = np.flatnonzero(gap[np.arange(len(travelled)), end] <= CLOSE * distance)
     return start, end[start]
-
-
-def _relative_motion(poses: Poses, start: Indices, end: Indices) -> tuple[Array, Array]:
-    """Return shift and turn from poses to later ones, in the frames of the first."""
-    step = poses.position[end] - poses.position[start]
-    c, s = np.cos(poses.yaw[start]), np.sin(poses.yaw[start])
-    forward, left = c * step[:, 0] + s * step[:, 1], c * step[:, 1] - s * step[:, 0]
-    return np.column_stack([forward, left]), poses.yaw[end] - poses.yaw[start]
 
 
 def _rms(values: Array) -> float:

@@ -12,7 +12,6 @@ from model.poses import wrap
 from model.slip.law import Array
 
 LEVELS = (0.5, 0.9, 0.95)
-STATES = ("x", "y", "yaw")
 
 
 @dataclass(frozen=True)
@@ -62,9 +61,7 @@ def with_tracker_noise(draws: Array, covariance: Array, *, rng: np.random.Genera
     return draws + np.einsum("nij,mnj->mni", root, noise)
 
 
-def ensemble_scores(
-    draws: Array, observed: Array, *, levels: Sequence[float] = LEVELS
-) -> EnsembleScores:
+def ensemble_scores(draws: Array, observed: Array) -> EnsembleScores:
     """Score an ensemble against a track of the same times.
 
     Energy score and CRPS are the unbiased ("fair") estimates for a finite ensemble; those of a
@@ -74,7 +71,6 @@ def ensemble_scores(
         draws: x, y, yaw of every draw at every time, the tracker's noise included where it is
             known, shape (m, n, 3) [m, m, rad].
         observed: Tracked x, y, yaw; yaw NaN where it is not known, shape (n, 3).
-        levels: Levels of the central intervals [-].
 
     Raises:
         DomainError: Shapes do not match.
@@ -85,11 +81,11 @@ def ensemble_scores(
             "(m, n, 3) and (n, 3)"
         )
     observed = centred(draws, observed)
-    coverage, width = interval_coverage(draws, observed, levels)
+    coverage, width = interval_coverage(draws, observed, LEVELS)
     return EnsembleScores(
         energy=float(np.mean(energy_score(draws[..., :2], observed[:, :2]))),
         crps=crps(draws, observed).mean(axis=0),
-        levels=tuple(levels),
+        levels=LEVELS,
         coverage=coverage,
         width=width,
     )

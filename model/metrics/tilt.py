@@ -55,8 +55,8 @@ def tilt_errors(
             f"{t[-1]:g} s; {FEWEST} are needed: do both keep the same clock?"
         )
     at = measured_t[inside]
-    said = np.column_stack([np.interp(at, t, column) for column in predicted.T])
-    difference = said - measured[inside]
+    at_measured = np.column_stack([np.interp(at, t, column) for column in predicted.T])
+    difference = at_measured - measured[inside]
     bias = difference.mean(axis=0)
     return TiltErrors(
         samples=int(inside.sum()),

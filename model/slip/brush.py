@@ -5,9 +5,10 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from model.slip.law import Array, Parameter, Values
+from model.slip.proportional import ProportionalLaw
 
 
 def sliding_share(sigma: ArrayLike, K: ArrayLike, mu_s: ArrayLike) -> Array:
@@ -101,7 +102,7 @@ def static_friction_from_peak(mu: ArrayLike, q: ArrayLike) -> Array:
 
 
 @dataclass(frozen=True)
-class Brush:
+class Brush(ProportionalLaw):
     """The brush model as a slip law, with bristle stiffness and friction proportional to load.
 
     It is derived for theoretical slip, the material slip of `SlipDefinition.MATERIAL`. Slip of
@@ -115,6 +116,8 @@ class Brush:
     kinetic: bool = False
 
     name = "brush"
+    traction_over_load = staticmethod(brush)
+    slope_over_load = staticmethod(brush_slope)
 
     @property
     def parameters(self) -> tuple[Parameter, ...]:
@@ -134,45 +137,14 @@ class Brush:
         q = np.asarray(values[2] if self.kinetic else 1.0, dtype=float)
         return K, static_friction_from_peak(mu, q), q
 
-    def force(self, slip: ArrayLike, load: ArrayLike, values: Values) -> Array:
-        """Compute the traction force [N]; see `SlipLaw.force`.
+    def peak(self, values: Values) -> Array:
+        """Compute the slip ratio at which traction peaks, infinite unless `kinetic` [-].
 
         Args:
-            slip: Slip ratio [-].
-            load: Normal force, positive [N].
-            values: Parameter values, one entry a parameter.
-        """
-        return np.asarray(load) * brush(slip, *self.coefficients(values))
-
-    def slip_derivative(self, slip: ArrayLike, load: ArrayLike, values: Values) -> Array:
-        """Compute the derivative of the force with respect to slip ratio [N].
-
-        Args:
-            slip: Slip ratio [-].
-            load: Normal force, positive [N].
-            values: Parameter values, one entry a parameter.
-        """
-        return np.asarray(load) * brush_slope(slip, *self.coefficients(values))
-
-    def valid(self, load: ArrayLike, values: Values) -> NDArray[np.bool_]:
-        """Return where the curve has its shape: everywhere inside the support.
-
-        Args:
-            load: Normal force, positive [N].
-            values: Parameter values, one entry a parameter.
-        """
-        return np.ones(np.broadcast(load, *values).shape, dtype=bool)
-
-    def peak_slip(self, load: ArrayLike, values: Values) -> Array:
-        """Compute the slip ratio at which the force peaks (inf where it never falls) [-].
-
-        Args:
-            load: Normal force, positive [N].
             values: Parameter values, one entry a parameter.
         """
         K, mu_s, q = self.coefficients(values)
-        peak = 3 * mu_s / (K * (3 - 2 * q)) if self.kinetic else np.array(math.inf)
-        return np.broadcast_to(peak, np.broadcast(load, *values).shape)
+        return 3 * mu_s / (K * (3 - 2 * q)) if self.kinetic else np.array(math.inf)
 
 
 _COMMON = (

@@ -5,9 +5,10 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from model.slip.law import Array, Parameter, Values
+from model.slip.proportional import ProportionalLaw
 
 
 def breakaway_slip(K: ArrayLike, mu: ArrayLike) -> Array:
@@ -131,7 +132,7 @@ def _slip_past_breakaway(kappa: ArrayLike, kappa_c: ArrayLike, kappa_s: ArrayLik
 
 
 @dataclass(frozen=True)
-class CoulombStribeck:
+class CoulombStribeck(ProportionalLaw):
     """Coulomb friction as a slip law, static at break-away and kinetic at large slip.
 
     Attributes:
@@ -142,6 +143,8 @@ class CoulombStribeck:
     stribeck: bool = True
 
     name = "coulomb-stribeck"
+    traction_over_load = staticmethod(coulomb_stribeck)
+    slope_over_load = staticmethod(coulomb_stribeck_slope)
 
     @property
     def parameters(self) -> tuple[Parameter, ...]:
@@ -162,45 +165,14 @@ class CoulombStribeck:
             return K, mu, np.array(1.0), np.array(1.0)
         return K, mu, np.asarray(values[2], dtype=float), np.asarray(values[3], dtype=float)
 
-    def force(self, slip: ArrayLike, load: ArrayLike, values: Values) -> Array:
-        """Compute the traction force [N]; see `SlipLaw.force`.
+    def peak(self, values: Values) -> Array:
+        """Compute the slip ratio at which traction peaks, infinite without a post-peak drop [-].
 
         Args:
-            slip: Slip ratio [-].
-            load: Normal force, positive [N].
-            values: Parameter values, one entry a parameter.
-        """
-        return np.asarray(load) * coulomb_stribeck(slip, *self.coefficients(values))
-
-    def slip_derivative(self, slip: ArrayLike, load: ArrayLike, values: Values) -> Array:
-        """Compute the derivative of the force with respect to slip ratio [N].
-
-        Args:
-            slip: Slip ratio [-].
-            load: Normal force, positive [N].
-            values: Parameter values, one entry a parameter.
-        """
-        return np.asarray(load) * coulomb_stribeck_slope(slip, *self.coefficients(values))
-
-    def valid(self, load: ArrayLike, values: Values) -> NDArray[np.bool_]:
-        """Return where the curve has its shape: everywhere inside the support.
-
-        Args:
-            load: Normal force, positive [N].
-            values: Parameter values, one entry a parameter.
-        """
-        return np.ones(np.broadcast(load, *values).shape, dtype=bool)
-
-    def peak_slip(self, load: ArrayLike, values: Values) -> Array:
-        """Compute the slip ratio at which the force peaks (inf where it never falls) [-].
-
-        Args:
-            load: Normal force, positive [N].
             values: Parameter values, one entry a parameter.
         """
         K, mu, _, _ = self.coefficients(values)
-        peak = breakaway_slip(K, mu) if self.stribeck else np.array(math.inf)
-        return np.broadcast_to(peak, np.broadcast(load, *values).shape)
+        return breakaway_slip(K, mu) if self.stribeck else np.array(math.inf)
 
 
 _COMMON = (

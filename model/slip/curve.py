@@ -3,8 +3,7 @@
 
 from dataclasses import dataclass
 
-import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from model.slip.definition import SlipDefinition, require_definition
 from model.slip.law import Array, SlipLaw
@@ -46,8 +45,3 @@ class SlipCurve:
         """
         require_definition(definition, self.definition)
         return self.law.force(slip, load, self.values)
-
-    def untested_loads(self, load: ArrayLike) -> NDArray[np.bool_]:
-        """Return which loads lie outside the tested range."""
-        Fn = np.asarray(load, dtype=float)
-        return (Fn < self.load_range[0]) | (Fn > self.load_range[1])

@@ -94,20 +94,3 @@ class SlipLaw(Protocol):
             values: Parameter values, one entry a parameter.
         """
         ...
-
-
-def inside_support(law: SlipLaw, values: Values) -> NDArray[np.bool_]:
-    """Return where every value lies inside its parameter's open support.
-
-    Args:
-        law: The slip law.
-        values: Parameter values, one entry a parameter.
-
-    Returns:
-        True inside, in the shape the values broadcast to.
-    """
-    verdicts = [
-        (parameter.lower < np.asarray(value)) & (np.asarray(value) < parameter.upper)
-        for parameter, value in zip(law.parameters, values, strict=True)
-    ]
-    return np.logical_and.reduce(np.broadcast_arrays(*verdicts))

@@ -7,9 +7,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from model.compiled import compiled, inlined
-from model.robot import Robot
+from model.robot import N_LEGS, Robot
 from model.slip.law import Array
-from model.walk.kernel import N_CONTACTS
+
+N_CONTACTS = N_LEGS + 8  # legs, then the corners of the body
 
 
 class Body(NamedTuple):

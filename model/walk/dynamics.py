@@ -7,7 +7,7 @@ alone decides which legs are in contact. Where this departs from the thesis's mo
 `docs/theory.md`.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,11 +16,11 @@ from model.errors import DomainError, WalkError
 from model.gait.reference import LegReference
 from model.robot import N_LEGS, Robot
 from model.slip.law import Array
-from model.walk.arrays import Contacts, State, body_arrays
-from model.walk.ground import FLAT, Ground
-from model.walk.kernel import N_CONTACTS, ground_at
+from model.walk.arrays import N_CONTACTS, Contacts, State, body_arrays
+from model.walk.ground import FLAT, Ground, ground_at
+from model.walk.loop import run_steps
 from model.walk.path import WalkPath
-from model.walk.step import run_steps
+from model.walk.quaternion import roll_pitch_yaw, turned_about_vertical
 from model.walk.traction import TractionTable, VelocityCoulomb
 
 SETTLE_STEP = 0.005  # s
@@ -108,16 +108,9 @@ def walk(
     """
     t = step_times(duration, options.dt)
     theta = reference.angles(t) + robot.leg_offset
-    state = start_state(robot, theta[0], ground, start, options)
-    pose, legs = np.empty((len(t) - 1, 7)), np.empty((len(t) - 1, N_LEGS, 6))
-    first = np.concatenate([state.p, state.q])
-    contacts = Contacts(options.stiffness, options.damping)
-    done = run_steps(
-        body_arrays(robot), table, ground, contacts, state, theta, options.dt, pose, legs
-    )
-    if done < len(pose):
-        raise diverged(t[done], pose[done - 1] if done else first)
-    return _path(t, np.vstack([first, pose]), theta, legs)
+    state = start_state(robot, theta[0], options, ground=ground, start=start)
+    pose, legs = integrate(robot, table, state, theta, options, ground=ground, keep_legs=True)
+    return _path(t, pose, theta, legs)
 
 
 def step_times(duration: float, dt: float) -> Array:
@@ -139,35 +132,68 @@ def step_times(duration: float, dt: float) -> Array:
     return dt * np.arange(n + 1, dtype=float)
 
 
-def diverged(t: float, pose: Array) -> WalkError:
-    """Return the error for a step whose state is not finite.
+def integrate(
+    robot: Robot,
+    table: TractionTable,
+    state: State,
+    theta: Array,
+    options: DynamicsOptions,
+    *,
+    ground: Ground = FLAT,
+    keep_legs: bool = False,
+    began: float = 0.0,
+) -> tuple[Array, Array]:
+    """Integrate the motion from a state through leg angles at equal steps.
 
     Args:
-        t: Time of the step [s].
-        pose: Pose to report, of which the first three entries are the position [m].
+        robot: The robot.
+        table: The slip law.
+        state: Initial state, overwritten with the final one.
+        theta: Leg angles at every step's start and the last one's end, shape (n + 1, 6) [rad].
+        options: How the walk is computed.
+        ground: The ground.
+        keep_legs: Whether to return the state of the legs.
+        began: Time of the first step, for the message of an error [s].
+
+    Returns:
+        Position and quaternion at the times of `theta`, shape (n + 1, 7), and the state of the
+        legs at each step's end as in `run_steps`, shape (n, 6, 6), or (0, 6, 6) where not kept.
+
+    Raises:
+        WalkError: A step diverged; the message says when and in what state.
     """
-    x, y, z = pose[:3]
-    return WalkError(
-        f"the walk diverged at t = {t:.4g} s, with the body at x {x:.4g}, y {y:.4g}, z {z:.4g} m; "
-        "look at the leg angles there, or take a smaller dt"
+    n = len(theta) - 1
+    pose, legs = np.empty((n + 1, 7)), np.empty((n if keep_legs else 0, N_LEGS, 6))
+    pose[0] = np.concatenate([state.p, state.q])
+    contacts = Contacts(options.stiffness, options.damping)
+    done = run_steps(
+        body_arrays(robot), table, ground, contacts, state, theta, options.dt, pose[1:], legs
     )
+    if done < n:
+        x, y, z = pose[done, :3]
+        raise WalkError(
+            f"the walk diverged at t = {began + done * options.dt:.4g} s, with the body at "
+            f"x {x:.4g}, y {y:.4g}, z {z:.4g} m; look at the leg angles there, or take a smaller dt"
+        )
+    return pose, legs
 
 
 def start_state(
     robot: Robot,
     theta: Array,
-    ground: Ground,
-    start: Start,
     options: DynamicsOptions,
+    *,
+    ground: Ground = FLAT,
+    start: Start = ORIGIN,
 ) -> State:
     """Compute the initial state: the robot on its legs, or held above them, at the start's pose.
 
     Args:
         robot: The robot.
         theta: Leg angles to stand on, shape (6,) [rad].
+        options: How the walk is computed.
         ground: The ground.
         start: Where to stand.
-        options: How the walk is computed.
     """
     half = 0.5 * start.yaw
     highest = _highest_under(robot, ground, start)
@@ -207,62 +233,22 @@ def _settled(
     yaw = 2 * np.arctan2(state.q[3], state.q[0])
     velocity = state.v.copy()
     state.v[:] = 0.0
-    n = round(SETTLE_TIME / SETTLE_STEP)
-    pose = np.empty((n, 7))
-    contacts = Contacts(options.stiffness, options.damping)
-    still = np.tile(theta, (n + 1, 1))
-    done = run_steps(
-        body_arrays(robot), STICKY, ground, contacts, state, still, SETTLE_STEP, pose,
-        np.empty((0, N_LEGS, 6)),
-    )  # fmt: skip
-    if done < n:
+    still = np.tile(theta, (round(SETTLE_TIME / SETTLE_STEP) + 1, 1))
+    try:
+        integrate(robot, STICKY, state, still, replace(options, dt=SETTLE_STEP), ground=ground)
+    except WalkError as error:
         raise WalkError(
             f"the robot cannot stand at x {x:g}, y {y:g} m on legs at {np.degrees(theta).round(1)} "
             "degrees; expected finite numbers"
-        )
+        ) from error
     turned = yaw - roll_pitch_yaw(state.q[None])[0, 2]
     state.p[2] += ground_at(ground, x, y)[0] - ground_at(ground, state.p[0], state.p[1])[0]
     state.p[:2] = x, y
-    state.q[:] = _turn(state.q, turned)
+    state.q[:] = turned_about_vertical(state.q, turned)
     state.v[:] = velocity
     state.w[:] = 0.0
     state.stretch[:] = 0.0
     return state
-
-
-def _turn(q: Array, yaw: float) -> Array:
-    """Rotate an orientation about the vertical."""
-    c, s = np.cos(0.5 * yaw), np.sin(0.5 * yaw)
-    w, x, y, z = q
-    return np.array([c * w - s * z, c * x - s * y, c * y + s * x, c * z + s * w])
-
-
-def roll_pitch_yaw(q: Array) -> Array:
-    """Convert unit quaternions (w, x, y, z) to roll, pitch and yaw, R = Rz(yaw) Ry(pitch) Rx(roll).
-
-    Args:
-        q: Quaternions, shape (n, 4).
-
-    Returns:
-        Angles, yaw unwrapped, shape (n, 3) [rad].
-    """
-    w, x, y, z = q.T
-    roll = np.arctan2(2 * (y * z + w * x), 1 - 2 * (x * x + y * y))
-    pitch = np.arcsin(np.clip(2 * (w * y - x * z), -1.0, 1.0))
-    return np.column_stack([roll, pitch, unwrapped_yaw(q)])
-
-
-def unwrapped_yaw(q: Array) -> Array:
-    """Compute only the unwrapped yaw of unit quaternions (w, x, y, z), as `roll_pitch_yaw` does.
-
-    Args:
-        q: Quaternions, shape (n, 4).
-
-    Returns:
-        Yaw, shape (n,) [rad].
-    """
-    w, x, y, z = q.T
-    return np.unwrap(np.arctan2(2 * (x * y + w * z), 1 - 2 * (y * y + z * z)))
 
 
 def _path(t: Array, pose: Array, theta: Array, legs: Array) -> WalkPath:

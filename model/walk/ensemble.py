@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Ensembles of walks, each with its own law, robot and start, for the spread of a path."""
+"""Ensembles of walks, each with its own law and robot, for the spread of a path."""
 
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
@@ -10,22 +10,16 @@ import numpy as np
 from model.errors import DomainError, WalkError
 from model.gait.reference import LegReference
 from model.poses import Poses
-from model.robot import N_LEGS, Robot
+from model.robot import Robot
 from model.slip.law import Array
-from model.walk.arrays import Contacts, body_arrays
 from model.walk.dynamics import (
     DEFAULT_OPTIONS,
-    ORIGIN,
     DynamicsOptions,
-    Start,
-    diverged,
-    roll_pitch_yaw,
+    integrate,
     start_state,
     step_times,
-    unwrapped_yaw,
 )
-from model.walk.ground import FLAT
-from model.walk.step import run_steps
+from model.walk.quaternion import roll_pitch_yaw, unwrapped_yaw
 from model.walk.stride import walk_by_strides
 from model.walk.traction import TractionTable
 
@@ -38,7 +32,6 @@ class WalkDraw:
         robot: The robot, with its leg offsets.
         reference: Leg angles over time.
         table: The slip law.
-        start: Where the walk starts.
         stiffness: Factor on the contacts' stiffness of the options [-].
         damping: Factor on their damping [-].
     """
@@ -46,7 +39,6 @@ class WalkDraw:
     robot: Robot
     reference: LegReference
     table: TractionTable
-    start: Start = ORIGIN
     stiffness: float = 1.0
     damping: float = 1.0
 
@@ -161,23 +153,15 @@ def planar_walk(
     """
     options = draw.options(options)
     if draw.reference.period is not None:
-        poses = walk_by_strides(
-            draw.robot, draw.reference, draw.table,
-            duration=duration, start=draw.start, options=options,
-        )  # fmt: skip
-        return PlanarWalk(poses)
+        return PlanarWalk(
+            walk_by_strides(
+                draw.robot, draw.reference, draw.table, duration=duration, options=options
+            )
+        )
     t = step_times(duration, options.dt)
     theta = draw.reference.angles(t) + draw.robot.leg_offset
-    state = start_state(draw.robot, theta[0], FLAT, draw.start, options)
-    pose = np.empty((len(t), 7))
-    pose[0, :3], pose[0, 3:] = state.p, state.q
-    contacts = Contacts(options.stiffness, options.damping)
-    done = run_steps(
-        body_arrays(draw.robot), draw.table, FLAT, contacts, state, theta, options.dt, pose[1:],
-        np.empty((0, N_LEGS, 6)),
-    )  # fmt: skip
-    if done < len(t) - 1:
-        raise diverged(t[done], pose[done])
-    yaw = unwrapped_yaw(pose[:, 3:])
-    tilted = roll_pitch_yaw(pose[:, 3:])[:, :2] if tilt else None
-    return PlanarWalk(Poses(t, pose[:, :2], yaw), tilted)
+    state = start_state(draw.robot, theta[0], options)
+    pose, _ = integrate(draw.robot, draw.table, state, theta, options)
+    q = pose[:, 3:]
+    poses = Poses(t, pose[:, :2], unwrapped_yaw(q))
+    return PlanarWalk(poses, roll_pitch_yaw(q)[:, :2] if tilt else None)

@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from model.compiled import inlined
 from model.errors import DomainError
 from model.slip.law import Array
 
@@ -72,3 +73,61 @@ def sample_ground(
 def _samples(ends: tuple[float, float], step: float) -> Array:
     first, last = ends
     return first + step * np.arange(np.ceil((last - first) / step - 1e-9) + 1)
+
+
+@inlined
+def ground_at(ground, x, y):
+    """Interpolate height and unit normal of the ground at a place, bilinearly.
+
+    Args:
+        ground: The ground.
+        x: x of the place [m].
+        y: y of the place [m].
+
+    Returns:
+        Height [m] and the normal's components nx, ny, nz [-].
+    """
+    height = ground.height
+    if height.size == 1:
+        return height[0, 0], 0.0, 0.0, 1.0
+    m, n = height.shape
+    at_x, at_y = (x - ground.x) / ground.step, (y - ground.y) / ground.step
+    fx = min(max(at_x, 0.0), m - 1.000001)  # within the last cell, for its far neighbours
+    fy = min(max(at_y, 0.0), n - 1.000001)
+    i, j = int(fx), int(fy)
+    a, b = fx - i, fy - j
+    h00, h10, h01, h11 = height[i, j], height[i + 1, j], height[i, j + 1], height[i + 1, j + 1]
+    h = (1 - a) * ((1 - b) * h00 + b * h01) + a * ((1 - b) * h10 + b * h11)
+    sx = ((1 - b) * (h10 - h00) + b * (h11 - h01)) / ground.step
+    sy = ((1 - a) * (h01 - h00) + a * (h11 - h10)) / ground.step
+    if at_x < 0 or at_x > m - 1:  # beyond the edge its height continues, with zero slope
+        sx = 0.0
+    if at_y < 0 or at_y > n - 1:
+        sy = 0.0
+    size = np.sqrt(1 + sx * sx + sy * sy)
+    return h, -sx / size, -sy / size, 1 / size
+
+
+@inlined
+def plane_under(ground, x, y, reach):
+    """Compute the unit normal of the mean plane of the ground within reach of a place.
+
+    A leg stands on what its arc spans. The normal at a single point would tilt the leg at every
+    edge of the ground.
+
+    Args:
+        ground: The ground.
+        x: x of the place [m].
+        y: y of the place [m].
+        reach: Distance to either side over which slopes are taken [m].
+
+    Returns:
+        Components nx, ny, nz of the normal [-].
+    """
+    if ground.height.size == 1:
+        return 0.0, 0.0, 1.0
+    sx = ground_at(ground, x + reach, y)[0] - ground_at(ground, x - reach, y)[0]
+    sy = ground_at(ground, x, y + reach)[0] - ground_at(ground, x, y - reach)[0]
+    sx, sy = sx / (2 * reach), sy / (2 * reach)
+    size = np.sqrt(1 + sx * sx + sy * sy)
+    return -sx / size, -sy / size, 1 / size

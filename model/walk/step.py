@@ -1,127 +1,38 @@
 # SPDX-License-Identifier: MIT
-"""The loop over steps of the walk, compiled."""
+r"""One step of the rigid body on compliant contacts, compiled.
 
-from typing import NamedTuple
+Unknowns of a step are the velocity v and angular velocity w of the body at its end. Normal force
+and traction of every contact are taken there, linear in them,
+
+.. math::
+    N_i' = -k (g_i + \Delta t\, n_i \cdot J_i v') - c\, n_i \cdot (J_i v' + u_i), \qquad
+    T_i' = -G_i (J_i v' + u_i)_t,
+
+with gap g, normal n, contact Jacobian J, the leg's own velocity u at its contact, and the secant
+G of the slip law. This gives a symmetric positive definite 6x6 system. A few iterations determine
+which contacts press and what G is. No contact pulls, and traction opposes slip whatever the step.
+The step is therefore stable at any length, unlike the explicit step of the thesis.
+"""
 
 import numpy as np
 
-from model.compiled import borrowing, compiled, inlined
-from model.robot import GRAVITY
-from model.slip.law import Array
-from model.walk.arrays import Body, Contacts, State, Work, copy_state, new_state, new_work
-from model.walk.ground import Ground
-from model.walk.kernel import (
-    N_CONTACTS,
-    N_LEGS,
-    ROLLING,
-    add_contact,
-    find_contacts,
-    point_velocity,
-    rotate,
-    rotation_matrix,
-    solve_positive,
-    toe_traction,
-    traction_secant,
-)
-from model.walk.traction import TractionTable
+from model.compiled import inlined
+from model.leg import ROLLING
+from model.robot import N_LEGS
+from model.walk.arrays import N_CONTACTS
+from model.walk.contact_points import find_contacts, point_velocity
+from model.walk.linear_system import add_contact, solve_positive, start_system
+from model.walk.quaternion import rotate, rotation_matrix
+from model.walk.traction_lookup import toe_traction, traction_secant
 
 ROUNDS = 2  # solves a step: one for the contacts that press and their loads, one to use them
 MOST_ROUNDS = 8  # largest number of solves until the assumed contacts are those that press
-FINE_STEP = 0.0005  # s, where contacts change: both tripods are on the ground only for a short time
-FINE_TIME = 0.005  # s, after a change
 BRISTLE_STIFFNESS = 0.1  # of the normal stiffness: a foot yields some tenths of a millimetre
-
-
-class Spare(NamedTuple):
-    """Preallocated work arrays of the loop.
-
-    Attributes:
-        work: Work arrays of a step.
-        before: State before a step.
-        speed: Leg speeds in a step, shape (6,) [rad/s].
-        angles: Leg angles at the end of a finer step, shape (6,) [rad].
-        loaded: Loads before a step, shape (14,) [N].
-    """
-
-    work: Work
-    before: State
-    speed: Array
-    angles: Array
-    loaded: Array
-
-
-@compiled
-def run_steps(
-    body: Body,
-    table: TractionTable,
-    ground: Ground,
-    contacts: Contacts,
-    state: State,
-    theta: Array,
-    dt: float,
-    pose: Array,
-    legs: Array,
-) -> int:
-    """Integrate a walk through leg angles at equal steps.
-
-    A step in which a contact begins or ends is repeated with finer steps. The steps of the next few
-    milliseconds are finer too.
-
-    Args:
-        body: The robot.
-        table: The slip law.
-        ground: The ground.
-        contacts: Stiffness and damping of contacts.
-        state: Initial state, overwritten with the final one.
-        theta: Leg angles at every step's start and the last one's end, shape (n + 1, 6) [rad].
-        dt: Length of a step [s].
-        pose: Filled at each step's end: position and quaternion, shape (n, 7).
-        legs: Filled at each step's end: normal force, traction (world x, y), slip velocity (world
-            x, y) and slip ratio (NaN unless rolling) of each leg, shape (n, 6, 6); or shape
-            (0, 6, 6) not to keep them.
-
-    Returns:
-        Steps walked: n, or fewer where the state stopped being finite.
-    """
-    spare = Spare(new_work(), new_state(), np.empty(N_LEGS), np.empty(N_LEGS), np.zeros(N_CONTACTS))
-    return _steps(body, table, ground, contacts, state, theta, dt, pose, legs, spare)
-
-
-@borrowing
-def _steps(body, table, ground, contacts, state, theta, dt, pose, legs, spare):
-    """Integrate as `run_steps` does, with the arrays that it allocated."""
-    work, before, speed, angles, loaded = spare
-    parts = max(int(np.ceil(dt / FINE_STEP - 1e-9)), 1)
-    fine_steps = int(np.ceil(FINE_TIME / dt))
-    fine_left = fine_steps
-    for step in range(theta.shape[0] - 1):
-        for i in range(N_LEGS):
-            speed[i] = (theta[step + 1, i] - theta[step, i]) / dt
-        copy_state(state, before)
-        _copy(work.load, loaded)
-        if fine_left == 0 or parts == 1:
-            one_step(body, table, ground, contacts, state, work, theta[step + 1], speed, dt)
-            if parts > 1 and _contacts_changed(work.load, loaded):
-                copy_state(before, state)
-                _copy(loaded, work.load)
-                fine_left = fine_steps
-        if fine_left > 0 and parts > 1:
-            for part in range(parts):
-                for i in range(N_LEGS):
-                    angles[i] = theta[step, i] + (part + 1) / parts * dt * speed[i]
-                one_step(body, table, ground, contacts, state, work, angles, speed, dt / parts)
-            fine_left = fine_steps if _contacts_changed(work.load, loaded) else fine_left - 1
-        if not np.isfinite(state.p.sum() + state.w.sum()):
-            return step
-        _keep_pose(pose[step], state)
-        if len(legs):
-            _keep_legs(legs[step], contacts, state, work, speed)
-    return theta.shape[0] - 1
 
 
 @inlined
 def one_step(body, table, ground, contacts, state, work, theta, speed, dt):
-    """Integrate one linearly implicit step; see `model.walk.kernel`.
+    """Integrate one linearly implicit step.
 
     Args:
         body: The robot.
@@ -152,7 +63,7 @@ def one_step(body, table, ground, contacts, state, work, theta, speed, dt):
     for solved in range(1, MOST_ROUNDS + 1):
         for i in range(3):
             v[i], w[i] = work.b[i], work.b[3 + i]
-        _inertial_part(body.mass, inertia, gyro, state, dt, work.A, work.b)
+        start_system(body.mass, inertia, gyro, state, dt, work.A, work.b)
         add_contact_forces(table, contacts, state, work, n, speed, dt)
         solve_positive(work.A, work.b, 6)
         if contacts_agree(contacts, work, n, dt) and solved >= ROUNDS:
@@ -280,20 +191,6 @@ def leg_turn(R, speed, w, i):
 
 
 @inlined
-def _inertial_part(mass, inertia, gyro, state, dt, A, b):
-    A[:, :] = 0.0
-    for i in range(3):
-        A[i, i] = mass
-        b[i] = mass * state.v[i]
-        b[3 + i] = dt * gyro[i]
-        for j in range(i + 1):
-            A[3 + i, 3 + j] = inertia[i, j]
-        for j in range(3):
-            b[3 + i] += inertia[i, j] * state.w[j]
-    b[2] -= dt * mass * GRAVITY
-
-
-@inlined
 def _stretch_bristle(table, contacts, state, work, i, dt):
     """Stretch a bristle by the step's slip; let it slide where the largest traction is reached."""
     if work.load[i] == 0.0 or work.kind[i] == ROLLING:
@@ -310,28 +207,6 @@ def _stretch_bristle(table, contacts, state, work, i, dt):
     if np.sqrt(stretched) > longest:
         for a in range(3):
             state.stretch[i, a] *= longest / np.sqrt(stretched)
-
-
-@inlined
-def _copy(values, to):
-    for i in range(len(values)):
-        to[i] = values[i]
-
-
-@inlined
-def _keep_pose(out, state):
-    for i in range(3):
-        out[i] = state.p[i]
-    for i in range(4):
-        out[3 + i] = state.q[i]
-
-
-@inlined
-def _contacts_changed(load, loaded):
-    changed = False
-    for i in range(N_CONTACTS):
-        changed |= (load[i] > 0) != (loaded[i] > 0)
-    return changed
 
 
 @inlined
@@ -352,29 +227,3 @@ def _gyroscopic(inertia, w, out):
     out[0] = -(w[1] * L2 - w[2] * L1)
     out[1] = -(w[2] * L0 - w[0] * L2)
     out[2] = -(w[0] * L1 - w[1] * L0)
-
-
-@inlined
-def _keep_legs(out, contacts, state, work, speed):
-    """Fill a step's row of `legs`; see `run_steps`."""
-    R, point = work.R, work.point
-    bristle = BRISTLE_STIFFNESS * contacts.stiffness
-    for i in range(N_LEGS):
-        out[i, :] = 0.0
-        out[i, 5] = np.nan
-        if work.load[i] == 0.0:
-            continue
-        m = work.normal[i]
-        point_velocity(state.v, state.w, work.place[i], work.velocity[i], point)
-        rise = point[0] * m[0] + point[1] * m[1] + point[2] * m[2]
-        out[i, 0] = work.load[i]
-        for a in range(3):
-            point[a] -= rise * m[a]
-        for a in range(2):
-            out[i, 1 + a] = -work.secant[i] * point[a] - bristle * state.stretch[i, a]
-            out[i, 3 + a] = point[a]
-        if work.kind[i] == ROLLING:
-            tilt = R[0, 0] * m[0] + R[1, 0] * m[1] + R[2, 0] * m[2]  # of the body over the ground
-            along = point[0] * R[0, 0] + point[1] * R[1, 0] + point[2] * R[2, 0]
-            forward = along / np.sqrt(1 - tilt**2)
-            out[i, 5] = -forward / (leg_turn(R, speed, state.w, i) * work.flow[i])

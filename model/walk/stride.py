@@ -5,61 +5,28 @@ On flat ground the motion does not depend on position or heading. A settled stri
 moves the body by the same element of SE(2) each time, and the path is its repeated composition.
 """
 
-from typing import NamedTuple
+from dataclasses import replace
 
 import numpy as np
 
 from model.errors import WalkError
 from model.gait.reference import LegReference
-from model.poses import Poses
-from model.robot import N_LEGS, Robot
+from model.poses import Poses, compose, relative
+from model.robot import Robot
 from model.slip.law import Array
-from model.walk.arrays import Body, Contacts, State, body_arrays
 from model.walk.dynamics import (
     DEFAULT_OPTIONS,
-    ORIGIN,
     DynamicsOptions,
-    Start,
-    diverged,
-    roll_pitch_yaw,
+    integrate,
     start_state,
     step_times,
 )
-from model.walk.ground import FLAT
-from model.walk.step import run_steps
+from model.walk.quaternion import unwrapped_yaw
 from model.walk.traction import TractionTable
 
 SETTLED = 1e-4  # of a stride's length: change from one stride to the next
 SETTLED_TURN = 1e-5  # change of its turn [rad]; n strides on, n/2 of it in the path's direction
 MAX_STRIDES = 12  # after which the last is taken as settled; a tetrapod rocks for a few strides
-
-
-class Planar(NamedTuple):
-    """A planar pose or displacement.
-
-    Attributes:
-        x: Forward [m].
-        y: To the left [m].
-        yaw: Turn [rad].
-    """
-
-    x: float
-    y: float
-    yaw: float
-
-    def then(self, x: Array, y: Array, yaw: Array) -> tuple[Array, Array, Array]:
-        """Compose this pose with poses that are given in its frame (SE(2) composition).
-
-        Args:
-            x: Forward displacements in this pose's frame, shape (n,) [m].
-            y: Displacements to the left, shape (n,) [m].
-            yaw: Turns, shape (n,) [rad].
-
-        Returns:
-            x [m], y [m] and yaw [rad] in the frame that this pose is given in.
-        """
-        c, s = np.cos(self.yaw), np.sin(self.yaw)
-        return self.x + c * x - s * y, self.y + s * x + c * y, self.yaw + yaw
 
 
 def walk_by_strides(
@@ -68,7 +35,6 @@ def walk_by_strides(
     table: TractionTable,
     *,
     duration: float,
-    start: Start = ORIGIN,
     options: DynamicsOptions = DEFAULT_OPTIONS,
 ) -> Poses:
     """Walk a gait that repeats itself: step by step until settled, then stride by stride.
@@ -80,7 +46,6 @@ def walk_by_strides(
         reference: A gait with a period.
         table: The slip law.
         duration: Time walked [s].
-        start: Where it starts, on flat ground.
         options: How it is computed; steps are shortened to fit the period.
 
     Returns:
@@ -96,44 +61,37 @@ def walk_by_strides(
     n = int(np.ceil(period / options.dt - 1e-9))
     t = step_times(duration, period / n)
     strides = int(np.ceil((len(t) - 1) / n))
-    walked = _settled_strides(
-        robot, reference, table, start, options, n=n, most=strides, dt=period / n
-    )
-    first = [(np.array([start.x]), np.array([start.y]), np.array([start.yaw]))]
-    parts = first + [(x[1:], y[1:], yaw[1:]) for x, y, yaw in walked]
-    x, y, yaw = (np.concatenate(column) for column in zip(*parts, strict=True))
-    x, y, yaw = _repeat(x, y, yaw, n=n, times=strides - len(walked))
-    keep = len(t)
-    return Poses(t, np.column_stack([x, y])[:keep], yaw[:keep])
+    walked = _settled_strides(robot, reference, table, replace(options, dt=period / n), n, strides)
+    path = np.concatenate([np.zeros((1, 3)), *(stride[1:] for stride in walked)])
+    return Poses.of_states(t, _repeat(path, n, times=strides - len(walked))[: len(t)])
 
 
 def _settled_strides(
     robot: Robot,
     reference: LegReference,
     table: TractionTable,
-    start: Start,
     options: DynamicsOptions,
-    *,
     n: int,
     most: int,
-    dt: float,
-) -> list[tuple[Array, Array, Array]]:
-    """Walk strides of n steps until one moves the body as the last did; x, y and yaw of each."""
-    t = dt * np.arange(n + 1)
-    theta = reference.angles(t) + robot.leg_offset
-    contacts = Contacts(options.stiffness, options.damping)
-    body = body_arrays(robot)
-    state = start_state(robot, theta[0], FLAT, start, options)
-    walked: list[tuple[Array, Array, Array]] = []
+) -> list[Array]:
+    """Walk strides of n steps until one moves the body as the last did.
+
+    Returns:
+        x, y and yaw at the times of each stride, its first pose that of the last one's end, shape
+        (n + 1, 3) each [m, m, rad].
+    """
+    theta = reference.angles(options.dt * np.arange(n + 1)) + robot.leg_offset
+    state = start_state(robot, theta[0], options)
+    walked: list[Array] = []
     last = np.full(3, np.inf)
     while len(walked) < min(most, MAX_STRIDES):
-        first = np.concatenate([state.p, state.q])
-        pose = _walk_stride(body, table, contacts, state, theta, dt, len(walked) * n * dt)
-        yaw = roll_pitch_yaw(np.vstack([first[3:], pose[:, 3:]]))[:, 2]
+        began = len(walked) * n * options.dt
+        pose, _ = integrate(robot, table, state, theta, options, began=began)
+        yaw = unwrapped_yaw(pose[:, 3:])
         if walked:
-            yaw += walked[-1][2][-1] - yaw[0]
-        walked.append((np.append(first[0], pose[:, 0]), np.append(first[1], pose[:, 1]), yaw))
-        step = _displacement(*walked[-1])
+            yaw += walked[-1][-1, 2] - yaw[0]
+        walked.append(np.column_stack([pose[:, :2], yaw]))
+        step = relative(walked[-1][-1], walked[-1][0])
         changed = np.abs(step - last)
         length = max(np.hypot(*step[:2]), robot.leg_radius)
         if changed[:2].max() < SETTLED * length and changed[2] < SETTLED_TURN:
@@ -142,42 +100,10 @@ def _settled_strides(
     return walked
 
 
-def _walk_stride(
-    body: Body,
-    table: TractionTable,
-    contacts: Contacts,
-    state: State,
-    theta: Array,
-    dt: float,
-    began: float,
-) -> Array:
-    pose = np.empty((len(theta) - 1, 7))
-    done = run_steps(body, table, FLAT, contacts, state, theta, dt, pose, np.empty((0, N_LEGS, 6)))
-    if done < len(pose):
-        raise diverged(began + done * dt, pose[max(done - 1, 0)])
-    return pose
-
-
-def _displacement(x: Array, y: Array, yaw: Array) -> Array:
-    """Compute the move from the first pose to the last in the frame of the first, shape (3,)."""
-    c, s = np.cos(yaw[0]), np.sin(yaw[0])
-    dx, dy = x[-1] - x[0], y[-1] - y[0]
-    return np.array([c * dx + s * dy, c * dy - s * dx, yaw[-1] - yaw[0]])
-
-
-def _repeat(x: Array, y: Array, yaw: Array, *, n: int, times: int) -> tuple[Array, Array, Array]:
+def _repeat(path: Array, n: int, *, times: int) -> Array:
     """Append the stride of the last n steps repeatedly."""
-    if times < 1:
-        return x, y, yaw
-    begin = Planar(float(x[-n - 1]), float(y[-n - 1]), float(yaw[-n - 1]))
-    c, s = np.cos(begin.yaw), np.sin(begin.yaw)
-    dx, dy = x[-n:] - begin.x, y[-n:] - begin.y
-    inside = c * dx + s * dy, c * dy - s * dx, yaw[-n:] - begin.yaw
-    step = _displacement(x[-n - 1 :], y[-n - 1 :], yaw[-n - 1 :])
-    parts = [(x, y, yaw)]
-    at = Planar(float(x[-1]), float(y[-1]), float(yaw[-1]))
+    stride = relative(path[-n:], path[-n - 1])
+    parts = [path]
     for _ in range(times):
-        parts.append(at.then(*inside))
-        at = Planar(*(float(a) for a in at.then(*step)))
-    x, y, yaw = (np.concatenate(column) for column in zip(*parts, strict=True))
-    return x, y, yaw
+        parts.append(compose(parts[-1][-1], stride))
+    return np.concatenate(parts)

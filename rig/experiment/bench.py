@@ -5,10 +5,10 @@ A bench reads drives and load cell, or a board, in one thread, and interpolates 
 common times.
 """
 
+from abc import ABC, abstractmethod
 from collections.abc import Collection, Mapping, Sequence
 from contextlib import ExitStack
-from types import TracebackType
-from typing import Final, Protocol, Self
+from typing import Final, Self
 
 import numpy as np
 
@@ -22,92 +22,59 @@ from rig.slip_rig.board import RigBoard
 from rig.slip_rig.decode import decode_board, decode_forces, decode_further_loads
 from rig.slip_rig.drives import DriveBus, disc_speed
 from rig.slip_rig.load_cell import NetFtCell
-from rig.slip_rig.profile import BoardProfile, DriveProfile, LoadCellProfile, RigProfile
+from rig.slip_rig.profile import RigProfile
 from rig.slip_rig.rdt import describe_status
 
-ARM_LIMIT: Final = 2.0
+ARM_TIMEOUT: Final = 2.0
 """Timeout for a drive to enter closed-loop control [s]."""
 
 
-class Bench(Protocol):
-    """Slip rig whose discs are commanded and whose samples are read; a context manager."""
+class Bench(ABC):
+    """Slip rig whose discs are commanded and whose samples are read; a context manager.
 
-    @property
-    def profile(self) -> RigProfile:
-        """Profile of the rig."""
-        ...
+    Args:
+        motors: Driver of both discs, not yet entered.
+        sensors: Drivers of further devices, not yet entered.
+        profile: Profile of the rig.
 
-    @property
-    def source(self) -> str:
-        """Origin of the samples: `real` or `sim:WHAT`."""
-        ...
+    Attributes:
+        profile: Profile of the rig.
+        source: Origin of the samples: `real` or `sim:WHAT`.
+        streams: Streams of the devices, for their counters.
+        watched: Names of the devices and answers that are checked for silence.
+    """
 
-    @property
-    def watched(self) -> tuple[str, ...]:
-        """Names of the devices and answers that are checked for silence."""
-        ...
+    watched: tuple[str, ...]
 
-    @property
-    def streams(self) -> tuple[Stream, ...]:
-        """Streams of the devices, for their counters."""
-        ...
+    def __init__(self, motors: DriveBus | RigBoard, *sensors: Stream, profile: RigProfile) -> None:
+        self.profile = profile
+        self.source = motors.source
+        self.streams: tuple[Stream, ...] = (motors, *sensors)
+        self._motors = motors
+        self._leg: Drive = motors.leg
+        self._ground: Drive = motors.ground
+        self._time = HostTime()
+        self._stack = ExitStack()
 
+    @abstractmethod
     def watch(self, limits: Collection[str]) -> None:
         """Start to measure the quantities of some of `FURTHER_LIMITS`, to be guarded.
 
         Args:
             limits: Names of the limits, all among those that the profile lists as measured.
         """
-        ...
+
+    @abstractmethod
+    def read(self) -> Batch:
+        """Return the samples that have arrived, without waiting; feeds the watchdogs."""
 
     def arm(self) -> None:
         """Energise both drives, at standstill."""
-        ...
+        self._leg.arm(ARM_TIMEOUT)
+        self._ground.arm(ARM_TIMEOUT)
 
     def turn(self, leg: float, ground: float) -> None:
         """Command the speeds of both discs.
-
-        Args:
-            leg: Speed of the leg disc [rad/s].
-            ground: Speed of the ground disc [rad/s].
-        """
-        ...
-
-    def disarm(self) -> None:
-        """De-energise both drives at once; never raises."""
-        ...
-
-    def read(self) -> Batch:
-        """Return the samples that have arrived, without waiting; feeds the watchdogs."""
-        ...
-
-    def require_healthy(self) -> None:
-        """Raise DeviceFault where a drive reports an error."""
-        ...
-
-    def __enter__(self) -> Self: ...
-
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None: ...
-
-
-class _DiscPair:
-    """Two drives that are commanded together."""
-
-    def __init__(self, leg: Drive, ground: Drive) -> None:
-        self._leg, self._ground = leg, ground
-
-    def arm(self) -> None:
-        """Energise both at standstill."""
-        self._leg.arm(ARM_LIMIT)
-        self._ground.arm(ARM_LIMIT)
-
-    def turn(self, leg: float, ground: float) -> None:
-        """Command the speeds of both discs; see `Bench.turn`.
 
         Args:
             leg: Speed of the leg disc [rad/s].
@@ -117,38 +84,38 @@ class _DiscPair:
         self._ground.set_speed(ground)
 
     def disarm(self) -> None:
-        """De-energise both."""
+        """De-energise both drives at once; never raises."""
         self._leg.disarm()
         self._ground.disarm()
 
+    def require_healthy(self) -> None:
+        """Raise DeviceFault where a drive or the board reports an error."""
+        self._motors.require_healthy()
 
-class BoardBench(_DiscPair):
-    """Slip rig on one micro-controller; satisfies `Bench`.
+    def __enter__(self) -> Self:
+        with ExitStack() as stack:
+            for stream in reversed(self.streams):  # the motors are left first: it de-energises
+                stack.enter_context(stream)
+            self._stack = stack.pop_all()
+        return self
+
+    def __exit__(self, *exception: object) -> None:
+        self._stack.close()
+
+
+class BoardBench(Bench):
+    """Slip rig on one micro-controller.
 
     Args:
         board: Its driver, not yet entered.
         profile: Profile of the rig.
-        settings: The board's part of it.
     """
 
     watched = ("board",)
 
-    def __init__(self, board: RigBoard, *, profile: RigProfile, settings: BoardProfile) -> None:
-        super().__init__(board.leg, board.ground)
-        self.profile = profile
-        self._settings = settings
+    def __init__(self, board: RigBoard, *, profile: RigProfile) -> None:
+        super().__init__(board, profile=profile)
         self._board = board
-        self._time = HostTime()
-
-    @property
-    def source(self) -> str:
-        """Origin of the samples: `real` or `sim:WHAT`."""
-        return self._board.source
-
-    @property
-    def streams(self) -> tuple[Stream, ...]:
-        """The board."""
-        return (self._board,)
 
     def watch(self, limits: Collection[str]) -> None:
         """Do nothing: a board measures no further quantities; see `Bench.watch`."""
@@ -156,7 +123,7 @@ class BoardBench(_DiscPair):
     def read(self) -> Batch:
         """Return the samples that have arrived; see `Bench.read`."""
         samples = self._board.read(0.0)
-        forces, speeds = decode_board(self._settings, samples)
+        forces, speeds = decode_board(self._board.profile, samples)
         taken = self._time.map(samples)
         readings = Readings(taken, speeds.leg, speeds.ground, forces.normal, forces.traction)
         return Batch(
@@ -164,117 +131,70 @@ class BoardBench(_DiscPair):
             normal=forces.normal,
             traction=forces.traction,
             speeds={"leg": speeds.leg, "ground": speeds.ground},
-            heard={"board": samples},
+            arrived={"board": samples},
             further={},
             taken={"board": taken},
             fault="",
             raw={self._board.name: samples},
         )
 
-    def require_healthy(self) -> None:
-        """Check the board; see `Bench.require_healthy`."""
-        self._board.require_healthy()
 
-    def __enter__(self) -> Self:
-        self._board.__enter__()
-        return self
-
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
-        self._board.__exit__(kind, error, trace)
-
-
-class DrivesBench(_DiscPair):
-    """Slip rig of two drives on a CAN bus and a load cell; satisfies `Bench`.
+class DrivesBench(Bench):
+    """Slip rig of two drives on a CAN bus and a load cell.
 
     Args:
         drives: Driver of both drives, not yet entered.
         cell: Driver of the load cell, not yet entered.
         profile: Profile of the rig.
-        settings: The drives' and the load cell's part of it.
     """
 
-    def __init__(
-        self,
-        drives: DriveBus,
-        cell: NetFtCell,
-        *,
-        profile: RigProfile,
-        settings: tuple[DriveProfile, LoadCellProfile],
-    ) -> None:
-        super().__init__(drives.leg, drives.ground)
-        self.profile = profile
-        self._settings, self._cell_settings = settings
+    def __init__(self, drives: DriveBus, cell: NetFtCell, *, profile: RigProfile) -> None:
+        super().__init__(drives, cell, profile=profile)
+        self.watched = ("load cell", "leg drive", "ground drive")
         self._drives = drives
         self._cell = cell
-        self._stack = ExitStack()
-        self._time = HostTime()
         self._further: frozenset[str] = frozenset()
         self._hot: dict[int, float] = {}
         self._waiting = np.empty((0, 3))
         self._speeds = {"leg": np.empty((0, 2)), "ground": np.empty((0, 2))}
 
-    @property
-    def source(self) -> str:
-        """Origin of the samples: `real` or `sim:WHAT`."""
-        return self._drives.source
-
-    @property
-    def streams(self) -> tuple[Stream, ...]:
-        """Drives and load cell."""
-        return (self._drives, self._cell)
-
-    @property
-    def watched(self) -> tuple[str, ...]:
-        """Load cell, both drives, and their temperatures where they are guarded."""
-        devices = ("load cell", "leg drive", "ground drive")
-        hot = ("temperature of the leg drive", "temperature of the ground drive")
-        return devices + (hot if "temperature_celsius" in self._further else ())
-
     def watch(self, limits: Collection[str]) -> None:
         """Start to measure the guarded quantities besides the two forces; see `Bench.watch`."""
         self._further = frozenset(limits)
         if "temperature_celsius" in self._further:
-            self._drives.ask_for_temperatures()
+            self.watched += ("temperature of the leg drive", "temperature of the ground drive")
+            self._drives.request_temperatures()
 
     def read(self) -> Batch:
         """Return the samples that have arrived; see `Bench.read`."""
         turned, weighed = self._drives.read(0.0), self._cell.read(0.0)
-        forces = decode_forces(self._cell_settings, weighed)
+        hot = self._drives.take_temperatures()
+        forces = decode_forces(self._cell.profile, weighed)
         taken = {"load cell": self._time.map(weighed)}
         new = np.column_stack([taken["load cell"], forces.normal, forces.traction])
         self._waiting = np.concatenate([self._waiting, new])
-        heard: dict[str, Sequence[object]] = {"load cell": weighed}
+        arrived: dict[str, Sequence[object]] = {"load cell": weighed}
         speeds: dict[str, Array] = {}
-        for disc, drive in (("leg", self._settings.leg), ("ground", self._settings.ground)):
+        drives = self._drives.profile
+        for disc, drive in (("leg", drives.leg), ("ground", drives.ground)):
             own = [sample for sample in turned if sample.channel == drive.node]
-            heard[f"{disc} drive"] = own
+            arrived[f"{disc} drive"] = own
             rows = np.reshape([(s.host_time, disc_speed(drive, s.counts[1])) for s in own], (-1, 2))
             taken[f"{disc} drive"], speeds[disc] = rows.T
             self._speeds[disc] = np.concatenate([self._speeds[disc], rows])
-        hot = self._drives.take_temperatures()
-        for disc, drive in (("leg", self._settings.leg), ("ground", self._settings.ground)):
-            heard[f"temperature of the {disc} drive"] = hot[drive.node]
-        status = int(np.bitwise_or.reduce(weighed.status))
+            arrived[f"temperature of the {disc} drive"] = hot[drive.node]
+        fault = describe_status(int(np.bitwise_or.reduce(weighed.status)))
         return Batch(
-            readings=self._line_up(),
+            readings=self._interpolate_speeds(),
             normal=forces.normal,
             traction=forces.traction,
             speeds=speeds,
-            heard=heard,
+            arrived=arrived,
             further=self._further_loads(weighed, hot),
             taken=taken,
-            fault=f"load cell: {describe_status(status)}" if describe_status(status) else "",
+            fault=f"load cell: {fault}" if fault else "",
             raw={self._drives.name: turned, self._cell.name: weighed},
         )
-
-    def require_healthy(self) -> None:
-        """Check both drives; see `Bench.require_healthy`."""
-        self._drives.require_healthy()
 
     def _further_loads(
         self, weighed: SampleColumns, hot: Mapping[int, list[float]]
@@ -282,7 +202,7 @@ class DrivesBench(_DiscPair):
         """Return the guarded values of the load cell's other channels and of the temperatures."""
         if not self._further:
             return {}
-        lateral, torque = decode_further_loads(self._cell_settings, weighed)
+        lateral, torque = decode_further_loads(self._cell.profile, weighed)
         hottest = []
         for node, answers in hot.items():
             for self._hot[node] in answers:  # one series: a cool drive hides no hot one
@@ -294,7 +214,7 @@ class DrivesBench(_DiscPair):
         }
         return {k: v for k, v in found.items() if k in self._further and v is not None}
 
-    def _line_up(self) -> Readings:
+    def _interpolate_speeds(self) -> Readings:
         """Interpolate both speeds at the times of the forces; later forces wait for speeds."""
         if not all(len(speeds) for speeds in self._speeds.values()):
             self._waiting = self._waiting[:0]
@@ -309,21 +229,6 @@ class DrivesBench(_DiscPair):
                 self._speeds[disc] = speeds[max(before, 0) :]
         return Readings(ready[:, 0], across[0], across[1], ready[:, 1], ready[:, 2])
 
-    def __enter__(self) -> Self:
-        with ExitStack() as stack:
-            stack.enter_context(self._cell)
-            stack.enter_context(self._drives)  # left first: it de-energises
-            self._stack = stack.pop_all()
-        return self
-
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
-        self._stack.__exit__(kind, error, trace)
-
 
 def make_bench(devices: RigDevices) -> Bench:
     """Return the bench for a rig's devices, real or simulated.
@@ -335,13 +240,12 @@ def make_bench(devices: RigDevices) -> Bench:
         The bench, not yet entered.
 
     Raises:
-        ProfileError: There is neither a board nor drives and a Net F/T cell.
+        ProfileError: There is neither a board nor drives and a load cell.
     """
-    profile = devices.profile
-    if devices.board is not None and profile.board is not None:
-        return BoardBench(devices.board, profile=profile, settings=profile.board)
-    cell = devices.load_cell
-    if devices.drives is not None and isinstance(cell, NetFtCell) and profile.drives is not None:
-        settings = (profile.drives, cell.profile)
-        return DrivesBench(devices.drives, cell, profile=profile, settings=settings)
-    raise ProfileError(f"profile '{profile.name}' has neither a board nor drives and load cell")
+    if devices.board is not None:
+        return BoardBench(devices.board, profile=devices.profile)
+    if devices.drives is not None and devices.load_cell is not None:
+        return DrivesBench(devices.drives, devices.load_cell, profile=devices.profile)
+    raise ProfileError(
+        f"profile '{devices.profile.name}' has neither a board nor drives and load cell"
+    )

@@ -22,7 +22,7 @@ class RigState(Enum):
     STOPPED = "stopped"
     """The drives are de-energised; the run is over."""
     LATCHED = "latched"
-    """As STOPPED, after an emergency stop that a person must reset."""
+    """STOPPED after an emergency stop, until a person resets it."""
 
 
 _STOP_NAMES: Final = {
@@ -78,7 +78,7 @@ class Condition:
         'Ctrl-C or e: emergency stop (de-energise at once, latched)'
         """
         if self.state in (RigState.STOPPED, RigState.LATCHED):
-            return "no key does anything any more: the run is over"
+            return "keys have no effect: the run has ended"
         by_ctrl_c = next_stop(self.pending)
         known = [
             f"{'Ctrl-C or ' if category is by_ctrl_c else ''}{_KEYS[category]}: {name}"
@@ -86,8 +86,8 @@ class Condition:
             if category > (self.pending or 0) or category is StopCategory.EMERGENCY
         ]
         if self.state is RigState.HOLDING:
-            known.insert(0, "r: go on")
-            known.append(f"without a word a safe stop follows after {self.hold:g} s")
+            known.insert(0, "r: resume")
+            known.append(f"a safe stop follows after {self.hold:g} s without a command")
         elif self.state is RigState.RUNNING:
             known.insert(0, "Enter: confirm a prompt; p: pause after this point")
         return "; ".join(known)

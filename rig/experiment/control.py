@@ -45,7 +45,7 @@ class Control:
         self._confirmed = False
         self._notes: deque[Note] = deque()
 
-    def obey(self, line: str, *, who: str) -> str:
+    def execute(self, line: str, *, who: str) -> str:
         """Execute a command given as a line of text.
 
         Args:
@@ -59,18 +59,15 @@ class Control:
             ProtocolError: There is no such command.
         """
         command, _, text = line.strip().partition(" ")
+        actions = {"pause": self.pause, "resume": self.resume, "confirm": self.confirm}
         if command == "status":
             return self.status
         if command in STOPS:
-            self.stop.request(STOPS[command], storable_note(text) or f"asked for by {who}")
+            self.stop.request(STOPS[command], storable_note(text) or f"requested by {who}")
         elif command == "note" and text:
             self._notes.append(Note("note", f"{who}: {storable_note(text)}"))
-        elif command == "pause":
-            self.pause()
-        elif command == "resume":
-            self.resume()
-        elif command == "confirm":
-            self.confirm()
+        elif command in actions:
+            actions[command]()
         else:
             raise ProtocolError(f"found '{line.strip()[:80]}'; expected {', '.join(COMMANDS)}")
         return "done"
@@ -90,13 +87,13 @@ class Control:
     def pause(self) -> None:
         """Hold after the point that is being measured."""
         self.paused = True
-        self._notes.append(Note("pause", "asked for"))
+        self._notes.append(Note("pause", "requested"))
 
     def resume(self) -> None:
         """Resume after a pause or a soft stop; harder stops stay."""
         self.paused = False
         self.stop.release()
-        self._notes.append(Note("resume", "asked for"))
+        self._notes.append(Note("resume", "requested"))
 
     def confirm(self) -> None:
         """Confirm that the action requested by a prompt is done."""

@@ -13,7 +13,6 @@ import socketserver
 import sys
 import threading
 from functools import partial
-from types import TracebackType
 from typing import Final, Self
 
 from rig.errors import LinkError, PartFailed, ProtocolError
@@ -22,9 +21,9 @@ from rig.experiment.supervision import start_thread
 
 LONGEST_LINE: Final = 4 * LONGEST_NOTE + 256
 """Longest line, with a token and a command of `LONGEST_NOTE` characters [bytes]."""
-PATIENCE: Final = 600.0
+IDLE_TIMEOUT: Final = 600.0
 """Silence after which a client is disconnected [s]."""
-JOIN_LIMIT: Final = 2.0
+JOIN_TIMEOUT: Final = 2.0
 
 
 class ControlServer:
@@ -53,7 +52,7 @@ class ControlServer:
         if not hmac.compare_digest(token.encode(), self.token.encode()):
             return "error: wrong token; it is in the run's control.json"
         try:
-            return f"ok {self._control.obey(command, who='socket')}"
+            return f"ok {self._control.execute(command, who='socket')}"
         except ProtocolError as problem:
             return f"error: {problem}"
 
@@ -61,7 +60,7 @@ class ControlServer:
         answer = self.answer
 
         class Handler(socketserver.StreamRequestHandler):
-            timeout = PATIENCE
+            timeout = IDLE_TIMEOUT
 
             def handle(self) -> None:
                 with contextlib.suppress(OSError):  # disconnected, or silent for too long
@@ -92,16 +91,11 @@ class ControlServer:
             raise
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *exception: object) -> None:
         if self._server is not None and self._thread is not None:
             self._server.shutdown()
             self._server.server_close()
-            self._thread.join(JOIN_LIMIT)
+            self._thread.join(JOIN_TIMEOUT)
 
 
 def send_command(port: int, token: str, command: str, *, timeout: float = 2.0) -> str:
@@ -110,7 +104,7 @@ def send_command(port: int, token: str, command: str, *, timeout: float = 2.0) -
     Args:
         port: Port of its control socket.
         token: Token of the run.
-        command: One of the commands of `Control.obey`.
+        command: One of the commands of `Control.execute`.
         timeout: Longest wait [s].
 
     Returns:
@@ -121,28 +115,28 @@ def send_command(port: int, token: str, command: str, *, timeout: float = 2.0) -
         ProtocolError: The run rejected the command, or the command is not one line of at most
             `LONGEST_NOTE` characters.
     """
-    line = f"{token} {_whole(command)}\n"
+    line = f"{token} {_checked_command(command)}\n"
     try:
         with socket.create_connection(("127.0.0.1", port), timeout=timeout) as link:
             link.sendall(line.encode())
             with link.makefile("r", encoding="utf-8", errors="replace") as lines:
                 reply = lines.readline(LONGEST_LINE).strip()
     except OSError as problem:
-        raise LinkError(f"no run answers at port {port}: {problem}; is it over?") from problem
+        raise LinkError(f"no run answers at port {port}: {problem}; has it ended?") from problem
     if not reply.startswith("ok"):
-        raise ProtocolError(reply.removeprefix("error: ") or "the run hung up")
+        raise ProtocolError(reply.removeprefix("error: ") or "the run closed the connection")
     return reply.removeprefix("ok").strip()
 
 
-def _whole(command: str) -> str:
+def _checked_command(command: str) -> str:
     """Check that a command is one line of allowed length, and escape what cannot be encoded."""
     text = command.strip().encode("utf-8", "backslashreplace").decode("utf-8")
     lines = len(text.splitlines())
     if lines > 1:
-        raise ProtocolError(f"found {lines} lines; expected one command: give each by itself")
+        raise ProtocolError(f"found {lines} lines; expected one command; send each by itself")
     if len(text) > LONGEST_NOTE:
         raise ProtocolError(
-            f"the command has {len(text)} characters; at most {LONGEST_NOTE} are kept: shorten it, "
-            "or give several"
+            f"the command has {len(text)} characters; its limit is {LONGEST_NOTE}: shorten it, "
+            "or send several"
         )
     return text

@@ -3,34 +3,37 @@
 
 from typing import Final, Protocol
 
+from rig.clock import SYSTEM_CLOCK, Clock
 from rig.errors import RigTimeout
 from rig.experiment.control import Control
 
 AXIS_PERIOD: Final = 0.3
 """Time for which a driven axis must keep the force within tolerance [s]."""
+GAIN: Final = 2e-4
+"""Velocity of a driven axis per newton of force error [m/(s N)]."""
+FASTEST: Final = 2e-3
+"""Largest velocity of a driven axis [m/s]."""
 
 
 class LoadSetter(Protocol):
     """Setter of the normal force: called once with the target, then polled at standstill."""
 
-    def request(self, target: float, *, now: float) -> str:
+    def request(self, target: float) -> str:
         """Request a normal force; 0 removes all load.
 
         Args:
             target: Normal force [N].
-            now: Host time [s].
 
         Returns:
             Prompt for the operator; empty where the operator has nothing to do.
         """
         ...
 
-    def follow(self, normal: float, *, now: float) -> bool:
+    def follow(self, normal: float) -> bool:
         """Return whether the requested force is set.
 
         Args:
             normal: Normal force, zero subtracted [N].
-            now: Host time [s].
 
         Raises:
             RigTimeout: It cannot be set.
@@ -58,31 +61,27 @@ class HandShaft:
         self._tolerance = tolerance
         self._target = 0.0
 
-    def request(self, target: float, *, now: float) -> str:
+    def request(self, target: float) -> str:
         """Ask the operator for a force; see `LoadSetter.request`.
 
         Args:
             target: Normal force [N].
-            now: Host time, not used [s].
 
         Returns:
             The prompt for the operator.
         """
-        del now
         self._target = target
         self._control.take_confirmation()  # a confirmation given before this prompt
         if target == 0:
-            return "take all load off the load cell, then confirm"
+            return "remove all load from the load cell, then confirm"
         return f"set the normal force to {target:g} N +/- {self._tolerance:g} N, then confirm"
 
-    def follow(self, normal: float, *, now: float) -> bool:
+    def follow(self, normal: float) -> bool:
         """Return whether the operator has confirmed a force within tolerance.
 
         Args:
             normal: Normal force, zero subtracted [N].
-            now: Host time, not used [s].
         """
-        del now
         if not self._control.take_confirmation():
             return False
         return self._target == 0 or abs(normal - self._target) <= self._tolerance
@@ -106,49 +105,39 @@ class DrivenShaft:
         axis: The axis.
         tolerance: Largest distance from the target [N].
         patience: Timeout of setting a force [s].
-        gain: Velocity per newton of force error [m/(s N)].
-        fastest: Largest velocity [m/s].
+        clock: Host time.
     """
 
     def __init__(
-        self,
-        axis: LoadAxis,
-        *,
-        tolerance: float,
-        patience: float,
-        gain: float = 2e-4,
-        fastest: float = 2e-3,
+        self, axis: LoadAxis, *, tolerance: float, patience: float, clock: Clock = SYSTEM_CLOCK
     ) -> None:
         self._axis = axis
         self._tolerance = tolerance
         self._patience = patience
-        self._gain = gain
-        self._fastest = fastest
+        self._clock = clock
         self._target = 0.0
         self._asked = self._since = 0.0
         self._lowest = 0.0
 
-    def request(self, target: float, *, now: float) -> str:
+    def request(self, target: float) -> str:
         """Set the target of the axis; see `LoadSetter.request`.
 
         Args:
             target: Normal force; 0 unloads [N].
-            now: Host time [s].
 
         Returns:
             An empty text: the operator has nothing to do.
         """
         self._target = target
-        self._asked = self._since = now
+        self._asked = self._since = self._clock.now()
         self._lowest = float("inf")
         return ""
 
-    def follow(self, normal: float, *, now: float) -> bool:
+    def follow(self, normal: float) -> bool:
         """Move the axis in proportion to the force error until the force stays in tolerance.
 
         Args:
             normal: Normal force, zero subtracted [N].
-            now: Host time [s].
 
         Returns:
             Whether the force has been within its tolerance for `AXIS_PERIOD`.
@@ -156,7 +145,7 @@ class DrivenShaft:
         Raises:
             RigTimeout: The force was not reached within `patience`.
         """
-        missing = self._target - normal
+        now, missing = self._clock.now(), self._target - normal
         if self._target == 0:
             missing = self._withdraw(normal, now)
         elif abs(missing) > self._tolerance:
@@ -164,13 +153,13 @@ class DrivenShaft:
         if now - self._asked > self._patience:
             self.halt()
             raise RigTimeout(
-                f"the load axis did not bring {self._target:g} N but {normal:.3g} N",
+                f"the load axis did not reach {self._target:g} N (it is at {normal:.3g} N)",
                 waited=now - self._asked,
             )
         if now - self._since >= AXIS_PERIOD:
             self.halt()
             return True
-        self._axis.move(min(max(self._gain * missing, -self._fastest), self._fastest))
+        self._axis.move(min(max(GAIN * missing, -FASTEST), FASTEST))
         return False
 
     def _withdraw(self, normal: float, now: float) -> float:
@@ -180,7 +169,7 @@ class DrivenShaft:
         """
         if normal < self._lowest - self._tolerance / 4:
             self._lowest, self._since = normal, now
-        return -self._fastest / self._gain
+        return -FASTEST / GAIN
 
     def halt(self) -> None:
         """Hold the axis."""

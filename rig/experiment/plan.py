@@ -2,7 +2,7 @@
 """The plan of an experiment as frozen dataclasses: points, load, settling, acceptance, limits."""
 
 from dataclasses import dataclass
-from typing import Final, Literal, TypeAlias
+from typing import Any, Final, Literal, TypeAlias
 
 from rig.device import Limits
 from rig.slip_rig.profile import FURTHER_LIMITS
@@ -170,7 +170,7 @@ class RunLimits:
     guards_off: tuple[str, ...]
 
     @property
-    def off_said(self) -> str:
+    def guards_off_text(self) -> str:
         """Text with the guards that are off and their limits; empty where none is."""
         return ", ".join(
             f"{name} ({getattr(self, name):g} {LIMIT_UNITS[name]})" for name in self.guards_off
@@ -231,14 +231,8 @@ def rig_limits(limits: RunLimits, allowed: Limits) -> Limits:
     Returns:
         The limits that hold for the run.
     """
-    further = {
-        key: min((own for own in (getattr(limits, key), getattr(allowed, key)) if own is not None),
-                 default=None)
-        for key in FURTHER_LIMITS
-    }  # fmt: skip
-    return Limits(
-        speed=min(limits.speed, allowed.speed),
-        normal_force=min(limits.normal_force, allowed.normal_force),
-        traction_force=min(limits.traction_force, allowed.traction_force),
-        **further,
-    )
+    smaller: dict[str, Any] = {
+        name: min((v for v in (getattr(limits, name), own) if v is not None), default=None)
+        for name, own in vars(allowed).items()
+    }
+    return Limits(**smaller)

@@ -156,13 +156,13 @@ def _require_guard(table: TomlTable, limits: RunLimits, name: str, highest: floa
     value, unit = getattr(limits, name), LIMIT_UNITS[name]
     if value > highest and name not in limits.guards_off:
         raise table.fault(
-            f"found {value:g} {unit}, above {highest:g} {unit}, where the guard is as good as off; "
+            f"found {value:g} {unit}, above {highest:g} {unit}, where the guard has no effect; "
             f'lower it, or write guards_off = ["{name}"]',
             name,
         )
     if value <= highest and name in limits.guards_off:
         raise table.fault(
-            f"names '{name}', whose limit of {value:g} {unit} guards; take it out, or raise the "
-            f"limit above {highest:g} {unit}",
+            f"names '{name}', whose limit of {value:g} {unit} has an effect; remove the name, or "
+            f"raise the limit above {highest:g} {unit}",
             "guards_off",
         )

@@ -14,7 +14,7 @@ from rig.slip_rig.decode import Zero
 
 FASTEST_DRIFT: Final = 0.01
 """Largest drift of a device's clock, that of oscillators without a quartz [-]."""
-BEGAN_ANEW: Final = 0.1
+RESTART_DELAY: Final = 0.1
 """Excess of a sample's delay over the largest possible one that means a device restart [s]."""
 
 
@@ -72,7 +72,7 @@ class Batch:
         traction: Every traction force that has just arrived, shape (m,) [N].
         speeds: Every speed of each disc that has just arrived, by `leg` and `ground`, each of
             shape (k,) [rad/s].
-        heard: Samples of each device or answer that is checked for silence, by name.
+        arrived: Samples of each device or answer that is checked for silence, by name.
         further: New values of other guarded quantities, by the name of their limit.
         taken: Host times at which new readings were taken, by device; arrival times where the
             device sends no time, shape (n,) [s].
@@ -84,7 +84,7 @@ class Batch:
     normal: Array
     traction: Array
     speeds: Mapping[str, Array]
-    heard: Mapping[str, Sequence[object]]
+    arrived: Mapping[str, Sequence[object]]
     further: Mapping[str, Array]
     taken: Mapping[str, Array]
     fault: str
@@ -112,7 +112,7 @@ class HostTime:
         lag = host - device
         least, elapsed = float(lag.min()), float(host[-1]) - self._read_at
         # A delay cannot grow faster than time passes; if it does, the device has restarted.
-        if lag[-1] > self._lag + elapsed + BEGAN_ANEW:
+        if lag[-1] > self._lag + elapsed + RESTART_DELAY:
             self._offset = least
         else:
             self._offset = min(self._offset + FASTEST_DRIFT * max(elapsed, 0.0), least)

@@ -84,12 +84,12 @@ class RestProof:
         if not abs(mean) <= self._limit:
             return f"its mean speed over {WINDOW:g} s is {mean:.3g} rad/s"
         if not scatter <= SCATTER * self._limit:
-            return f"its speed swings about zero by {scatter:.3g} rad/s"
+            return f"its speed oscillates, with a root mean square of {scatter:.3g} rad/s"
         return ""
 
 
 def prove_rest(
-    look: Callable[[], Batch],
+    poll: Callable[[], Batch],
     limit: float,
     *,
     longest: float,
@@ -99,7 +99,7 @@ def prove_rest(
     """Poll a rig until standstill of both discs is verified.
 
     Args:
-        look: Waits one period and returns the new samples.
+        poll: Waits one period and returns the new samples.
         limit: Largest mean speed of a disc that stands [rad/s].
         longest: Timeout [s].
         clock: Host time.
@@ -112,4 +112,4 @@ def prove_rest(
     while not proof.holds(now=clock.now()):
         if clock.now() - began >= longest:
             raise proof.failure(waited=clock.now() - began)
-        proof.take(look(), now=clock.now())
+        proof.take(poll(), now=clock.now())

@@ -1,29 +1,29 @@
 # SPDX-License-Identifier: MIT
 """Run a plan on a bench: zero, load, settle, record, check, repeat; and carry out stops."""
 
-from collections.abc import Callable, Collection
-from dataclasses import dataclass
+from collections.abc import Collection
+from dataclasses import InitVar, dataclass
 from typing import Final
 
 from rig.clock import SYSTEM_CLOCK, Clock
-from rig.errors import LimitExceeded, ProtocolError, RigError
+from rig.errors import LimitExceeded, ProtocolError
 from rig.experiment.acquire import PERIOD, GuardedAcquisition
 from rig.experiment.bench import Bench
 from rig.experiment.condition import Condition, RigState
 from rig.experiment.control import Control
 from rig.experiment.load import LoadSetter
+from rig.experiment.measure import record, settle, take_zero
 from rig.experiment.plan import Plan
-from rig.experiment.readings import Batch, Readings, join
+from rig.experiment.readings import Batch
 from rig.experiment.sink import RunSink, RunStart, SinkFailed
 from rig.experiment.steps import Point, Step, Tare, estimate, require_allowed, spell_out
-from rig.experiment.verdict import LEAST_COVERED, PointVerdict, is_steady, judge_point, span
-from rig.experiment.watcher import ExperimentWatcher, NobodyWatches
+from rig.experiment.verdict import PointVerdict, judge_point
+from rig.experiment.watcher import ExperimentWatcher
 from rig.safety import StopCategory, StopRequested
-from rig.slip_rig.decode import Forces, Zero, require_zero, tare
+from rig.slip_rig.decode import Zero, require_zero
 
-REST_LIMIT: Final = 5.0
+REST_TIMEOUT: Final = 5.0
 """Timeout for the discs to stand after their set-points are zero [s]."""
-ZERO_ATTEMPTS: Final = 3
 UNLOADED: Final = Zero(0.0, 0.0, 0.0)
 
 
@@ -86,41 +86,37 @@ def run_plan(
     """
     require_allowed(plan, bench.profile)
     if control.stop.latched:
-        raise ProtocolError("an emergency stop is latched; look after the rig, then reset it")
-    run = _Run(plan, bench, load, sink, control, watcher or NobodyWatches(), clock, period, done)
+        raise ProtocolError("an emergency stop is latched; inspect the rig, then reset it")
+    run = _Run(
+        plan, bench, load, sink, control, watcher or ExperimentWatcher(), clock, period, done
+    )
     return run.go()
 
 
+@dataclass
 class _Run:
-    """One run of a plan."""
+    """One run of a plan; see `run_plan`."""
 
-    def __init__(
-        self,
-        plan: Plan,
-        bench: Bench,
-        load: LoadSetter,
-        sink: RunSink,
-        control: Control,
-        watcher: ExperimentWatcher,
-        clock: Clock,
-        period: float,
-        done: Collection[int],
-    ) -> None:
-        self._plan = plan
-        self._bench = bench
-        self._load = load
-        self._sink = sink
-        self._control = control
-        self._watcher = watcher
-        self._clock = clock
+    _plan: Plan
+    _bench: Bench
+    _load: LoadSetter
+    _sink: RunSink
+    _control: Control
+    _watcher: ExperimentWatcher
+    _clock: Clock
+    period: InitVar[float]
+    done: InitVar[Collection[int]]
+
+    def __post_init__(self, period: float, done: Collection[int]) -> None:
         self._acquire = GuardedAcquisition(
-            bench, limits=plan.limits, control=control, sink=sink, clock=clock, period=period
-        )
-        self._steps = spell_out(plan)
-        numbers = {step.number for step in self._steps if isinstance(step, Point)}
-        self._done = numbers & set(done)
+            self._bench, limits=self._plan.limits, control=self._control, sink=self._sink,
+            clock=self._clock, period=period,
+        )  # fmt: skip
+        self._steps = spell_out(self._plan)
+        points = {step.number for step in self._steps if isinstance(step, Point)}
+        self._points = len(points)
+        self._done = points & set(done)
         self._past = set(self._done)
-        self._points = sum(isinstance(step, Point) for step in self._steps)
         self._zero: Zero | None = None
         self._loaded: float | None = None
         self._recording = False
@@ -133,7 +129,7 @@ class _Run:
         try:
             self._show(RigState.PREPARING)
             with self._bench:
-                reason = self._guarded()
+                reason = self._execute_plan()
         except BaseException as error:
             reason = f"{type(error).__name__}: {error}"
             raise
@@ -143,28 +139,28 @@ class _Run:
             self._finish(reason)
         return Outcome(reason, len(self._done), tuple(self._refused), self._attempts)
 
-    def _guarded(self) -> str:
+    def _execute_plan(self) -> str:
         """Carry out the steps, and stops that end the run."""
         self._sink.event("begin", f"{self._plan.name}, {self._bench.source}")
         if self._plan.limits.guards_off:
-            self._sink.event("guards off", self._plan.limits.off_said)
+            self._sink.event("guards off", self._plan.limits.guards_off_text)
         try:
             self._acquire.arm()
             self._show(RigState.RUNNING)
             for step in self._remaining():
-                self._softly(step)
-            self._show(RigState.STOPPING, "the plan is done")
-            self._acquire.come_to_rest(REST_LIMIT)
+                self._carry_out(step)
+            self._show(RigState.STOPPING, "the plan is complete")
+            self._acquire.come_to_rest(REST_TIMEOUT)
         except StopRequested as asked:
-            self._obey(asked)
+            self._stop(asked)
             if self._control.failure is not None:
                 raise self._control.failure from asked
             hardest = self._control.stop.pending  # another stop may have arrived during the ramp
             return str(asked if hardest is None else StopRequested(hardest))
         except SinkFailed as failed:
             self._show(RigState.STOPPING, str(failed))
-            self._acquire.heed_no_more(StopCategory.SAFE)
-            self._rest_without_sink()
+            self._acquire.ignore_stops(StopCategory.SAFE)
+            self._acquire.rest_without_sink(REST_TIMEOUT)
             raise
         return "completed"
 
@@ -177,11 +173,12 @@ class _Run:
         return [step for k, step in enumerate(left) if isinstance(step, Point)
                 or k + 1 == first or (k > first and isinstance(left[k - 1], Point))]  # fmt: skip
 
-    def _softly(self, step: Step) -> None:
+    def _carry_out(self, step: Step) -> None:
         """Carry out a step; hold on a soft stop, then repeat the step."""
         while True:
             try:
-                self._pause_if_asked()
+                if self._control.paused:
+                    self._hold("pause")
                 if isinstance(step, Tare) or self._zero is None:
                     self._tare()
                 if isinstance(step, Point):
@@ -197,28 +194,24 @@ class _Run:
                 self._past.add(step.number)
                 return
 
-    def _pause_if_asked(self) -> None:
-        if self._control.paused:
-            self._hold("pause")
-
     def _hold(self, why: str) -> None:
         """Ramp to standstill and wait, energised, until the run is resumed."""
         if self._control.stop.pending is None:
             self._control.stop.request(StopCategory.SOFT, why)  # the next stop is a harder one
-        self._acquire.heed_no_more(StopCategory.SOFT)
+        self._acquire.ignore_stops(StopCategory.SOFT)
         self._sink.event("hold", why)
         self._show(RigState.STOPPING, why)
-        self._acquire.come_to_rest(REST_LIMIT)
+        self._acquire.come_to_rest(REST_TIMEOUT)
         self._show(RigState.HOLDING, why)
 
         def released(_: Batch) -> bool:
             return self._control.stop.pending is None and not self._control.paused
 
         if not self._acquire.until(released, self._plan.limits.hold):
-            waited = f"held for {self._plan.limits.hold:g} s without a word: {why}"
+            waited = f"held for {self._plan.limits.hold:g} s without a command: {why}"
             self._control.stop.request(StopCategory.SAFE, waited)
-        self._acquire.heed_no_more(None)
-        self._acquire.look()  # raises if the wait ended in a harder stop
+        self._acquire.ignore_stops(None)
+        self._acquire.poll()  # raises if the wait ended in a harder stop
         self._sink.event("go on", why)
         self._show(RigState.RUNNING)
 
@@ -234,14 +227,9 @@ class _Run:
         self._watcher.changed(condition)
 
     def _tare(self) -> None:
-        self._tell("zero of the load cell")
+        self._announce("zero of the load cell")
         self._set_load(0.0)
-        duration, raw = self._plan.controls.tare_duration, join([])
-        for _ in range(ZERO_ATTEMPTS):
-            raw = join([batch.readings for batch in self._collect(duration)])
-            if span(raw) >= LEAST_COVERED * duration:
-                break  # otherwise the host was delayed
-        zero = tare(Forces(raw.t, raw.normal_force, raw.traction_force))
+        zero = take_zero(self._acquire, self._plan.controls.tare_duration)
         self._sink.event(
             "zero", f"normal {zero.normal:.4f} N, traction {zero.traction:.4f} N, "
             f"error {zero.standard_error:.4f} N"
@@ -257,8 +245,8 @@ class _Run:
         if target == self._loaded:
             return
         self._loaded = None
-        self._acquire.come_to_rest(REST_LIMIT)
-        prompt = self._load.request(target, now=self._clock.now())
+        self._acquire.come_to_rest(REST_TIMEOUT)
+        prompt = self._load.request(target)
         if prompt:
             self._control.status = prompt
             self._sink.event("prompt", prompt)
@@ -270,7 +258,7 @@ class _Run:
             normal = float(batch.normal.mean()) - zero.normal
             if prompt:
                 self._watcher.prompt(prompt, normal=normal)
-            return self._load.follow(normal, now=self._clock.now())
+            return self._load.follow(normal)
 
         self._acquire.until(is_set, float("inf"))
         self._loaded = target
@@ -290,13 +278,13 @@ class _Run:
         self._sink.event("refused", f"{point.label}: {'; '.join(problems)}")
 
     def _attempt(self, point: Point, attempt: int) -> PointVerdict:
-        self._tell(point.label if attempt == 1 else f"{point.label}, attempt {attempt}")
+        self._announce(point.label if attempt == 1 else f"{point.label}, attempt {attempt}")
         self._attempts += 1
-        settled = self._settle(point)
         zero = self._zero or UNLOADED
+        settled = settle(self._acquire, self._plan, point, zero)
         self._recording = True  # set before opening, which may fail after the run has begun
         self._sink.open_run(RunStart(point, attempt, self._clock.now(), zero))
-        readings = self._record(point, zero)
+        readings = record(self._acquire, self._sink, self._plan, point, zero, clock=self._clock)
         verdict = judge_point(
             readings, point, self._plan.accept, settled=settled,
             duration=self._plan.points.duration, profile=self._bench.profile,
@@ -304,53 +292,7 @@ class _Run:
         self._close("completed", verdict)
         return verdict
 
-    def _settle(self, point: Point) -> bool:
-        """Ramp the discs to the set-points of a point and wait for a steady state."""
-        acquire, criterion = self._acquire, self._plan.settle
-        zero = self._zero or UNLOADED
-        acquire.aim(self._plan.points.omega_leg, point.slips[0])
-        acquire.until(lambda _: not acquire.ramping, float("inf"))
-        wanted = acquire.wanted
-        window: list[Readings] = []
-
-        def steady(batch: Batch) -> bool:
-            if not len(batch.readings):
-                return False
-            window.append(batch.readings.without(zero))
-            start = window[-1].t[-1] - criterion.window
-            while window[0].t[-1] < start:
-                window.pop(0)
-            return is_steady(join(window).since(start), wanted, criterion)
-
-        return acquire.until(steady, criterion.timeout)
-
-    def _record(self, point: Point, zero: Zero) -> Readings:
-        duration = self._plan.points.duration
-        start = self._clock.now()
-        kept: list[Readings] = []
-
-        def keep(batch: Batch) -> None:
-            # Samples can be older than the recording, because they waited for their speeds.
-            readings = batch.readings.without(zero).since(start)
-            kept.append(readings)
-            self._sink.write(readings, batch)
-            if point.kind == "sweep":
-                slip = point.slip_at((self._clock.now() - start) / duration)
-                self._acquire.aim(self._plan.points.omega_leg, slip)
-
-        self._collect(duration, keep)
-        return join(kept)
-
-    def _collect(self, duration: float, keep: Callable[[Batch], None] | None = None) -> list[Batch]:
-        """Poll for a duration; pass each batch to `keep`, or return them all."""
-        batches: list[Batch] = []
-        take = batches.append if keep is None else keep
-        end = self._clock.now() + duration
-        while self._clock.now() < end:
-            take(self._acquire.look())
-        return batches
-
-    def _tell(self, what: str) -> None:
+    def _announce(self, what: str) -> None:
         if self._plan.limits.guards_off:
             what = f"{what} [guards off: {', '.join(self._plan.limits.guards_off)}]"
         left = [step for step in self._steps if step.number not in self._past]
@@ -359,31 +301,21 @@ class _Run:
         self._control.status = f"{what} ({done} of {self._points} points, {seconds:.0f} s left)"
         self._watcher.doing(what, done=done, of=self._points, left=seconds)
 
-    def _obey(self, asked: StopRequested) -> None:
+    def _stop(self, asked: StopRequested) -> None:
         """Bring the rig to rest for a safe or an emergency stop."""
         if asked.stop.category is StopCategory.EMERGENCY:
             self._acquire.disarm()
             self._sink.latch(asked.stop.reason)
             return
         self._show(RigState.STOPPING, str(asked))
-        self._acquire.heed_no_more(asked.stop.category)
+        self._acquire.ignore_stops(asked.stop.category)
         try:
-            self._acquire.come_to_rest(REST_LIMIT)
+            self._acquire.come_to_rest(REST_TIMEOUT)
         except StopRequested:  # a harder stop
             pass
         except SinkFailed:
-            self._rest_without_sink()
+            self._acquire.rest_without_sink(REST_TIMEOUT)
             raise
-        finally:
-            self._acquire.disarm()
-
-    def _rest_without_sink(self) -> None:
-        """Ramp to rest after the sink has failed."""
-        self._acquire.ignore_sink()
-        try:
-            self._acquire.come_to_rest(REST_LIMIT)
-        except (RigError, OSError):
-            pass
         finally:
             self._acquire.disarm()
 
@@ -400,7 +332,7 @@ class _Run:
         stop = self._control.stop.pending
         latched = stop is not None and stop.category is StopCategory.EMERGENCY
         if stop is not None and latched:
-            self._sink.latch(stop.reason)  # also one beside a guard, or in the ramp
+            self._sink.latch(stop.reason)  # also one that came with a guard, or during the ramp
         failed = None
         for keep in (self._close, lambda why: self._sink.event("end", why)):
             try:

@@ -23,28 +23,25 @@ class SimulatedOperator:
     def __init__(self, rig: SimulatedRig) -> None:
         self._rig = rig
 
-    def request(self, target: float, *, now: float) -> str:
+    def request(self, target: float) -> str:
         """Set the load at once; see `LoadSetter.request`.
 
         Args:
             target: Normal force [N].
-            now: Host time, not used [s].
 
         Returns:
             An empty text: nobody has to do anything.
         """
-        del now
         self._rig.load = max(target, LEAST)
         return ""
 
-    def follow(self, normal: float, *, now: float) -> bool:
+    def follow(self, normal: float) -> bool:
         """Return True: the load is set at once.
 
         Args:
             normal: Normal force, not used [N].
-            now: Host time, not used [s].
         """
-        del normal, now
+        del normal
         return True
 
     def halt(self) -> None:

@@ -8,7 +8,7 @@ from typing import Final, Literal, TypeAlias
 import numpy as np
 
 from rig.errors import ProfileError
-from rig.experiment.plan import Plan, ground_speed, rig_limits
+from rig.experiment.plan import LIMIT_UNITS, Plan, ground_speed, rig_limits
 from rig.safety import require_within
 from rig.slip_rig.profile import FURTHER_LIMITS, RigProfile
 
@@ -68,7 +68,7 @@ Step: TypeAlias = Tare | Point
 
 
 def spell_out(plan: Plan) -> tuple[Step, ...]:
-    """List the steps of a plan in order.
+    """Expand a plan into its steps, in order.
 
     The same plan always gives the same steps, also when shuffled: a resumed run relies on this.
     """
@@ -131,15 +131,9 @@ def require_allowed(plan: Plan, profile: RigProfile) -> None:
         ProfileError: The plan limits a quantity that the rig does not measure.
     """
     allowed = rig_limits(plan.limits, profile.limits)
-    for name in ("speed", "normal_force", "traction_force"):
-        unit = "rad/s" if name == "speed" else "N"
-        require_within(
-            getattr(plan.limits, name), getattr(profile.limits, name),
-            quantity=f"the plan's limits.{name}", unit=unit,
-        )  # fmt: skip
-    for key, unit in FURTHER_LIMITS.items():
-        own, rigs = getattr(plan.limits, key), getattr(profile.limits, key)
-        if own is not None and key not in profile.measured:
+    for key, rigs in vars(profile.limits).items():
+        own, unit = getattr(plan.limits, key), LIMIT_UNITS[key]
+        if own is not None and key in FURTHER_LIMITS and key not in profile.measured:
             raise ProfileError(
                 f"the plan's limits.{key} is {own:g} {unit}, but no device of the rig "
                 f"'{profile.name}' measures that; take the limit out, or name another rig"

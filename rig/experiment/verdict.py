@@ -1,16 +1,17 @@
 # SPDX-License-Identifier: MIT
 """Test for steady state, and quality checks of a recorded point."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
 
-from model.slip.definition import SlipDefinition, slip_ratio
 from model.slip.law import Array
 from rig.experiment.plan import Acceptance, SettleCriterion
 from rig.experiment.readings import Readings
 from rig.experiment.steps import Point
+from rig.slip_rig.decode import measured_slip
 from rig.slip_rig.profile import RigProfile
 
 LEAST_COVERED: Final = 0.8
@@ -61,24 +62,6 @@ def friction(readings: Readings) -> float:
     return float(readings.traction_force.sum()) / load if load > 0 else np.nan
 
 
-def measured_slip(readings: Readings, profile: RigProfile) -> Array:
-    """Compute the instantaneous material slip ratio from both speeds.
-
-    Args:
-        readings: Speeds of both discs.
-        profile: Carries the radii of the discs.
-
-    Returns:
-        Slip ratio, NaN or infinite where the leg disc stands still, shape (n,) [-].
-    """
-    with np.errstate(divide="ignore", invalid="ignore"):
-        return slip_ratio(
-            readings.omega_leg * profile.radius_leg,
-            readings.omega_ground * profile.radius_ground,
-            SlipDefinition.MATERIAL,
-        )
-
-
 def is_steady(window: Readings, wanted: tuple[float, float], criterion: SettleCriterion) -> bool:
     """Return whether speeds are at their set-points and both halves of a window agree.
 
@@ -126,27 +109,31 @@ def judge_point(
     """
     if len(readings) < 8:
         return PointVerdict((f"{len(readings)} samples",), len(readings), np.nan, np.nan, np.nan)
-    slip = measured_slip(readings, profile)
-    first, late = halves(readings)
+    slip = measured_slip(readings.omega_leg, readings.omega_ground, profile)
     problems = [] if settled else ["not settled in time"]
     covered = span(readings)
     if covered < LEAST_COVERED * duration:
         problems.append(f"samples cover {covered:.2f} s of {duration:g} s")
-    wanted = float(np.mean([point.slip_at(f) for f in np.linspace(0, 1, 101)]))
-    off = float(slip.mean()) - wanted
-    if not abs(off) <= accept.slip:
-        problems.append(f"mean slip is {off:+.4f} off its set-point (limit {accept.slip:g})")
-    if point.kind != "sweep":
-        drift = float(slip[len(first) :].mean() - slip[: len(first)].mean())
-        if not abs(drift) <= accept.slip_drift:
-            problems.append(f"slip drifted by {drift:+.4f} (limit {accept.slip_drift:g})")
-        change = friction(late) - friction(first)
-        if not abs(change) <= accept.friction_drift:
-            problems.append(f"friction drifted by {change:+.3f} (limit {accept.friction_drift:g})")
     return PointVerdict(
-        problems=tuple(problems),
+        problems=(*problems, *_deviations(readings, slip, point, accept)),
         samples=len(readings),
         slip=float(slip.mean()),
         friction=friction(readings),
         normal_force=float(np.median(readings.normal_force)),
     )
+
+
+def _deviations(readings: Readings, slip: Array, point: Point, accept: Acceptance) -> Iterator[str]:
+    """Yield what is wrong with the slip ratio and the friction of a recorded point."""
+    wanted = float(np.mean([point.slip_at(f) for f in np.linspace(0, 1, 101)]))
+    off = float(slip.mean()) - wanted
+    if not abs(off) <= accept.slip:
+        yield f"mean slip is {off:+.4f} off its set-point (limit {accept.slip:g})"
+    if point.kind != "sweep":
+        first, late = halves(readings)
+        drift = float(slip[len(first) :].mean() - slip[: len(first)].mean())
+        if not abs(drift) <= accept.slip_drift:
+            yield f"slip drifted by {drift:+.4f} (limit {accept.slip_drift:g})"
+        change = friction(late) - friction(first)
+        if not abs(change) <= accept.friction_drift:
+            yield f"friction drifted by {change:+.3f} (limit {accept.friction_drift:g})"

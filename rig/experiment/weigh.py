@@ -15,9 +15,9 @@ from rig.experiment.load import LoadSetter
 from rig.experiment.readings import Batch
 from rig.experiment.rest import prove_rest
 from rig.safety import REST_SPEED
+from rig.slip_rig.decode import BATCHES, standard_error
 
-BATCHES: Final = 10
-REST_LIMIT: Final = 5.0
+REST_TIMEOUT: Final = 5.0
 """Timeout for the verification that both discs stand [s]."""
 
 
@@ -88,22 +88,16 @@ def weigh(
         ProtocolError: The load cell sends too few samples.
     """
 
-    def look() -> Batch:
+    def poll() -> Batch:
         clock.sleep(period)
         return bench.read()
 
     bench.read()  # discard what is in buffers
     readings, errors = [], []
     for force in (0.0, *forces):
-        prove_rest(look, REST_SPEED, longest=REST_LIMIT, clock=clock)
-        text = load.request(force, now=clock.now())
-        waiting = True
-        while waiting:
-            normal = look().normal
-            if len(normal):
-                prompt(text, float(normal.mean()))
-                waiting = not load.follow(float(normal.mean()), now=clock.now())
-        mean, error = _read(look, duration, clock)
+        prove_rest(poll, REST_SPEED, longest=REST_TIMEOUT, clock=clock)
+        _set_load(poll, load, force, prompt)
+        mean, error = _read(poll, duration, clock)
         readings.append(mean)
         errors.append(error)
     return Weighing((0.0, *forces), tuple(readings), tuple(errors))
@@ -121,7 +115,7 @@ def check_gain(weighing: Weighing, *, weight_sd: float = 1e-3) -> GainCheck:
     """
     force, reading = np.array(weighing.forces), np.array(weighing.readings)
     if np.ptp(force) <= 0:
-        raise ProtocolError("one weight only; expected at least one beside no load")
+        raise ProtocolError("found a single force; expected at least one weight besides no load")
     design = np.column_stack([np.ones_like(force), force])
     error = np.maximum(np.array(weighing.errors), 1e-9)
     weighted = design / error[:, None]
@@ -141,14 +135,26 @@ def check_gain(weighing: Weighing, *, weight_sd: float = 1e-3) -> GainCheck:
     )
 
 
-def _read(look: Callable[[], Batch], duration: float, clock: Clock) -> tuple[float, float]:
+def _set_load(
+    poll: Callable[[], Batch], load: LoadSetter, force: float, prompt: Callable[[str, float], None]
+) -> None:
+    """Request a load and wait until it is set."""
+    text = load.request(force)
+    waiting = True
+    while waiting:
+        normal = poll().normal
+        if len(normal):
+            prompt(text, float(normal.mean()))
+            waiting = not load.follow(float(normal.mean()))
+
+
+def _read(poll: Callable[[], Batch], duration: float, clock: Clock) -> tuple[float, float]:
     """Average the normal force over a duration; return mean and batch-means error [N]."""
     end = clock.now() + duration
     parts = []
     while clock.now() < end:
-        parts.append(look().normal)
+        parts.append(poll().normal)
     values = np.concatenate(parts)
     if len(values) < 2 * BATCHES:
         raise ProtocolError(f"{len(values)} samples in {duration:g} s; is the load cell running?")
-    means = [batch.mean() for batch in np.array_split(values, BATCHES)]
-    return float(values.mean()), float(np.std(means, ddof=1) / np.sqrt(BATCHES))
+    return float(values.mean()), standard_error(values)

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: MIT
-"""Inertial measurement units that record the robot's orientation beside its legs."""
+"""Inertial measurement units that record the robot's orientation in addition to its legs."""

@@ -1,17 +1,14 @@
 # SPDX-License-Identifier: MIT
-"""Simulated inertial measurement unit on a body with a given motion.
+"""Simulated inertial measurement unit on a rocking body.
 
-Not modelled: temperature, vibration and the unit's own filter.
+Not modelled: noise, drift, temperature, vibration and the unit's own filter.
 """
 
-from collections.abc import Callable
-from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from rig.errors import ProtocolError
 from rig.imu.profile import ImuProfile, encode_orientation
 from rig.links.faults import PERFECT_LINE, Faults, FaultyWire
 from rig.links.packet import TICK, Kind, Packet, encode_packet
@@ -19,38 +16,6 @@ from rig.zebro.profile import Array
 
 GRAVITY: Final = 9.81
 STEP: Final = 1e-4
-
-Attitude = Callable[[float], tuple[float, float, float]]
-"""Roll, pitch and yaw [rad] at a time [s]."""
-
-
-@dataclass(frozen=True)
-class ImuImperfections:
-    """Noise and drift of a unit; the defaults are an ideal one.
-
-    Attributes:
-        angle_noise: Standard deviation of the orientation about each axis [rad].
-        rate_noise: Standard deviation of the angular rate [rad/s].
-        force_noise: Standard deviation of the specific force [m/s²].
-        yaw_drift: Drift rate of the heading [rad/s].
-
-    Raises:
-        ProtocolError: A standard deviation is negative.
-    """
-
-    angle_noise: float = 0.0
-    rate_noise: float = 0.0
-    force_noise: float = 0.0
-    yaw_drift: float = 0.0
-
-    def __post_init__(self) -> None:
-        for name in ("angle_noise", "rate_noise", "force_noise"):
-            if not getattr(self, name) >= 0:
-                raise ProtocolError(f"{name} is {getattr(self, name):g}; expected 0 or more")
-
-
-PERFECT_UNIT = ImuImperfections()
-"""A unit without noise and drift."""
 
 
 def rocking(time: float) -> tuple[float, float, float]:
@@ -70,27 +35,20 @@ class SimulatedImu:
     """Simulated unit that sends packets; satisfies `ByteTwin`.
 
     Args:
-        attitude: Motion of the body.
         profile: Scale of the counts, mounting and rate of the unit.
-        imperfections: Its noise and drift.
         faults: Transmission errors of the line.
         rng: Random generator.
     """
 
     def __init__(
         self,
-        attitude: Attitude = rocking,
         *,
         profile: ImuProfile,
-        imperfections: ImuImperfections = PERFECT_UNIT,
         faults: Faults = PERFECT_LINE,
         rng: np.random.Generator,
     ) -> None:
         self.source = "sim:imu"
-        self._attitude = attitude
         self._profile = profile
-        self._imperfections = imperfections
-        self._rng = rng
         self._wire = FaultyWire(faults, rng=rng)
         self._switched_on: float | None = None
         self._number = 0
@@ -111,28 +69,23 @@ class SimulatedImu:
         due = int((now - self._switched_on) * self._profile.rate + 1e-9) + 1
         frames = [self._encode(number) for number in range(self._number, due)]
         self._number = due
-        return self._wire.carry(frames)
+        return self._wire.stream(frames)
 
     def _encode(self, number: int) -> bytes:
         time = number / self._profile.rate
-        counts = encode_orientation(self._profile, *self._measure(time))
+        counts = encode_orientation(self._profile, *_motion(time))
         ticks = round(time / TICK)
         body = self._profile.body.pack(*counts)
         return encode_packet(Packet(Kind.ORIENTATION, number, ticks, body))
 
-    def _measure(self, time: float) -> tuple[Rotation, Array, Array]:
-        added = self._imperfections
-        rotation = self._rotation(time)
-        turned = (rotation.inv() * self._rotation(time + STEP)).as_rotvec()
-        upward = rotation.inv().apply([0.0, 0.0, GRAVITY])
-        error = Rotation.from_rotvec(added.angle_noise * self._rng.standard_normal(3))
-        return (
-            rotation * error,
-            turned / STEP + added.rate_noise * self._rng.standard_normal(3),
-            upward + added.force_noise * self._rng.standard_normal(3),
-        )
 
-    def _rotation(self, time: float) -> Rotation:
-        roll, pitch, yaw = self._attitude(time)
-        drift = self._imperfections.yaw_drift * time
-        return Rotation.from_euler("ZYX", [yaw + drift, pitch, roll])
+def _motion(time: float) -> tuple[Rotation, Array, Array]:
+    """Compute the body's rotation, its angular rate and the specific force at a time."""
+    rotation = _rotation(time)
+    turned = (rotation.inv() * _rotation(time + STEP)).as_rotvec()
+    return rotation, turned / STEP, rotation.inv().apply([0.0, 0.0, GRAVITY])
+
+
+def _rotation(time: float) -> Rotation:
+    roll, pitch, yaw = rocking(time)
+    return Rotation.from_euler("ZYX", [yaw, pitch, roll])

@@ -14,7 +14,7 @@ class ImuStream(PacketStream):
     Args:
         link: Bytes from the unit.
         profile: Its profile.
-        name: Name of the stream; two units beside each other need two names.
+        name: Name of the stream; each of several units needs its own.
         clock: Host time.
     """
 

@@ -4,17 +4,12 @@
 from typing import Protocol
 
 
-class ByteLink(Protocol):
-    """Bytes to and from one device."""
+class Link(Protocol):
+    """A connection that is opened and closed: a serial port, a CAN bus, a socket."""
 
     @property
     def source(self) -> str:
-        """Origin of the bytes: `real` or `sim:WHAT`."""
-        ...
-
-    @property
-    def reconnected(self) -> int:
-        """Number of times that the link came back after a disconnection."""
+        """Origin of the data: `real` or `sim:WHAT`."""
         ...
 
     def open(self) -> None:
@@ -27,6 +22,15 @@ class ByteLink(Protocol):
 
     def close(self) -> None:
         """Close the link; a second call has no effect."""
+        ...
+
+
+class ByteLink(Link, Protocol):
+    """Bytes to and from one device."""
+
+    @property
+    def reconnected(self) -> int:
+        """Number of times that the link came back after a disconnection."""
         ...
 
     def read(self, timeout: float) -> bytes:

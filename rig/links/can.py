@@ -21,9 +21,9 @@ if TYPE_CHECKING:
     import serial
     from can.interfaces.slcan import slcanBus
 
-WRITE_LIMIT: Final = 0.5
+WRITE_TIMEOUT: Final = 0.5
 RETRY_AFTER: Final = 0.25
-MOST_AT_ONCE: Final = 4096
+MAX_PER_READ: Final = 4096
 LONGEST_READ: Final = 0.05
 """Longest duration of one read; more frames may still wait [s]."""
 STAMPED: Final = frozenset({"socketcan", "virtual"})
@@ -103,9 +103,9 @@ class CanLink:
     def read(self, timeout: float) -> list[can.Message]:
         """Return all data frames that have arrived, waiting at most `timeout` for the first [s].
 
-        One call returns at most `MOST_AT_ONCE` frames and takes at most `LONGEST_READ` for them.
+        One call returns at most `MAX_PER_READ` frames and takes at most `LONGEST_READ` for them.
         """
-        if self._bus is None and not self._come_back(timeout):
+        if self._bus is None and not self._reconnect(timeout):
             return []
         messages: list[can.Message] = []
         self._since = self._empty_at
@@ -113,7 +113,7 @@ class CanLink:
             if self._bus is not None:
                 self._drain(self._bus, timeout, messages)
         except (can.CanError, OSError):
-            self._lose()
+            self._drop_connection()
         return messages
 
     def arrivals(self, messages: Sequence[can.Message]) -> list[float]:
@@ -151,11 +151,11 @@ class CanLink:
         return self._send(can.Message(arbitration_id=can_id, data=data, is_extended_id=False))
 
     def request(self, can_id: int, length: int) -> bool:
-        """Send a remote frame, which asks a node for a frame with this id.
+        """Send a remote frame, which requests a frame with this id.
 
         Args:
             can_id: Arbitration id, 11 bits.
-            length: Length of the data asked for [bytes].
+            length: Length of the requested data [bytes].
 
         Returns:
             Whether the frame was sent; False while the bus is disconnected.
@@ -173,14 +173,14 @@ class CanLink:
         if self._bus is None:
             return False
         try:
-            self._bus.send(message, timeout=WRITE_LIMIT)
+            self._bus.send(message, timeout=WRITE_TIMEOUT)
         except can.CanError as problem:
             raise RigTimeout(
-                f"CAN bus {self._channel} did not take a frame ({problem}); check termination and "
-                "power,", waited=WRITE_LIMIT
+                f"CAN bus {self._channel} did not accept a frame ({problem}); check termination "
+                "and power,", waited=WRITE_TIMEOUT
             ) from problem  # fmt: skip
         except OSError:
-            self._lose()
+            self._drop_connection()
             return False
         return True
 
@@ -195,7 +195,7 @@ class CanLink:
         """Receive frames until none is left, or until a limit of `read` is reached."""
         port = _serial_port(bus)
         began, wait = self._clock.now(), timeout
-        for _ in range(MOST_AT_ONCE):
+        for _ in range(MAX_PER_READ):
             looked = self._clock.now()
             # An adapter's acknowledgements stand between its frames, and recv gives None for each.
             if wait == 0 and port is not None and not port.in_waiting:
@@ -240,11 +240,11 @@ class CanLink:
         interface, _, channel = self._channel.partition(":")
         return can.Bus(channel=channel, interface=interface, bitrate=self._bitrate)
 
-    def _lose(self) -> None:
+    def _drop_connection(self) -> None:
         self._disconnect()
         self._retry_at = self._clock.now() + RETRY_AFTER
 
-    def _come_back(self, timeout: float) -> bool:
+    def _reconnect(self, timeout: float) -> bool:
         """Try to reopen a lost bus, at most every `RETRY_AFTER`; return whether it is back."""
         wait = self._retry_at - self._clock.now()
         self._clock.sleep(min(max(wait, 0.0), timeout))

@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: MIT
 """Fault injection into the byte stream of a twin, to test the real parser."""
 
+from collections.abc import Callable
 from dataclasses import dataclass, fields
+from typing import Generic, TypeVar
 
 import numpy as np
 
@@ -44,8 +46,11 @@ PERFECT_LINE = Faults()
 """A line without transmission errors."""
 
 
-class FaultyWire:
-    """Channel that adds transmission errors to frames.
+FrameT = TypeVar("FrameT")
+
+
+class FaultyLine(Generic[FrameT]):
+    """Channel that loses, duplicates and delays whole frames.
 
     Args:
         faults: Probabilities of the errors.
@@ -55,11 +60,42 @@ class FaultyWire:
     def __init__(self, faults: Faults, *, rng: np.random.Generator) -> None:
         self._faults = faults
         self._rng = rng
-        self._held: list[bytes] = []
-        self._noise = faults.noise_at_start
-        self._perfect = faults == PERFECT_LINE
+        self._held: list[FrameT] = []
 
-    def carry(self, frames: list[bytes]) -> bytes:
+    def carry(
+        self, frame: FrameT, truncate: Callable[[FrameT], FrameT] | None = None
+    ) -> list[FrameT]:
+        """Transmit a frame with random errors.
+
+        Args:
+            frame: The frame.
+            truncate: Removes the end of a frame; None where frames arrive whole or not at all.
+
+        Returns:
+            The frames that arrive now: none, this one, or an earlier one that was delayed.
+        """
+        held, self._held = self._held, []
+        if self._happens(self._faults.delay):
+            self._held = [frame]
+            return held
+        if self._happens(self._faults.drop):
+            return held
+        if truncate is not None and self._happens(self._faults.truncate):
+            frame = truncate(frame)
+        return [frame] * (2 if self._happens(self._faults.duplicate) else 1) + held
+
+    def _happens(self, probability: float) -> bool:
+        return probability > 0 and self._rng.random() < probability
+
+
+class FaultyWire(FaultyLine[bytes]):
+    """Byte stream that also flips bits and adds random bytes to the frames it carries."""
+
+    def __init__(self, faults: Faults, *, rng: np.random.Generator) -> None:
+        super().__init__(faults, rng=rng)
+        self._noise = faults.noise_at_start
+
+    def stream(self, frames: list[bytes]) -> bytes:
         """Transmit frames with random errors.
 
         Args:
@@ -68,29 +104,18 @@ class FaultyWire:
         Returns:
             The bytes at the far end.
         """
-        if self._perfect:
+        if self._faults == PERFECT_LINE:
             return b"".join(frames)
         out = bytearray(self._rng.bytes(self._noise))
         self._noise = 0
         for frame in frames:
-            self._pass(frame, out)
+            if self._happens(self._faults.garbage):
+                out += self._rng.bytes(int(self._rng.integers(1, 40)))
+            out += b"".join(self.carry(frame, self._truncate))
         return self._flip(out)
 
-    def _pass(self, frame: bytes, out: bytearray) -> None:
-        held, self._held = self._held, []
-        if self._happens(self._faults.garbage):
-            out += self._rng.bytes(int(self._rng.integers(1, 40)))
-        if self._happens(self._faults.delay):
-            self._held = [frame]
-        elif not self._happens(self._faults.drop):
-            if self._happens(self._faults.truncate):
-                frame = frame[: int(self._rng.integers(0, len(frame)))]
-            out += frame * (2 if self._happens(self._faults.duplicate) else 1)
-        for late in held:
-            out += late
-
-    def _happens(self, probability: float) -> bool:
-        return probability > 0 and self._rng.random() < probability
+    def _truncate(self, frame: bytes) -> bytes:
+        return frame[: int(self._rng.integers(0, len(frame)))]
 
     def _flip(self, data: bytearray) -> bytes:
         flips = self._rng.binomial(8 * len(data), self._faults.flip) if self._faults.flip else 0

@@ -1,31 +1,11 @@
 # SPDX-License-Identifier: MIT
 """Framing of a byte stream: COBS or fixed trailer, resynchronisation, counts of damaged frames."""
 
-from typing import Final, Protocol
+from typing import Final
 
 from cobs import cobs
 
 DELIMITER: Final = b"\0"
-
-
-class Framer(Protocol):
-    """Finds frames in a stream of bytes.
-
-    Attributes:
-        damaged: Number of damaged frames so far.
-        resynchronised: Number of times that a good frame followed damaged ones.
-    """
-
-    damaged: int
-    resynchronised: int
-
-    def feed(self, data: bytes) -> list[bytes]:
-        """Add bytes and return the payloads of the frames that are now complete."""
-        ...
-
-    def reset(self) -> None:
-        """Discard an incomplete frame, after a disconnection."""
-        ...
 
 
 class CobsFramer:
@@ -45,7 +25,7 @@ class CobsFramer:
         self._longest = longest
         self._tail = b""
         self._joined = False
-        self._astray = False
+        self._out_of_sync = False
 
     def feed(self, data: bytes) -> list[bytes]:
         """Add bytes and return the payloads of the frames that are now complete."""
@@ -63,12 +43,12 @@ class CobsFramer:
     def refuse(self) -> None:
         """Count a correctly stuffed frame with invalid content as damaged."""
         self.damaged += 1
-        self._astray = True
+        self._out_of_sync = True
 
     def accept(self) -> None:
         """Count a resynchronisation where a good frame follows damaged ones."""
-        self.resynchronised += self._astray
-        self._astray = False
+        self.resynchronised += self._out_of_sync
+        self._out_of_sync = False
 
     def _decode(self, piece: bytes) -> bytes | None:
         joined, self._joined = self._joined, True
@@ -103,7 +83,7 @@ class TrailerFramer:
         self._trailer = trailer
         self._buffer = b""
         self._aligned = False
-        self._astray = False
+        self._out_of_sync = False
 
     def feed(self, data: bytes) -> list[bytes]:
         """Add bytes and return the frames that are now complete, without their trailers."""
@@ -117,8 +97,8 @@ class TrailerFramer:
                 continue
             frames.append(self._buffer[: self._length - len(self._trailer)])
             self._buffer = self._buffer[self._length :]
-            self.resynchronised += self._astray
-            self._astray = False
+            self.resynchronised += self._out_of_sync
+            self._out_of_sync = False
         return frames
 
     def reset(self) -> None:
@@ -128,7 +108,7 @@ class TrailerFramer:
 
     def _lose_alignment(self) -> None:
         self.damaged += 1
-        self._astray = True
+        self._out_of_sync = True
         self._aligned = False
 
     def _align(self) -> bool:

@@ -1,30 +1,10 @@
 # SPDX-License-Identifier: MIT
 """Base of streams over one link, which is open while the stream is entered."""
 
-from types import TracebackType
-from typing import Generic, Protocol, Self, TypeVar
+from typing import Generic, Self, TypeVar
 
-
-class Link(Protocol):
-    """A connection that is opened and closed: a serial port, a CAN bus, a socket."""
-
-    @property
-    def source(self) -> str:
-        """Origin of the data: `real` or `sim:WHAT`."""
-        ...
-
-    def open(self) -> None:
-        """Open the link.
-
-        Raises:
-            LinkError: There is no such port, or no permission to open it.
-        """
-        ...
-
-    def close(self) -> None:
-        """Close the link; a second call has no effect."""
-        ...
-
+from rig.clock import Clock
+from rig.links.byte_link import Link
 
 LinkT = TypeVar("LinkT", bound=Link)
 
@@ -34,24 +14,25 @@ class LinkedStream(Generic[LinkT]):
 
     Args:
         link: The link.
+        name: Name of the stream.
+        clock: Host time.
+
+    Attributes:
+        name: Name of the stream.
+        source: Origin of the samples: `real` or `sim:WHAT`.
     """
 
-    def __init__(self, link: LinkT) -> None:
+    def __init__(self, link: LinkT, *, name: str, clock: Clock) -> None:
+        self.name = name
+        self.source = link.source
         self._link = link
-
-    @property
-    def source(self) -> str:
-        """Origin of the samples: `real` or `sim:WHAT`."""
-        return self._link.source
+        self._clock = clock
+        self._received = 0
+        self._refused = 0
 
     def __enter__(self) -> Self:
         self._link.open()
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *exception: object) -> None:
         self._link.close()

@@ -16,19 +16,11 @@ class MemoryLink:
     """
 
     def __init__(self, twin: ByteTwin, *, clock: Clock) -> None:
+        self.source = twin.source
+        self.reconnected = 0  # it cannot disconnect
         self._twin = twin
         self._clock = clock
         self._outbox = bytearray()
-
-    @property
-    def source(self) -> str:
-        """Origin of the bytes: `sim:WHAT`."""
-        return self._twin.source
-
-    @property
-    def reconnected(self) -> int:
-        """Always 0: the link cannot disconnect."""
-        return 0
 
     def open(self) -> None:
         """Do nothing: the twin is always connected."""

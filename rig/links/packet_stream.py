@@ -25,13 +25,8 @@ from rig.links.packet import (
 from rig.links.sequence import SequenceTracker, TimeUnwrapper
 
 LONGEST: Final = HEADER.size + LONGEST_BODY + CHECKSUM.size + 1
-FOREIGN_LIMIT: Final = 20
+MAX_FOREIGN: Final = 20
 """Number of packets of another device, with none of the expected one, that is a mismatch."""
-
-
-def always(_: tuple[float, ...]) -> bool:
-    """Return True for any counts."""
-    return True
 
 
 class PacketStream(LinkedStream[ByteLink]):
@@ -43,7 +38,8 @@ class PacketStream(LinkedStream[ByteLink]):
         kind: Kind of packet that carries the samples.
         body: Layout of the packet's body; its fields are the sample's counts.
         rate: Sample rate; distinguishes a loss from a restart [Hz].
-        possible: Returns whether counts are possible; impossible ones are discarded.
+        possible: Returns whether counts are possible; impossible ones are discarded. None takes
+            any.
         clock: Host time.
     """
 
@@ -55,20 +51,16 @@ class PacketStream(LinkedStream[ByteLink]):
         kind: Kind,
         body: struct.Struct,
         rate: float,
-        possible: Callable[[tuple[float, ...]], bool] = always,
+        possible: Callable[[tuple[float, ...]], bool] | None = None,
         clock: Clock = SYSTEM_CLOCK,
     ) -> None:
-        super().__init__(link)
-        self.name = name
+        super().__init__(link, name=name, clock=clock)
         self._kind = kind
         self._body = body
         self._possible = possible
-        self._clock = clock
         self._framer = CobsFramer(longest=LONGEST)
         self._tracker = SequenceTracker(modulus=WRAP, rate=rate)
         self._device_time = TimeUnwrapper(modulus=WRAP, tick=TICK)
-        self._received = 0
-        self._refused = 0
         self._foreign = 0
         self._sent = 0
         self._connections = 0
@@ -98,11 +90,8 @@ class PacketStream(LinkedStream[ByteLink]):
             self._connections = self._link.reconnected
             self._framer.reset()
         now = self._clock.now()
-        samples = []
-        for content in self._framer.feed(data):
-            sample = self._sample(content, now)
-            if sample is not None:
-                samples.append(sample)
+        found = (self._sample(content, now) for content in self._framer.feed(data))
+        samples = [sample for sample in found if sample is not None]
         self._received += len(samples)
         return samples
 
@@ -132,7 +121,7 @@ class PacketStream(LinkedStream[ByteLink]):
             self._refuse_foreign(packet)
             return None
         counts = self._body.unpack(packet.body)
-        if not self._possible(counts):
+        if self._possible is not None and not self._possible(counts):
             self._refused += 1
             return None
         sequence = self._tracker.accept(packet.sequence, now)
@@ -143,7 +132,7 @@ class PacketStream(LinkedStream[ByteLink]):
     def _refuse_foreign(self, packet: Packet) -> None:
         self._refused += 1
         self._foreign += 1
-        if self._received == 0 and self._foreign >= FOREIGN_LIMIT:
+        if self._received == 0 and self._foreign >= MAX_FOREIGN:
             raise DeviceMismatch(
                 f"stream '{self.name}' found {self._foreign} whole packets of kind {packet.kind} "
                 f"with {len(packet.body)} bytes and none of kind {int(self._kind)} with "

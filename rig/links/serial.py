@@ -14,10 +14,10 @@ from rig.errors import LinkError, RigTimeout
 from rig.exclusive import device_lock
 
 CHUNK: Final = 1 << 16
-MOST_AT_ONCE: Final = 1 << 18
+MAX_PER_READ: Final = 1 << 18
 """Largest number of bytes of one read: nearly a second at 3 Mbaud [bytes]."""
 RETRY_AFTER: Final = 0.25
-WRITE_LIMIT: Final = 1.0
+WRITE_TIMEOUT: Final = 1.0
 
 
 class SerialLink:
@@ -69,13 +69,13 @@ class SerialLink:
 
     def read(self, timeout: float) -> bytes:
         """Return all available bytes, waiting at most `timeout` for the first [s]."""
-        if self._serial is None and not self._come_back(timeout):
+        if self._serial is None and not self._reconnect(timeout):
             return b""
         port = self._serial
         try:
-            return _take(port) if port is not None and _readable(port, timeout) else b""
+            return _read_all(port) if port is not None and _readable(port, timeout) else b""
         except OSError:  # serial.SerialException is one: unplugged
-            self._lose()
+            self._drop_connection()
             return b""
 
     def write(self, data: bytes) -> bool:
@@ -90,17 +90,17 @@ class SerialLink:
             self._serial.write(data)
         except serial.SerialTimeoutException as problem:
             raise RigTimeout(
-                f"port {self.port} did not take {len(data)} bytes", waited=WRITE_LIMIT
+                f"port {self.port} did not accept {len(data)} bytes", waited=WRITE_TIMEOUT
             ) from problem
         except OSError:
-            self._lose()
+            self._drop_connection()
             return False
         return True
 
     def _connect(self) -> serial.Serial:
         opened = serial.serial_for_url(
             self.port, do_not_open=True, baudrate=self._baudrate, timeout=0,
-            write_timeout=WRITE_LIMIT,
+            write_timeout=WRITE_TIMEOUT,
         )  # fmt: skip
         port = cast("serial.Serial", opened)  # the URL handlers have the same methods
         if not self.port.startswith("socket:"):
@@ -113,11 +113,11 @@ class SerialLink:
         if port is not None:
             port.close()
 
-    def _lose(self) -> None:
+    def _drop_connection(self) -> None:
         self._disconnect()
         self._retry_at = self._clock.now() + RETRY_AFTER
 
-    def _come_back(self, timeout: float) -> bool:
+    def _reconnect(self, timeout: float) -> bool:
         """Try to reopen a lost port, at most every `RETRY_AFTER`; return whether it is back."""
         wait = self._retry_at - self._clock.now()
         self._clock.sleep(min(max(wait, 0.0), timeout))
@@ -133,7 +133,7 @@ class SerialLink:
         return True
 
 
-def _take(port: serial.Serial) -> bytes:
+def _read_all(port: serial.Serial) -> bytes:
     """Read all bytes of a port that has some.
 
     Raises:
@@ -141,14 +141,14 @@ def _take(port: serial.Serial) -> bytes:
     """
     if os.name != "posix" or not hasattr(port, "fileno"):
         return port.read(CHUNK)
-    data = _take_piece(port)
+    data = _read_once(port)
     with contextlib.suppress(OSError):  # the next read will meet it again
-        while len(data) < MOST_AT_ONCE and _readable(port, 0.0):
-            data += _take_piece(port)
+        while len(data) < MAX_PER_READ and _readable(port, 0.0):
+            data += _read_once(port)
     return data
 
 
-def _take_piece(port: serial.Serial) -> bytes:
+def _read_once(port: serial.Serial) -> bytes:
     """Read the bytes of one system call, at most 4 KiB from a terminal.
 
     Raises:

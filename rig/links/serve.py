@@ -10,8 +10,7 @@ import tempfile
 import threading
 from collections.abc import Callable
 from pathlib import Path
-from types import TracebackType
-from typing import Final, Protocol, Self
+from typing import Final, Self
 
 from rig.clock import SYSTEM_CLOCK, Clock
 from rig.errors import LinkError
@@ -19,7 +18,7 @@ from rig.links.byte_link import ByteTwin
 
 TICK: Final = 0.002
 """Interval at which a served twin is polled [s]."""
-JOIN_LIMIT: Final = 2.0
+JOIN_TIMEOUT: Final = 2.0
 
 
 class Ticker:
@@ -44,14 +43,9 @@ class Ticker:
         self._thread.start()
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *exception: object) -> None:
         self._done.set()
-        self._thread.join(JOIN_LIMIT)
+        self._thread.join(JOIN_TIMEOUT)
 
     def _run(self) -> None:
         try:
@@ -59,20 +53,6 @@ class Ticker:
                 self._tick(self._clock.now())
         except BaseException as failure:  # noqa: BLE001, RUF100 - kept for the owner to see
             self.failure = failure
-
-
-class _End(Protocol):
-    """The twin's end of a port."""
-
-    port: str
-
-    def exchange(self, data: bytes) -> bytes:
-        """Send bytes and return those received."""
-        ...
-
-    def close(self) -> None:
-        """Close the port."""
-        ...
 
 
 class _Terminal:
@@ -90,6 +70,7 @@ class _Terminal:
         self.port = str(link)
 
     def exchange(self, data: bytes) -> bytes:
+        """Send bytes and return those received."""
         with contextlib.suppress(BlockingIOError):  # a full buffer drops bytes, as a UART does
             os.write(self._master, data)
         try:
@@ -174,7 +155,7 @@ class PortServer:
         self._as_socket = as_socket or sys.platform == "win32"
         self._folder: tempfile.TemporaryDirectory[str] | None = None
         self._number = 0
-        self._end: _End | None = None
+        self._end: _Terminal | _Socket | None = None
         self._lock = threading.Lock()
         self._received = b""
         self._ticker = Ticker(self._tick, clock=clock)
@@ -201,7 +182,7 @@ class PortServer:
             try:
                 self._end = self._make()
             except OSError as problem:
-                raise LinkError(f"cannot make a port for a twin: {problem}") from problem
+                raise LinkError(f"cannot create a port for a twin: {problem}") from problem
             self.port = self._end.port
 
     def __enter__(self) -> Self:
@@ -209,18 +190,13 @@ class PortServer:
         self._ticker.__enter__()
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
-        self._ticker.__exit__(kind, error, trace)
+    def __exit__(self, *exception: object) -> None:
+        self._ticker.__exit__(*exception)
         self.unplug()
         if self._folder is not None:
             self._folder.cleanup()
 
-    def _make(self) -> _End:
+    def _make(self) -> _Terminal | _Socket:
         if self._as_socket:
             end = _Socket(self._number)
             self._number = end.number

@@ -98,13 +98,13 @@ class SlcanAdapter:
         del now
         *lines, self._inbox = (self._inbox + received).split(END)
         self._inbox = self._inbox[-LONGEST:]  # bounds the memory for noise without an end
-        out = b"".join(self._obey(line) for line in lines)
+        out = b"".join(self._execute(line) for line in lines)
         while (message := self._bus.recv(0.0)) is not None:
             if self._open:
                 out += encode_frame(message)
         return out
 
-    def _obey(self, line: bytes) -> bytes:
+    def _execute(self, line: bytes) -> bytes:
         command = line[:1]
         if command in (b"t", b"T", b"r", b"R"):
             return self._pass_on(line)

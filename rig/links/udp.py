@@ -14,7 +14,7 @@ BUFFER: Final = 4 << 20
 """Size of the socket buffer: seconds of a fast load cell, in case the reader is delayed [bytes]."""
 LONGEST: Final = 1472
 """Longest datagram, that of an Ethernet frame; longer ones are truncated [bytes]."""
-MOST_AT_ONCE: Final = 8192
+MAX_PER_READ: Final = 8192
 
 
 class UdpLink:
@@ -88,7 +88,7 @@ class UdpLink:
         datagrams: list[bytes] = []
         receive, keep = opened.recv, datagrams.append
         with contextlib.suppress(BlockingIOError):
-            for _ in range(MOST_AT_ONCE):
+            for _ in range(MAX_PER_READ):
                 try:
                     keep(receive(LONGEST))
                 except ConnectionRefusedError:  # no device at the port yet; it may start later

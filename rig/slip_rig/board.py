@@ -4,7 +4,6 @@
 import contextlib
 import math
 import struct
-from types import TracebackType
 from typing import Final
 
 from rig.clock import SYSTEM_CLOCK, Clock
@@ -36,9 +35,12 @@ class RigBoard(PacketStream):
     Args:
         link: Bytes to and from the board.
         profile: Its profile.
-        limits: What the discs are allowed.
-        name: Name of the stream.
+        limits: Limits of the discs.
         clock: Host time.
+
+    Attributes:
+        leg: Drive of the leg disc.
+        ground: Drive of the ground disc.
     """
 
     def __init__(
@@ -47,38 +49,28 @@ class RigBoard(PacketStream):
         *,
         profile: BoardProfile,
         limits: Limits,
-        name: str = "board",
         clock: Clock = SYSTEM_CLOCK,
     ) -> None:
         super().__init__(
-            link, name=name, kind=Kind.SLIP_RIG, body=board_body(profile), rate=profile.rate,
+            link, name="board", kind=Kind.SLIP_RIG, body=board_body(profile), rate=profile.rate,
             clock=clock,
         )  # fmt: skip
         self.profile = profile
         self.limits = limits
-        self._host_clock = clock
+        self.leg = BoardDrive(self, "leg")
+        self.ground = BoardDrive(self, "ground")
         self._speeds = {"leg": 0.0, "ground": 0.0}
         self._armed: set[str] = set()
         self._feed_at = -math.inf
         self._status = 0
 
-    @property
-    def leg(self) -> "BoardDrive":
-        """Drive of the leg disc."""
-        return BoardDrive(self, "leg")
-
-    @property
-    def ground(self) -> "BoardDrive":
-        """Drive of the ground disc."""
-        return BoardDrive(self, "ground")
-
     def read(self, timeout: float) -> list[Sample]:
         """Return all samples, waiting at most `timeout` for the first [s]; feeds the watchdog."""
-        end = self._host_clock.now() + timeout
+        end = self._clock.now() + timeout
         while True:
-            if self._armed and self._host_clock.now() >= self._feed_at:
+            if self._armed and self._clock.now() >= self._feed_at:
                 self.command_speeds()
-            left = max(end - self._host_clock.now(), 0.0)
+            left = max(end - self._clock.now(), 0.0)
             samples = super().read(min(left, self.profile.feed_interval))
             if samples or left <= 0:
                 return [self._with_status(sample) for sample in samples]
@@ -92,13 +84,13 @@ class RigBoard(PacketStream):
         if self._status:
             raise DeviceFault(
                 f"the board reports status {self._status:#x}: its watchdog stopped the discs, or "
-                "worse; arm again",
+                "it is faulty; arm again",
                 status=self._status,
             )
 
     def command_speeds(self) -> bool:
         """Send both speeds; return whether the link took them."""
-        self._feed_at = self._host_clock.now() + self.profile.feed_interval
+        self._feed_at = self._clock.now() + self.profile.feed_interval
         counts = [
             round(self._speeds[disc] * self.profile.counts_per_speed) for disc in ("leg", "ground")
         ]
@@ -116,29 +108,20 @@ class RigBoard(PacketStream):
         self._armed.add(disc)
         self._status = 0
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *exception: object) -> None:
         self._armed.clear()
         with contextlib.suppress(RigError):  # the board's watchdog remains
             self.send(Kind.STOP)
-        super().__exit__(kind, error, trace)
+        super().__exit__(*exception)
 
 
 class BoardDrive:
     """One disc of the board; satisfies `rig.device.Drive`."""
 
     def __init__(self, board: RigBoard, disc: str) -> None:
+        self.name = f"{disc} disc"
         self._board = board
         self._disc = disc
-
-    @property
-    def name(self) -> str:
-        """Name of the disc that it turns."""
-        return f"{self._disc} disc"
 
     def arm(self, timeout: float) -> None:
         """Energise at standstill; `timeout` [s] is not used, because the board does not confirm."""

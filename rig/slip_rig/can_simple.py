@@ -91,7 +91,7 @@ def split_id(arbitration_id: int) -> tuple[int, int]:
 
 
 def describe_error(error: int, firmware: str) -> str:
-    """Describe an axis error in words.
+    """Describe an axis error as text.
 
     Args:
         error: Bit field of the axis error.

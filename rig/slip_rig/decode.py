@@ -3,6 +3,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Final
 
 import numpy as np
 
@@ -19,6 +20,8 @@ from rig.slip_rig.profile import (
     LoadCellProfile,
     RigProfile,
 )
+
+BATCHES: Final = 10
 
 
 @dataclass(frozen=True)
@@ -50,17 +53,24 @@ class DiscSpeeds:
     leg: Array
     ground: Array
 
-    def slip(self, profile: RigProfile) -> Array:
-        """Compute the instantaneous material slip ratio, Eq. (4-44), shape (n,) [-].
 
-        NaN or infinite where the leg disc stands still.
-        """
-        with np.errstate(divide="ignore", invalid="ignore"):
-            return slip_ratio(
-                self.leg * profile.radius_leg,
-                self.ground * profile.radius_ground,
-                SlipDefinition.MATERIAL,
-            )
+def measured_slip(omega_leg: Array, omega_ground: Array, profile: RigProfile) -> Array:
+    """Compute the instantaneous material slip ratio from both speeds, Eq. (4-44).
+
+    Args:
+        omega_leg: Speed of the leg disc, shape (n,) [rad/s].
+        omega_ground: Speed of the ground disc, shape (n,) [rad/s].
+        profile: Carries the radii of the discs.
+
+    Returns:
+        Slip ratio, NaN or infinite where the leg disc stands still, shape (n,) [-].
+    """
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return slip_ratio(
+            omega_leg * profile.radius_leg,
+            omega_ground * profile.radius_ground,
+            SlipDefinition.MATERIAL,
+        )
 
 
 def decode_forces(profile: LoadCellProfile, samples: Sequence[Sample]) -> Forces:
@@ -167,6 +177,16 @@ class Zero:
     standard_error: float
 
 
+def standard_error(values: Array) -> float:
+    """Compute the standard error of the mean of autocorrelated values from batch means.
+
+    Args:
+        values: At least `BATCHES` values, in order.
+    """
+    means = [batch.mean() for batch in np.array_split(values, BATCHES)]
+    return float(np.std(means, ddof=1) / np.sqrt(BATCHES))
+
+
 def tare(forces: Forces) -> Zero:
     """Compute the zero of an unloaded rig.
 
@@ -179,16 +199,12 @@ def tare(forces: Forces) -> Zero:
     Raises:
         ProtocolError: There are too few readings.
     """
-    if len(forces.time) < 10:
-        raise ProtocolError(f"{len(forces.time)} readings; expected at least 10 for a zero")
-    errors = []
-    for channel in (forces.normal, forces.traction):
-        means = [batch.mean() for batch in np.array_split(channel, 10)]
-        errors.append(np.std(means, ddof=1) / np.sqrt(10))
+    if len(forces.time) < BATCHES:
+        raise ProtocolError(f"{len(forces.time)} readings; expected at least {BATCHES} for a zero")
     return Zero(
         normal=float(forces.normal.mean()),
         traction=float(forces.traction.mean()),
-        standard_error=float(max(errors)),
+        standard_error=max(map(standard_error, (forces.normal, forces.traction))),
     )
 
 

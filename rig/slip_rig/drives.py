@@ -8,8 +8,6 @@ stream feeds it on purpose: a program that no longer reads must not keep the dis
 import contextlib
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, field
-from types import TracebackType
 from typing import Final, Self
 
 import can
@@ -39,22 +37,8 @@ from rig.slip_rig.profile import DiscDrive, DriveProfile
 
 TEMPERATURE_INTERVAL: Final = 0.1
 """Interval between requests for the drives' temperatures [s]."""
-HELLO_LIMIT: Final = 1.0
+HEARTBEAT_TIMEOUT: Final = 1.0
 """Timeout for the heartbeats of both drives when the bus is opened [s]."""
-
-
-@dataclass
-class _Axis:
-    """State of one drive."""
-
-    name: str
-    place: DiscDrive
-    velocity: float = 0.0
-    armed: bool = False
-    state: int = 0
-    error: int = 0
-    pending: list[Sample] = field(default_factory=list)
-    temperatures: list[float] = field(default_factory=list)
 
 
 class DriveBus(LinkedStream[CanLink]):
@@ -66,9 +50,12 @@ class DriveBus(LinkedStream[CanLink]):
     Args:
         link: The bus.
         profile: Both drives.
-        limits: What the discs are allowed.
-        name: Name of the stream.
+        limits: Limits of the discs.
         clock: Host time.
+
+    Attributes:
+        leg: Drive of the leg disc.
+        ground: Drive of the ground disc.
     """
 
     def __init__(
@@ -77,32 +64,17 @@ class DriveBus(LinkedStream[CanLink]):
         *,
         profile: DriveProfile,
         limits: Limits,
-        name: str = "drives",
         clock: Clock = SYSTEM_CLOCK,
     ) -> None:
-        super().__init__(link)
-        self.name = name
+        super().__init__(link, name="drives", clock=clock)
         self.profile = profile
         self.limits = limits
-        self._clock = clock
-        self._axes = {
-            profile.leg.node: _Axis("leg disc", profile.leg),
-            profile.ground.node: _Axis("ground disc", profile.ground),
-        }
+        self.leg = OdriveDrive(self, "leg disc", profile.leg)
+        self.ground = OdriveDrive(self, "ground disc", profile.ground)
+        self._axes = {drive.place.node: drive for drive in (self.leg, self.ground)}
+        self._pending: list[Sample] = []  # arrived while another answer was awaited
         self._feed_at = -math.inf
-        self._ask_at = math.inf
-        self._received = 0
-        self._refused = 0
-
-    @property
-    def leg(self) -> "OdriveDrive":
-        """Drive of the leg disc."""
-        return OdriveDrive(self, self._axes[self.profile.leg.node])
-
-    @property
-    def ground(self) -> "OdriveDrive":
-        """Drive of the ground disc."""
-        return OdriveDrive(self, self._axes[self.profile.ground.node])
+        self._temperatures_at = math.inf
 
     @property
     def counters(self) -> Counters:
@@ -122,16 +94,16 @@ class DriveBus(LinkedStream[CanLink]):
         end = self._clock.now() + timeout
         while True:
             self._feed()
-            self._ask()
+            self._request_due_temperatures()
             left = max(end - self._clock.now(), 0.0)
             samples = self._take(min(left, self.profile.feed_interval))
             if samples or left <= 0:
                 # Frames of two drives come in one batch; a log's time never runs back.
                 return sorted(samples, key=lambda sample: sample.host_time)
 
-    def ask_for_temperatures(self) -> None:
+    def request_temperatures(self) -> None:
         """Start to request the temperatures of both drives whenever the stream is read."""
-        self._ask_at = -math.inf
+        self._temperatures_at = -math.inf
 
     def take_temperatures(self) -> dict[int, list[float]]:
         """Return and clear the temperatures received since the last call, by node [degC]."""
@@ -147,10 +119,11 @@ class DriveBus(LinkedStream[CanLink]):
             DeviceFault: An armed drive reports an error, or has left closed loop by itself.
         """
         for axis in self._axes.values():
-            self._require_no_error(axis)
+            axis.require_no_error()
             if axis.armed and axis.state != AxisState.CLOSED_LOOP:
                 raise DeviceFault(
-                    f"drive of the {axis.name} left closed loop for state {axis.state}",
+                    f"drive of the {axis.name} left closed-loop control for axis state "
+                    f"{axis.state}",
                     status=axis.state,
                 )
 
@@ -159,60 +132,20 @@ class DriveBus(LinkedStream[CanLink]):
         try:
             self._wait(
                 lambda: all(axis.state for axis in self._axes.values()),
-                HELLO_LIMIT,
-                "no heartbeat came from both drives (power, nodes and bit rate as in the profile?)",
+                HEARTBEAT_TIMEOUT,
+                "no heartbeat came from both drives (check power, nodes and bit rate)",
             )
         except BaseException:
             self._link.close()
             raise
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *exception: object) -> None:
         try:
             for axis in self._axes.values():
-                self._disarm(axis)
+                axis.disarm()
         finally:
-            super().__exit__(kind, error, trace)
-
-    def _arm(self, axis: _Axis, timeout: float) -> None:
-        axis.velocity = 0.0
-        self._send(axis, Command.CLEAR_ERRORS, b"")
-        mode = CONTROLLER_MODE.pack(VELOCITY_CONTROL, PASS_THROUGH)
-        self._send(axis, Command.SET_CONTROLLER_MODE, mode)
-        # Standstill before closed loop: the drive would else begin at its last set-point.
-        self._send(axis, Command.SET_INPUT_VELOCITY, INPUT_VELOCITY.pack(0.0, 0.0))
-        self._send(axis, Command.SET_AXIS_STATE, AXIS_STATE.pack(AxisState.CLOSED_LOOP))
-        axis.armed, axis.error = True, 0
-        try:
-            self._wait(lambda: axis.state == AxisState.CLOSED_LOOP, timeout,
-                       f"drive of the {axis.name} did not enter closed loop")  # fmt: skip
-            self._require_no_error(axis)
-        except RigError:
-            self._disarm(axis)
-            self._require_no_error(axis)  # says more than that time ran out
-            raise
-
-    def _set_speed(self, axis: _Axis, omega: float) -> None:
-        require_within(omega, self.limits.speed, quantity=f"speed of the {axis.name}", unit="rad/s")
-        axis.velocity = axis.place.sign * omega * axis.place.gear / (2 * math.pi)
-        self._send(axis, Command.SET_INPUT_VELOCITY, INPUT_VELOCITY.pack(axis.velocity, 0.0))
-
-    def _disarm(self, axis: _Axis) -> None:
-        axis.velocity, axis.armed = 0.0, False
-        for command, data in (
-            (Command.SET_INPUT_VELOCITY, INPUT_VELOCITY.pack(0.0, 0.0)),
-            (Command.SET_AXIS_STATE, AXIS_STATE.pack(AxisState.IDLE)),
-        ):
-            with contextlib.suppress(RigError, can.CanError, OSError):  # the watchdog remains
-                self._send(axis, command, data)
-
-    def _send(self, axis: _Axis, command: Command, data: bytes) -> None:
-        self._link.write(can_id(axis.place.node, command), data)
+            super().__exit__(*exception)
 
     def _feed(self) -> None:
         now = self._clock.now()
@@ -221,31 +154,27 @@ class DriveBus(LinkedStream[CanLink]):
         self._feed_at = now + self.profile.feed_interval
         for axis in self._axes.values():
             if axis.armed:
-                data = INPUT_VELOCITY.pack(axis.velocity, 0.0)
-                self._send(axis, Command.SET_INPUT_VELOCITY, data)
+                axis.send_velocity()
 
-    def _ask(self) -> None:
+    def _request_due_temperatures(self) -> None:
         now = self._clock.now()
-        if now >= self._ask_at:
-            self._ask_at = now + TEMPERATURE_INTERVAL
+        if now >= self._temperatures_at:
+            self._temperatures_at = now + TEMPERATURE_INTERVAL
             for node in self._axes:
                 self._link.request(can_id(node, Command.TEMPERATURE), TEMPERATURES.size)
 
     def _wait(self, holds: Callable[[], bool], timeout: float, problem: str) -> None:
-        """Read, keeping the samples for later, until something holds."""
+        """Read until a condition holds, and keep the samples for the next `read`."""
         end = self._clock.now() + timeout
         while not holds():
             left = end - self._clock.now()
             if left <= 0:
                 raise RigTimeout(problem, waited=timeout)
             self._feed()
-            for sample in self._receive(min(left, self.profile.feed_interval)):
-                self._axes[sample.channel].pending.append(sample)
+            self._pending += self._receive(min(left, self.profile.feed_interval))
 
     def _take(self, timeout: float) -> list[Sample]:
-        kept = [sample for axis in self._axes.values() for sample in axis.pending]
-        for axis in self._axes.values():
-            axis.pending.clear()
+        kept, self._pending = self._pending, []
         samples = kept + self._receive(0.0 if kept else timeout)
         self._received += len(samples)
         return samples
@@ -257,7 +186,7 @@ class DriveBus(LinkedStream[CanLink]):
             node, command = split_id(message.arbitration_id)
             axis = self._axes.get(node)
             if axis is None:
-                continue  # somebody else's, on a shared bus
+                continue  # another device on a shared bus
             if command == Command.HEARTBEAT and message.dlc >= HEARTBEAT.size:
                 axis.error, axis.state = HEARTBEAT.unpack_from(message.data)
             elif command == Command.ENCODER_ESTIMATES:
@@ -268,7 +197,7 @@ class DriveBus(LinkedStream[CanLink]):
                 axis.temperatures += [max(known)] if known else []
         return samples
 
-    def _estimate(self, axis: _Axis, message: can.Message, arrived: float) -> list[Sample]:
+    def _estimate(self, axis: "OdriveDrive", message: can.Message, arrived: float) -> list[Sample]:
         if message.dlc == ESTIMATES.size:
             counts = ESTIMATES.unpack(message.data)
             if all(map(math.isfinite, counts)):
@@ -276,38 +205,85 @@ class DriveBus(LinkedStream[CanLink]):
         self._refused += 1
         return []
 
-    def _require_no_error(self, axis: _Axis) -> None:
-        if axis.error:
-            raise DeviceFault(
-                f"drive of the {axis.name} reports "
-                f"{describe_error(axis.error, self.profile.firmware)}",
-                status=axis.error,
-            )
-
 
 class OdriveDrive:
-    """One of the two drives; satisfies `rig.device.Drive`."""
+    """One of the two drives with its state; satisfies `rig.device.Drive`.
 
-    def __init__(self, bus: DriveBus, axis: _Axis) -> None:
+    Args:
+        bus: Driver of both drives.
+        name: Name of the disc that it turns.
+        place: Node on the bus, gear and sign.
+
+    Attributes:
+        armed: Whether it has been energised and not been commanded to idle since.
+        state: Axis state of the last heartbeat; 0 before the first.
+        error: Axis error of the last heartbeat.
+        temperatures: Temperatures that have not been taken yet [degC].
+    """
+
+    def __init__(self, bus: DriveBus, name: str, place: DiscDrive) -> None:
+        self.name = name
+        self.place = place
+        self.armed = False
+        self.state = 0
+        self.error = 0
+        self.temperatures: list[float] = []
         self._bus = bus
-        self._axis = axis
-
-    @property
-    def name(self) -> str:
-        """Name of the disc that it turns."""
-        return self._axis.name
+        self._velocity = 0.0
 
     def arm(self, timeout: float) -> None:
         """Energise at standstill, waiting at most `timeout` [s]; see `Drive.arm`."""
-        self._bus._arm(self._axis, timeout)
+        self._velocity = 0.0
+        self._send(Command.CLEAR_ERRORS, b"")
+        self._send(
+            Command.SET_CONTROLLER_MODE, CONTROLLER_MODE.pack(VELOCITY_CONTROL, PASS_THROUGH)
+        )
+        self.send_velocity()  # before closed loop: the drive would else begin at its last set-point
+        self._send(Command.SET_AXIS_STATE, AXIS_STATE.pack(AxisState.CLOSED_LOOP))
+        self.armed, self.error = True, 0
+        try:
+            self._bus._wait(lambda: self.state == AxisState.CLOSED_LOOP, timeout,
+                            f"drive of the {self.name} did not enter closed loop")  # fmt: skip
+            self.require_no_error()
+        except RigError:
+            self.disarm()
+            self.require_no_error()  # says more than that time ran out
+            raise
 
     def set_speed(self, omega: float) -> None:
         """Command an angular speed of the disc [rad/s]; see `Drive.set_speed`."""
-        self._bus._set_speed(self._axis, omega)
+        limit = self._bus.limits.speed
+        require_within(omega, limit, quantity=f"speed of the {self.name}", unit="rad/s")
+        self._velocity = self.place.sign * omega * self.place.gear / (2 * math.pi)
+        self.send_velocity()
 
     def disarm(self) -> None:
         """Command standstill and de-energise."""
-        self._bus._disarm(self._axis)
+        self._velocity, self.armed = 0.0, False
+        with contextlib.suppress(RigError, can.CanError, OSError):  # the watchdog remains
+            self.send_velocity()
+        with contextlib.suppress(RigError, can.CanError, OSError):
+            self._send(Command.SET_AXIS_STATE, AXIS_STATE.pack(AxisState.IDLE))
+
+    def send_velocity(self) -> None:
+        """Send the velocity set-point, which feeds the watchdog."""
+        self._send(Command.SET_INPUT_VELOCITY, INPUT_VELOCITY.pack(self._velocity, 0.0))
+
+    def require_no_error(self) -> None:
+        """Check the axis error of the last heartbeat.
+
+        Raises:
+            DeviceFault: The drive reports an error.
+        """
+        if self.error:
+            raise DeviceFault(
+                f"drive of the {self.name} reports "
+                f"{describe_error(self.error, self._bus.profile.firmware)}",
+                status=self.error,
+            )
+
+    def _send(self, command: Command, data: bytes) -> None:
+        self._bus._link.write(can_id(self.place.node, command), data)
 
 
 def disc_speed(drive: DiscDrive, velocity: float) -> float:

@@ -2,11 +2,19 @@
 """Sensor errors, noise, slip wander and bump of a simulated rig."""
 
 from dataclasses import dataclass, fields, replace
+from typing import Final
 
 import numpy as np
 
 from model.errors import DomainError
 from model.slip.law import Array
+
+GAIN_SD: Final = 0.005
+"""Standard deviation of both channels' gain errors [-]."""
+BIAS_SD: Final = 0.05
+"""Standard deviation of the normal channel's bias [N]."""
+CROSSTALK_SD: Final = 0.005
+"""Standard deviation of the crosstalk [-]."""
 
 
 @dataclass(frozen=True)
@@ -17,17 +25,17 @@ class RigImperfections:
         gain_traction: Relative gain error g_t of the traction channel [-].
         gain_normal: Relative gain error g_n of the normal channel [-].
         bias_normal: Bias b_n of the normal channel, added to what it reads [N].
-        crosstalk: Traction c that the normal channel fails to see as load [-].
+        crosstalk: Share c of the traction that the normal channel subtracts from the load [-].
         offset_sd: Standard deviation tau of the traction zero between runs [N].
         noise_sd0: Traction noise without traction, marginal standard deviation s0 [N].
         noise_sd1: Growth s1 of that standard deviation with the traction [-].
-        noise_correlation_time: Time T in which the noise forgets itself: AR(1) with
+        noise_correlation_time: Correlation time T of the noise, an AR(1) process with
             rho = exp(-dt/T); 0 is white [s].
         speed_noise: Standard deviation of each disc's white speed-sensor noise [rad/s].
         slip_wander_sd: Standard deviation of the true slip ratio about its set-point, seen by
             sensors and force alike; none at slip 1, where the ground disc is held still [-].
         slip_wander_time: Correlation time of that wander, an Ornstein-Uhlenbeck process [s].
-        bump_height: Rise of the load at the top of the ground disc's bump, over the load [-].
+        bump_height: Relative rise of the load at the top of the ground disc's bump [-].
         bump_width: Angle of the ground disc under the whole bump [rad].
 
     Raises:
@@ -73,13 +81,7 @@ TYPICAL_RIG = RigImperfections(
 """A rig like the thesis's under a perfectly calibrated load cell."""
 
 
-def draw_imperfections(
-    rng: np.random.Generator,
-    *,
-    gain_sd: float = 0.005,
-    bias_sd: float = 0.05,
-    crosstalk_sd: float = 0.005,
-) -> RigImperfections:
+def draw_imperfections(rng: np.random.Generator) -> RigImperfections:
     """Draw a load cell's calibration errors around 0; everything else is `TYPICAL_RIG`.
 
     A calibration has priors on these errors. It can only cover the truth at its nominal rate, seed
@@ -87,26 +89,23 @@ def draw_imperfections(
 
     Args:
         rng: Random generator.
-        gain_sd: Standard deviation of both channels' gain errors [-].
-        bias_sd: Standard deviation of the normal channel's bias [N].
-        crosstalk_sd: Standard deviation of the crosstalk [-].
 
     Returns:
         The imperfections of one rig.
     """
     return replace(
         TYPICAL_RIG,
-        gain_traction=rng.normal(0.0, gain_sd),
-        gain_normal=rng.normal(0.0, gain_sd),
-        bias_normal=rng.normal(0.0, bias_sd),
-        crosstalk=rng.normal(0.0, crosstalk_sd),
+        gain_traction=rng.normal(0.0, GAIN_SD),
+        gain_normal=rng.normal(0.0, GAIN_SD),
+        bias_normal=rng.normal(0.0, BIAS_SD),
+        crosstalk=rng.normal(0.0, CROSSTALK_SD),
     )
 
 
 def measured_load(
     load_true: Array, traction_force: Array, *, imperfections: RigImperfections
 ) -> Array:
-    r"""Compute the reading of the normal channel from the true load; inverse of `true_load`.
+    r"""Compute the reading of the normal channel from the true load.
 
     .. math::
         F_{n,measured} = \frac{F_n + b_n - c\,F_t}{1 + g_n}
@@ -123,35 +122,12 @@ def measured_load(
     return seen / (1 + imperfections.gain_normal)
 
 
-def true_load(
-    normal_force: Array, traction_force: Array, *, imperfections: RigImperfections
-) -> Array:
-    r"""Compute the true load from both measured forces.
-
-    .. math::
-        F_n = (1 + g_n)\,F_{n,measured} - b_n + c\,F_t
-
-    Args:
-        normal_force: Measured normal force [N].
-        traction_force: Measured traction force F_t [N].
-        imperfections: Carries g_n, b_n and c.
-
-    Returns:
-        True normal force [N].
-    """
-    return (
-        (1 + imperfections.gain_normal) * normal_force
-        - imperfections.bias_normal
-        + imperfections.crosstalk * traction_force
-    )
-
-
 def lag_one_correlation(interval: float, correlation_time: float) -> float:
     """Compute rho = exp(-dt/T), an AR(1)'s correlation from one sample to the next [-].
 
     Args:
         interval: Time dt between samples [s].
-        correlation_time: Time T in which the process forgets itself; 0 is white noise [s].
+        correlation_time: Correlation time T of the process; 0 is white noise [s].
 
     >>> round(lag_one_correlation(0.004, 0.05), 4), lag_one_correlation(0.004, 0.0)
     (0.9231, 0.0)

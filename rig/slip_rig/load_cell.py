@@ -3,7 +3,6 @@
 
 import http.client
 from collections.abc import Sequence
-from types import TracebackType
 from typing import Final, Self
 
 import numpy as np
@@ -40,15 +39,14 @@ class NetFtCell(LinkedStream[UdpLink]):
     """Stream of a Net F/T load cell: counts are Fx, Fy, Fz, Tx, Ty, Tz; status as in `rdt`.
 
     Losses show as gaps in the record numbers. The device time counts the cell's own readings.
-    A datagram of one record or of many is taken, whichever way the cell was asked to send.
+    Datagrams may hold one record or many, whatever was requested.
 
     Args:
         link: Datagrams to and from the cell.
         profile: Its profile.
-        buffered: Ask for many records in a datagram: a small part of the work, but a few
-            milliseconds late, so that nothing that guards a motion should. A cell that sends
-            nothing then is asked for single ones.
-        name: Name of the stream.
+        buffered: Request many records in each datagram, which takes less CPU time but delays
+            them by a few milliseconds: not for guards. From a cell that then sends nothing,
+            single records are requested.
         clock: Host time.
     """
 
@@ -58,22 +56,18 @@ class NetFtCell(LinkedStream[UdpLink]):
         *,
         profile: LoadCellProfile,
         buffered: bool = False,
-        name: str = "load_cell",
         clock: Clock = SYSTEM_CLOCK,
     ) -> None:
-        super().__init__(link)
-        self.name = name
+        super().__init__(link, name="load_cell", clock=clock)
         self.profile = profile
-        self._clock = clock
         self._start = Request.START_BUFFERED if buffered else Request.START
         self._tracker = SequenceTracker(
             modulus=WRAP, rate=profile.rate, late_window=LATE_DATAGRAMS * MOST_IN_ONE
         )
         self._device_time = TimeUnwrapper(modulus=WRAP, tick=1 / profile.rate)
-        self._received = 0
         self._damaged = 0
         self._reconnected = 0
-        self._heard = 0.0
+        self._last_arrival = 0.0
         self._silent = False
 
     @property
@@ -93,7 +87,7 @@ class NetFtCell(LinkedStream[UdpLink]):
         datagrams = self._link.read(timeout)
         now = self._clock.now()
         samples = self._samples(datagrams, now)
-        self._listen(bool(samples), now)
+        self._check_silence(bool(samples), now)
         self._received += len(samples)
         return samples
 
@@ -103,18 +97,13 @@ class NetFtCell(LinkedStream[UdpLink]):
 
     def __enter__(self) -> Self:
         super().__enter__()
-        self._heard = self._clock.now()
+        self._last_arrival = self._clock.now()
         self._link.write(encode_request(self._start))
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *exception: object) -> None:
         self._link.write(encode_request(Request.STOP))
-        super().__exit__(kind, error, trace)
+        super().__exit__(*exception)
 
     def _samples(self, datagrams: Sequence[bytes], now: float) -> SampleColumns:
         """Decode all records of a read together, column by column."""
@@ -134,14 +123,14 @@ class NetFtCell(LinkedStream[UdpLink]):
             counts=records["counts"].astype(np.int32),
         )
 
-    def _listen(self, heard: bool, now: float) -> None:
+    def _check_silence(self, heard: bool, now: float) -> None:
         """Repeat the start request to a silent cell, and count reconnections."""
         if heard:
-            self._heard = now
+            self._last_arrival = now
             self._reconnected += self._silent
             self._silent = False
-        elif now - self._heard > START_AGAIN_AFTER:
-            self._heard = now
+        elif now - self._last_arrival > START_AGAIN_AFTER:
+            self._last_arrival = now
             self._silent = self._received > 0
             if not self._received:
                 self._start = Request.START  # which every cell knows

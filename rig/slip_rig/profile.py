@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Profile of a slip rig: discs, limits, and the devices that turn and weigh them."""
+"""Profile of a slip rig: discs, limits, drives, load cell or board."""
 
 import math
 from dataclasses import dataclass
@@ -17,7 +17,7 @@ BoardLink: TypeAlias = Literal["serial", "table"]
 AXES: Final = ("x", "y", "z")
 HIGHEST_NODE: Final = 0x3F
 FURTHER_LIMITS: Final = {"lateral_force": "N", "torque": "N m", "temperature_celsius": "degC"}
-"""Limits that a rig need not have, and their units."""
+"""Optional limits of a rig, and their units."""
 _NO_LIMITS: Final = Limits(speed=math.inf, normal_force=math.inf, traction_force=math.inf)
 
 
@@ -42,8 +42,8 @@ class DriveProfile:
 
     Attributes:
         bitrate: Of the bus [bit/s].
-        firmware: Decides what the error bits mean.
-        feed_interval: Between two set-points that feed the drives' watchdogs [s].
+        firmware: Version of the firmware, which defines the error bits.
+        feed_interval: Interval between two set-points, which feed the drives' watchdogs [s].
         leg: Drive of the leg disc.
         ground: Drive of the ground disc.
     """
@@ -77,7 +77,7 @@ class LoadCellProfile:
         port: Its UDP port.
         rate: Records in a second, also of its internal numbering [Hz].
         counts_per_force: Counts in 1 N.
-        counts_per_torque: Counts in 1 N m; None where torques are not looked at.
+        counts_per_torque: Counts in 1 N m; None where torques are not evaluated.
         normal: Where the normal force is found.
         traction: Where the traction force is found.
     """
@@ -99,12 +99,12 @@ class BoardProfile:
         baudrate: Line rate; 0 for a table [baud].
         rate: Sample rate [Hz].
         byte_order: Of values of several bytes.
-        feed_interval: Between two speed commands that feed the board's watchdog; 0 for a
+        feed_interval: Interval between two speed commands, which feed the board's watchdog; 0 for a
             table [s].
         counts_per_force: Counts in 1 N.
         counts_per_speed: Counts in 1 rad/s.
-        normal_sign: What makes pressing positive.
-        traction_sign: What makes driving positive.
+        normal_sign: Sign that makes pressing positive, 1 or -1.
+        traction_sign: Sign that makes driving positive, 1 or -1.
         link: `serial`, or `table` for an imported file.
     """
 
@@ -127,7 +127,7 @@ class RigProfile:
         name: Name of the profile.
         radius_leg: Radius of the leg disc [m].
         radius_ground: Radius of the ground disc [m].
-        limits: What the rig is allowed.
+        limits: Largest magnitudes allowed.
         drives: Both drives; None where there is a board.
         load_cell: The load cell; None where there is a board.
         board: The board; None where there are drives.
@@ -144,12 +144,12 @@ class RigProfile:
     @property
     def measured(self) -> frozenset[str]:
         """Names of those of `FURTHER_LIMITS` that its devices measure."""
-        told = {
+        measures = {
             "lateral_force": self.load_cell is not None,
             "torque": self.load_cell is not None and self.load_cell.counts_per_torque is not None,
             "temperature_celsius": self.drives is not None,
         }
-        return frozenset(key for key, known in told.items() if known)
+        return frozenset(key for key, known in measures.items() if known)
 
 
 def render_table_profile(*, radius_leg: float, radius_ground: float, rate: float) -> str:
@@ -172,14 +172,22 @@ def render_table_profile(*, radius_leg: float, radius_ground: float, rate: float
     return tomlkit.dumps(document)
 
 
-def require_device(profile: RigProfile) -> None:
-    """Raise where a profile describes a table and no device that could be opened.
+def device_profiles(profile: RigProfile) -> BoardProfile | tuple[DriveProfile, LoadCellProfile]:
+    """Return the profile of a rig's board, or those of its drives and its load cell.
 
     Raises:
-        ProfileError: It does.
+        ProfileError: The profile describes a table and no device that could be opened, or lacks
+            devices.
     """
     if profile.board is not None and profile.board.link == "table":
-        raise ProfileError("is of a file and no device; name a device's profile", file=profile.name)
+        raise ProfileError(
+            "describes a file, not a device; name a device's profile", file=profile.name
+        )
+    if profile.board is not None:
+        return profile.board
+    if profile.drives is None or profile.load_cell is None:
+        raise ProfileError(f"profile '{profile.name}' has neither a board nor drives and load cell")
+    return profile.drives, profile.load_cell
 
 
 def load_rig_profile(name: str) -> RigProfile:

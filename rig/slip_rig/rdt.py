@@ -22,7 +22,7 @@ MAGIC: Final = 0x1234
 WRAP: Final = 1 << 32
 SATURATED: Final = 1 << 17
 MOST_IN_ONE: Final = 40
-"""Records in a datagram of a buffered stream, as far as a cell can be set."""
+"""Largest number of records in a datagram of a buffered stream."""
 
 STATUS_BITS: Final[dict[int, str]] = {
     1 << 30: "processor or memory error",
@@ -40,7 +40,7 @@ STATUS_BITS: Final[dict[int, str]] = {
     1 << 16: "monitor condition latched",
     1 << 14: "watchdog timeout",
 }
-"""What the status says beside bit 31, which sums the errors up."""
+"""Meaning of the status bits; bit 31 is set with any of them."""
 
 FORCE_UNITS: Final = {"N": 1.0, "kN": 1e3, "lb": 4.4482216152605, "klb": 4448.2216152605,
                       "g": 9.80665e-3, "kg": 9.80665}  # fmt: skip
@@ -66,28 +66,27 @@ class CellConfiguration:
 
     Attributes:
         counts_per_force: Counts in 1 N.
-        rate: Records in a second; None where it is not told [Hz].
+        rate: Records in a second; None where the page does not give it [Hz].
     """
 
     counts_per_force: float
     rate: float | None
 
 
-def encode_request(request: Request, count: int = 0) -> bytes:
-    """Encode a request.
+def encode_request(request: Request) -> bytes:
+    """Encode a request; after a start, records come until `STOP`.
 
     Args:
         request: Kind of request.
-        count: Records to send; 0 goes on until `STOP`.
 
     >>> encode_request(Request.START).hex()
     '1234000200000000'
     """
-    return REQUEST.pack(MAGIC, request, count)
+    return REQUEST.pack(MAGIC, request, 0)
 
 
 def describe_status(status: int) -> str:
-    """Describe a status word in words; empty without a fault.
+    """Describe a status word as text; empty without a fault.
 
     >>> describe_status(0x80020000)
     'transducer saturated'
@@ -100,8 +99,8 @@ def describe_status(status: int) -> str:
 def parse_configuration(page: bytes) -> CellConfiguration:
     """Read a cell's configuration page, `http://CELL/netftapi2.xml`.
 
-    Only four values are wanted, so that they are searched for by name: nothing in a page from the
-    network is expanded or followed, as a parser of XML might.
+    The values are searched for by name, without a parser of XML, which might expand entities
+    or follow references in a page from the network.
 
     Args:
         page: The page.

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The simulated two-disc rig: discs, contact and load cell in continuous operation, no protocol.
+"""Simulated two-disc rig: discs, contact and load cell in continuous operation, no protocol.
 
 Its force comes from any slip law of `model`, so that a calibration can be tried on one that is not
 the fitted one. Not modelled: temperature, wear, play, bending of the frame, side forces.
@@ -30,27 +30,27 @@ from rig.slip_rig.sweep import SweepPlan
 GRID: Final = 1 / 7000
 """Step of the simulation: a load cell's fastest rate [s]."""
 MEMORY: Final = 2.0
-"""How far back a device may look [s]."""
+"""Length of the stored history of true states [s]."""
 SLOWEST: Final = 1e-3
-"""Surface speed below which the leg disc is taken to stand: it carries no force [m/s]."""
+"""Surface speed below which the leg disc counts as standing and transmits no force [m/s]."""
 
 TWIN_LAWS: Final[dict[str, tuple[SlipLaw, Values]]] = {
     "magic-formula": (THESIS_LAW, THESIS_VALUES),
     "coulomb-stribeck": (CoulombStribeck(), (12.0, 0.38, 0.75, 0.15)),
     "brush": (Brush(kinetic=True), (12.0, 0.38, 0.8)),
 }
-"""Laws that a twin can be run with, and their values, by name."""
+"""Slip laws of a twin with their values, by name."""
 
 
 @dataclass(frozen=True)
 class RigDynamics:
-    """How the rig moves; the defaults are a small rig's.
+    """Dynamics of the discs and delay of the force channels; the defaults are a small rig's.
 
     Attributes:
         speed_lag: Time constant with which a disc follows its set-point [s].
         ripple: Amplitude of the speed's ripple over the speed [-].
         ripple_order: Ripples in one turn.
-        force_delay: How late the force channels are [s].
+        force_delay: Delay of the force channels [s].
 
     Raises:
         ProtocolError: A number is negative, or the delay longer than `MEMORY`.
@@ -71,7 +71,7 @@ class RigDynamics:
 
 @dataclass(frozen=True)
 class RigTruth:
-    """A stretch of what really happened, one entry a grid step.
+    """True states of the rig over a stretch of time, one entry for each grid step.
 
     Attributes:
         time: Since the rig was switched on, shape (n,) [s].
@@ -79,8 +79,8 @@ class RigTruth:
         omega_ground: Speed of the ground disc, shape (n,) [rad/s].
         slip: True slip ratio, shape (n,) [-].
         load: True normal force, shape (n,) [N].
-        normal: What the normal channel reads, shape (n,) [N].
-        traction: What the traction channel reads, shape (n,) [N].
+        normal: Reading of the normal channel, shape (n,) [N].
+        traction: Reading of the traction channel, shape (n,) [N].
     """
 
     time: Array
@@ -100,8 +100,8 @@ class SimulatedRig:
         values: Its values.
         plan: Radii, and the sweep that the rig drives by itself for as long as no drive commands:
             its slips a `duration` apart, gliding from each to the next.
-        imperfections: What its sensors and its bump add.
-        dynamics: How it moves.
+        imperfections: Sensor errors, noise and bump.
+        dynamics: Dynamics of the discs.
         rng: Random generator.
 
     Attributes:
@@ -235,7 +235,7 @@ class SimulatedRig:
         return RigTruth(time, leg, ground, slip, load, normal, traction)
 
     def _follow_plan(self, time: float) -> None:
-        """Let slip glide through the plan's values at one load after another."""
+        """Interpolate the set-points through the plan's slip ratios at one load after another."""
         loads, slips, duration = self._plan.loads, self._plan.slips, self._plan.duration
         sweep, place = divmod(time / duration, len(slips))
         slip = float(np.interp(place, np.arange(len(slips)), slips))
@@ -280,37 +280,6 @@ class SimulatedRig:
         rho = lag_one_correlation(GRID, self._imperfections.noise_correlation_time)
         path, self._noise = _continue_ar1(rho, self._noise, self._rng, n)
         return size * path
-
-
-def simulated_rig(
-    law: str = "magic-formula",
-    *,
-    plan: SweepPlan,
-    imperfections: RigImperfections,
-    dynamics: RigDynamics,
-    rng: np.random.Generator,
-) -> SimulatedRig:
-    """Return a simulated rig with one of `TWIN_LAWS`.
-
-    Args:
-        law: Name of the law.
-        plan: Radii and the sweep.
-        imperfections: What sensors and bump add.
-        dynamics: How it moves.
-        rng: Random generator.
-
-    Returns:
-        The rig.
-
-    Raises:
-        ProtocolError: There is no such law.
-    """
-    if law not in TWIN_LAWS:
-        raise ProtocolError(f"no twin has the slip law '{law}'; known: {', '.join(TWIN_LAWS)}")
-    chosen, values = TWIN_LAWS[law]
-    return SimulatedRig(
-        chosen, values, plan=plan, imperfections=imperfections, dynamics=dynamics, rng=rng
-    )
 
 
 def _continue_ar1(rho: float, last: float, rng: np.random.Generator, n: int) -> tuple[Array, float]:

@@ -62,12 +62,12 @@ class SimulatedBoard:
         for content in self._framer.feed(received):
             packet = decode_packet(content)
             if packet is not None:
-                self._obey(packet, now)
+                self._execute(packet, now)
         self._rig.advance(now)
         due = int(self._rig.elapsed(now) * self._profile.rate + 1e-6)
         frames = self._frames(due)
         self._number = max(self._number, due)
-        return self._wire.carry(frames)
+        return self._wire.stream(frames)
 
     def _frames(self, due: int) -> list[bytes]:
         numbers = np.arange(self._number + 1, due + 1)
@@ -90,7 +90,7 @@ class SimulatedBoard:
         ticks = round(number / self._profile.rate / TICK)
         return encode_packet(Packet(Kind.SLIP_RIG, number, ticks, self._body.pack(*counts)))
 
-    def _obey(self, packet: Packet, now: float) -> None:
+    def _execute(self, packet: Packet, now: float) -> None:
         if packet.kind == Kind.STOP:
             self._status = 0
             self._stop()

@@ -90,7 +90,7 @@ class SimulatedDrives:
             if node in self._axes and message.is_remote_frame:
                 self._answer(self._axes[node], command, now)
             elif node in self._axes:
-                self._obey(self._axes[node], command, bytes(message.data), now)
+                self._execute(self._axes[node], command, bytes(message.data), now)
         for axis in self._axes.values():
             if axis.state == AxisState.CLOSED_LOOP and now - axis.fed > self._watchdog:
                 self._fail(axis, WATCHDOG_EXPIRED[self._firmware])
@@ -121,7 +121,7 @@ class SimulatedDrives:
         if command == Command.TEMPERATURE:
             self._send(axis, Command.TEMPERATURE, TEMPERATURES.pack(self.temperature, math.nan))
 
-    def _obey(self, axis: _Axis, command: int, data: bytes, now: float) -> None:
+    def _execute(self, axis: _Axis, command: int, data: bytes, now: float) -> None:
         axis.fed = now  # any message to an axis feeds its watchdog
         if command == Command.SET_INPUT_VELOCITY and len(data) == INPUT_VELOCITY.size:
             axis.velocity, _ = INPUT_VELOCITY.unpack(data)

@@ -6,12 +6,11 @@ Not modelled: its web page, its thresholds, and the low-pass filter inside it.
 
 import contextlib
 import socket
-from types import TracebackType
 from typing import Self
 
 import numpy as np
 
-from rig.links.faults import PERFECT_LINE, Faults
+from rig.links.faults import PERFECT_LINE, Faults, FaultyLine
 from rig.slip_rig.profile import LoadCellProfile
 from rig.slip_rig.rdt import MAGIC, MOST_IN_ONE, RECORD, REQUEST, WRAP, Request
 from rig.slip_rig.simulated import SimulatedRig
@@ -25,7 +24,7 @@ class SimulatedLoadCell:
     Args:
         rig: The rig it weighs.
         profile: Counts, axes and rate; its address is not used.
-        faults: What goes wrong; `drop`, `duplicate`, `delay` and `truncate` mean whole datagrams.
+        faults: Transmission errors; `drop`, `duplicate`, `delay` and `truncate` apply to datagrams.
         rng: Random generator of the transmission errors.
 
     Attributes:
@@ -54,8 +53,7 @@ class SimulatedLoadCell:
         self.torque = 0.0
         self._rig = rig
         self._profile = profile
-        self._faults = faults
-        self._rng = rng
+        self._line: FaultyLine[bytes] = FaultyLine(faults, rng=rng)
         self._socket: socket.socket | None = None
         self._client: tuple[str, int] | None = None
         self._number = 0
@@ -63,7 +61,6 @@ class SimulatedLoadCell:
         self._zero = np.zeros(6)
         self._each = 1  # records in a datagram
         self._pending: list[bytes] = []
-        self._held: list[bytes] = []
 
     def __enter__(self) -> Self:
         self._socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
@@ -72,12 +69,7 @@ class SimulatedLoadCell:
         self.port = self._socket.getsockname()[1]
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *exception: object) -> None:
         if self._socket is not None:
             self._socket.close()
         self._socket = None
@@ -91,7 +83,7 @@ class SimulatedLoadCell:
             return
         counts = self._counts(readings)
         self._reading = due
-        self._obey(counts[-1])
+        self._execute(counts[-1])
         if self._client is not None:
             for reading, values in zip(readings.tolist(), counts.tolist(), strict=True):
                 self._send(reading, values)
@@ -116,29 +108,15 @@ class SimulatedLoadCell:
         self._pending.append(record)
         if len(self._pending) >= self._each:
             datagram, self._pending = b"".join(self._pending), []
-            self._carry(datagram)
-
-    def _carry(self, datagram: bytes) -> None:
-        held, self._held = self._held, []
-        if self._happens(self._faults.delay):
-            self._held = [datagram]
-        elif not self._happens(self._faults.drop):
-            short = self._happens(self._faults.truncate)
-            self._emit(datagram[:-16] if short else datagram)
-            if self._happens(self._faults.duplicate):
-                self._emit(datagram)
-        for late in held:
-            self._emit(late)
+            for arrived in self._line.carry(datagram, lambda whole: whole[:-16]):
+                self._emit(arrived)
 
     def _emit(self, datagram: bytes) -> None:
         if self._socket is not None and self._client is not None:
-            with contextlib.suppress(OSError):  # nobody listens any more
+            with contextlib.suppress(OSError):  # the client has closed its socket
                 self._socket.sendto(datagram, self._client)
 
-    def _happens(self, probability: float) -> bool:
-        return probability > 0 and self._rng.random() < probability
-
-    def _obey(self, counts: "np.ndarray") -> None:
+    def _execute(self, counts: "np.ndarray") -> None:
         if self._socket is None:
             return
         with contextlib.suppress(BlockingIOError):

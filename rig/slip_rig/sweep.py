@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A simulated sweep of the two-disc rig: what its sensors would log if the slip law were known.
+"""Simulate the log of a sweep of the two-disc rig with a known slip law.
 
 The force model is the one that a calibration assumes, so the truth lies inside the fitted family:
 coverage and recovery can be judged against it. Not modelled: quantisation, dropped samples,
@@ -44,7 +44,7 @@ def _require(holds: bool, name: str, value: float, expected: str) -> None:
 
 @dataclass(frozen=True)
 class SweepPlan:
-    """What is commanded: each slip ratio at each load, the loads outermost, one run a point.
+    """Set-points of a sweep: each slip ratio at each load, the loads outermost, one run a point.
 
     The defaults are the thesis's rig (section 4-6): 62 slip ratios, four loads.
 
@@ -110,13 +110,13 @@ class SweepPlan:
 
 @dataclass(frozen=True)
 class SimulatedSweep:
-    """What a simulated sweep logged, and what was true while it did.
+    """Log of a simulated sweep, with the true values.
 
     Attributes:
-        samples: The log as a calibration takes it: slip from both measured disc speeds.
-        table: The log as a recorder writes it, canonical columns `t` (runs on through the whole
-            sweep) [s], `omega_leg`, `omega_ground` [rad/s], `normal_force`, `traction_force` [N]
-            and `run` (index of the set-point), each of shape (n,).
+        samples: The log as input of a calibration: slip from both measured disc speeds.
+        table: The log as a recorder would write it, canonical columns `t` (runs on through the
+            whole sweep) [s], `omega_leg`, `omega_ground` [rad/s], `normal_force`,
+            `traction_force` [N] and `run` (index of the set-point), each of shape (n,).
         slip_true: True slip ratio, shape (n,) [-].
         load_true: True normal force, shape (n,) [N].
         offset_true: True traction zero b_run of every run, shape (runs,) [N].
@@ -137,7 +137,7 @@ def simulate_sweep(
     imperfections: RigImperfections,
     rng: np.random.Generator,
 ) -> SimulatedSweep:
-    r"""Simulate what a sweep would log.
+    r"""Simulate the log of a sweep.
 
     .. math::
         F_t = (1 + g_t)\,f(\kappa, F_n) + b_{run} + e, \qquad
@@ -149,12 +149,12 @@ def simulate_sweep(
     Args:
         law: The true slip law, in the material slip ratio.
         values: Its parameter values, numbers.
-        plan: What is commanded.
-        imperfections: What the rig adds.
+        plan: Set-points.
+        imperfections: Sensor errors, noise and bump of the rig.
         rng: Random generator: the same state gives the same sweep.
 
     Returns:
-        The log and its truth.
+        The log and the true values.
     """
     slip = _wander_slip(plan, imperfections, rng)
     omega_ground = plan.speed_leg * (1 - slip) / plan.radius_ground
@@ -181,7 +181,7 @@ def samples_from_table(table: dict[str, Column], plan: SweepPlan) -> SlipSamples
 
     Args:
         table: Canonical columns, as in `SimulatedSweep.table`.
-        plan: What was commanded: the radii and the names of the runs.
+        plan: Set-points of the sweep, with the radii and the names of the runs.
 
     Returns:
         The samples, in the material slip ratio.
@@ -207,7 +207,7 @@ def _wander_slip(plan: SweepPlan, truth: RigImperfections, rng: np.random.Genera
     _, slip = plan.set_points()
     rho = lag_one_correlation(1 / plan.rate, truth.slip_wander_time)
     wander = truth.slip_wander_sd * _stationary_ar1(rho, plan, rng)
-    turning = slip < 1  # a drive told to stand still holds its shaft
+    turning = slip < 1  # a drive commanded to stand holds its shaft
     return slip[:, None] + wander * turning[:, None]
 
 

@@ -8,7 +8,7 @@ ratio of the next `WINDOW` less that of the last one,
     d(t) = \bar\kappa(t, t + w) - \bar\kappa(t - w, t) ,
 
 is small while slip glides or climbs stairs, and large where it jumps. Stairs are not cut: the zero
-of the load cell is the same on all of them, and only one sweep as a whole can tell it.
+of the load cell is the same on all of them, and only one sweep as a whole can determine it.
 """
 
 from typing import Final
@@ -20,15 +20,15 @@ from model.slip.definition import SlipDefinition, slip_ratio
 from model.slip.law import Array
 
 BIN: Final = 0.01
-"""Time that slip is averaged over first: drives tell their speeds no more often [s]."""
+"""Bin over which slip is averaged first: drives report their speeds no more often [s]."""
 WINDOW: Final = 0.16
 """Time on either side of a jump that is compared [s]."""
 JUMP: Final = 0.3
-"""Change of slip ratio that no stair of a sweep makes, and every start of one [-]."""
+"""Change of slip ratio larger than any stair of a sweep and smaller than a restart [-]."""
 SETTLED: Final = 0.03
 """Change below which a jump is over [-]."""
 STANDING: Final = 1e-3
-"""Surface speed of the leg disc below which slip has no meaning [m/s]."""
+"""Surface speed of the leg disc below which slip is not defined [m/s]."""
 
 
 def sweeps(time: Array, speed_leg: Array, speed_ground: Array) -> NDArray[np.intp]:

@@ -32,27 +32,15 @@ class CanLegs(LinkedStream[CanLink]):
     Args:
         link: The bus.
         profile: Of the layout `can`.
-        name: Name of the stream.
         clock: Host time.
     """
 
-    def __init__(
-        self,
-        link: CanLink,
-        *,
-        profile: LegProfile,
-        name: str = "legs",
-        clock: Clock = SYSTEM_CLOCK,
-    ) -> None:
-        super().__init__(link)
-        self.name = name
+    def __init__(self, link: CanLink, *, profile: LegProfile, clock: Clock = SYSTEM_CLOCK) -> None:
+        super().__init__(link, name="legs", clock=clock)
         self.profile = profile
-        self._clock = clock
         self._tracker = SequenceTracker(modulus=SEQUENCE_WRAP, rate=profile.rate)
         self._device_time = TimeUnwrapper(modulus=TICKS_WRAP, tick=TICK)
         self._stamp: tuple[int, int] | None = None
-        self._received = 0
-        self._refused = 0
 
     @property
     def counters(self) -> Counters:
@@ -71,11 +59,8 @@ class CanLegs(LinkedStream[CanLink]):
         """Return all samples that have arrived, waiting at most `timeout` for the first [s]."""
         messages = self._link.read(timeout)
         now = self._clock.now()
-        samples = []
-        for message in messages:
-            sample = self._sample(message, now)
-            if sample is not None:
-                samples.append(sample)
+        found = (self._sample(message, now) for message in messages)
+        samples = [sample for sample in found if sample is not None]
         self._received += len(samples)
         return samples
 

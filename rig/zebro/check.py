@@ -19,10 +19,10 @@ from rig.zebro.commands import LegCommands
 from rig.zebro.profile import LegProfile
 
 STEP: Final = 0.1
-"""How far a leg is moved to be recognised [turns]."""
+"""Motion of a leg that a person observes [turns]."""
 DURATION: Final = 0.5
 SETTLING: Final = 0.5
-ANSWER_LIMIT: Final = 2.0
+ANSWER_TIMEOUT: Final = 2.0
 
 
 class CheckedLegs(LegCommands, Stream, Protocol):
@@ -31,7 +31,7 @@ class CheckedLegs(LegCommands, Stream, Protocol):
 
 @dataclass(frozen=True)
 class MovedLeg:
-    """What a person saw when one channel was moved up by some counts.
+    """Observation of the leg that moved when the count of one channel was increased.
 
     Attributes:
         leg: Number of the leg that moved.
@@ -69,7 +69,7 @@ def check_legs(
         if observation.leg in [earlier.leg for earlier in seen]:
             raise DeviceFault(
                 f"leg {observation.leg} was seen to move for two channels, the second "
-                f"{channel + 1}; begin anew",
+                f"{channel + 1}; start again",
                 status=channel,
             )
         seen.append(observation)
@@ -145,12 +145,12 @@ def latest_counts(robot: CheckedLegs, *, clock: Clock = SYSTEM_CLOCK) -> tuple[f
         RigTimeout: The robot sends nothing.
     """
     robot.read(0.0)
-    end = clock.now() + ANSWER_LIMIT
+    end = clock.now() + ANSWER_TIMEOUT
     while (left := end - clock.now()) > 0:
         samples = robot.read(left)
         if samples:
             return samples[-1].counts
-    raise RigTimeout(f"stream '{robot.name}' sent nothing", waited=ANSWER_LIMIT)
+    raise RigTimeout(f"stream '{robot.name}' sent nothing", waited=ANSWER_TIMEOUT)
 
 
 @dataclass(frozen=True)
@@ -160,7 +160,7 @@ class LiftOff:
     Attributes:
         theta: The angle, a whole number of counts [rad].
         mismatch: Hip height there less that at touchdown [m].
-        measurements: How many heights were measured.
+        measurements: Number of measured heights.
     """
 
     theta: float

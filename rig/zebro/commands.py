@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Commands to the robot: leg set-points of a gait, and stop."""
 
-import struct
 from typing import Final, Protocol
 
 from model.gait.reference import LegReference
@@ -25,13 +24,13 @@ class LegCommands(Protocol):
 
         Args:
             counts: Targets in the order of the wire.
-            duration: How long the motion takes [s].
+            duration: Duration of the motion [s].
 
         Returns:
             Whether the link took the command.
 
         Raises:
-            LimitExceeded: The motion is longer than the protocol can say.
+            LimitExceeded: The motion is longer than the protocol can encode.
             ProtocolError: This robot's link takes no commands.
         """
         ...
@@ -42,10 +41,10 @@ class LegCommands(Protocol):
 
 
 def milliseconds(duration: float) -> int:
-    """Round the duration of a motion to what the protocols carry, 16 bits of milliseconds.
+    """Convert the duration of a motion to milliseconds, 16 bits in the protocols.
 
     Args:
-        duration: How long a motion takes [s].
+        duration: Duration of a motion [s].
 
     Returns:
         The same [ms].
@@ -57,11 +56,6 @@ def milliseconds(duration: float) -> int:
         raise LimitExceeded("duration of a leg motion", value=duration, limit=LONGEST_MOTION,
                             unit="s")  # fmt: skip
     return round(duration / MILLISECOND)
-
-
-def set_point_body(profile: LegProfile) -> struct.Struct:
-    """Return the layout of a set-point packet: six targets [counts], then the duration [ms]."""
-    return struct.Struct(("<" if profile.byte_order == "little" else ">") + "7H")
 
 
 def follow(
@@ -77,7 +71,7 @@ def follow(
         reference: The gait.
         start: Host time at which the gait began [s].
         now: Host time [s].
-        horizon: How far ahead the set-point lies, and how long the motion to it takes [s].
+        horizon: Time ahead at which the set-point is due, and duration of the motion to it [s].
 
     Returns:
         Whether the link took the command.

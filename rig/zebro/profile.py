@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Profile of a robot's leg stream: frame layout, and conversion of counts to leg angles."""
 
+import struct
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
@@ -28,11 +29,11 @@ DUMP_REGISTERS = 256
 
 @dataclass(frozen=True)
 class Registers:
-    """Where a register-based robot keeps what; each value takes two registers.
+    """Register map of a robot; each value takes two registers.
 
     Attributes:
         positions: First register of the position of each channel.
-        read_command: Byte that asks for registers.
+        read_command: Byte that requests registers.
         write_command: Byte that writes registers.
         set_points: First register of the set-point of each channel; empty where none is taken.
         duration: First register of the duration of a motion [ms].
@@ -107,8 +108,16 @@ class LegProfile:
         """
         return 0.0 if self.layout == "table" else float(np.pi / self.counts_per_revolution)
 
+    def words(self, count: int) -> struct.Struct:
+        """Return the layout of unsigned 16-bit values in the profile's byte order.
+
+        Args:
+            count: Number of values.
+        """
+        return struct.Struct(f"{'<' if self.byte_order == 'little' else '>'}{count}H")
+
     def possible(self, counts: tuple[float, ...]) -> bool:
-        """Return whether every count is on the circle."""
+        """Return whether every count is between 0 and a revolution."""
         return max(counts) <= self.counts_per_revolution and min(counts) >= 0
 
 
@@ -159,7 +168,9 @@ def load_leg_profile(name: str) -> LegProfile:
         name=Path(name).stem,
         layout=layout,
         baudrate=0 if layout == "table" else link.whole("baudrate", least=1, most=20_000_000),
-        byte_order=_byte_order(frame, layout),
+        byte_order="little"
+        if layout in ("can", "table")
+        else frame.choice("byte_order", ("little", "big")),
         legs=order,
         counts_per_revolution=legs.whole(
             "counts_per_revolution", least=2, most=100 if layout == "can" else 65_535
@@ -179,7 +190,7 @@ def save_leg_profile(profile: LegProfile, path: Path) -> None:
 
     Args:
         profile: The profile; its name becomes the file's.
-        path: Where to write; a file that is there is replaced.
+        path: Path of the file; an existing one is replaced.
     """
     path.write_text(render_leg_profile(profile), encoding="utf-8")
 
@@ -192,8 +203,9 @@ def render_leg_profile(profile: LegProfile) -> str:
 def decode_angles(profile: LegProfile, samples: Sequence[Sample]) -> LegAngles:
     """Compute unwrapped leg angles from raw counts.
 
-    A leg is taken to have turned the short way between two samples, so that a gap in which it
-    turned half a revolution or more is bridged wrongly by whole turns; contacts do not mind.
+    A leg is taken to have turned the short way between two samples, so that after a gap in which
+    it turned half a revolution or more its angle is wrong by whole turns, which does not change its
+    contact with the ground.
 
     Args:
         profile: Profile of the stream; a corrected one repairs an old log.
@@ -242,12 +254,6 @@ def encode_counts(profile: LegProfile, theta: Sequence[float] | Array) -> tuple[
     return tuple(int(c) for c in np.remainder(counts, profile.counts_per_revolution))
 
 
-def _byte_order(frame: TomlTable, layout: Layout) -> Order:
-    if layout in ("can", "table"):
-        return "little"
-    return frame.choice("byte_order", ("little", "big"))
-
-
 def _order(legs: TomlTable) -> tuple[int, ...]:
     found = legs.wholes("order", most=6)
     if not found or sorted(set(found)) != sorted(found) or not set(found) <= set(range(1, 7)):
@@ -256,7 +262,7 @@ def _order(legs: TomlTable) -> tuple[int, ...]:
 
 
 def _by_channel(by_leg: tuple[Any, ...], order: tuple[int, ...]) -> tuple[Any, ...]:
-    """Bring values that a person lists by ascending leg number into the order of the wire."""
+    """Reorder values listed by ascending leg number into the order of the channels."""
     ascending = sorted(order)
     return tuple(by_leg[ascending.index(leg)] for leg in order)
 
@@ -271,7 +277,9 @@ def _registers(frame: TomlTable, layout: Layout, channels: int) -> Registers:
     targets = frame.wholes("set_point_registers", most=last)
     for key, found in (("registers", positions), ("set_point_registers", targets)):
         if list(found) != list(range(found[0], found[0] + 2 * channels, 2)):
-            raise frame.fault(f"found {list(found)}; expected one run, two a leg", key)
+            raise frame.fault(
+                f"found {list(found)}; expected consecutive ones, two for each leg", key
+            )
     duration = frame.whole("duration_register", most=last)
     if duration != targets[-1] + 2:
         raise frame.fault(
@@ -299,6 +307,9 @@ def _can_ids(frame: TomlTable) -> CanIds:
 def _as_document(profile: LegProfile) -> dict[str, Any]:
     ascending = sorted(profile.legs)
     channel_of = [profile.legs.index(leg) for leg in ascending]
+    link: dict[str, Any] = {"kind": LINK_OF[profile.layout]}
+    if profile.layout != "table":
+        link["baudrate"] = profile.baudrate
     frame: dict[str, Any] = {"layout": profile.layout}
     if profile.layout == "can":
         frame |= {f"{name}_id": value for name, value in asdict(profile.can_ids).items()}
@@ -317,7 +328,7 @@ def _as_document(profile: LegProfile) -> dict[str, Any]:
     return {
         "schema": SCHEMA,
         "device": "legs",
-        "link": _link(profile),
+        "link": link,
         "frame": frame,
         "legs": {
             "order": list(profile.legs),
@@ -327,8 +338,3 @@ def _as_document(profile: LegProfile) -> dict[str, Any]:
         },
         "stream": {"rate": profile.rate},
     }
-
-
-def _link(profile: LegProfile) -> dict[str, Any]:
-    kind = {"kind": LINK_OF[profile.layout]}
-    return kind if profile.layout == "table" else kind | {"baudrate": profile.baudrate}

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: MIT
-"""Leg angles from registers: a leg module that dumps them, and a bridge that is asked for them.
+"""Leg angles from registers: a leg module that dumps them, and a bridge that is polled for them.
 
-Neither form has a checksum, a number or a device time: what is lost is not seen, and a bit flipped
-inside a value is seen only where the value leaves the circle. Prefer a bridge that sends packets.
+Neither form has a checksum, a sequence number or a device time: losses are not detected, and a
+flipped bit is detected only where the value leaves the range of counts. Prefer a bridge that
+sends packets.
 """
 
-import struct
 from typing import Final
 
 from rig.clock import SYSTEM_CLOCK, Clock
@@ -19,22 +19,18 @@ from rig.zebro.profile import DUMP_REGISTERS, LegProfile
 
 SYNC: Final = bytes.fromhex("FF4512EA4B")
 DUMP_LENGTH: Final = DUMP_REGISTERS + len(SYNC)
-ANSWER_LIMIT: Final = 0.05
-"""How long an answer to a poll may take [s]."""
+ANSWER_TIMEOUT: Final = 0.05
+"""Timeout of an answer to a poll [s]."""
 QUIET_AFTER_FAILURE: Final = 0.1
-"""Pause after a poll without a whole answer, so that a late one arrives before the next [s]."""
+"""Pause after an incomplete answer, so that a late one arrives before the next request [s]."""
 
 
 class _RegisterStream(LinkedStream[ByteLink]):
     """Base of both layouts: link, profile and counters."""
 
-    def __init__(self, link: ByteLink, *, profile: LegProfile, name: str, clock: Clock) -> None:
-        super().__init__(link)
-        self.name = name
+    def __init__(self, link: ByteLink, *, profile: LegProfile, clock: Clock = SYSTEM_CLOCK) -> None:
+        super().__init__(link, name="legs", clock=clock)
         self.profile = profile
-        self._clock = clock
-        self._received = 0
-        self._refused = 0
 
     def _sample(self, counts: tuple[int, ...]) -> list[Sample]:
         if not self.profile.possible(counts):
@@ -50,19 +46,11 @@ class DumpLegs(_RegisterStream):
     Args:
         link: Bytes from one leg module.
         profile: Of the layout `dump`.
-        name: Name of the stream.
         clock: Host time.
     """
 
-    def __init__(
-        self,
-        link: ByteLink,
-        *,
-        profile: LegProfile,
-        name: str = "legs",
-        clock: Clock = SYSTEM_CLOCK,
-    ) -> None:
-        super().__init__(link, profile=profile, name=name, clock=clock)
+    def __init__(self, link: ByteLink, *, profile: LegProfile, clock: Clock = SYSTEM_CLOCK) -> None:
+        super().__init__(link, profile=profile, clock=clock)
         self._framer = TrailerFramer(length=DUMP_LENGTH, trailer=SYNC)
         self._connections = 0
 
@@ -121,30 +109,20 @@ class PolledLegs(_RegisterStream):
     Args:
         link: Bytes to and from the bridge.
         profile: Of the layout `poll`.
-        name: Name of the stream.
         clock: Host time.
     """
 
-    def __init__(
-        self,
-        link: ByteLink,
-        *,
-        profile: LegProfile,
-        name: str = "legs",
-        clock: Clock = SYSTEM_CLOCK,
-    ) -> None:
-        super().__init__(link, profile=profile, name=name, clock=clock)
-        self._answer = struct.Struct(
-            ("<" if profile.byte_order == "little" else ">") + f"{len(profile.legs)}H"
-        )
+    def __init__(self, link: ByteLink, *, profile: LegProfile, clock: Clock = SYSTEM_CLOCK) -> None:
+        super().__init__(link, profile=profile, clock=clock)
+        self._answer = profile.words(len(profile.legs))
         self._next_at = clock.now()
         self._damaged = 0
         self._resynchronised = 0
-        self._astray = False
+        self._out_of_sync = False
 
     @property
     def counters(self) -> Counters:
-        """Counters of the stream so far; an answer that did not come whole counts as damaged."""
+        """Counters of the stream so far; an incomplete answer counts as damaged."""
         return Counters(
             received=self._received,
             damaged=self._damaged,
@@ -154,22 +132,22 @@ class PolledLegs(_RegisterStream):
         )
 
     def read(self, timeout: float) -> list[Sample]:
-        """Ask once, when the next reading is due; none where that is beyond `timeout` [s]."""
+        """Request one reading when it is due; none where that is beyond `timeout` [s]."""
         now = self._clock.now()
         wait = self._next_at - now
         self._clock.sleep(min(max(wait, 0.0), timeout))
         if wait > timeout:
             return []
         self._next_at = max(self._next_at, now) + 1 / self.profile.rate
-        answer = self._ask()
+        answer = self._request()
         if answer is None:
             self._damaged += 1
-            self._astray = True
-            # Quiet first: an answer carries nothing that tells which request it is to.
+            self._out_of_sync = True
+            # Pause first: an answer does not say to which request it belongs.
             self._next_at = self._clock.now() + QUIET_AFTER_FAILURE
             return []
-        self._resynchronised += self._astray
-        self._astray = False
+        self._resynchronised += self._out_of_sync
+        self._out_of_sync = False
         return self._sample(self._answer.unpack(answer))
 
     def set_points(self, counts: tuple[int, ...], duration: float) -> bool:
@@ -183,8 +161,7 @@ class PolledLegs(_RegisterStream):
             Whether the link took the command.
         """
         values = (*counts, milliseconds(duration))
-        order = self.profile.byte_order
-        data = b"".join(value.to_bytes(2, order) for value in values)
+        data = self.profile.words(len(values)).pack(*values)
         return self._write(self.profile.registers.set_points[0], data)
 
     def stop(self) -> bool:
@@ -195,13 +172,13 @@ class PolledLegs(_RegisterStream):
         head = bytes((self.profile.registers.write_command, first, len(data)))
         return self._link.write(head + data)
 
-    def _ask(self) -> bytes | None:
+    def _request(self) -> bytes | None:
         self._link.read(0.0)  # leftovers of an answer that came too late
         registers, size = self.profile.registers, self._answer.size
         request = bytes((registers.read_command, registers.positions[0], size))
         if not self._link.write(request):
             return None
-        end = self._clock.now() + ANSWER_LIMIT
+        end = self._clock.now() + ANSWER_TIMEOUT
         answer = b""
         while len(answer) < size and (left := end - self._clock.now()) > 0:
             answer += self._link.read(left)

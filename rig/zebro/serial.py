@@ -1,19 +1,12 @@
 # SPDX-License-Identifier: MIT
 """Leg angles from a bridge board in this project's own packets."""
 
-import struct
-
 from rig.clock import SYSTEM_CLOCK, Clock
 from rig.links.byte_link import ByteLink
 from rig.links.packet import Kind
 from rig.links.packet_stream import PacketStream
-from rig.zebro.commands import milliseconds, set_point_body
+from rig.zebro.commands import milliseconds
 from rig.zebro.profile import LegProfile
-
-
-def leg_body(profile: LegProfile) -> struct.Struct:
-    """Return the layout of a leg packet's body: six counts."""
-    return struct.Struct(("<" if profile.byte_order == "little" else ">") + "6H")
 
 
 class PacketLegs(PacketStream):
@@ -22,23 +15,15 @@ class PacketLegs(PacketStream):
     Args:
         link: Bytes to and from the bridge.
         profile: Of the layout `packet`.
-        name: Name of the stream.
         clock: Host time.
     """
 
-    def __init__(
-        self,
-        link: ByteLink,
-        *,
-        profile: LegProfile,
-        name: str = "legs",
-        clock: Clock = SYSTEM_CLOCK,
-    ) -> None:
+    def __init__(self, link: ByteLink, *, profile: LegProfile, clock: Clock = SYSTEM_CLOCK) -> None:
         super().__init__(
             link,
-            name=name,
+            name="legs",
             kind=Kind.LEGS,
-            body=leg_body(profile),
+            body=profile.words(6),
             rate=profile.rate,
             possible=profile.possible,
             clock=clock,
@@ -55,7 +40,7 @@ class PacketLegs(PacketStream):
         Returns:
             Whether the link took the command.
         """
-        body = set_point_body(self.profile).pack(*counts, milliseconds(duration))
+        body = self.profile.words(7).pack(*counts, milliseconds(duration))
         return self.send(Kind.LEG_SET_POINTS, body)
 
     def stop(self) -> bool:

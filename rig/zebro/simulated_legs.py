@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Six simulated legs that follow a gait and count as the robot does; they speak no protocol.
+"""Six simulated legs that follow a gait and give their angles as counts, without a protocol.
 
 Not modelled: motor dynamics and load, drift of the robot's clock other than a constant rate error.
 """
@@ -14,7 +14,7 @@ from rig.errors import ProtocolError
 from rig.zebro.profile import Array, LegProfile, encode_counts
 
 FASTER: Final = 1.2
-"""A leg that speeds up by this factor from one frame to the next begins its flight."""
+"""A leg that speeds up by this factor from one frame to the next begins its swing."""
 
 
 @dataclass(frozen=True)
@@ -22,9 +22,9 @@ class RobotImperfections:
     """Deviations of the robot from its gait; the defaults follow it exactly.
 
     Attributes:
-        jitter: Standard deviation of when a frame is taken, held below half a frame [s].
-        pause_probability: Probability that the robot pauses before a leg begins its flight.
-        pause: How long it then pauses [s].
+        jitter: Standard deviation of the time of a frame, limited to half a period [s].
+        pause_probability: Probability that the robot pauses before a leg begins its swing.
+        pause: Duration of a pause [s].
         clock_rate_error: Relative error of the robot's clock [-].
 
     Raises:
@@ -70,8 +70,8 @@ class SimulatedLegs:
 
     Args:
         reference: The gait, any.
-        profile: How the robot counts; a driver may be given another profile on purpose.
-        imperfections: How it departs from the gait.
+        profile: Conversion of angles to counts; a driver may be given another one on purpose.
+        imperfections: Deviations from the gait.
         rng: Random generator.
     """
 
@@ -95,7 +95,7 @@ class SimulatedLegs:
         self._motion: tuple[float, float, Array, Array] | None = None
 
     def frames(self, now: float) -> list[Frame]:
-        """Report everything up to a time, one frame every 1/rate.
+        """Return the frames that are due up to a time, one every 1/rate.
 
         Args:
             now: Time by the caller's clock [s].

@@ -243,7 +243,7 @@ def test_the_boards_calibrate_to_the_true_camera(truth):
 
 def test_the_lens_on_file_is_the_true_one_within_its_error(truth):
     told, file = truth["camera"], FOLDER / "camera.toml"
-    camera = read_camera_file(file).camera
+    camera = read_camera_file(file)
     sd = tomllib.loads(file.read_text(encoding="utf-8"))["calibration"]
     assert camera.size == tuple(told["size"])
     focal, centre = np.diag(camera.matrix)[:2], camera.matrix[:2, 2]

@@ -20,7 +20,7 @@ from model.slip.definition import SlipDefinition
 from model.slip.thesis import THESIS_LAW, THESIS_VALUES
 from rig.experiment.control import Control
 from rig.experiment.run import run_plan
-from rig.experiment.verdict import measured_slip
+from rig.slip_rig.decode import measured_slip
 from rig.slip_rig.imperfections import draw_imperfections
 from support.memory_sink import MemorySink
 from zebro_lab.experiment.plan_file import read_plan
@@ -64,7 +64,9 @@ def measure(seed: int) -> tuple[SlipSamples, SlipSamples]:
     readings = [run.readings for run in runs]
     sizes = [len(part) for part in readings]
     measured = SlipSamples(
-        slip=np.concatenate([measured_slip(part, profile) for part in readings]),
+        slip=np.concatenate(
+            [measured_slip(part.omega_leg, part.omega_ground, profile) for part in readings]
+        ),
         normal_force=np.concatenate([part.normal_force for part in readings]),
         traction_force=np.concatenate([part.traction_force for part in readings]),
         run=np.repeat(np.arange(len(runs)), sizes),

@@ -12,7 +12,7 @@ import pytest
 from rig.errors import DeviceFault, LimitExceeded, RigTimeout
 from rig.experiment.control import Control
 from rig.experiment.sink import SinkFailed
-from rig.experiment.watcher import NobodyWatches
+from rig.experiment.watcher import ExperimentWatcher
 from rig.links.can import CanLink
 from rig.slip_rig.rdt import SATURATED
 from rig.slip_rig.simulated import SimulatedRig
@@ -21,8 +21,10 @@ from rig.slip_rig.simulated_load_cell import SimulatedLoadCell
 from zebro_lab.calibration.rig_data import read_rig_data
 from zebro_lab.experiment.folder import ExperimentFolder
 from zebro_lab.experiment.journal import JOURNAL_FILE, read_journal
-from zebro_lab.experiment.stage import RigRunRequest, run_experiment
-from zebro_lab.runs.folder import find_runs, read_manifest
+from zebro_lab.experiment.request import RigRunRequest
+from zebro_lab.experiment.stage import run_experiment
+from zebro_lab.runs.folder import find_runs
+from zebro_lab.runs.manifest import read_manifest
 
 pytestmark = pytest.mark.long
 
@@ -44,7 +46,7 @@ SMALL = {
 }
 
 
-class PlantAt(NobodyWatches):
+class PlantAt(ExperimentWatcher):
     """Plants a fault when the second point begins, on the acquiring thread."""
 
     def __init__(self, plant):
@@ -178,7 +180,7 @@ def test_after_a_fault_the_discs_rest_the_reason_is_kept_and_resume_ends_the_pla
     assert 1 <= len(read_journal(data).accepted) < 3
     for folder in find_runs(data):
         assert read_manifest(folder).stop is not None, folder
-    outcome = run_experiment(request(resume=True), NobodyWatches(), Control())
+    outcome = run_experiment(request(resume=True), ExperimentWatcher(), Control())
     assert outcome.completed
     assert outcome.finished == 3
     assert read_rig_data([data]).samples.n_runs == 3

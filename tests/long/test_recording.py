@@ -8,7 +8,6 @@ import signal
 import subprocess
 import sys
 import time
-from pathlib import Path
 
 import numpy as np
 import pandas as pd
@@ -19,11 +18,11 @@ from model.slip.thesis import THESIS_LAW, THESIS_VALUES
 from rig.backends import open_rig
 from rig.slip_rig.can_simple import describe_error
 from rig.slip_rig.decode import decode_board, decode_speeds
+from support.commands import COMMAND
 from zebro_lab.mcap.raw_log import read_raw_log
 from zebro_lab.runs.folder import read_slip_rig_run
 from zebro_lab.runs.stage import list_runs
 
-COMMAND = str(Path(sys.executable).with_name("zebro-lab"))
 KILLS = int(os.environ.get("ZEBRO_LAB_KILLS", "20"))
 SOAK = float(os.environ.get("ZEBRO_LAB_SOAK", "600"))
 

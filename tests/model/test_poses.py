@@ -3,7 +3,15 @@ import numpy as np
 import pytest
 
 from model.errors import DomainError, InsufficientData
-from model.poses import Poses, overlap, travel_direction, wrap
+from model.poses import (
+    Poses,
+    compose,
+    moved_onto,
+    overlap,
+    relative,
+    travel_direction,
+    wrap,
+)
 
 T = np.array([0.0, 1.0, 2.0, 4.0])
 LINE = Poses(T, np.column_stack([0.5 * T, 0.0 * T]), 0.1 * T)
@@ -90,3 +98,30 @@ def test_wrapped_angles_are_within_half_a_turn():
     angles = np.linspace(-20, 20, 101)
     assert np.all((wrap(angles) >= -np.pi) & (wrap(angles) < np.pi))
     np.testing.assert_allclose(np.exp(1j * wrap(angles)), np.exp(1j * angles))
+
+
+def test_poses_are_composed_with_a_pose_and_seen_from_it_again():
+    moves = np.random.default_rng(2).normal(size=(7, 3))
+    pose = np.array([1.0, -2.0, 0.7])
+    there = compose(pose, moves)
+    np.testing.assert_allclose(relative(there, pose), moves)
+    np.testing.assert_allclose(relative(there, np.tile(pose, (7, 1))), moves)
+    ahead = compose(np.array([1.0, 1.0, np.pi / 2]), np.array([[2.0, 0.0, 0.1]]))
+    np.testing.assert_allclose(ahead, [[1.0, 3.0, np.pi / 2 + 0.1]])
+
+
+def test_paths_are_moved_to_begin_at_a_pose():
+    states = np.array([[[1.0, 1.0, 0.5], [2.0, 1.0, 0.6]]])
+    moved = moved_onto(states, states[:, 0], np.array([0.0, 0.0, 0.5 + np.pi / 2]))
+    np.testing.assert_allclose(
+        moved[0], [[0, 0, 0.5 + np.pi / 2], [0, 1, 0.6 + np.pi / 2]], atol=1e-12
+    )
+
+
+def test_paths_moved_rigidly_keep_their_steps():
+    states = np.random.default_rng(1).normal(size=(3, 5, 3))
+    wanted = np.array([[1.0, 2.0, 0.5], [0.0, 1.0, -2.0], [3.0, 0.0, 4.0]])
+    moved = moved_onto(states, states[:, 2], wanted)
+    np.testing.assert_allclose(moved[:, 2], wanted)
+    steps = [np.linalg.norm(np.diff(a[..., :2], axis=1), axis=2) for a in (moved, states)]
+    np.testing.assert_allclose(*steps)

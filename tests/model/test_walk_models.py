@@ -4,8 +4,8 @@ import pytest
 
 from model.errors import DomainError
 from model.gait.reference import SampledReference
+from model.gait.steering import tripod_angles, tripod_reference
 from model.gait.tetrapod import tetrapod_reference
-from model.gait.tripod import tripod_angles, tripod_reference
 from model.robot import Robot
 from model.slip.thesis import thesis_curve
 from model.walk.slip import Slip

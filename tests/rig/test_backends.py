@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: MIT
 """Profiles choose drivers and links; profiles of tables choose none."""
 
+from types import SimpleNamespace
+
 import pytest
 
 from rig.backends import LEG_DRIVERS, leg_driver, leg_link, open_imu, open_legs, open_rig
@@ -23,9 +25,11 @@ OF_LAYOUT = {
 def test_the_layout_chooses_the_driver(layout):
     profile = load_leg_profile(OF_LAYOUT[layout])
     clock = ManualClock()
-    driver = leg_driver(profile, MemoryLink(None, clock=clock), name="x", clock=clock)
-    assert type(driver).__name__ == LEG_DRIVERS[layout].split(":")[1]
-    assert (driver.name, driver.profile) == ("x", profile)
+    driver = leg_driver(
+        profile, MemoryLink(SimpleNamespace(source="sim:none"), clock=clock), clock=clock
+    )
+    assert type(driver) is LEG_DRIVERS[layout]
+    assert (driver.name, driver.profile) == ("legs", profile)
 
 
 def test_the_layout_chooses_the_link():
@@ -42,8 +46,8 @@ def test_a_rig_is_a_board_or_drives_and_a_load_cell():
     board = open_rig("rig-board-serial@/dev/null")
     assert [stream.name for stream in board.streams] == ["board"]
     assert open_imu("imu-quaternion-serial@/dev/null", name="imu1").name == "imu1"
-    legs = open_legs("zebro-100-serial@/dev/null", name="left")
-    assert (legs.name, legs.source) == ("left", "real")
+    legs = open_legs("zebro-100-serial@/dev/null")
+    assert (legs.name, legs.source) == ("legs", "real")
 
 
 def test_a_profile_of_a_table_opens_nothing(tmp_path):
@@ -51,5 +55,5 @@ def test_a_profile_of_a_table_opens_nothing(tmp_path):
     imu.write_text(render_table_profile(100.0))
     rig.write_text(render_rig_profile(radius_leg=0.035, radius_ground=0.12, rate=100.0))
     for opener, file in ((open_imu, imu), (open_rig, rig)):
-        with pytest.raises(ProfileError, match="is of a file and no device"):
+        with pytest.raises(ProfileError, match="describes a file, not a device"):
             opener(f"{file}@/dev/null")

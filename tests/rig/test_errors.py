@@ -27,7 +27,7 @@ from rig.errors import (
         (StaleReading("age", value=2.0, limit=1.0, unit="s"), ValueError,
          "age is 2 s; its limit is 1 s", {"value": 2.0, "limit": 1.0, "unit": "s"}),
         (FrozenReading("force", value=0.3, limit=0.25), ValueError,
-         "force did not change by a bit for 0.3 s; its limit is 0.25 s", {"limit": 0.25}),
+         "force stayed the same, bit for bit, for 0.3 s; its limit is 0.25 s", {"limit": 0.25}),
         (NotAtRest("it turns", limit=0.1), TimeoutError, "it turns; its limit is 0.1 rad/s",
          {"limit": 0.1}),
         (ProfileError("is\nodd", file="a.toml", key="b"), ValueError, "a.toml, b: is odd",

@@ -16,7 +16,7 @@ from rig.links.memory import MemoryLink
 from rig.replay import ReplayStream
 from rig.slip_rig.imperfections import TYPICAL_RIG
 from rig.slip_rig.profile import load_rig_profile
-from rig.slip_rig.simulated import RigDynamics, simulated_rig
+from rig.slip_rig.simulated import RigDynamics, SimulatedRig
 from rig.slip_rig.sweep import SweepPlan
 from rig.twins import robot_twin, simulated_imu, simulated_legs, simulated_rig_devices
 from rig.zebro.profile import load_leg_profile
@@ -30,7 +30,7 @@ def rng():
 
 
 def rig():
-    return simulated_rig(
+    return SimulatedRig(
         plan=SweepPlan(), imperfections=TYPICAL_RIG, dynamics=RigDynamics(), rng=rng()
     )
 

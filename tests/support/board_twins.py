@@ -8,7 +8,7 @@ from rig.links.memory import MemoryLink
 from rig.slip_rig.board import RigBoard
 from rig.slip_rig.imperfections import RigImperfections
 from rig.slip_rig.profile import load_rig_profile
-from rig.slip_rig.simulated import RigDynamics, simulated_rig
+from rig.slip_rig.simulated import TWIN_LAWS, RigDynamics, SimulatedRig
 from rig.slip_rig.simulated_board import SimulatedBoard
 from rig.slip_rig.sweep import SweepPlan
 
@@ -19,8 +19,8 @@ PERFECT = RigImperfections()
 
 
 def world(law="magic-formula", *, plan=None, imperfections=PERFECT, dynamics=None, seed=0):
-    return simulated_rig(
-        law,
+    return SimulatedRig(
+        *TWIN_LAWS[law],
         plan=plan or SweepPlan(),
         imperfections=imperfections,
         dynamics=dynamics or RigDynamics(),

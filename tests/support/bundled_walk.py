@@ -1,12 +1,10 @@
 # SPDX-License-Identifier: MIT
 """The bundled simulated walk, and a silent progress reporter."""
 
-import sys
 from pathlib import Path
 
 import pandas as pd
 
-COMMAND = str(Path(sys.executable).with_name("zebro-lab"))
 WALK = Path(__file__).parents[2] / "datasets/walk-sim"
 PHOTOS = WALK / "photos"
 COMPOSITE = WALK / "composite/simulated_pasted.jpg"

@@ -46,14 +46,14 @@ class Scene:
     def picture(self, name: str, *, simulated: bool = True) -> Figure:
         rng = np.random.default_rng(1)
         labels = parameter_labels(self.law.parameters)
-        marks = {"title": "A fit", "simulated": simulated}
+        marks = {"simulated": simulated}
         match name:
             case "curves":
                 return self.curves(simulated=simulated)
             case "surface":
                 return slip_surface(self.blocks, self.law, values=self.truth, **marks)
             case "corner":
-                return corner(self.draws, labels=labels, truth=self.truth, **marks)
+                return corner(self.draws, labels=labels, **marks)
             case "traces":
                 return traces(self.draws.reshape(4, 50, -1), labels=labels, **marks)
         whitened, run_score = (
@@ -64,7 +64,7 @@ class Scene:
     def curves(self, *, simulated: bool = True) -> Figure:
         return slip_curves(
             self.blocks, self.law, draws=self.draws, load_levels=self.load_levels,
-            title="A fit", simulated=simulated,
+            simulated=simulated,
         )  # fmt: skip
 
 

@@ -4,7 +4,8 @@
 import numpy as np
 import pandas as pd
 
-from zebro_lab.validation.compare.stage import CompareRequest, compare
+from zebro_lab.validation.compare.request import CompareRequest
+from zebro_lab.validation.compare.stage import compare
 
 SLIP_TOML = """
 schema = 1

@@ -6,10 +6,10 @@ import numpy as np
 from hypothesis import strategies as st
 
 from tracking.body import TopPlate, floor_in_view
+from tracking.body.plane import Plane
 from tracking.camera import Camera, CameraPose, project
 from tracking.composite import Merged, find_exposures_like, order_exposures
 from tracking.composite.known import KnownExposure
-from tracking.composite.plane import Plane
 from tracking.markers import square_homography
 from tracking.pose import BodyPose, BodyPrior
 

@@ -12,7 +12,7 @@ from rig.links.serve import Ticker
 from rig.slip_rig.drives import DriveBus
 from rig.slip_rig.imperfections import RigImperfections
 from rig.slip_rig.profile import load_rig_profile
-from rig.slip_rig.simulated import RigDynamics, simulated_rig
+from rig.slip_rig.simulated import RigDynamics, SimulatedRig
 from rig.slip_rig.simulated_drives import SimulatedDrives
 from rig.slip_rig.sweep import SweepPlan
 
@@ -26,7 +26,7 @@ WATCHDOG = 0.3
 def twin(request, **options):
     """Serve both drives; yield them and the driver, not yet entered."""
     channel = request.node.nodeid
-    world = simulated_rig(
+    world = SimulatedRig(
         plan=SweepPlan(),
         imperfections=RigImperfections(),
         dynamics=RigDynamics(),

@@ -6,7 +6,8 @@ from datetime import UTC, datetime
 import numpy as np
 
 from support.watchers import Nobody
-from zebro_lab.exchange.import_stage import ImportRequest, import_run
+from zebro_lab.exchange.import_request import ImportRequest
+from zebro_lab.exchange.import_stage import import_run
 
 T = np.arange(0.0, 2.0, 0.02)
 

@@ -11,18 +11,18 @@ from rig.imu.profile import load_imu_profile
 from rig.slip_rig.profile import load_rig_profile
 from rig.zebro.profile import load_leg_profile
 from zebro_lab.mcap.log_writer import LogWriter
-from zebro_lab.mcap.stream_views import DrivesView, ImuView, LegsView, LoadCellView, RigBoardView
+from zebro_lab.mcap.stream_views import board_view, drives_view, imu_view, legs_view, load_cell_view
 
 START = 100.0
 RIG = load_rig_profile("rig-odrive-netft")
 BOARD = load_rig_profile("rig-board-serial")
 LEGS = load_leg_profile("zebro-100-serial")
 VIEWS = {
-    "legs": LegsView("legs", profile=LEGS),
-    "imu": ImuView("imu", profile=load_imu_profile("imu-quaternion-serial")),
-    "drives": DrivesView("drives", profile=RIG.drives),
-    "load_cell": LoadCellView("load_cell", profile=RIG.load_cell),
-    "board": RigBoardView("board", profile=BOARD.board),
+    "legs": legs_view("legs", profile=LEGS),
+    "imu": imu_view("imu", profile=load_imu_profile("imu-quaternion-serial")),
+    "drives": drives_view("drives", profile=RIG.drives),
+    "load_cell": load_cell_view("load_cell", profile=RIG.load_cell),
+    "board": board_view("board", profile=BOARD.board),
 }
 COUNTS = {
     "legs": (99, 1, 2, 3, 4, 5),

@@ -4,22 +4,20 @@
 import time
 
 from rig.device import Sample
-from rig.zebro.profile import load_leg_profile
 from zebro_lab.mcap.raw_log import read_raw_log
-from zebro_lab.mcap.stream_views import LegsView
 from zebro_lab.recording.devices import profile_text
-from zebro_lab.recording.recorder import RunDescription, RunRecorder
+from zebro_lab.recording.recorder import RunRecorder
+from zebro_lab.runs.manifest import RunManifest
 
 PROFILE = "zebro-100-serial"
 
 
 def recorder(data, *, label="test", **changes):
-    description = RunDescription(
-        kind="walk", label=label, source="sim:test",
-        profiles={"legs": (PROFILE, profile_text(PROFILE))}, sources={"legs": "sim:test"},
-    )  # fmt: skip
-    view = LegsView("legs", profile=load_leg_profile(PROFILE))
-    return RunRecorder(data, description=description, views={"legs": view}, **changes)
+    manifest = RunManifest(
+        kind="walk", label=label, source="sim:test", sources={"legs": "sim:test"}
+    )
+    profiles = {"legs": (PROFILE, profile_text(PROFILE))}
+    return RunRecorder(data, manifest=manifest, profiles=profiles, **changes)
 
 
 def some(first, count):

@@ -8,7 +8,8 @@ from html.parser import HTMLParser
 import numpy as np
 from PIL import Image
 
-from zebro_lab.report.stage import ReportRequest, report
+from zebro_lab.report.request import ReportRequest
+from zebro_lab.report.stage import report
 
 MADE = datetime(2026, 1, 2, 3, 4, 5, tzinfo=UTC)
 

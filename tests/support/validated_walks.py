@@ -9,9 +9,9 @@ from model.robot import Robot
 from model.walk.ensemble import WalkDraw, planar_walk
 from model.walk.traction import VelocityCoulomb
 from support.watchers import Nobody
-from zebro_lab.walk.path_band import BandRequest
-from zebro_lab.walk.predict_stage import PredictRequest, predict
-from zebro_lab.walk.walking import ModelRequest
+from zebro_lab.validation.request import ValidateRequest
+from zebro_lab.walk.predict_stage import predict
+from zebro_lab.walk.request import BandRequest, ModelRequest, PredictRequest
 
 STEP = np.radians(3.6)
 
@@ -51,12 +51,18 @@ def write_walk_data(folder, *, steering=1.2, offset_deg=0.0, seed=3):
 def predicted(folder, legs, *, draws=60, name="prediction"):
     """Predict a leg log; return the walk folder."""
     request = PredictRequest(
-        log=legs,
-        model=ModelRequest(out=folder / name, slip="coulomb:0.38"),
-        band=BandRequest(draws) if draws else None,
+        legs,
+        folder / name,
+        model=ModelRequest(slip="coulomb:0.38", band=BandRequest(draws)),
     )
     predict(request, Nobody())
     return folder / name
+
+
+def request_of(pairs, out, **options):
+    """Return the request of a validation of predictions, each with its track."""
+    predicted, track = zip(*pairs, strict=True)
+    return ValidateRequest(predicted=predicted, track=track, out=out, **options)
 
 
 def rows_of(validated):

@@ -8,11 +8,10 @@ from model.bayes.walks.posterior import WalkPosterior
 from model.bayes.walks.prior import LINEAR, NAMES, WRONG, WalkPrior, WrongLeg, all_cases
 from model.gait import tripod_angles, tripod_reference
 from support.watchers import Nobody
-from zebro_lab.calibration.walks_folder import WalksToWrite, read_walks_beside, write_walks
+from zebro_lab.calibration.walks_folder import WalksToWrite, read_stored_walks, write_walks
 from zebro_lab.robot.robot_file import RobotFile
-from zebro_lab.walk.path_band import BandRequest
-from zebro_lab.walk.predict_stage import PredictRequest, predict
-from zebro_lab.walk.walking import ModelRequest
+from zebro_lab.walk.predict_stage import predict
+from zebro_lab.walk.request import BandRequest, ModelRequest, PredictRequest
 from zebro_lab.walk_fit.pictures import draw_walks
 
 STEERING = LINEAR[0]
@@ -96,14 +95,14 @@ def stored(calibration, legs, posterior):
         ),
         draw=lambda draft: draw_walks(draft, posterior, (), simulated=True),
     )  # fmt: skip
-    return read_walks_beside(slip)
+    return read_stored_walks(slip)
 
 
 def predict_log(tmp_path, log, slip, *, name="prediction", robot=None, draws=0, model="dynamics"):
     """Predict a leg log; return the walk."""
     request = PredictRequest(
-        log=log,
-        model=ModelRequest(out=tmp_path / name, slip=slip, robot=robot, model=model),
-        band=BandRequest(draws) if draws else None,
+        log,
+        tmp_path / name,
+        model=ModelRequest(slip=slip, model=model, robot=robot, band=BandRequest(draws)),
     )
     return predict(request, Nobody())

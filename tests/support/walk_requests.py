@@ -5,16 +5,15 @@ import numpy as np
 import pandas as pd
 
 from model.gait import tripod_angles, tripod_reference
-from zebro_lab.robot.gait_argument import GaitRequest
+from zebro_lab.robot.gait_request import GaitRequest
 from zebro_lab.robot.leg_log import ANGLES
-from zebro_lab.walk.stage import WalkRequest
-from zebro_lab.walk.walking import ModelRequest
+from zebro_lab.walk.request import ModelRequest, WalkRequest
 
 
 def request(out, **model) -> WalkRequest:
     """Return a request of a walk of four seconds to the left."""
     gait = GaitRequest(steering=1.3, direction="left")
-    return WalkRequest(gait, ModelRequest(out, **{"slip": "coulomb:0.4", **model}), duration=4.0)
+    return WalkRequest(gait, 4.0, out, ModelRequest(**{"slip": "coulomb:0.4", **model}))
 
 
 def write_log(folder, *, start=0.0, sign=1, **gait):

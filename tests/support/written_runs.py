@@ -7,8 +7,8 @@ from pathlib import Path
 
 import numpy as np
 
+from support.table_runs import slip_rig_run
 from zebro_lab.mcap.slip_rig_log import SlipRigTable
-from zebro_lab.runs.table_run import write_slip_rig_run
 
 START = datetime(2026, 3, 4, 5, 6, 7, tzinfo=UTC)
 
@@ -27,7 +27,7 @@ def make_run(data_dir: Path, n: int = 200, **change) -> Path:
         "label": "Delrin, steel", "material": "POM on steel", "operator": "a",
         "source": "sim:noise", "start": START, "radius_leg": 0.035, "radius_ground": 0.12,
     }  # fmt: skip
-    return write_slip_rig_run(data_dir, make_table(n), **(settings | change))
+    return slip_rig_run(data_dir, make_table(n), **(settings | change))
 
 
 def edit(folder: Path, **change) -> None:

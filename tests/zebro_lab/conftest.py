@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: MIT
 """What tests of stages and commands share: running a command, a simulated sweep, a walked path."""
 
+import sys
 from collections.abc import Callable
-from dataclasses import dataclass
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 import pandas as pd
@@ -13,6 +14,7 @@ from model.slip.thesis import THESIS_LAW, THESIS_VALUES
 from model.walk.path import WalkPath
 from rig.slip_rig.imperfections import TYPICAL_RIG
 from rig.slip_rig.sweep import SweepPlan, simulate_sweep
+from support.commands import COMMAND
 from zebro_lab.main import app
 from zebro_lab.terminal.ending import run
 
@@ -23,8 +25,7 @@ load_cell.zero_stability = "0.1 N"
 """
 
 
-@dataclass(frozen=True)
-class Ended:
+class Ended(NamedTuple):
     """How a command ended: exit code, and what it printed."""
 
     code: int
@@ -37,7 +38,7 @@ def run_command(monkeypatch, capsys) -> Callable[..., Ended]:
     """Return what runs `zebro-lab` with arguments in this process."""
 
     def run_with(*arguments: object) -> Ended:
-        monkeypatch.setattr("sys.argv", ["zebro-lab", *map(str, arguments)])
+        monkeypatch.setattr(sys, "argv", [COMMAND, *map(str, arguments)])
         with pytest.raises(SystemExit) as ended:
             run(app)
         return Ended(int(ended.value.code or 0), *capsys.readouterr())

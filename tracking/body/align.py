@@ -72,7 +72,7 @@ def align(
     pixels: NDArray[np.uint8], camera: Camera, view: CameraPose, *, template: BodyTemplate,
     prior: BodyPrior, start: Array, blurs_px: tuple[float, ...] = (2.5, 1.0),
     visible: NDArray[np.bool_] | None = None, least_visible: float = LEAST_VISIBLE,
-    least_hope: float = HOPELESS_SCORE, shines_through: bool = False, most_odd: float = np.inf,
+    least_hope: float = HOPELESS_SCORE, shines_through: bool = False, outlier_sd: float = np.inf,
 ) -> Alignment | None:  # fmt: skip
     """Align the robot's template with a photograph.
 
@@ -90,7 +90,7 @@ def align(
         least_hope: Least correlation after five steps for which the iteration continues [-].
         shines_through: Whether the floor or other exposures are seen through the robot: variation
             over more than `SLOW` of the template is then filtered out.
-        most_odd: Points that differ by more standard deviations in any colour are outliers and
+        outlier_sd: Points that differ by more standard deviations in any colour are outliers and
             left out of the fit, but not of the score [-].
 
     Returns:
@@ -102,7 +102,7 @@ def align(
     for blur in blurs_px:
         job = _Job.prepare(
             pixels, camera, view, template, prior, state, blur, visible, least_visible,
-            shines_through, most_odd,
+            shines_through, outlier_sd,
         )  # fmt: skip
         if job is None:
             return None
@@ -130,13 +130,13 @@ class _Job:
     floor: Array
     least_visible: float
     raster: tuple[int, int] | None
-    most_odd: float
+    outlier_sd: float
 
     @classmethod
     def prepare(
         cls, pixels: NDArray[np.uint8], camera: Camera, view: CameraPose, template: BodyTemplate,
         prior: BodyPrior, state: Array, blur: float, visible: NDArray[np.bool_] | None,
-        least_visible: float, shines_through: bool, most_odd: float,
+        least_visible: float, shines_through: bool, outlier_sd: float,
     ) -> "_Job | None":  # fmt: skip
         """Crop, blur and differentiate the photograph around the robot."""
         points = template.points_body.reshape(-1, 3)
@@ -173,7 +173,7 @@ class _Job:
             _least_covariance(template, density),
             least_visible,
             template.colours.shape[:2] if shines_through else None,
-            most_odd,
+            outlier_sd,
         )
 
     def solve(self, state: Array, least_hope: float) -> Alignment | None:
@@ -269,7 +269,7 @@ class _Job:
         spread = 1.4826 * np.median(np.abs(residual), axis=0)
         noise = np.maximum(spread, 1.0) ** 2
         weight = np.minimum(1.0, _HUBER * np.sqrt(noise) / np.maximum(np.abs(residual), 1e-9))
-        odd = np.abs(residual) > self.most_odd * np.sqrt(noise)
+        odd = np.abs(residual) > self.outlier_sd * np.sqrt(noise)
         weight[odd.any(axis=1)] = 0.0
         return residual, J, weight, noise, score
 

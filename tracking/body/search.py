@@ -6,6 +6,7 @@ the same size everywhere. The template is rotated in steps and matched by normal
 cross-correlation. The best places are aligned.
 """
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import cv2
@@ -13,8 +14,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from tracking.body.align import Alignment, align
-from tracking.body.template import BodyTemplate, sample
-from tracking.camera.lens import Array, Camera, CameraPose, project, to_floor
+from tracking.body.plane import Plane
+from tracking.body.template import BodyTemplate
+from tracking.camera.lens import Array, Camera, CameraPose, to_floor
 from tracking.pose import BodyPrior
 
 ACCEPTED_SCORE = 0.7
@@ -167,28 +169,65 @@ def match_turned(
     rear, front, right, left = template.plate.extent
     half = 0.5 * np.hypot(front - rear, left - right)
     low, high = area[0] - half, area[1] + half
-    floor = _rectified(pixels, camera, view, height, low, high, cell)
+    plane = Plane.over(camera, view, height=height, low=low, high=high, cell=cell)
     peaks: list[tuple[float, Array]] = []
     per_turn = max(2, most // 2)
-    middle = np.array([(front + rear) / 2, (left + right) / 2])
-    for yaw in np.arange(_TURNS) * 2 * np.pi / _TURNS:
-        turned, mask = turned_template(template, cell, yaw)
-        if (np.array(floor.shape[:2]) < turned.shape[:2]).any():
-            continue
-        match = cv2.matchTemplate(floor, turned, cv2.TM_CCOEFF_NORMED, mask=mask)
-        match = np.where(np.isfinite(match) & (match <= 1.0001), match, -1.0)
-        c, s = np.cos(yaw), np.sin(yaw)
-        offset = np.array([c * middle[0] - s * middle[1], s * middle[0] + c * middle[1]])
+    for yaw, match in correlations(plane.read_smooth(pixels), template, cell, turns=_TURNS):
         for _ in range(per_turn):
             row, column = np.unravel_index(np.argmax(match), match.shape)
-            centre = np.array([column, row]) + (np.array(turned.shape[1::-1]) - 1) / 2
-            # Rows of the map go from high y to low y, as seen from above.
-            xy = np.array([low[0] + centre[0] * cell, high[1] - centre[1] * cell]) - offset
             if match[row, column] < LEAST_MATCH:
                 break
-            peaks.append((float(match[row, column]), np.array([*xy, yaw])))
+            planar = pose_of_match(template, plane, int(row), int(column), yaw)
+            peaks.append((float(match[row, column]), planar))
             match[max(row - 6, 0) : row + 7, max(column - 6, 0) : column + 7] = -1.0
     return _apart(peaks, most, template.plate.length)
+
+
+def correlations(
+    picture: NDArray[np.float32], template: BodyTemplate, cell: float, *, turns: int
+) -> Iterator[tuple[float, NDArray[np.float32]]]:
+    """Yield the normalised cross-correlation with the template at every heading.
+
+    Args:
+        picture: The rectified photograph, shape (rows, columns, channels).
+        template: Template of the robot; as many of its channels as the picture has are compared.
+        cell: Size of a pixel of the rectified photograph [m].
+        turns: Number of headings.
+
+    Yields:
+        Heading [rad] and correlations, shape (m, n) [-]; nothing where the picture is smaller than
+        the template.
+    """
+    for yaw in np.arange(turns) * 2 * np.pi / turns:
+        turned, mask = (
+            np.ascontiguousarray(part[..., : picture.shape[2]])
+            for part in turned_template(template, cell, yaw)
+        )
+        if (np.array(picture.shape[:2]) < turned.shape[:2]).any():
+            return
+        match = cv2.matchTemplate(picture, turned, cv2.TM_CCOEFF_NORMED, mask=mask)
+        yield yaw, np.where(np.isfinite(match) & (match <= 1.0001), match, np.float32(-1.0))
+
+
+def pose_of_match(template: BodyTemplate, plane: Plane, row: int, column: int, yaw: float) -> Array:
+    """Compute the pose of the robot whose template matches at a heading.
+
+    Args:
+        template: Template of the robot.
+        plane: Raster of the rectified photograph.
+        row: Row of the correlation.
+        column: Column of the correlation.
+        yaw: Heading of the template [rad].
+
+    Returns:
+        x, y [m] and yaw [rad] of the body's origin, shape (3,).
+    """
+    rear, front, right, left = template.plate.extent
+    ahead, aside = (front + rear) / 2, (left + right) / 2
+    c, s = np.cos(yaw), np.sin(yaw)
+    offset = np.array([c * ahead - s * aside, s * ahead + c * aside])
+    half = (turned_template(template, plane.cell, 0.0)[0].shape[0] - 1) / 2
+    return np.array([*(plane.xy_at(row + half, column + half) - offset), yaw])
 
 
 def _apart(peaks: list[tuple[float, Array]], most: int, length: float) -> list[Array]:
@@ -201,22 +240,6 @@ def _apart(peaks: list[tuple[float, Array]], most: int, length: float) -> list[A
         if len(kept) == most:
             break
     return kept
-
-
-def _rectified(
-    pixels: NDArray[np.uint8], camera: Camera, view: CameraPose, height: float,
-    low: Array, high: Array, cell: float,
-) -> NDArray[np.float32]:  # fmt: skip
-    x = np.arange(low[0], high[0], cell)
-    y = np.arange(high[1], low[1], -cell)
-    xx, yy = np.meshgrid(x, y)
-    world = np.stack((xx, yy, np.full_like(xx, height)), axis=-1)
-    seen = project(camera, view, world.reshape(-1, 3)).reshape(*xx.shape, 2)
-    # Blur to the size of a cell where it is smallest, so that remapping does not alias.
-    spacing = float(np.median(np.linalg.norm(np.diff(seen, axis=1), axis=2)))
-    # The blur loses nothing of the far floor, where pixels are larger than cells.
-    smooth = cv2.GaussianBlur(pixels, (0, 0), max(0.4 * spacing, 0.3))
-    return sample(np.asarray(smooth), seen)
 
 
 def turned_template(

@@ -7,8 +7,8 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from tracking.body.plane import Plane
 from tracking.camera.lens import Array, Camera, CameraPose, project, to_floor
-from tracking.composite.plane import Plane
 from tracking.pose import rotation_with_derivatives
 
 

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from tracking.body.plane import Plane
 from tracking.body.template import BodyTemplate, TopPlate, sample
 from tracking.camera.lens import Array
-from tracking.composite.plane import Plane
 
 Window = tuple[slice, slice]
 
@@ -18,31 +18,34 @@ class BodyRaster:
     """Points of a level rectangle in the body frame, front to rear and in each row left to right.
 
     Attributes:
+        plane: Raster of the plane on which the robot is drawn and sampled.
         x: Ahead of the body's middle, shape (rows, columns) [m].
         y: To its left, shape (rows, columns) [m].
         cell: Distance between neighbouring points [m].
         margin: Rows and columns on each side that are around the body.
     """
 
+    plane: Plane
     x: Array
     y: Array
     cell: float
     margin: int = 0
 
     @classmethod
-    def over(cls, size: tuple[float, float], cell: float, margin: int = 0) -> "BodyRaster":
-        """Make a raster that covers a body and a margin around it.
+    def over(cls, plane: Plane, size: tuple[float, float], margin: int = 0) -> "BodyRaster":
+        """Make a raster, as fine as that of a plane, that covers a body and a margin around it.
 
         Args:
+            plane: The plane.
             size: Length and width of the body [m].
-            cell: Distance between neighbouring points [m].
             margin: Rows and columns of cells to add on each side.
         """
+        cell = plane.cell
         rows, columns = (round(side / cell) + 2 * margin for side in size)
         ahead = ((rows - 1) / 2 - np.arange(rows)) * cell
         left = ((columns - 1) / 2 - np.arange(columns)) * cell
         x, y = np.meshgrid(ahead, left, indexing="ij")
-        return cls(x, y, cell, margin)
+        return cls(plane, x, y, cell, margin)
 
     @property
     def body(self) -> Window:
@@ -52,7 +55,7 @@ class BodyRaster:
 
     def thinned(self) -> "BodyRaster":
         """Return a raster of every second point in both directions."""
-        return BodyRaster(self.x[1::2, 1::2], self.y[1::2, 1::2], 2 * self.cell)
+        return BodyRaster(self.plane, self.x[1::2, 1::2], self.y[1::2, 1::2], 2 * self.cell)
 
     def template(self, values: NDArray[np.float32], height: float) -> BodyTemplate:
         """Make the template of a flat top from its colours.
@@ -70,11 +73,10 @@ class BodyRaster:
         )
         return BodyTemplate(plate, self.cell, points, values[rows, columns])
 
-    def on(self, plane: Plane, poses: Array) -> Array:
-        """Compute the coordinates of the points on a plane's raster.
+    def on(self, poses: Array) -> Array:
+        """Compute the coordinates of the points on the plane's raster.
 
         Args:
-            plane: The plane.
             poses: x, y [m] and yaw [rad] of the robot, shape (n, 3).
 
         Returns:
@@ -83,54 +85,50 @@ class BodyRaster:
         c, s = (f(poses[:, 2])[:, None, None] for f in (np.cos, np.sin))
         x = poses[:, 0][:, None, None] + c * self.x - s * self.y
         y = poses[:, 1][:, None, None] + s * self.x + c * self.y
+        plane = self.plane
         return np.stack(((x - plane.low[0]) / plane.cell, (plane.high[1] - y) / plane.cell), -1)
 
-    def read(self, layer: NDArray, plane: Plane, pose: Array) -> NDArray[np.float32]:
+    def read(self, layer: NDArray, pose: Array) -> NDArray[np.float32]:
         """Interpolate a layer of the plane at the points of the robot.
 
         Args:
             layer: Values on the plane's raster, shape (plane rows, plane columns, ...).
-            plane: The plane.
             pose: x, y [m] and yaw [rad] of the robot, shape (3,).
 
         Returns:
             Values, shape (rows, columns, ...); 0 outside the plane.
         """
-        return sample(layer, self.on(plane, pose[None])[0])
+        return sample(layer, self.on(pose[None])[0])
 
-    def window(self, plane: Plane, pose: Array) -> Window:
+    def window(self, pose: Array) -> Window:
         """Compute the bounding box of the robot in rows and columns of a plane's raster.
 
         Args:
-            plane: The plane.
             pose: x, y [m] and yaw [rad] of the robot, shape (3,).
 
         Returns:
             Rows and columns, clipped to the plane.
         """
-        columns_rows = self.on(plane, pose[None])[0][[0, 0, -1, -1], [0, -1, 0, -1]]
-        size = np.array(plane.seen_px.shape[1::-1])
+        columns_rows = self.on(pose[None])[0][[0, 0, -1, -1], [0, -1, 0, -1]]
+        size = np.array(self.plane.seen_px.shape[1::-1])
         low = np.clip(np.floor(columns_rows.min(axis=0)).astype(int), 0, size)
         high = np.clip(np.ceil(columns_rows.max(axis=0)).astype(int) + 1, low, size)
         return slice(low[1], high[1]), slice(low[0], high[0])
 
-    def laid(
-        self, values: NDArray[np.float32], plane: Plane, pose: Array
-    ) -> tuple[Window, NDArray[np.float32]]:
-        """Resample values of the raster on a plane.
+    def laid(self, values: NDArray[np.float32], pose: Array) -> tuple[Window, NDArray[np.float32]]:
+        """Resample values of the raster on the plane.
 
         Args:
             values: Shape (rows, columns, ...).
-            plane: The plane.
             pose: x, y [m] and yaw [rad] of the robot, shape (3,).
 
         Returns:
             The part of the plane, and the values there, 0 outside the raster.
         """
-        window = self.window(plane, pose)
+        window = self.window(pose)
         rows, columns = (np.arange(part.start, part.stop) for part in window)
-        dx = (plane.low[0] + columns * plane.cell - pose[0])[None, :]
-        dy = (plane.high[1] - rows * plane.cell - pose[1])[:, None]
+        dx = (self.plane.low[0] + columns * self.plane.cell - pose[0])[None, :]
+        dy = (self.plane.high[1] - rows * self.plane.cell - pose[1])[:, None]
         c, s = np.cos(pose[2]), np.sin(pose[2])
         ahead, left = c * dx + s * dy, c * dy - s * dx
         place = np.stack((self.y[0, 0] - left, self.x[0, 0] - ahead), axis=-1) / self.cell

@@ -1,23 +1,21 @@
 # SPDX-License-Identifier: MIT
 """Find every exposure of a robot without a marker from one exposure that is known."""
 
-from collections.abc import Callable
-
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from tracking.body import TopPlate, floor_in_view
 from tracking.camera.lens import Camera, CameraPose
-from tracking.composite.darkest_alignment import DarkestReading
+from tracking.composite.darkest import DarkestReading
 from tracking.composite.exposure import Exposure
 from tracking.composite.known import KnownExposure
-from tracking.composite.mean_alignment import MeanReading
-from tracking.composite.pasted_alignment import PastedReading
+from tracking.composite.mean import MeanReading
+from tracking.composite.pasted import PastedReading
 from tracking.composite.reading import Merged, Reading
 from tracking.errors import CompositeError
 from tracking.pose import BodyPose, BodyPrior
 
-_READINGS: dict[Merged, Callable[[KnownExposure], Reading]] = {
+_READINGS: dict[Merged, type[Reading]] = {
     Merged.PASTED: PastedReading, Merged.DARKEST: DarkestReading, Merged.MEAN: MeanReading,
 }  # fmt: skip
 
@@ -54,7 +52,7 @@ def find_exposures_like(
     area = floor_in_view(camera, view, prior.height + plate.height, near, reach)
     picture = KnownExposure(pixels, camera, view, prior, known, plate, body_size, hidden, area)
     picture.body_template(pixels)  # raises early if cut by an edge or too faint
-    reading = _READINGS[merged](picture)
+    reading = _READINGS[merged].of(picture)
     poses = reading.find()
     found = reading.align(poses) if len(poses) > 1 else ()
     if len(found) < 2:

@@ -13,7 +13,7 @@ from scipy.stats import chi2
 from tracking.camera.lens import Array
 
 _TRUSTED = 0.7  # share of the points from which the floor's covariance is estimated
-_ODD = 12.0  # squared distance beyond which a colour is an outlier for the floor's light
+_OUTLIER = 12.0  # squared distance beyond which a colour is an outlier for the floor's light
 _ROUNDS = 5
 _SHADOW = 0.4  # least share of the floor's light that is left in shadow
 _NO_FLOOR = 20.0  # squared distance beyond which a colour is not the floor's
@@ -23,6 +23,9 @@ _RARE = 0.1  # share of colours that may be any
 
 NOISE = 12.0
 """Standard deviation of a colour of the robot from one exposure to another [grey levels]."""
+
+SCALE = 8.0
+"""Standard deviation of the floor's pattern after whitening [grey levels]."""
 
 
 @dataclass(frozen=True)
@@ -57,10 +60,10 @@ class FloorColours:
         covariance = np.cov((picture - light)[used].T)
         for _ in range(_ROUNDS):
             floor = cls(light, covariance + noise**2 * np.eye(3))
-            far = floor.oddness(picture)
+            far = floor.floor_distance(picture)
             usual = used & (far < np.quantile(far[used], _TRUSTED))
             covariance = np.cov((picture - light)[usual].T) / inner
-            light = smooth(picture, used & (far < max(_ODD, np.median(far[used]))), width)
+            light = smooth(picture, used & (far < max(_OUTLIER, np.median(far[used]))), width)
         return cls(light, covariance + noise**2 * np.eye(3))
 
     @cached_property
@@ -68,7 +71,7 @@ class FloorColours:
         """Whitening matrix of the pattern's colours, shape (3, 3)."""
         return np.linalg.cholesky(np.linalg.inv(self.covariance))
 
-    def oddness(self, picture: NDArray[np.float32]) -> NDArray[np.float32]:
+    def floor_distance(self, picture: NDArray[np.float32]) -> NDArray[np.float32]:
         """Compute the squared Mahalanobis distance of colours from the floor's."""
         return (((picture - self.light) @ self.whitening) ** 2).sum(axis=-1).astype(np.float32)
 
@@ -82,35 +85,27 @@ class FloorColours:
     def density(self, picture: NDArray[np.float32]) -> Array:
         """Compute the density of colours on the floor, per cubed grey level."""
         scale = np.sqrt((2 * np.pi) ** 3 * np.linalg.det(self.covariance))
-        return np.exp(-0.5 * self.oddness(picture)) / scale
+        return np.exp(-0.5 * self.floor_distance(picture)) / scale
 
 
-@dataclass(frozen=True)
-class ColourDensity:
-    """Density of the colours in a part of a picture, per cubed grey level.
+def colour_density(
+    samples: NDArray[np.float32], colours: NDArray[np.float32], *, blur: float
+) -> Array:
+    """Estimate the density of colours, per cubed grey level, by a blurred histogram of samples.
 
-    Attributes:
-        table: By blue, green and red, shape (32, 32, 32).
+    Args:
+        samples: BGR, shape (n, 3) [grey levels].
+        colours: BGR of the points where the density is wanted, shape (..., 3) [grey levels].
+        blur: Standard deviation of the Gaussian blur [bins, of 32 a channel].
+
+    Returns:
+        Density, shape (...).
     """
-
-    table: Array
-
-    @classmethod
-    def of(cls, colours: NDArray[np.float32], *, blur: float) -> "ColourDensity":
-        """Estimate the density of colours by a blurred histogram.
-
-        Args:
-            colours: BGR samples, shape (n, 3) [grey levels].
-            blur: Standard deviation of the Gaussian blur [bins, of 32 a channel].
-        """
-        counts, _ = np.histogramdd(colours, bins=(_LEVELS,) * 3, range=[(0, 256)] * 3)
-        known = gaussian_filter(counts, blur) / max(len(colours), 1) / (256 / _LEVELS) ** 3
-        return cls((1 - _RARE) * known + _RARE / 256**3)
-
-    def __call__(self, colours: NDArray[np.float32]) -> Array:
-        """Return the density of colours, shape (..., 3)."""
-        cell = np.clip(colours * (_LEVELS / 256), 0, _LEVELS - 1).astype(int)
-        return self.table[cell[..., 0], cell[..., 1], cell[..., 2]]
+    counts, _ = np.histogramdd(samples, bins=(_LEVELS,) * 3, range=[(0, 256)] * 3)
+    known = gaussian_filter(counts, blur) / max(len(samples), 1) / (256 / _LEVELS) ** 3
+    table = (1 - _RARE) * known + _RARE / 256**3
+    cell = np.clip(colours * (_LEVELS / 256), 0, _LEVELS - 1).astype(int)
+    return table[cell[..., 0], cell[..., 1], cell[..., 2]]
 
 
 def robot_density(difference: Array) -> Array:

@@ -1,52 +1,39 @@
 # SPDX-License-Identifier: MIT
-"""Find exposures in a picture that holds, of each pixel, the darkest value of all exposures.
+"""Find and align exposures in a picture of the darkest values of all exposures.
 
-Where exposures overlap, each shows only where it is the darkest, and the picture is nowhere
-brighter than any of them. This bounds where exposures can be. A set of exposures is scored by
-the log likelihood ratio of the picture against the bare floor, summed over the points of its
-raster. A point that some exposure covers has the darkest of their colours; or a darker one, from
-the colours near the robot, where a leg, a side or a shadow hides it; hardly ever a brighter one.
-
-The robot's colours come from one known exposure, which others partly cover; a covered point takes
-the brightest colour that other exposures show of it. While some exposures are still missing,
-their repeated pattern is mistaken for the robot's own. Therefore exposures are not added one by
-one: whole chains of a steady step from the known exposure on are compared.
+While some exposures are still missing, their repeated pattern is mistaken for the robot's own.
+Therefore exposures are not added one by one: whole chains of a steady step from the known exposure
+on are compared by their likelihood (`darkest_model`).
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
-from functools import cached_property
+from dataclasses import dataclass
 from itertools import pairwise
-from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from tracking.body.template import sample
 from tracking.camera.lens import Array
-from tracking.composite.body_raster import BodyRaster
-from tracking.composite.candidates import (
+from tracking.composite.darkest_model import Cover, DarkestModel, TopColours
+from tracking.composite.exposure import Exposure
+from tracking.composite.known import LEAST_SCORE, LEVER
+from tracking.composite.order import order_exposures
+from tracking.composite.steps import (
     CLIMB,
     LEAST_STEP,
     MOST_EXPOSURES,
     apart,
     are_apart,
     beside,
-    is_near,
-    nearby,
-)
-from tracking.composite.chain import (
     continued,
     distances,
     improved,
+    is_near,
+    nearby,
     steady_chain,
     step_between,
     unsteadiness,
     usual_step,
 )
-from tracking.composite.colours import NOISE, ColourDensity, FloorColours, robot_density
-from tracking.composite.order import order_exposures
-from tracking.composite.reading import PictureRaster
 
 LEAST_ODDS = 0.25
 """Least log odds of an exposure, mean over the points that it claims [-]."""
@@ -57,39 +44,12 @@ LEAST_GAIN = 0.15
 UNSTEADY = 0.03
 """Penalty for one unit of `unsteadiness` of a chain's steps [-]."""
 
-LEAST_CLAIM = 0.12
-"""Least share of its points that an exposure claims, by being the darkest there [-]."""
+DARKEST_SD = 1 / 40
+"""Error of position, as `tracking.composite.pasted.PASTED_SD` [-]."""
 
-_SEEN = 0.6  # share of the robot's own points that show it and not a darker thing
-_OWN_LOOK = 0.6  # weight of the known exposure's colours against the brightest seen
-_BRIGHTER = 0.01  # how often a point is brighter than it could be
-_FLOOR_SHARE = 0.85
-_ODD, _LIKE_FLOOR = 20.0, 12.0  # squared distances from the floor's colours
-_OPEN = 1000.0  # stands for no exposure: brighter than any colour
-_LEAST_SEEN = 0.6  # share of an exposure that must be in the picture
-_FAR = 2.5  # in standard deviations: beyond it the colour differs
-_CLAIM = 6.0  # a point darker than others by this is claimed [grey levels]
+_SHOWN = 0.7  # share of a pixel's surroundings that must show the exposure
 _FIRST_STEPS = 10
 _POLISH = (0.006, 0.006, 0.05)
-
-
-class TopColours(NamedTuple):
-    """Colours of the robot's top: by the known exposure, and the brightest of all exposures."""
-
-    own: NDArray[np.float32]
-    brightest: NDArray[np.float32]
-
-    def thinned(self) -> "TopColours":
-        """Return every second point in both directions, as `BodyRaster.thinned` does."""
-        return TopColours(self.own[1::2, 1::2], self.brightest[1::2, 1::2])
-
-
-class Cover(NamedTuple):
-    """Darkest colour of several exposures at every point, by both `TopColours`, and log density."""
-
-    own: NDArray[np.float32]
-    brightest: NDArray[np.float32]
-    log_density: NDArray[np.float32]
 
 
 @dataclass(frozen=True)
@@ -130,49 +90,12 @@ class Chain:
         )
 
 
-@dataclass(frozen=True)
-class DarkestSearch(PictureRaster):
-    """Search for exposures in a picture of the darkest values, on a raster.
+class DarkestReading(DarkestModel):
+    """Reading of a picture that holds, of each pixel, the darkest value of all exposures."""
 
-    Attributes:
-        length: The robot's length [m].
-    """
-
-    length: float
-
-    @cached_property
-    def floor(self) -> FloorColours:
-        """Colour model of the floor."""
-        return FloorColours.of(
-            self.picture, self.used, width=self.length / self.plane.cell, noise=3.0
-        )
-
-    @cached_property
-    def oddness(self) -> NDArray[np.float32]:
-        """Squared Mahalanobis distance of each colour from the floor's."""
-        return self.floor.oddness(self.picture)
-
-    @cached_property
-    def dark_things(self) -> Array:
-        """Density of the colours that are not the floor's, at every point."""
-        odd = self.used & (self.oddness > _ODD)
-        return ColourDensity.of(self.picture[odd], blur=1.2)(self.picture)
-
-    @cached_property
-    def bare(self) -> NDArray[np.float32]:
-        """Log density of the picture where there is no exposure."""
-        known = _FLOOR_SHARE * self.floor.density(self.picture)
-        return np.log(known + (1 - _FLOOR_SHARE) * self.dark_things).astype(np.float32)
-
-    def find(self, anchor: Array) -> Array:
-        """Find all exposures.
-
-        Args:
-            anchor: x, y [m] and yaw [rad] of an exposure that shows how the robot looks.
-
-        Returns:
-            Poses, that one first, shape (n, 3).
-        """
+    def find(self) -> Array:
+        """Find all exposures, the known one first, as the likeliest of many chains."""
+        anchor = self.known.pose.planar
         sets = [anchor[None]]
         for first in self.first_steps(anchor):
             ahead = self.followed([anchor, first])
@@ -181,6 +104,23 @@ class DarkestSearch(PictureRaster):
             steady = [self.longest(anchor, way) for way in (chain, chain.with_some_between)]
             sets += [np.array(ahead + behind), *(way.poses(anchor) for way in steady)]
         return self.polished(max(sets, key=self.worth))
+
+    def align(self, poses: Array) -> tuple[Exposure, ...]:
+        """Align the part where each exposure is the darkest, twice; drop what does not align."""
+        found = self.aligned_among(poses)
+        return self.aligned_among(np.array([each.planar for each in found]))
+
+    def aligned_among(self, poses: Array) -> tuple[Exposure, ...]:
+        """Align the part where each is the darkest, given the poses of the others."""
+        known, found = self.known, []
+        template = known.body_template(known.pixels)
+        for k, pose in enumerate(poses):
+            visible = known.on_photo(self.shown(poses, k), self.plane, pose) > _SHOWN
+            alignment = known.aligned(pose, known.pixels, template, visible, least=LEAST_SCORE)
+            if alignment is not None:
+                widened = known.widened(alignment, DARKEST_SD, lever=LEVER)
+                found.append(Exposure(widened, known.share(pose, visible)))
+        return tuple(found)
 
     def worth(self, poses: Array) -> float:
         """Compute the score of a set of exposures with the penalty for their number.
@@ -302,173 +242,3 @@ class DarkestSearch(PictureRaster):
         start = max((poses[k], *near), key=value)
         best, _ = improved(value, start, reach=_POLISH, tries=35)
         return np.concatenate((poses[:k], best[None], poses[k + 1 :]))
-
-    def own_odds(self, poses: Array) -> Array:
-        """Compute the log odds of each exposure given all others; infinite for the first."""
-        look = self.look(poses)
-        odds = [np.inf]
-        for k in range(1, len(poses)):
-            cover = self.cover(np.delete(poses, k, axis=0), look)
-            odds.append(float(self.odds(poses[k][None], look, cover, self.body)[0]))
-        return np.array(odds)
-
-    def look(self, poses: Array) -> TopColours:
-        """Estimate the robot's colours from all exposures, the known one first.
-
-        Where the robot has the floor's colour it may be brighter than that; its colour is then
-        unknown.
-        """
-        seen = np.array([self.body.read(self.picture, self.plane, pose) for pose in poses])
-        odd = np.array([self.body.read(self.oddness, self.plane, pose) for pose in poses])
-        own = np.where((odd[0] < _LIKE_FLOOR)[..., None], _OPEN, seen[0])
-        brightest = np.where((odd.min(axis=0) < _LIKE_FLOOR)[..., None], _OPEN, seen.max(axis=0))
-        return TopColours(own.astype(np.float32), brightest.astype(np.float32))
-
-    def cover(self, poses: Array, look: TopColours) -> Cover:
-        """Compute the darkest of several exposures at every point of the raster.
-
-        Args:
-            poses: The exposures, shape (n, 3) [m, m, rad].
-            look: Colours of the robot's top.
-        """
-        own, brightest = (np.full_like(self.picture, _OPEN) for _ in range(2))
-        for pose in poses:
-            for layer, values in ((own, look.own), (brightest, look.brightest)):
-                window, laid = self.body.laid(_OPEN - values, self.plane, pose)
-                layer[window] = np.minimum(layer[window], _OPEN - laid)
-        log_density = self.bare.copy()
-        on = brightest.max(axis=-1) < _OPEN - 100
-        log_density[on] = self.log_density(
-            self.picture[on], own[on], brightest[on], self.dark_things[on]
-        )
-        return Cover(own, brightest, log_density)
-
-    def shown(self, poses: Array, k: int) -> NDArray[np.bool_]:
-        """Compute the mask of points at which an exposure is the darkest and has its colour.
-
-        Points of the first exposure that others darken are left out: their colours are not its own.
-
-        Args:
-            poses: All exposures, the first one known, shape (n, 3) [m, m, rad].
-            k: Index of the exposure.
-
-        Returns:
-            Mask on the picture's raster, shape (rows, columns).
-        """
-        look = self.look(poses)
-        others = self.cover(np.delete(poses, k, axis=0), look).brightest
-        own, clear = np.full_like(self.picture, _OPEN), np.zeros(self.used.shape, np.float32)
-        for layer, values in ((own, _OPEN - look.own), (clear, self.clear(poses, look))):
-            window, laid = self.body.laid(values, self.plane, poses[k])
-            layer[window] = laid
-        same = (np.abs(self.picture - (_OPEN - own)) < _FAR * NOISE).all(axis=-1)
-        darkest = ((_OPEN - own) <= others + _CLAIM).all(axis=-1)
-        return same & (clear > 0.9) & darkest & self.used
-
-    def clear(self, poses: Array, look: TopColours) -> NDArray[np.float32]:
-        """Compute the mask of points of the robot at which the known exposure is the darkest.
-
-        Args:
-            poses: All exposures, the first one known, shape (n, 3) [m, m, rad].
-            look: Colours of the robot's top.
-
-        Returns:
-            1 where it is the darkest, else 0, on the robot's raster.
-        """
-        others = self.cover(poses[1:], look).brightest
-        around = self.body.read(others, self.plane, poses[0])
-        return np.asarray((look.own <= around + _CLAIM).all(axis=-1), dtype=np.float32)
-
-    def value(self, poses: Array) -> float:
-        """Compute the log likelihood ratio of exposures, in units of one exposure's points."""
-        look = self.look(poses)
-        windows = [self.body.window(self.plane, pose) for pose in poses]
-        part = self.part(*(
-            slice(min(w[k].start for w in windows), max(w[k].stop for w in windows))
-            for k in (0, 1)
-        ))  # fmt: skip
-        gain = (part.cover(poses, look).log_density - part.bare)[part.used]
-        return float(gain.sum()) / self.body.x.size
-
-    def part(self, rows: slice, columns: slice) -> "DarkestSearch":
-        """Crop the raster; the models of the floor's and of dark colours stay those of the whole.
-
-        Args:
-            rows: Rows to keep.
-            columns: Columns to keep.
-        """
-        window = (rows, columns)
-        part = replace(
-            self, plane=self.plane.part(rows, columns),
-            picture=self.picture[window], used=self.used[window],
-        )  # fmt: skip
-        known = {"bare": self.bare, "dark_things": self.dark_things, "oddness": self.oddness}
-        part.__dict__.update({name: layer[window] for name, layer in known.items()})
-        return part
-
-    def odds(self, poses: Array, look: TopColours, cover: Cover, body: BodyRaster) -> Array:
-        """Compute the log odds of one more exposure, mean over the points that it claims.
-
-        Args:
-            poses: Candidate poses, shape (n, 3) [m, m, rad].
-            look: Colours of the robot's top, on the points of `body`.
-            cover: The exposures that are known already.
-            body: Points of the robot's top to compare.
-
-        Returns:
-            Log odds, shape (n,) [-]; -inf where too little is claimed or inside the picture.
-        """
-        gain, claim, inside = self.gains(poses, look, cover, body)
-        enough = (claim >= LEAST_CLAIM) & (inside >= _LEAST_SEEN)
-        return np.where(enough, gain / np.maximum(claim, LEAST_CLAIM), -np.inf)
-
-    def gains(
-        self, poses: Array, look: TopColours, cover: Cover, body: BodyRaster
-    ) -> tuple[Array, Array, Array]:
-        """Compute by how much one more exposure raises the log density, for each of many poses.
-
-        Args:
-            poses: Candidate poses, shape (n, 3) [m, m, rad].
-            look: Colours of the robot's top, on the points of `body`.
-            cover: The exposures that are known already.
-            body: Points of the robot's top to compare.
-
-        Returns:
-            Gain of log density, mean over the exposure's points; shares of them that it claims,
-            and that are in the picture. Each of shape (n,) [-].
-        """
-        place = body.on(self.plane, poses)
-        inside = sample(self.used.astype(np.float32), place) > 0.9
-        seen, dark, before = (
-            sample(layer, place)
-            for layer in (self.picture, self.dark_things.astype(np.float32), cover.log_density)
-        )
-        others = sample(cover.brightest, place)
-        own = np.minimum(look.own, sample(cover.own, place))
-        brightest = np.minimum(look.brightest, others)
-        on = inside & (brightest.max(axis=-1) < _OPEN - 100)
-        gain = np.where(on, self.log_density(seen, own, brightest, dark) - before, 0.0)
-        claimed = on & (brightest < others - _CLAIM).any(axis=-1)
-        return tuple(field.mean(axis=(1, 2)) for field in (gain, claimed, inside))
-
-    @staticmethod
-    def log_density(
-        seen: NDArray[np.float32], own: NDArray[np.float32], brightest: NDArray[np.float32],
-        dark_things: Array,
-    ) -> Array:  # fmt: skip
-        """Compute the log density of colours at points that exposures cover.
-
-        Args:
-            seen: Colours of the picture, shape (..., 3) [grey levels].
-            own: Colours there by the known exposure, shape (..., 3).
-            brightest: Colours there by the brightest of all exposures, shape (..., 3).
-            dark_things: Density of the colours that are not the floor's, shape (...).
-
-        Returns:
-            Log density, shape (...).
-        """
-        shows = _OWN_LOOK * robot_density(seen - own)
-        shows += (1 - _OWN_LOOK) * robot_density(seen - brightest)
-        beyond = np.clip((seen - brightest).max(axis=-1) / NOISE - 1.0, 0.0, 3.5)
-        hidden = (1 - _SEEN) * np.exp(-0.5 * beyond**2) + _BRIGHTER
-        return np.log(_SEEN * shows + hidden * np.maximum(dark_things, 1e-12))

@@ -17,7 +17,7 @@ REACH_PX = 3
 """Largest distance of a neighbour in the prediction filter [px]."""
 
 _MOST_POINTS = 60_000
-_HELD = 1e-3  # ridge penalty of the filter's coefficients, as a share of the neighbours' power
+_RIDGE = 1e-3  # ridge penalty of the filter's coefficients, as a share of the neighbours' power
 
 
 @dataclass(frozen=True)
@@ -62,7 +62,7 @@ class FloorPattern:
         """Subtract what varies slowly (high-pass filter)."""
         return _flat(picture, self.width)
 
-    def new_in(self, picture: NDArray) -> NDArray[np.float32]:
+    def prediction_error(self, picture: NDArray) -> NDArray[np.float32]:
         """Compute the prediction error, in one picture or n at once.
 
         Args:
@@ -90,12 +90,14 @@ def _filter(
     side = 2 * REACH_PX + 1
     around = np.indices((side, side)).reshape(2, -1).T - REACH_PX
     before = around[: len(around) // 2]
-    told = np.stack([layer[rows + dy, columns + dx] for dy, dx in before], axis=1).astype(float)
+    neighbours = np.stack([layer[rows + dy, columns + dx] for dy, dx in before], axis=1).astype(
+        float
+    )
     own = layer[rows, columns].astype(float)
-    power = told.T @ told
-    held = _HELD * np.trace(power) / len(before) * np.eye(len(before))
-    shares = np.linalg.solve(power + held, told.T @ own)
-    left = own - told @ shares
+    power = neighbours.T @ neighbours
+    ridge = _RIDGE * np.trace(power) / len(before) * np.eye(len(before))
+    shares = np.linalg.solve(power + ridge, neighbours.T @ own)
+    left = own - neighbours @ shares
     size = 1.4826 * float(np.median(np.abs(left)))
     weights = np.concatenate((-shares, [1.0], np.zeros(len(before)))) / max(size, 1e-6)
     return weights.reshape(side, side).astype(np.float32)

@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: MIT
 """A composite picture with one exposure of known pose, as the reference to align others."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 
-import cv2
 import numpy as np
 from numpy.typing import NDArray
 
@@ -16,11 +15,11 @@ from tracking.body import (
     make_template,
     pixel_on_top,
 )
+from tracking.body.plane import Plane
 from tracking.body.template import MOST_POINTS, sample
 from tracking.camera.lens import Array, Camera, CameraPose, project, to_floor
 from tracking.composite.body_box import BodyBox
-from tracking.composite.body_raster import BodyRaster
-from tracking.composite.plane import Plane
+from tracking.composite.exposure import disturbance, widened
 from tracking.errors import BodyError, CompositeError
 from tracking.pose import BodyPose, BodyPrior
 
@@ -33,8 +32,8 @@ LEVER = 0.7
 RASTER_SD = 0.02
 """Standard deviation of a place on the raster, in lengths of the robot [-]."""
 
-_SLIP = 0.06  # of the length: an alignment that moves farther has diverged
-_TURN = 0.15  # rad: the same
+_DIVERGED = 0.06  # of the length: an alignment that moves farther has diverged
+_DIVERGED_TURN = 0.15  # rad: the same
 
 
 @dataclass(frozen=True)
@@ -46,7 +45,7 @@ class KnownExposure:
         camera: The lens.
         view: Pose of the camera.
         prior: Height and tilt.
-        known: Pose of the known exposure.
+        pose: Pose of the known exposure.
         plate: The robot's flat top.
         size: Length and width of its body [m].
         hidden: Pixels that do not show the robot, shape (height, width).
@@ -57,7 +56,7 @@ class KnownExposure:
     camera: Camera
     view: CameraPose
     prior: BodyPrior
-    known: BodyPose
+    pose: BodyPose
     plate: TopPlate
     size: tuple[float, float]
     hidden: NDArray[np.bool_]
@@ -68,30 +67,6 @@ class KnownExposure:
         """The robot's body."""
         return BodyBox(self.camera, self.view, self.size, self.plate.height, self.prior.height)
 
-    def raster(
-        self, cell: float, around: int = 0
-    ) -> tuple[Plane, NDArray[np.float32], NDArray[np.bool_], BodyRaster]:
-        """Resample the picture on the plane of the robot's top.
-
-        Args:
-            cell: Distance between neighbouring points [m].
-            around: Cells of margin around the body on the robot's raster.
-
-        Returns:
-            The plane, the colours on it, the mask of points that show floor or robot, and the
-            raster of the robot.
-        """
-        half = 0.5 * float(np.hypot(*self.size))
-        plane = Plane.over(
-            self.camera, self.view, height=self.prior.height + self.plate.height,
-            low=self.area[0] - half, high=self.area[1] + half, cell=cell,
-        )  # fmt: skip
-        widened = cv2.dilate(self.hidden.astype(np.uint8), np.ones((5, 5), np.uint8))
-        edge = np.subtract(self.camera.size, 1)
-        inside = ((plane.seen_px >= 0) & (plane.seen_px <= edge)).all(axis=-1)
-        used = inside & (plane.read(255 * widened) < 1)
-        return plane, plane.read_smooth(self.pixels), used, BodyRaster.over(self.size, cell, around)
-
     @property
     def body_plate(self) -> TopPlate:
         """The whole body as a flat top."""
@@ -100,7 +75,7 @@ class KnownExposure:
     @property
     def length_px(self) -> float:
         """The robot's length where it is known [px]."""
-        pixel = pixel_on_top(self.camera, self.view, pose=self.known, plate=self.body_plate)
+        pixel = pixel_on_top(self.camera, self.view, pose=self.pose, plate=self.body_plate)
         return self.size[0] / pixel
 
     def body_template(self, pixels: NDArray) -> BodyTemplate:
@@ -122,7 +97,7 @@ class KnownExposure:
         """
         try:
             return make_template(
-                pixels, self.camera, self.view, pose=self.known, plate=plate,
+                pixels, self.camera, self.view, pose=self.pose, plate=plate,
                 most_points=most_points,
             )  # fmt: skip
         except BodyError as error:
@@ -144,7 +119,7 @@ class KnownExposure:
 
     def aligned(
         self, pose: Array, pixels: NDArray, template: BodyTemplate, visible: NDArray[np.bool_], *,
-        least: float, shines_through: bool = False, most_odd: float = np.inf,
+        least: float, shines_through: bool = False, outlier_sd: float = np.inf,
     ) -> Alignment | None:  # fmt: skip
         """Align one exposure with a template.
 
@@ -155,19 +130,19 @@ class KnownExposure:
             visible: Mask of the pixels to use, shape (height, width).
             least: Least correlation to accept [-].
             shines_through: As for `tracking.body.align`.
-            most_odd: As for `tracking.body.align`.
+            outlier_sd: As for `tracking.body.align`.
 
         Returns:
-            The alignment, or None where it fails or diverges (`is_astray`).
+            The alignment, or None where it fails or diverges (`has_diverged`).
         """
         found = align(
             pixels, self.camera, self.view, template=template, prior=self.prior, start=pose,
             visible=visible, blurs_px=(1.0,), least_visible=0.0, least_hope=-1.0,
-            shines_through=shines_through, most_odd=most_odd,
+            shines_through=shines_through, outlier_sd=outlier_sd,
         )  # fmt: skip
-        return None if found is None or self.is_astray(found, pose, least) else found
+        return None if found is None or self.has_diverged(found, pose, least) else found
 
-    def is_astray(self, found: Alignment, pose: Array, least: float) -> bool:
+    def has_diverged(self, found: Alignment, pose: Array, least: float) -> bool:
         """Return whether an alignment correlates too little or ends too far from its start.
 
         Args:
@@ -178,43 +153,28 @@ class KnownExposure:
         aligned = found.pose.planar
         turned = abs(float(np.angle(np.exp(1j * (aligned[2] - pose[2])))))
         away = float(np.hypot(*(aligned[:2] - pose[:2])))
-        return found.score < least or away > _SLIP * self.size[0] or turned > _TURN
-
-    def widened(self, alignment: Alignment, slip: float, *, lever: float) -> Alignment:
-        """Add to the covariance the error that other exposures and the floor cause.
-
-        Its variance is proportional to their power, (1 - score²) / score².
-
-        Args:
-            alignment: The alignment.
-            slip: Standard deviation of position at equal power, in lengths of the robot [-].
-            lever: Lever arm that converts it to heading, in lengths of the robot [-].
-        """
-        power = max(1 - alignment.score**2, 0.0) / alignment.score**2
-        added = self.slipped(slip * self.size[0] * float(np.sqrt(power)), lever)
-        pose = alignment.pose
-        return replace(alignment, pose=replace(pose, covariance=pose.covariance + added))
+        return found.score < least or away > _DIVERGED * self.size[0] or turned > _DIVERGED_TURN
 
     def rough(self, pose: Array) -> Alignment:
         """Make an alignment of a pose on the raster, with the raster's error."""
         height, tilt = self.prior.height_sd, self.prior.tilt_sd
-        known = np.diag([0.0, 0.0, height, tilt, tilt, 0.0]) ** 2
-        covariance = known + self.slipped(RASTER_SD * self.size[0], LEVER)
-        state = self.level(pose)
-        return Alignment(BodyPose(state, covariance, np.zeros((6, 6)), 0.0, 0.0), 0.0, 0.0)
+        covariance = np.diag([0.0, 0.0, height, tilt, tilt, 0.0]) ** 2
+        level = BodyPose(self.level(pose), covariance, np.zeros((6, 6)), 0.0, 0.0)
+        slip = RASTER_SD * self.size[0]
+        return widened(Alignment(level, 0.0, 0.0), slip, lever=LEVER * self.size[0])
 
-    def slipped(self, slip: float, lever: float) -> Array:
-        """Compute the covariance of independent errors of x, y and yaw.
+    def widened(self, alignment: Alignment, slip: float, *, lever: float) -> Alignment:
+        """Add to the covariance the error that other exposures and the floor cause.
 
         Args:
-            slip: Standard deviation of x and of y [m].
+            alignment: The alignment.
+            slip: Standard deviation of position where they are as strong as the robot, in lengths
+                of the robot [-]; its variance is proportional to their power.
             lever: Lever arm that converts it to heading, in lengths of the robot [-].
-
-        Returns:
-            Covariance of the state, shape (6, 6) [m², rad²].
         """
-        turn = slip / (lever * self.size[0])
-        return np.diag([slip, slip, 0.0, 0.0, 0.0, turn]) ** 2
+        length = self.size[0]
+        slip *= length * float(np.sqrt(disturbance(alignment)))
+        return widened(alignment, slip, lever=lever * length)
 
     def on_photo(
         self, layer: NDArray, plane: Plane, pose: Array, *, reach: float = 0.75

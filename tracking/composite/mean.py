@@ -9,29 +9,33 @@ exposure is then compared with the residual of the others.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
 
-import cv2
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse.linalg import LinearOperator, cg
 
 from tracking.camera.lens import Array
-from tracking.composite.candidates import (
+from tracking.composite.colours import SCALE, FloorColours, smooth
+from tracking.composite.exposure import Exposure
+from tracking.composite.match import Match, match_whole
+from tracking.composite.mean_alignment import MeanAlignment, fine_whitening, floor_pattern
+from tracking.composite.reading import Reading
+from tracking.composite.steps import (
     CLIMB,
     LEAST_STEP,
     MOST_EXPOSURES,
     REACH,
     are_apart,
+    distances,
     headed,
+    improved,
+    is_apart,
+    is_beside,
+    shifted_sets,
+    usual_step,
 )
-from tracking.composite.chain import continued, distances, improved, usual_step
-from tracking.composite.colours import FloorColours, smooth
-from tracking.composite.match import Match, match_whole
-from tracking.composite.order import order_exposures
-from tracking.composite.reading import PictureRaster
+from tracking.composite.superposition import solve_robot, superposed
 
 LONELY_SCORE = 0.6
 """Least correlation of an exposure without a neighbour, or with reversed heading, while only one is
@@ -53,11 +57,6 @@ WORTH = 0.4
 DETAIL = 1 / 4
 """Width of the high-pass filter for comparison, in lengths of the robot [-]."""
 
-SCALE = 8.0
-"""Standard deviation of the floor's pattern after whitening [grey levels]."""
-
-_TURN = np.radians(32.0)
-_DAMPING = 0.02
 _ROUNDS = 30
 _TRIED = 3
 _LEAST_MATCH = 0.4
@@ -93,19 +92,13 @@ class Fit(NamedTuple):
         return self.explained - other.explained - 0.5 * (self.cost + other.cost) * more
 
 
-@dataclass(frozen=True)
-class MeanSearch(PictureRaster):
-    """Search for exposures in a mean of exposures, on a raster.
+class MeanReading(Reading):
+    """Reading of a picture that is the mean of several exposures.
 
     `body` reaches beyond the robot's top, over what its sides and legs cover.
-
-    Attributes:
-        length: The robot's length [m].
-        height: Height of its top over the body's origin [m].
     """
 
-    length: float
-    height: float
+    margin = 0.28
 
     @cached_property
     def floor(self) -> FloorColours:
@@ -140,25 +133,51 @@ class MeanSearch(PictureRaster):
         """Sum of the squared detail."""
         return float((self.detail**2).sum())
 
-    def find(self, anchor: Array) -> Array:
-        """Find all exposures.
-
-        Args:
-            anchor: x, y [m] and yaw [rad] of an exposure that shows how the robot looks.
-
-        Returns:
-            Poses, that one first, whatever its score, shape (n, 3).
-        """
-        best = self.fitted(self.alike(anchor), rounds=2)
+    def find(self) -> Array:
+        """Find all exposures, the known one first, as a set that explains most of the picture."""
+        best = self.fitted(self.first_matches(self.known.pose.planar), rounds=2)
         for _ in range(_ROUNDS):
             tried = [self.fitted(poses, rounds=1) for poses in self.varied(best)]
             new = max(tried, key=lambda fit: fit.gain(best), default=best)
             if new.gain(best) <= _BETTER:
                 break
             best = self.fitted(new.poses, rounds=1)
-        return self.held(self.fitted(best.poses, rounds=3))
+        return self.accepted(self.fitted(best.poses, rounds=3))
 
-    def held(self, fit: Fit) -> Array:
+    def align(self, poses: Array) -> tuple[Exposure, ...]:
+        """Align each exposure with the residual that the others leave of the picture.
+
+        Where exposures overlap, those that are unclear are dropped.
+        """
+        known = self.known
+        fine = fine_whitening(known)
+        weighed = (known.pixels @ fine).astype(np.float32)
+        residuals = self.residuals(poses, weighed, np.linalg.inv(self.weighing) @ fine)
+        if usual_step(poses) < self.length:
+            return MeanAlignment(known, residuals, poses).exposures()
+        pattern = floor_pattern(known, weighed, poses)
+        flat = [pattern.flat(residual) for residual in residuals]
+        return MeanAlignment(known, flat, poses, pattern).exposures()
+
+    def residuals(
+        self, poses: Array, weighed: NDArray[np.float32], weighed_again: Array
+    ) -> list[NDArray[np.float32]]:
+        """Subtract the other exposures from the picture, around each exposure.
+
+        Args:
+            poses: The exposures, shape (n, 3).
+            weighed: The picture in whitened colours, shape (height, width, 3).
+            weighed_again: From the raster's whitened colours to those, shape (3, 3).
+        """
+        robot = solve_robot(self.body, poses, self.change)
+        residuals = []
+        for k, pose in enumerate(poses):
+            others = superposed(self.body, np.delete(poses, k, axis=0), robot)
+            seen = self.known.on_photo(others, self.plane, pose)
+            residuals.append((weighed - seen @ weighed_again).astype(np.float32))
+        return residuals
+
+    def accepted(self, fit: Fit) -> Array:
         """Drop exposures that are too weak or too unlike the others."""
         usual = float(np.median(fit.scores[1:])) if len(fit.scores) > 1 else 0.0
         least = max(LEAST_SCORE, LEAST_OF_USUAL * usual)
@@ -166,9 +185,9 @@ class MeanSearch(PictureRaster):
         good[0] = True
         return fit.poses[good]
 
-    def alike(self, anchor: Array) -> Array:
+    def first_matches(self, anchor: Array) -> Array:
         """Find first exposures by matching the known one, which still contains others and floor."""
-        robot = self.body.read(self.detail, self.plane, anchor)
+        robot = self.body.read(self.detail, anchor)
         poses = anchor[None]
         matches = [m for m in self.matches(self.detail, robot) if m.score >= BESIDE_SCORE]
         while len(poses) < MOST_EXPOSURES and (new := self.next_of(matches, poses)) is not None:
@@ -185,34 +204,36 @@ class MeanSearch(PictureRaster):
         Returns:
             Pose, shape (3,), or None. Farther matches count only where steps are long.
         """
-        beside = next((match for match in matches if self.is_beside(match, poses)), None)
-        if beside is not None:
-            return self.turned(beside, poses)
-        beyond = [match.planar for match in matches if self.is_alone(match, poses)]
-        if not beyond or 0 < usual_step(poses) < REACH * self.length:
+        new = self.candidates(matches, poses)
+        away = [float(distances(poses, pose).min()) for pose in new]
+        if beside := [k for k, distance in enumerate(away) if distance <= REACH * self.length]:
+            return new[beside[0]]
+        if not new or 0 < usual_step(poses) < REACH * self.length:
             return None
-        nearest = min(beyond, key=lambda pose: distances(poses, pose).min())
-        return headed(nearest, poses, square=self.is_square)
+        return new[int(np.argmin(away))]
 
-    def turned(self, match: Match, poses: Array) -> Array:
-        """Correct the heading of a match by the walk where no exposure beside it has its heading.
+    def candidates(self, matches: Sequence[Match], poses: Array) -> list[Array]:
+        """List the matches that may be further exposures.
+
+        They are a step from a known exposure with nearly its heading, or clear and farther than a
+        step from all. The heading of a clear match may be turned by a half; the walk corrects it.
 
         Args:
-            match: The match.
+            matches: Matches, best first.
             poses: Known exposures, shape (n, 3) [m, m, rad].
 
         Returns:
-            Pose of the match, shape (3,) [m, m, rad].
+            Poses, shape (3,) each [m, m, rad].
         """
-        if self.follows(match.planar, poses):
-            return match.planar
-        return headed(match.planar, poses, square=self.is_square)
-
-    @property
-    def is_square(self) -> bool:
-        """Return whether the robot is about as wide as long."""
-        rows, columns = self.body.x[self.body.body].shape
-        return abs(rows - columns) < 0.2 * max(rows, columns)
+        found = []
+        for score, pose in matches:
+            clear = score >= LONELY_SCORE
+            if clear and not self.follows(pose, poses):
+                pose = headed(pose, poses, square=self.known.box.is_square)
+            far = clear and is_apart(pose, poses, REACH * self.length)
+            if far or self.follows(pose, poses):
+                found.append(pose)
+        return found
 
     def matches(self, change: NDArray[np.float32], robot: NDArray[np.float32]) -> list[Match]:
         """Match the robot's picture at all headings (normalised cross-correlation).
@@ -224,20 +245,8 @@ class MeanSearch(PictureRaster):
         Returns:
             Matches, best first.
         """
-        template = self.body.template(robot, self.height)
+        template = self.body.template(robot, self.known.plate.height)
         return match_whole(change, self.plane, template=template, least=_LEAST_MATCH)
-
-    def is_beside(self, match: Match, poses: Array) -> bool:
-        """Return whether a match is one step from a known exposure.
-
-        The heading of a clear match is corrected first, since it may be turned by a half.
-
-        Args:
-            match: The match.
-            poses: Known exposures, shape (n, 3) [m, m, rad].
-        """
-        pose = self.turned(match, poses) if match.score >= LONELY_SCORE else match.planar
-        return self.follows(pose, poses)
 
     def follows(self, pose: Array, poses: Array) -> bool:
         """Return whether a pose is a step from another exposure, with nearly its heading.
@@ -246,42 +255,17 @@ class MeanSearch(PictureRaster):
             pose: x, y [m] and yaw [rad], shape (3,).
             poses: Known exposures, shape (n, 3).
         """
-        away = distances(poses, pose)
-        near = away < REACH * self.length
-        ahead = np.cos(poses[near, 2] - pose[2]) > np.cos(_TURN)
-        return bool(ahead.any() and away.min() > LEAST_STEP * self.length)
-
-    def is_alone(self, match: Match, poses: Array) -> bool:
-        """Return whether a match is clear and farther than a step from all exposures.
-
-        Args:
-            match: The match.
-            poses: Known exposures, shape (n, 3) [m, m, rad].
-        """
-        away = distances(poses, match.planar).min()
-        return match.score >= LONELY_SCORE and bool(away > REACH * self.length)
-
-    def is_new(self, match: Match, poses: Array) -> bool:
-        """Return whether a match may be a further exposure (`is_beside` or `is_alone`).
-
-        Args:
-            match: The match.
-            poses: Known exposures, shape (n, 3) [m, m, rad].
-        """
-        return self.is_beside(match, poses) or self.is_alone(match, poses)
+        far = is_apart(pose, poses, LEAST_STEP * self.length)
+        return far and is_beside(pose, list(poses), self.length)
 
     def varied(self, fit: Fit) -> list[Array]:
         """List sets of exposures that differ from a set by one or two exposures."""
-        left = self.detail - self.sum_of(fit.poses, fit.robot)
+        left = self.detail - superposed(self.body, fit.poses, fit.robot)
         left *= self.used[..., None]
-        new = [
-            self.turned(m, fit.poses)
-            for m in self.matches(left, fit.robot)
-            if self.is_new(m, fit.poses)
-        ]
+        new = self.candidates(self.matches(left, fit.robot), fit.poses)
         sets = [np.concatenate((fit.poses, pose[None])) for pose in new[:_TRIED]]
         if len(fit.poses) > 1:
-            sets += _shifted(fit.poses)
+            sets += shifted_sets(fit.poses)
             weakest = 1 + int(np.argmin(fit.scores[1:]))
             sets.append(np.delete(fit.poses, weakest, axis=0))
         return [poses for poses in sets if are_apart(poses, self.length)]
@@ -294,12 +278,12 @@ class MeanSearch(PictureRaster):
             rounds: Number of alternations.
         """
         poses = poses.copy()
-        robot = self.robot_at(poses, self.detail)
+        robot = solve_robot(self.body, poses, self.detail)
         scores, strengths = self.improve(poses, robot)
         for _ in range(rounds - 1):
-            robot = self.robot_at(poses, self.detail)
+            robot = solve_robot(self.body, poses, self.detail)
             scores, strengths = self.improve(poses, robot)
-        left = (self.detail - self.sum_of(poses, robot)) * self.used[..., None]
+        left = (self.detail - superposed(self.body, poses, robot)) * self.used[..., None]
         own = float((robot[self.body.body] ** 2).sum())
         explained = 1 - float((left**2).sum()) / self.power
         return Fit(poses, robot, scores, strengths, explained, WORTH * own / self.power)
@@ -314,15 +298,15 @@ class MeanSearch(PictureRaster):
         Returns:
             Correlations and relative strengths, shape (n,) each [-]; 1 for the first.
         """
-        left = self.detail - self.sum_of(poses, robot)
+        left = self.detail - superposed(self.body, poses, robot)
         scores, strengths = np.ones(len(poses)), np.ones(len(poses))
         for k in range(1, len(poses)):
-            window, laid = self.body.laid(robot, self.plane, poses[k])
+            window, laid = self.body.laid(robot, poses[k])
             left[window] += laid
             alone = left * self.used[..., None]
             poses[k] = self.refined(alone, robot, poses[k])
-            scores[k], strengths[k] = self.likeness(alone, robot, poses[k])
-            window, laid = self.body.laid(robot, self.plane, poses[k])
+            scores[k], strengths[k] = self.correlation(alone, robot, poses[k])
+            window, laid = self.body.laid(robot, poses[k])
             left[window] -= laid
         return scores, strengths
 
@@ -337,10 +321,10 @@ class MeanSearch(PictureRaster):
             pose: Pose to start from, shape (3,) [m, m, rad].
         """
         return improved(
-            lambda place: self.likeness(change, robot, place)[0], pose, reach=CLIMB, tries=120
+            lambda place: self.correlation(change, robot, place)[0], pose, reach=CLIMB, tries=120
         )[0]
 
-    def likeness(
+    def correlation(
         self, change: NDArray[np.float32], robot: NDArray[np.float32], pose: Array
     ) -> tuple[float, float]:
         """Compute correlation and regression coefficient of the picture on the robot's picture.
@@ -353,79 +337,9 @@ class MeanSearch(PictureRaster):
         Returns:
             Correlation and coefficient ("strength") [-].
         """
-        seen = self.body.read(change, self.plane, pose)[self.body.body]
+        seen = self.body.read(change, pose)[self.body.body]
         own = robot[self.body.body]
         seen, own = seen - seen.mean(axis=(0, 1)), own - own.mean(axis=(0, 1))
         cross, power = float((seen * own).sum()), float((own * own).sum())
         spread = float((seen * seen).sum())
         return cross / np.sqrt(max(power * spread, 1e-9)), cross / max(power, 1e-9)
-
-    def sum_of(self, poses: Array, robot: NDArray[np.float32]) -> NDArray[np.float32]:
-        """Compute the sum of the robot's picture at all poses.
-
-        Args:
-            poses: Exposures, shape (n, 3) [m, m, rad].
-            robot: The robot's picture, on the robot's raster.
-
-        Returns:
-            Sum on the picture's raster, shape (rows, columns, 3).
-        """
-        total = np.zeros_like(self.change)
-        for pose in poses:
-            window, laid = self.body.laid(robot, self.plane, pose)
-            total[window] += laid
-        return total
-
-    def robot_at(self, poses: Array, change: NDArray[np.float32]) -> NDArray[np.float32]:
-        """Solve for the robot's picture whose sum at all poses is nearest to the change.
-
-        Damped least squares by conjugate gradients. What the exposures do not determine is held
-        near zero. The mean of the colours at all poses is not enough: where exposures repeat by a
-        steady step, a pattern that alternates with it shows only at the two ends of the walk.
-
-        Args:
-            poses: Exposures, shape (n, 3) [m, m, rad].
-            change: Difference from the floor, or its detail, shape (rows, columns, 3).
-
-        Returns:
-            The robot's picture, on the robot's raster, with 3 channels.
-        """
-        seen = np.mean([self.body.read(change, self.plane, pose) for pose in poses], axis=0)
-        if len(poses) == 1:
-            return seen.astype(np.float32)
-        shape, rows_columns = seen.shape, seen.shape[1::-1]
-        reach = 2.0 * self.length
-        overlaps = [
-            self.body.between(pose, other)
-            for k, pose in enumerate(poses)
-            for other in np.delete(poses, k, axis=0)
-            if np.hypot(*(pose[:2] - other[:2])) < reach
-        ]
-
-        def repeated(values: Array) -> Array:
-            """Apply the normal-equation operator: sum the picture shifted by all pairs of poses."""
-            robot = values.reshape(shape).astype(np.float32)
-            total = (1 + _DAMPING) * robot
-            for overlap in overlaps:
-                flags = cv2.INTER_LINEAR | cv2.WARP_INVERSE_MAP
-                total += cv2.warpAffine(robot, overlap, rows_columns, flags=flags) / len(poses)
-            return total.ravel().astype(float)
-
-        operator = LinearOperator((seen.size, seen.size), matvec=repeated, dtype=float)  # pyright: ignore[reportCallIssue] # SciPy's documented arguments
-        solved, _ = cg(operator, seen.ravel().astype(float), rtol=2e-3, maxiter=40)
-        return solved.reshape(shape).astype(np.float32)
-
-
-def _shifted(poses: Array) -> list[Array]:
-    """List chains shifted by one exposure at either end; the first exposure is kept."""
-    chain = [poses[k] for k in order_exposures(poses)]
-    before, after = continued(chain[1], chain[0]), continued(chain[-2], chain[-1])
-    starts: Sequence[list[Array]] = (chain, chain[1:], [before, *chain])
-    sets = []
-    for start in starts:
-        for end in (start, start[:-1], [*start, after]):
-            rest = [pose for pose in end if not np.array_equal(pose, poses[0])]
-            kept = len(rest) < len(end)
-            if kept and rest and end is not chain:
-                sets.append(np.array([poses[0], *rest]))
-    return sets

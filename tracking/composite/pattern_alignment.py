@@ -8,6 +8,7 @@ which `tracking.body.align` uses, are mostly the floor's where the robot is fain
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import NamedTuple
 
 import cv2
 import numpy as np
@@ -28,39 +29,35 @@ _ITERATIONS = 6
 _HUBER = 1.5
 _LIMIT = np.array([0.01, 0.01, 0.05])  # m, m, rad: longest step
 _LEAST_POINTS = 200
-_TOLD = [2, 3, 4]  # height, roll and pitch in a state
+_ASSUMED = [2, 3, 4]  # height, roll and pitch in a state
 _ALL, _CAMERA = list(range(12)), slice(6, 12)  # of a state, then of the camera's pose
 
 
-@dataclass(frozen=True)
-class PatternResidual:
-    """Residual of the photograph against the template at a pose, as n values.
+class PatternResidual(NamedTuple):
+    """Photograph and template at a pose, as n values, with the robust weights of their difference.
 
     Attributes:
         seen: Of the photograph, shape (n,).
-        expected: Of the picture, shape (n,).
+        expected: Of the template, shape (n,).
         slopes: Derivative of `expected` by some of the state and the camera's pose, shape (n, m).
+        noise: Standard deviation of the residual, by the median absolute deviation.
+        weight: Huber's weights, shape (n,).
     """
 
     seen: Array
     expected: Array
     slopes: Array
+    noise: float
+    weight: Array
 
-    @cached_property
-    def residual(self) -> Array:
-        """Photograph minus template times its best gain, shape (n,)."""
-        gain = self.expected @ self.seen / max(self.expected @ self.expected, 1e-9)
-        return self.seen - gain * self.expected
-
-    @cached_property
-    def noise(self) -> float:
-        """Standard deviation of the residual, by the median absolute deviation."""
-        return max(1.4826 * float(np.median(np.abs(self.residual))), 1e-6)
-
-    @cached_property
-    def weight(self) -> Array:
-        """Huber's weights, shape (n,)."""
-        return np.minimum(1.0, _HUBER * self.noise / np.maximum(np.abs(self.residual), 1e-9))
+    @classmethod
+    def of(cls, seen: Array, expected: Array, slopes: Array) -> "PatternResidual":
+        """Compute the residual's noise and weights, the template at its best gain."""
+        gain = expected @ seen / max(expected @ expected, 1e-9)
+        size = np.abs(seen - gain * expected)
+        noise = max(1.4826 * float(np.median(size)), 1e-6)
+        weight = np.minimum(1.0, _HUBER * noise / np.maximum(size, 1e-9))
+        return cls(seen, expected, slopes, noise, weight)
 
     @property
     def score(self) -> float:
@@ -81,15 +78,15 @@ class PatternAlignment:
     """Alignment of one exposure with a template.
 
     Attributes:
-        picture: The picture and the known exposure.
-        alone: The photograph without the other exposures, flat, shape (height, width, 3).
+        known: The picture and the known exposure.
+        residual: The photograph without the other exposures, flat, shape (height, width, 3).
         template: The robot's top and `AROUND`, flat.
         pattern: Of the floor.
         start: x, y [m] and yaw [rad] to start from, shape (3,).
     """
 
-    picture: KnownExposure
-    alone: NDArray[np.float32]
+    known: KnownExposure
+    residual: NDArray[np.float32]
     template: BodyTemplate
     pattern: FloorPattern
     start: Array
@@ -99,35 +96,35 @@ class PatternAlignment:
 
         Returns:
             The alignment, or None where little of the top is visible. Height, roll and pitch are
-            those of `picture.prior`, and what is unknown of them is in the covariance.
+            those of `known.prior`, and what is unknown of them is in the covariance.
         """
         pose = self.start.copy()
         for _ in range(_ITERATIONS):
-            look = self.look(pose, PLANAR)
-            if look is None:
+            residual = self.residual_at(pose, PLANAR)
+            if residual is None:
                 return None
-            pose = pose + look.step()
-        look = self.look(pose, _ALL)
-        return None if look is None else self.concluded(pose, look)
+            pose = pose + residual.step()
+        residual = self.residual_at(pose, _ALL)
+        return None if residual is None else self.concluded(pose, residual)
 
     @cached_property
     def window(self) -> tuple[tuple[slice, slice], Array]:
         """Rows and columns around the exposure, and x and y of the top's plane there [m]."""
-        return self.picture.around(self.start, reach=_REACH)
+        return self.known.around(self.start, reach=_REACH)
 
     @cached_property
     def seen(self) -> NDArray[np.float32]:
         """Prediction error of the photograph by the floor's pattern, in the window."""
-        return self.pattern.new_in(self.alone[self.window[0]])
+        return self.pattern.prediction_error(self.residual[self.window[0]])
 
     @cached_property
     def shown(self) -> NDArray[np.bool_]:
         """Mask of the window's pixels whose prediction uses no hidden pixel."""
-        hidden = self.picture.hidden[self.window[0]].astype(np.uint8)
+        hidden = self.known.hidden[self.window[0]].astype(np.uint8)
         side = 2 * REACH_PX + 1
         return cv2.dilate(hidden, np.ones((side, side), np.uint8)) == 0
 
-    def look(self, pose: Array, by: list[int]) -> PatternResidual | None:
+    def residual_at(self, pose: Array, by: list[int]) -> PatternResidual | None:
         """Compute residual and Jacobian at a pose; None where little is visible.
 
         Args:
@@ -135,15 +132,15 @@ class PatternAlignment:
             by: Indices, in state and camera's pose, of the Jacobian's columns.
         """
         body = self.body_at(pose)
-        half = 0.5 * np.array([self.picture.plate.length, self.picture.plate.width])
-        inside = (np.abs(body - [self.picture.plate.centre_x, 0.0]) <= half).all(axis=-1)
+        half = 0.5 * np.array([self.known.plate.length, self.known.plate.width])
+        inside = (np.abs(body - [self.known.plate.centre_x, 0.0]) <= half).all(axis=-1)
         used = inside & self.shown
         if used.sum() < _LEAST_POINTS:
             return None
         drawn = self.drawn(body)
-        expected = self.pattern.new_in(drawn)[used]
-        slopes = self.pattern.new_in(self.slopes(drawn, body, pose)[..., by])[used]
-        return PatternResidual(
+        expected = self.pattern.prediction_error(drawn)[used]
+        slopes = self.pattern.prediction_error(self.slopes(drawn, body, pose)[..., by])[used]
+        return PatternResidual.of(
             self.seen[used].ravel().astype(float),
             expected.ravel().astype(float),
             slopes.reshape(-1, slopes.shape[-1]).astype(float),
@@ -170,13 +167,13 @@ class PatternAlignment:
         Returns:
             Jacobian, shape (rows, columns, 3, 12).
         """
-        state = self.picture.level(pose)
+        state = self.known.level(pose)
         points = np.concatenate(
-            (body, np.full((*body.shape[:2], 1), self.picture.plate.height)), axis=2
+            (body, np.full((*body.shape[:2], 1), self.known.plate.height)), axis=2
         ).reshape(-1, 3)
         R, dR = rotation_with_derivatives(*state[3:])
         _, by_point, by_camera = project_with_derivatives(
-            self.picture.camera, self.picture.view, points @ R.T + state[:3]
+            self.known.camera, self.known.view, points @ R.T + state[:3]
         )
         turned = (points @ dR.transpose(0, 2, 1)).transpose(1, 2, 0)
         moved = np.concatenate((by_point, by_point @ turned, by_camera), axis=2)
@@ -184,31 +181,31 @@ class PatternAlignment:
         slope = np.stack(along, axis=-1)
         return -slope @ moved.reshape(*body.shape[:2], 2, 12)
 
-    def concluded(self, pose: Array, look: PatternResidual) -> Alignment:
+    def concluded(self, pose: Array, residual: PatternResidual) -> Alignment:
         """Make the alignment: the pose with its covariance, from the residual's Jacobian.
 
         Args:
             pose: x, y [m] and yaw [rad], shape (3,).
-            look: Residual, Jacobian, weights and noise at the pose.
+            residual: Residual, Jacobian, weights and noise at the pose.
         """
-        J, prior = look.slopes[:, PLANAR], self.picture.prior
-        weighed = look.weight[:, None] * J / look.noise**2
+        J, prior = residual.slopes[:, PLANAR], self.known.prior
+        weighed = residual.weight[:, None] * J / residual.noise**2
         spread = np.linalg.inv(weighed.T @ J)
-        follow = spread @ weighed.T @ look.slopes  # x, y and yaw by state and camera's pose
+        follow = spread @ weighed.T @ residual.slopes  # x, y and yaw by state and camera's pose
         covariance, by_camera = np.zeros((6, 6)), np.zeros((6, 6))
         covariance[np.ix_(PLANAR, PLANAR)] = spread
-        by_told = np.zeros((6, 3))
-        by_told[PLANAR], by_told[_TOLD] = follow[:, _TOLD], -np.eye(3)
+        by_assumed = np.zeros((6, 3))
+        by_assumed[PLANAR], by_assumed[_ASSUMED] = follow[:, _ASSUMED], -np.eye(3)
         by_camera[PLANAR] = follow[:, _CAMERA]
-        told = np.square([prior.height_sd, prior.tilt_sd, prior.tilt_sd])
+        assumed = np.square([prior.height_sd, prior.tilt_sd, prior.tilt_sd])
         return Alignment(
             BodyPose(
-                self.picture.level(pose),
-                covariance + by_told * told @ by_told.T,
-                by_camera @ self.picture.view.covariance @ by_camera.T,
+                self.known.level(pose),
+                covariance + by_assumed * assumed @ by_assumed.T,
+                by_camera @ self.known.view.covariance @ by_camera.T,
                 0.0,
-                float(look.seen.size),
+                float(residual.seen.size),
             ),
-            look.score,
-            -look.seen.size * float(np.log(look.noise)),
+            residual.score,
+            -residual.seen.size * float(np.log(residual.noise)),
         )

@@ -1,17 +1,20 @@
 # SPDX-License-Identifier: MIT
-"""Ways to merge exposures into one picture, and the interface of their readings."""
+"""Ways to merge exposures into one picture, and what their readings have in common."""
 
+from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from enum import StrEnum
-from typing import Protocol
+from typing import ClassVar, Self
 
+import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from tracking.body.plane import Plane
 from tracking.camera.lens import Array
 from tracking.composite.body_raster import BodyRaster
 from tracking.composite.exposure import Exposure
-from tracking.composite.plane import Plane
+from tracking.composite.known import KnownExposure
 
 
 class Merged(StrEnum):
@@ -26,17 +29,62 @@ class Merged(StrEnum):
     """Each pixel has the mean of all photographs: of n exposures each is as faint as 1/n."""
 
 
-class Reading(Protocol):
-    """Interface: find and align the exposures of a picture from one that is known."""
+@dataclass(frozen=True)
+class Reading(ABC):
+    """Find and align the exposures of a picture from one that is known.
 
+    Attributes:
+        known: The photograph with the known exposure.
+        plane: The raster of a level plane at the robot's top.
+        picture: Colours on it, shape (rows, columns, 3).
+        used: Where it shows floor or robot, shape (rows, columns).
+        body: Points of the robot's top on that raster, and perhaps some around it.
+    """
+
+    cells: ClassVar[int] = 32  # points of the raster along the robot
+    margin: ClassVar[float] = 0.0  # width around the robot that belongs to it, of its length
+
+    known: KnownExposure
+    plane: Plane
+    picture: NDArray[np.float32]
+    used: NDArray[np.bool_]
+    body: BodyRaster
+
+    @classmethod
+    def of(cls, known: KnownExposure, *, cells: int | None = None) -> Self:
+        """Resample the picture on the plane of the robot's top.
+
+        Args:
+            known: The photograph with the known exposure.
+            cells: Points of the raster along the robot; those of the class when None.
+        """
+        cells = cells or cls.cells
+        half, cell = 0.5 * float(np.hypot(*known.size)), known.size[0] / cells
+        plane = Plane.over(
+            known.camera, known.view, height=known.prior.height + known.plate.height,
+            low=known.area[0] - half, high=known.area[1] + half, cell=cell,
+        )  # fmt: skip
+        widened = cv2.dilate(known.hidden.astype(np.uint8), np.ones((5, 5), np.uint8))
+        edge = np.subtract(known.camera.size, 1)
+        inside = ((plane.seen_px >= 0) & (plane.seen_px <= edge)).all(axis=-1)
+        used = inside & (plane.read(255 * widened) < 1)
+        body = BodyRaster.over(plane, known.size, round(cls.margin * cells))
+        return cls(known, plane, plane.read_smooth(known.pixels), used, body)
+
+    @property
+    def length(self) -> float:
+        """The robot's length [m]."""
+        return self.known.size[0]
+
+    @abstractmethod
     def find(self) -> Array:
-        """Find all exposures on a raster.
+        """Find all exposures on the raster.
 
         Returns:
             x, y [m] and yaw [rad] of each, the known one first, shape (n, 3).
         """
-        ...
 
+    @abstractmethod
     def align(self, poses: Array) -> tuple[Exposure, ...]:
         """Align exposures with the photograph.
 
@@ -46,21 +94,3 @@ class Reading(Protocol):
         Returns:
             The exposures, the known one first; without those that are rejected.
         """
-        ...
-
-
-@dataclass(frozen=True)
-class PictureRaster:
-    """A picture on a raster, and a raster of the robot to compare with it.
-
-    Attributes:
-        plane: The raster.
-        picture: Colours on it, shape (rows, columns, 3).
-        used: Where it shows floor or robot, shape (rows, columns).
-        body: Points of the robot's top, and perhaps some around it.
-    """
-
-    plane: Plane
-    picture: NDArray[np.float32]
-    used: NDArray[np.bool_]
-    body: BodyRaster

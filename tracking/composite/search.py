@@ -15,13 +15,14 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from tracking.body import Alignment, BodyTemplate, TopPlate, align, floor_in_view
+from tracking.body.plane import Plane
 from tracking.camera.lens import Array, Camera, CameraPose
-from tracking.composite.exposure import Exposure, is_new
+from tracking.composite.exposure import Exposure, disturbance, widened
 from tracking.composite.known import KnownExposure
-from tracking.composite.match import CELLS, Match, match_whole
-from tracking.composite.pasted_alignment import PastedReading
-from tracking.composite.plane import Plane
+from tracking.composite.match import CELLS, match_whole
+from tracking.composite.pasted import PastedReading
 from tracking.composite.reading import Merged
+from tracking.composite.steps import LEAST_STEP, apart, is_apart, is_beside
 from tracking.errors import CompositeError
 from tracking.pose import BodyPrior
 
@@ -51,10 +52,7 @@ test uses."""
 
 _LEVER = 0.7  # lever arm for the heading, of the template's length
 _SAME = 0.4  # of the template's length: nearer ones are the same
-_SLIP = 0.1  # of the template's length: alignment by edges that moves farther has diverged
-_BESIDE = 1.25  # of the body's length
-_TURN = np.radians(32.0)  # from one exposure to the next beside it
-_SAME_BODY = 0.25  # of the body's length: nearer exposures are the same
+_DIVERGED = 0.1  # of the template's length: alignment by edges that moves farther has diverged
 _HOPE = 0.8  # of the least correlation: with less after a few steps alignment stops
 
 
@@ -89,7 +87,7 @@ def find_exposures(
     area = floor_in_view(camera, view, prior.height + template.plate.height, near, reach)
     hidden = np.zeros(pixels.shape[:2], dtype=bool) if hidden is None else hidden
     search = _Search(_without(pixels, hidden), hidden, camera, view, template, prior, size, area)
-    found = search.shining_through()
+    found = search.superposed()
     if merged is Merged.PASTED:
         found = search.layers(found)
     if not found:
@@ -121,127 +119,78 @@ class _Search:
     body: tuple[float, float]
     area: tuple[Array, Array]
 
-    def shining_through(self) -> list[Exposure]:
+    def superposed(self) -> list[Exposure]:
         """Find exposures by the whole template, each superposed with others."""
-        plane = self.plane
-        picture = plane.read_smooth(self.pixels).mean(axis=2, keepdims=True)
-        matches = match_whole(picture, plane, template=self.template, least=0.9 * BESIDE_SCORE)
-        aligned = [self.aligned(match) for match in self.apart(matches)]
-        good = [each for each in aligned if each is not None and each.score >= BESIDE_SCORE]
-        good.sort(key=lambda alignment: -alignment.score)
-        return [Exposure(self.sharpened(each), 1.0) for each in self.along_a_walk(good)]
-
-    def sharpened(self, alignment: Alignment) -> Alignment:
-        """Refine an alignment by edges alone, where others or the floor shine through.
-
-        The score is that of the alignment given.
-        """
-        fine = align(
-            self.pixels, self.camera, self.view, template=self.template, prior=self.prior,
-            start=alignment.pose.planar, blurs_px=(1.0,), least_hope=0.0, shines_through=True,
-        )  # fmt: skip
-        if fine is None or self.distance(fine.pose.planar, alignment.pose.planar) > self.slip:
-            return self.among_others(alignment)
-        return replace(self.among_others(fine), score=alignment.score)
-
-    @property
-    def slip(self) -> float:
-        """Largest move of an exposure in an alignment by edges alone [m]."""
-        return _SLIP * self.template.plate.length
-
-    def among_others(self, alignment: Alignment) -> Alignment:
-        """Add the error that superposed exposures cause to the covariance of an alignment."""
-        power = max(1 - alignment.score**2, 0.0) / alignment.score**2
-        slip = OTHERS_SD * self.template.plate.length * power
-        turn = slip / (_LEVER * self.template.plate.length)
-        added = np.diag([slip, slip, 0, 0, 0, turn]) ** 2
-        pose = replace(alignment.pose, covariance=alignment.pose.covariance + added)
-        return replace(alignment, pose=pose)
-
-    @property
-    def plane(self) -> Plane:
-        """The raster for the search, at the height of the marker."""
         top = self.template.plate
         half = 0.5 * float(np.hypot(top.length, top.width))
-        return Plane.over(
+        plane = Plane.over(
             self.camera, self.view, height=self.prior.height + top.height,
             low=self.area[0] - half, high=self.area[1] + half, cell=top.length / CELLS,
         )  # fmt: skip
+        picture = plane.read_smooth(self.pixels).mean(axis=2, keepdims=True)
+        matches = match_whole(picture, plane, template=self.template, least=0.9 * BESIDE_SCORE)
+        scores = [match.score for match in matches]
+        starts = apart([match.planar for match in matches], scores, _SAME * top.length)
+        aligned = [self.aligned(start, least_hope=_HOPE * BESIDE_SCORE) for start in starts]
+        good = [each for each in aligned if each is not None and each.score >= BESIDE_SCORE]
+        good.sort(key=lambda alignment: -alignment.score)
+        return [Exposure(self.refined(each), 1.0) for each in self.along_a_walk(good)]
 
-    def aligned(self, match: Match) -> Alignment | None:
+    def aligned(
+        self, start: Array, *, least_hope: float, shines_through: bool = False
+    ) -> Alignment | None:
         """Align the marker with the photograph; None where the correlation stays too small."""
         return align(
             self.pixels, self.camera, self.view, template=self.template, prior=self.prior,
-            start=match.planar, blurs_px=(1.0,), least_hope=_HOPE * BESIDE_SCORE,
+            start=start, blurs_px=(1.0,), least_hope=least_hope, shines_through=shines_through,
         )  # fmt: skip
-
-    def apart(self, matches: Sequence[Match]) -> list[Match]:
-        """Keep the best of matches in one place (non-maximum suppression)."""
-        kept: list[Match] = []
-        for match in matches:
-            if all(self.distance(match.planar, other.planar) > self.same for other in kept):
-                kept.append(match)
-        return kept
-
-    @property
-    def same(self) -> float:
-        """Distance below which two markers are the same [m]."""
-        return _SAME * self.template.plate.length
-
-    @property
-    def same_body(self) -> float:
-        """Distance below which two exposures are the same [m]."""
-        return _SAME_BODY * self.body[0]
-
-    @staticmethod
-    def distance(a: Array, b: Array) -> float:
-        """Compute the distance between two poses [m]."""
-        return float(np.hypot(*(a[:2] - b[:2])))
 
     def along_a_walk(self, good: Sequence[Alignment]) -> list[Alignment]:
         """Keep clear exposures, those beside them, and so on (hysteresis threshold)."""
         kept: list[Alignment] = []
         left = list(good)
-        while left:
-            index = next((k for k, each in enumerate(left) if self.follows(each, kept)), None)
-            if index is None:
-                break
-            new = left.pop(index)
-            here = new.pose.planar
-            if all(self.distance(here, other.pose.planar) > self.same for other in kept):
+        while index := [k for k, each in enumerate(left) if self.follows(each, kept)][:1]:
+            new, poses = left.pop(index[0]), [each.pose.planar for each in kept]
+            if is_apart(new.pose.planar, poses, _SAME * self.template.plate.length):
                 kept.append(new)
         return kept
 
     def follows(self, alignment: Alignment, kept: Sequence[Alignment]) -> bool:
         """Return whether an exposure is clear, or beside another with nearly its heading."""
-        here = alignment.pose.planar
-        return alignment.score >= LONELY_SCORE or any(
-            self.distance(here, other.pose.planar) < _BESIDE * self.body[0]
-            and np.cos(here[2] - other.pose.planar[2]) > np.cos(_TURN)
-            for other in kept
-        )
+        here, poses = alignment.pose.planar, [each.pose.planar for each in kept]
+        return alignment.score >= LONELY_SCORE or is_beside(here, poses, self.body[0])
+
+    def refined(self, alignment: Alignment) -> Alignment:
+        """Refine an alignment by edges alone, where others or the floor shine through.
+
+        The score stays. The error that superposed exposures cause is added to the covariance.
+        """
+        length, start = self.template.plate.length, alignment.pose.planar
+        fine = self.aligned(start, least_hope=0.0, shines_through=True)
+        if fine is None or is_apart(fine.pose.planar, [start], _DIVERGED * length):
+            fine = alignment
+        slip = OTHERS_SD * length * disturbance(fine)
+        return replace(widened(fine, slip, lever=_LEVER * length), score=alignment.score)
 
     def layers(self, whole: Sequence[Exposure]) -> list[Exposure]:
         """Find exposures that occlude each other, beginning with those fully visible.
 
-        Where none is clear, as in a blurred picture, the list is returned unchanged.
+        Where none is clear, as in a blurred picture, the list is returned unchanged. Of those that
+        show whole, the marker's alignment is taken; those without a marker are dropped.
         """
         best = max((each.alignment.score for each in whole), default=0.0)
         least = max(CLEAR_SCORE, best - CLEAR_SPREAD)
         clear = [each for each in whole if each.alignment.score >= least]
-        if not clear:
-            return list(whole)
-        hidden = [self.by_marker(each, whole) for each in self.hidden_by(clear)]
-        return [*clear, *(each for each in hidden if each is not None)]
+        same = LEAST_STEP * self.body[0]
+        found = list(clear)
+        for new in self.occluded_by(clear):
+            if is_apart(new.planar, [each.planar for each in clear], same):
+                options = [new] if new.visible < SHOWS_WHOLE else whole
+                found += [x for x in options if not is_apart(new.planar, [x.planar], same)][:1]
+        return found or list(whole)
 
-    def by_marker(self, exposure: Exposure, whole: Sequence[Exposure]) -> Exposure | None:
-        """Replace a fully visible exposure by its marker's alignment; None if it has none."""
-        if exposure.visible < SHOWS_WHOLE:
-            return exposure
-        return next((each for each in whole if not is_new(exposure, [each], self.same_body)), None)
-
-    def hidden_by(self, clear: Sequence[Exposure]) -> list[Exposure]:
-        """Find exposures that others occlude, by the appearance of the clearest of these."""
+    def occluded_by(self, clear: Sequence[Exposure]) -> Sequence[Exposure]:
+        """Find exposures, those that others occlude too, by the appearance of one that is clear."""
         top = TopPlate(*self.body, self.template.plate.height, 0.0, 0.0, 0.0)
         for exposure in clear:
             picture = KnownExposure(
@@ -252,7 +201,6 @@ class _Search:
                 picture.body_template(self.pixels)
             except CompositeError:
                 continue  # cut by the picture's edge, too small or too faint: try the next
-            reading = PastedReading(picture)
-            found = reading.align(reading.find())
-            return [each for each in found if is_new(each, clear, self.same_body)]
+            reading = PastedReading.of(picture)
+            return reading.align(reading.find())
         return []

@@ -6,7 +6,7 @@ Only this module depends on the format of these files.
 
 import csv
 import io
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -18,6 +18,7 @@ from model.slip.definition import SlipDefinition
 from model.slip.laws import slip_law
 from zebro_lab.files.documents import read_toml_document
 from zebro_lab.files.errors import DataError, NotFound
+from zebro_lab.files.names import shortest_distinct
 from zebro_lab.files.opening import parsing
 from zebro_lab.files.replacement import settle
 from zebro_lab.files.result_folder import ResultKind
@@ -145,24 +146,37 @@ def _numbers(found: object, shape: tuple[int, ...]) -> np.ndarray:
 def _slip_toml(calibration: "Calibration", inputs: Mapping[str, str]) -> str:
     import tomlkit
 
-    blocks, law = calibration.posterior.blocks, calibration.posterior.law
-    k = len(law.parameters)
     document = tomlkit.document()
     document.add(tomlkit.comment("Slip curve fitted by calibrate-slip. SI units."))
     if calibration.simulated:
         document.add(tomlkit.comment("SIMULATED data: nothing here was measured."))
-    verdict = calibration.verdict
-    content: dict[str, Any] = {
+    document.update({
         "schema": SCHEMA,
         "source": calibration.source,
-        "slip_definition": str(blocks.definition),
-        "verdict": {
-            "headline": verdict.headline(),
-            "converged": verdict.converged,
-            "trustworthy": verdict.trustworthy,
-            "weakly_identified": list(verdict.weak),
-            "next_steps": list(verdict.next_steps()),
-        },
+        "slip_definition": str(calibration.posterior.blocks.definition),
+        "verdict": _verdict_content(calibration),
+        **_law_content(calibration),
+        "tested": _tested_content(calibration),
+        "data": dict(zip(shortest_distinct([*map(Path, inputs)]), inputs.values(), strict=True)),
+    })  # fmt: skip
+    return tomlkit.dumps(document)
+
+
+def _verdict_content(calibration: "Calibration") -> dict[str, Any]:
+    verdict = calibration.verdict
+    return {
+        "headline": verdict.headline(),
+        "converged": verdict.converged,
+        "trustworthy": verdict.trustworthy,
+        "weakly_identified": list(verdict.weak),
+        "next_steps": list(verdict.next_steps()),
+    }
+
+
+def _law_content(calibration: "Calibration") -> dict[str, Any]:
+    law = calibration.posterior.law
+    k = len(law.parameters)
+    return {
         "law": {"name": law.name, **asdict(law)},  # pyright: ignore[reportArgumentType]
         "parameters": {
             e.parameter.name: {
@@ -179,24 +193,18 @@ def _slip_toml(calibration: "Calibration", inputs: Mapping[str, str]) -> str:
             {"normal_force": float(load), **{e.parameter.name: e.median for e in row}}
             for load, row in zip(calibration.levels, calibration.curves, strict=True)
         ],
-        "tested": {
-            "normal_force": [float(blocks.normal_force.min()), float(blocks.normal_force.max())],
-            "slip_ratio": [float(blocks.slip.min()), float(blocks.slip.max())],
-            "samples": int(blocks.count.sum()),
-            "runs": blocks.n_runs,
-            "block_length": calibration.fit.block_choice.length,
-        },
-        "data": dict(zip(_distinct_names(list(inputs)), inputs.values(), strict=True)),
     }  # fmt: skip
-    document.update(content)
-    return tomlkit.dumps(document)
 
 
-def _distinct_names(paths: Sequence[str]) -> list[str]:
-    """Shorten paths to their last parts, as few as keep them distinct: every run has a log.mcap."""
-    depths = range(1, max((len(Path(path).parts) for path in paths), default=1) + 1)
-    shortened = ([str(Path(*Path(path).parts[-depth:])) for path in paths] for depth in depths)
-    return next((names for names in shortened if len(set(names)) == len(names)), list(paths))
+def _tested_content(calibration: "Calibration") -> dict[str, Any]:
+    blocks = calibration.posterior.blocks
+    return {
+        "normal_force": [float(blocks.normal_force.min()), float(blocks.normal_force.max())],
+        "slip_ratio": [float(blocks.slip.min()), float(blocks.slip.max())],
+        "samples": int(blocks.count.sum()),
+        "runs": blocks.n_runs,
+        "block_length": calibration.fit.block_choice.length,
+    }
 
 
 def summary_csv(calibration: "Calibration") -> str:
@@ -226,11 +234,12 @@ def inference_data(calibration: "Calibration") -> "az.InferenceData":
 
     posterior, draws = calibration.posterior, calibration.draws
     blocks = posterior.blocks
-    attributes = {
-        "source": calibration.source,
-        "slip_definition": str(blocks.definition),
-        "law": posterior.law.name,
-        "verdict": calibration.verdict.headline(),
+    observed = {"traction_force": blocks.traction_force}
+    given = {
+        "slip_ratio": blocks.slip,
+        "normal_force": blocks.normal_force,
+        "run": blocks.run,
+        "samples": blocks.count,
     }
     return az.from_dict(
         posterior={
@@ -239,17 +248,14 @@ def inference_data(calibration: "Calibration") -> "az.InferenceData":
             if p.name not in posterior.fixed
         },
         sample_stats={"lp": draws.log_density},
-        observed_data={"traction_force": blocks.traction_force},
-        constant_data={
-            "slip_ratio": blocks.slip,
-            "normal_force": blocks.normal_force,
-            "run": blocks.run,
-            "samples": blocks.count,
-        },
+        observed_data=observed,
+        constant_data=given,
         coords={"block": np.arange(len(blocks))},
-        dims={
-            name: ["block"]
-            for name in ("traction_force", "slip_ratio", "normal_force", "run", "samples")
+        dims={name: ["block"] for name in (*observed, *given)},
+        attrs={
+            "source": calibration.source,
+            "slip_definition": str(blocks.definition),
+            "law": posterior.law.name,
+            "verdict": calibration.verdict.headline(),
         },
-        attrs=attributes,
     )

@@ -18,38 +18,22 @@ def draw_calibration(folder: Path, calibration: Calibration) -> None:
     from zebro_lab import plots  # matplotlib takes most of a second to import
 
     blocks, law = calibration.posterior.blocks, calibration.posterior.law
+    residuals, simulated = calibration.residuals, calibration.simulated
     k = len(law.parameters)
     draws = calibration.draws.flat[:, :k]
     some = draws[:: max(1, len(draws) // CURVE_DRAWS)]
     labels = plots.parameter_labels(law.parameters)
-    simulated = calibration.simulated
     figures = {
         "curves": plots.slip_curves(
-            blocks,
-            law,
-            draws=some,
-            load_levels=calibration.levels,
-            title="Slip curve by load",
-            simulated=simulated,
+            blocks, law, draws=some, load_levels=calibration.levels, simulated=simulated
         ),
-        "surface": plots.slip_surface(
-            blocks, law, values=draws.mean(axis=0), title="Slip surface", simulated=simulated
-        ),
-        "corner": plots.corner(
-            draws, labels=labels, title="Posterior of the slip law", simulated=simulated
-        ),
+        "surface": plots.slip_surface(blocks, law, values=draws.mean(axis=0), simulated=simulated),
+        "corner": plots.corner(draws, labels=labels, simulated=simulated),
         "traces": plots.traces(
-            calibration.draws.values[..., :k],
-            labels=labels,
-            title="Traces by ensemble",
-            simulated=simulated,
+            calibration.draws.values[..., :k], labels=labels, simulated=simulated
         ),
         "residuals": plots.residuals(
-            blocks,
-            whitened=calibration.residuals.whitened,
-            run_score=calibration.residuals.run_score,
-            title="Residuals",
-            simulated=simulated,
+            blocks, whitened=residuals.whitened, run_score=residuals.run_score, simulated=simulated
         ),
     }
     for name, figure in figures.items():

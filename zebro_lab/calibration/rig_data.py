@@ -3,35 +3,22 @@
 
 from collections import Counter
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from model.bayes.blocks import slip_noise_variance
 from model.bayes.samples import SlipSamples
 from model.errors import ModelError
-from model.slip.definition import SlipDefinition
-from model.slip.law import Array
+from zebro_lab.calibration.rig_part import RigPart, read_part
 from zebro_lab.files.errors import DataError, SettingsError, ZebroLabError
-from zebro_lab.runs.counted_once import content_hash, first_of_each, run_keys, told_once
+from zebro_lab.runs.counted_once import content_hash, duplicates_note, first_of_each
 from zebro_lab.runs.data_paths import DataSource, find_sources
-from zebro_lab.runs.folder import LOG_FILE, read_manifest, read_slip_rig_run
-from zebro_lab.runs.manifest import RIG, TABLE
-from zebro_lab.runs.recorded_sweeps import SWEEP, recorded_sweeps
-from zebro_lab.tables.columns import (
-    Columns,
-    MappedColumn,
-    RunRule,
-    parse_definition,
-    read_columns,
-)
-from zebro_lab.tables.raw_table import RawTable
-from zebro_lab.tables.rig_table import RigTable, kept_rows, normal_force
-from zebro_lab.tables.run_separation import Runs, run_times, separate_runs
-from zebro_lab.tables.slip_source import SlipColumn, converted, slip
-from zebro_lab.tables.table_files import read_table_file, table_stem
+from zebro_lab.runs.folder import LOG_FILE
+from zebro_lab.runs.manifest import read_manifest
+from zebro_lab.tables.columns import Columns, parse_definition, read_columns
+from zebro_lab.tables.table_files import table_stem
 
 _LEAST_SAMPLES = 20  # of a recording, to estimate its noise
 _LEAST_TRIALS = 8  # averages over trials: more than any law has parameters
@@ -62,23 +49,6 @@ class RigData:
     repeated: tuple[str, ...] = ()
 
 
-@dataclass(frozen=True)
-class _Part:
-    """Samples and notes of one table."""
-
-    path: Path
-    columns: Columns
-    sources: tuple[str, ...]
-    rows_read: int
-    slip: SlipColumn
-    normal_force: Array
-    traction_force: Array
-    runs: Runs
-    time: Array | None
-    notes: tuple[str, ...]
-    files: tuple[Path, ...]
-
-
 def read_rig_data(
     paths: Sequence[Path], *, columns: Path | None = None, slip_definition: str | None = None
 ) -> RigData:
@@ -93,36 +63,34 @@ def read_rig_data(
         ZebroLabError: A path, a column map or the data is at fault; the one-line message names
             file, column and row.
     """
-    wanted = (
-        None
-        if slip_definition is None
-        else parse_definition(slip_definition, file=None, key="slip definition")
-    )
     named = find_sources(paths)
-    labels = dict(zip(named, _labels(named), strict=True))
     excluded = {source: why for source in named if (why := _exclusion(source)) is not None}
     counted = [source for source in named if source not in excluded]
     sources, repeated = first_of_each(counted, key=_bytes_of) if len(counted) > 1 else (counted, [])
-    skipped = [f"{labels[source]}: left out, {why}" for source, why in excluded.items()]
+    wanted = slip_definition
+    if wanted is not None:
+        wanted = parse_definition(wanted, file=None, key="slip definition")
+    labels = dict(zip(named, _labels(named), strict=True))
     maps = _column_maps(named, columns)
-    parts = [_read_part(source, maps[source], labels[source], wanted) for source in sources]
-    if parts:
-        _one_definition(parts)  # the same forces under two definitions contradict each other
+    parts = [read_part(source, maps[source], labels[source], wanted) for source in sources]
+    if parts:  # the same forces under two definitions contradict each other
+        _require_one_definition(parts)
     known = _known(excluded, maps, labels) if parts else {}
-    parts, repeated_runs = _once(parts, known)
+    parts, repeated_runs = _without_duplicates(parts, known)
     files = [(labels[one], labels[other]) for one, other in repeated]
-    twice = told_once("runs and tables", [*files, *repeated_runs])
+    duplicates = duplicates_note("runs and tables", [*files, *repeated_runs])
+    skipped = [f"{labels[source]}: left out, {why}" for source, why in excluded.items()]
     if not parts:
-        raise DataError(f"every run is left out: {'; '.join((*skipped, *twice))}")
+        raise DataError(f"every run is left out: {'; '.join((*skipped, *duplicates))}")
     samples = _joined(parts)
     _require_informative(samples, parts)
     return RigData(
         samples=samples,
         files=tuple(dict.fromkeys(file for part in parts for file in part.files)),
         source=_joined_source(parts),
-        notes=(*_notes(parts), *skipped, *twice),
+        notes=(*_notes(parts), *skipped, *duplicates),
         load_cell=_joined_load_cell(parts),
-        repeated=twice,
+        repeated=duplicates,
     )
 
 
@@ -134,11 +102,11 @@ def _column_maps(sources: Sequence[DataSource], override: Path | None) -> dict[D
 
 def _labels(sources: Sequence[DataSource]) -> list[str]:
     """Return the shortest labels of tables that are distinct."""
-    below = [source.path.relative_to(source.root).parent for source in sources]
+    folders = [source.path.relative_to(source.root).parent for source in sources]
     stems = [table_stem(source.path) for source in sources]
     schemes = (
         stems,
-        [str(folder / stem) for folder, stem in zip(below, stems, strict=True)],
+        [str(folder / stem) for folder, stem in zip(folders, stems, strict=True)],
         [str(source.path) for source in sources],
     )
     return next((names for names in schemes if len(set(names)) == len(names)), schemes[-1])
@@ -158,11 +126,6 @@ def _bytes_of(source: DataSource) -> str:
     return content_hash(file) if file.is_file() else str(source.path)
 
 
-def _keys(part: _Part) -> tuple[str, ...]:
-    forces = (part.normal_force, part.traction_force)
-    return run_keys(forces, part.runs.index, len(part.runs.names))
-
-
 def _known(
     excluded: Collection[DataSource],
     maps: Mapping[DataSource, Columns],
@@ -172,106 +135,30 @@ def _known(
     known: dict[str, str] = {}
     for source in excluded:
         try:
-            part = _read_part(source, maps[source], labels[source], None)
+            part = read_part(source, maps[source], labels[source], None)
         except (ZebroLabError, ModelError):  # it may be excluded because it is damaged
             continue
-        known |= dict.fromkeys(_keys(part), f"{labels[source]}, which is left out")
+        known |= dict.fromkeys(part.keys, f"{labels[source]}, which is left out")
     return known
 
 
-def _once(
-    parts: Sequence[_Part], known: Mapping[str, str]
-) -> tuple[list[_Part], list[tuple[str, str]]]:
+def _without_duplicates(
+    parts: Sequence[RigPart], known: Mapping[str, str]
+) -> tuple[list[RigPart], list[tuple[str, str]]]:
     """Drop duplicate runs and copies of excluded runs; return them in pairs with the other."""
     seen, repeated, kept = dict(known), [], []
     for part in parts:
-        keys = _keys(part)
+        keys = part.keys
         fresh = np.array([key not in seen for key in keys], dtype=bool)
         named = dict(zip(keys, part.runs.names, strict=True))
         repeated += [(name, seen[key]) for key, name in named.items() if key in seen]
         seen = {**named, **seen}
         if fresh.any():
-            kept.append(part if fresh.all() else _with_runs(part, fresh))
+            kept.append(part if fresh.all() else part.with_runs(fresh))
     return kept, repeated
 
 
-def _with_runs(part: _Part, chosen: NDArray[np.bool_]) -> _Part:
-    """Return a part with only the chosen runs."""
-    rows = chosen[part.runs.index]
-    index = (np.cumsum(chosen) - 1)[part.runs.index[rows]]
-    names = tuple(name for name, keep in zip(part.runs.names, chosen, strict=True) if keep)
-    return replace(
-        part,
-        rows_read=part.rows_read - int((~rows).sum()),
-        slip=replace(part.slip, ratio=part.slip.ratio[rows]),
-        normal_force=part.normal_force[rows],
-        traction_force=part.traction_force[rows],
-        runs=replace(part.runs, index=index, names=names),
-        time=None if part.time is None else part.time[rows],
-    )
-
-
-def _read_part(
-    source: DataSource, columns: Columns, label: str, wanted: SlipDefinition | None
-) -> _Part:
-    if source.is_run_folder:
-        raw, columns, files = _run_folder_table(source.path, columns)
-    else:
-        raw, files = read_table_file(source.path), (source.path,)
-    table = RigTable(raw, columns, kept_rows(raw, columns))
-    slip_column = slip(table)
-    if wanted is not None:
-        slip_column = converted(table, slip_column, wanted)
-    runs = separate_runs(table, label)
-    return _Part(
-        path=source.path,
-        columns=columns,
-        sources=tuple(s for s in (columns.source, raw.source) if s),
-        rows_read=len(raw),
-        slip=slip_column,
-        normal_force=normal_force(table),
-        traction_force=table.si("traction_force"),
-        runs=runs,
-        time=run_times(table, runs),
-        notes=(*raw.notes, *_conversions(table)),
-        files=files if columns.file is None else (*files, columns.file),
-    )
-
-
-def _run_folder_table(folder: Path, columns: Columns) -> tuple[RawTable, Columns, tuple[Path, ...]]:
-    """Read a run folder as a table.
-
-    Its columns are canonical, and it is one run or one run per sweep. Only the row conditions and
-    the load cell of a `columns.toml` apply to it.
-    """
-    import pandas as pd
-
-    run, notes, rule = read_slip_rig_run(folder), (), RunRule()
-    columns_read = dict(vars(run.table))
-    if run.manifest.profiles.get(RIG, TABLE) != TABLE:  # raw device samples: not segmented yet
-        number, notes = recorded_sweeps(run)
-        rule = RunRule(by=(SWEEP,)) if number.max() > 1 else rule
-        columns_read = {
-            name: values[number > 0] for name, values in {**columns_read, SWEEP: number}.items()
-        }
-    series = {name: pd.Series(values) for name, values in columns_read.items()}
-    raw = RawTable(folder, series, source=run.manifest.source, notes=(*run.notes, *notes))
-    own = replace(columns, source=None, columns={}, constants=run.manifest.constants, runs=rule)
-    return raw, own, run.files
-
-
-def _conversions(table: RigTable) -> tuple[str, ...]:
-    converted_columns: list[tuple[str, MappedColumn]] = [
-        (name, column) for name, column in table.columns.columns.items() if column.factor != 1.0
-    ]
-    return tuple(
-        f"{name}: '{column.name}' in {column.unit} times {column.factor:g}"
-        for name, column in converted_columns
-    )
-
-
-def _joined(parts: Sequence[_Part]) -> SlipSamples:
-    definition = _one_definition(parts)
+def _joined(parts: Sequence[RigPart]) -> SlipSamples:
     first_run = np.cumsum([0, *(len(part.runs.names) for part in parts)])
     timed = [part.time for part in parts if part.time is not None]
     return SlipSamples(
@@ -282,12 +169,12 @@ def _joined(parts: Sequence[_Part]) -> SlipSamples:
             [part.runs.index + first for part, first in zip(parts, first_run, strict=False)]
         ),
         run_names=tuple(name for part in parts for name in part.runs.names),
-        definition=definition,
+        definition=parts[0].slip.definition,
         time=np.concatenate(timed) if len(timed) == len(parts) else None,
     )
 
 
-def _one_definition(parts: Sequence[_Part]) -> SlipDefinition:
+def _require_one_definition(parts: Sequence[RigPart]) -> None:
     first = parts[0]
     for part in parts:
         if part.slip.definition is not first.slip.definition:
@@ -296,10 +183,9 @@ def _one_definition(parts: Sequence[_Part]) -> SlipDefinition:
                 f"{first.path}; calibrate them apart or ask for one slip definition",
                 file=part.path,
             )
-    return first.slip.definition
 
 
-def _require_informative(samples: SlipSamples, parts: Sequence[_Part]) -> None:
+def _require_informative(samples: SlipSamples, parts: Sequence[RigPart]) -> None:
     where = parts[0].path if len(parts) == 1 else None
     trials = all(part.columns.runs.each_row for part in parts)
     least = _LEAST_TRIALS if trials else _LEAST_SAMPLES
@@ -325,12 +211,12 @@ def _require_informative(samples: SlipSamples, parts: Sequence[_Part]) -> None:
         )
 
 
-def _joined_source(parts: Sequence[_Part]) -> str:
+def _joined_source(parts: Sequence[RigPart]) -> str:
     stated = dict.fromkeys(s for part in parts for s in part.sources or ("unknown",))
     return next(iter(stated)) if len(stated) == 1 else f"mixed:{','.join(stated)}"
 
 
-def _joined_load_cell(parts: Sequence[_Part]) -> dict[str, float]:
+def _joined_load_cell(parts: Sequence[RigPart]) -> dict[str, float]:
     joined: dict[str, float] = {}
     origin: dict[str, Path | None] = {}
     for part in parts:
@@ -345,7 +231,7 @@ def _joined_load_cell(parts: Sequence[_Part]) -> dict[str, float]:
     return joined
 
 
-def _notes(parts: Sequence[_Part]) -> list[str]:
+def _notes(parts: Sequence[RigPart]) -> list[str]:
     origins = dict.fromkeys(f"slip {part.slip.origin}" for part in parts)
     rules: Counter[str] = Counter()
     for part in parts:
@@ -355,7 +241,7 @@ def _notes(parts: Sequence[_Part]) -> list[str]:
     return [*origins, *runs, *_rows_left_out(parts), *_time_note(parts), *others]
 
 
-def _rows_left_out(parts: Sequence[_Part]) -> list[str]:
+def _rows_left_out(parts: Sequence[RigPart]) -> list[str]:
     read: Counter[str] = Counter()
     kept: Counter[str] = Counter()
     for part in parts:
@@ -366,7 +252,7 @@ def _rows_left_out(parts: Sequence[_Part]) -> list[str]:
     return [f"{read[c] - kept[c]} of {read[c]} rows left out; kept where {c}" for c in read]
 
 
-def _time_note(parts: Sequence[_Part]) -> list[str]:
+def _time_note(parts: Sequence[RigPart]) -> list[str]:
     timed = sum(part.time is not None for part in parts)
     if timed in (0, len(parts)):
         return []

@@ -3,7 +3,6 @@
 
 from pathlib import Path
 
-from rich import box
 from rich.console import Console
 from rich.table import Table
 from rich.text import Text
@@ -12,6 +11,7 @@ from model.bayes.calibration import Calibration
 from model.bayes.estimate import Estimate
 from zebro_lab.calibration.rig_data import RigData
 from zebro_lab.terminal.messages import plain
+from zebro_lab.terminal.tables import plain_table
 
 
 def print_calibration(console: Console, calibration: Calibration, data: RigData, out: Path) -> None:
@@ -35,16 +35,18 @@ def print_calibration(console: Console, calibration: Calibration, data: RigData,
 
 def _print_data(console: Console, calibration: Calibration, data: RigData) -> None:
     blocks, choice = calibration.posterior.blocks, calibration.fit.block_choice
+    correlation = choice.correlation
     kind = "SIMULATED data" if calibration.simulated else "data"
     lines = [
         f"{kind}, source '{data.source}': {len(data.samples)} samples in {blocks.n_runs} runs",
         *data.notes,
         f"slip definition: {blocks.definition}",
-        f"{len(blocks)} block means of about {choice.length} samples, set by {choice.reason}"
-        + ("" if choice.correlation is None else f" (correlated over {choice.correlation:.0f})"),
+        f"Samples are averaged in {len(blocks)} blocks of about {choice.length} ({choice.reason})"
+        + (f"; the noise is correlated over {correlation:.0f} samples." if correlation else "."),
     ]
-    if calibration.comparison is not None:
-        lines += _comparison_lines(calibration)
+    if choice.correlation is not None:
+        lines.append(f"The noise is correlated over {choice.correlation:.0f} samples.")
+    lines += _comparison_lines(calibration)
     for line in lines:
         console.print(plain(line))
 
@@ -56,7 +58,7 @@ def _comparison_lines(calibration: Calibration) -> list[str]:
     chosen = comparison.names[comparison.chosen]
     others = [
         f"'{name}' predicts left-out runs {'worse' if difference < 0 else 'better, not clearly,'} "
-        f"by {abs(difference):.0f} ± {error:.0f} log units"
+        f"by {abs(difference):.0f} ± {error:.0f} in log probability"
         for i, (name, difference, error) in enumerate(
             zip(comparison.names, comparison.difference, comparison.standard_error, strict=True)
         )
@@ -69,11 +71,8 @@ def _parameter_table(calibration: Calibration) -> Table:
     title = f"parameters of '{calibration.posterior.law.name}' and of the measurement"
     if calibration.simulated:
         title += " (simulated)"
-    table = Table(title=title, box=box.SIMPLE, title_justify="left")
-    for name in ("parameter", "symbol"):
-        table.add_column(name, no_wrap=True)
-    for name in ("median", "90 % interval", "unit", "informed", "R-hat", "ESS"):
-        table.add_column(name, justify="right", no_wrap=True)
+    numbers = ("median", "90 % interval", "unit", "informed", "R-hat", "ESS")
+    table = plain_table(title, ("parameter", "symbol"), numbers, no_wrap=True)
     free = {p.name: i for i, p in enumerate(calibration.posterior.free)}
     for e in calibration.parameters:
         i = free.get(e.parameter.name)
@@ -98,16 +97,13 @@ def _interval(e: Estimate) -> str:
 
 
 def _curve_table(calibration: Calibration) -> Table:
-    table = Table(
-        title="the curve at each tested load: median, 90 % interval below",
-        box=box.SIMPLE,
-        title_justify="left",
-    )
-    table.add_column("Fn [N]", justify="right")
+    title = "slip curve at each tested load: median, and 90 % interval on the second line"
     units = {"dimensionless": "", "newton": " [N]"}
-    for e in calibration.curves[0]:
-        unit = units.get(e.parameter.unit, f" [{e.parameter.unit}]")
-        table.add_column(f"{e.parameter.symbol}{unit}", justify="right")
+    headings = (
+        f"{e.parameter.symbol}{units.get(e.parameter.unit, f' [{e.parameter.unit}]')}"
+        for e in calibration.curves[0]
+    )
+    table = plain_table(title, (), ("Fn [N]", *headings))
     for load, row in zip(calibration.levels, calibration.curves, strict=True):
         table.add_row(f"{load:.4g}", *(f"{e.median:.4g}\n{e.low:.3g}…{e.high:.3g}" for e in row))
     return table
@@ -116,25 +112,26 @@ def _curve_table(calibration: Calibration) -> Table:
 def _print_quality(console: Console, calibration: Calibration) -> None:
     residuals, agreement = calibration.residuals, calibration.agreement
     lines = [
-        f"in sample: R² {residuals.r_squared:.4f}, RMSE {residuals.rmse:.3g} N, RMSE of F/Fn "
-        f"{residuals.rmse_over_load:.3g}, of block means",
+        f"Fit of the block means: R² {residuals.r_squared:.4f}, RMSE {residuals.rmse:.3g} N, RMSE "
+        f"of F/Fn {residuals.rmse_over_load:.3g}",
     ]
     if calibration.fit.cross_validation is not None and calibration.r_squared is not None:
         lines.append(
-            f"cross-validated: R² {calibration.r_squared:.4f} of samples "
+            f"Cross-validation: R² {calibration.r_squared:.4f} of samples "
             f"({calibration.fit.cross_validation.scheme})"
         )
     if agreement.comparable:
         lines.append(
-            f"second engine (Laplace + PSIS, k = {agreement.pareto_k:.2f}): means agree to "
-            f"{agreement.mean:.2f} sd, spreads to {agreement.spread:.0%}"
+            f"Laplace approximation with importance weights (Pareto k = {agreement.pareto_k:.2f}): "
+            f"means agree with the sampler's to {agreement.mean:.2f} sd, spreads to "
+            f"{agreement.spread:.0%}"
         )
     else:
         lines.append(
-            f"second engine (Laplace + PSIS): no comparison, Pareto k = {agreement.pareto_k:.2f} "
-            "is above 0.7"
+            f"Laplace approximation with importance weights: not compared with the sampler, "
+            f"Pareto k = {agreement.pareto_k:.2f} is above 0.7"
         )
-    lines.append(f"sampled in {calibration.seconds:.0f} s")
+    lines.append(f"Sampling took {calibration.seconds:.0f} s.")
     for line in lines:
         console.print(plain(line))
 

@@ -11,7 +11,7 @@ from model.slip.thesis import thesis_curve
 from model.walk.slip import Slip
 from model.walk.traction import VelocityCoulomb
 from zebro_lab.calibration.folder import SLIP_TOML, read_slip_file
-from zebro_lab.calibration.walks_folder import StoredWalks, read_walks_beside
+from zebro_lab.calibration.walks_folder import StoredWalks, read_stored_walks
 from zebro_lab.files.errors import NotFound, SettingsError
 from zebro_lab.files.replacement import settle
 
@@ -77,22 +77,22 @@ def _coulomb(text: str, numbers: list[str]) -> VelocityCoulomb:
         values = [float(number) for number in numbers]
     except ValueError as error:
         raise SettingsError(
-            f"'{text}' holds no numbers; expected {expected}", key="--slip"
+            f"'{text}' has no numbers; expected {expected}", key="--slip"
         ) from error
     if not 1 <= len(values) <= 2 or not all(0 < value < np.inf for value in values):
         raise SettingsError(
-            f"'{text}' is no friction; expected {expected}, both above zero", key="--slip"
+            f"'{text}' is not a friction law; expected {expected}, both above zero", key="--slip"
         )
     return VelocityCoulomb(*values)
 
 
 def _calibrated(text: str, path: Path, *, with_walks: bool) -> NamedSlip:
-    said = read_slip_file(path)
-    curve, file, notes = said.curve, said.file, []
-    if said.doubt is not None:
-        notes.append(f"slip: the calibration is not trustworthy: {said.doubt}")
-    if curve.definition is not SlipDefinition.MATERIAL:
-        notes.append(f"slip: fitted to '{curve.definition}' slip, converted where it is evaluated")
-    walks = read_walks_beside(file) if with_walks else None
-    files = (file, *(walks.files if walks is not None else ()))
-    return NamedSlip(curve, said.source, text, files, tuple(notes), walks)
+    read = read_slip_file(path)
+    notes = []
+    if read.doubt is not None:
+        notes.append(f"slip: the calibration is not trustworthy: {read.doubt}")
+    if read.curve.definition is not SlipDefinition.MATERIAL:
+        notes.append(f"slip: fitted to '{read.curve.definition}' slip, converted when evaluated")
+    walks = read_stored_walks(read.file) if with_walks else None
+    files = (read.file, *(walks.files if walks is not None else ()))
+    return NamedSlip(read.curve, read.source, text, files, tuple(notes), walks)

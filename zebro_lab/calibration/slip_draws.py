@@ -14,7 +14,7 @@ from zebro_lab.files.draws import read_draws_of
 from zebro_lab.files.errors import DataError
 
 POSTERIOR = "posterior.nc"
-_ADVICE = "calibrate again, or name a slip.toml that lies alone"
+_ADVICE = f"calibrate again, or name a slip.toml without a {POSTERIOR} beside it"
 MOST_TABLES = 200  # a table costs as much as walking a second, and paths hardly differ between them
 
 
@@ -64,9 +64,9 @@ def law_draws(slip: NamedSlip, curve: SlipCurve, n: int, *, rng: np.random.Gener
     """
     if not np.any(curve.covariance):
         return curve.values[None]
-    beside = [file.parent / POSTERIOR for file in slip.files]
-    if beside and beside[0].is_file():
-        drawn = _posterior(beside[0], curve)
+    posterior = slip.files[0].parent / POSTERIOR if slip.files else None
+    if posterior is not None and posterior.is_file():
+        drawn = _posterior(posterior, curve)
         return drawn[rng.choice(len(drawn), size=n, replace=n > len(drawn))]
     return rng.multivariate_normal(curve.values, curve.covariance, size=n, method="eigh")
 

@@ -3,8 +3,7 @@
 
 import math
 import time
-from collections.abc import Mapping
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict
 from pathlib import Path
 from typing import Literal
 
@@ -26,6 +25,7 @@ from zebro_lab.calibration.checkpoint import FILE as CHECKPOINT
 from zebro_lab.calibration.checkpoint import load_checkpoint, save_checkpoint
 from zebro_lab.calibration.folder import CALIBRATION, write_tables
 from zebro_lab.calibration.pictures import draw_calibration
+from zebro_lab.calibration.request import CalibrationRequest
 from zebro_lab.calibration.rig_data import RigData, read_rig_data
 from zebro_lab.files.errors import SettingsError, ZebroLabError
 from zebro_lab.files.provenance import file_hashes, fingerprint
@@ -48,72 +48,6 @@ class Stopped(ZebroLabError):
             else f"stopped; {checkpoint} keeps the fit: the same command with --resume goes on"
         )
         self.checkpoint = checkpoint
-
-
-@dataclass(frozen=True)
-class CalibrationRequest:
-    """Settings of a fit.
-
-    Attributes:
-        data: Files and folders of rig data.
-        out: Calibration folder to write.
-        columns: A `columns.toml` for tables that have none beside them.
-        slip_definition: Definition to fit in; that of the data when None.
-        law: Name of the slip law.
-        curvature: For the Magic Formula: "auto", "peak", "constant" or a fixed E.
-        load_sensitivity: For the Magic Formula: whether friction and stiffness vary with load.
-        block_length: Samples in a block; chosen from the data when None.
-        load_cell: Properties of the load cell that replace those of `columns.toml`, by field of
-            `LoadCell`.
-        ensembles: Number of independent ensembles of walkers.
-        max_steps: Sampler moves after which a fit that has not converged is written as such.
-        seed: Seed of all random numbers.
-        threads: Number of ensembles advanced in parallel.
-        resume: Whether to continue from the checkpoint in `out`.
-    """
-
-    data: tuple[Path, ...]
-    out: Path
-    columns: Path | None = None
-    slip_definition: str | None = None
-    law: str = MagicFormula.name
-    curvature: str = "auto"
-    load_sensitivity: bool = False
-    block_length: int | None = None
-    load_cell: Mapping[str, float] = field(default_factory=dict)
-    ensembles: int = 4
-    max_steps: int = 30_000
-    seed: int = 1
-    threads: int = 2
-    resume: bool = False
-
-    @property
-    def inputs(self) -> tuple[Path, ...]:
-        """Files and folders that are read, as named."""
-        return (*self.data, *((self.columns,) if self.columns is not None else ()))
-
-    def sampler(self) -> SamplerSettings:
-        """Return the settings of the sampler."""
-        return SamplerSettings(
-            ensembles=self.ensembles,
-            max_steps=self.max_steps,
-            block_length=self.block_length,
-            threads=self.threads,
-            seed=self.seed,
-        )
-
-    def decisive(self) -> dict[str, object]:
-        """Return the settings that affect the results, JSON-serialisable."""
-        return {
-            "slip_definition": self.slip_definition,
-            "law": self.law,
-            "curvature": self.curvature,
-            "load_sensitivity": self.load_sensitivity,
-            "block_length": self.block_length,
-            "load_cell": dict(self.load_cell),
-            "ensembles": self.ensembles,
-            "seed": self.seed,
-        }
 
 
 def calibrate(request: CalibrationRequest, watcher: Watcher) -> tuple[Calibration, RigData]:
@@ -145,7 +79,7 @@ def calibrate(request: CalibrationRequest, watcher: Watcher) -> tuple[Calibratio
             data.samples,
             _candidates(request, data.samples),
             load_cell=scaled_load_cell(data.samples, {**data.load_cell, **request.load_cell}),
-            settings=request.sampler(),
+            settings=_sampler(request),
             source=data.source,
             watcher=watcher,
             clock=time.monotonic,
@@ -180,6 +114,16 @@ class _Checkpoint:
             return None
         self._saved = time.monotonic()
         return save_checkpoint(self._folder, chains, fingerprint=self._mark)
+
+
+def _sampler(request: CalibrationRequest) -> SamplerSettings:
+    return SamplerSettings(
+        ensembles=request.ensembles,
+        max_steps=request.max_steps,
+        block_length=request.block_length,
+        threads=request.threads,
+        seed=request.seed,
+    )
 
 
 def _candidates(request: CalibrationRequest, samples: SlipSamples) -> dict[str, SlipLaw]:

@@ -130,8 +130,11 @@ def write_walks(calibration: Path, fitted: WalksToWrite, *, draw: Callable[[Path
     return folder
 
 
-def read_walks_beside(slip_toml: Path) -> StoredWalks | None:
-    """Read the posterior after walks beside a `slip.toml`; None if no walks were fitted.
+def read_stored_walks(slip_toml: Path) -> StoredWalks | None:
+    """Read the posterior after walks of a calibration; None if no walks were fitted.
+
+    Args:
+        slip_toml: The `slip.toml` of the calibration.
 
     Raises:
         DataError: It is damaged, of a later schema, or was fitted with another slip law.
@@ -194,11 +197,9 @@ def _walks_toml(fitted: WalksToWrite, inputs: Mapping[str, str]) -> str:
     import tomlkit
 
     posterior = fitted.posterior
-    told = posterior.contractions()
+    parameters = posterior.contractions()
     document = tomlkit.document()
-    document.add(
-        tomlkit.comment("What tracked walks said of legs and floor. SI units and radians.")
-    )
+    document.add(tomlkit.comment("Legs and floor fitted to tracked walks. SI units and radians."))
     if "sim:" in fitted.source:
         document.add(tomlkit.comment("SIMULATED walks: nothing here was measured."))
     document.update({
@@ -208,7 +209,7 @@ def _walks_toml(fitted: WalksToWrite, inputs: Mapping[str, str]) -> str:
         "effective_draws": posterior.effective,
         "reliable": posterior.reliable,
         "likeliest_case": posterior.cases.index(posterior.best_case),
-        "not_informed": [each.name for each in told if not each.informed],
+        "not_informed": [each.name for each in parameters if not each.informed],
         "prior": asdict(posterior.prior),
         "legs": describe_legs(fitted.robot),
         "walk": [
@@ -222,7 +223,7 @@ def _walks_toml(fitted: WalksToWrite, inputs: Mapping[str, str]) -> str:
                 "name": each.name, "unit": unit, "prior_sd": each.prior_sd, "mean": each.mean,
                 "sd": each.sd, "informed": each.contraction,
             }
-            for each, unit in zip(told, UNITS, strict=True)
+            for each, unit in zip(parameters, UNITS, strict=True)
         ],
         "case": [_case(found, posterior) for found in posterior.found()],
     })  # fmt: skip

@@ -15,20 +15,19 @@
 import io
 from collections.abc import Sequence
 from dataclasses import dataclass
-from datetime import datetime
 from pathlib import Path
 
 import numpy as np
 from scipy.spatial.transform import Rotation
 
+from model.path_draws import anchored, mean_path, states_at
 from model.poses import Poses
-from model.predict import anchored, mean_path, states_at
 from model.robot import N_LEGS, Robot
 from model.slip.law import Array
 from model.walk.path import WalkPath
 from zebro_lab.files.atomic import atomic_write_bytes
 from zebro_lab.files.errors import AlreadyExists, NotFound
-from zebro_lab.files.names import PATH_CSV
+from zebro_lab.files.names import PATH_CSV, TRACK
 from zebro_lab.files.replacement import settle
 from zebro_lab.mcap.message_log import MessageLog
 from zebro_lab.mcap.ros_messages import JOINT_STATE, Schema, joint_state
@@ -43,12 +42,12 @@ from zebro_lab.mcap.ros_poses import (
 )
 from zebro_lab.mcap.stream_views import FASTEST
 from zebro_lab.robot.leg_log import ANGLES
-from zebro_lab.runs.folder import epoch_ns, read_manifest
+from zebro_lab.runs.folder import epoch_ns
+from zebro_lab.runs.manifest import read_manifest
 from zebro_lab.runs.recorded_legs import is_recorded, read_recorded_legs
 from zebro_lab.track.file import TrackFile, read_track
 from zebro_lab.track.folder import TRACK_CSV
 from zebro_lab.validation.shared_clock import shared_time
-from zebro_lab.validation.stage import TRACK
 from zebro_lab.walk.folder import DRAWS, PREDICTION, read_walk, read_walk_manifest
 from zebro_lab.walk.path_band import read_draws
 from zebro_lab.walk.prediction_file import robot_of_walk
@@ -79,6 +78,7 @@ class _Predicted:
 
     walk: WalkPath
     robot: Robot
+    source: str
     path: Poses
     draws: Poses | None
 
@@ -88,15 +88,13 @@ class _Stamped:
 
     def __init__(self, log: MessageLog, start_ns: int) -> None:
         self._log, self._start = log, start_ns
-        self.counts: dict[str, int] = {}
 
     def stamps(self, t: Array) -> list[int]:
         return (self._start + np.rint(1e9 * t).astype(np.int64)).tolist()
 
     def add(self, topic: str, schema: Schema, stamp: int, message: bytes) -> None:
-        if topic not in self.counts:
+        if topic not in self._log.counts:
             self._log.register(topic, schema)
-        self.counts[topic] = self.counts.get(topic, 0) + 1
         self._log.add(topic, stamp, message)
 
 
@@ -124,15 +122,14 @@ def export_mcap(run: Path, *, out: Path) -> Exported:
     recorded = read_manifest(run) if is_recorded(run) else None
     if track is None and predicted is None:
         raise NotFound(f"{run} holds neither {TRACK}/ nor {PREDICTION}/; track or predict first")
-    start = 0 if recorded is None else epoch_ns(datetime.fromisoformat(recorded.start))
+    start = 0 if recorded is None else epoch_ns(recorded.began)
     content = io.BytesIO()
     log = MessageLog(content)
-    sources = {
+    log.describe("source", {
         "run": recorded.source if recorded else "nothing was recorded here",
         TRACK: track.source if track else "none",
-        PREDICTION: _source(run / PREDICTION) if predicted else "none",
-    }
-    log.describe("source", sources)
+        PREDICTION: predicted.source if predicted else "none",
+    })  # fmt: skip
     stamped = _Stamped(log, start)
     _write_legs(stamped, run if recorded else None, predicted)
     if track is not None:
@@ -141,7 +138,7 @@ def export_mcap(run: Path, *, out: Path) -> Exported:
         _write_prediction(stamped, predicted)
     log.finish()
     atomic_write_bytes(out, content.getvalue())
-    return Exported(out, stamped.counts, tuple(_notes(run, track, predicted)))
+    return Exported(out, log.counts, tuple(_notes(run, track, predicted)))
 
 
 def _read_predicted(folder: Path, track: TrackFile | None) -> _Predicted | None:
@@ -158,8 +155,9 @@ def _read_predicted(folder: Path, track: TrackFile | None) -> _Predicted | None:
         if draws is not None:
             spread = track.covariance[first]
             draws = anchored(draws, pose, at=at, covariance=spread, rng=rng)
-    robot = robot_of_walk(read_walk_manifest(folder))
-    return _Predicted(walk, robot, single.draws(0), draws)
+    manifest = read_walk_manifest(folder)
+    source = str(manifest.get("source", "unknown"))
+    return _Predicted(walk, robot_of_walk(manifest), source, single.draws(0), draws)
 
 
 def _write_legs(log: _Stamped, run: Path | None, predicted: _Predicted | None) -> None:
@@ -254,10 +252,6 @@ def _thinned(t: Array, rate: float) -> Sequence[int]:
     usual = float(np.median(np.diff(t)))
     rows = list(range(0, len(t), max(int(np.ceil(1 / (rate * usual) - 1e-6)), 1)))
     return rows if rows[-1] == len(t) - 1 else [*rows, len(t) - 1]
-
-
-def _source(folder: Path) -> str:
-    return str(read_walk_manifest(folder).get("source", "unknown"))
 
 
 def _notes(run: Path, track: TrackFile | None, predicted: _Predicted | None) -> list[str]:

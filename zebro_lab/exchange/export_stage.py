@@ -9,7 +9,8 @@ from rig.sample_columns import SampleColumns
 from zebro_lab.files.atomic import atomic_folder
 from zebro_lab.files.errors import AlreadyExists, DataError
 from zebro_lab.mcap.raw_log import raw_topic, read_raw_log
-from zebro_lab.runs.folder import LOG_FILE, read_manifest, read_slip_rig_run
+from zebro_lab.runs.folder import LOG_FILE, read_slip_rig_run
+from zebro_lab.runs.manifest import read_manifest
 from zebro_lab.runs.recorded_legs import LEGS, read_recorded_legs
 
 if TYPE_CHECKING:

@@ -4,7 +4,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any, Final
+from typing import Final
 
 from rig.nearest_name import nearest
 from zebro_lab.files.documents import read_toml_document
@@ -31,14 +31,10 @@ class ForeignColumns:
     """Entries of a `columns.toml` for one file.
 
     Attributes:
-        entries: Its entries for this file; None if there are none.
-        file: The `columns.toml`; None without one.
-        section: Key of the entries in it; "" for the whole file.
+        table: The entries; None if there are none.
     """
 
-    entries: dict[str, Any] | None = None
-    file: Path | None = None
-    section: str = ""
+    table: SettingsTable | None = None
 
     @property
     def topic(self) -> str | None:
@@ -47,12 +43,12 @@ class ForeignColumns:
         Raises:
             SettingsError: It is not a string.
         """
-        if self.entries is None or self.file is None or "topic" not in self.entries:
+        if self.table is None or "topic" not in self.table:
             return None
-        return SettingsTable(self.entries, file=self.file, path=self.section).text("topic")
+        return self.table.text("topic")
 
     def series(self, what: str) -> MappedColumns:
-        """Return the column map of a time series.
+        """Return the column map of a time series; a topic among its entries is allowed.
 
         Args:
             what: One of `SERIES`.
@@ -60,12 +56,11 @@ class ForeignColumns:
         Raises:
             SettingsError: A key, a unit or a sign is invalid.
         """
-        if self.entries is None or self.file is None:
+        if self.table is None:
             return replace(canonical_columns(SERIES[what]), where=f"{what}.")
-        entries = {key: value for key, value in self.entries.items() if key != "topic"}
-        return parse_mapped_columns(
-            SettingsTable(entries, file=self.file, path=self.section), SERIES[what]
-        )
+        if "topic" in self.table:
+            self.table.value("topic")
+        return parse_mapped_columns(self.table, SERIES[what])
 
     def rig(self) -> Columns:
         """Return the column map of a rig table.
@@ -73,9 +68,7 @@ class ForeignColumns:
         Raises:
             SettingsError: A key, a unit or a value is invalid.
         """
-        if self.entries is None or self.file is None:
-            return Columns()
-        return parse_columns(SettingsTable(self.entries, file=self.file, path=self.section))
+        return Columns() if self.table is None else parse_columns(self.table)
 
 
 def foreign_columns(what: str, table: Path, named: Path | None) -> ForeignColumns:
@@ -97,11 +90,11 @@ def foreign_columns(what: str, table: Path, named: Path | None) -> ForeignColumn
     document = read_toml_document(file, advice=f"expected a {COLUMNS_FILE}")
     source = {"source": document["source"]} if "source" in document else {}
     if not set(document) & set(_SECTIONS):
-        return ForeignColumns(document if what in _PLAIN else source, file)
+        return ForeignColumns(SettingsTable(document if what in _PLAIN else source, file=file))
     for key in document:
         if key not in (known := ("source", *_SECTIONS)):
             raise SettingsError(f"unknown key; {nearest(key, known)}", file=file, key=key)
     entries = document.get(what, {})
     if not isinstance(entries, dict):
         raise SettingsError(f"found {entries!r}; expected a table", file=file, key=what)
-    return ForeignColumns(source | entries, file, what)
+    return ForeignColumns(SettingsTable(source | entries, file=file, path=what))

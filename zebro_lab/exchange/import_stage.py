@@ -12,15 +12,17 @@ import numpy as np
 from model.progress import Watcher
 from model.slip.law import Array
 from zebro_lab.exchange.import_columns import IMU, LEGS, RIG, TRACK, foreign_columns
+from zebro_lab.exchange.import_request import ImportRequest
 from zebro_lab.exchange.imported_rig import RigRun, rig_runs, write_rig_run
 from zebro_lab.exchange.imported_walk import ImportedWalk, write_imported_walk
 from zebro_lab.exchange.joint_log import read_joint_log
-from zebro_lab.files.errors import AlreadyExists, DataError, SettingsError
+from zebro_lab.files.errors import DataError, SettingsError
 from zebro_lab.files.source_names import joined_source, stated_source
 from zebro_lab.robot.imu_log import ImuLog, imu_of_table
 from zebro_lab.robot.leg_log import LegLog, legs_of_table
 from zebro_lab.robot.robot_file import RobotFile, read_robot_file
-from zebro_lab.runs.folder import run_path
+from zebro_lab.runs.folder import require_new, run_path
+from zebro_lab.runs.manifest import IMPORTED, RunManifest
 from zebro_lab.tables.mapped_columns import canonical_columns
 from zebro_lab.tables.table_files import read_table_file, table_stem
 from zebro_lab.track.foreign import (
@@ -35,37 +37,6 @@ _UNIX: Final = 1e9
 """Times from this value on are taken as Unix time: no run lasts for 30 years [s]."""
 _FIRST: Final = datetime(1970, 1, 1, tzinfo=UTC)
 _LAST: Final = datetime(2262, 1, 1, tzinfo=UTC)  # largest time in nanoseconds in 64 bits
-
-
-@dataclass(frozen=True)
-class ImportRequest:
-    """Files to import, and settings.
-
-    Attributes:
-        data: Folder of run folders.
-        legs: Leg angles: CSV, Parquet or a ROS 2 log in MCAP; None for none.
-        track: The robot's path: CSV, Parquet or TUM.
-        imu: Orientation of the body: CSV or Parquet.
-        rig: Table of a slip rig: CSV or Parquet.
-        robot: A `robot.toml`, kept with the run.
-        columns: A `columns.toml` in place of those beside the files.
-        label: Name of the run; the stem of the legs' or the rig's file when None.
-        start: Date of the files' time 0, with its time zone; None if unknown.
-        material: Leg and ground material.
-        operator: Name of the operator.
-    """
-
-    data: Path
-    legs: Path | None = None
-    track: Path | None = None
-    imu: Path | None = None
-    rig: Path | None = None
-    robot: Path | None = None
-    columns: Path | None = None
-    label: str | None = None
-    start: datetime | None = None
-    material: str = "unknown"
-    operator: str = "unknown"
 
 
 @dataclass(frozen=True)
@@ -142,21 +113,20 @@ def _walk(request: ImportRequest) -> tuple[ImportedWalk, tuple[str, ...]]:
     imu = None if request.imu is None else _imu(request.imu, request.columns)
     track = None if request.track is None else _track(request.track, request.columns, zero)
     first = legs.files[0]
-    sources = [stated_source(legs.source, first)]
+    sources = {LEGS: stated_source(legs.source, first)}
     if imu is not None:
-        sources.append(stated_source(imu.source, imu.files[0]))
-    walk = ImportedWalk(
+        sources[IMU] = stated_source(imu.source, imu.files[0])
+    manifest = RunManifest(
+        kind="walk",
         label=request.label or table_stem(first) or first.stem,
-        source=joined_source(sources),
-        start=start,
-        zero=zero,
-        legs=legs,
-        imu=imu,
-        track=track,
-        robot=robot,
         material=request.material,
         operator=request.operator,
+        source=joined_source(list(sources.values())),
+        start=start.isoformat(),
+        exit_status=IMPORTED,
+        sources=sources,
     )
+    walk = ImportedWalk(manifest, zero, legs, imu, track, robot)
     parts = [legs.notes, imu.notes if imu else (), track.track.notes if track else ()]
     notes = [*note, *(line for part in parts for line in part)]
     return walk, (*notes, *_apart(t - zero, imu, track, zero))
@@ -202,8 +172,8 @@ def _start(given: datetime | None, first: float) -> tuple[datetime, float, tuple
         began = datetime(1970, 1, 1, tzinfo=UTC) + timedelta(seconds=first)
         return began, first, (f"times are taken as seconds since 1970: begun {began.isoformat()}",)
     now = datetime.now(UTC)
-    note = f"nobody said when it was recorded: {now.isoformat()}, now, stands as its start"
-    return now, 0.0, (f"{note} (--start)",)
+    note = f"the time of the recording is unknown; its start is set to now, {now.isoformat()}"
+    return now, 0.0, (f"{note} (set it with --start)",)
 
 
 def _apart(
@@ -215,19 +185,18 @@ def _apart(
         TRACK: None if track is None else track.track.poses.t,
     }
     return tuple(
-        f"{name}: its times, {other[0]:g} to {other[-1]:g} s, share nothing with the legs', "
-        f"{t[0]:g} to {t[-1]:g} s; do they have one clock?"
+        f"{name}: its times, {other[0]:g} to {other[-1]:g} s, do not overlap the legs', "
+        f"{t[0]:g} to {t[-1]:g} s; are both on one clock?"
         for name, other in others.items()
         if other is not None and not np.any((other >= t[0]) & (other <= t[-1]))
     )
 
 
 def _require_new(data: Path, walk: ImportedWalk | None, rig: Sequence[RigRun]) -> None:
-    paths = [] if walk is None else [run_path(data, "walk", walk.label, walk.start)]
-    paths += [run_path(data, "slip-rig", run.label, run.start) for run in rig]
+    manifests = [each.manifest for each in (*([walk] if walk else []), *rig)]
+    paths = [run_path(data, each.kind, each.label, each.began) for each in manifests]
     for path in paths:
-        if path.exists():
-            raise AlreadyExists(f"{path} exists already; give the run another label")
+        require_new(path)
     if len(set(paths)) < len(paths):
         twice = next(path for path in paths if paths.count(path) > 1)
         raise DataError(f"two runs would both be written to {twice}; give them different names")

@@ -3,7 +3,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from datetime import UTC, datetime, timedelta
+from datetime import datetime, timedelta
 from pathlib import Path
 
 import numpy as np
@@ -15,7 +15,7 @@ from zebro_lab.files.provenance import file_hashes
 from zebro_lab.files.settings_text import fill_in
 from zebro_lab.files.source_names import stated_source
 from zebro_lab.mcap.slip_rig_log import SlipRigTable
-from zebro_lab.runs.folder import IMPORTED
+from zebro_lab.runs.manifest import IMPORTED, RunManifest
 from zebro_lab.runs.table_run import write_slip_rig_run
 from zebro_lab.tables.columns import COLUMNS_FILE, Columns
 from zebro_lab.tables.rig_table import RigTable, kept_rows
@@ -31,28 +31,16 @@ class RigRun:
     """One run of a table.
 
     Attributes:
-        label: Its name.
+        manifest: Name, source and radii; its start is known after `begun` is called.
         table: Its samples, in the time base of the table until `begun` is called.
-        radius_leg: Radius of the leg disc [m].
-        radius_ground: Radius of the ground disc [m].
-        source: Where the data come from.
-        material: Leg and ground material.
-        operator: Name of the operator.
         files: Every file read.
         load_cell: Standard deviations from the load cell's certificate, SI.
-        start: Date of its time 0.
     """
 
-    label: str
+    manifest: RunManifest
     table: SlipRigTable
-    radius_leg: float
-    radius_ground: float
-    source: str
-    material: str
-    operator: str
     files: tuple[Path, ...]
     load_cell: Mapping[str, float] = field(default_factory=dict)
-    start: datetime = datetime(1970, 1, 1, tzinfo=UTC)
 
     def begun(self, start: datetime, zero: float) -> "RigRun":
         """Return the run in its own time base, which begins at 0.
@@ -62,8 +50,12 @@ class RigRun:
             zero: Time of the table at `start` [s].
         """
         first = float(self.table.t[0])
-        table = replace(self.table, t=self.table.t - first)
-        return replace(self, table=table, start=start + timedelta(seconds=first - zero))
+        began = start + timedelta(seconds=first - zero)
+        return replace(
+            self,
+            manifest=replace(self.manifest, start=began.isoformat()),
+            table=replace(self.table, t=self.table.t - first),
+        )
 
 
 def rig_runs(
@@ -94,15 +86,19 @@ def rig_runs(
     runs = separate_runs(table, label)
     run_times(table, runs)
     samples = {name: table.si(name) for name in _NEEDED}
+    common = RunManifest(
+        kind="slip-rig",
+        label=label,
+        material=material,
+        operator=operator,
+        source=stated_source(columns.source or raw.source, path),
+        exit_status=IMPORTED,
+        constants={name: _radius(table, name) for name in ("radius_leg", "radius_ground")},
+    )
     made = [
         RigRun(
-            label=name,
-            table=SlipRigTable(**{key: part[runs.index == i] for key, part in samples.items()}),
-            radius_leg=_radius(table, "radius_leg"),
-            radius_ground=_radius(table, "radius_ground"),
-            source=stated_source(columns.source or raw.source, path),
-            material=material,
-            operator=operator,
+            replace(common, label=name),
+            SlipRigTable(**{key: part[runs.index == i] for key, part in samples.items()}),
             files=(path, *([columns.file] if columns.file else [])),
             load_cell=columns.load_cell,
         )
@@ -133,15 +129,7 @@ def write_rig_run(data_dir: Path, run: RigRun) -> Path:
     return write_slip_rig_run(
         data_dir,
         run.table,
-        label=run.label,
-        material=run.material,
-        operator=run.operator,
-        source=run.source,
-        start=run.start,
-        radius_leg=run.radius_leg,
-        radius_ground=run.radius_ground,
-        exit_status=IMPORTED,
-        inputs=file_hashes(run.files),
+        replace(run.manifest, inputs=file_hashes(run.files)),
         extra=lambda draft: _write_load_cell(draft, run.load_cell),
     )
 
@@ -155,7 +143,7 @@ def _require_columns(table: RigTable) -> None:
                     f"{_ELSE}",
                     file=table.raw.path,
                 )
-            raise table.missing(name)
+            table.required(name)
 
 
 def _radius(table: RigTable, name: str) -> float:

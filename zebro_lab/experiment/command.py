@@ -2,14 +2,17 @@
 """`zebro-lab rig plan|run|say|weigh|check`: experiments of the slip rig."""
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, NoReturn
 
 import typer
 
+from zebro_lab.experiment.request import Data, RigRunRequest, WeighRequest
 from zebro_lab.terminal.messages import say
+from zebro_lab.terminal.request_command import request_command
 
 if TYPE_CHECKING:
     from rig.experiment.control import Control
+    from rig.experiment.run import Outcome
     from zebro_lab.experiment.plan_stage import Foreseen
 
 STOPPED = 130
@@ -20,12 +23,6 @@ app = typer.Typer(
     no_args_is_help=True,
     rich_markup_mode=None,
 )
-
-PlanFile = Annotated[Path, typer.Argument(metavar="PLAN", help="A plan.toml.")]
-Rig = Annotated[str, typer.Option(help="PROFILE@PORT, PROFILE@sim, or sim.")]
-Data = Annotated[Path, typer.Option(metavar="DIR", help="Folder of the experiment.")]
-Fast = Annotated[bool, typer.Option("--fast", help="Let a simulated rig's time pass at once.")]
-Seed = Annotated[int, typer.Option(help="Of a simulated rig: its load cell, noise and wander.")]
 
 EPILOG = """
 Ctrl-C: once a soft stop (holds, energised; resume goes on), twice a safe stop (ends at rest),
@@ -38,7 +35,7 @@ Exit codes: 0 completed, 1 error, 2 usage, 3 completed but points were refused, 
 
 @app.command()
 def plan(
-    file: PlanFile,
+    file: Annotated[Path, typer.Argument(metavar="PLAN", help="A plan.toml.")],
     rig: Annotated[str, typer.Option(help="Profile of the rig, or sim.")] = "sim",
     steps: Annotated[bool, typer.Option("--steps", help="List every step.")] = False,
 ) -> None:
@@ -49,47 +46,44 @@ def plan(
 
 
 @app.command(epilog=EPILOG)
-def run(
-    file: PlanFile,
-    rig: Rig,
-    data: Data = Path("experiment"),
-    resume: Annotated[
-        bool, typer.Option("--resume", help="Go on from the last finished point.")
-    ] = False,
-    reset_emergency: Annotated[
-        bool, typer.Option("--reset-emergency", help="Reset a latched emergency stop.")
-    ] = False,
-    fast: Fast = False,
-    seed: Seed = 0,
-) -> None:
+@request_command()
+def run(request: RigRunRequest) -> None:
     """Run a plan: a run folder for each point, ready for calibrate-slip."""
     from rich.console import Console
 
     from rig.experiment.control import Control
     from zebro_lab.experiment.screen import experiment_screen
-    from zebro_lab.experiment.stage import RigRunRequest, run_experiment
-    from zebro_lab.terminal.last_words import leave_at_once, say_in_time
+    from zebro_lab.experiment.stage import run_experiment
 
-    request = RigRunRequest(
-        plan=file, rig=rig, data=data, resume=resume, reset_emergency=reset_emergency,
-        fast=fast, seed=seed,
-    )  # fmt: skip
     control = Control()
     try:
         with experiment_screen(Console(highlight=False, soft_wrap=True), control) as screen:
             outcome = run_experiment(request, screen, control)
     finally:
         if control.stop.latched:
-            say_in_time(
-                f"an emergency stop is latched in {data}; look after the rig, then go on with "
-                "--resume --reset-emergency",
-                err=True,
-            )
+            _say_latched(request.data)
+    _end(outcome, request.data, latched=control.stop.latched)
+
+
+def _say_latched(data: Path) -> None:
+    from zebro_lab.terminal.last_words import say_in_time
+
+    say_in_time(
+        f"an emergency stop is latched in {data}; look after the rig, then go on with "
+        "--resume --reset-emergency",
+        err=True,
+    )
+
+
+def _end(outcome: "Outcome", data: Path, *, latched: bool) -> NoReturn:
+    """Print how an experiment ended and exit."""
+    from zebro_lab.terminal.last_words import leave_at_once, say_in_time
+
     words = (
         f"{outcome.reason}: {outcome.finished} points finished, {len(outcome.refused)} refused, "
         f"{outcome.attempts} attempts; {data}"
     )
-    if not outcome.completed and not control.stop.latched:
+    if not outcome.completed and not latched:
         words += "\ngo on with --resume"
     refused = REFUSED if outcome.refused else 0
     code = refused if outcome.completed else STOPPED
@@ -111,30 +105,12 @@ def command(
 
 
 @app.command()
-def weigh(
-    rig: Rig,
-    masses: Annotated[str, typer.Option(metavar="KG,KG…", help="Known masses [kg].")],
-    data: Annotated[
-        Path | None, typer.Option(metavar="DIR", help="Write DIR/columns.toml for the fit.")
-    ] = None,
-    weight_sd: Annotated[
-        float, typer.Option(min=0.0, help="Relative error that the masses share.")
-    ] = 1e-3,
-    gravity: Annotated[float, typer.Option(help="Where the rig stands [m/s2].")] = 9.80665,
-    fast: Fast = False,
-    seed: Seed = 0,
-) -> None:
+@request_command()
+def weigh(request: WeighRequest) -> None:
     """Check the load cell with known weights: the gain's prior for the fit."""
     from rig.experiment.control import Control
-    from zebro_lab.experiment.weigh_stage import WeighRequest, render_load_cell, weigh_masses
+    from zebro_lab.experiment.weigh_stage import render_load_cell, weigh_masses
 
-    try:
-        known = [float(mass) for mass in masses.split(",")]
-    except ValueError as error:
-        raise typer.BadParameter(f"found '{masses}'; expected 0.2,0.5,1") from error
-    request = WeighRequest(
-        masses=known, rig=rig, data=data, weight_sd=weight_sd, gravity=gravity, fast=fast, seed=seed
-    )
     control = Control()
     weighing, check, written = weigh_masses(request, _Asker(control), control)
     for force, reading, error in zip(
@@ -159,11 +135,13 @@ def weigh(
 @app.command()
 def check(
     data: Annotated[list[Path], typer.Argument(help="Fresh runs, or folders of them.")],
-    slip: Annotated[
-        Path, typer.Option(help="The calibration: slip.toml or its folder.")
-    ] = Path("calibration"),
-    zero_sd: Annotated[float, typer.Option(min=0.0, help="Spread of the zero [N].")] = 0.1,
-) -> None:  # fmt: skip
+    slip: Annotated[Path, typer.Option(help="The calibration: slip.toml or its folder.")] = Path(
+        "calibration"
+    ),
+    zero_sd: Annotated[
+        float, typer.Option(min=0.0, help="Standard deviation of the zero between runs [N].")
+    ] = 0.1,
+) -> None:
     """Compare fresh check points with a calibration: has the rig drifted?"""
     from zebro_lab.experiment.check_stage import check_runs
 
@@ -207,14 +185,14 @@ def _print_plan(foreseen: "Foreseen", *, steps: bool) -> None:
         "and check points"
     )
     say(f"the normal force is set {foreseen.estimate.loads} times, by {plan.load.set_by}")
-    say(f"takes about {minutes} min {seconds} s where no point is repeated")
+    say(f"takes about {minutes} min {seconds} s if no point is repeated")
     say("every set-point lies within the limits:")
     for name, unit in LIMIT_UNITS.items():
         value = getattr(plan.limits, name)
-        said = "not limited" if value is None else f"{value:g}"
-        say(f"  {name:<20}{said:>12} {unit}")
+        limit = "not limited" if value is None else f"{value:g}"
+        say(f"  {name:<20}{limit:>12} {unit}")
     if plan.limits.guards_off:
-        say(f"guards that are off, as the plan wants: {plan.limits.off_said}")
+        say(f"guards switched off by the plan: {plan.limits.guards_off_text}")
     if steps:
         for step in foreseen.steps:
             say(step.label if isinstance(step, Point) else f"zero-{step.number:04d}")

@@ -23,8 +23,9 @@ from zebro_lab.experiment.journal import EMERGENCY, JournalWriter
 from zebro_lab.experiment.latch import EmergencyLatch
 from zebro_lab.experiment.points import UNJUDGED, point_record
 from zebro_lab.files.errors import AlreadyExists
-from zebro_lab.mcap.stream_views import StreamView
-from zebro_lab.recording.recorder import RunDescription, RunRecorder
+from zebro_lab.recording.place import identity
+from zebro_lab.recording.recorder import RunRecorder
+from zebro_lab.runs.manifest import RunManifest
 
 MOST_WAITING: Final = 20_000
 """Capacity of the queue of write jobs: more than a minute of an experiment."""
@@ -49,8 +50,8 @@ class ExperimentFolder:
     Args:
         data: Folder of the experiment.
         plan: Fingerprint of the plan.
-        description: Description that all its runs share.
-        views: Returns new converters of the streams to display messages of a run's log.
+        manifest: What the manifests of all its runs have in common.
+        profiles: Name and text of the rig's profile, by its name in a run folder.
         clock: Host time.
         in_step: Wait for the disk at both ends of every run, for a twin with simulated time.
     """
@@ -59,16 +60,16 @@ class ExperimentFolder:
         self,
         data: Path,
         *,
-        description: RunDescription,
-        views: Callable[[], Mapping[str, StreamView]],
+        manifest: RunManifest,
+        profiles: Mapping[str, tuple[str, str]],
         plan: str = "",
         clock: Clock = SYSTEM_CLOCK,
         in_step: bool = False,
     ) -> None:
         self._data = data
         self._plan = plan
-        self._description = description
-        self._views = views
+        self._manifest = manifest
+        self._profiles = profiles
         self._clock = clock
         self._in_step = in_step
         self._journal = JournalWriter(data)
@@ -77,7 +78,7 @@ class ExperimentFolder:
         self._ending = threading.Event()
         self._failure: str | None = None
         self._least_room = 0.0
-        self._looked = 0.0
+        self._checked_at = 0.0
         self._busy_since: float | None = None
         self._identity: tuple[int, int] | None = None
         self._recorder: RunRecorder | None = None
@@ -88,17 +89,16 @@ class ExperimentFolder:
         """Open a run folder; see `RunSink.open_run`."""
         label = start.point.label + (f" attempt {start.attempt}" if start.attempt > 1 else "")
         zero = {"zero_normal": start.zero.normal, "zero_traction": start.zero.traction}
-        common = self._description
-        description = replace(
-            common, label=label, constants={**common.constants, **zero}, excluded=UNJUDGED,
-            point=self._point(start, accepted=False),
+        manifest = replace(
+            self._manifest, label=label, constants={**self._manifest.constants, **zero},
+            excluded={"why": UNJUDGED}, point=self._point(start, accepted=False),
         )  # fmt: skip
 
         def open_now() -> None:
-            self._recorder = self._enter(description)
+            self._recorder = self._enter(manifest)
             self._start = start
 
-        self._require_well()
+        self._require_working()
         self._put(open_now, wait=True)
 
     def write(self, readings: Readings, batch: Batch) -> None:
@@ -117,7 +117,7 @@ class ExperimentFolder:
                     if samples:
                         self._recorder.write(stream, samples)
 
-        self._require_well()
+        self._require_working()
         self._put(write_now)
 
     def close_run(self, verdict: PointVerdict | None, *, reason: str) -> None:
@@ -146,7 +146,7 @@ class ExperimentFolder:
 
         self._put(note)
         if kind != "end":
-            self._require_well()
+            self._require_working()
 
     def require_room(self, least: float) -> None:
         """Raise SinkFailed where the writer has failed, which itself checks the disk space.
@@ -155,7 +155,7 @@ class ExperimentFolder:
             least: Least free space [bytes].
         """
         self._least_room = least
-        self._require_well()
+        self._require_working()
 
     def latch(self, reason: str) -> None:
         """Latch an emergency stop on disk, from this thread; see `RunSink.latch`."""
@@ -165,7 +165,7 @@ class ExperimentFolder:
             self._fail(error)
 
     def __enter__(self) -> Self:
-        self._identity = _identity(self._data)
+        self._identity = identity(self._data.stat())
         self._journal.__enter__()
         try:
             self._thread.start()
@@ -188,26 +188,27 @@ class ExperimentFolder:
                 self._do(self._jobs.get_nowait())
         self._journal.__exit__(kind, error, trace)
         if error is None:
-            self._require_well()
+            self._require_working()
 
     def _point(self, start: RunStart, *, accepted: bool) -> dict[str, Any]:
         return point_record(
             self._plan, number=start.point.number, attempt=start.attempt, accepted=accepted
         )
 
-    def _enter(self, description: RunDescription) -> RunRecorder:
+    def _enter(self, manifest: RunManifest) -> RunRecorder:
         """Open a run folder under an unused name: a point may be repeated within a second."""
         again = 1
         while True:
             recorder = RunRecorder(
-                self._data, description=description, views=self._views(), clock=self._clock
-            )
+                self._data, manifest=manifest, profiles=self._profiles,
+                clock=self._clock,
+            )  # fmt: skip
             try:
                 return recorder.__enter__()
             except AlreadyExists:
                 again += 1
-                label = f"{description.label.partition(' again')[0]} again {again}"
-                description = replace(description, label=label)
+                label = f"{manifest.label.partition(' again')[0]} again {again}"
+                manifest = replace(manifest, label=label)
 
     def _close_now(self, verdict: PointVerdict | None, reason: str) -> None:
         recorder, self._recorder = self._recorder, None
@@ -216,7 +217,7 @@ class ExperimentFolder:
         start, point = self._start, self._start.point
         kept = recorder.failure is None
         accepted = verdict is not None and verdict.accepted and kept
-        why = "" if accepted else _why_not(verdict, reason, recorder.failure)
+        why = "" if accepted else _why_excluded(verdict, reason, recorder.failure)
         # Atomic: the end record holds both the verdict and whether the run counts.
         recorder.judge(excluded=why, point=self._point(start, accepted=accepted))
         recorder.end(reason)
@@ -241,10 +242,10 @@ class ExperimentFolder:
             ) from None
         if wait and self._in_step:
             while not job.done.wait(DISK_PERIOD):
-                self._require_well()
-            self._require_well()
+                self._require_working()
+            self._require_working()
 
-    def _require_well(self) -> None:
+    def _require_working(self) -> None:
         started = self._thread.ident is not None
         if started and not (self._ending.is_set() or self._thread.is_alive()):
             self._failure = self._failure or "the writer has ended by itself"
@@ -272,20 +273,20 @@ class ExperimentFolder:
         self._busy_since = time.monotonic()
         try:
             job.write()
-            self._look_after_disk()
+            self._check_disk()
         except BaseException as error:  # noqa: BLE001, RUF100 - whatever it is, the rig stops
             self._fail(error)
         finally:
             self._busy_since = None
             job.done.set()
 
-    def _look_after_disk(self) -> None:
+    def _check_disk(self) -> None:
         """Raise SinkFailed where the folder is gone or too little disk space is free."""
         now = time.monotonic()
-        if now - self._looked < DISK_PERIOD:
+        if now - self._checked_at < DISK_PERIOD:
             return
-        self._looked = now
-        if _identity(self._data) != self._identity:
+        self._checked_at = now
+        if not self._data.exists() or identity(self._data.stat()) != self._identity:
             raise SinkFailed(f"the folder {self._data} was removed or replaced")
         if self._recorder is not None and self._recorder.failure is not None:
             raise SinkFailed(self._recorder.failure)
@@ -297,16 +298,7 @@ class ExperimentFolder:
             )
 
 
-def _identity(folder: Path) -> tuple[int, int] | None:
-    """Return device and inode, which identify a folder; None where there is no folder."""
-    try:
-        found = folder.stat()
-    except FileNotFoundError:
-        return None
-    return found.st_dev, found.st_ino
-
-
-def _why_not(verdict: PointVerdict | None, reason: str, failure: str | None) -> str:
+def _why_excluded(verdict: PointVerdict | None, reason: str, failure: str | None) -> str:
     """Return why a run is left out of calibrations."""
     if failure is not None:
         return failure

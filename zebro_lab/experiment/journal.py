@@ -66,7 +66,7 @@ class JournalWriter:
         self._reserve = data / RESERVE_FILE
 
     def __enter__(self) -> "JournalWriter":
-        with contextlib.suppress(OSError):  # who begins on a full disk is told by the guard of room
+        with contextlib.suppress(OSError):  # on a full disk `require_room` stops the run
             self._reserve.unlink(missing_ok=True)  # whatever is there: it is not written through
             with self._reserve.open("xb") as file:
                 file.write(os.urandom(RESERVE))
@@ -140,7 +140,7 @@ def read_journal(data: Path) -> Journal:
     entries = list(_entries(file))
     plan = next((e.get("fingerprint") for e in entries if e.get("kind") == "plan"), None)
     if not isinstance(plan, str):
-        raise DataError("does not say which plan it is of; name another --data", file=file)
+        raise DataError("has no entry of its plan; name another --data", file=file)
     points = [entry for entry in entries if entry.get("kind") == "point"]
     latched = None
     for entry in entries:
@@ -178,15 +178,15 @@ def begin_or_resume(data: Path, plan_text: str, *, resume: bool, reset: bool) ->
         SettingsError: It is of another plan, or an emergency stop is latched.
     """
     writer, latch = JournalWriter(data), EmergencyLatch(data)
-    journal = _begun(data, plan_text) if resume else None
+    journal = _resumed(data, plan_text) if resume else None
     if journal is None and os.path.lexists(data / JOURNAL_FILE):
         raise AlreadyExists(
-            f"{data} holds an experiment already; go on with it by --resume, or name another --data"
+            f"{data} holds an experiment already; continue it with --resume, or name another --data"
         )
     latched = latch.reason or (journal.latched if journal else None)
     if latched is not None and not reset:
         raise SettingsError(
-            f"{latched} is latched; look after the rig, then go on with --reset-emergency",
+            f"{latched} is latched; inspect the rig, then continue with --reset-emergency",
             file=data / (JOURNAL_FILE if journal else LATCH_FILE),
         )
     try:
@@ -206,12 +206,12 @@ def begin_or_resume(data: Path, plan_text: str, *, resume: bool, reset: bool) ->
     return read_journal(data) if journal is None else journal
 
 
-def _begun(data: Path, plan_text: str) -> Journal:
+def _resumed(data: Path, plan_text: str) -> Journal:
     """Read the journal and check that it belongs to the plan."""
     journal = read_journal(data)
     if journal.plan != plan_fingerprint(plan_text):
         raise SettingsError(
-            "is not the plan that was begun here; give that one, or another --data",
+            "was started with another plan; give that plan, or name another --data",
             file=data / JOURNAL_FILE,
         )
     return journal

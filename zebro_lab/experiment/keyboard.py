@@ -64,6 +64,6 @@ class Keyboard:
     def _obey(self, line: bytes) -> None:
         key = line.decode("utf-8", "backslashreplace").strip()
         try:
-            self._control.obey(KEYS.get(key, key), who="keyboard")
+            self._control.execute(KEYS.get(key, key), who="keyboard")
         except ProtocolError:  # a mistyped command has no effect
             return

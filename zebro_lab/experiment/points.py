@@ -14,7 +14,8 @@ from typing import Any, Final
 
 from zebro_lab.experiment.journal import Journal
 from zebro_lab.files.errors import ZebroLabError
-from zebro_lab.runs.folder import LOG_FILE, exclude_run, require_recorded, run_state
+from zebro_lab.runs.exclusion import exclude_run
+from zebro_lab.runs.folder import LOG_FILE, require_recorded, run_state
 from zebro_lab.runs.manifest import MANIFEST_FILE, RECORDING, RunManifest, read_manifest
 
 UNJUDGED: Final = "it ended before it was judged; its point is measured again"

@@ -21,12 +21,11 @@ from rig.openers import SIMULATED, resolve
 from rig.slip_rig.board import RigBoard
 from rig.slip_rig.imperfections import RigImperfections, draw_imperfections
 from rig.slip_rig.profile import RigProfile, load_rig_profile
-from rig.slip_rig.simulated import RigDynamics, SimulatedRig, simulated_rig
+from rig.slip_rig.simulated import RigDynamics, SimulatedRig
 from rig.slip_rig.simulated_board import SimulatedBoard
 from rig.slip_rig.sweep import SweepPlan
 from rig.twins import simulated_rig_devices
 from zebro_lab.files.errors import SettingsError
-from zebro_lab.mcap.stream_views import StreamView, rig_views
 from zebro_lab.recording.devices import profile_text
 from zebro_lab.runs.manifest import RIG
 
@@ -62,10 +61,6 @@ class RigAtHand:
         profile = self.bench.profile
         return {"radius_leg": profile.radius_leg, "radius_ground": profile.radius_ground}
 
-    def views(self) -> dict[str, StreamView]:
-        """Return new converters of its streams to display messages of a log."""
-        return rig_views(self.bench.profile)
-
     def load_setter(self, setting: LoadSetting, control: Control) -> LoadSetter:
         """Return the setter of the normal force: the operator or a driven axis, real or simulated.
 
@@ -86,7 +81,9 @@ class RigAtHand:
                 key="load.set_by",
             )
         axis = SimulatedAxis(self.twin, clock=self.clock)
-        return DrivenShaft(axis, tolerance=setting.tolerance, patience=setting.patience)
+        return DrivenShaft(
+            axis, tolerance=setting.tolerance, patience=setting.patience, clock=self.clock
+        )
 
 
 @contextmanager
@@ -122,7 +119,7 @@ def rig_at_hand(
         yield RigAtHand(make_bench(open_rig(address)), profiles)
         return
     rng = np.random.default_rng(seed)
-    rig = simulated_rig(
+    rig = SimulatedRig(
         plan=SweepPlan(radius_leg=profile.radius_leg, radius_ground=profile.radius_ground),
         imperfections=imperfections or draw_imperfections(np.random.default_rng([seed, 1])),
         dynamics=RigDynamics(ripple=0.005), rng=rng,

@@ -23,6 +23,7 @@ from rig.experiment.control import Control
 from rig.experiment.steps import Point
 from rig.experiment.supervision import start_thread
 from rig.experiment.verdict import PointVerdict
+from rig.experiment.watcher import ExperimentWatcher
 from zebro_lab.experiment.keyboard import Keyboard
 from zebro_lab.files.shown_text import shown
 from zebro_lab.terminal.messages import plain
@@ -74,8 +75,8 @@ class ScreenPicture:
         return Group(*parts, chart, Text(shown(self.prompt), style="bold"))
 
 
-class ExperimentScreen:
-    """Follows an experiment; satisfies `ExperimentWatcher`, and never waits for the console.
+class ExperimentScreen(ExperimentWatcher):
+    """Follows an experiment, and never waits for the console.
 
     Args:
         console: Where to draw.
@@ -134,13 +135,13 @@ class ExperimentScreen:
             verdict: Result of its quality checks.
             attempt: Number of the attempt, from 1.
         """
-        worth = "; ".join(verdict.problems) or "good"
+        result = "; ".join(verdict.problems) or "good"
         if verdict.accepted:
             good = (point.load, verdict.slip, verdict.friction)
             self._picture = replace(self._picture, points=(*self._picture.points, good))
         if self._live is None or not verdict.accepted:
             self._lines.append(
-                f"{point.label} (attempt {attempt}): {worth}; slip {verdict.slip:.4f}, "
+                f"{point.label} (attempt {attempt}): {result}; slip {verdict.slip:.4f}, "
                 f"friction {verdict.friction:.3f}, normal {verdict.normal_force:.2f} N"
             )
 
@@ -156,7 +157,7 @@ class ExperimentScreen:
             self.draw()
         except SystemExit as error:  # how Rich answers a pipe that was closed
             raise BrokenPipeError(
-                "nobody reads the output any more; leave it on a terminal, or write it to a file"
+                "the output pipe was closed; write to a terminal or a file"
             ) from error
 
     def draw(self) -> None:
@@ -202,7 +203,7 @@ def experiment_screen(console: Console, control: Control) -> Iterator[Experiment
 
     Args:
         console: Where to draw.
-        control: Mailbox of the run; told where the screen or the keyboard fails.
+        control: Mailbox of the run; informed where the screen or the keyboard fails.
 
     Raises:
         PartFailed: The system gives no thread to draw or to listen.

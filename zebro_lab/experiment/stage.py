@@ -5,7 +5,6 @@ import json
 import os
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
@@ -20,39 +19,17 @@ from rig.experiment.steps import require_allowed
 from rig.experiment.supervision import supervised
 from rig.experiment.watcher import ExperimentWatcher
 from zebro_lab.experiment.folder import ExperimentFolder
-from zebro_lab.experiment.journal import JOURNAL_FILE, begin_or_resume
+from zebro_lab.experiment.journal import JOURNAL_FILE, Journal, begin_or_resume
 from zebro_lab.experiment.plan_file import read_plan
-from zebro_lab.experiment.points import finished_points, holds_points
+from zebro_lab.experiment.points import Finished, finished_points, holds_points
+from zebro_lab.experiment.request import RigRunRequest
 from zebro_lab.experiment.rig_at_hand import RigAtHand, rig_at_hand
 from zebro_lab.files.documents import read_json_document, require_object
 from zebro_lab.files.errors import AlreadyExists, DataError, NotFound, RecordingError, ZebroLabError
-from zebro_lab.recording.recorder import RunDescription
+from zebro_lab.runs.manifest import RunManifest
 
 CONTROL_FILE: Final = "control.json"
 LOCK_FILE: Final = ".experiment.lock"
-
-
-@dataclass(frozen=True)
-class RigRunRequest:
-    """Settings of an experiment.
-
-    Attributes:
-        plan: The plan's file.
-        rig: `PROFILE@PORT`, `PROFILE@sim` or `sim`.
-        data: Folder of the experiment.
-        resume: Go on from the last finished point.
-        reset_emergency: Reset an emergency stop that is latched.
-        fast: Let a simulated rig's time pass at once.
-        seed: Of a simulated rig's randomness.
-    """
-
-    plan: Path
-    rig: str
-    data: Path
-    resume: bool = False
-    reset_emergency: bool = False
-    fast: bool = False
-    seed: int = 0
 
 
 def run_experiment(request: RigRunRequest, watcher: ExperimentWatcher, control: Control) -> Outcome:
@@ -72,52 +49,58 @@ def run_experiment(request: RigRunRequest, watcher: ExperimentWatcher, control: 
         RigError: A limit, a guard or a device; the motors are at rest and the journal says why.
     """
     plan = read_plan(request.plan)
-    text = request.plan.read_text(encoding="utf-8")
     with rig_at_hand(request.rig, seed=request.seed, fast=request.fast) as rig:
         require_allowed(plan, rig.bench.profile)
         load = rig.load_setter(plan.load, control)
         with _owned(request.data):
-            if not request.resume:
-                _require_no_points(request.data)
-            journal = begin_or_resume(
-                request.data, text, resume=request.resume, reset=request.reset_emergency
-            )
-            finished = finished_points(request.data, journal)
+            journal, finished = _begin(request)
             for notice in finished.notices:
                 watcher.notice(notice)
             folder = ExperimentFolder(
-                request.data, plan=journal.plan, description=_description(plan, rig),
-                views=rig.views, clock=rig.clock, in_step=rig.fast,
+                request.data, plan=journal.plan, manifest=_manifest(plan, rig),
+                profiles=rig.profiles, clock=rig.clock, in_step=rig.fast,
             )  # fmt: skip
-            with (
-                signal_stops(control.stop),
-                supervised(control),
-                folder,
-                _commandable(request.data, control),
-            ):
+            with _recording(folder, request.data, control):
                 for notice in finished.notices:
                     folder.event("warning", notice)
-                try:
-                    return run_plan(
-                        plan, bench=rig.bench, load=load, sink=folder, control=control,
-                        watcher=watcher, clock=rig.clock, period=rig.period, done=finished.numbers,
-                    )  # fmt: skip
-                finally:
-                    stop = control.stop.pending
-                    if stop is not None and control.stop.latched:  # it may have come at the end
-                        folder.latch(stop.reason)
+                return run_plan(
+                    plan, bench=rig.bench, load=load, sink=folder, control=control,
+                    watcher=watcher, clock=rig.clock, period=rig.period, done=finished.numbers,
+                )  # fmt: skip
 
 
-def _description(plan: Plan, rig: RigAtHand) -> RunDescription:
-    """Describe what all runs of an experiment have in common."""
-    return RunDescription(
+def _begin(request: RigRunRequest) -> tuple[Journal, Finished]:
+    """Begin or resume the journal, and find the points that are finished."""
+    if not request.resume:
+        _require_no_points(request.data)
+    journal = begin_or_resume(
+        request.data, request.plan.read_text(encoding="utf-8"), resume=request.resume,
+        reset=request.reset_emergency,
+    )  # fmt: skip
+    return journal, finished_points(request.data, journal)
+
+
+@contextmanager
+def _recording(folder: ExperimentFolder, data: Path, control: Control) -> Iterator[None]:
+    """Write into the experiment's folder, with signals and the control socket heard."""
+    with signal_stops(control.stop), supervised(control), folder, _commandable(data, control):
+        try:
+            yield
+        finally:
+            stop = control.stop.pending
+            if stop is not None and control.stop.latched:  # it may have come at the end
+                folder.latch(stop.reason)
+
+
+def _manifest(plan: Plan, rig: RigAtHand) -> RunManifest:
+    """Return what the manifests of all runs of an experiment have in common."""
+    return RunManifest(
         kind="slip-rig",
         label=plan.name,
         source=rig.bench.source,
         material=plan.material,
         operator=plan.operator or "unknown",
         constants=rig.constants,
-        profiles=rig.profiles,
         sources={stream.name: stream.source for stream in rig.bench.streams},
         truth=rig.truth,
     )
@@ -188,14 +171,14 @@ def _address(file: Path) -> tuple[int, str]:
     port, token = content.get("port"), content.get("token")
     if type(port) is not int or not 0 < port < 1 << 16 or not isinstance(token, str):
         raise DataError(
-            "does not say where to reach the experiment; stop it at its own keyboard", file=file
+            "has no valid port and token of the experiment; stop it at its own keyboard", file=file
         )
     return port, token
 
 
 @contextmanager
 def _commandable(data: Path, control: Control) -> Iterator[None]:
-    """Serve the control socket, and say where in a file that only its owner may read."""
+    """Serve the control socket; its address is in a file that only its owner may read."""
     file, draft = data / CONTROL_FILE, data / f".{CONTROL_FILE}.new"
     with ControlServer(control) as server:
         draft.unlink(missing_ok=True)

@@ -2,45 +2,18 @@
 """Measure the gain of the load cell with known weights, as the gain prior of a fit."""
 
 import math
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable
 from pathlib import Path
-from typing import Final
 
 from rig.experiment.control import Control
-from rig.experiment.load import HandShaft
-from rig.experiment.simulated_load import SimulatedOperator
+from rig.experiment.plan import LoadSetting
 from rig.experiment.weigh import GainCheck, Weighing, check_gain, weigh
 from rig.safety import require_within
+from zebro_lab.experiment.request import WeighRequest
 from zebro_lab.experiment.rig_at_hand import rig_at_hand
 from zebro_lab.files.atomic import atomic_write_text
 from zebro_lab.files.errors import AlreadyExists, SettingsError
 from zebro_lab.tables.columns import COLUMNS_FILE
-
-STANDARD_GRAVITY: Final = 9.80665
-
-
-@dataclass(frozen=True)
-class WeighRequest:
-    """Settings of a check of the load cell with known weights.
-
-    Attributes:
-        masses: Known masses [kg].
-        rig: `PROFILE@PORT`, `PROFILE@sim` or `sim`.
-        data: Folder whose `columns.toml` is to be written; None writes nothing.
-        weight_sd: Relative error that the masses share [-].
-        gravity: Where the rig stands [m/s^2].
-        fast: Let a simulated rig's time pass at once.
-        seed: Of a simulated rig's randomness.
-    """
-
-    masses: Sequence[float]
-    rig: str
-    data: Path | None = None
-    weight_sd: float = 1e-3
-    gravity: float = STANDARD_GRAVITY
-    fast: bool = False
-    seed: int = 0
 
 
 def _require_finite(request: WeighRequest) -> None:
@@ -85,11 +58,7 @@ def weigh_masses(
                 force, rig.bench.profile.limits.normal_force, quantity="weight", unit="N"
             )
         # No tolerance: the check is to find the error of the reading.
-        load = (
-            HandShaft(control, tolerance=float("inf"))
-            if rig.twin is None
-            else SimulatedOperator(rig.twin)
-        )
+        load = rig.load_setter(LoadSetting("hand", math.inf, patience=0.0), control)
         with rig.bench:
             weighing = weigh(
                 rig.bench, forces, load=load, prompt=prompt, clock=rig.clock, period=rig.period

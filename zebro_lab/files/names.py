@@ -1,7 +1,35 @@
 # SPDX-License-Identifier: MIT
-"""File names used by more than one room."""
+"""File names used by more than one room; distinct names of several files."""
 
+from collections.abc import Sequence
+from pathlib import Path
 from typing import Final
 
 PATH_CSV: Final = "path.csv"
 """The path of a walk folder, one row per time step."""
+TRACK: Final = "track"
+"""Folder of a run that holds its track."""
+
+
+def numbered(names: Sequence[str]) -> list[str]:
+    """Append a number to every name that occurs more than once.
+
+    >>> numbered(["a", "b", "a"])
+    ['a-1', 'b', 'a-2']
+    """
+    return [
+        name if names.count(name) == 1 else f"{name}-{names[: i + 1].count(name)}"
+        for i, name in enumerate(names)
+    ]
+
+
+def shortest_distinct(paths: Sequence[Path]) -> list[str]:
+    """Shorten paths to their last parts, as few as keep them distinct; equal paths stay whole.
+
+    >>> shortest_distinct([Path("a/one/log.mcap"), Path("a/two/log.mcap")])
+    ['one/log.mcap', 'two/log.mcap']
+    """
+    depths = range(1, max((len(path.parts) for path in paths), default=1) + 1)
+    shortened = ([str(Path(*path.parts[-depth:])) for path in paths] for depth in depths)
+    whole = [str(path) for path in paths]
+    return next((names for names in shortened if len(set(names)) == len(names)), whole)

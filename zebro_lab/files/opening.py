@@ -130,10 +130,10 @@ def parsing(
     except ZebroLabError:
         raise
     except Exception as error:
-        said = str(error) or "no reason given"
+        reason = str(error) or "no reason given"
         named = "" if isinstance(error, (ValueError, OSError)) else f"{type(error).__name__}: "
         closing = f"; {advice}" if advice else ""
-        raise fault(f"{problem} ({named}{said}){closing}", file=path) from error
+        raise fault(f"{problem} ({named}{reason}){closing}", file=path) from error
 
 
 def _descriptor(path: Path, advice: str, fault: Fault) -> int:
@@ -145,8 +145,8 @@ def _descriptor(path: Path, advice: str, fault: Fault) -> int:
     except ZebroLabError:
         raise
     except (OSError, ValueError) as error:
-        said = error.strerror if isinstance(error, OSError) else str(error)
-        raise fault(f"cannot be opened: {said}", file=path) from error
+        reason = error.strerror if isinstance(error, OSError) else str(error)
+        raise fault(f"cannot be opened: {reason}", file=path) from error
     try:
         _require_regular(os.fstat(descriptor).st_mode, path, fault)  # it may have been replaced
     except ZebroLabError:

@@ -4,7 +4,7 @@
 | step | on disk | killed after it |
 |---|---|---|
 | files of others are linked into the draft | NAME old | NAME is old |
-| `.NAME.replacing` says what will go | NAME old | NAME is old |
+| `.NAME.replacing` lists what will be removed | NAME old | NAME is old |
 | NAME becomes `NAME.previous` | only the old one | the next reader or writer restores it |
 | the draft becomes NAME | both | NAME is new; the next one removes the old |
 | what could not be linked is moved, the old one and the note are removed | NAME new | NAME is new |
@@ -176,10 +176,10 @@ def _swap(folder: Path, draft: Path) -> None:
     sync_folder(folder.parent)
 
 
-def _carry(old: Path, new: Path, owned: Collection[str], below: str = "") -> None:
+def _carry(old: Path, new: Path, owned: Collection[str], prefix: str = "") -> None:
     """Hard-link files that are not owned into the draft; others are moved after the swap."""
     for path in sorted(old.iterdir()):
-        name, target = below + path.name, new / path.name
+        name, target = prefix + path.name, new / path.name
         if name in owned:
             continue
         if not _is_folder(path):
@@ -208,10 +208,10 @@ def _drop_emptied(folder: Path, name: str, owned: Collection[str]) -> None:
         folder.rmdir()
 
 
-def _sweep(old: Path, new: Path, owned: Collection[str], below: str = "") -> None:
+def _sweep(old: Path, new: Path, owned: Collection[str], prefix: str = "") -> None:
     """Move files that are not owned and were not linked into the new folder."""
     for path in sorted(old.iterdir()):
-        name, target = below + path.name, new / path.name
+        name, target = prefix + path.name, new / path.name
         if name in owned:
             continue
         if _is_folder(path):

@@ -47,9 +47,9 @@ class SettingsTable(TomlTable):
         """
         number = self._to_si(key, self.value(key, default), unit)
         if number <= above:
-            raise self.fault(f"is {_said(number, unit)}; expected more than {above:g}", key)
+            raise self.fault(f"is {_with_unit(number, unit)}; expected more than {above:g}", key)
         if number < least:
-            raise self.fault(f"is {_said(number, unit)}; expected {least:g} or more", key)
+            raise self.fault(f"is {_with_unit(number, unit)}; expected {least:g} or more", key)
         return number
 
     def quantities(self, key: str, count: int, unit: str) -> tuple[float, ...]:
@@ -99,7 +99,7 @@ class SettingsTable(TomlTable):
             raise self.fault(str(error), key) from error
 
 
-def _said(number: float, unit: str) -> str:
+def _with_unit(number: float, unit: str) -> str:
     return f"{number:g}" if unit == _NO_UNIT else f"{number:g} {unit}"
 
 

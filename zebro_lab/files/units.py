@@ -19,6 +19,17 @@ _COMMON = (
 _NO_UNIT = {"", "-", "1"}  # how headers write that a number has no unit
 _QUANTITY = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(.*)", re.DOTALL)
 
+_SHOWN = {"rad": (180 / math.pi, "deg"), "rad/m": (180 / math.pi, "deg/m"), "-": (100.0, "%")}
+
+
+def shown_unit(unit: str) -> tuple[float, str]:
+    """Return the scale and the unit in which a person reads a parameter of legs and floor.
+
+    >>> shown_unit("-"), shown_unit("log")
+    ((100.0, '%'), (1.0, 'log of factor'))
+    """
+    return _SHOWN.get(unit, (1.0, "log of factor"))
+
 
 def factor_to_si(unit: str, si_unit: str) -> float:
     """Compute the conversion factor from a unit to an SI unit.

@@ -13,6 +13,9 @@ class MessageLog:
     Args:
         file: Output file.
         chunk_size: Size at which a chunk ends [bytes].
+
+    Attributes:
+        counts: Messages written, by topic.
     """
 
     def __init__(self, file: IO[bytes], *, chunk_size: int = 1 << 20) -> None:
@@ -22,7 +25,7 @@ class MessageLog:
         self._writer.start(profile="ros2", library="zebro-lab")
         self._schemas: dict[str, int] = {}
         self._channels: dict[str, int] = {}
-        self._sequence: dict[int, int] = {}
+        self.counts: dict[str, int] = {}
 
     def register(
         self, topic: str, schema: Schema, *, metadata: Mapping[str, str] | None = None
@@ -52,10 +55,9 @@ class MessageLog:
             stamp: Time since the Unix epoch [ns].
             message: Message in CDR.
         """
-        channel = self._channels[topic]
-        number = self._sequence.get(channel, 0)
-        self._sequence[channel] = number + 1
-        self._writer.add_message(channel, stamp, message, stamp, number)
+        number = self.counts.get(topic, 0)
+        self.counts[topic] = number + 1
+        self._writer.add_message(self._channels[topic], stamp, message, stamp, number)
 
     def attach(self, stamp: int, name: str, media_type: str, content: str) -> None:
         """Write a text as an attachment of the file.

@@ -4,7 +4,6 @@
 New runs contain only raw samples (`raw_log`); logs with this message can still be read.
 """
 
-import struct
 from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -13,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from zebro_lab.files.errors import DataError
+from zebro_lab.mcap.cdr import CdrReader
 from zebro_lab.mcap.log_records import read_records
 
 if TYPE_CHECKING:
@@ -28,8 +28,6 @@ float64[] omega_ground    # angular speed of the ground disc [rad/s]
 float64[] normal_force    # positive when pressed together [N]
 float64[] traction_force  # positive when driving [N]
 """
-
-_CDR_LITTLE_ENDIAN = b"\x00\x01\x00\x00"
 
 
 @dataclass(frozen=True)
@@ -84,14 +82,11 @@ def decode_block(data: bytes) -> NDArray[np.float64]:
     Raises:
         ValueError: The message does not have that form.
     """
-    if data[:4] != _CDR_LITTLE_ENDIAN or len(data) < 8:
-        raise ValueError("a message is not little-endian CDR")
-    (count,) = struct.unpack_from("<I", data, 4)
-    width = len(fields(SlipRigTable))
-    if count == 0 or len(data) != 4 + width * (8 + 8 * count):
-        raise ValueError(f"a message of {len(data)} bytes does not hold {count} samples")
-    words = np.frombuffer(data, dtype="<f8", offset=4).reshape(width, count + 1)
-    return words[:, 1:].T
+    reader = CdrReader(data)
+    columns = [reader.array("<f8") for _ in fields(SlipRigTable)]
+    if len({len(column) for column in columns}) > 1 or not len(columns[0]):
+        raise ValueError(f"a message of {len(data)} bytes does not hold whole samples")
+    return np.column_stack(columns)
 
 
 def read_log(path: Path) -> SalvagedLog:

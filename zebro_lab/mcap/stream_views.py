@@ -4,8 +4,9 @@
 Only for display. Stages compute from the raw counts and the profile.
 """
 
-from collections.abc import Iterator, Mapping, Sequence
-from typing import Final, Protocol
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Final
 
 import numpy as np
 from scipy.spatial.transform import Rotation
@@ -32,77 +33,66 @@ ENOUGH: Final = 1000.0
 _DISCS: Final = ("leg_disc", "ground_disc")
 
 
-class StreamView(Protocol):
-    """Converter of one device's samples to display messages of a log."""
-
-    @property
-    def raw_schema(self) -> str:
-        """Name of the schema of its raw samples, of `RAW_SCHEMAS`."""
-        ...
-
-    @property
-    def metadata(self) -> Mapping[str, str]:
-        """Names and units of its counts, so that the log can be read on its own."""
-        ...
-
-    @property
-    def topics(self) -> Mapping[str, Schema]:
-        """Topics that it writes, and their types."""
-        ...
-
-    def messages(
-        self, samples: Sequence[Sample], stamps: Sequence[int]
-    ) -> Iterator[tuple[str, int, bytes]]:
-        """Yield the display messages of samples.
-
-        Args:
-            samples: The next samples of the device, at least one.
-            stamps: Time at which each was read, since the Unix epoch [ns].
-
-        Yields:
-            Topic, stamp and message.
-        """
-        ...
+Messages = Iterator[tuple[str, int, bytes]]
+"""Topic, stamp and content of each message."""
 
 
-class LegsView:
-    """Leg angles as joint states, unwrapped; satisfies `StreamView`.
+@dataclass(frozen=True)
+class StreamView:
+    """Converter of one device's samples to display messages of a log.
+
+    Attributes:
+        raw_schema: Name of the schema of its raw samples, of `RAW_SCHEMAS`.
+        metadata: Names and units of its counts, so that the log can be read on its own.
+        topics: Topics that it writes, and their types.
+        messages: Yields the display messages of the next samples of the device, at least one;
+            the second argument is the time at which each was read, since the Unix epoch [ns].
+    """
+
+    raw_schema: str
+    metadata: Mapping[str, str]
+    topics: Mapping[str, Schema]
+    messages: Callable[[Sequence[Sample], Sequence[int]], Messages]
+
+
+def legs_view(name: str, *, profile: LegProfile) -> StreamView:
+    """Return the converter of leg counts to joint states, unwrapped.
 
     Args:
         name: Name of the stream.
         profile: Profile of the robot.
     """
+    topic, unwrapped = f"/{name}/joint_states", UnwrappedAngles(profile)
+    names = [f"leg_{leg}" for leg in sorted(profile.legs)]
+    metadata = {
+        "counts": ", ".join(f"leg_{leg}" for leg in profile.legs),
+        "unit": f"1/{profile.counts_per_revolution} turn",
+        "zero": ", ".join(f"{count:g}" for count in profile.zero_counts),
+        "sign": ", ".join(map(str, profile.sign)),
+    }
 
-    def __init__(self, name: str, *, profile: LegProfile) -> None:
-        self.raw_schema = VALUES_NAME if profile.layout == "table" else COUNTS_NAME
-        self._topic = f"/{name}/joint_states"
+    def messages(samples: Sequence[Sample], stamps: Sequence[int]) -> Messages:
+        theta = unwrapped(samples)
+        for row in range(0, len(samples), _stride(profile.rate)):
+            yield topic, stamps[row], joint_state(stamps[row], names, position=theta[row])
+
+    raw_schema = VALUES_NAME if profile.layout == "table" else COUNTS_NAME
+    return StreamView(raw_schema, metadata, {topic: JOINT_STATE}, messages)
+
+
+class UnwrappedAngles:
+    """Decoder of leg angles that goes on unwrapping from call to call.
+
+    Args:
+        profile: Profile of the robot.
+    """
+
+    def __init__(self, profile: LegProfile) -> None:
         self._profile = profile
-        self._stride = _stride(profile.rate)
         self._last: tuple[Sample, Array] | None = None
-        self.topics = {self._topic: JOINT_STATE}
-        self.metadata = {
-            "counts": ", ".join(f"leg_{leg}" for leg in profile.legs),
-            "unit": f"1/{profile.counts_per_revolution} turn",
-            "zero": ", ".join(f"{count:g}" for count in profile.zero_counts),
-            "sign": ", ".join(map(str, profile.sign)),
-        }
 
-    def messages(
-        self, samples: Sequence[Sample], stamps: Sequence[int]
-    ) -> Iterator[tuple[str, int, bytes]]:
-        """Yield joint states of the legs; see `StreamView.messages`.
-
-        Args:
-            samples: The next samples of the robot.
-            stamps: Time at which each was read, since the Unix epoch [ns].
-        """
-        theta = self._continued(samples)
-        names = [f"leg_{leg}" for leg in sorted(self._profile.legs)]
-        for row in range(0, len(samples), self._stride):
-            yield self._topic, stamps[row], joint_state(stamps[row], names, position=theta[row])
-
-    def _continued(self, samples: Sequence[Sample]) -> Array:
-        """Decode angles, unwrapped continuously from the last sample of the previous call."""
+    def __call__(self, samples: Sequence[Sample]) -> Array:
+        """Decode the angles of the next samples, at least one, shape (n, legs) [rad]."""
         if self._last is None:
             theta = decode_angles(self._profile, samples).theta
         else:
@@ -113,185 +103,129 @@ class LegsView:
         return theta
 
 
-class ImuView:
-    """Orientation, rate and specific force of the body; satisfies `StreamView`.
+def imu_view(name: str, *, profile: ImuProfile) -> StreamView:
+    """Return the converter to orientation, rate and specific force of the body.
 
     Args:
         name: Name of the stream.
         profile: Profile of the unit.
     """
+    topic, stride = f"/{name}/data", _stride(profile.rate)
+    mount = Rotation.from_quat(profile.mounting, scalar_first=True)
+    unmount = mount.inv()
+    metadata = {
+        "counts": "quaternion w, x, y, z, angular rate x, y, z, specific force x, y, z",
+        "unit": f"1/{profile.quaternion_scale:g}, 1/{profile.rate_scale:g} rad/s, "
+        f"1/{profile.force_scale:g} m/s2",
+    }
 
-    def __init__(self, name: str, *, profile: ImuProfile) -> None:
-        self.raw_schema = VALUES_NAME if profile.link == "table" else COUNTS_NAME
-        self._topic = f"/{name}/data"
-        self._profile = profile
-        self._stride = _stride(profile.rate)
-        self._mount = Rotation.from_quat(profile.mounting, scalar_first=True)
-        self._unmount = self._mount.inv()
-        self.topics = {self._topic: IMU}
-        self.metadata = {
-            "counts": "quaternion w, x, y, z, angular rate x, y, z, specific force x, y, z",
-            "unit": f"1/{profile.quaternion_scale:g}, 1/{profile.rate_scale:g} rad/s, "
-            f"1/{profile.force_scale:g} m/s2",
-        }
-
-    def messages(
-        self, samples: Sequence[Sample], stamps: Sequence[int]
-    ) -> Iterator[tuple[str, int, bytes]]:
-        """Yield `Imu` messages; see `StreamView.messages`.
-
-        Args:
-            samples: The next samples of the unit.
-            stamps: Time at which each was read, since the Unix epoch [ns].
-        """
-        chosen = range(0, len(samples), self._stride)
-        counts = as_columns(samples).counts[:: self._stride]
+    def messages(samples: Sequence[Sample], stamps: Sequence[int]) -> Messages:
+        counts = as_columns(samples).counts[::stride]
         # Not from roll, pitch and yaw, as in decode_orientation: that would take several times as
         # long, ten times a second.
         measured = Rotation.from_quat(counts[:, :4], scalar_first=True)
-        orientation = (measured * self._unmount).as_quat().tolist()
-        rate = self._mount.apply(counts[:, 4:7] / self._profile.rate_scale).tolist()
-        force = self._mount.apply(counts[:, 7:] / self._profile.force_scale).tolist()
-        for i, row in enumerate(chosen):
-            message = imu(
-                stamps[row],
-                orientation=orientation[i],
-                angular_rate=rate[i],
-                specific_force=force[i],
-            )
-            yield self._topic, stamps[row], message
+        orientation = (measured * unmount).as_quat().tolist()
+        rate = mount.apply(counts[:, 4:7] / profile.rate_scale).tolist()
+        force = mount.apply(counts[:, 7:] / profile.force_scale).tolist()
+        for stamp, q, w, f in zip(stamps[::stride], orientation, rate, force, strict=True):
+            yield topic, stamp, imu(stamp, orientation=q, angular_rate=w, specific_force=f)
+
+    raw_schema = VALUES_NAME if profile.link == "table" else COUNTS_NAME
+    return StreamView(raw_schema, metadata, {topic: IMU}, messages)
 
 
-class DrivesView:
-    """Angles and speeds of both discs as joint states; satisfies `StreamView`.
+def drives_view(name: str, *, profile: DriveProfile) -> StreamView:
+    """Return the converter to angles and speeds of both discs as joint states.
 
     Args:
         name: Name of the stream.
         profile: Both drives.
     """
+    topic = f"/{name}/joint_states"
+    discs = {
+        profile.leg.node: ("leg_disc", profile.leg),
+        profile.ground.node: ("ground_disc", profile.ground),
+    }
+    metadata = {
+        "counts": "motor position, motor velocity",
+        "unit": "turn, turn/s",
+        "channels": ", ".join(f"{node} {disc}" for node, (disc, _) in discs.items()),
+        "turns of the motor in one of the disc": ", ".join(
+            f"{place.sign * place.gear:g}" for _, place in discs.values()
+        ),
+    }
 
-    raw_schema = VALUES_NAME
-
-    def __init__(self, name: str, *, profile: DriveProfile) -> None:
-        self._topic = f"/{name}/joint_states"
-        self._discs = {
-            profile.leg.node: ("leg_disc", profile.leg),
-            profile.ground.node: ("ground_disc", profile.ground),
-        }
-        self.topics = {self._topic: JOINT_STATE}
-        self.metadata = {
-            "counts": "motor position, motor velocity",
-            "unit": "turn, turn/s",
-            "channels": ", ".join(f"{node} {disc}" for node, (disc, _) in self._discs.items()),
-            "turns of the motor in one of the disc": ", ".join(
-                f"{place.sign * place.gear:g}" for _, place in self._discs.values()
-            ),
-        }
-
-    def messages(
-        self, samples: Sequence[Sample], stamps: Sequence[int]
-    ) -> Iterator[tuple[str, int, bytes]]:
-        """Yield joint states of one disc each; see `StreamView.messages`.
-
-        Args:
-            samples: The next samples of both drives.
-            stamps: Time at which each was read, since the Unix epoch [ns].
-        """
+    def messages(samples: Sequence[Sample], stamps: Sequence[int]) -> Messages:
         for sample, stamp in zip(samples, stamps, strict=True):
-            disc, place = self._discs[sample.channel]
+            disc, place = discs[sample.channel]
             # The factor from rev/s to rad/s also converts a position from rev to rad.
             angle, speed = (disc_speed(place, count) for count in sample.counts)
-            yield self._topic, stamp, joint_state(stamp, [disc], position=[angle], velocity=[speed])
+            yield topic, stamp, joint_state(stamp, [disc], position=[angle], velocity=[speed])
+
+    return StreamView(VALUES_NAME, metadata, {topic: JOINT_STATE}, messages)
 
 
-class LoadCellView:
-    """Mean force of each `MEAN_OVER` as a wrench; satisfies `StreamView`.
+def load_cell_view(name: str, *, profile: LoadCellProfile) -> StreamView:
+    """Return the converter to the mean force of each `MEAN_OVER` as a wrench.
 
     Args:
         name: Name of the stream.
         profile: Profile of the cell.
     """
+    topic, step = f"/{name}/wrench", max(int(profile.rate / ENOUGH), 1)
+    metadata = {
+        "counts": "Fx, Fy, Fz, Tx, Ty, Tz",
+        "unit": f"1/{profile.counts_per_force:g} N for the forces",
+        "normal force": _axis(profile.normal.sign, profile.normal.index),
+        "traction force": _axis(profile.traction.sign, profile.traction.index),
+    }
 
-    raw_schema = COUNTS_NAME
+    def messages(samples: Sequence[Sample], stamps: Sequence[int]) -> Messages:
+        forces = decode_forces(profile, samples[::step])
+        return _mean_wrenches(topic, forces, stamps[::step], profile.rate / step)
 
-    def __init__(self, name: str, *, profile: LoadCellProfile) -> None:
-        self._topic = f"/{name}/wrench"
-        self._profile = profile
-        self._thin = max(int(profile.rate / ENOUGH), 1)
-        self.topics = {self._topic: WRENCH}
-        self.metadata = {
-            "counts": "Fx, Fy, Fz, Tx, Ty, Tz",
-            "unit": f"1/{profile.counts_per_force:g} N for the forces",
-            "normal force": _axis(profile.normal.sign, profile.normal.index),
-            "traction force": _axis(profile.traction.sign, profile.traction.index),
-        }
-
-    def messages(
-        self, samples: Sequence[Sample], stamps: Sequence[int]
-    ) -> Iterator[tuple[str, int, bytes]]:
-        """Yield wrenches of mean forces; see `StreamView.messages`.
-
-        Args:
-            samples: The next samples of the load cell.
-            stamps: Time at which each was read, since the Unix epoch [ns].
-        """
-        step = self._thin
-        forces = decode_forces(self._profile, samples[::step])
-        yield from _mean_wrenches(self._topic, forces, stamps[::step], self._profile.rate / step)
+    return StreamView(COUNTS_NAME, metadata, {topic: WRENCH}, messages)
 
 
-class RigBoardView:
-    """Mean force and speeds of each `MEAN_OVER`; satisfies `StreamView`.
+def board_view(name: str, *, profile: BoardProfile) -> StreamView:
+    """Return the converter to mean force and speeds of each `MEAN_OVER`.
 
     Args:
         name: Name of the stream.
         profile: Profile of the board.
     """
+    wrenches, joints = f"/{name}/wrench", f"/{name}/joint_states"
+    metadata = {
+        "counts": "normal force, traction force, speed of leg disc, speed of ground disc",
+        "unit": f"1/{profile.counts_per_force:g} N (signs {profile.normal_sign}, "
+        f"{profile.traction_sign}), 1/{profile.counts_per_speed:g} rad/s",
+    }
 
-    def __init__(self, name: str, *, profile: BoardProfile) -> None:
-        self.raw_schema = VALUES_NAME if profile.link == "table" else COUNTS_NAME
-        self._profile = profile
-        self._wrench = f"/{name}/wrench"
-        self._joints = f"/{name}/joint_states"
-        self.topics = {self._wrench: WRENCH, self._joints: JOINT_STATE}
-        self.metadata = {
-            "counts": "normal force, traction force, speed of leg disc, speed of ground disc",
-            "unit": f"1/{profile.counts_per_force:g} N (signs {profile.normal_sign}, "
-            f"{profile.traction_sign}), 1/{profile.counts_per_speed:g} rad/s",
-        }
-
-    def messages(
-        self, samples: Sequence[Sample], stamps: Sequence[int]
-    ) -> Iterator[tuple[str, int, bytes]]:
-        """Yield wrenches and joint states of mean forces and speeds; see `StreamView.messages`.
-
-        Args:
-            samples: The next samples of the board.
-            stamps: Time at which each was read, since the Unix epoch [ns].
-        """
-        forces, speeds = decode_board(self._profile, samples)
-        yield from _mean_wrenches(self._wrench, forces, stamps, self._profile.rate)
-        for part in _parts(len(samples), self._profile.rate):
+    def messages(samples: Sequence[Sample], stamps: Sequence[int]) -> Messages:
+        forces, speeds = decode_board(profile, samples)
+        yield from _mean_wrenches(wrenches, forces, stamps, profile.rate)
+        for part in _parts(len(samples), profile.rate):
             means = [float(speeds.leg[part].mean()), float(speeds.ground[part].mean())]
             stamp = stamps[part.stop - 1]
-            yield self._joints, stamp, joint_state(stamp, _DISCS, velocity=means)
+            yield joints, stamp, joint_state(stamp, _DISCS, velocity=means)
+
+    raw_schema = VALUES_NAME if profile.link == "table" else COUNTS_NAME
+    return StreamView(raw_schema, metadata, {wrenches: WRENCH, joints: JOINT_STATE}, messages)
 
 
 def rig_views(profile: RigProfile) -> dict[str, StreamView]:
     """Return the views of all streams of a slip rig, by the streams' names."""
     views: dict[str, StreamView] = {}
     if profile.board is not None:
-        views["board"] = RigBoardView("board", profile=profile.board)
+        views["board"] = board_view("board", profile=profile.board)
     if profile.drives is not None:
-        views["drives"] = DrivesView("drives", profile=profile.drives)
+        views["drives"] = drives_view("drives", profile=profile.drives)
     if profile.load_cell is not None:
-        views["load_cell"] = LoadCellView("load_cell", profile=profile.load_cell)
+        views["load_cell"] = load_cell_view("load_cell", profile=profile.load_cell)
     return views
 
 
-def _mean_wrenches(
-    topic: str, forces: Forces, stamps: Sequence[int], rate: float
-) -> Iterator[tuple[str, int, bytes]]:
+def _mean_wrenches(topic: str, forces: Forces, stamps: Sequence[int], rate: float) -> Messages:
     for part in _parts(len(stamps), rate):
         normal, traction = float(forces.normal[part].mean()), float(forces.traction[part].mean())
         stamp = stamps[part.stop - 1]

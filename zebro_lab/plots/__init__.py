@@ -3,12 +3,11 @@
 
 from zebro_lab.plots.noise import residuals
 from zebro_lab.plots.posterior import corner, traces
-from zebro_lab.plots.sheet import Blocks, parameter_labels, save
+from zebro_lab.plots.sheet import parameter_labels, save
 from zebro_lab.plots.slip import slip_curves
 from zebro_lab.plots.surface import slip_surface
 
 __all__ = [
-    "Blocks",
     "corner",
     "parameter_labels",
     "residuals",

@@ -33,7 +33,6 @@ def animate(
     folder: Path,
     *,
     title: str,
-    simulated: bool,
     progress: Callable[[float], None] = lambda _: None,
 ) -> Path:
     """Write an animation of the walking robot; the camera follows the body over a fixed grid.
@@ -44,7 +43,6 @@ def animate(
         folder: Folder to write `animation.mp4` (with ffmpeg on the search path) or
             `animation.gif` into.
         title: Title of the animation; name the model.
-        simulated: Whether to append "(simulated)" to the title.
         progress: Called with the fraction drawn, 0 to 1 [-].
 
     Returns:
@@ -54,7 +52,7 @@ def animate(
     frames, speed_up = frame_times(path.t)
     index = np.searchsorted(path.t, frames).clip(0, len(path.t) - 1)
     writer, name = _writer()
-    figure = new_figure(title, simulated, width=6.4, height=4.0)
+    figure = new_figure(title, True, width=6.4, height=4.0)
     figure.set_dpi(100)
     scene = _Scene(figure, path, robot, speed_up)
     with writer.saving(figure, str(folder / name), dpi=100):

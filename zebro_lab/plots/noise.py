@@ -9,8 +9,9 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 
+from model.bayes.blocks import SlipBlocks
 from model.slip.law import Array
-from zebro_lab.plots.sheet import BLUE, RED, Blocks, new_figure, slip_label, styled
+from zebro_lab.plots.sheet import BLUE, RED, new_figure, slip_label, styled
 
 _MAX_LAG = 20
 _LAG_LIMIT = 0.05
@@ -19,9 +20,7 @@ _NORMAL_90, _NORMAL_95 = 1.6449, 1.96  # half-widths of a standard normal's cent
 
 
 @styled
-def residuals(
-    blocks: Blocks, *, whitened: Array, run_score: Array, title: str, simulated: bool
-) -> Figure:
+def residuals(blocks: SlipBlocks, *, whitened: Array, run_score: Array, simulated: bool) -> Figure:
     """Draw the residuals of a fit, as four checks of the noise model.
 
     Args:
@@ -30,14 +29,13 @@ def residuals(
             normal when the model holds, in the blocks' order, shape (n,) [-].
         run_score: Mean of each run in standard deviations of its posterior predictive, shape
             (n_runs,) [-].
-        title: Title of the figure.
         simulated: Whether to append "(simulated)" to the title.
 
     Returns:
         The figure: residuals over slip, their distribution, their autocorrelation within runs,
         and the sorted run scores with the central 90 %.
     """
-    figure = new_figure(title, simulated, width=7.5, height=6.2)
+    figure = new_figure("Residuals", simulated, width=7.5, height=6.2)
     over_slip, distribution, lags, runs = figure.subplots(2, 2).ravel()
     points = over_slip.scatter(
         blocks.slip, whitened, c=blocks.normal_force, cmap="viridis", s=8, linewidths=0, alpha=0.8

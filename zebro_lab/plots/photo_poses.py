@@ -12,12 +12,11 @@ from numpy.typing import NDArray
 from model.poses import Poses
 from model.robot import Robot
 from model.slip.law import Array
-from zebro_lab.plots.sheet import BLUE, RED, legend_below, new_figure, styled
+from zebro_lab.plots.sheet import BLUE, RED, draw_band, legend_below, new_figure, styled
 from zebro_lab.plots.walk_robot import leg_arcs, outline, to_world
 
 _COLUMN = 2.6  # inches
 _IN_AIR = "0.55"
-_SHOWN_DRAWS = 60
 
 
 @dataclass(frozen=True)
@@ -66,17 +65,17 @@ def photos_beside_poses(
     )  # fmt: skip
     panels = figure.subplots(2, len(shots), squeeze=False)
     taken = "simulated photograph" if simulated_photos else "photograph"
-    for (above, below), shot in zip(panels.T, shots, strict=True):
-        above.imshow(shot.picture[:, :, ::-1], extent=shot.extent, interpolation="antialiased")
-        above.set_title(f"t = {shot.t:.2f} s", loc="left")
-        _draw_robot(below, shot, robot)
+    for (photograph, drawn), shot in zip(panels.T, shots, strict=True):
+        photograph.imshow(shot.picture[:, :, ::-1], extent=shot.extent, interpolation="antialiased")
+        photograph.set_title(f"t = {shot.t:.2f} s", loc="left")
+        _draw_robot(drawn, shot, robot)
         off = 1e3 * np.linalg.norm(shot.position[:2] - shot.tracked[:2])
         turned = np.degrees(np.angle(np.exp(1j * (shot.orientation[2] - shot.tracked[2]))))
-        below.set_title(f"{off:.0f} mm, {turned:+.1f} deg off", loc="left")
-        for axes in (above, below):
+        drawn.set_title(f"{off:.0f} mm, {turned:+.1f} deg off", loc="left")
+        for axes in (photograph, drawn):
             axes.set(xlim=shot.extent[:2], ylim=shot.extent[2:], aspect="equal")
             axes.tick_params(labelsize=7)
-        below.set_xlabel("x [m]")
+        drawn.set_xlabel("x [m]")
     panels[0, 0].set_ylabel(f"{taken}\ny [m]")
     panels[1, 0].set_ylabel("predicted (simulated)\ny [m]")
     legend_below(figure, columns=4)
@@ -133,8 +132,7 @@ def band_over_floor(
     axes = figure.add_subplot()
     # The photograph is drawn paler, so that the paths stand out.
     axes.imshow(floor[:, :, ::-1], extent=extent, interpolation="antialiased", alpha=0.55)
-    for i, position in enumerate(band.position[:_SHOWN_DRAWS] if band is not None else ()):
-        axes.plot(*position.T, color=BLUE, lw=0.5, alpha=0.25, label="draws" if i == 0 else None)
+    draw_band(axes, band, label="draws", color=BLUE, lw=0.5, alpha=0.25)
     axes.plot(*path.position.T, color="black", lw=1.4, label="predicted path")
     axes.plot(*track.position.T, ls="none", marker="o", ms=4, color=RED, label="track")
     axes.set(xlabel="x [m]", ylabel="y [m]", xlim=extent[:2], ylim=extent[2:], aspect="equal")

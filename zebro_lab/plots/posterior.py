@@ -9,43 +9,32 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
-from numpy.typing import ArrayLike
 from scipy.ndimage import gaussian_filter
 
 from model.slip.law import Array
-from zebro_lab.plots.sheet import BLUE, CYCLE, RED, legend_below, new_figure, styled
+from zebro_lab.plots.sheet import BLUE, CYCLE, legend_below, new_figure, styled
 
 _REGIONS = ("#CCE3F0", "#66AAD1")  # blue, mixed with white: 90 % and 50 % of the draws
 
 
 @styled
-def corner(
-    draws: Array,
-    *,
-    labels: Sequence[str],
-    title: str,
-    simulated: bool,
-    truth: ArrayLike | None = None,
-) -> Figure:
+def corner(draws: Array, *, labels: Sequence[str], simulated: bool) -> Figure:
     """Draw every marginal and every pair of parameters of a posterior.
 
     Args:
         draws: Posterior draws, shape (n_draws, k).
         labels: Axis label of each parameter with its unit, k of them; see `parameter_labels`.
-        title: Title of the figure.
         simulated: Whether to append "(simulated)" to the title.
-        truth: True values, shape (k,); NaN for an unknown one; None if all are unknown.
 
     Returns:
         The figure: densities on the diagonal, titled with median and central 90 %; regions of
         highest density with 50 % and 90 % of the draws below it.
     """
     k = draws.shape[1]
-    known = np.full(k, np.nan) if truth is None else np.asarray(truth, dtype=float)
     side = max(7.0, 1.75 * k)
-    figure = new_figure(title, simulated, width=side, height=side)
+    figure = new_figure("Posterior of the slip law", simulated, width=side, height=side)
     panels = figure.subplots(k, k, squeeze=False, sharex="col")
-    edges = [_edges(np.append(draws[:, i], known[i])) for i in range(k)]
+    edges = [_edges(values) for values in draws.T]
     for row in range(k):
         for column in range(k):
             axes: Axes = panels[row, column]
@@ -53,11 +42,9 @@ def corner(
                 axes.remove()
                 continue
             if column == row:
-                _draw_marginal(axes, draws[:, row], edges[row], known[row])
+                _draw_marginal(axes, draws[:, row], edges[row])
             else:
                 _draw_pair(axes, draws[:, [column, row]], (edges[column], edges[row]))
-                axes.axvline(known[column], color=RED, lw=1.0)
-                axes.axhline(known[row], color=RED, lw=1.0)
             _label_corner(axes, labels, row, column)
     figure.align_labels()
     legend_below(figure, columns=3)
@@ -65,13 +52,12 @@ def corner(
 
 
 @styled
-def traces(chains: Array, *, labels: Sequence[str], title: str, simulated: bool = False) -> Figure:
+def traces(chains: Array, *, labels: Sequence[str], simulated: bool) -> Figure:
     """Draw the draws of every parameter in order, one colour for each independent ensemble.
 
     Args:
         chains: Draws, shape (n_ensembles, n_draws, k).
         labels: Axis label of each parameter with its unit, k of them; see `parameter_labels`.
-        title: Title of the figure.
         simulated: Whether to append "(simulated)" to the title.
 
     Returns:
@@ -79,7 +65,7 @@ def traces(chains: Array, *, labels: Sequence[str], title: str, simulated: bool 
         lie on one another. Long chains are thinned to about 2,000 points a line.
     """
     n_ensembles, n_draws, k = chains.shape
-    figure = new_figure(title, simulated, width=7.5, height=1.2 + 1.35 * k)
+    figure = new_figure("Traces by ensemble", simulated, width=7.5, height=1.2 + 1.35 * k)
     panels = figure.subplots(k, 2, squeeze=False, width_ratios=(1, 2.4))
     kept = np.arange(0, n_draws, max(1, n_draws // 2000))
     for row, (density, trace) in enumerate(panels):
@@ -123,14 +109,12 @@ def _bandwidth(values: Array, edges: Array, *, power: float) -> float:
     return float(np.std(values)) * len(values) ** -power / float(edges[1] - edges[0])
 
 
-def _draw_marginal(axes: Axes, values: Array, edges: Array, truth: float) -> None:
+def _draw_marginal(axes: Axes, values: Array, edges: Array) -> None:
     axes.fill_between(_middles(edges), _density(values, edges), color=BLUE, alpha=0.45, lw=0)
     low, median, high = np.quantile(values, (0.05, 0.5, 0.95))
     axes.axvline(median, color=BLUE, lw=1.2, label="median")
     for edge in (low, high):
         axes.axvline(edge, color=BLUE, lw=0.9, ls="--", label="central 90 %")
-    if np.isfinite(truth):
-        axes.axvline(truth, color=RED, lw=1.2, label="truth")
     digits = 1 - math.floor(math.log10(high - low)) if high > low else 3
     low, median, high = (f"{value:.{max(digits, 0)}f}" for value in (low, median, high))
     axes.set_title(f"{median}\n[{low}, {high}]", fontsize=8)

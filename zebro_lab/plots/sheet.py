@@ -8,20 +8,23 @@ import math
 import re
 from collections.abc import Sequence
 from os import PathLike
-from typing import IO, Protocol
+from typing import IO, Any
 
 import numpy as np
 from matplotlib import style
+from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 from pint import Unit
 
+from model.bayes.blocks import SlipBlocks
+from model.poses import Poses
 from model.slip.law import Array, Parameter
 from zebro_lab.files.own_file import COMMENT, SOFTWARE
 
 BLUE, RED = "#0072B2", "#D55E00"
 CYCLE = (BLUE, "#E69F00", "#009E73", RED, "#CC79A7", "#56B4E9", "#000000", "#999999")
+_SHOWN_DRAWS = 60
 NARROW = 0.15  # a peak in the first 15 % of the tested slip is drawn in an additional panel
 
 # A decorator. The user's matplotlibrc neither affects the figures nor is changed by them.
@@ -38,29 +41,6 @@ styled = style.context(
         },
     ]
 )
-
-
-class Blocks(Protocol):
-    """Block means of a rig experiment, as the fit saw them.
-
-    Attributes:
-        slip: Mean slip ratio of each block in `definition`, shape (n,) [-].
-        normal_force: Mean normal force, shape (n,) [N].
-        traction_force: Mean traction force, positive when driving, shape (n,) [N].
-        run: Index of the run each block belongs to, non-decreasing, shape (n,).
-        definition: Slip definition of the slip ratios.
-    """
-
-    @property
-    def slip(self) -> Array: ...  # noqa: D102 - the class docstring says it
-    @property
-    def normal_force(self) -> Array: ...  # noqa: D102
-    @property
-    def traction_force(self) -> Array: ...  # noqa: D102
-    @property
-    def run(self) -> NDArray[np.intp]: ...  # noqa: D102
-    @property
-    def definition(self) -> str: ...  # noqa: D102
 
 
 def parameter_labels(parameters: Sequence[Parameter]) -> tuple[str, ...]:
@@ -124,7 +104,52 @@ def legend_below(figure: Figure, *, columns: int) -> None:
     figure.legend(entries.values(), entries.keys(), loc="outside lower center", ncols=columns)
 
 
-def slip_label(blocks: Blocks) -> str:
+def map_axes(axes: Axes) -> None:
+    """Set up axes as a map: x to the right and y up, both to one scale, with a grid."""
+    axes.set(xlabel="x [m]", ylabel="y [m]", aspect="equal")
+    axes.set_adjustable("datalim")
+    axes.grid(color="0.92", lw=0.6)
+
+
+def map_and_panels(
+    title: str, *, simulated: bool, height: float, names: Sequence[str]
+) -> tuple[Figure, Axes, list[Axes]]:
+    """Create a figure with a map on the left and panels over time on the right.
+
+    Args:
+        title: Title of the figure.
+        simulated: Whether to append "(simulated)" to the title.
+        height: Height of the figure [inch].
+        names: Label of each panel's vertical axis, from top to bottom.
+
+    Returns:
+        The figure, the map and the panels.
+    """
+    figure = new_figure(title, simulated, width=9.0, height=height)
+    grid = figure.add_gridspec(len(names), 2, width_ratios=(1.2, 1.0))
+    map_axes(figure.add_subplot(grid[:, 0]))
+    for i, name in enumerate(names):
+        axes = figure.add_subplot(grid[i, 1])
+        axes.set_ylabel(name)
+        axes.grid(color="0.92", lw=0.6)
+    figure.axes[-1].set_xlabel("time [s]")
+    return figure, figure.axes[0], figure.axes[1:]
+
+
+def draw_band(axes: Axes, band: Poses | None, *, label: str | None = None, **style: Any) -> None:
+    """Draw some draws of a path on a map, without any if the path has none.
+
+    Args:
+        axes: The map.
+        band: The draws; None without draws.
+        label: Label of all lines together in a legend.
+        style: Style of the lines.
+    """
+    for i, position in enumerate(() if band is None else band.position[:_SHOWN_DRAWS]):
+        axes.plot(*position.T, label=None if i else label, **style)
+
+
+def slip_label(blocks: SlipBlocks) -> str:
     """Return the label of the slip axis, with the slip definition."""
     return f"slip ratio, {blocks.definition} definition [-]"
 

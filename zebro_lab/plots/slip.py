@@ -8,15 +8,16 @@ from dataclasses import dataclass
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.gridspec import SubplotSpec
 from matplotlib.ticker import MaxNLocator
 from numpy.typing import ArrayLike, NDArray
 
+from model.bayes.blocks import SlipBlocks
 from model.slip.law import Array, SlipLaw
 from zebro_lab.plots.sheet import (
     BLUE,
     NARROW,
     RED,
-    Blocks,
     legend_below,
     new_figure,
     plain,
@@ -32,12 +33,11 @@ _NEAR_LOAD = 0.1  # relative load difference beyond which a block is not compara
 
 @styled
 def slip_curves(
-    blocks: Blocks,
+    blocks: SlipBlocks,
     law: SlipLaw,
     *,
     draws: Array,
     load_levels: ArrayLike,
-    title: str,
     simulated: bool,
 ) -> Figure:
     """Draw data and posterior slip curves, one panel for each tested load.
@@ -52,7 +52,6 @@ def slip_curves(
         law: Slip law of the draws.
         draws: Posterior draws of the law's parameters, shape (n_draws, k).
         load_levels: Nominal loads, shape (n_levels,) [N].
-        title: Title of the figure.
         simulated: Whether to append "(simulated)" to the title.
 
     Returns:
@@ -62,24 +61,16 @@ def slip_curves(
     reach = _narrow_reach(blocks, curves)
     groups = math.ceil(math.sqrt(len(curves))) if reach is None else 1 + (len(curves) > 4)
     rows, width = math.ceil(len(curves) / groups), 1 if reach is None else 2
-    figure = new_figure(
-        title, simulated, width=max(7.0, 3.2 * groups * width), height=1.2 + 2.2 * max(rows, 1.6)
-    )
+    sides = max(7.0, 3.2 * groups * width), 1.2 + 2.2 * max(rows, 1.6)
+    figure = new_figure("Slip curve by load", simulated, width=sides[0], height=sides[1])
     grid = figure.add_gridspec(rows, groups * width)
     for index, curve in enumerate(curves):
         row, column = index // groups, index % groups * width
-        whole = figure.add_subplot(grid[row, column])
-        _draw_load_curve(whole, blocks, curve)
-        panels = [whole]
-        if reach is None:
-            whole.set_title(f"{_load_text(blocks, curve)}\n{_peak_text(curve)}", loc="left")
-        else:
-            whole.set_title(_load_text(blocks, curve), loc="left")
-            panels.append(figure.add_subplot(grid[row, column + 1], sharey=whole))
-            _draw_close_up(panels[1], blocks, curve, reach)
+        cells = [grid[row, column + i] for i in range(width)]
+        panels = _draw_load(figure, cells, blocks, curve, reach)
         if column == 0:
-            whole.set_ylabel("traction force [N]")
-        if index + groups >= len(curves):  # nothing below
+            panels[0].set_ylabel("traction force [N]")
+        if index + groups >= len(curves):  # the last panel of its column
             for axes in panels:
                 axes.set_xlabel(slip_label(blocks))
     legend_below(figure, columns=3)
@@ -108,7 +99,29 @@ class _LoadCurve:
         return float(self.slip[peaks[0]]), float(self.bands[2, peaks[0]])
 
 
-def _load_curves(blocks: Blocks, law: SlipLaw, draws: Array, levels: Array) -> list[_LoadCurve]:
+def _draw_load(
+    figure: Figure, cells: Sequence[SubplotSpec], blocks: SlipBlocks, curve: _LoadCurve,
+    reach: tuple[float, float] | None,
+) -> list[Axes]:  # fmt: skip
+    """Draw the curve at one load, in a second panel its part within `reach`."""
+    whole = figure.add_subplot(cells[0])
+    _draw_load_curve(whole, blocks, curve)
+    load, peak = _load_text(blocks, curve), _peak_text(curve)
+    if reach is None:
+        whole.set_title(f"{load}\n{peak}", loc="left")
+        return [whole]
+    whole.set_title(load, loc="left")
+    close = figure.add_subplot(cells[1], sharey=whole)
+    _draw_load_curve(close, blocks, curve)
+    margin = 0.02 * (reach[1] - reach[0])
+    close.set_xlim(reach[0] - margin, reach[1])
+    close.set_title(peak, loc="left")
+    close.tick_params(labelleft=False)
+    close.xaxis.set_major_locator(MaxNLocator(4))
+    return [whole, close]
+
+
+def _load_curves(blocks: SlipBlocks, law: SlipLaw, draws: Array, levels: Array) -> list[_LoadCurve]:
     nearest = np.argmin(np.abs(blocks.normal_force[:, None] - levels), axis=1)
     values = draws.T[:, :, None]
     curves = []
@@ -120,7 +133,7 @@ def _load_curves(blocks: Blocks, law: SlipLaw, draws: Array, levels: Array) -> l
     return curves
 
 
-def _narrow_reach(blocks: Blocks, curves: Sequence[_LoadCurve]) -> tuple[float, float] | None:
+def _narrow_reach(blocks: SlipBlocks, curves: Sequence[_LoadCurve]) -> tuple[float, float] | None:
     """Return the slip range of the additional panel; None if no peak is narrow."""
     reach = NARROW * float(np.abs(blocks.slip).max())
     peaks = [peak for curve in curves if (peak := curve.main_peak())]
@@ -130,7 +143,7 @@ def _narrow_reach(blocks: Blocks, curves: Sequence[_LoadCurve]) -> tuple[float, 
     return max(-reach, min(low, 0.0)), min(reach, max(high, 0.0))
 
 
-def _draw_load_curve(axes: Axes, blocks: Blocks, curve: _LoadCurve) -> None:
+def _draw_load_curve(axes: Axes, blocks: SlipBlocks, curve: _LoadCurve) -> None:
     near = np.abs(blocks.normal_force - curve.load) <= _NEAR_LOAD * curve.load
     slip, force = blocks.slip, blocks.traction_force
     on, off = curve.rows & near, curve.rows & ~near
@@ -157,18 +170,7 @@ def _draw_load_curve(axes: Axes, blocks: Blocks, curve: _LoadCurve) -> None:
     axes.axhline(0, color="0.6", lw=0.5, zorder=0)
 
 
-def _draw_close_up(
-    axes: Axes, blocks: Blocks, curve: _LoadCurve, reach: tuple[float, float]
-) -> None:
-    _draw_load_curve(axes, blocks, curve)
-    margin = 0.02 * (reach[1] - reach[0])
-    axes.set_xlim(reach[0] - margin, reach[1])
-    axes.set_title(_peak_text(curve), loc="left")
-    axes.tick_params(labelleft=False)
-    axes.xaxis.set_major_locator(MaxNLocator(4))
-
-
-def _load_text(blocks: Blocks, curve: _LoadCurve) -> str:
+def _load_text(blocks: SlipBlocks, curve: _LoadCurve) -> str:
     loads = blocks.normal_force[curve.rows]
     if not len(loads):
         return f"load {curve.load:.4g} N (no blocks)"

@@ -9,9 +9,9 @@ from matplotlib.ticker import MaxNLocator
 from mpl_toolkits.mplot3d import Axes3D
 from numpy.typing import ArrayLike
 
+from model.bayes.blocks import SlipBlocks
 from model.slip.law import SlipLaw
 from zebro_lab.plots.sheet import (
-    Blocks,
     legend_below,
     new_figure,
     point_alpha,
@@ -22,16 +22,13 @@ from zebro_lab.plots.sheet import (
 
 
 @styled
-def slip_surface(
-    blocks: Blocks, law: SlipLaw, *, values: ArrayLike, title: str, simulated: bool
-) -> Figure:
+def slip_surface(blocks: SlipBlocks, law: SlipLaw, *, values: ArrayLike, simulated: bool) -> Figure:
     """Draw traction over slip and load as a surface, with the block means (compare Fig. 4-15).
 
     Args:
         blocks: Block means.
         law: Slip law.
         values: Parameter values of the law, shape (k,).
-        title: Title of the figure.
         simulated: Whether to append "(simulated)" to the title.
 
     Returns:
@@ -43,7 +40,7 @@ def slip_surface(
         load_low, load_high = 0.8 * load_low, 1.2 * load_high
     slip, load = np.meshgrid(slip_grid(blocks.slip, 60), np.linspace(load_low, load_high, 25))
     force = law.force(slip, load, np.asarray(values, dtype=float))
-    figure = new_figure(title, simulated, width=7.0, height=5.0)
+    figure = new_figure("Slip surface", simulated, width=7.0, height=5.0)
     axes = cast("Axes3D", figure.add_subplot(projection="3d", computed_zorder=False))
     axes.plot_surface(
         slip, load, force, cmap="viridis", linewidth=0, antialiased=False, rstride=1, cstride=1

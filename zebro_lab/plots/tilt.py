@@ -29,9 +29,9 @@ def tilt(t: Array, predicted: Array, measured: Array, *, title: str, simulated: 
     shown = np.abs(t - middle) <= _SHOWN / 2
     names = ("roll [deg]\n(left side up)", "pitch [deg]\n(nose down)")
     panels = figure.subplots(2, 1, sharex=True)
-    for axes, name, said, seen in zip(panels, names, predicted.T, measured.T, strict=True):
+    for axes, name, expected, seen in zip(panels, names, predicted.T, measured.T, strict=True):
         axes.plot(t[shown], np.degrees(seen[shown]), color="0.6", lw=0.9, label="IMU")
-        axes.plot(t[shown], np.degrees(said[shown]), color=BLUE, lw=1.2, label="predicted")
+        axes.plot(t[shown], np.degrees(expected[shown]), color=BLUE, lw=1.2, label="predicted")
         axes.set_ylabel(name)
         axes.grid(color="0.92", lw=0.6)
     panels[-1].set_xlabel("time [s]")

@@ -3,6 +3,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import combinations
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -11,11 +12,10 @@ from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 
 from tracking.camera.lens import Array
-from zebro_lab.plots.sheet import BLUE, CYCLE, RED, new_figure, styled
+from zebro_lab.plots.sheet import BLUE, CYCLE, RED, legend_below, new_figure, styled
 
 _WIDTH = 9.0  # inches
 _GREEN = CYCLE[2]
-_MOST_NUMBERS = 40
 
 
 @dataclass(frozen=True)
@@ -99,7 +99,7 @@ def over_floor(
         extent: Lowest x, highest x, lowest y, highest y of it [m].
         poses: x, y [m] and yaw [rad], shape (n, 3); NaN interrupts the path.
         ellipses: Outline of a region around each pose in which the robot is, shape (m, 2) [m].
-        labels: Label of each pose; empty for none.
+        labels: Label of each pose; empty for none. Every n-th is written, so that none overlap.
         title: Title of the figure.
         simulated: Whether to append "(simulated)" to the title.
 
@@ -122,12 +122,29 @@ def over_floor(
         *poses[:, :2].T, arrow * np.cos(poses[:, 2]), arrow * np.sin(poses[:, 2]), angles="xy",
         scale_units="xy", scale=1, color=_GREEN, width=0.002, headwidth=4, headlength=5,
     )  # fmt: skip
-    for (x, y, _), label in zip(poses, labels, strict=True):
-        if label:
-            axes.annotate(label, (x, y), xytext=(0, -9), textcoords="offset points", ha="center",
-                          va="top", fontsize=7)  # fmt: skip
     axes.set(xlabel="x [m]", ylabel="y [m]", xlim=extent[:2], ylim=extent[2:], aspect="equal")
+    labelled = [k for k, label in enumerate(labels) if label]
+    _label_apart(figure, axes, poses[labelled, :2], [labels[k] for k in labelled])
     return figure
+
+
+def _label_apart(figure: Figure, axes: Axes, points: Array, labels: Sequence[str]) -> None:
+    """Write every n-th label below its point, with the least n at which none overlap."""
+    texts = [
+        axes.annotate(
+            label, (x, y), xytext=(0, -9), textcoords="offset points", ha="center", va="top",
+            fontsize=7,
+        )
+        for (x, y), label in zip(points, labels, strict=True)
+    ]  # fmt: skip
+    figure.draw_without_rendering()  # extents are known once it is laid out
+    boxes = [text.get_window_extent() for text in texts]
+    n = 1
+    while any(one.overlaps(other) for one, other in combinations(boxes[::n], 2)):
+        n += 1
+    for k, text in enumerate(texts):
+        if k % n:
+            text.remove()
 
 
 @styled
@@ -172,8 +189,7 @@ def residual_page(
         axes.grid(color="0.93", lw=0.6)
         axes.set_axisbelow(True)
     figure.align_ylabels(panels)
-    handles, labels = panels[0].get_legend_handles_labels()
-    figure.legend(handles, labels, loc="outside lower center", ncols=4)
+    legend_below(figure, columns=4)
     return figure
 
 

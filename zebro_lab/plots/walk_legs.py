@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Plot slip ratio, normal force, traction and contact of each leg over time."""
 
-from collections.abc import Iterator
+from collections.abc import Mapping
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -20,69 +20,58 @@ _STANCE = "0.93"
 
 
 @styled
-def slip_ratios(path: WalkPath, *, title: str, simulated: bool) -> Figure:
+def slip_ratios(path: WalkPath, *, title: str) -> Figure:
     """Draw the longitudinal slip ratio of each leg over time (Fig. 5-16).
 
     Args:
         path: The stretch of walk to draw.
         title: Title of the figure; name the model.
-        simulated: Whether to append "(simulated)" to the title.
 
     Returns:
         The figure: a panel for each leg, arranged as on the robot; contact is shaded. A leg on its
         toe does not roll and may have no ratio. Limits leave out the largest few percent: a leg
         that is dragged while it hardly turns has very large ones.
     """
-    figure, panels = _leg_panels(title, simulated)
     limits = _limits(path.slip_ratio[path.contact], least=0.02, cut=0.03)
-    for leg, axes in panels:
-        _shade(axes, path.t, path.contact[:, leg])
-        axes.plot(path.t, path.slip_ratio[:, leg], color=BLUE, lw=0.9)
-        axes.set_ylim(limits)
-    _label(figure, "slip ratio, the model's own [-]", path.slip_ratio)
-    return figure
+    lines = {"slip ratio": path.slip_ratio}
+    return _leg_panels(
+        path.t, path.contact, lines, limits, label="slip ratio, the model's own [-]", title=title
+    )
 
 
 @styled
-def normal_forces(path: WalkPath, *, title: str, simulated: bool) -> Figure:
+def normal_forces(path: WalkPath, *, title: str) -> Figure:
     """Draw the normal force on each leg over time (Fig. 5-17).
 
     Args:
         path: The stretch of walk to draw.
         title: Title of the figure; name the model.
-        simulated: Whether to append "(simulated)" to the title.
 
     Returns:
         The figure: a panel for each leg, arranged as on the robot; contact is shaded.
     """
-    figure, panels = _leg_panels(title, simulated)
-    _, high = _limits(path.normal_force[path.contact], least=1.0)
-    for leg, axes in panels:
-        _shade(axes, path.t, path.contact[:, leg])
-        axes.plot(path.t, path.normal_force[:, leg], color=BLUE, lw=0.9)
-        axes.set_ylim(0, high)
-    _label(figure, "normal force [N]", path.normal_force)
-    return figure
+    limits = 0.0, _limits(path.normal_force[path.contact], least=1.0)[1]
+    lines = {"normal force": path.normal_force}
+    return _leg_panels(path.t, path.contact, lines, limits, label="normal force [N]", title=title)
 
 
 @styled
-def traction_forces(path: WalkPath, *, title: str, simulated: bool) -> Figure:
+def traction_forces(path: WalkPath, *, title: str) -> Figure:
     """Draw the traction force of the ground on each leg over time (Fig. 5-18).
 
     Args:
         path: The stretch of walk to draw.
         title: Title of the figure; name the model.
-        simulated: Whether to append "(simulated)" to the title.
 
     Returns:
         The figure: a panel for each leg, arranged as on the robot, forward and to the left of the
         heading; contact is shaded.
     """
-    return _draw_traction(path.t, path.traction_force, path.contact, title, simulated)
+    return _draw_traction(path.t, path.traction_force, path.contact, title)
 
 
 @styled
-def paired_traction(path: WalkPath, *, title: str, simulated: bool) -> Figure:
+def paired_traction(path: WalkPath, *, title: str) -> Figure:
     """Draw the sums of consecutive pairs of traction forces of each leg over time (Fig. 5-19).
 
     The thesis's traction changes sign from step to step; this is what it calls the net force.
@@ -90,29 +79,27 @@ def paired_traction(path: WalkPath, *, title: str, simulated: bool) -> Figure:
     Args:
         path: The stretch of walk to draw.
         title: Title of the figure; name the model.
-        simulated: Whether to append "(simulated)" to the title.
 
     Returns:
         The figure, as `traction_forces` draws it.
     """
     net = paired_sum(path.traction_force)
     first = slice(1, 2 * len(net), 2)
-    return _draw_traction(path.t[first], net, path.contact[first], title, simulated)
+    return _draw_traction(path.t[first], net, path.contact[first], title)
 
 
 @styled
-def gantt(path: WalkPath, *, title: str, simulated: bool) -> Figure:
+def gantt(path: WalkPath, *, title: str) -> Figure:
     """Draw when each leg was in contact (Fig. 2-1).
 
     Args:
         path: The stretch of walk to draw.
         title: Title of the figure; name the model.
-        simulated: Whether to append "(simulated)" to the title.
 
     Returns:
         The figure: a row for each leg, leg 1 on top; bars are contact, left legs darker.
     """
-    figure = new_figure(title, simulated, width=7.5, height=3.0)
+    figure = new_figure(title, True, width=7.5, height=3.0)
     axes = figure.add_subplot()
     for leg in range(N_LEGS):
         bars = [(start, end - start) for start, end in stances(path.t, path.contact[:, leg])]
@@ -151,29 +138,29 @@ def stances(t: Array, contact: NDArray[np.bool_]) -> list[tuple[float, float]]:
     ]
 
 
-def _draw_traction(
-    t: Array, force: Array, contact: NDArray[np.bool_], title: str, simulated: bool
-) -> Figure:
-    figure, panels = _leg_panels(title, simulated)
+def _draw_traction(t: Array, force: Array, contact: NDArray[np.bool_], title: str) -> Figure:
+    lines = {"forward": force[..., 0], "to the left": force[..., 1]}
     limits = _limits(force[contact], least=0.5)
-    for leg, axes in panels:
-        _shade(axes, t, contact[:, leg])
-        axes.plot(t, force[:, leg, 0], color=BLUE, lw=0.9, label="forward")
-        axes.plot(t, force[:, leg, 1], color=RED, lw=0.9, label="to the left")
-        axes.set_ylim(limits)
-    _label(figure, "traction force [N]", force)
-    legend_below(figure, columns=2)
-    return figure
+    return _leg_panels(t, contact, lines, limits, label="traction force [N]", title=title)
 
 
-def _leg_panels(title: str, simulated: bool) -> tuple[Figure, Iterator[tuple[int, Axes]]]:
-    """Return a figure and its panels, laid out as the legs are seen from above."""
-    figure = new_figure(title, simulated, width=8.0, height=6.2)
-    panels = figure.subplots(3, 2, sharex=True, sharey=True).ravel()
-    for leg, axes in enumerate(panels):
+def _leg_panels(
+    t: Array, contact: NDArray[np.bool_], lines: Mapping[str, Array],
+    limits: tuple[float, float], *, label: str, title: str,
+) -> Figure:  # fmt: skip
+    """Draw lines over time for each leg, laid out as the legs are seen from above."""
+    figure = new_figure(title, True, width=8.0, height=6.2)
+    for leg, axes in enumerate(figure.subplots(3, 2, sharex=True, sharey=True).ravel()):
         axes.set_title(f"leg {leg + 1}, {_NAMES[leg]}", loc="left")
         axes.yaxis.set_major_locator(MaxNLocator(5))
-    return figure, iter(enumerate(panels))
+        _shade(axes, t, contact[:, leg])
+        for (name, values), colour in zip(lines.items(), (BLUE, RED), strict=False):
+            axes.plot(t, values[:, leg], color=colour, lw=0.9, label=name)
+        axes.set_ylim(limits)
+    _label(figure, label, computed=any(np.isfinite(each).any() for each in lines.values()))
+    if len(lines) > 1:
+        legend_below(figure, columns=2)
+    return figure
 
 
 def _shade(axes: Axes, t: Array, contact: NDArray[np.bool_]) -> None:
@@ -195,15 +182,14 @@ def _limits(values: Array, *, least: float, cut: float = 0.01) -> tuple[float, f
     return low - margin, high + margin
 
 
-def _label(figure: Figure, what: str, values: Array) -> None:
+def _label(figure: Figure, what: str, *, computed: bool) -> None:
     """Label the axes; add a note if the model does not compute the quantity."""
     figure.supylabel(what, fontsize=9.0)
     for axes in figure.axes[-2:]:
         axes.set_xlabel("time [s]")
         axes.xaxis.set_major_locator(MaxNLocator(5))
-    if not np.isfinite(values).any():
-        for axes in figure.axes:
-            axes.text(
-                0.5, 0.7, "this model computes none", ha="center", color="0.4",
-                transform=axes.transAxes,
-            )  # fmt: skip
+    for axes in () if computed else figure.axes:
+        axes.text(
+            0.5, 0.7, "this model computes none", ha="center", color="0.4",
+            transform=axes.transAxes,
+        )  # fmt: skip

@@ -21,34 +21,24 @@ _MARGIN = 0.25  # of the body's length, around everything
 
 
 @styled
-def path_with_snapshots(
-    path: WalkPath,
-    robot: Robot,
-    *,
-    title: str,
-    simulated: bool,
-    snapshot_times: Sequence[float] | None = None,
-) -> Figure:
-    """Draw the path of the body's centre from above, with the body at a few times (Fig. 5-11).
+def path_with_snapshots(path: WalkPath, robot: Robot, *, title: str) -> Figure:
+    """Draw the path of the body's centre from above, with the body at six times (Fig. 5-11).
 
     Args:
         path: The walk.
         robot: The robot, for the size of its body.
         title: Title of the figure; name the model.
-        simulated: Whether to append "(simulated)" to the title.
-        snapshot_times: When to draw the body; six evenly spaced times by default [s].
 
     Returns:
         The figure, x to the right and y up, both to one scale. Dots along the path are a second
         apart in walks of up to a minute.
     """
     t = path.t
-    times = np.linspace(t[0], t[-1], _SNAPSHOTS) if snapshot_times is None else snapshot_times
-    shots = np.abs(t[:, None] - np.asarray(times)).argmin(axis=0)
+    shots = np.abs(t[:, None] - np.linspace(t[0], t[-1], _SNAPSHOTS)).argmin(axis=0)
     bodies = [_body(path, robot, int(shot)) for shot in shots]
     low, high = _extent(path, bodies, robot)
     width, height = _sides(high - low)
-    figure = new_figure(title, simulated, width=width, height=height)
+    figure = new_figure(title, True, width=width, height=height)
     axes = figure.add_subplot()
     colours = colormaps["viridis"](np.linspace(0, 0.9, len(shots)))
     for shot, body, colour in zip(shots, bodies, colours, strict=True):
@@ -70,13 +60,12 @@ def path_with_snapshots(
 
 
 @styled
-def motion(path: WalkPath, *, title: str, simulated: bool) -> Figure:
+def motion(path: WalkPath, *, title: str) -> Figure:
     """Draw position, velocity and acceleration of the body's centre over time (Fig. 5-2, 5-7).
 
     Args:
         path: The walk.
         title: Title of the figure; name the model.
-        simulated: Whether to append "(simulated)" to the title.
 
     Returns:
         The figure: a column for each of x, y, z in the inertial frame. The tips of impacts are
@@ -84,17 +73,16 @@ def motion(path: WalkPath, *, title: str, simulated: bool) -> Figure:
     """
     names = ("x", "y", "z")
     units = ("position [m]", "velocity [m/s]", "acceleration [m/s²]")
-    return _over_time(path.t, path.position, names, units, title=title, simulated=simulated)
+    return _over_time(path.t, path.position, names, units, title)
 
 
 @styled
-def orientation(path: WalkPath, *, title: str, simulated: bool) -> Figure:
+def orientation(path: WalkPath, *, title: str) -> Figure:
     """Draw roll, pitch and yaw with their rates and accelerations over time (Fig. 5-7, 5-23).
 
     Args:
         path: The walk.
         title: Title of the figure; name the model.
-        simulated: Whether to append "(simulated)" to the title.
 
     Returns:
         The figure: a column for each angle. The tips of impacts are cut off where they would
@@ -103,20 +91,14 @@ def orientation(path: WalkPath, *, title: str, simulated: bool) -> Figure:
     names = ("roll (left side up)", "pitch (nose down)", "yaw (to the left)")
     units = ("angle [deg]", "rate [deg/s]", "acceleration [deg/s²]")
     angles = np.degrees(path.orientation)
-    return _over_time(path.t, angles, names, units, title=title, simulated=simulated)
+    return _over_time(path.t, angles, names, units, title)
 
 
 def _over_time(
-    t: Array,
-    values: Array,
-    names: Sequence[str],
-    units: Sequence[str],
-    *,
-    title: str,
-    simulated: bool,
+    t: Array, values: Array, names: Sequence[str], units: Sequence[str], title: str
 ) -> Figure:
     """Draw three quantities with their first and second derivatives."""
-    figure = new_figure(title, simulated, width=8.5, height=6.0)
+    figure = new_figure(title, True, width=8.5, height=6.0)
     panels = figure.subplots(3, 3, sharex=True)
     rows = [values]
     for _ in range(2):

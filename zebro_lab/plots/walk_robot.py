@@ -3,6 +3,7 @@
 
 import numpy as np
 
+from model.frames import attitude
 from model.robot import Robot
 from model.slip.law import Array
 
@@ -10,24 +11,6 @@ _ARC_POINTS = 25
 _CORNERS = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)]) / 2
 FACES = ((0, 1, 3, 2), (4, 5, 7, 6), (0, 1, 5, 4), (2, 3, 7, 6), (0, 2, 6, 4), (1, 3, 7, 5))
 """Corners of each side of the body, in the order of `body_corners`."""
-
-
-def rotation(orientation: Array) -> Array:
-    """Compute R = Rz(yaw) Ry(pitch) Rx(roll), body to world, shape (3, 3).
-
-    Args:
-        orientation: Roll, pitch and yaw, shape (3,) [rad].
-
-    >>> head = rotation(np.array([0.0, 0.0, np.pi / 2])) @ [1, 0, 0]
-    >>> bool(np.allclose(head, [0, 1, 0]))  # turned left
-    True
-    """
-    (cr, cp, cy), (sr, sp, sy) = np.cos(orientation), np.sin(orientation)
-    return np.array([
-        [cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr],
-        [sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr],
-        [-sp, cp * sr, cp * cr],
-    ])  # fmt: skip
 
 
 def to_world(points: Array, position: Array, orientation: Array) -> Array:
@@ -38,7 +21,7 @@ def to_world(points: Array, position: Array, orientation: Array) -> Array:
         position: The body's centre, shape (3,) [m].
         orientation: Roll, pitch and yaw, shape (3,) [rad].
     """
-    return points @ rotation(orientation).T + position
+    return points @ attitude(*orientation).T + position
 
 
 def body_corners(robot: Robot) -> Array:

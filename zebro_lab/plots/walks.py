@@ -7,10 +7,10 @@ from scipy.stats import norm
 
 from model.bayes.walks.posterior import Contraction, WalkPosterior
 from model.bayes.walks.prior import UNITS
+from zebro_lab.files.units import shown_unit
 from zebro_lab.plots.sheet import BLUE, legend_below, new_figure, styled
 
 _COLUMNS = 4
-_SCALES = {"rad": (180 / np.pi, "deg"), "rad/m": (180 / np.pi, "deg/m"), "-": (100.0, "%")}
 
 
 @styled
@@ -24,14 +24,14 @@ def walk_parameters(posterior: WalkPosterior, *, simulated: bool) -> Figure:
     Returns:
         The figure.
     """
-    told = posterior.contractions()
-    rows = -(-len(told) // _COLUMNS)
+    parameters = posterior.contractions()
+    rows = -(-len(parameters) // _COLUMNS)
     title = f"Legs and floor after {len(posterior.walks)} walk(s): prior and posterior"
     figure = new_figure(title, simulated, width=9.0, height=1.9 * rows + 0.8)
     axes = figure.subplots(rows, _COLUMNS, squeeze=False).ravel()
     values = posterior.with_wrong_legs()
-    for panel, each, unit, drawn in zip(axes, told, UNITS, values.T, strict=False):
-        scale, shown = _SCALES.get(unit, (1.0, "log of factor"))
+    for panel, each, unit, drawn in zip(axes, parameters, UNITS, values.T, strict=False):
+        scale, shown = shown_unit(unit)
         x = np.linspace(-3 * each.prior_sd, 3 * each.prior_sd, 121)
         panel.plot(
             scale * x, norm.pdf(x, scale=each.prior_sd) / scale, color="0.5", lw=1.0, label="prior"
@@ -42,7 +42,7 @@ def walk_parameters(posterior: WalkPosterior, *, simulated: bool) -> Figure:
         )  # fmt: skip
         panel.set(xlabel=f"[{shown}]", yticks=[])
         panel.set_title(_title(each), loc="left")
-    for panel in axes[len(told) :]:
+    for panel in axes[len(parameters) :]:
         panel.set_axis_off()
     legend_below(figure, columns=2)
     return figure

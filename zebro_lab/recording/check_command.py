@@ -1,27 +1,18 @@
 # SPDX-License-Identifier: MIT
 """`zebro-lab zebro check`: which channel is which leg, which way it turns, where its zero is."""
 
-from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING
 
 import typer
 
+from zebro_lab.recording.request import CheckRequest
 from zebro_lab.terminal.messages import say
+from zebro_lab.terminal.request_command import request_command
 
 if TYPE_CHECKING:
     from rig.zebro.check import MovedLeg
 
 app = typer.Typer(no_args_is_help=True, help="Work on the robot itself.")
-
-Address = Annotated[
-    str, typer.Argument(metavar="PROFILE@PORT", help="Robot; PROFILE@sim or sim is a twin.")
-]
-Save = Annotated[Path, typer.Option(metavar="FILE", help="Profile to write.")]
-Touchdown = Annotated[
-    float | None,
-    typer.Option("--lift-off-for", metavar="DEG",
-                 help="Also find the lift-off angle whose hip height is this touchdown's [deg]."),
-]  # fmt: skip
 
 
 @app.callback()
@@ -30,13 +21,11 @@ def zebro() -> None:
 
 
 @app.command()
-def check(
-    address: Address, save: Save = Path("zebro.toml"), lift_off_for: Touchdown = None
-) -> None:
+@request_command()
+def check(request: CheckRequest) -> None:
     """Fix leg order, signs and zeros; the robot stands on a block, its legs free to turn."""
-    from zebro_lab.recording.check_stage import CheckRequest, check_zebro
+    from zebro_lab.recording.check_stage import check_zebro
 
-    request = CheckRequest(address, save, lift_off_for)
     checked = check_zebro(request, _Terminal())
     if checked.lift_off is not None:
         say(

@@ -16,6 +16,7 @@ from rig.zebro.check import MovedLeg, check_legs, find_lift_off, latest_counts, 
 from rig.zebro.profile import LegProfile, encode_counts, save_leg_profile
 from zebro_lab.files.errors import AlreadyExists
 from zebro_lab.recording.devices import default_gait
+from zebro_lab.recording.request import CheckRequest
 
 MOVING: Final = 1.0
 """Time allowed for a leg to turn to an angle [s]."""
@@ -35,22 +36,6 @@ class Person(Protocol):
     def measure_height(self, theta_deg: float) -> float:
         """Measure the height of a hip whose leg stands at an angle [deg], above the ground [m]."""
         ...
-
-
-@dataclass(frozen=True)
-class CheckRequest:
-    """Settings of a check of the robot's legs.
-
-    Attributes:
-        address: `PROFILE@PORT`, `PROFILE@sim` or `sim`.
-        save: Profile to write.
-        touchdown_deg: Touchdown angle for which the lift-off angle is sought; None skips this
-            step [deg].
-    """
-
-    address: str
-    save: Path
-    touchdown_deg: float | None = None
 
 
 @dataclass(frozen=True)

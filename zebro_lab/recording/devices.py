@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: MIT
 """Open the devices that a command line names, real, simulated or replayed, for recording."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import ExitStack, contextmanager
 from dataclasses import asdict, dataclass, field
+from functools import partial
 from pathlib import Path
 from typing import Any, Final
 
@@ -17,14 +18,13 @@ from rig.imu.profile import load_imu_profile
 from rig.openers import IMU_PROFILE, LEGS_PROFILE, REPLAY, SIMULATED, imu_at, legs_at, resolve
 from rig.profile import shipped_file
 from rig.safety import SampleGuard
-from rig.sample_columns import as_columns
+from rig.slip_rig.decode import decode_board, decode_forces
 from rig.slip_rig.imperfections import TYPICAL_RIG
 from rig.slip_rig.profile import RigProfile, load_rig_profile
-from rig.slip_rig.simulated import RigDynamics, SimulatedRig, simulated_rig
+from rig.slip_rig.simulated import RigDynamics, SimulatedRig
 from rig.slip_rig.sweep import SweepPlan
 from rig.twins import simulated_rig_devices
 from zebro_lab.files.errors import SettingsError
-from zebro_lab.mcap.stream_views import ImuView, LegsView, StreamView, rig_views
 from zebro_lab.recording.replayed import IMU, read_replay
 from zebro_lab.robot.gait_argument import GaitRequest, make_gait
 from zebro_lab.robot.gait_player import GaitPlayer
@@ -66,19 +66,17 @@ class OpenDevices:
 
     Attributes:
         devices: The devices.
-        views: Converter of each stream to display messages, by the stream's name.
         profiles: Name and text of each profile, by its name in the run folder.
         constants: Radii of the rig's discs [m].
         truth: True parameters of simulated devices.
-        lasts: Duration of replayed runs; None where none is replayed [s].
+        replayed: Duration of each replayed run [s].
     """
 
-    devices: tuple[Device, ...]
-    views: Mapping[str, StreamView]
-    profiles: Mapping[str, tuple[str, str]]
-    constants: Mapping[str, float] = field(default_factory=dict)
-    truth: Mapping[str, Any] = field(default_factory=dict)
-    lasts: float | None = None
+    devices: list[Device] = field(default_factory=list)
+    profiles: dict[str, tuple[str, str]] = field(default_factory=dict)
+    constants: dict[str, float] = field(default_factory=dict)
+    truth: dict[str, Any] = field(default_factory=dict)
+    replayed: list[float] = field(default_factory=list)
 
 
 @contextmanager
@@ -97,7 +95,7 @@ def open_devices(request: DevicesRequest) -> Iterator[OpenDevices]:
     """
     _require_any(request)
     rng = np.random.default_rng(request.seed)
-    opened = _Opened()
+    opened = OpenDevices()
     with ExitStack() as stack:
         if request.zebro is not None:
             _add_legs(opened, stack, request.zebro, request.play, rng)
@@ -109,14 +107,7 @@ def open_devices(request: DevicesRequest) -> Iterator[OpenDevices]:
             _add_rig(opened, stack, request.rig, rng)
         for device in opened.devices:
             stack.enter_context(device.stream)
-        yield OpenDevices(
-            tuple(opened.devices),
-            opened.views,
-            opened.profiles,
-            opened.constants,
-            opened.truth,
-            opened.lasts,
-        )
+        yield opened
 
 
 def default_gait() -> LegReference:
@@ -126,7 +117,7 @@ def default_gait() -> LegReference:
 
 def twin_rig(rng: np.random.Generator) -> SimulatedRig:
     """Return the simulated rig that `sim` selects, which runs `TWIN_SWEEP`."""
-    return simulated_rig(
+    return SimulatedRig(
         plan=TWIN_SWEEP, imperfections=TYPICAL_RIG, dynamics=RigDynamics(ripple=0.005), rng=rng
     )
 
@@ -137,18 +128,6 @@ def profile_text(name: str) -> str:
     return (path if path.is_file() else shipped_file(f"{name}.toml")).read_text(encoding="utf-8")
 
 
-@dataclass
-class _Opened:
-    """Devices opened so far."""
-
-    devices: list[Device] = field(default_factory=list)
-    views: dict[str, StreamView] = field(default_factory=dict)
-    profiles: dict[str, tuple[str, str]] = field(default_factory=dict)
-    constants: dict[str, float] = field(default_factory=dict)
-    truth: dict[str, Any] = field(default_factory=dict)
-    lasts: float | None = None
-
-
 def _require_any(request: DevicesRequest) -> None:
     if request.zebro is None and request.rig is None and not request.imus:
         raise SettingsError("no device to record; name one with --zebro, --imu or --rig")
@@ -157,7 +136,7 @@ def _require_any(request: DevicesRequest) -> None:
 
 
 def _add_legs(
-    opened: _Opened,
+    opened: OpenDevices,
     stack: ExitStack,
     address: str,
     play: LegReference | None,
@@ -179,12 +158,11 @@ def _add_legs(
             pause=PAUSE if player is None and profile.layout == "packet" else 0.0,
         )
     )
-    opened.views[LEGS] = LegsView(LEGS, profile=profile)
     opened.profiles[LEGS] = (profile.name, profile_text(resolve(address, default=LEGS_PROFILE)[0]))
 
 
 def _add_imu(
-    opened: _Opened, stack: ExitStack, stream: str, address: str, rng: np.random.Generator
+    opened: OpenDevices, stack: ExitStack, stream: str, address: str, rng: np.random.Generator
 ) -> None:
     if address.startswith(REPLAY):
         _replay(opened, address, IMU, name=stream)
@@ -193,11 +171,10 @@ def _add_imu(
     profile = load_imu_profile(name)
     unit = stack.enter_context(imu_at(address, name=stream, rng=rng))
     opened.devices.append(Device(unit, pause=PAUSE))
-    opened.views[stream] = ImuView(stream, profile=profile)
     opened.profiles[stream] = (profile.name, profile_text(name))
 
 
-def _add_rig(opened: _Opened, stack: ExitStack, address: str, rng: np.random.Generator) -> None:
+def _add_rig(opened: OpenDevices, stack: ExitStack, address: str, rng: np.random.Generator) -> None:
     if address.startswith(REPLAY):
         _replay(opened, address, RIG)
         return
@@ -213,20 +190,18 @@ def _add_rig(opened: _Opened, stack: ExitStack, address: str, rng: np.random.Gen
     for device in devices.streams:
         is_drives = device is devices.drives
         opened.devices.append(Device(device) if is_drives else Device(device, check, pause=PAUSE))
-    opened.views |= rig_views(profile)
     opened.profiles[RIG] = (profile.name, profile_text(name))
-    opened.constants |= {"radius_leg": profile.radius_leg, "radius_ground": profile.radius_ground}
+    opened.constants.update(radius_leg=profile.radius_leg, radius_ground=profile.radius_ground)
 
 
-def _replay(opened: "_Opened", address: str, what: str, *, name: str | None = None) -> None:
+def _replay(opened: OpenDevices, address: str, what: str, *, name: str | None = None) -> None:
     """Add the streams of a recorded run in place of a device."""
     replayed = read_replay(address, what, name=name)
-    opened.devices += [Device(stream, pause=PAUSE) for stream in replayed.streams]
-    opened.views |= replayed.views
+    opened.devices.extend(Device(stream, pause=PAUSE) for stream in replayed.streams)
     opened.profiles[name or what] = replayed.profile
-    opened.lasts = max(opened.lasts or 0.0, replayed.lasts)
+    opened.replayed.append(replayed.lasts)
     if what == RIG:
-        opened.constants |= replayed.manifest.constants
+        opened.constants.update(replayed.manifest.constants)
 
 
 class ForceCheck:
@@ -237,45 +212,25 @@ class ForceCheck:
     """
 
     def __init__(self, profile: RigProfile) -> None:
-        limits = (profile.limits.normal_force, profile.limits.traction_force)
-        self._guards = [
-            SampleGuard(limit, quantity=f"{name} force", unit="N")
-            for name, limit in zip(("normal", "traction"), limits, strict=True)
-        ]
-        self._channels = _force_channels(profile)
+        board, cell, limits = profile.board, profile.load_cell, profile.limits
+        if board is not None:
+            self._forces = lambda samples: decode_board(board, samples)[0]
+        elif cell is not None:
+            self._forces = partial(decode_forces, cell)
+        else:
+            raise SettingsError(f"profile '{profile.name}' has no load cell", key="--rig")
+        self._normal = SampleGuard(limits.normal_force, quantity="normal force", unit="N")
+        self._traction = SampleGuard(limits.traction_force, quantity="traction force", unit="N")
 
     def __call__(self, samples: Sequence[Sample]) -> None:
         """Check samples.
 
+        Args:
+            samples: The next samples of the board or the load cell.
+
         Raises:
             LimitExceeded: Several in a row are beyond a limit.
         """
-        counts = as_columns(samples).counts
-        for guard, channel in zip(self._guards, self._channels, strict=True):
-            guard.check_all(counts[:, channel.index] / (channel.sign * channel.counts_per_newton))
-
-
-@dataclass(frozen=True)
-class _ForceChannel:
-    """Position of a force among a device's counts."""
-
-    index: int
-    sign: int
-    counts_per_newton: float
-
-
-def _force_channels(profile: RigProfile) -> tuple[_ForceChannel, _ForceChannel]:
-    board, cell = profile.board, profile.load_cell
-    if board is not None:
-        scale = board.counts_per_force
-        return (
-            _ForceChannel(0, board.normal_sign, scale),
-            _ForceChannel(1, board.traction_sign, scale),
-        )
-    if cell is None:
-        raise SettingsError(f"profile '{profile.name}' has no load cell", key="--rig")
-    scale = cell.counts_per_force
-    return (
-        _ForceChannel(cell.normal.index, cell.normal.sign, scale),
-        _ForceChannel(cell.traction.index, cell.traction.sign, scale),
-    )
+        forces = self._forces(samples)
+        self._normal.check_all(forces.normal)
+        self._traction.check_all(forces.traction)

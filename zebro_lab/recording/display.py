@@ -4,18 +4,17 @@
 import threading
 import time
 from collections.abc import Callable
-from typing import Final, Generic, TypeVar
+from typing import Final
 
 from zebro_lab.files.errors import RecordingError
+from zebro_lab.recording.status import RecordStatus
 from zebro_lab.recording.threads import needing_threads
 
 PATIENCE: Final = 1.0
 """Timeout after which a display that does not return is abandoned [s]."""
 
-Status = TypeVar("Status")
 
-
-class Display(Generic[Status]):
+class Display:
     """Passes the newest status to a display in its own thread, until it raises or hangs.
 
     Args:
@@ -24,11 +23,11 @@ class Display(Generic[Status]):
     """
 
     def __init__(
-        self, show: Callable[[Status], object], *, give_up: Callable[[str], object]
+        self, show: Callable[[RecordStatus], object], *, give_up: Callable[[str], object]
     ) -> None:
         self._show = show
         self._give_up = give_up
-        self._newest: Status | None = None
+        self._newest: RecordStatus | None = None
         self._since: float | None = None
         self._over = False
         self._ending = False
@@ -40,7 +39,7 @@ class Display(Generic[Status]):
         except RecordingError as error:
             self._end(f"display cannot be started, recording goes on without it: {error}")
 
-    def show(self, status: Status) -> None:
+    def show(self, status: RecordStatus) -> None:
         """Set the status to show next, replacing one not shown yet; does not block."""
         with self._changed:
             self._newest = status
@@ -79,7 +78,7 @@ class Display(Generic[Status]):
             except BaseException as error:  # noqa: BLE001, RUF100 - whatever a terminal or a plot may raise
                 self._end(f"display failed, recording goes on without it: {error!r}")
 
-    def _take(self) -> Status | None:
+    def _take(self) -> RecordStatus | None:
         """Wait for a status to show; None after `close`."""
         with self._changed:
             self._since = None

@@ -26,8 +26,8 @@ OPTIONAL_PROGRAMS: Final = {
     "heif-convert": "turning HEIC photographs into JPEG for `track`",
 }
 OPTIONAL_PACKAGES: Final = {
-    "evo": "judging track.tum by somebody else's metrics",
-    "mujoco": "making datasets/walk-sim anew, and `make bench`",
+    "evo": "errors of track.tum by another program",
+    "mujoco": "generating datasets/walk-sim again, and `make bench`",
     "numpyro": "`make bench`, which compares samplers",
 }
 COMFORTABLE: Final = 2 << 30
@@ -162,7 +162,7 @@ def check_port(
     group = _group(device)
     return Finding(
         Grade.NOTE, what,
-        f"{description}, may not be opened; it is the group {group}'s: "
+        f"{description}, may not be opened; it belongs to the group {group}: "
         f"`sudo usermod -aG {group} $USER`, then log in again",
     )  # fmt: skip
 
@@ -263,7 +263,7 @@ def _local_shadows(folder: Path, home: Path) -> Iterator[Finding]:
             if shadows and not ours:
                 yield Finding(
                     Grade.NOTE, f"module {module}",
-                    f"{place} would be taken for it by any `python` started here; rename it",
+                    f"{place} would be imported instead by any `python` started here; rename it",
                 )  # fmt: skip
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""`zebro-lab doctor`: what of this machine fits, and what to do about the rest."""
+"""`zebro-lab doctor`: check that this machine has what zebro-lab needs."""
 
 from pathlib import Path
 from typing import Annotated
@@ -18,7 +18,7 @@ zebro-lab doctor --data /mnt/recordings
 Exit code 1 where something that is needed is broken; notes are only for those whom they concern.
 """
 
-Data = Annotated[Path, typer.Option(metavar="DIR", help="Folder that recordings go to.")]
+Data = Annotated[Path, typer.Option(metavar="DIR", help="Folder that recordings are written to.")]
 
 
 def doctor(data: Data = Path()) -> None:

@@ -1,14 +1,17 @@
 # SPDX-License-Identifier: MIT
-"""Detect that a folder is removed, renamed or replaced while a file in it is being written.
+"""Detect that a folder is removed, renamed or full while a file in it is being written.
 
 Writing to a file whose name is gone succeeds on Linux and macOS, so that the path must be checked.
 """
 
 import os
+import shutil
 from collections.abc import Iterable
 from contextlib import ExitStack
 from pathlib import Path
 from typing import IO
+
+from zebro_lab.files.errors import RecordingError
 
 
 class OpenPlace:
@@ -22,8 +25,8 @@ class OpenPlace:
     def __init__(self, path: Path, file: IO[bytes]) -> None:
         self._path = path
         self._number = file.fileno()
-        self._file = _identity(os.fstat(self._number))
-        self._folder = _identity(path.parent.stat())
+        self._file = identity(os.fstat(self._number))
+        self._folder = identity(path.parent.stat())
 
     def problem(self) -> str | None:
         """Return why the file can no longer be found under its path; None where it can."""
@@ -32,16 +35,16 @@ class OpenPlace:
         except FileNotFoundError:
             return f"{self._path} is gone: its folder was removed or renamed"
         except OSError as error:
-            return f"{self._path} cannot be seen any more: {error.strerror}"
-        if _identity(found) != self._file:
-            return f"{self._path} is another file now: it was removed or renamed, and made anew"
+            return f"{self._path} cannot be read any more: {error.strerror}"
+        if identity(found) != self._file:
+            return f"{self._path} is another file now: it was removed or renamed, and created again"
         return None
 
     def folder(self) -> Path | None:
         """Return the folder's path, also after a rename; None where it is gone or not found."""
         for place in (self._path.parent, *self._renamed()):
             try:
-                if _identity(place.stat()) == self._folder:
+                if identity(place.stat()) == self._folder:
                     return place
             except OSError:
                 continue
@@ -55,6 +58,27 @@ class OpenPlace:
             return []
 
 
+def require_space(folder: Path, least: float) -> None:
+    """Check the free disk space of a folder.
+
+    Args:
+        folder: The folder.
+        least: Least free space [bytes].
+
+    Raises:
+        RecordingError: There is less.
+    """
+    try:
+        free = shutil.disk_usage(folder).free
+    except OSError as error:
+        raise RecordingError(f"{folder}: free space unknown: {error.strerror}") from error
+    if free < least:
+        raise RecordingError(
+            f"{folder} has {free / 1e6:.0f} MB free; expected at least {least / 1e6:.0f} MB: make "
+            "room, or name another folder as --data"
+        )
+
+
 def sync_files(paths: Iterable[Path]) -> None:
     """Flush files to the disk (fsync).
 
@@ -66,5 +90,6 @@ def sync_files(paths: Iterable[Path]) -> None:
             os.fsync(file.fileno())
 
 
-def _identity(status: os.stat_result) -> tuple[int, int]:
+def identity(status: os.stat_result) -> tuple[int, int]:
+    """Return device and inode, which identify a file or folder."""
     return status.st_dev, status.st_ino

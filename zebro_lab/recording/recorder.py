@@ -6,38 +6,28 @@ log nor the devices; a third one checks that the folder still exists. After SIGK
 the samples of about the last `FLUSH_EVERY`.
 """
 
-import contextlib
-import os
 import shutil
 import threading
 from collections import deque
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import asdict, dataclass, field, replace
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import asdict, replace
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
 from types import TracebackType
-from typing import IO, Any, Final, Self
+from typing import Any, Final, Self
 
 from rig.clock import SYSTEM_CLOCK, Clock
 from rig.device import Counters, Sample
 from rig.sample_queue import SampleQueue
 from zebro_lab.files.errors import RecordingError
-from zebro_lab.files.provenance import file_hash
 from zebro_lab.mcap.log_writer import LogWriter
 from zebro_lab.mcap.ros_messages import INFO
-from zebro_lab.mcap.stream_views import StreamView
-from zebro_lab.recording.place import OpenPlace, sync_files
+from zebro_lab.recording.place import require_space
+from zebro_lab.recording.run_files import RunFiles
 from zebro_lab.recording.threads import needing_threads
-from zebro_lab.runs.folder import LOG_FILE, epoch_ns, new_run_folder
-from zebro_lab.runs.manifest import (
-    MANIFEST_FILE,
-    RECORDING,
-    RunManifest,
-    manifest_text,
-    profile_file,
-    software_version,
-    write_manifest,
-)
+from zebro_lab.runs.folder import LOG_FILE, new_run_folder
+from zebro_lab.runs.manifest import RunManifest
 
 FLUSH_EVERY: Final = 0.1
 """Interval at which the queues are written and flushed [s]."""
@@ -46,56 +36,10 @@ LIMIT: Final = 100_000
 """Capacity of the queue of one stream: 14 s of a fast load cell [samples]."""
 LEAST_FREE: Final = 64 << 20
 """Free space below which a run does not start, or ends [bytes]."""
-RESERVE: Final = 1 << 16
-"""Space reserved in the run folder for the end record on a full disk [bytes]."""
 JOIN_LIMIT: Final = 30.0
 """Timeout for the writer threads to end [s]."""
 END_LIMIT: Final = 60.0
 """Timeout for the end of the log and the end record [s]."""
-_RESERVE_FILE = ".reserve"
-
-
-@dataclass(frozen=True)
-class RunDescription:
-    """Description of a run before it begins.
-
-    Attributes:
-        kind: "slip-rig" or "walk".
-        label: Name of the run.
-        source: "real", "sim:what", "replay:what", or "mixed:" and several.
-        material: Leg and ground material.
-        operator: Name of the operator.
-        constants: Radii of a slip rig [m].
-        profiles: Name and TOML text of each device's profile, by its name in the run folder.
-        sources: Source of each stream.
-        robot: Name of the robot.
-        truth: True parameters of simulated devices.
-        commit: Commit of this software.
-        excluded: Why the run is left out of calibrations until `RunRecorder.judge` changes it;
-            empty where it is not left out.
-        point: Record of the point of an experiment.
-    """
-
-    kind: str
-    label: str
-    source: str
-    material: str = "unknown"
-    operator: str = "unknown"
-    constants: Mapping[str, float] = field(default_factory=dict)
-    profiles: Mapping[str, tuple[str, str]] = field(default_factory=dict)
-    sources: Mapping[str, str] = field(default_factory=dict)
-    robot: str | None = None
-    truth: Mapping[str, Any] = field(default_factory=dict)
-    commit: str = "unknown"
-    excluded: str = ""
-    point: Mapping[str, Any] = field(default_factory=dict)
-
-
-@dataclass(frozen=True)
-class _Event:
-    host_time: float
-    text: str
-    level: int
 
 
 class RunRecorder:
@@ -107,8 +51,8 @@ class RunRecorder:
 
     Args:
         data_dir: Folder of run folders; created when missing.
-        description: Description of the run.
-        views: Converter of each stream to display messages, by the stream's name.
+        manifest: What is known of the run before it begins.
+        profiles: Name and TOML text of each device's profile, by its name in the run folder.
         limit: Capacity of the queue of each stream [samples].
         least_free: Free space below which a run does not start, or ends [bytes].
         clock: Host time.
@@ -122,8 +66,8 @@ class RunRecorder:
         self,
         data_dir: Path,
         *,
-        description: RunDescription,
-        views: Mapping[str, StreamView],
+        manifest: RunManifest,
+        profiles: Mapping[str, tuple[str, str]],
         limit: int = LIMIT,
         least_free: int = LEAST_FREE,
         clock: Clock = SYSTEM_CLOCK,
@@ -131,28 +75,22 @@ class RunRecorder:
         self.folder = Path(data_dir)
         self.start = 0.0
         self._data_dir = Path(data_dir)
-        self._description = description
-        self._views = views
+        names = {stream: name for stream, (name, _) in profiles.items()}
+        self._manifest = replace(manifest, profiles=names)
+        self._texts = {stream: text for stream, (_, text) in profiles.items()}
         self._limit = limit
         self._least_free = least_free
         self._clock = clock
-        self._queues = {name: SampleQueue(limit=limit) for name in views}
-        self._notes: deque[_Event | tuple[float, str, Counters]] = deque()
-        self._counters = dict.fromkeys(views, Counters())
-        self._clocks: dict[str, Mapping[str, float]] = {}
+        self._queues: dict[str, SampleQueue] = {}
+        self._notes: deque[Callable[[LogWriter], None]] = deque()
+        self._counters: dict[str, Counters] = {}
         self._failure: str | None = None
         self._failing = threading.Lock()
         self._reason = "completed"
-        self._excluded = description.excluded
-        self._point = description.point
-        self._duration: dict[str, float] = {}
         self._ended: float | None = None
         self._ending = threading.Event()
         self._threads: list[threading.Thread] = []
-        self._manifest: RunManifest | None = None
-        self._log: LogWriter | None = None
-        self._file: IO[bytes] | None = None
-        self._place: OpenPlace | None = None
+        self._files: RunFiles | None = None
 
     @property
     def failure(self) -> str | None:
@@ -185,7 +123,8 @@ class RunRecorder:
             text: Description of the event.
             level: Severity, as in `logging`.
         """
-        self._notes.append(_Event(self._clock.now(), text, level))
+        now = self._clock.now()
+        self._notes.append(lambda log: log.event(now, text, level=level))
 
     def count(self, stream: str, counters: Counters) -> None:
         """Log the counters of a stream.
@@ -194,8 +133,11 @@ class RunRecorder:
             stream: Name of the stream.
             counters: Samples received, lost, damaged and so on so far.
         """
+        now = self._clock.now()
         self._counters[stream] = counters
-        self._notes.append((self._clock.now(), stream, counters))
+        self._notes.append(
+            lambda log: log.count(now, stream, counters, dropped=self.dropped(stream))
+        )
 
     def dropped(self, stream: str) -> int:
         """Return the number of samples of a stream dropped because its queue was full."""
@@ -203,7 +145,7 @@ class RunRecorder:
 
     def compare_clocks(self, clocks: Mapping[str, Mapping[str, float]]) -> None:
         """Store offset [s], drift [-] and delay [s] of each device's clock for the end record."""
-        self._clocks = dict(clocks)
+        self._manifest = replace(self._manifest, clocks=clocks)
 
     def count_duration(self, asked: float, *, since: float) -> None:
         """Store the requested duration of the run for the end record.
@@ -212,7 +154,8 @@ class RunRecorder:
             asked: Requested duration [s].
             since: Host time from which the duration counts [s].
         """
-        self._duration = {"asked": asked, "from": since - self.start}
+        duration = {"asked": asked, "from": since - self.start}
+        self._manifest = replace(self._manifest, duration=duration)
 
     def end(self, reason: str = "completed") -> None:
         """Set the time and reason of the run's end; the first call counts."""
@@ -227,38 +170,26 @@ class RunRecorder:
             excluded: Why the run is left out of every calibration; empty where it counts.
             point: Record of the point of an experiment, with whether it was accepted.
         """
-        self._excluded, self._point = excluded, point
-
-    def require_space(self) -> None:
-        """Check the free disk space.
-
-        Raises:
-            RecordingError: It is less than the limit.
-        """
-        try:
-            free = shutil.disk_usage(self._data_dir).free
-        except OSError as error:
-            raise RecordingError(f"cannot see {self._data_dir}: {error.strerror}") from error
-        if free < self._least_free:
-            raise RecordingError(
-                f"{self._data_dir} has {free / 1e6:.0f} MB free; expected at least "
-                f"{self._least_free / 1e6:.0f} MB: make room, or name another folder as --data"
-            )
+        why = {"why": excluded} if excluded else None
+        self._manifest = replace(self._manifest, excluded=why, point=point)
 
     def __enter__(self) -> Self:
         began = datetime.now(UTC)
         self.start = self._clock.now()
-        given = self._description
+        self._manifest = given = replace(self._manifest, start=began.isoformat())
         self.folder = new_run_folder(
             self._data_dir, kind=given.kind, label=given.label, start=began
         )
         try:
-            self.require_space()
-            self._begin(began)
-            for target in (self._write_on, self._sync_on, self._look_on):
-                self._start_thread(target)
+            require_space(self._data_dir, self._least_free)
+            self._files = RunFiles(self.folder, given, profiles=self._texts, start=self.start)
+            for name in self._files.streams:
+                self._queues[name] = SampleQueue(limit=self._limit)
+                self._counters[name] = Counters()
+            for task in (self._write_loop, self._sync_loop, self._check_loop):
+                self._start_thread(task, self._files)
         except (RecordingError, OSError) as error:
-            self._leave_nothing()
+            self._undo()
             if isinstance(error, RecordingError):
                 raise
             raise RecordingError(f"cannot write {self.folder}: {error.strerror}") from error
@@ -275,10 +206,12 @@ class RunRecorder:
         if self._ended is None:
             self.end()
         self._ending.set()
+        if self._files is None:
+            return
         try:
-            finishing = self._start_thread(self._finish)
+            finishing = self._start_thread(self._finish, self._files)
         except RecordingError:  # no thread any more: then in this one
-            self._finish()
+            self._finish(self._files)
             return
         try:  # not in this thread, so that an impatient Ctrl-C costs no end record
             finishing.join(JOIN_LIMIT + END_LIMIT)
@@ -288,19 +221,19 @@ class RunRecorder:
         if finishing.is_alive():
             self._fail(f"the disk did not take the end of the run within {END_LIMIT:g} s")
 
-    def _start_thread(self, target: Callable[[], None]) -> threading.Thread:
-        thread = threading.Thread(target=target, daemon=True, name="recorder")
+    def _start_thread(self, task: Callable[[RunFiles], None], files: RunFiles) -> threading.Thread:
+        thread = threading.Thread(target=task, args=(files,), daemon=True, name="recorder")
         with needing_threads():
             thread.start()
         self._threads.append(thread)
         return thread
 
-    def _leave_nothing(self) -> None:
+    def _undo(self) -> None:
         self._ending.set()
         for thread in self._threads:
             thread.join(JOIN_LIMIT)
-        if self._file is not None:
-            self._file.close()
+        if self._files is not None:
+            self._files.close()
         shutil.rmtree(self.folder, ignore_errors=True)
 
     def _fail(self, why: str) -> None:
@@ -309,175 +242,99 @@ class RunRecorder:
             if self._failure is None:
                 self._failure = why
 
-    def _begin(self, began: datetime) -> None:
-        given = self._description
-        texts = {name: text for name, (_, text) in given.profiles.items()}
-        for name, text in texts.items():
-            profile_file(self.folder, name).parent.mkdir(exist_ok=True)
-            profile_file(self.folder, name).write_text(text, encoding="utf-8", newline="")
-        (self.folder / _RESERVE_FILE).write_bytes(os.urandom(RESERVE))
-        self._file = (self.folder / LOG_FILE).open("xb")
-        self._place = OpenPlace(self.folder / LOG_FILE, self._file)
-        attachments = {f"profiles/{name}.toml": text for name, text in texts.items()}
-        self._log = LogWriter(
-            self._file, views=self._views, attachments=attachments, start=self.start,
-            start_ns=epoch_ns(began),
-        )  # fmt: skip
-        self._log.event(self.start, f"recording '{given.label}' began, source {given.source}")
-        self._log.flush()
-        self._manifest = RunManifest(
-            kind=given.kind,
-            label=given.label,
-            material=given.material,
-            operator=given.operator,
-            source=given.source,
-            start=began.isoformat(),
-            stop=None,
-            exit_status=RECORDING,
-            software=software_version(given.commit),
-            constants=given.constants,
-            streams={},
-            profiles={name: profile for name, (profile, _) in given.profiles.items()},
-            sources=given.sources,
-            robot=given.robot,
-            truth=given.truth,
-            excluded=_exclusion(self._excluded),
-            point=self._point,
-        )
-        draft = self.folder / f".{MANIFEST_FILE}.part"
-        draft.write_text(manifest_text(self._manifest), encoding="utf-8", newline="")
-        draft.replace(self.folder / MANIFEST_FILE)
-
-    def _write_on(self) -> None:
+    @contextmanager
+    def _storing_failure(self, where: object) -> Iterator[None]:
+        """Store any exception as the failure, for the owner, who ends the run."""
         try:
-            while not self._ending.wait(FLUSH_EVERY):
-                self._drain()
-                self._flush()
-            self._drain()
-            self._flush()
-        except BaseException as error:  # noqa: BLE001, RUF100 - kept for the owner, who ends the run
-            self._fail(f"{self.folder / LOG_FILE}: {_one_line(error)}")
-
-    def _look_on(self) -> None:
-        """Check folder and disk space periodically, in a thread that a slow disk does not delay."""
-        seen = self._clock.now()
-        try:
-            while not self._ending.wait(FLUSH_EVERY):
-                self._require_place()
-                if self._clock.now() - seen >= SYNC_EVERY:
-                    seen = self._clock.now()
-                    self.require_space()
-            self._require_place()
+            yield
         except RecordingError as error:
             self._fail(str(error))
-        except BaseException as error:  # noqa: BLE001, RUF100 - kept for the owner, who ends the run
-            self._fail(f"{self.folder}: {_one_line(error)}")
+        except BaseException as error:  # noqa: BLE001, RUF100 - the owner reads it and ends the run
+            self._fail(f"{where}: {_one_line(error)}")
 
-    def _require_place(self) -> None:
-        problem = None if self._place is None else self._place.problem()
-        if problem is not None:
-            raise RecordingError(f"{problem} while recording")
+    def _write_loop(self, files: RunFiles) -> None:
+        with self._storing_failure(files.folder / LOG_FILE):
+            while not self._ending.wait(FLUSH_EVERY):
+                self._drain(files.log)
+            self._drain(files.log)
 
-    def _sync_on(self) -> None:
-        try:
-            profiles = [profile_file(self.folder, name) for name in self._description.profiles]
-            sync_files([self.folder / MANIFEST_FILE, *profiles])
+    def _check_loop(self, files: RunFiles) -> None:
+        """Check folder and disk space periodically, in a thread that a slow disk does not delay."""
+        seen = self._clock.now()
+        with self._storing_failure(files.folder):
+            while not self._ending.wait(FLUSH_EVERY):
+                files.require_place()
+                if self._clock.now() - seen >= SYNC_EVERY:
+                    seen = self._clock.now()
+                    require_space(self._data_dir, self._least_free)
+            files.require_place()
+
+    def _sync_loop(self, files: RunFiles) -> None:
+        with self._storing_failure(f"the disk does not keep {files.folder}"):
+            files.sync_first()
             while not self._ending.wait(SYNC_EVERY):
-                if self._file is not None:
-                    os.fsync(self._file.fileno())
-        except BaseException as error:  # noqa: BLE001, RUF100 - kept for the owner, who ends the run
-            self._fail(f"the disk does not keep {self.folder}: {_one_line(error)}")
+                files.sync_log()
 
-    def _drain(self) -> None:
-        if self._log is None:
-            return
+    def _drain(self, log: LogWriter) -> None:
+        """Write everything queued to the log, and flush it."""
         for name, queue in self._queues.items():
             samples = queue.take()
             if samples:
-                self._log.write(name, samples)
+                log.write(name, samples)
         while self._notes:
-            note = self._notes.popleft()
-            if isinstance(note, _Event):
-                self._log.event(note.host_time, note.text, level=note.level)
-            else:
-                at, stream, counters = note
-                self._log.count(at, stream, counters, dropped=self.dropped(stream))
+            self._notes.popleft()(log)
+        log.flush()
 
-    def _flush(self) -> None:
-        if self._log is not None:
-            self._log.flush()
-
-    def _finish(self) -> None:
+    def _finish(self, files: RunFiles) -> None:
         """Close the log and write the end record; a failure becomes its reason."""
         before = [thread for thread in self._threads if thread is not threading.current_thread()]
         for thread in before:
             thread.join(JOIN_LIMIT)
         whole = False
-        try:
-            self._require_taken(before)
-            with contextlib.suppress(FileNotFoundError):
-                (self.folder / _RESERVE_FILE).unlink()
-            whole = self._failure is None and self._close_log()
-        except BaseException as error:  # noqa: BLE001, RUF100 - kept for the owner
-            self._fail(f"{self.folder / LOG_FILE}: {_one_line(error)}")
-        try:
-            self._write_end_record(whole=whole)
-        except BaseException as error:  # noqa: BLE001, RUF100 - kept for the owner
-            self._fail(f"{self.folder}: its end record cannot be written: {_one_line(error)}")
-        finally:
-            if self._file is not None and not any(thread.is_alive() for thread in before):
-                with contextlib.suppress(OSError):
-                    self._file.close()
+        with self._storing_failure(files.folder / LOG_FILE):
+            if any(thread.is_alive() for thread in before):
+                raise RecordingError(f"the disk took nothing for {JOIN_LIMIT:g} s")
+            files.free_reserve()
+            if self._failure is None:
+                self._finish_log(files)
+                whole = True
+        with self._storing_failure(f"{files.folder}: its end record cannot be written"):
+            files.write_end(self._end_record(whole=whole), whole=whole)
+        self.folder = files.folder
+        if not any(thread.is_alive() for thread in before):
+            files.close()
 
-    def _require_taken(self, threads: Sequence[threading.Thread]) -> None:
-        if any(thread.is_alive() for thread in threads):
-            raise RecordingError(f"the disk took nothing for {JOIN_LIMIT:g} s")
-
-    def _close_log(self) -> bool:
-        if self._log is None or self._file is None:
-            return False
+    def _finish_log(self, files: RunFiles) -> None:
         now = self._clock.now()
         for name, counters in self._counters.items():
-            self._log.count(now, name, counters, dropped=self.dropped(name))
-        self._log.event(now, f"recording ended: {self._reason}")
-        self._log.finish()
-        self._file.flush()
-        os.fsync(self._file.fileno())
-        return True
+            files.log.count(now, name, counters, dropped=self.dropped(name))
+        files.log.event(now, f"recording ended: {self._reason}")
+        files.finish_log()
 
-    def _write_end_record(self, *, whole: bool) -> None:
-        if self._manifest is None or self._log is None or self._place is None:
-            return
-        folder = self._place.folder()
-        if folder is None:
-            raise RecordingError("the folder is gone")
-        self.folder = folder
+    def _end_record(self, *, whole: bool) -> RunManifest:
+        """Return the manifest of the ended run.
+
+        Args:
+            whole: The log is complete; else the point of an experiment is not finished.
+        """
         ended = self._clock.now() if self._ended is None else self._ended
-        lasted = timedelta(seconds=ended - self.start)
+        stop = self._manifest.began + timedelta(seconds=ended - self.start)
         failed = self._failure is not None and not self._reason.startswith("failed: ")
-        if self._point and not whole:  # samples may be missing: the point is not finished
-            self._point = {**self._point, "accepted": False}
-            self._excluded = self._excluded or self._failure or self._reason
-        self._manifest = replace(
+        excluded, point = self._manifest.excluded, self._manifest.point
+        if point and not whole:
+            point = {**point, "accepted": False}
+            excluded = excluded or {"why": self._failure or self._reason}
+        return replace(
             self._manifest,
-            stop=(datetime.fromisoformat(self._manifest.start) + lasted).isoformat(),
+            stop=stop.isoformat(),
             exit_status=f"failed: {self._failure}" if failed else self._reason,
-            streams=self._log.written,
-            log_sha256=file_hash(folder / LOG_FILE) if whole else None,
             counters={
                 name: asdict(counters) | {"dropped": self.dropped(name)}
                 for name, counters in self._counters.items()
             },
-            clocks=self._clocks,
-            excluded=_exclusion(self._excluded),
-            point=self._point,
-            duration=self._duration,
+            excluded=excluded,
+            point=point,
         )
-        write_manifest(folder, self._manifest)
-
-
-def _exclusion(why: str) -> Mapping[str, str] | None:
-    return {"why": why} if why else None
 
 
 def _one_line(error: BaseException) -> str:

@@ -1,24 +1,19 @@
 # SPDX-License-Identifier: MIT
 """Replay a recorded run in place of a device (`replay:RUN`), at its recorded pace."""
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
-from rig.imu.profile import load_imu_profile
 from rig.openers import REPLAY
 from rig.replay import ReplayStream
-from rig.slip_rig.profile import load_rig_profile
-from rig.zebro.profile import load_leg_profile
 from zebro_lab.files.errors import DataError, NotFound
 from zebro_lab.mcap.raw_log import read_raw_log
-from zebro_lab.mcap.stream_views import ImuView, LegsView, StreamView, rig_views
-from zebro_lab.runs.folder import LOG_FILE, read_manifest
-from zebro_lab.runs.manifest import RIG, RunManifest, profile_file
+from zebro_lab.runs.folder import LOG_FILE
+from zebro_lab.runs.manifest import RunManifest, profile_file, read_manifest
+from zebro_lab.runs.profile_views import IMU, profile_views
 from zebro_lab.runs.recorded_legs import LEGS
 
-IMU: Final = "imu"
 _RIG_STREAMS: Final = ("drives", "load_cell", "board")
 _MARGIN: Final = 1e-3  # so that rounding loses no last sample [s]
 
@@ -29,14 +24,12 @@ class Replayed:
 
     Attributes:
         streams: Each stream, not yet entered.
-        views: Converter of each stream to display messages, by the stream's name.
         profile: Name and text of their profile.
         manifest: Manifest of the run.
         lasts: Time from the first to the last sample [s].
     """
 
     streams: tuple[ReplayStream, ...]
-    views: Mapping[str, StreamView]
     profile: tuple[str, str]
     manifest: RunManifest
     lasts: float
@@ -70,17 +63,16 @@ def read_replay(address: str, what: str, *, name: str | None = None) -> Replayed
     file = profile_file(folder, kept)
     if not file.is_file():
         raise NotFound(f"{file}: missing; restore it from where the run was recorded")
-    views = _views(what, name or kept, file)
-    streams = {name or each: (each, found[names[each]]) for each in chosen}
-    for each in streams:
+    views = profile_views(file)
+    for each in chosen:
         if each not in views:
             raise DataError(f"describes no {each}, of which the log has samples", file=file)
+    streams = {name or each: (each, found[names[each]]) for each in chosen}
     return Replayed(
         tuple(
             ReplayStream(samples, name=each, source=_source(folder, manifest, own))
             for each, (own, samples) in streams.items()
         ),
-        views,
         (manifest.profiles.get(kept, file.stem), file.read_text(encoding="utf-8")),
         manifest,
         max(float(s.host_time[-1] - s.host_time[0]) for _, s in streams.values()) + _MARGIN,
@@ -99,11 +91,3 @@ def _chosen(what: str, name: str | None, found: tuple[str, ...]) -> tuple[str, .
 def _source(folder: Path, manifest: RunManifest, stream: str) -> str:
     simulated = "sim:" in manifest.sources.get(stream, manifest.source)
     return f"{'sim:' * simulated}{REPLAY}{folder.absolute().name}"
-
-
-def _views(what: str, name: str, file: Path) -> Mapping[str, StreamView]:
-    if what == LEGS:
-        return {LEGS: LegsView(LEGS, profile=load_leg_profile(str(file)))}
-    if what == RIG:
-        return rig_views(load_rig_profile(str(file)))
-    return {name: ImuView(name, profile=load_imu_profile(str(file)))}

@@ -23,7 +23,7 @@ from zebro_lab.terminal.last_words import in_time
 from zebro_lab.terminal.messages import plain
 
 if TYPE_CHECKING:
-    from zebro_lab.recording.stage import RecordStatus
+    from zebro_lab.recording.status import RecordStatus
 
 STOP_KEYS: Final = b"qQ\x1b"
 DRAW_EVERY: Final = 0.125

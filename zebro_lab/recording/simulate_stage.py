@@ -6,13 +6,12 @@ from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
-from typing import cast
+from typing import TypeAlias, cast
 
 import can
 import numpy as np
 import tomlkit
 
-from model.gait.reference import LegReference
 from rig.clock import SYSTEM_CLOCK, Clock
 from rig.imu.profile import load_imu_profile
 from rig.imu.simulated import SimulatedImu
@@ -31,33 +30,11 @@ from rig.zebro.simulated_legs import RobotImperfections, SimulatedLegs
 from zebro_lab.files.atomic import atomic_write_text
 from zebro_lab.files.errors import SettingsError
 from zebro_lab.recording.devices import default_gait, profile_text, twin_rig
+from zebro_lab.recording.request import ImuTwinRequest, RigTwinRequest, ZebroTwinRequest
 from zebro_lab.runs.legs import read_leg_log
 
 WATCHDOG = 0.2
-
-
-@dataclass(frozen=True)
-class TwinRequest:
-    """Settings of a simulated device and its errors.
-
-    Attributes:
-        profile: Name or path of its profile.
-        play: Leg angles that the robot walks; None for a tripod.
-        can: Bus `INTERFACE:CHANNEL` for devices on CAN; None for a simulated adapter on a serial
-            line, which speaks SLCAN.
-        as_socket: Listen on `socket://` in place of a pseudo-terminal.
-        faults: Transmission errors of the line.
-        imperfections: Deviations of the robot from its gait.
-        seed: Seed of the random generator.
-    """
-
-    profile: str
-    play: Path | None = None
-    can: str | None = None
-    as_socket: bool = False
-    faults: Faults = Faults()  # noqa: RUF009 (frozen)
-    imperfections: RobotImperfections = RobotImperfections()  # noqa: RUF009 (frozen)
-    seed: int = 0
+TwinRequest: TypeAlias = ZebroTwinRequest | ImuTwinRequest | RigTwinRequest
 
 
 @dataclass(frozen=True)
@@ -76,7 +53,7 @@ class Served:
 
 
 @contextmanager
-def serve_zebro(request: TwinRequest) -> Iterator[Served]:
+def serve_zebro(request: ZebroTwinRequest) -> Iterator[Served]:
     """Serve a simulated robot while the context lasts.
 
     Raises:
@@ -85,36 +62,37 @@ def serve_zebro(request: TwinRequest) -> Iterator[Served]:
     """
     profile = load_leg_profile(request.profile)
     rng = np.random.default_rng(request.seed)
-    gait = _gait(request.play)
+    gait = default_gait() if request.play is None else read_leg_log(request.play).reference
+    imperfections = RobotImperfections(jitter=request.jitter, pause_probability=request.pause)
+    faults = Faults(flip=request.flip, drop=request.drop, garbage=request.garbage)
     if profile.layout == "can":
-        legs = SimulatedLegs(gait, profile=profile, imperfections=request.imperfections, rng=rng)
+        legs = SimulatedLegs(gait, profile=profile, imperfections=imperfections, rng=rng)
         with _bus(request, "sim:zebro") as (bus, place):
-            robot = CanRobot(legs, bus, faults=request.faults, rng=rng)
+            robot = CanRobot(legs, bus, faults=faults, rng=rng)
             with Ticker(robot.poll):
                 yield Served(robot.source, {"robot": place}, f"{request.profile}@{place}")
         return
-    twin = robot_twin(
-        profile, gait, imperfections=request.imperfections, faults=request.faults, rng=rng
-    )
+    twin = robot_twin(profile, gait, imperfections=imperfections, faults=faults, rng=rng)
     with _port(twin, request) as port:
         yield Served(twin.source, {"robot": port}, f"{request.profile}@{port}")
 
 
 @contextmanager
-def serve_imu(request: TwinRequest) -> Iterator[Served]:
+def serve_imu(request: ImuTwinRequest) -> Iterator[Served]:
     """Serve a simulated inertial measurement unit while the context lasts.
 
     Raises:
         RigError: The profile or the port is invalid.
     """
     rng = np.random.default_rng(request.seed)
-    twin = SimulatedImu(profile=load_imu_profile(request.profile), faults=request.faults, rng=rng)
+    faults = Faults(flip=request.flip, drop=request.drop, garbage=request.garbage)
+    twin = SimulatedImu(profile=load_imu_profile(request.profile), faults=faults, rng=rng)
     with _port(twin, request) as port:
         yield Served(twin.source, {"imu": port}, f"{request.profile}@{port}")
 
 
 @contextmanager
-def serve_rig(request: TwinRequest) -> Iterator[Served]:
+def serve_rig(request: RigTwinRequest) -> Iterator[Served]:
     """Serve a simulated slip rig while the context lasts.
 
     Raises:
@@ -124,10 +102,10 @@ def serve_rig(request: TwinRequest) -> Iterator[Served]:
     """
     profile = load_rig_profile(request.profile)
     rng = np.random.default_rng(request.seed)
-    rig = twin_rig(rng)
+    rig, faults = twin_rig(rng), Faults(drop=request.drop)
     if profile.board is not None:
         board = SimulatedBoard(
-            rig, profile=profile.board, watchdog=WATCHDOG, faults=request.faults, rng=rng
+            rig, profile=profile.board, watchdog=WATCHDOG, faults=faults, rng=rng
         )
         with _port(board, request) as port:
             yield Served(board.source, {"board": port}, f"{request.profile}@{port}")
@@ -138,7 +116,7 @@ def serve_rig(request: TwinRequest) -> Iterator[Served]:
         bus, place = stack.enter_context(_bus(request, "sim:rig"))
         drives = SimulatedDrives(rig, bus, profile=profile.drives, watchdog=WATCHDOG)
         cell = stack.enter_context(
-            SimulatedLoadCell(rig, profile=profile.load_cell, faults=request.faults, rng=rng)
+            SimulatedLoadCell(rig, profile=profile.load_cell, faults=faults, rng=rng)
         )
 
         def tick(now: float) -> None:
@@ -170,7 +148,9 @@ def _port(twin: ByteTwin, request: TwinRequest) -> Iterator[str]:
 
 
 @contextmanager
-def _bus(request: TwinRequest, source: str) -> Iterator[tuple[can.BusABC, str]]:
+def _bus(
+    request: ZebroTwinRequest | RigTwinRequest, source: str
+) -> Iterator[tuple[can.BusABC, str]]:
     """Open the named bus, or one with a simulated adapter; yield the bus and its port."""
     if request.can is None:
         with (
@@ -189,10 +169,6 @@ def _bus(request: TwinRequest, source: str) -> Iterator[tuple[can.BusABC, str]]:
         raise SettingsError(f"cannot open {request.can}: {error}", key="--can") from error
     with bus:
         yield bus, request.can
-
-
-def _gait(play: Path | None) -> LegReference:
-    return default_gait() if play is None else read_leg_log(play).reference
 
 
 def wait_until(

@@ -3,96 +3,28 @@
 
 from collections.abc import Mapping
 from contextlib import ExitStack, closing
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Final, Protocol
 
 from model.gait.reference import SampledReference
 from rig.acquisition import Acquisition, acquiring
 from rig.clock import SYSTEM_CLOCK, Clock
-from rig.device import Counters
 from rig.errors import RigError
 from zebro_lab.files.errors import RecordingError, SettingsError
 from zebro_lab.files.source_names import joined_source
 from zebro_lab.mcap.ros_messages import WARNING
 from zebro_lab.recording.devices import DevicesRequest, OpenDevices, open_devices
 from zebro_lab.recording.display import Display
-from zebro_lab.recording.recorder import RunDescription, RunRecorder
+from zebro_lab.recording.recorder import RunRecorder
+from zebro_lab.recording.request import RecordRequest
+from zebro_lab.recording.status import COUNT_EVERY, RecordStatus, StreamWatch, reading_failure
 from zebro_lab.recording.threads import needing_threads
 from zebro_lab.robot.gait_player import LEAD_IN
 from zebro_lab.runs.legs import read_leg_log
 from zebro_lab.runs.manifest import RunManifest, read_manifest
 
 LOOK_EVERY: Final = 0.05
-COUNT_EVERY: Final = 1.0
-FIRST_SAMPLE: Final = 10.0
-"""Timeout for the first sample of every stream, from which a duration counts [s]."""
-
-
-@dataclass(frozen=True)
-class RecordRequest:
-    """Settings of a recording.
-
-    Attributes:
-        data: Folder of run folders.
-        label: Name of the run.
-        zebro: Robot: `PROFILE@PORT`, `PROFILE@sim`, `sim` or `replay:RUN`; None for none.
-        imus: Inertial measurement units, the same.
-        rig: Slip rig, the same.
-        play: Table or walk folder with leg angles that the robot follows.
-        duration: Duration of the recording, from the first sample of the stream that begins last;
-            None until it is stopped, or the played gait or the replayed run ends [s].
-        material: Leg and ground material.
-        operator: Name of the operator.
-        robot: Name of the robot.
-        seed: Seed of the random generator of simulated devices.
-    """
-
-    data: Path
-    label: str
-    zebro: str | None = None
-    imus: tuple[str, ...] = ()
-    rig: str | None = None
-    play: Path | None = None
-    duration: float | None = None
-    material: str = "unknown"
-    operator: str = "unknown"
-    robot: str | None = None
-    seed: int = 0
-
-
-@dataclass(frozen=True)
-class StreamStatus:
-    """Status of a stream.
-
-    Attributes:
-        source: Origin of its samples.
-        rate: Sample rate over about the last second [Hz].
-        counters: Counters of the stream so far.
-        dropped: Number of samples that the recorder dropped.
-    """
-
-    source: str
-    rate: float
-    counters: Counters
-    dropped: int
-
-
-@dataclass(frozen=True)
-class RecordStatus:
-    """Status of a recording.
-
-    Attributes:
-        folder: The run folder.
-        elapsed: Time since every stream has sent its first sample [s].
-        duration: Planned duration; None where unknown [s].
-        streams: Status of each stream, by its name.
-    """
-
-    folder: Path
-    elapsed: float
-    duration: float | None
-    streams: Mapping[str, StreamStatus] = field(default_factory=dict)
 
 
 class RecordWatcher(Protocol):
@@ -145,18 +77,20 @@ def record(
     duration = _duration(request, play)
     wanted = DevicesRequest(request.zebro, request.imus, request.rig, play, request.seed)
     with needing_threads(), ExitStack() as kept, open_devices(wanted) as opened:
-        if opened.lasts is not None:
-            duration = min(opened.lasts, opened.lasts if duration is None else duration)
+        if opened.replayed:
+            lasts = max(opened.replayed)
+            duration = lasts if duration is None else min(lasts, duration)
         recorder = RunRecorder(
-            request.data, description=_description(request, opened), views=opened.views, clock=clock
-        )
+            request.data, manifest=_manifest(request, opened),
+            profiles=opened.profiles, clock=clock,
+        )  # fmt: skip
         kept.enter_context(recorder)  # left after the devices: they wait for no disk
         problem = _run(recorder, opened, watcher, duration, clock)
     if problem is not None or recorder.failure is not None:
         what = recorder.failure or problem
-        where = f"what came before is in {recorder.folder}"
+        where = f"the samples until then are in {recorder.folder}"
         if not recorder.folder.is_dir():
-            where = "what came before is gone with it"
+            where = "the samples until then are gone with it"
         raise RecordingError(f"recording ended early: {what}; {where}")
     return Recorded(recorder.folder, read_manifest(recorder.folder))
 
@@ -170,22 +104,20 @@ def _run(
 ) -> str | None:
     """Record until the end; return what went wrong, or None."""
     readers: Mapping[str, Acquisition] = {}
-    display = Display[RecordStatus](
-        watcher.show, give_up=lambda why: recorder.event(why, level=WARNING)
-    )
+    display = Display(watcher.show, give_up=lambda why: recorder.event(why, level=WARNING))
     try:
         with (
             closing(display),
             needing_threads(),
             acquiring(opened.devices, sink=recorder, start=recorder.start, clock=clock) as readers,
         ):
-            board = _Board(recorder, readers, opened, duration)
+            streams = StreamWatch(recorder, readers, opened.devices, duration)
             try:
-                problem = _watch(board, display, watcher, clock)
+                problem = _watch(streams, recorder, display, watcher, clock)
             finally:
                 recorder.end()
-                display.show(board.status(clock.now()))
-        problem = problem or _failed(readers)
+                display.show(streams.status(clock.now()))
+        problem = problem or reading_failure(readers)
         if problem is not None:
             recorder.end(f"failed: {problem}")
         return problem
@@ -194,20 +126,24 @@ def _run(
 
 
 def _watch(
-    board: "_Board", display: Display[RecordStatus], watcher: RecordWatcher, clock: Clock
+    streams: StreamWatch,
+    recorder: RunRecorder,
+    display: Display,
+    watcher: RecordWatcher,
+    clock: Clock,
 ) -> str | None:
     """Poll the conditions that end a recording until one holds; return the failure, or None."""
     counted = clock.now()
-    while (left := board.left(now := clock.now())) > 0:
+    while (left := streams.left(now := clock.now())) > 0:
         if now - counted >= COUNT_EVERY:
             counted = now
-            board.count()
-        problem = board.problem(now)
+            streams.count()
+        problem = streams.problem(now)
         reason = watcher.stop_reason()
         if problem is not None or reason is not None:
-            board.end(f"failed: {problem}" if problem is not None else f"stopped: {reason}")
+            recorder.end(f"failed: {problem}" if problem is not None else f"stopped: {reason}")
             return problem
-        display.show(board.status(now))
+        display.show(streams.status(now))
         clock.sleep(min(LOOK_EVERY, left))
     return None
 
@@ -227,92 +163,6 @@ def _summarise(recorder: RunRecorder, readers: Mapping[str, Acquisition]) -> Non
     recorder.compare_clocks(clocks)
 
 
-class _Board:
-    """Timing and counters of all streams, for the log and for the watcher."""
-
-    def __init__(
-        self,
-        recorder: RunRecorder,
-        readers: Mapping[str, Acquisition],
-        opened: OpenDevices,
-        duration: float | None,
-    ) -> None:
-        self._recorder = recorder
-        self._readers = readers
-        self._sources = {device.name: device.stream.source for device in opened.devices}
-        self._duration = duration
-        self._rates = dict.fromkeys(readers, 0.0)
-        self._before = (recorder.start, dict.fromkeys(readers, 0))
-        self._began: float | None = None
-
-    def left(self, now: float) -> float:
-        """Return the least remaining duration of the recording [s]."""
-        if self._duration is None:
-            return float("inf")
-        began = self._first_samples()
-        return self._duration if began is None else began + self._duration - now
-
-    def problem(self, now: float) -> str | None:
-        """Return the problem that ends the recording; None without one."""
-        problem = self._recorder.failure or _failed(self._readers)
-        waited = now - self._recorder.start
-        if problem is None and self._duration is not None and waited > FIRST_SAMPLE:
-            silent = [name for name, reader in self._readers.items() if reader.first is None]
-            if silent:
-                return (
-                    f"no sample of {', '.join(silent)} within {FIRST_SAMPLE:g} s, from which the "
-                    "duration would count; switch it on, or leave it out"
-                )
-        return problem
-
-    def end(self, reason: str) -> None:
-        """Log why the recording ends."""
-        self._recorder.end(reason)
-
-    def _first_samples(self) -> float | None:
-        """Return the time by which every stream had sent a sample, and log it; None before."""
-        firsts = [reader.first for reader in self._readers.values()]
-        known = [first for first in firsts if first is not None]
-        if self._began is None and len(known) == len(firsts):
-            self._began = max(known)
-            if self._duration is not None:
-                self._recorder.count_duration(self._duration, since=self._began)
-                for reader in self._readers.values():
-                    reader.end_at(self._began + self._duration)
-        return self._began
-
-    def count(self) -> None:
-        """Write all counters to the log."""
-        for name, reader in self._readers.items():
-            self._recorder.count(name, reader.counters)
-
-    def status(self, now: float) -> RecordStatus:
-        """Return the status of the recording."""
-        began, received = self._before
-        if now - began >= COUNT_EVERY:
-            current = {name: r.counters.received for name, r in self._readers.items()}
-            self._rates = {name: (current[name] - received[name]) / (now - began)
-                           for name in current}  # fmt: skip
-            self._before = (now, current)
-        streams = {
-            name: StreamStatus(
-                self._sources[name], self._rates[name], reader.counters,
-                self._recorder.dropped(name),
-            )
-            for name, reader in self._readers.items()
-        }  # fmt: skip
-        first = self._first_samples()
-        elapsed = 0.0 if first is None else now - first
-        return RecordStatus(self._recorder.folder, elapsed, self._duration, streams)
-
-
-def _failed(readers: Mapping[str, Acquisition]) -> str | None:
-    for name, reader in readers.items():
-        if reader.failure is not None:
-            return f"{name}: {type(reader.failure).__name__}: {reader.failure}"
-    return None
-
-
 def _played(path: Path) -> SampledReference:
     reference = read_leg_log(path).reference
     return SampledReference(reference.t - reference.t[0], reference.theta)
@@ -329,16 +179,15 @@ def _duration(request: RecordRequest, play: SampledReference | None) -> float | 
     return min(wanted, default=None)
 
 
-def _description(request: RecordRequest, opened: OpenDevices) -> RunDescription:
+def _manifest(request: RecordRequest, opened: OpenDevices) -> RunManifest:
     sources = {device.name: device.stream.source for device in opened.devices}
-    return RunDescription(
+    return RunManifest(
         kind="walk" if request.rig is None else "slip-rig",
         label=request.label,
         source=joined_source(list(sources.values())),
         material=request.material,
         operator=request.operator,
         constants=opened.constants,
-        profiles=opened.profiles,
         sources=sources,
         robot=request.robot,
         truth=opened.truth,

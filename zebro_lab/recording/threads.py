@@ -20,6 +20,6 @@ def needing_threads() -> Iterator[None]:
         if "start new thread" not in str(error):
             raise
         raise RecordingError(
-            f"{error}: this computer allows no more of them; end other programs, or raise the "
+            f"{error}: the system allows no more threads; end other programs, or raise the "
             "limit (ulimit -u)"
         ) from error

@@ -1,12 +1,9 @@
 # SPDX-License-Identifier: MIT
 """`zebro-lab report RUN`: write an HTML report of a run."""
 
-from pathlib import Path
-from typing import Annotated
-
-import typer
-
+from zebro_lab.report.request import ReportRequest
 from zebro_lab.terminal.messages import say
+from zebro_lab.terminal.request_command import request_command
 
 EPILOG = """
 Examples:
@@ -20,26 +17,15 @@ with the command that makes it.
 """
 
 
-def report(
-    data: Annotated[
-        Path,
-        typer.Argument(
-            metavar="RUN",
-            help="Run folder, folder with track, prediction, validation, or folder of runs.",
-        ),
-    ],
-    calibration: Annotated[Path, typer.Option(help="Calibration folder.")] = Path("calibration"),
-    out: Annotated[Path, typer.Option(help="Page to write.")] = Path("report.html"),
-    title: Annotated[str | None, typer.Option(help="Title; the folder's name without it.")] = None,
-) -> None:
+@request_command()
+def report(request: ReportRequest) -> None:
     """Write an HTML report with slip curve, track, prediction and validation: report.html."""
     from datetime import UTC, datetime
 
-    from zebro_lab.report.stage import ReportRequest
-    from zebro_lab.report.stage import report as run
+    from zebro_lab.report import stage
 
-    sources = run(ReportRequest(data, calibration, out, title), made=datetime.now(UTC))
+    sources = stage.report(request, made=datetime.now(UTC))
     for part in sources.parts:
         if part.missing:
             say(f"missing: {part.name}; {part.maker} makes it")
-    say(f"wrote {out} ({out.stat().st_size / 1e6:.1f} MB)")
+    say(f"wrote {request.out} ({request.out.stat().st_size / 1e6:.1f} MB)")

@@ -18,8 +18,8 @@ from zebro_lab.files.opening import parsing
 from zebro_lab.files.shown_text import shown
 from zebro_lab.report.numbers import number
 from zebro_lab.report.pictures import Picture, embed
-from zebro_lab.report.sources import Part, Run, Sources
-from zebro_lab.runs.folder import MANIFEST_FILE
+from zebro_lab.report.sources import Part, ReportedRun, Sources
+from zebro_lab.runs.manifest import MANIFEST_FILE
 
 PAGES = "pages"
 TEMPLATE, STYLE = "report.html.jinja", "report.css"
@@ -113,7 +113,7 @@ def _number(part: Part, file: str, *keys: str | int, **spelling: Any) -> str:
     return number(part.documents[file], *keys, file=f"{part.folder}/{file}", **spelling)
 
 
-def _count(run: Run, topic: str) -> str:
+def _count(run: ReportedRun, topic: str) -> str:
     return number(run.recorded, "streams", topic, file=f"{run.folder}/{MANIFEST_FILE}")
 
 
@@ -122,7 +122,7 @@ def _pictures(part: Part) -> list[Picture]:
     return [embed(file, stage=part.name, simulated=simulated) for file in part.pictures]
 
 
-def _judged(sources: Sources) -> Iterator[tuple[Run, Part, str]]:
+def _judged(sources: Sources) -> Iterator[tuple[ReportedRun, Part, str]]:
     """Yield every walk that has been validated, with its name in the validation."""
     for run in sources.runs:
         part = run.parts.get("validation")

@@ -17,9 +17,9 @@ CAPTIONS: Mapping[str, str] = {
     "surface": "Fitted traction over slip ratio and load",
     "corner": "Posterior of the slip law's parameters, each alone and each pair",
     "traces": "The sampler's walkers over its steps",
-    "residuals": "What is left of each observation after the fit",
-    "walk_parameters": "What was believed of legs and floor before walks, and after them",
-    "left_out.": "A walk predicted from what the other walks say, beside its track",
+    "residuals": "Residuals of the fit",
+    "walk_parameters": "Prior and posterior of legs and floor",
+    "left_out.": "A walk predicted from a fit of the other walks, and its track",
     "overlay": "The tracked path over a photograph",
     "map": "The tracked path over the floor as seen from above, with 90 % regions",
     "path": "Predicted path from above, with the body at several times",
@@ -32,9 +32,9 @@ CAPTIONS: Mapping[str, str] = {
     "paired_traction": "Predicted traction of the legs of each pair",
     "gantt": "Predicted stance of each leg in the last two cycles",
     ".floor": "Predicted band and tracked path over the floor as seen from above",
-    ".photos": "Photographs from above beside the robot drawn at its predicted pose",
-    ".imu": "Roll and pitch of the predicted walk beside the IMU's",
-    ".errors": "Predicted paths beside the track, and their errors over time",
+    ".photos": "Photographs from above, and the robot drawn at its predicted pose",
+    ".imu": "Roll and pitch, predicted and measured by the IMU",
+    ".errors": "Predicted paths and the track, and errors over time",
 }
 """Captions by file name; in a validation by the end of the name, which begins with the run's."""
 
@@ -112,9 +112,9 @@ def caption_of(stem: str, *, stage: str) -> str:
         stage: Stage that drew the picture.
 
     >>> caption_of("walk-3.photos", stage="validation")
-    'Photographs from above beside the robot drawn at its predicted pose'
+    'Photographs from above, and the robot drawn at its predicted pose'
     >>> caption_of("my-walk", stage="validation")
-    'Predicted paths beside the track, and their errors over time'
+    'Predicted paths and the track, and errors over time'
     """
     if stage == VALIDATION:
         end = next((end for end in CAPTIONS if end[0] == "." and stem.endswith(end)), ERRORS)

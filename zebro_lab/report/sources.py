@@ -12,14 +12,16 @@ from zebro_lab.calibration.walks_folder import FOLDER as WALKS
 from zebro_lab.calibration.walks_folder import WALKS_TOML
 from zebro_lab.files.documents import read_json_document, read_toml_document
 from zebro_lab.files.errors import DataError, NotFound
+from zebro_lab.files.names import TRACK
 from zebro_lab.files.opening import parsing, read_text
 from zebro_lab.files.replacement import settle
 from zebro_lab.report.pictures import VALIDATION, lies_in, place_of
-from zebro_lab.runs.folder import MANIFEST_FILE, find_runs
+from zebro_lab.runs.folder import find_runs
+from zebro_lab.runs.manifest import MANIFEST_FILE
 from zebro_lab.walk.folder import PREDICTION
 
 MANIFEST, SUMMARY = "manifest.json", "summary.csv"
-TRACK, CALIBRATION = "track", "calibration"
+CALIBRATION = "calibration"
 BESIDE: Mapping[str, tuple[str, ...]] = {CALIBRATION: (SLIP_TOML, SUMMARY), WALKS: (WALKS_TOML,)}
 """Files of a stage's result that are read in addition to its manifest."""
 _MOST_TABLE = 4 << 20  # bytes of summary.csv, one line per parameter
@@ -71,7 +73,7 @@ class Part:
 
 
 @dataclass(frozen=True)
-class Run:
+class ReportedRun:
     """One run with its results.
 
     Attributes:
@@ -103,7 +105,7 @@ class Sources:
     """
 
     data: Path
-    runs: Sequence[Run]
+    runs: Sequence[ReportedRun]
     calibration: Part
     together: Part | None = None
     walks: Part | None = None
@@ -154,11 +156,13 @@ def find_sources(data: Path, *, calibration: Path) -> Sources:
     return Sources(data, [_run(folder) for folder in found], slip, together, walks)
 
 
-def _run(folder: Path) -> Run:
+def _run(folder: Path) -> ReportedRun:
     recorded = _read(folder / MANIFEST_FILE) if (folder / MANIFEST_FILE).is_file() else {}
     if recorded.get("kind") == "slip-rig":
-        return Run(folder, recorded, {})
-    return Run(folder, recorded, {name: _part(name, folder / name, folder) for name in WALK_PARTS})
+        return ReportedRun(folder, recorded, {})
+    return ReportedRun(
+        folder, recorded, {name: _part(name, folder / name, folder) for name in WALK_PARTS}
+    )
 
 
 def _part(name: str, folder: Path, data: Path) -> Part:

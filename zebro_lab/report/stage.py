@@ -1,33 +1,15 @@
 # SPDX-License-Identifier: MIT
 """Stage of `zebro-lab report`: find result folders and write the page."""
 
-from dataclasses import dataclass
 from datetime import datetime
-from pathlib import Path
 
 from zebro_lab.files.atomic import atomic_write_text
 from zebro_lab.files.own_file import html_page, require_own
 from zebro_lab.report.page import render_report
+from zebro_lab.report.request import ReportRequest
 from zebro_lab.report.sources import Sources, find_sources
 
 REPORT = html_page("report")
-
-
-@dataclass(frozen=True)
-class ReportRequest:
-    """Settings of a report.
-
-    Attributes:
-        data: A run folder, or a folder of them.
-        calibration: The calibration folder; it need not exist.
-        out: File to write.
-        title: Title of the page; the folder's name when None.
-    """
-
-    data: Path
-    calibration: Path
-    out: Path
-    title: str | None = None
 
 
 def report(request: ReportRequest, *, made: datetime) -> Sources:

@@ -2,7 +2,7 @@
 """Parse gait options of a command line and construct the gait."""
 
 from collections.abc import Callable, Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from types import MappingProxyType
 
 import numpy as np
@@ -23,46 +23,11 @@ from model.gait import (
 )
 from rig.nearest_name import nearest
 from zebro_lab.files.errors import SettingsError
+from zebro_lab.robot.gait_request import GaitRequest
 
 
 @dataclass(frozen=True)
-class GaitRequest:
-    """Parameters of a requested gait; None for the gait's default.
-
-    Attributes:
-        name: Name of the gait, a key of `GAITS`.
-        steering: Steering factor of the tripod [-].
-        direction: Where to turn, "left" or "right".
-        touchdown_deg: Touchdown angle, "INNER" or "INNER,OUTER" [deg].
-        liftoff_deg: Lift-off angle, in the same way [deg].
-        cycle: Time of a cycle [s].
-        tau_ground: Time on the ground tau_g [s].
-        tau_flight: Time in flight tau_f [s].
-        tau_turn: Longer stance of inner legs tau_p [s].
-    """
-
-    name: str = "tripod"
-    steering: float | None = None
-    direction: str | None = None
-    touchdown_deg: str | None = None
-    liftoff_deg: str | None = None
-    cycle: float | None = None
-    tau_ground: float | None = None
-    tau_flight: float | None = None
-    tau_turn: float | None = None
-
-    def given(self) -> dict[str, object]:
-        """Return the options that were given, by name, without the name of the gait."""
-        return {k: v for k, v in asdict(self).items() if v is not None and k != "name"}
-
-    @property
-    def side(self) -> Direction:
-        """Side to turn to."""
-        return "right" if self.direction == "right" else "left"
-
-
-@dataclass(frozen=True)
-class Gait:
+class NamedGait:
     """A constructed gait.
 
     Attributes:
@@ -81,10 +46,10 @@ class _Kind:
     """Constructor of a gait, and the options it accepts."""
 
     options: tuple[str, ...]
-    make: Callable[[GaitRequest, float], Gait]
+    make: Callable[[GaitRequest, float], NamedGait]
 
 
-def make_gait(request: GaitRequest, *, leg_arc: float) -> Gait:
+def make_gait(request: GaitRequest, *, leg_arc: float) -> NamedGait:
     """Construct a gait from its parameters.
 
     Args:
@@ -114,7 +79,7 @@ def make_gait(request: GaitRequest, *, leg_arc: float) -> Gait:
     return kind.make(request, leg_arc)
 
 
-def _tripod(request: GaitRequest, leg_arc: float) -> Gait:
+def _tripod(request: GaitRequest, leg_arc: float) -> NamedGait:
     inner_down, outer_down = _angles(request.touchdown_deg, "touchdown_deg", default=50.0)
     inner_up, outer_up = _angles(request.liftoff_deg, "liftoff_deg")
     if inner_down is None:
@@ -128,7 +93,7 @@ def _tripod(request: GaitRequest, leg_arc: float) -> Gait:
         outer_liftoff=outer_up,
     )
     reference = tripod_reference(angles, _or(request.cycle, 2.0), direction=request.side)
-    return Gait(reference, _tripod_name(angles, request.side), request.side)
+    return NamedGait(reference, _tripod_name(angles, request.side), request.side)
 
 
 def _tripod_name(angles: TripodAngles, side: Direction) -> str:
@@ -140,20 +105,20 @@ def _tripod_name(angles: TripodAngles, side: Direction) -> str:
     return f"tripod, s = {factor:.4g}, {side}"
 
 
-def _suriana(request: GaitRequest, _: float) -> Gait:
+def _suriana(request: GaitRequest, _: float) -> NamedGait:
     times = _turn_times(request)
     reference = suriana_reference(*_stance(request, *_THESIS_TURN), direction=request.side, **times)
-    return Gait(reference, _turn_name("suriana", request, times), request.side)
+    return NamedGait(reference, _turn_name("suriana", request, times), request.side)
 
 
-def _maxplus(request: GaitRequest, _: float) -> Gait:
+def _maxplus(request: GaitRequest, _: float) -> NamedGait:
     times, inner = _turn_times(request), inner_legs(request.side)
     touchdown, liftoff = _stance(request, *_THESIS_TURN)
     system = turning_system(TRIPOD, inner=inner, **times)
     reference = scheduled_reference(
         system, touchdown, liftoff=liftoff, inner=inner if times["turn_time"] else ()
     )
-    return Gait(reference, _turn_name("max-plus", request, times), request.side)
+    return NamedGait(reference, _turn_name("max-plus", request, times), request.side)
 
 
 def _turn_times(request: GaitRequest) -> dict[str, float]:
@@ -169,23 +134,23 @@ def _turn_name(name: str, request: GaitRequest, times: Mapping[str, float]) -> s
     return f"{name}, tau_p = {turn:g} s, {request.side}" if turn else f"{name}, straight"
 
 
-def _tetrapod(request: GaitRequest, _: float) -> Gait:
+def _tetrapod(request: GaitRequest, _: float) -> NamedGait:
     touchdown, liftoff = _stance(request, 45.0, 135.0)  # 5-5-1 of the thesis
     # Other angles than the thesis's put legs 2 and 5 out of rhythm if they start at 90 degrees.
     reference = tetrapod_reference(
         touchdown, liftoff, cycle_time=_or(request.cycle, 3.0), middle_start=None
     )
-    return Gait(reference, "tetrapod")
+    return NamedGait(reference, "tetrapod")
 
 
-def _buehler(request: GaitRequest, _: float) -> Gait:
+def _buehler(request: GaitRequest, _: float) -> NamedGait:
     cycle = _or(request.cycle, 2.0)
     reference = buehler_reference(
         *_stance(request, 50.0, 118.0),
         ground_time=_or(request.tau_ground, cycle / 2),
         cycle_time=cycle,
     )
-    return Gait(reference, "Buehler clock")
+    return NamedGait(reference, "Buehler clock")
 
 
 _THESIS_TURN = (35.0, 130.0)  # touchdown and lift-off of 5-2-4 [deg]

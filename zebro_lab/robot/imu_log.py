@@ -11,7 +11,6 @@ from scipy.spatial.transform import Rotation
 
 from model.slip.law import Array
 from zebro_lab.files.errors import DataError
-from zebro_lab.tables.cells import cell_error, require_increasing
 from zebro_lab.tables.mapped_columns import MappedColumns
 from zebro_lab.tables.raw_table import RawTable
 
@@ -62,7 +61,7 @@ def imu_of_table(table: RawTable, mapping: MappedColumns) -> ImuLog:
             increase, or a quaternion has not length 1; names the cell.
     """
     t = mapping.numbers(table, "t", what="time", advice=_ADVICE)
-    require_increasing(table, mapping.mapped["t"].name, t)
+    table.require_increasing(mapping.mapped["t"].name, t)
     quaternion, notes = _orientation(table, mapping)
     rest = [_or_nan(table, mapping, name) for name in (*_RATE, *_FORCE)]
     return ImuLog(
@@ -109,7 +108,5 @@ def _require_unit(table: RawTable, mapping: MappedColumns, quaternion: Array) ->
     good = np.abs(norm - 1) <= _NORM_TOLERANCE
     if not good.all():
         index = int(np.argmin(good))
-        raise cell_error(
-            table, mapping.mapped["qw"].name, index,
-            f"the quaternion has length {norm[index]:.3g}; expected 1",
-        )  # fmt: skip
+        problem = f"the quaternion has length {norm[index]:.3g}; expected 1"
+        raise table.fault(problem, mapping.mapped["qw"].name, index)

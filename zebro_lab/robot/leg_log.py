@@ -11,10 +11,7 @@ from model.gait.reference import SampledReference
 from model.robot import N_LEGS
 from model.slip.law import Array
 from zebro_lab.files.errors import DataError
-from zebro_lab.tables.cells import cell_error, require_increasing
-from zebro_lab.tables.mapped_columns import (
-    MappedColumns,
-)
+from zebro_lab.tables.mapped_columns import MappedColumns
 from zebro_lab.tables.raw_table import RawTable
 
 ANGLES = tuple(f"theta{leg}" for leg in range(1, N_LEGS + 1))
@@ -63,7 +60,7 @@ def legs_of_table(
     time_column = mapping.mapped["t"].name
     if len(t) < 2:
         raise DataError(f"has {len(t)} row; a leg log needs two or more", file=files[0])
-    require_increasing(table, time_column, t)
+    table.require_increasing(time_column, t)
     _require_no_gap(table, time_column, t)
     raw = np.column_stack(angles) * np.asarray(leg_sign, dtype=float)
     theta = np.unwrap(raw, axis=0)
@@ -91,11 +88,12 @@ def _require_no_gap(table: RawTable, column: str, t: Array) -> None:
     wide = steps > _WIDEST_GAP * usual
     if wide.any():
         index = int(np.argmax(wide)) + 1
-        raise cell_error(
-            table, column, index,
+        raise table.fault(
             f"time jumps from {t[index - 1]:g} to {t[index]:g} s, where samples are {usual:.4g} s "
             "apart; split the log there and predict each part",
-        )  # fmt: skip
+            column,
+            index,
+        )
 
 
 def _require_unwrapped(table: RawTable, columns: MappedColumns, theta: Array) -> None:
@@ -103,11 +101,12 @@ def _require_unwrapped(table: RawTable, columns: MappedColumns, theta: Array) ->
     if not (turns > _LONGEST_TURN).any():
         return
     row, leg = (int(i[0]) for i in np.nonzero(turns > _LONGEST_TURN))
-    raise cell_error(
-        table, columns.mapped[ANGLES[leg]].name, row + 1,
+    raise table.fault(
         f"leg {leg + 1} turns by {turns[row, leg]:.3g} rad since the sample before; from half a "
-        "turn on nobody can tell which way: check its unit, or log faster",
-    )  # fmt: skip
+        "turn on the direction is ambiguous: check its unit, or log faster",
+        columns.mapped[ANGLES[leg]].name,
+        row + 1,
+    )
 
 
 def _notes(t: Array, raw: Array, theta: Array) -> list[str]:

@@ -10,8 +10,8 @@ from zebro_lab.terminal.messages import say
 
 DataDir = Annotated[Path, typer.Argument(metavar="DATA", help="Folder of run folders.")]
 RunFolder = Annotated[Path, typer.Argument(metavar="RUN", help="Run folder.")]
-Why = Annotated[str | None, typer.Option(help="Reason, kept with the run and those of before.")]
-Undo = Annotated[bool, typer.Option("--undo", help="Take the run in again.")]
+Why = Annotated[str | None, typer.Option(help="Reason, kept with the run and earlier reasons.")]
+Undo = Annotated[bool, typer.Option("--undo", help="Include the run again.")]
 
 
 def runs(data: DataDir) -> None:
@@ -35,9 +35,11 @@ def exclude(run: RunFolder, why: Why = None, undo: Undo = False) -> None:
     require_ended(run)
     if undo:
         take_in_again(run, why=why)
-        say(f"{run.name} counts again from now on")
+        say(f"{run.name} is included again")
         return
     if why is None:
-        raise typer.BadParameter("needed: the reason, kept with the run", param_hint="'--why'")
+        raise typer.BadParameter(
+            "missing: the reason, which is kept with the run", param_hint="'--why'"
+        )
     manifest = exclude_run(run, why=why)
-    say(f"{run.name} is left out from now on: {(manifest.excluded or {})['why']}")
+    say(f"{run.name} is excluded: {(manifest.excluded or {})['why']}")

@@ -68,8 +68,8 @@ def run_keys(forces: Sequence[Array], run: NDArray[np.intp], n_runs: int) -> tup
     keys = []
     for index in range(n_runs):
         part = [column[run == index] for column in forces]
-        tells = len(part[0]) >= FEWEST and any(np.ptp(column) > 0 for column in part)
-        keys.append(array_hash(*part) if tells else f"{whole} {index}")
+        identified = len(part[0]) >= FEWEST and any(np.ptp(column) > 0 for column in part)
+        keys.append(array_hash(*part) if identified else f"{whole} {index}")
     return tuple(keys)
 
 
@@ -97,7 +97,7 @@ def first_of_each(
     return list(first.values()), repeated
 
 
-def told_once(what: str, repeated: Sequence[tuple[object, object]]) -> tuple[str, ...]:
+def duplicates_note(what: str, repeated: Sequence[tuple[object, object]]) -> tuple[str, ...]:
     """Format a note on duplicates that were dropped.
 
     Args:
@@ -107,7 +107,7 @@ def told_once(what: str, repeated: Sequence[tuple[object, object]]) -> tuple[str
     Returns:
         One line, or nothing if there are no duplicates.
 
-    >>> told_once("tables", [("b.csv", "a.csv")])
+    >>> duplicates_note("tables", [("b.csv", "a.csv")])
     ('1 of the tables is there twice and counts once: b.csv is a.csv',)
     """
     if not repeated:

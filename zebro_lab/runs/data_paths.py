@@ -6,7 +6,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from zebro_lab.files.errors import DataError, NotFound
-from zebro_lab.runs.folder import LOG_FILE, MANIFEST_FILE
+from zebro_lab.runs.folder import LOG_FILE
+from zebro_lab.runs.manifest import MANIFEST_FILE
 from zebro_lab.tables.columns import COLUMNS_FILE
 from zebro_lab.tables.table_files import TABLE_SUFFIXES, is_table_file
 

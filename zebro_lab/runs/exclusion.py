@@ -12,7 +12,7 @@ from zebro_lab.runs.manifest import RunManifest, read_manifest, write_manifest
 
 EXCLUDED: Final = "excluded"
 UNDONE: Final = "undone"
-UNSAID: Final = "no reason given"
+NO_REASON: Final = "no reason given"
 
 
 def exclude_run(folder: Path, *, why: str) -> RunManifest:
@@ -44,12 +44,12 @@ def take_in_again(folder: Path, *, why: str | None = None) -> RunManifest:
     """
     if read_manifest(folder).excluded is None:
         raise DataError("is not left out; there is nothing to undo", file=folder)
-    return _written(folder, UNDONE, (why or "").strip() or UNSAID)
+    return _written(folder, UNDONE, (why or "").strip() or NO_REASON)
 
 
 def past_reasons(manifest: RunManifest) -> tuple[str, ...]:
     """Return the reasons of past exclusions, the latest first."""
-    reasons = [each.get("why", UNSAID) for each in _history(manifest) if each["did"] == EXCLUDED]
+    reasons = [each.get("why", NO_REASON) for each in _history(manifest) if each["did"] == EXCLUDED]
     return tuple(reversed(reasons[:-1] if manifest.excluded is not None else reasons))
 
 
@@ -74,4 +74,4 @@ def _history(manifest: RunManifest) -> tuple[Mapping[str, str], ...]:
     excluded = [each.get("why") for each in history if each["did"] == EXCLUDED]
     if now is None or (excluded and excluded[-1] == now.get("why")):
         return history
-    return (*history, {"did": EXCLUDED, "why": now.get("why", UNSAID)})
+    return (*history, {"did": EXCLUDED, "why": now.get("why", NO_REASON)})

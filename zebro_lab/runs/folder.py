@@ -6,8 +6,6 @@ Only this module depends on their layout, which docs/formats.md describes.
 
 import re
 import time
-from collections.abc import Iterator
-from contextlib import contextmanager
 from dataclasses import dataclass, field
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
@@ -15,45 +13,11 @@ from typing import Final
 
 import numpy as np
 
-from zebro_lab.files.atomic import atomic_folder
 from zebro_lab.files.errors import AlreadyExists, DataError, NotFound, RecordingError
 from zebro_lab.files.provenance import file_hash
 from zebro_lab.mcap.raw_log import raw_topic, read_raw_log
 from zebro_lab.mcap.slip_rig_log import TOPIC, SlipRigTable, read_log
-from zebro_lab.runs.exclusion import exclude_run
-from zebro_lab.runs.manifest import (
-    IMPORTED,
-    KINDS,
-    MANIFEST_FILE,
-    RECORDING,
-    SCHEMA_VERSION,
-    RunManifest,
-    read_manifest,
-    write_manifest,
-)
-
-__all__ = [
-    "IMPORTED",
-    "KINDS",
-    "LOG_FILE",
-    "MANIFEST_FILE",
-    "RECORDING",
-    "SCHEMA_VERSION",
-    "RunManifest",
-    "SlipRigRun",
-    "epoch_ns",
-    "exclude_run",
-    "find_runs",
-    "finished_run_folder",
-    "new_run_folder",
-    "read_manifest",
-    "read_slip_rig_run",
-    "require_ended",
-    "require_recorded",
-    "run_path",
-    "run_state",
-    "write_manifest",
-]
+from zebro_lab.runs.manifest import MANIFEST_FILE, RECORDING, RunManifest, read_manifest
 
 LOG_FILE = "log.mcap"
 _BOARD_TOPIC: Final = raw_topic("board")
@@ -80,29 +44,10 @@ class SlipRigRun:
     notes: tuple[str, ...] = field(default=())
 
 
-@contextmanager
-def finished_run_folder(
-    data_dir: Path, *, kind: str, label: str, start: datetime
-) -> Iterator[tuple[Path, Path]]:
-    """Write the folder of a finished run atomically: it appears complete or not at all.
-
-    Args:
-        data_dir: Folder of run folders; made when missing.
-        kind: One of `KINDS`.
-        label: Name of the run.
-        start: When it began, with its time zone.
-
-    Yields:
-        Path of the final run folder, and the draft folder to write into.
-
-    Raises:
-        AlreadyExists: A run with this start and label exists.
-    """
-    folder = run_path(data_dir, kind, label, start)
+def require_new(folder: Path) -> None:
+    """Raise AlreadyExists where a run folder is there already."""
     if folder.exists():
         raise AlreadyExists(f"{folder} exists already; give the run another label")
-    with atomic_folder(folder) as draft:
-        yield folder, draft
 
 
 def read_slip_rig_run(folder: Path) -> SlipRigRun:
@@ -151,7 +96,7 @@ def new_run_folder(data_dir: Path, *, kind: str, label: str, start: datetime) ->
         folder.mkdir(parents=True)
     except FileExistsError as error:
         if folder.is_dir():
-            raise AlreadyExists(f"{folder} exists already; give the run another label") from error
+            require_new(folder)
         raise RecordingError(f"{error.filename} is a file; name a folder as --data") from error
     except OSError as error:
         raise RecordingError(

@@ -40,9 +40,17 @@ def profile_file(folder: Path, stream: str) -> Path:
     return folder / PROFILES / f"{stream}.toml"
 
 
-@dataclass(frozen=True)
+def software_version() -> dict[str, str]:
+    """Return version and commit of this software."""
+    try:
+        return {"version": version("zebro-lab"), "commit": "unknown"}
+    except PackageNotFoundError:
+        return {"version": "unknown", "commit": "unknown"}
+
+
+@dataclass(frozen=True, kw_only=True)
 class RunManifest:
-    """Content of the `run.json` of a run.
+    """Content of the `run.json` of a run, or what is known of it before the run.
 
     Attributes:
         kind: "slip-rig" or "walk".
@@ -51,7 +59,7 @@ class RunManifest:
         operator: Name of the operator.
         source: "real", "sim:what", "replay:what", or "import:FILE" for an imported file without a
             stated source.
-        start: Start, UTC, ISO 8601.
+        start: Start, UTC, ISO 8601; empty before the run.
         stop: Stop, UTC, ISO 8601; None while it is recorded, or if the recorder died.
         exit_status: "completed", "recording", "imported", or why it ended.
         software: Version and commit of the recording software.
@@ -81,15 +89,15 @@ class RunManifest:
 
     kind: str
     label: str
-    material: str
-    operator: str
+    material: str = "unknown"
+    operator: str = "unknown"
     source: str
-    start: str
-    stop: str | None
-    exit_status: str
-    software: Mapping[str, str]
-    constants: Mapping[str, float]
-    streams: Mapping[str, int]
+    start: str = ""
+    stop: str | None = None
+    exit_status: str = RECORDING
+    software: Mapping[str, str] = field(default_factory=software_version)
+    constants: Mapping[str, float] = field(default_factory=dict)
+    streams: Mapping[str, int] = field(default_factory=dict)
     log_sha256: str | None = None
     excluded: Mapping[str, str] | None = None
     exclusions: Sequence[Mapping[str, str]] = ()
@@ -103,6 +111,11 @@ class RunManifest:
     inputs: Mapping[str, str] = field(default_factory=dict)
     point: Mapping[str, Any] = field(default_factory=dict)
     schema_version: int = SCHEMA_VERSION
+
+    @property
+    def began(self) -> datetime:
+        """The start as a moment, with its time zone."""
+        return datetime.fromisoformat(self.start)
 
 
 def read_manifest(folder: Path) -> RunManifest:
@@ -139,14 +152,6 @@ def manifest_text(manifest: RunManifest) -> str:
         if value is not None and (value or key not in _OPTIONAL)
     }  # fmt: skip
     return json.dumps(encodable(document), indent=2, ensure_ascii=False) + "\n"
-
-
-def software_version(commit: str = "unknown") -> dict[str, str]:
-    """Return version and commit of this software."""
-    try:
-        return {"version": version("zebro-lab"), "commit": commit}
-    except PackageNotFoundError:
-        return {"version": "unknown", "commit": commit}
 
 
 _FIELD_TYPES: Mapping[str, type] = {
@@ -194,8 +199,7 @@ def _checked(document: Mapping[str, Any], file: Path) -> RunManifest:
     for name in ("start", "stop"):
         if document.get(name) is not None:
             _require_moment(name, document[name], file)
-    known: dict[str, Any] = {"stop": None}
-    known |= {name: document[name] for name in _FIELD_TYPES if document.get(name) is not None}
+    known = {name: document[name] for name in _FIELD_TYPES if document.get(name) is not None}
     return RunManifest(**known)
 
 

@@ -18,18 +18,16 @@ zebro-lab plot data/20260304T050607Z_walk_circle --out circle.png
 
 Run = Annotated[Path, typer.Argument(metavar="RUN", help="Run folder.")]
 Out = Annotated[
-    Path | None, typer.Option(metavar="FILE", help="Picture to write; beside RUN without it.")
+    Path | None, typer.Option(metavar="FILE", help="Picture to write; default: RUN.png beside RUN.")
 ]
 
 
 def plot(run: Run, out: Out = None) -> None:
     """Plot all streams of a run: legs, IMU, forces, speeds, with gaps and events marked."""
-    from rich.console import Console
-
     from zebro_lab.runs.plot_stage import plot_run
     from zebro_lab.terminal.progress import progress_bar
 
-    with progress_bar(Console(stderr=True)) as watcher:
+    with progress_bar() as watcher:
         watcher.step("drawing", None)
         drawn = plot_run(run, out=out)
     for note in drawn.signals.notes:

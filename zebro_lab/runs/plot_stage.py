@@ -8,7 +8,8 @@ from pathlib import Path
 from zebro_lab.files.atomic import atomic_write_bytes
 from zebro_lab.files.errors import SettingsError
 from zebro_lab.files.own_file import picture, require_own
-from zebro_lab.runs.folder import LOG_FILE, MANIFEST_FILE
+from zebro_lab.runs.folder import LOG_FILE
+from zebro_lab.runs.manifest import MANIFEST_FILE
 from zebro_lab.runs.signals import RunSignals, read_signals
 
 SUFFIX = ".png"

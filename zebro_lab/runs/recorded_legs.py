@@ -5,11 +5,14 @@ from pathlib import Path
 
 import numpy as np
 
+from rig.clock_watch import sample_times
+from rig.errors import RigError
 from rig.sample_columns import SampleColumns
+from rig.zebro.profile import decode_angles, load_leg_profile
 from zebro_lab.files.errors import DataError, NotFound
 from zebro_lab.mcap.raw_log import raw_topic, read_raw_log
-from zebro_lab.runs.folder import LOG_FILE, MANIFEST_FILE, read_manifest, require_recorded
-from zebro_lab.runs.manifest import profile_file
+from zebro_lab.runs.folder import LOG_FILE, require_recorded
+from zebro_lab.runs.manifest import MANIFEST_FILE, profile_file, read_manifest
 from zebro_lab.tables.raw_table import RawTable
 
 LEGS = "legs"
@@ -56,10 +59,6 @@ def read_recorded_legs(folder: Path) -> tuple[RawTable, tuple[Path, ...]]:
 
 
 def _angles(stream: SampleColumns, profile_path: Path) -> dict[str, np.ndarray]:
-    from rig.clock_watch import sample_times
-    from rig.errors import RigError
-    from rig.zebro.profile import decode_angles, load_leg_profile
-
     try:
         angles = decode_angles(load_leg_profile(str(profile_path)), stream)
     except RigError as error:

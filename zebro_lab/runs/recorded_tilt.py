@@ -7,6 +7,9 @@ from pathlib import Path
 import numpy as np
 
 from model.slip.law import Array
+from rig.clock_watch import sample_times
+from rig.errors import RigError
+from rig.imu.profile import decode_orientation, load_imu_profile
 from zebro_lab.files.errors import DataError
 from zebro_lab.mcap.raw_log import raw_topic, read_raw_log
 from zebro_lab.runs.folder import LOG_FILE
@@ -44,9 +47,6 @@ def read_recorded_tilt(folder: Path) -> Tilt | None:
     name = next((name for name in IMUS if profile_file(folder, name).is_file()), None)
     if name is None or not log.is_file():
         return None
-    from rig.clock_watch import sample_times
-    from rig.errors import RigError
-    from rig.imu.profile import decode_orientation, load_imu_profile
 
     stream = read_raw_log(log).streams.get(raw_topic(name))
     if stream is None:

@@ -3,7 +3,6 @@
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from datetime import datetime
 from pathlib import Path
 from typing import Final
 
@@ -23,8 +22,8 @@ from zebro_lab.files.errors import DataError
 from zebro_lab.mcap.raw_log import read_raw_log
 from zebro_lab.mcap.ros_log import read_messages
 from zebro_lab.mcap.ros_messages import LOG, WARNING
-from zebro_lab.runs.folder import LOG_FILE, epoch_ns, read_manifest, read_slip_rig_run, run_state
-from zebro_lab.runs.manifest import RIG, RunManifest, profile_file
+from zebro_lab.runs.folder import LOG_FILE, epoch_ns, read_slip_rig_run, run_state
+from zebro_lab.runs.manifest import RIG, RunManifest, profile_file, read_manifest
 from zebro_lab.runs.recorded_legs import LEGS
 
 GAP_STEPS: Final = 5.0
@@ -213,7 +212,7 @@ def _of_table(rows: Array, manifest: RunManifest) -> Iterator[Panel]:
 
 
 def _events(log: Path, manifest: RunManifest) -> tuple[Event, ...]:
-    start = epoch_ns(datetime.fromisoformat(manifest.start))
+    start = epoch_ns(manifest.began)
     messages, _ = read_messages(log, schema=LOG.name)
     return tuple(
         Event(1e-9 * (message.log_time - start), message.content.msg,

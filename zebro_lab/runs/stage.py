@@ -7,9 +7,9 @@ from pathlib import Path
 
 from zebro_lab.files.errors import ZebroLabError
 from zebro_lab.mcap.raw_log import read_raw_log
-from zebro_lab.runs.exclusion import UNSAID, past_reasons
-from zebro_lab.runs.folder import LOG_FILE, find_runs, read_manifest, run_state
-from zebro_lab.runs.manifest import RunManifest
+from zebro_lab.runs.exclusion import NO_REASON, past_reasons
+from zebro_lab.runs.folder import LOG_FILE, find_runs, run_state
+from zebro_lab.runs.manifest import RunManifest, read_manifest
 
 
 @dataclass(frozen=True)
@@ -62,15 +62,11 @@ def _with_exclusions(state: str, manifest: RunManifest) -> str:
     before = "; ".join(past_reasons(manifest))
     if manifest.excluded is None:
         return f"{state} (was excluded: {before})" if before else state
-    why = manifest.excluded.get("why", UNSAID)
+    why = manifest.excluded.get("why", NO_REASON)
     return f"excluded ({why}; before: {before})" if before else f"excluded ({why})"
 
 
 def _lasted(manifest: RunManifest) -> str:
     if manifest.stop is None:
         return "-"
-    try:
-        start, stop = map(datetime.fromisoformat, (manifest.start, manifest.stop))
-        return f"{(stop - start).total_seconds():.1f} s"
-    except (ValueError, TypeError):
-        return "-"
+    return f"{(datetime.fromisoformat(manifest.stop) - manifest.began).total_seconds():.1f} s"

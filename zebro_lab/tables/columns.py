@@ -136,7 +136,7 @@ def parse_columns(table: SettingsTable) -> Columns:
         SettingsError: It has an unknown key, unit or value.
     """
     columns = table.table("columns")
-    said = Columns(
+    columns_file = Columns(
         file=Path(table.file),
         source=_source(table),
         columns={
@@ -150,7 +150,7 @@ def parse_columns(table: SettingsTable) -> Columns:
         load_cell=_quantities(table.table("load_cell"), _LOAD_CELL, least=0.0),
     )
     table.finish()
-    return said
+    return columns_file
 
 
 def parse_mapped_column(columns: SettingsTable, name: str, si_unit: str | None) -> MappedColumn:

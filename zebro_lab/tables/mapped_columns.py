@@ -5,13 +5,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-import numpy as np
-
 from model.slip.law import Array
 from rig.nearest_name import nearest
-from zebro_lab.files.errors import DataError
 from zebro_lab.files.settings_table import SettingsTable
-from zebro_lab.tables.cells import cell_error
 from zebro_lab.tables.columns import COLUMNS_FILE, MappedColumn, parse_mapped_column
 from zebro_lab.tables.raw_table import RawTable
 
@@ -66,23 +62,12 @@ class MappedColumns:
         """
         mapped = self.mapped[name]
         if not self.has(table, name):
-            raise self._missing(table, name, what)
-        values = table.numbers(mapped.name)
-        good = np.isfinite(values)
-        if not good.all():
-            index = int(np.argmin(good))
-            found = "infinite" if np.isinf(values[index]) else "empty"
-            expected = f"is {found}; expected a number in {mapped.unit}: {advice}"
-            raise cell_error(table, mapped.name, index, expected)
-        return values * mapped.factor
-
-    def _missing(self, table: RawTable, name: str, what: str) -> DataError:
-        header = self.mapped[name].name
-        return DataError(
-            f"missing, the {what}; {nearest(header, list(table.columns))}; map it in "
-            f"{COLUMNS_FILE} as [{self.where}columns.{name}]",
-            file=table.path, column=header,
-        )  # fmt: skip
+            raise table.fault(
+                f"missing, the {what}; {nearest(mapped.name, list(table.columns))}; map it in "
+                f"{COLUMNS_FILE} as [{self.where}columns.{name}]",
+                mapped.name,
+            )
+        return table.finite(mapped.name, f"a number in {mapped.unit}: {advice}") * mapped.factor
 
 
 def canonical_columns(units: Mapping[str, str]) -> MappedColumns:

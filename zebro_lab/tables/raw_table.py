@@ -5,7 +5,7 @@ import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -49,6 +49,19 @@ class RawTable:
         """Count the data rows."""
         return len(next(iter(self.columns.values()), ()))
 
+    def fault(self, problem: str, column: str, index: int | None = None, **found: Any) -> DataError:
+        """Return an error that names a column or one of its cells.
+
+        Args:
+            problem: What was found, what was expected, what to try.
+            column: Header of the column.
+            index: Data row, counted from 0; None for the whole column.
+            found: `value` and `unit` of the cell.
+        """
+        row = None if index is None else index + 1
+        line = None if row is None else self._line(row)
+        return DataError(problem, file=self.path, column=column, row=row, line=line, **found)
+
     def column(self, name: str) -> "pd.Series":
         """Return a column.
 
@@ -56,19 +69,12 @@ class RawTable:
             DataError: The file has no column, or more than one, with this header.
         """
         if name in self.repeated:
-            raise DataError(
-                "heads more than one column; give each a name of its own",
-                file=self.path, column=name,
-            )  # fmt: skip
+            raise self.fault("heads more than one column; give each a name of its own", name)
         if name not in self.columns:
-            raise DataError(
-                f"missing; {nearest(name, list(self.columns))}", file=self.path, column=name
-            )
+            raise self.fault(f"missing; {nearest(name, list(self.columns))}", name)
         if name in self.unreadable:
-            raise DataError(
-                f"holds cells of type {self.unreadable[name]}; expected numbers or texts",
-                file=self.path, column=name,
-            )  # fmt: skip
+            kind = self.unreadable[name]
+            raise self.fault(f"holds cells of type {kind}; expected numbers or texts", name)
         return self.columns[name]
 
     def numbers(self, name: str) -> NDArray[np.float64]:
@@ -81,7 +87,7 @@ class RawTable:
 
         cells = self.column(name)
         if pd.api.types.is_datetime64_any_dtype(cells) or pd.api.types.is_timedelta64_dtype(cells):
-            raise DataError("holds dates, expected numbers", file=self.path, column=name)
+            raise self.fault("holds dates, expected numbers", name)
         with parsing(self.path, f"cannot take column '{name}' for numbers"):
             empty = cells.isna().to_numpy(dtype=bool)
             values = _as_numbers(cells)
@@ -93,7 +99,49 @@ class RawTable:
             raise self._not_a_number(name, int(np.argmax(bad)))
         return values
 
-    def line(self, row: int) -> int | None:
+    def finite(
+        self, name: str, expected: str = "a finite number", *, may_be_empty: bool = False
+    ) -> NDArray[np.float64]:
+        """Return a column as finite numbers, shape (n,).
+
+        Args:
+            name: Header of the column.
+            expected: What a cell should hold, and what to do if it does not; for the message.
+            may_be_empty: Whether empty cells are allowed; they become NaN.
+
+        Raises:
+            DataError: The column is missing, or a cell is empty, infinite or not a number.
+        """
+        values = self.numbers(name)
+        bad = np.isinf(values) if may_be_empty else ~np.isfinite(values)
+        if bad.any():
+            index = int(np.argmax(bad))
+            found = "infinite" if np.isinf(values[index]) else "empty"
+            raise self.fault(f"is {found}; expected {expected}", name, index)
+        return values
+
+    def require_increasing(self, column: str, t: NDArray[np.float64]) -> None:
+        """Check that times are strictly increasing.
+
+        Args:
+            column: Header of the column of times, for the message.
+            t: Times by row, shape (n,) [s].
+
+        Raises:
+            DataError: A time is not later than the one before.
+        """
+        later = np.diff(t) > 0
+        if later.all():
+            return
+        index = int(np.argmin(later)) + 1
+        raise self.fault(
+            f"time goes from {t[index - 1]:g} to {t[index]:g} s; expected increasing times: "
+            "sort the rows, delete repeated ones",
+            column,
+            index,
+        )
+
+    def _line(self, row: int) -> int | None:
         """Return the line number of a data row in a text file; None for other files.
 
         Rows and lines count from 1. The file is read again, as this is only called for error
@@ -116,10 +164,7 @@ class RawTable:
             advice = "; delete a row of units, give them in columns.toml"
         else:
             advice = "; correct or delete the row"
-        return DataError(
-            f"'{text}' is not a number{advice}",
-            file=self.path, column=name, row=index + 1, line=self.line(index + 1), value=text,
-        )  # fmt: skip
+        return self.fault(f"'{text}' is not a number{advice}", name, index, value=text)
 
 
 def _as_numbers(cells: "pd.Series") -> NDArray[np.float64]:

@@ -36,25 +36,35 @@ class RigTable:
             return MappedColumn(name, CANONICAL[name].unit or "")
         return None
 
+    def required(self, name: str) -> MappedColumn:
+        """Return the mapped column of a canonical column that the table must have.
+
+        Raises:
+            DataError: The table has none.
+        """
+        source = self.source_of(name)
+        if source is None:
+            raise self.raw.fault(
+                f"missing; {nearest(name, list(self.raw.columns))}; "
+                f"map it in {COLUMNS_FILE} as [columns.{name}] (zebro-lab init writes one)",
+                name,
+            )
+        return source
+
     def si(self, name: str) -> Array:
         """Return a canonical column in SI with the canonical sign, shape (n,).
 
         Raises:
             DataError: The column is missing, or a cell is no finite number.
         """
-        source = self.source_of(name)
-        if source is None:
-            raise self.missing(name)
+        source = self.required(name)
         values = self.raw.numbers(source.name)[self.rows]
         self._require_finite(name, source.name, values)
         return values * source.factor
 
     def texts(self, name: str) -> NDArray[np.object_]:
         """Return a canonical column of strings, as in the file, shape (n,)."""
-        source = self.source_of(name)
-        if source is None:
-            raise self.missing(name)
-        return self.raw.column(source.name).to_numpy(dtype=object)[self.rows]
+        return self.raw.column(self.required(name).name).to_numpy(dtype=object)[self.rows]
 
     def constant_or_column(self, name: str) -> float | Array:
         """Return a radius, one number or shape (n,), positive [m].
@@ -64,18 +74,17 @@ class RigTable:
         """
         constant, source = self.columns.constants.get(name), self.source_of(name)
         if constant is not None and source is not None:
-            raise DataError(
-                f"given twice: as a column and as [constants] {name} = {constant:g} m; "
-                f"keep one of them",
-                file=self.raw.path, column=source.name,
-            )  # fmt: skip
+            raise self.raw.fault(
+                f"given twice: as a column and as [constants] {name} = {constant:g} m; keep one",
+                source.name,
+            )
         if constant is None:
             if source is None:
-                raise DataError(
+                raise self.raw.fault(
                     f"missing, needed for slip from disc speeds; give it as "
-                    f"[constants] {name} = \"35 mm\" in {COLUMNS_FILE}",
-                    file=self.raw.path, column=name,
-                )  # fmt: skip
+                    f'[constants] {name} = "35 mm" in {COLUMNS_FILE}',
+                    name,
+                )
             values = self.si(name)
             self.require(name, values > 0, lambda v: f"radius is {v}, expected more than 0")
             return values
@@ -108,24 +117,11 @@ class RigTable:
             index: Row among the kept rows, counted from 0.
             problem: Formats the message, given the cell's value with its unit.
         """
-        source = self.source_of(name)
-        if source is None:
-            raise self.missing(name)
-        row = int(self.rows[index]) + 1
-        value = float(self.raw.numbers(source.name)[row - 1])
+        source, row = self.required(name), int(self.rows[index])
+        value = float(self.raw.numbers(source.name)[row])
         unit = "" if source.unit == "dimensionless" else source.unit
-        return DataError(
-            problem(f"{value:g} {unit}".rstrip()), file=self.raw.path, column=source.name,
-            row=row, line=self.raw.line(row), value=value, unit=source.unit,
-        )  # fmt: skip
-
-    def missing(self, name: str) -> DataError:
-        """Return the error for a missing canonical column."""
-        return DataError(
-            f"missing; {nearest(name, list(self.raw.columns))}; "
-            f"map it in {COLUMNS_FILE} as [columns.{name}] (zebro-lab init writes one)",
-            file=self.raw.path, column=name,
-        )  # fmt: skip
+        text = problem(f"{value:g} {unit}".rstrip())
+        return self.raw.fault(text, source.name, row, value=value, unit=source.unit)
 
     def _require_finite(self, name: str, header: str, values: Array) -> None:
         good = np.isfinite(values)

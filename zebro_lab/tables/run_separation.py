@@ -8,7 +8,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from model.slip.law import Array
-from zebro_lab.files.errors import DataError
 from zebro_lab.tables.columns import COLUMNS_FILE
 from zebro_lab.tables.rig_table import RigTable
 
@@ -94,10 +93,8 @@ def run_times(table: RigTable, runs: Runs) -> Array | None:
 def _after_pauses(table: RigTable, gap: float) -> NDArray[np.bool_]:
     source = table.source_of("t")
     if source is None:
-        raise DataError(
-            "missing, needed to find the pauses of [runs] gap; map it as [columns.t]",
-            file=table.raw.path, column="t",
-        )  # fmt: skip
+        problem = "missing, needed to find the pauses of [runs] gap; map it as [columns.t]"
+        raise table.raw.fault(problem, "t")
     time = table.raw.numbers(source.name) * source.factor
     known = np.flatnonzero(np.isfinite(time))  # a row without time belongs to the run before it
     starts = np.zeros(len(time), dtype=bool)

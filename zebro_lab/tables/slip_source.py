@@ -9,7 +9,6 @@ from model.errors import DomainError
 from model.slip.definition import SlipDefinition, convert_slip, slip_ratio
 from model.slip.law import Array
 from rig.nearest_name import nearest
-from zebro_lab.files.errors import DataError
 from zebro_lab.tables.columns import COLUMNS_FILE, MappedColumn, parse_definition
 from zebro_lab.tables.rig_table import RigTable
 
@@ -53,13 +52,14 @@ def slip(table: RigTable) -> SlipColumn:
     if speeds:
         return _slip_from_speeds(table, unused=given)
     if any(table.source_of(name) for name in _SPEEDS):
-        raise table.missing(next(n for n in _SPEEDS if not table.source_of(n)))
-    raise DataError(
+        for name in _SPEEDS:
+            table.required(name)
+    raise table.raw.fault(
         f"no slip: expected 'slip_ratio' with its definition, or 'omega_leg' and 'omega_ground' "
         f"with radii; {nearest('slip_ratio', list(table.raw.columns))}; "
         f"map them in {COLUMNS_FILE} (zebro-lab init writes one)",
-        file=table.raw.path, column="slip_ratio",
-    )  # fmt: skip
+        "slip_ratio",
+    )
 
 
 def converted(table: RigTable, slip_column: SlipColumn, target: SlipDefinition) -> SlipColumn:
@@ -80,7 +80,7 @@ def converted(table: RigTable, slip_column: SlipColumn, target: SlipDefinition) 
         values = convert_slip(ratio, source, target)
     except DomainError as error:
         message = str(error)
-        index = _first_refused(ratio, source, target)
+        index = _first_rejected(ratio, source, target)
         raise table.error_at(column, index, lambda _: message) from error
     infinite = ~np.isfinite(values)
     if infinite.any():
@@ -105,20 +105,21 @@ def _given_definition(table: RigTable) -> SlipDefinition | None:
     texts = table.texts("slip_definition")
     differing = texts != texts[0]
     index = int(table.rows[np.argmax(differing)] if differing.any() else table.rows[0])
-    place = {"column": column.name, "row": index + 1, "line": table.raw.line(index + 1)}
     if differing.any():
-        raise DataError(
+        raise table.raw.fault(
             f"two slip definitions in one file: '{texts[0]}' and "
             f"'{texts[np.argmax(differing)]}'; split it by definition",
-            file=table.raw.path, **place,
-        )  # fmt: skip
+            column.name,
+            index,
+        )
     found = parse_definition(texts[0], file=table.raw.path, key=column.name)
     if stated not in (None, found):
-        raise DataError(
+        raise table.raw.fault(
             f"slip definition is '{found}' here and '{stated}' in {table.columns.file}; "
             f"correct one of them",
-            file=table.raw.path, **place,
-        )  # fmt: skip
+            column.name,
+            index,
+        )
     return found
 
 
@@ -126,20 +127,20 @@ def _given_slip(
     table: RigTable, given: MappedColumn, definition: SlipDefinition | None, *, speeds: bool
 ) -> SlipColumn:
     if definition is None:
-        raise DataError(
-            f"slip ratio without its definition; say what it is divided by: "
+        raise table.raw.fault(
+            f"slip ratio without its definition; state what it is divided by: "
             f"[columns.slip_ratio] definition = one of {', '.join(SlipDefinition)} "
             f"in {COLUMNS_FILE}",
-            file=table.raw.path, column=given.name,
-        )  # fmt: skip
+            given.name,
+        )
     ratio = table.si("slip_ratio")
-    _refuse_impossible(table, ratio, definition)
+    _require_possible(table, ratio, definition)
     unused = "; the disc speeds are there too and were not used" if speeds else ""
     origin = f"as given in '{given.name}', {definition}{unused}"
     return SlipColumn(ratio, definition, "slip_ratio", origin)
 
 
-def _refuse_impossible(table: RigTable, ratio: Array, definition: SlipDefinition) -> None:
+def _require_possible(table: RigTable, ratio: Array, definition: SlipDefinition) -> None:
     # Noise may put a measured slip ratio past its limit: only values beyond a margin are errors.
     inner = np.sign(ratio) * np.maximum(np.abs(ratio) - _SLIP_NOISE, 0)
     other = next(d for d in SlipDefinition if d is not definition)
@@ -148,7 +149,7 @@ def _refuse_impossible(table: RigTable, ratio: Array, definition: SlipDefinition
     except DomainError as error:
         raise table.error_at(
             "slip_ratio",
-            _first_refused(inner, definition, other),
+            _first_rejected(inner, definition, other),
             lambda value: (
                 f"slip ratio is {value}, outside what '{definition}' slip can be; "
                 f'check the definition, its sign, or the unit (unit = "%")'
@@ -160,8 +161,7 @@ def _slip_from_speeds(table: RigTable, *, unused: MappedColumn | None) -> SlipCo
     speed_leg = table.si("omega_leg") * table.constant_or_column("radius_leg")
     speed_ground = table.si("omega_ground") * table.constant_or_column("radius_ground")
     ratio = slip_ratio(speed_leg, speed_ground, SlipDefinition.MATERIAL)
-    leg = table.source_of("omega_leg")
-    header = leg.name if leg else "omega_leg"
+    header = table.required("omega_leg").name
     table.require(
         "omega_leg",
         np.isfinite(ratio),
@@ -176,7 +176,7 @@ def _slip_from_speeds(table: RigTable, *, unused: MappedColumn | None) -> SlipCo
     return SlipColumn(ratio, SlipDefinition.MATERIAL, "omega_leg", origin)
 
 
-def _first_refused(values: Array, source: SlipDefinition, target: SlipDefinition) -> int:
+def _first_rejected(values: Array, source: SlipDefinition, target: SlipDefinition) -> int:
     """Return the index of the first value that `convert_slip` rejects, by bisection."""
     accepted, refused = 0, len(values)
     while refused - accepted > 1:

@@ -23,13 +23,13 @@ def _guard(command: Callable[[], object]) -> None:
     try:
         command()
     except Exception as error:
-        said = str(error) if _is_known(error) else _of_a_file(error)
-        if said is None:
+        message = str(error) if _is_known(error) else _of_a_file(error)
+        if message is None:
             raise
         from zebro_lab.files.shown_text import shortened, shown
         from zebro_lab.terminal.last_words import leave_at_once, say_in_time
 
-        if not say_in_time(f"error: {shortened(shown(said))}", err=True):
+        if not say_in_time(f"error: {shortened(shown(message))}", err=True):
             leave_at_once(1)
         raise SystemExit(1) from None
 

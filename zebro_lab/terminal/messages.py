@@ -8,6 +8,7 @@ import typer
 from zebro_lab.files.shown_text import shown
 
 if TYPE_CHECKING:
+    from rich.console import Console
     from rich.text import Text
 
 
@@ -26,3 +27,11 @@ def plain(line: str) -> "Text":
     from rich.text import Text
 
     return Text(shown(line))
+
+
+def wide_console() -> "Console":
+    """Return a console; 120 columns wide if the output is not a terminal."""
+    from rich.console import Console
+
+    console = Console(highlight=False)
+    return console if console.is_terminal else Console(highlight=False, width=120)

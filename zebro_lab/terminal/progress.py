@@ -57,15 +57,17 @@ class ProgressBar:
 
 
 @contextmanager
-def progress_bar(console: Console) -> Iterator[ProgressBar]:
+def progress_bar(console: Console | None = None) -> Iterator[ProgressBar]:
     """Show progress on a console while the body runs.
 
     Args:
-        console: Where to draw; nothing is drawn unless it is a terminal.
+        console: Where to draw, standard error by default; nothing is drawn unless it is a
+            terminal.
 
     Yields:
         The watcher to hand to a stage.
     """
+    console = console or Console(stderr=True)
     columns = (
         TextColumn("{task.description}"),
         BarColumn(),

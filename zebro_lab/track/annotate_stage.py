@@ -7,7 +7,6 @@ grid, which any viewer shows on any machine.
 
 import difflib
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from io import BytesIO
 from math import radians
 from pathlib import Path
@@ -21,6 +20,7 @@ from zebro_lab.files.errors import AlreadyExists, NotFound, SettingsError
 from zebro_lab.files.own_file import picture, require_own
 from zebro_lab.files.units import quantity_to_si
 from zebro_lab.robot.robot_file import RobotFile, read_robot_file
+from zebro_lab.track.annotate_request import AnnotateRequest
 from zebro_lab.track.annotations import (
     Annotations,
     read_annotations,
@@ -29,43 +29,6 @@ from zebro_lab.track.annotations import (
 
 GRID = picture("annotate --grid")
 _EXPOSURE = "#"
-
-
-@dataclass(frozen=True)
-class AnnotateRequest:
-    """Annotations to write, as options of the command.
-
-    Attributes:
-        photos: Folder of photographs, video, or composite picture.
-        out: The `annotations.toml` to write or to add to.
-        photo: Photograph whose robot is marked, or that is drawn with a grid.
-        corners: Corners of the robot's top in it, "u,v u,v u,v u,v": front left, front right, rear
-            right, rear left [px].
-        plate: "LENGTHxWIDTH@HEIGHT" of the top, height over the body's centre; None for the robot's
-            body.
-        margin: Width around the top that belongs to its template [m].
-        robot: A `robot.toml`; the thesis's robot when None.
-        clicks: Points of the floor, each "PHOTO:NAME=U,V" [px].
-        moves: Where the robot is, each "PHOTO:X,Y,YAW" [m, m, deg].
-        flips: Photographs in which head and tail are exchanged.
-        deletes: Photographs in which what was found is not the robot.
-        order: Photographs in the order in which they were taken.
-        said: A file of the same form whose content is added.
-    """
-
-    photos: Path
-    out: Path
-    photo: str | None = None
-    corners: str | None = None
-    plate: str | None = None
-    margin: float = 20e-3
-    robot: Path | None = None
-    clicks: Sequence[str] = ()
-    moves: Sequence[str] = ()
-    flips: Sequence[str] = ()
-    deletes: Sequence[str] = ()
-    order: Sequence[str] = ()
-    said: Path | None = None
 
 
 def annotate(request: AnnotateRequest) -> Annotations:
@@ -82,17 +45,17 @@ def annotate(request: AnnotateRequest) -> Annotations:
         ZebroLabError: A photograph does not exist, or an annotation is invalid.
         TrackingError: There are no photographs.
     """
-    if request.said is not None and request.out.exists() and request.out.samefile(request.said):
+    if request.added is not None and request.out.exists() and request.out.samefile(request.added):
         raise AlreadyExists(f"{request.out} is read as --from; name another --out")
     names = photo_names(request.photos)
-    new = Annotations(_template(request, names), _clicks(request, names), _corrections(request))
-    if request.said is not None:
-        new = new.merged(read_annotations(request.said))
+    new = Annotations(_template(request), _clicks(request), _corrections(request))
+    if request.added is not None:
+        new = new.merged(read_annotations(request.added))
     _require_photos(new, names)
     before = read_annotations(request.out) if request.out.exists() else Annotations()
-    said = before.merged(new)
-    atomic_write_text(request.out, render_annotations(said))
-    return said
+    merged = before.merged(new)
+    atomic_write_text(request.out, render_annotations(merged))
+    return merged
 
 
 def photo_names(origin: Path) -> tuple[str, ...]:
@@ -127,7 +90,7 @@ def draw_grid(origin: Path, photo: str, file: Path, *, around: str | None = None
     from zebro_lab.plots import save
     from zebro_lab.plots.pixel_grid import pixel_grid
 
-    _known(photo, photo_names(origin))
+    _require_photo(photo, photo_names(origin))
     path = origin / photo if origin.is_dir() else origin
     target = require_own(file, GRID, inputs=(path,))
     if origin.is_dir() and target.parent.samefile(origin):
@@ -142,12 +105,11 @@ def draw_grid(origin: Path, photo: str, file: Path, *, around: str | None = None
     atomic_write_bytes(target, drawn.getvalue())
 
 
-def _template(request: AnnotateRequest, names: Sequence[str]) -> MarkedTop | None:
+def _template(request: AnnotateRequest) -> MarkedTop | None:
     if request.corners is None:
         return None
     if request.photo is None:
         raise SettingsError("needed: the photograph in which they are", key="--photo")
-    _known(request.photo, names)
     corners = tuple(_pair(text, "--corners") for text in request.corners.split())
     if len(corners) != 4:
         raise SettingsError(
@@ -159,10 +121,11 @@ def _template(request: AnnotateRequest, names: Sequence[str]) -> MarkedTop | Non
 
 
 def _plate(request: AnnotateRequest) -> TopPlate:
+    margin = quantity_to_si(request.margin, "m")
     if request.plate is None:
         described = RobotFile() if request.robot is None else read_robot_file(request.robot)
         length, width, height = described.robot.body_size
-        return _with_margin(length, width, height / 2, request.margin)
+        return TopPlate(length, width, height / 2, margin=margin, front_margin=margin)
     sides, _, height = request.plate.partition("@")
     length, _, width = sides.partition("x")
     if not (length and width and height):
@@ -171,21 +134,16 @@ def _plate(request: AnnotateRequest) -> TopPlate:
             key="--plate",
         )
     sizes = [quantity_to_si(text, "m") for text in (length, width, height)]
-    return _with_margin(sizes[0], sizes[1], sizes[2], request.margin)
+    return TopPlate(*sizes, margin=margin, front_margin=margin)
 
 
-def _with_margin(length: float, width: float, height: float, margin: float) -> TopPlate:
-    return TopPlate(length, width, height, margin=margin, front_margin=margin)
-
-
-def _clicks(request: AnnotateRequest, names: Sequence[str]) -> Mapping[str, Mapping[str, Click]]:
+def _clicks(request: AnnotateRequest) -> Mapping[str, Mapping[str, Click]]:
     clicks: dict[str, dict[str, Click]] = {}
     for text in request.clicks:
         place, _, pixel = text.rpartition("=")
         photo, _, name = place.rpartition(":")
         if not (photo and name):
             raise SettingsError(f"'{text}'; expected PHOTO:NAME=U,V", key="--click")
-        _known(photo, names)
         clicks.setdefault(photo, {})[name] = _pair(pixel, "--click")
     return clicks
 
@@ -194,7 +152,7 @@ def _corrections(request: AnnotateRequest) -> tuple[Correction, ...]:
     moves = [_move(text) for text in request.moves]
     flips = [Flip(photo) for photo in request.flips]
     deletes = [Delete(photo) for photo in request.deletes]
-    order = [Order(tuple(request.order))] if request.order else []
+    order = [Order(tuple(request.order.split(",")))] if request.order else []
     return (*moves, *flips, *deletes, *order)
 
 
@@ -220,18 +178,16 @@ def _numbers(text: str, key: str) -> list[float]:
         raise SettingsError(f"'{text}' holds what is no number", key=key) from error
 
 
-def _require_photos(said: Annotations, names: Sequence[str]) -> None:
-    if said.template is not None:
-        _known(said.template.photo, names)
-    for photo in said.clicks:
-        _known(photo, names)
-    for correction in said.corrections:
-        photos = correction.photos if isinstance(correction, Order) else (correction.photo,)
-        for photo in photos:
-            _known(photo, names)
+def _require_photos(annotations: Annotations, names: Sequence[str]) -> None:
+    template = annotations.template
+    photos = [*([template.photo] if template else []), *annotations.clicks]
+    for each in annotations.corrections:
+        photos += each.photos if isinstance(each, Order) else (each.photo,)
+    for photo in photos:
+        _require_photo(photo, names)
 
 
-def _known(photo: str, names: Sequence[str]) -> None:
+def _require_photo(photo: str, names: Sequence[str]) -> None:
     # Exposures and frames are known only after tracking: walk.jpg#3 is one of walk.jpg.
     if photo in names or photo.rpartition(_EXPOSURE)[0] in names:
         return

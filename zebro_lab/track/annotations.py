@@ -57,10 +57,13 @@ def read_annotations(file: Path) -> Annotations:
     table = read_settings(file, advice="`zebro-lab annotate PHOTOS` writes one")
     template = _template(table.table("template")) if "template" in table else None
     clicks = table.table("clicks")
-    by_photo = {photo: _clicks(clicks.table(photo)) for photo in clicks.left}
-    said = Annotations(template, by_photo, _corrections(table))
+    points = {photo: clicks.table(photo) for photo in clicks.left}
+    by_photo = {
+        photo: {name: _pixel(own, name) for name in own.left} for photo, own in points.items()
+    }
+    annotations = Annotations(template, by_photo, _corrections(table))
     table.finish()
-    return said
+    return annotations
 
 
 def _template(table: SettingsTable) -> MarkedTop:
@@ -81,10 +84,6 @@ def _template(table: SettingsTable) -> MarkedTop:
     except TrackingError as error:
         raise table.fault(str(error)) from error
     return MarkedTop(table.text("photo", least=1), corners, plate)
-
-
-def _clicks(table: SettingsTable) -> dict[str, Click]:
-    return {name: _pixel(table, name) for name in table.left}
 
 
 def _pixel(table: SettingsTable, key: str) -> Click:
@@ -108,21 +107,21 @@ def _corrections(table: SettingsTable) -> tuple[Correction, ...]:
     return tuple(corrections)
 
 
-def render_annotations(said: Annotations) -> str:
+def render_annotations(annotations: Annotations) -> str:
     """Format annotations as commented TOML; inverse of `read_annotations`."""
     template, values = _HEADING, {}
-    if said.template is not None:
+    if annotations.template is not None:
         template += _TEMPLATE_SECTION
-        values["template"] = _template_values(said.template)
-    if said.clicks:
-        values["clicks"] = said.clicks
-    if said.corrections:
-        values["correction"] = [plain(correction) for correction in said.corrections]
+        values["template"] = _template_values(annotations.template)
+    if annotations.clicks:
+        values["clicks"] = annotations.clicks
+    if annotations.corrections:
+        values["correction"] = [plain(correction) for correction in annotations.corrections]
     return fill_in(template, values)
 
 
 _HEADING = """\
-# What a person said about photographs; `zebro-lab track --annotations` replays it.
+# A person's annotations of photographs; `zebro-lab track --annotations` applies them.
 # Pixels: the centre of the first one is (0, 0). Lengths in m, angles in rad.
 """
 _TEMPLATE_SECTION = """

@@ -2,7 +2,6 @@
 """Read and write `camera.toml`: the lens, its uncertainty, and its photographs."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -17,21 +16,8 @@ _CALIBRATION = (
 )  # fmt: skip
 
 
-@dataclass(frozen=True)
-class CameraFile:
-    """Content of a `camera.toml`.
-
-    Attributes:
-        camera: The lens.
-        file: The file.
-    """
-
-    camera: Camera
-    file: Path
-
-
-def read_camera_file(file: Path) -> CameraFile:
-    """Read and check a `camera.toml`.
+def read_camera_file(file: Path) -> Camera:
+    """Read and check the lens of a `camera.toml`.
 
     Raises:
         NotFound: There is no such file.
@@ -52,7 +38,7 @@ def read_camera_file(file: Path) -> CameraFile:
         if key in fit:
             fit.value(key)
     table.finish()
-    return CameraFile(Camera(size, matrix, distortion), file)
+    return Camera(size, matrix, distortion)
 
 
 def _size(table: SettingsTable) -> tuple[int, int]:

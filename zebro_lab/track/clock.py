@@ -8,10 +8,10 @@ from tracking.errors import TimesError
 from tracking.images import PhotoTimes
 from zebro_lab.files.errors import SettingsError
 from zebro_lab.runs.manifest import RunManifest
-from zebro_lab.track.photo_sequence import TimeRequest
+from zebro_lab.track.request import TimeRequest
 
 _CLOCK = 1e8  # larger times are a clock's, counted from 1970 [s]
-_ROUND_A_RUN = 60.0  # tolerance before and after a run for photographs of it [s]
+_RUN_TOLERANCE = 60.0  # tolerance before and after a run for photographs of it [s]
 
 
 @dataclass(frozen=True)
@@ -20,17 +20,17 @@ class CountedTimes:
 
     Attributes:
         times: Times and their standard deviations; None for exposures that are not found yet.
-        said: Their source, in words.
+        description: Their source and origin, in words.
         notes: Notes for the user, one line each.
     """
 
     times: PhotoTimes | None
-    said: str
+    description: str
     notes: tuple[str, ...] = ()
 
 
 def counted_from(
-    times: PhotoTimes, *, start: datetime | None, manifest: RunManifest | None, asked: TimeRequest
+    times: PhotoTimes, *, start: datetime | None, manifest: RunManifest | None, request: TimeRequest
 ) -> CountedTimes:
     """Subtract the time origin: the given moment, the run's start, or the first photograph.
 
@@ -38,52 +38,49 @@ def counted_from(
         times: Times of the photographs: since 1970 where they are a clock's, else as given.
         start: The moment given, by the camera's clock.
         manifest: The run they belong to.
-        asked: How the photographs got their times.
+        request: How the photographs got their times.
 
     Raises:
         SettingsError: A moment is given, but the photographs' times are not a clock's.
         TimesError: All photographs were taken long before or after the run.
     """
-    if asked.interval is not None or asked.table is not None or not _by_a_clock(times):
-        return _as_given(times, start, manifest, asked)
+    if request.interval is not None or request.table is not None or not _by_a_clock(times):
+        return _as_given(times, start, manifest, request)
     zero, what, notes = float(times.t[0]), "the first photograph", ()
     if start is not None:
         zero, what = start.timestamp(), f"{start:%Y-%m-%d %H:%M:%S} by the camera's clock"
-    elif manifest is not None and asked.clock is not None:
-        zero = datetime.fromisoformat(manifest.start).timestamp()
+    elif manifest is not None and request.clock is not None:
+        zero = manifest.began.timestamp()
         what = f"the run's start, {manifest.start}"
     elif manifest is not None:
-        notes = (untied(f"give --clock (docs/tracking-howto.md) or --start, or {LATER}"),)
+        notes = unknown_start("give --clock (docs/tracking-howto.md) or --start, or ")
     counted = PhotoTimes(times.t - zero, times.sd, times.source)
     if manifest is not None and not notes:
-        notes = _beside(counted, manifest)
+        notes = _outside_run(counted, manifest)
     return CountedTimes(counted, f"{times.source}; counted from {what}", notes)
 
 
-def counted_later(*, manifest: RunManifest | None, asked: TimeRequest) -> CountedTimes:
+def counted_later(*, manifest: RunManifest | None, request: TimeRequest) -> CountedTimes:
     """Describe the times of a composite picture's exposures before these are found.
 
     Args:
         manifest: The run they belong to, or None.
-        asked: How the exposures get their times.
+        request: How the exposures get their times.
 
     Returns:
         No times yet; a description, and a note where they are not tied to the run.
     """
     notes = ()
-    if manifest is not None and asked.table is None:
-        notes = (untied(f"give seconds since the run's start as --times, or {LATER}"),)
+    if manifest is not None and request.table is None:
+        notes = unknown_start("give seconds since the run's start as --times, or ")
     return CountedTimes(None, "times of exposures as given", notes)
 
 
-LATER = "bring it to the run's clock with `validate --time-offset`"
-
-
-def untied(advice: str) -> str:
-    """Format the note that the photographs' times are not tied to the run's."""
+def unknown_start(advice: str) -> tuple[str, ...]:
+    """Note that the photographs' times are not tied to the run's, and what to do about it."""
     return (
-        "time is counted from the first photograph, and nothing tells when in the run it was "
-        f"taken: {advice}"
+        "time is counted from the first photograph; when it was taken within the run is unknown: "
+        f"{advice}bring it to the run's clock with `validate --time-offset`",
     )
 
 
@@ -92,28 +89,27 @@ def _by_a_clock(times: PhotoTimes) -> bool:
 
 
 def _as_given(
-    times: PhotoTimes, start: datetime | None, manifest: RunManifest | None, asked: TimeRequest
+    times: PhotoTimes, start: datetime | None, manifest: RunManifest | None, request: TimeRequest
 ) -> CountedTimes:
     if start is not None:
         raise SettingsError(
-            f"these photographs have no clock ({times.source}), so that no moment can be found on "
-            "it; leave it out",
+            f"these photographs' times are not a camera clock's ({times.source}), which a moment "
+            "needs; leave it out",
             key="--start",
         )
-    if manifest is None or asked.table is not None:
+    if manifest is None or request.table is not None:
         return CountedTimes(times, times.source)
-    advice = LATER if asked.interval is None else f"give --times, or {LATER}"
-    return CountedTimes(times, times.source, (untied(advice),))
+    advice = "" if request.interval is None else "give --times, or "
+    return CountedTimes(times, times.source, unknown_start(advice))
 
 
-def _beside(counted: PhotoTimes, manifest: RunManifest) -> tuple[str, ...]:
+def _outside_run(counted: PhotoTimes, manifest: RunManifest) -> tuple[str, ...]:
     """Note photographs outside the run's duration; raise if all are far from it."""
     length = float("inf")
     if manifest.stop is not None:
-        begun, ended = map(datetime.fromisoformat, (manifest.start, manifest.stop))
-        length = (ended - begun).total_seconds()
+        length = (datetime.fromisoformat(manifest.stop) - manifest.began).total_seconds()
     first, last = float(counted.t.min()), float(counted.t.max())
-    if last < -_ROUND_A_RUN or first > length + _ROUND_A_RUN:
+    if last < -_RUN_TOLERANCE or first > length + _RUN_TOLERANCE:
         raise TimesError(
             f"the photographs were taken {first:.1f} to {last:.1f} s after the run's start, and "
             f"the run lasted {length:.1f} s; name the run they belong to, or correct --start (the "

@@ -2,18 +2,17 @@
 """`zebro-lab track`: the path of a robot from photographs."""
 
 import sys
-from datetime import datetime
-from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from zebro_lab.terminal.messages import say
+from zebro_lab.terminal.request_command import request_command
+from zebro_lab.track.request import TrackRequest
 
 if TYPE_CHECKING:
     from zebro_lab.track.preview_stage import Preview
-    from zebro_lab.track.request import TrackRequest
     from zebro_lab.track.stage import TrackResult
 
 INTERRUPTED = 130
@@ -36,162 +35,33 @@ zebro-lab track composite.jpg --camera camera.toml --floor floor.toml --robot ro
 """
 
 
-class MergedAs(StrEnum):
-    """How the exposures of a composite picture were merged."""
-
-    PASTED = "pasted"
-    DARKEST = "darkest"
-    MEAN = "mean"
-
-
-Photos = Annotated[
-    Path, typer.Argument(help="Folder of photographs, a video, or one composite picture.")
-]
-CameraToml = Annotated[Path, typer.Option("--camera", help="camera.toml.")]
-FloorToml = Annotated[Path, typer.Option("--floor", help="floor.toml.")]
-RobotToml = Annotated[
-    Path | None, typer.Option("--robot", help="robot.toml; the thesis's robot without it.")
-]
-Out = Annotated[Path | None, typer.Option(help="Folder to write; RUN/track without it.")]
-Run = Annotated[Path | None, typer.Option(metavar="RUN", help="Run folder they belong to.")]
-Interval = Annotated[
-    float | None, typer.Option(help="Interval of the timer, where there is no EXIF [s].")
-]
-Times = Annotated[
-    Path | None, typer.Option(metavar="CSV", help="Times: columns photo, t_s, maybe t_sigma.")
-]
-Every = Annotated[
-    float | None, typer.Option(min=0.0, help="Time between a video's frames; 0.5, 0 takes all [s].")
-]
-Clock = Annotated[
-    Path | None, typer.Option(metavar="PHOTO", help="Photograph of `zebro-lab camera clock`.")
-]
-Start = Annotated[
-    str | None,
-    typer.Option(metavar="TIME", help="Moment to count time from, as the camera shows it."),
-]
-Marker = Annotated[
-    str | None,
-    typer.Option(
-        metavar="DICTIONARY:NUMBER:SIDE",
-        help="What is printed on the robot, as in 4x4_50:0:120mm; robot.toml's without it.",
-    ),
-]
-WithoutMarker = Annotated[
-    bool, typer.Option("--without-marker", help="Track the robot by its own annotated picture.")
-]
-HowMerged = Annotated[
-    MergedAs | None,
-    typer.Option("--merged", help="How one composite picture was made of its exposures."),
-]
-AnnotationsToml = Annotated[
-    Path | None, typer.Option("--annotations", help="What `zebro-lab annotate` wrote.")
-]
-BodyHeight = Annotated[
-    str | None,
-    typer.Option(metavar="LENGTH", help="Height of the body's centre; the marker's without it."),
-]
-HeightSd = Annotated[
-    str, typer.Option("--height-sd", metavar="LENGTH", help="How far a walk strays from it.")
-]
-Gap = Annotated[
-    float | None, typer.Option(help="Pause that interrupts the path; 3.5 usual ones [s].")
-]
-Source = Annotated[
-    str | None, typer.Option(help="real, or sim:WHAT; the files' or the run's without it.")
-]
-Workers = Annotated[int, typer.Option(min=1, help="Processes to use.")]
 PreviewPng = Annotated[
     Path | None,
-    typer.Option(metavar="PNG", help="Only look at the first photograph, and draw what is found."),
+    typer.Option(
+        metavar="PNG", help="Analyse only the first photograph, and draw what is found in it."
+    ),
 ]
 
 
-def track(
-    photos: Photos,
-    camera: CameraToml,
-    floor: FloorToml,
-    robot: RobotToml = None,
-    out: Out = None,
-    run: Run = None,
-    interval: Interval = None,
-    times: Times = None,
-    every: Every = None,
-    clock: Clock = None,
-    start: Start = None,
-    marker: Marker = None,
-    without_marker: WithoutMarker = False,
-    merged: HowMerged = None,
-    annotations: AnnotationsToml = None,
-    body_height: BodyHeight = None,
-    height_sd: HeightSd = "5mm",
-    gap: Gap = None,
-    source: Source = None,
-    workers: Workers = 2,
-    preview: PreviewPng = None,
-) -> None:
+@request_command()
+def track(request: TrackRequest, preview: PreviewPng = None) -> None:
     """Track the robot in photographs: track.csv with covariance, TUM, pictures."""
-    from tracking.composite import Merged
-    from zebro_lab.files.units import quantity_to_si
-    from zebro_lab.track.photo_sequence import FRAME_STEP, TimeRequest
-    from zebro_lab.track.request import TrackRequest
-
-    request = TrackRequest(
-        photos,
-        camera,
-        floor,
-        robot=robot,
-        out=out,
-        run=run,
-        times=TimeRequest(interval, times, clock, FRAME_STEP if every is None else every),
-        start=None if start is None else _moment(start),
-        marker=marker,
-        without_marker=without_marker,
-        merged=None if merged is None else Merged(merged.value),
-        annotations=annotations,
-        body_height=None if body_height is None else quantity_to_si(body_height, "m"),
-        height_sd=quantity_to_si(height_sd, "m"),
-        gap=gap,
-        source=source,
-        workers=workers,
-    )
     if preview is not None:
         _preview(request, preview)
         return
-    if out is None and run is None:
-        raise typer.BadParameter("needed, or --out FOLDER", param_hint="'--run'")
+    if request.out is None and request.run is None:
+        raise typer.BadParameter("missing: name --run RUN or --out FOLDER", param_hint="'--run'")
     _track(request)
 
 
-def _moment(text: str) -> datetime:
-    from datetime import UTC
-
-    try:
-        moment = datetime.fromisoformat(text)
-    except ValueError as error:
-        raise typer.BadParameter(
-            f"'{text}' is no time; expected one such as 2020-06-01T12:00:00",
-            param_hint="'--start'",
-        ) from error
-    if moment.utcoffset():
-        raise typer.BadParameter(
-            f"'{text}' has a time zone, which the camera's clock does not tell; give the time as "
-            f"that clock shows it, {moment:%Y-%m-%dT%H:%M:%S} or another, without a zone",
-            param_hint="'--start'",
-        )
-    return moment.replace(tzinfo=UTC)
-
-
-def _track(request: "TrackRequest") -> None:
-    from rich.console import Console
-
+def _track(request: TrackRequest) -> None:
     from tracking.errors import TrackStopped
     from zebro_lab.terminal.progress import progress_bar
     from zebro_lab.track.inputs import HowMergedUnknown
     from zebro_lab.track.stage import track as run_stage
 
     try:
-        with progress_bar(Console(stderr=True)) as watcher:
+        with progress_bar() as watcher:
             result = run_stage(request, watcher)
     except TrackStopped as stopped:
         say(str(stopped), err=True)
@@ -232,14 +102,14 @@ def track_lines(result: "TrackResult") -> list[str]:
     ]  # fmt: skip
 
 
-def _preview(request: "TrackRequest", file: Path) -> None:
+def _preview(request: TrackRequest, file: Path) -> None:
     from zebro_lab.track.preview_stage import preview
 
     seen = preview(request, file)
     for line in preview_lines(seen):
         say(line)
     if any(check.is_off for check in seen.tape):
-        sys.stderr.write("tape and photograph disagree; measure the floor again\n")
+        sys.stderr.write("the tape and the photograph disagree; measure the floor again\n")
 
 
 def preview_lines(seen: "Preview") -> list[str]:

@@ -12,7 +12,6 @@ from model.poses import Poses
 from model.slip.law import Array
 from zebro_lab.files.errors import DataError
 from zebro_lab.files.replacement import settle
-from zebro_lab.tables.cells import cell_error, require_increasing
 from zebro_lab.tables.raw_table import RawTable
 from zebro_lab.tables.table_files import read_table_file
 from zebro_lab.track.folder import MANIFEST, TRACK_CSV, read_track_manifest
@@ -115,7 +114,7 @@ def tum_lines(poses: Poses) -> str:
 
 def _poses(table: RawTable, file: Path) -> Poses:
     t, x, y = (_numbers(table, _present(table, names)) for names in _NAMES)
-    require_increasing(table, _present(table, _NAMES[0]), t)
+    table.require_increasing(_present(table, _NAMES[0]), t)
     yaw_name = next((name for name in _YAW if name in table.columns), None)
     yaw = np.full(len(t), np.nan) if yaw_name is None else _numbers(table, yaw_name)
     try:
@@ -128,21 +127,12 @@ def _present(table: RawTable, names: Sequence[str]) -> str:
     for name in names:
         if name in table.columns:
             return name
-    raise DataError(
-        f"missing; expected {names[0]} or {names[1]} among {', '.join(table.columns)}",
-        file=table.path,
-        column=names[0],
-    )
+    columns = ", ".join(table.columns)
+    raise table.fault(f"missing; expected {names[0]} or {names[1]} among {columns}", names[0])
 
 
 def _numbers(table: RawTable, name: str) -> Array:
-    values = table.numbers(name)
-    good = np.isfinite(values)
-    if not good.all():
-        raise cell_error(
-            table, name, int(np.argmin(good)), "is no finite number; leave such poses out"
-        )
-    return values
+    return table.finite(name, "a finite number: leave such poses out")
 
 
 def _covariance(table: RawTable) -> Array:
@@ -152,8 +142,6 @@ def _covariance(table: RawTable) -> Array:
         covariance[:, i, j] = covariance[:, j, i] = upper[:, k]
     smallest = np.linalg.eigvalsh(covariance).min(axis=1)
     if np.any(smallest < -1e-9):
-        raise cell_error(
-            table, "cov_xx", int(np.argmin(smallest)),
-            "the covariance of this pose has a negative eigenvalue; expected none",
-        )  # fmt: skip
+        problem = "the covariance of this pose has a negative eigenvalue; expected none"
+        raise table.fault(problem, "cov_xx", int(np.argmin(smallest)))
     return covariance

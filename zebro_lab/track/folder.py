@@ -4,16 +4,16 @@
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Any
 
 from zebro_lab.files.folder_manifest import read_folder_manifest
 from zebro_lab.files.replacement import settle
 from zebro_lab.files.result_folder import MANIFEST, ResultKind, result_folder
 from zebro_lab.track.annotations import ANNOTATIONS_FILE
 from zebro_lab.track.floor_file import FLOOR_FILE
+from zebro_lab.track.request import KIND
 
 SCHEMA = 1
-KIND = "track"
 TRACK_CSV = "track.csv"
 TRACK_TUM = "track.tum"
 PICTURES = ("overlay.png", "map.png", "residuals.png")
@@ -25,25 +25,12 @@ TRACKED = ResultKind(
 _DIGITS = "%.10g"
 
 
-class WrittenTrack(Protocol):
-    """Interface of a path that a track folder can hold: tracked here, or imported."""
-
-    @property
-    def columns(self) -> Mapping[str, Sequence[float] | Sequence[str]]:
-        """The table `track.csv`: those of `tracking.path.TRACK_COLUMNS` that are known."""
-        ...
-
-    @property
-    def tum(self) -> Sequence[str]:
-        """Lines of a TUM file."""
-        ...
-
-
 @contextmanager
 def track_folder(
     out: Path,
-    track: WrittenTrack,
+    columns: Mapping[str, Sequence[float] | Sequence[str]],
     *,
+    tum: Sequence[str],
     source: str,
     settings: Mapping[str, object],
     inputs: Mapping[str, str],
@@ -56,7 +43,8 @@ def track_folder(
 
     Args:
         out: Folder to make or to renew.
-        track: The track.
+        columns: The table `track.csv`: those of `tracking.path.TRACK_COLUMNS` that are known.
+        tum: Lines of a TUM file.
         source: "real", "sim:what" or "unknown".
         settings: Options of the command, as JSON can hold them.
         inputs: SHA-256 of each file that was read.
@@ -68,18 +56,14 @@ def track_folder(
     Raises:
         AlreadyExists: `out` is a file, or the result of another command.
     """
-    content = {"source": source, "settings": settings, **report, "inputs": inputs}
-    with result_folder(out, TRACKED, content=content) as draft:
-        _write_track(draft, track)
-        yield draft
-
-
-def _write_track(folder: Path, track: WrittenTrack) -> None:
     import pandas as pd
 
-    table = pd.DataFrame(dict(track.columns))
-    table.to_csv(folder / TRACK_CSV, index=False, float_format=_DIGITS, lineterminator="\n")
-    (folder / TRACK_TUM).write_text("\n".join(track.tum) + "\n")
+    content = {"source": source, "settings": settings, **report, "inputs": inputs}
+    with result_folder(out, TRACKED, content=content) as draft:
+        table = pd.DataFrame(dict(columns))
+        table.to_csv(draft / TRACK_CSV, index=False, float_format=_DIGITS, lineterminator="\n")
+        (draft / TRACK_TUM).write_text("\n".join(tum) + "\n")
+        yield draft
 
 
 def read_track_manifest(folder: Path) -> Mapping[str, Any]:

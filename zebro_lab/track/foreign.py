@@ -31,7 +31,7 @@ TUM_COLUMNS: Final = ("t_s", "x_m", "y_m", "z_m", "qx", "qy", "qz", "qw")
 
 @dataclass(frozen=True)
 class ForeignTrack:
-    """An imported path; satisfies `WrittenTrack`.
+    """An imported path.
 
     Attributes:
         track: Poses and their covariance, checked.

@@ -4,6 +4,7 @@
 from dataclasses import dataclass, replace
 
 from tracking import Scene
+from tracking.composite import Merged
 from tracking.images import open_picture
 from zebro_lab.files.errors import SettingsError
 from zebro_lab.robot.marker_numbers import require_apart
@@ -68,7 +69,7 @@ class TrackInputs:
             SettingsError: The robot carries no marker and its top is not annotated.
         """
         if sequence.is_composite and self.request.merged is None:
-            with open_picture(sequence.paths[0]):
+            with open_picture(sequence.photos[0].path):
                 pass  # files that are no pictures have their own error
             raise HowMergedUnknown(_HOW_MERGED, key="--merged")
         if self.scene.robot is None and self.scene.top is None:
@@ -80,10 +81,12 @@ class TrackInputs:
 
     def counted_times(self, sequence: PhotoSequence) -> CountedTimes:
         """Compute photographs' times from the track's origin; exposures get theirs once found."""
-        times, asked = sequence.times, self.request.times
+        times, request = sequence.times, self.request.times
         if times is None:
-            return counted_later(manifest=self.manifest, asked=asked)
-        return counted_from(times, start=self.request.start, manifest=self.manifest, asked=asked)
+            return counted_later(manifest=self.manifest, request=request)
+        return counted_from(
+            times, start=self.request.start, manifest=self.manifest, request=request
+        )
 
 
 def read_inputs(request: TrackRequest) -> TrackInputs:
@@ -98,16 +101,22 @@ def read_inputs(request: TrackRequest) -> TrackInputs:
     """
     manifest = None if request.run is None else read_manifest(request.run)
     described = RobotFile() if request.robot is None else read_robot_file(request.robot)
-    camera, floor = read_camera_file(request.camera).camera, read_floor_file(request.floor)
-    said = Annotations() if request.annotations is None else read_annotations(request.annotations)
-    prior = body_prior(described, height=request.body_height, height_sd=request.height_sd)
+    camera, floor = read_camera_file(request.camera), read_floor_file(request.floor)
+    annotations = Annotations()
+    if request.annotations is not None:
+        annotations = read_annotations(request.annotations)
+    prior = body_prior(
+        described, height=request.standing_height, height_sd=request.walking_height_sd
+    )
     robot = None
     if not request.without_marker:
         robot = tracked_robot(described, request.marker, prior=prior)
         require_apart(robot, floor)
     length, width = described.robot.body_size[:2]
     scene = Scene(
-        camera, floor, prior, robot, top=said.template, clicks=said.clicks,
-        corrections=said.corrections, merged=request.merged, body_size=(length, width),
+        camera, floor, prior, robot, top=annotations.template, clicks=annotations.clicks,
+        corrections=annotations.corrections,
+        merged=None if request.merged is None else Merged(request.merged),
+        body_size=(length, width),
     )  # fmt: skip
-    return TrackInputs(request, scene, said, manifest)
+    return TrackInputs(request, scene, annotations, manifest)

@@ -12,7 +12,7 @@ from tempfile import TemporaryDirectory
 import cv2
 import numpy as np
 
-from tracking.camera.lens import Array, Camera
+from tracking.camera import Camera
 from tracking.errors import PhotoError
 from tracking.images import (
     PhotoTimes,
@@ -28,34 +28,10 @@ from tracking.images import (
 from tracking.photos.scene import Photo
 from tracking.photos.workers import Progress, report_step
 from zebro_lab.files.errors import DataError, NotFound, SettingsError
-
-VIDEOS = (".mp4", ".mov", ".m4v", ".avi", ".mkv", ".webm")
-FRAME_STEP = 0.5
-"""Default interval between the frames taken from a video [s]."""
+from zebro_lab.track.request import VIDEOS, TimeRequest
 
 _ORIENTATION = 0x0112
-_LYING = {5, 6, 7, 8}
-
-
-@dataclass(frozen=True)
-class TimeRequest:
-    """Options for the times of photographs.
-
-    Attributes:
-        interval: Interval of the timer; None to take another source [s].
-        table: CSV with columns `photo`, `t_s` and maybe `t_sigma`; None for another source.
-        clock: Photograph of the QR clock, which ties the camera's clock to the computer's.
-        every: Least time between two frames of a video; 0 takes all [s].
-    """
-
-    interval: float | None = None
-    table: Path | None = None
-    clock: Path | None = None
-    every: float = FRAME_STEP
-
-    def __post_init__(self) -> None:
-        if self.interval is not None and self.table is not None:
-            raise SettingsError("not together with --interval; give one of them", key="--times")
+_ROTATED = {5, 6, 7, 8}
 
 
 @dataclass(frozen=True)
@@ -63,25 +39,18 @@ class PhotoSequence:
     """Photographs in order of time.
 
     Attributes:
-        names: Their names in results, shape (n,).
-        paths: Files that hold them, shape (n,).
+        photos: The photographs, n of them.
         times: Their times; None for a composite picture until its exposures are counted.
         source: "sim:…" where the files say that they are simulated, else None.
         origin: The folder, the video or the picture given.
         left_out: Photographs of the folder that are not used, with the reason.
     """
 
-    names: tuple[str, ...]
-    paths: tuple[Path, ...]
+    photos: tuple[Photo, ...]
     times: PhotoTimes | None
     source: str | None
     origin: Path
     left_out: Mapping[str, str] = field(default_factory=dict)
-
-    @property
-    def photos(self) -> tuple[Photo, ...]:
-        """The photographs as `tracking` takes them."""
-        return tuple(map(Photo, self.names, self.paths))
 
     @property
     def is_composite(self) -> bool:
@@ -123,9 +92,9 @@ def open_photos(
     elif origin.suffix.lower() in VIDEOS:
         _require_no_times(request)
         with TemporaryDirectory(prefix="zebro-lab-") as folder:
-            yield _of_video(origin, Path(folder), request.every, frames, progress)
+            yield _of_video(origin, Path(folder), request.frame_step, frames, progress)
     else:
-        yield PhotoSequence((origin.name,), (origin,), None, _simulated(origin), origin)
+        yield PhotoSequence((Photo(origin.name, origin),), None, _simulated(origin), origin)
 
 
 def calibrated_for(camera: Camera, sequence: PhotoSequence) -> Camera:
@@ -138,7 +107,7 @@ def calibrated_for(camera: Camera, sequence: PhotoSequence) -> Camera:
     Raises:
         DataError: Their aspect ratio differs from that of the calibration's photographs.
     """
-    sizes = Counter(size for path in sequence.paths if (size := upright_size(path)) is not None)
+    sizes = Counter(size for photo in sequence.photos if (size := upright_size(photo.path)))
     if not sizes:
         return camera
     try:
@@ -152,10 +121,10 @@ def upright_size(path: Path) -> tuple[int, int] | None:
     try:
         with open_picture(path) as picture:
             width, height = picture.size
-            lying = picture.getexif().get(_ORIENTATION) in _LYING
+            rotated = picture.getexif().get(_ORIENTATION) in _ROTATED
     except PhotoError:
         return None
-    return (height, width) if lying else (width, height)
+    return (height, width) if rotated else (width, height)
 
 
 def exposure_times(names: Sequence[str], request: TimeRequest) -> PhotoTimes:
@@ -168,49 +137,47 @@ def exposure_times(names: Sequence[str], request: TimeRequest) -> PhotoTimes:
     Raises:
         SettingsError: Neither an interval nor a table was given.
     """
-    if request.table is not None:
-        return times_from_table(request.table, [Path(name) for name in names])
-    if request.interval is None:
+    times = _given_times([Path(name) for name in names], request)
+    if times is None:
         raise SettingsError(
             f"a composite picture has no times of its own; give the interval between its "
             f"{len(names)} exposures in seconds",
             key="--interval",
         )
-    return times_from_interval(len(names), request.interval)
+    return times
+
+
+def _given_times(paths: Sequence[Path], request: TimeRequest) -> PhotoTimes | None:
+    """Compute times from the table or the interval given; None without either."""
+    if request.table is not None:
+        return times_from_table(request.table, paths)
+    if request.interval is not None:
+        return times_from_interval(len(paths), request.interval)
+    return None
 
 
 def _of_folder(folder: Path, request: TimeRequest) -> PhotoSequence:
     clock = None if request.clock is None else request.clock.resolve()
     paths = tuple(path for path in find_photos(folder) if path.resolve() != clock)
     left_out: Mapping[str, str] = {}
-    if request.table is not None:
-        times = times_from_table(request.table, paths)
-    elif request.interval is not None:
-        times = times_from_interval(len(paths), request.interval)
-    else:
-        left_out = _without_time(paths)
-        paths = tuple(path for path in paths if path.name not in left_out)
+    times = _given_times(paths, request)
+    if times is None:
         # A file that is no picture has no EXIF either; its error is reported later.
         readable = [path for path in paths if upright_size(path) is not None]
-        times = _spread(readable, paths)
+        left_out = _without_time(readable)
+        paths = tuple(path for path in paths if path.name not in left_out)
+        times = _spread([path for path in readable if path.name not in left_out], paths)
     if request.clock is not None:
         times = _by_computer(times, request.clock)
     order = np.argsort(times.t, kind="stable")
-    ordered = tuple(paths[k] for k in order)
-    source = next((found for path in ordered if (found := _simulated(path))), None)
-    return PhotoSequence(
-        tuple(path.name for path in ordered),
-        ordered,
-        PhotoTimes(times.t[order], times.sd[order], times.source),
-        source,
-        folder,
-        left_out,
-    )
+    photos = tuple(Photo(paths[k].name, paths[k]) for k in order)
+    source = next((found for photo in photos if (found := _simulated(photo.path))), None)
+    ordered = PhotoTimes(times.t[order], times.sd[order], times.source)
+    return PhotoSequence(photos, ordered, source, folder, left_out)
 
 
-def _without_time(paths: tuple[Path, ...]) -> Mapping[str, str]:
+def _without_time(readable: Sequence[Path]) -> Mapping[str, str]:
     """Find the few pictures without EXIF time where most have one."""
-    readable = [path for path in paths if upright_size(path) is not None]
     without = [path for path in readable if exif_time(path) is None]
     if 2 * len(without) >= len(readable):
         return {}
@@ -235,31 +202,31 @@ def _spread(readable: list[Path], paths: tuple[Path, ...]) -> PhotoTimes:
 def _by_computer(times: PhotoTimes, clock: Path) -> PhotoTimes:
     offset = clock_offset(clock)
     # The offset's error is common to all photographs: it is stated once, not added to each.
-    said = f"{times.source}; camera's clock {offset.seconds:+.3f} s (sd {offset.sd:.3f} s) ahead"
-    return PhotoTimes(times.t - offset.seconds, times.sd, said)
+    ahead = f"camera's clock {offset.seconds:+.3f} s (sd {offset.sd:.3f} s) ahead"
+    return PhotoTimes(times.t - offset.seconds, times.sd, f"{times.source}; {ahead}")
 
 
 def _of_video(
     video: Path, folder: Path, every: float, most: int | None, progress: Progress | None
 ) -> PhotoSequence:
-    names, paths, t, sd = [], [], [], []
+    photos, t, sd = [], [], []
     for frame in islice(video_frames(video, every=every), most):
         if progress is not None:
             report_step(progress, "frames", None)
-        path = folder / f"{len(paths):06d}.png"
+        path = folder / f"{len(photos):06d}.png"
         if not cv2.imwrite(str(path), frame.pixels, [cv2.IMWRITE_PNG_COMPRESSION, 1]):
             raise DataError(
                 f"its frame {frame.name} cannot be kept in {folder.parent}; is the disk full? "
                 "--every SECONDS takes fewer frames",
                 file=video,
             )
-        names.append(frame.name)
-        paths.append(path)
+        photos.append(Photo(frame.name, path))
         t.append(frame.t)
         sd.append(frame.t_sd)
     step = f", one every {every:g} s" if every > 0 else ""
-    times = PhotoTimes(_floats(t), _floats(sd), f"time stamps of the video's frames{step}")
-    return PhotoSequence(tuple(names), tuple(paths), times, None, video)
+    source = f"time stamps of the video's frames{step}"
+    times = PhotoTimes(np.array(t, float), np.array(sd, float), source)
+    return PhotoSequence(tuple(photos), times, None, video)
 
 
 def _require_no_times(request: TimeRequest) -> None:
@@ -268,11 +235,7 @@ def _require_no_times(request: TimeRequest) -> None:
     }  # fmt: skip
     for key, value in given.items():
         if value is not None:
-            raise SettingsError("not with a video, whose frames tell their own times", key=key)
-
-
-def _floats(numbers: list[float]) -> Array:
-    return np.array(numbers, dtype=float)
+            raise SettingsError("not with a video, whose frames have their own times", key=key)
 
 
 def _simulated(path: Path) -> str | None:
@@ -283,8 +246,3 @@ def _simulated(path: Path) -> str | None:
     except PhotoError:
         return None
     return "sim:photographs" if make.lower() == "simulated" else None
-
-
-def by_name(sequence: PhotoSequence) -> Mapping[str, Path]:
-    """Return the photographs' files by name."""
-    return dict(zip(sequence.names, sequence.paths, strict=True))

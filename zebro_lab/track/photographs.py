@@ -23,7 +23,8 @@ from zebro_lab.track.annotations import ANNOTATIONS_FILE, Annotations, read_anno
 from zebro_lab.track.camera_file import read_camera_file
 from zebro_lab.track.floor_file import FLOOR_FILE, read_floor_file
 from zebro_lab.track.folder import TRACK_CSV, read_track_manifest
-from zebro_lab.track.photo_sequence import VIDEOS, upright_size
+from zebro_lab.track.photo_sequence import upright_size
+from zebro_lab.track.request import VIDEOS
 
 
 @dataclass(frozen=True)
@@ -70,7 +71,7 @@ class TrackedPhotos:
         files: File of each photograph, by name.
         camera: The lens, at the size it was calibrated with.
         floor: The floor as refined with the photographs.
-        said: A person's annotations of them.
+        annotations: A person's annotations of them.
         simulated: Whether they are simulated.
     """
 
@@ -79,7 +80,7 @@ class TrackedPhotos:
     files: Mapping[str, Path]
     camera: Camera
     floor: FloorMap
-    said: Annotations = field(default_factory=Annotations)
+    annotations: Annotations = field(default_factory=Annotations)
     simulated: bool = False
 
     def view(self, name: str) -> PlacedPhoto:
@@ -94,7 +95,7 @@ class TrackedPhotos:
         look = look_at(Photo(name, file), Wanted(size, self.floor, None))
         if look.seen is None:
             raise TrackingError(f"{name}: {look.problem}")
-        view = look.seen.floor.with_clicked(self.said.clicks.get(name, {}))
+        view = look.seen.floor.with_clicked(self.annotations.clicks.get(name, {}))
         pose = locate_camera(camera, self.floor, view)
         return PlacedPhoto(read_pixels(file, size=size), camera, pose)
 
@@ -114,14 +115,14 @@ def photos_of_track(track: Path) -> TrackedPhotos:
     table = read_table_file(folder / TRACK_CSV)
     names = tuple(str(name) for name in table.columns["photo"])
     inputs = {Path(path): str(digest) for path, digest in manifest["inputs"].items()}
-    said = folder / ANNOTATIONS_FILE
+    annotated = folder / ANNOTATIONS_FILE
     return TrackedPhotos(
         t=table.numbers("t_s"),
         names=names,
         files={name: _file_of(name, inputs) for name in names},
         camera=_camera(inputs, folder),
         floor=read_floor_file(folder / FLOOR_FILE),
-        said=read_annotations(said) if said.is_file() else Annotations(),
+        annotations=read_annotations(annotated) if annotated.is_file() else Annotations(),
         simulated="sim:" in str(manifest["source"]),
     )
 
@@ -143,7 +144,7 @@ def _camera(inputs: Mapping[Path, str], folder: Path) -> Camera:
     for path in inputs:
         if path.suffix == ".toml" and path.is_file():
             try:
-                return read_camera_file(path).camera
+                return read_camera_file(path)
             except SettingsError:  # the floor's or the robot's
                 continue
     raise NotFound(f"{folder}: the camera.toml of this track is not where it was")

@@ -6,14 +6,14 @@ from pathlib import Path
 from typing import IO, TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
-from tracking.camera import Camera, CameraPose, project
+from tracking.camera import project
 from tracking.camera.lens import Array
 from tracking.detect import Detection
 from tracking.floor import FloorMap
 from tracking.path import Track
-from tracking.pictures import ellipse_90, rectify_floor
+from tracking.pictures import ellipse_90
+from zebro_lab.track.photographs import PlacedPhoto
 
 if TYPE_CHECKING:
     from zebro_lab.plots.track import SeenMarks
@@ -25,17 +25,15 @@ _MOST_LABELS = 16
 
 
 def draw_track(
-    folder: Path, track: Track, pixels: NDArray[np.uint8], *, camera: Camera, view: CameraPose,
-    floor: FloorMap, detection: Detection | None, title: str, simulated: bool,
+    folder: Path, track: Track, photo: PlacedPhoto, *, floor: FloorMap,
+    detection: Detection | None, title: str, simulated: bool,
 ) -> None:  # fmt: skip
     """Draw the path over a photograph and over the floor, and the page of residuals.
 
     Args:
         folder: Folder to write the PNG files into.
         track: The track.
-        pixels: A photograph to draw over, BGR.
-        camera: The lens.
-        view: Where the camera stood in that photograph.
+        photo: A photograph to draw over.
         floor: The floor as fitted.
         detection: Markers detected in that photograph; None where none was searched.
         title: Name of the track, appended to each figure's own title.
@@ -44,17 +42,17 @@ def draw_track(
     from zebro_lab.plots import save  # matplotlib takes most of a second
     from zebro_lab.plots import track as draw
 
-    path, ahead = _path_px(track, camera, view)
+    path, ahead = _path_px(track, photo)
     figure = draw.over_photo(
-        pixels,
+        photo.pixels,
         title=f"Path over a photograph: {title}",
         simulated=simulated,
         path_px=path,
         headings_px=ahead,
-        marks=seen_marks(camera, view, floor, detection),
+        marks=seen_marks(photo, floor, detection),
     )
     save(figure, folder / "overlay.png")
-    _draw_map(folder / "map.png", track, pixels, camera, view, floor, title, simulated)
+    _draw_map(folder / "map.png", track, photo, floor, title, simulated)
     seen = track.observations
     figure = draw.residual_page(
         track.t,
@@ -70,16 +68,14 @@ def draw_track(
 
 
 def draw_preview(
-    file: IO[bytes], pixels: NDArray[np.uint8], *, camera: Camera, view: CameraPose,
-    floor: FloorMap, detection: Detection, title: str, simulated: bool, command: str,
+    file: IO[bytes], photo: PlacedPhoto, *, floor: FloorMap, detection: Detection, title: str,
+    simulated: bool, command: str,
 ) -> None:  # fmt: skip
     """Draw a photograph with the marks detected and those of the map, projected.
 
     Args:
         file: Open file for the PNG.
-        pixels: The photograph, BGR, shape (height, width, 3).
-        camera: The lens.
-        view: Pose of the camera.
+        photo: The photograph.
         floor: The floor's marks.
         detection: What was found in the photograph.
         title: Title of the figure.
@@ -89,19 +85,18 @@ def draw_preview(
     from zebro_lab.plots import save
     from zebro_lab.plots import track as draw
 
-    marks = seen_marks(camera, view, floor, detection)
-    figure = draw.over_photo(pixels, title=title, simulated=simulated, marks=marks)
+    marks = seen_marks(photo, floor, detection)
+    figure = draw.over_photo(photo.pixels, title=title, simulated=simulated, marks=marks)
     save(figure, file, command=command)
 
 
 def seen_marks(
-    camera: Camera, view: CameraPose, floor: FloorMap, detection: Detection | None
+    photo: PlacedPhoto, floor: FloorMap, detection: Detection | None
 ) -> "list[SeenMarks]":
     """Compute outlines of the floor's marks, projected from the map, and of the robot's marker.
 
     Args:
-        camera: The lens.
-        view: Pose of the camera.
+        photo: The photograph.
         floor: The floor's marks.
         detection: What was found in the photograph; None for the floor alone.
 
@@ -111,7 +106,7 @@ def seen_marks(
     from zebro_lab.plots.sheet import CYCLE, RED
     from zebro_lab.plots.track import SeenMarks
 
-    outlines = [project(camera, view, mark.points) for mark in floor.marks.values()]
+    outlines = [project(photo.camera, photo.pose, mark.points) for mark in floor.marks.values()]
     marks = [SeenMarks(outlines, [str(key) for key in floor.marks], CYCLE[0])]
     if detection is not None and detection.robot is not None:
         label = f"robot {detection.robot.marker_id}"
@@ -119,12 +114,12 @@ def seen_marks(
     return marks
 
 
-def _path_px(track: Track, camera: Camera, view: CameraPose) -> tuple[Array, Array]:
+def _path_px(track: Track, photo: PlacedPhoto) -> tuple[Array, Array]:
     height = np.array([seen.z for seen in track.observations])
     xy, yaw = track.poses[:, :2], track.poses[:, 2]
     step = _AHEAD * np.column_stack((np.cos(yaw), np.sin(yaw)))
-    path = project(camera, view, np.column_stack((xy, height)))
-    ahead = project(camera, view, np.column_stack((xy + step, height)))
+    path = project(photo.camera, photo.pose, np.column_stack((xy, height)))
+    ahead = project(photo.camera, photo.pose, np.column_stack((xy + step, height)))
     return _broken(path, track), _broken(ahead, track)
 
 
@@ -134,8 +129,7 @@ def _broken(rows: Array, track: Track) -> Array:
 
 
 def _draw_map(
-    file: Path, track: Track, pixels: NDArray[np.uint8], camera: Camera, view: CameraPose,
-    floor: FloorMap, title: str, simulated: bool,
+    file: Path, track: Track, photo: PlacedPhoto, floor: FloorMap, title: str, simulated: bool
 ) -> None:  # fmt: skip
     from zebro_lab.plots import save
     from zebro_lab.plots.track import over_floor
@@ -144,7 +138,7 @@ def _draw_map(
     low = np.min([place.min(axis=0) for place in places], axis=0) - _MARGIN
     high = np.max([place.max(axis=0) for place in places], axis=0) + _MARGIN
     scale = min(400.0, float(np.sqrt(_MOST_MAP_PIXELS / np.prod(high - low))))
-    picture = rectify_floor(pixels, camera, view, low=low, high=high, pixels_per_metre=scale)
+    picture = photo.from_above(low, high, pixels_per_metre=scale)
     ellipses = [
         ellipse_90(spread[:2, :2]) + pose[:2]
         for spread, pose in zip(track.covariance, track.poses, strict=True)

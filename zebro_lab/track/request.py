@@ -2,59 +2,135 @@
 """Options of a track."""
 
 from dataclasses import dataclass, field
-from datetime import datetime
+from datetime import UTC, datetime
 from pathlib import Path
+from typing import Annotated, Literal, TypeAlias
 
-from tracking.composite import Merged
+from typer import Argument, BadParameter, Option
+
 from zebro_lab.files.errors import SettingsError
-from zebro_lab.track.folder import KIND
-from zebro_lab.track.photo_sequence import VIDEOS, TimeRequest
-from zebro_lab.track.robot import WALKING_HEIGHT_SD
+from zebro_lab.files.units import quantity_to_si
+
+MergedAs: TypeAlias = Literal["pasted", "darkest", "mean"]
+KIND = "track"
+VIDEOS = (".mp4", ".mov", ".m4v", ".avi", ".mkv", ".webm")
+
+
+def _moment(text: str) -> datetime:
+    try:
+        moment = datetime.fromisoformat(text)
+    except ValueError as error:
+        raise BadParameter(
+            f"'{text}' is no time; expected one such as 2020-06-01T12:00:00", param_hint="'--start'"
+        ) from error
+    if moment.utcoffset():
+        raise BadParameter(
+            f"'{text}' has a time zone, which the camera's clock does not tell; give the time as "
+            f"that clock shows it, {moment:%Y-%m-%dT%H:%M:%S} or another, without a zone",
+            param_hint="'--start'",
+        )
+    return moment.replace(tzinfo=UTC)
+
+
+@dataclass(frozen=True)
+class TimeRequest:
+    """Where the times of photographs come from."""
+
+    interval: Annotated[
+        float | None,
+        Option(help="Interval of the camera's timer, for photographs without EXIF times [s]."),
+    ] = None
+    table: Annotated[
+        Path | None,
+        Option(
+            "--times",
+            metavar="CSV",
+            help="Table of times, with columns photo, t_s and optionally t_sigma.",
+        ),
+    ] = None
+    every: Annotated[
+        float | None,
+        Option(
+            min=0.0, help="Least time between frames of a video [s]; default: 0.5; 0 takes all."
+        ),
+    ] = None
+    clock: Annotated[
+        Path | None, Option(metavar="PHOTO", help="Photograph of `zebro-lab camera clock`.")
+    ] = None
+
+    def __post_init__(self) -> None:
+        if self.interval is not None and self.table is not None:
+            raise SettingsError("not together with --interval; give one of them", key="--times")
+
+    @property
+    def frame_step(self) -> float:
+        """Least time between two frames of a video; 0 takes all [s]."""
+        return 0.5 if self.every is None else self.every
 
 
 @dataclass(frozen=True)
 class TrackRequest:
-    """Options of a track: photographs, files and settings.
+    """Options of `zebro-lab track`."""
 
-    Attributes:
-        photos: Folder of photographs, video, or one composite picture.
-        camera: The `camera.toml`.
-        floor: The `floor.toml`.
-        robot: The `robot.toml`; the thesis's robot when None.
-        out: Folder to write; None for the run's own `track/`.
-        run: Run folder the photographs belong to.
-        times: How the photographs get their times.
-        start: Moment from which time is counted; None for the run's start or the first photograph.
-        marker: The robot's marker: dictionary, number and side; None to take that of the robot's
-            file.
-        without_marker: Track the robot by a template, annotated in one photograph.
-        merged: How the exposures of a composite picture were merged; None for other photographs.
-        annotations: An `annotations.toml`, a person's annotations of the photographs.
-        body_height: Height of the body's origin while the robot stands; None to take the marker's
-            [m].
-        height_sd: Standard deviation of that height over a walk [m].
-        gap: Interval longer than which the path is interrupted; None for 3.5 usual ones [s].
-        source: Source of the photographs; None to take that of the files or of the run.
-        workers: Processes to use.
-    """
-
-    photos: Path
-    camera: Path
-    floor: Path
-    robot: Path | None = None
-    out: Path | None = None
-    run: Path | None = None
+    photos: Annotated[
+        Path, Argument(help="Folder of photographs, a video, or one composite picture.")
+    ]
+    camera: Annotated[Path, Option(help="camera.toml.")]
+    floor: Annotated[Path, Option(help="floor.toml.")]
+    robot: Annotated[Path | None, Option(help="robot.toml; default: the thesis's robot.")] = None
+    out: Annotated[Path | None, Option(help="Folder to write; default: RUN/track.")] = None
+    run: Annotated[Path | None, Option(metavar="RUN", help="Run folder of the photographs.")] = None
     times: TimeRequest = field(default_factory=TimeRequest)
-    start: datetime | None = None
-    marker: str | None = None
-    without_marker: bool = False
-    merged: Merged | None = None
-    annotations: Path | None = None
-    body_height: float | None = None
-    height_sd: float = WALKING_HEIGHT_SD
-    gap: float | None = None
-    source: str | None = None
-    workers: int = 1
+    start: Annotated[
+        datetime | None,
+        Option(
+            metavar="TIME",
+            parser=_moment,
+            help="Moment from which time is counted, as the camera's clock shows it.",
+        ),
+    ] = None
+    marker: Annotated[
+        str | None,
+        Option(
+            metavar="DICTIONARY:NUMBER:SIDE",
+            help="Marker on the robot, as in 4x4_50:0:120mm; default: that of robot.toml.",
+        ),
+    ] = None
+    without_marker: Annotated[
+        bool,
+        Option(
+            "--without-marker", help="Track the robot by a template, annotated in one photograph."
+        ),
+    ] = False
+    merged: Annotated[
+        MergedAs | None, Option(help="How the exposures of a composite picture were merged.")
+    ] = None
+    annotations: Annotated[Path | None, Option(help="File of `zebro-lab annotate`.")] = None
+    body_height: Annotated[
+        str | None,
+        Option(
+            metavar="LENGTH",
+            help="Height of the body's centre while the robot stands; default: the marker's.",
+        ),
+    ] = None
+    height_sd: Annotated[
+        str, Option(metavar="LENGTH", help="Standard deviation of that height over a walk.")
+    ] = "5mm"
+    gap: Annotated[
+        float | None,
+        Option(
+            help="Longest time between two poses of an uninterrupted path [s]; default: 3.5 usual "
+            "ones."
+        ),
+    ] = None
+    source: Annotated[
+        str | None,
+        Option(
+            help="Source of the photographs: real or sim:WHAT; default: that of the files or of "
+            "the run."
+        ),
+    ] = None
+    workers: Annotated[int, Option(min=1, help="Processes to use.")] = 2
 
     def __post_init__(self) -> None:
         is_picture = self.photos.is_file() and self.photos.suffix.lower() not in VIDEOS
@@ -71,8 +147,18 @@ class TrackRequest:
         if self.out is not None:
             return self.out
         if self.run is None:
-            raise SettingsError("needed: --run RUN, to write RUN/track, or --out FOLDER")
+            raise SettingsError("missing: name --run RUN, to write RUN/track, or --out FOLDER")
         return self.run / KIND
+
+    @property
+    def standing_height(self) -> float | None:
+        """Height of the body's centre while the robot stands; None for the marker's [m]."""
+        return None if self.body_height is None else quantity_to_si(self.body_height, "m")
+
+    @property
+    def walking_height_sd(self) -> float:
+        """Standard deviation of that height over a walk [m]."""
+        return quantity_to_si(self.height_sd, "m")
 
     @property
     def named(self) -> tuple[Path, ...]:

@@ -18,10 +18,10 @@ from zebro_lab.track.folder import TRACKED, track_folder
 from zebro_lab.track.inputs import TrackInputs, read_inputs
 from zebro_lab.track.photo_sequence import (
     PhotoSequence,
-    by_name,
     exposure_times,
     open_photos,
 )
+from zebro_lab.track.photographs import PlacedPhoto
 from zebro_lab.track.pictures import draw_track
 from zebro_lab.track.request import TrackRequest
 
@@ -89,24 +89,26 @@ def _result(
     """Make the result, with the photographs left out and notes known before tracking."""
     lost = {**sequence.left_out, **tracked.lost}
     tracked = replace(tracked, lost=lost, notes=(*counted.notes, *tracked.notes))
-    count = len(sequence.names) + len(sequence.left_out)
+    count = len(sequence.photos) + len(sequence.left_out)
     if sequence.is_composite:
         count = len(tracked.track.observations)
     source = inputs.source_of(sequence)
     return TrackResult(
-        inputs.request.folder, tracked, count, source, counted.said, sequence.is_composite
+        inputs.request.folder, tracked, count, source, counted.description, sequence.is_composite
     )
 
 
 def _write(inputs: TrackInputs, sequence: PhotoSequence, result: TrackResult) -> None:
-    request, seen = inputs.request, result.tracked.floor
-    videos = [sequence.origin] if sequence.origin.is_file() else list(sequence.paths)
+    request, found, seen = inputs.request, result.tracked.track, result.tracked.floor
+    is_file = sequence.origin.is_file()
+    photos = [sequence.origin] if is_file else [photo.path for photo in sequence.photos]
     with track_folder(
         result.folder,
-        result.tracked.track,
+        found.columns,
+        tum=found.tum,
         source=result.source,
         settings=_settings(inputs),
-        inputs=file_hashes([*request.named, *videos]),
+        inputs=file_hashes([*request.named, *photos]),
         report=_report(result),
     ) as draft:
         heading = f"The floor of {request.floor.name}, refined with the photographs."
@@ -121,10 +123,11 @@ def _draw(draft: Path, result: TrackResult, scene: Scene, sequence: PhotoSequenc
     # In the last photograph the robot no longer hides the floor where the path begins.
     last = track.observations[-1].photo.rpartition("#")[0] if sequence.is_composite else None
     shown = last or track.observations[-1].photo
-    detections = {each.photo: each for each in seen.detections}
+    path = next(photo.path for photo in sequence.photos if photo.name == shown)
+    detection = next((each for each in seen.detections if each.photo == shown), None)
     draw_track(
-        draft, track, read_pixels(by_name(sequence)[shown]), camera=scene.camera,
-        view=seen.fit.pose_of(shown), floor=seen.fit.floor, detection=detections.get(shown),
+        draft, track, PlacedPhoto(read_pixels(path), scene.camera, seen.fit.pose_of(shown)),
+        floor=seen.fit.floor, detection=detection,
         title=sequence.origin.name,
         simulated=result.source.startswith("sim:"),
     )  # fmt: skip
@@ -150,10 +153,10 @@ def _settings(inputs: TrackInputs) -> Mapping[str, object]:
         "photos": request.photos.name,
         "marker": marker and MarkerPrint(marker.dictionary, marker.marker_id, marker.side).text,
         "interval": request.times.interval,
-        "every": request.times.every,
+        "every": request.times.frame_step,
         "start": None if request.start is None else request.start.isoformat(),
-        "body_height": request.body_height,
-        "height_sd": request.height_sd,
+        "body_height": request.standing_height,
+        "height_sd": request.walking_height_sd,
         "gap": request.gap,
-        **({"merged": request.merged.value} if request.merged is not None else {}),
+        **({"merged": request.merged} if request.merged is not None else {}),
     }

@@ -178,8 +178,8 @@ def _write_tables(draft: Path, runs: Sequence[JudgedRun]) -> None:
         for row in run.rows:
             errors = pose_errors(row.path.at(run.track.t), run.track)
             columns = {
-                "t": errors.t, "x_m": errors.xy[:, 0], "y_m": errors.xy[:, 1],
-                "along_m": errors.along, "cross_m": errors.cross, "yaw_rad": errors.yaw,
+                "t": errors.t, "x_m": errors.translation[:, 0], "y_m": errors.translation[:, 1],
+                "along_m": errors.along, "cross_m": errors.cross, "yaw_rad": errors.rotation,
             }  # fmt: skip
             parts.append(pd.DataFrame({"run": run.name, "model": row.name, **columns}))
         (draft / f"{run.name}.track.tum").write_text(tum_lines(run.track))

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from model.judgement import TiltJudged
 from model.slip.law import Array
 from tracking.errors import TrackingError
 from zebro_lab.track.photographs import PlacedPhoto, TrackedPhotos
@@ -55,13 +54,16 @@ def draw_validation(folder: Path, shown: ShownRun, *, simulated: bool) -> tuple[
     """
     from zebro_lab.plots import save
     from zebro_lab.plots.path_validation import path_validation
+    from zebro_lab.plots.tilt import tilt
 
     run = shown.run
     rows = {row.name: row.path for row in run.rows}
     figure = path_validation(rows, run.track, band=run.band, title=run.name, simulated=simulated)
     save(figure, folder / f"{run.name}.png")
     if run.tilt is not None:
-        _draw_tilt(folder / f"{run.name}.imu.png", run.name, run.tilt, simulated)
+        seen = run.tilt
+        figure = tilt(seen.t, seen.predicted, seen.measured, title=run.name, simulated=simulated)
+        save(figure, folder / f"{run.name}.imu.png")
     if shown.photos is None:
         return ()
     try:
@@ -69,13 +71,6 @@ def draw_validation(folder: Path, shown: ShownRun, *, simulated: bool) -> tuple[
     except TrackingError as error:
         return (f"photographs are not shown: {error}",)
     return ()
-
-
-def _draw_tilt(file: Path, name: str, tilt: TiltJudged, simulated: bool) -> None:
-    from zebro_lab.plots import save
-    from zebro_lab.plots.tilt import tilt as draw
-
-    save(draw(tilt.t, tilt.predicted, tilt.measured, title=name, simulated=simulated), file)
 
 
 def _draw_photos(folder: Path, shown: ShownRun, photos: TrackedPhotos) -> None:

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Shift a track to the clock of a prediction, by a given or an estimated clock offset."""
+"""Shift a track to the clock of a prediction, by a known or an estimated clock offset."""
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -17,32 +17,19 @@ from zebro_lab.track.file import TrackFile
 _STEP = 0.05  # s to either side, for the finite difference of the path's velocity
 
 
-@dataclass(frozen=True)
-class SharedClock:
-    """A track in the time base of a prediction.
-
-    Attributes:
-        track: The track; its covariance includes the uncertainty of the clock offset.
-        offset: Offset that was added to its times [s].
-    """
-
-    track: TrackFile
-    offset: float
-
-
-def given_clock(track: TrackFile, offset: float) -> SharedClock:
-    """Shift a track's times by a known clock offset.
+def shifted(track: TrackFile, offset: float) -> TrackFile:
+    """Add a clock offset to a track's times.
 
     Args:
         track: Tracked poses.
         offset: Offset that is added to the times [s].
     """
-    return SharedClock(_moved(track, offset), offset)
+    return replace(track, poses=track.poses.delayed(offset))
 
 
 def estimated_clock(
     track: TrackFile, path: Poses, *, otherwise: str = "Give --time-offset SECONDS"
-) -> SharedClock:
+) -> tuple[TrackFile, float]:
     r"""Estimate the clock offset of a track from the motion, and add it with its uncertainty.
 
     A clock error shifts every pose along the path by the same time, so the covariance grows by
@@ -52,6 +39,10 @@ def estimated_clock(
         track: The track.
         path: The prediction.
         otherwise: What to do if the offset is not determined; part of the error message.
+
+    Returns:
+        The track in the prediction's time base, its covariance with the uncertainty of the clock
+        offset; and the offset that was added to its times [s].
 
     Raises:
         DataError: The motion does not determine the offset.
@@ -63,15 +54,15 @@ def estimated_clock(
             f"the clock's offset cannot be estimated: {error}. {otherwise}",
             file=track.file,
         ) from error
-    moved = _moved(track, found.value)
+    moved = shifted(track, found.value)
     v = _velocity(path, moved.poses.t)
     widened = moved.covariance + found.sd**2 * v[:, :, None] * v[:, None, :]
     note = (
-        f"clock: {found.value:+.2f} ± {found.sd:.2f} s were added to the track's times, as the "
-        "motion has it; errors along the path are the smaller for it"
+        f"clock: {found.value:+.2f} ± {found.sd:.2f} s, estimated from the motion, were added to "
+        "the track's times; this makes errors along the path smaller"
     )
     poses = replace(moved.poses, covariance=widened)
-    return SharedClock(replace(moved, poses=poses, notes=(*moved.notes, note)), found.value)
+    return replace(moved, poses=poses, notes=(*moved.notes, note)), found.value
 
 
 def shared_time(track: Poses, path: Poses, *, file: Path) -> NDArray[np.bool_]:
@@ -93,10 +84,6 @@ def shared_time(track: Poses, path: Poses, *, file: Path) -> NDArray[np.bool_]:
             "--estimate-offset",
             file=file,
         ) from error
-
-
-def _moved(track: TrackFile, offset: float) -> TrackFile:
-    return replace(track, poses=track.poses.delayed(offset))
 
 
 def _velocity(path: Poses, t: Array) -> Array:

@@ -1,53 +1,22 @@
 # SPDX-License-Identifier: MIT
 """Stage of `zebro-lab validate`: compare predictions with tracks, write the validation folder."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from pathlib import Path
 
 import numpy as np
 
 from model.errors import InsufficientData
 from model.judgement import judge_tilt
 from model.progress import Watcher
-from zebro_lab.files.errors import DataError, NotFound, SettingsError
-from zebro_lab.files.names import PATH_CSV
+from zebro_lab.files.errors import SettingsError
 from zebro_lab.files.provenance import file_hashes
-from zebro_lab.files.replacement import settle
 from zebro_lab.files.result_folder import require_replaceable
-from zebro_lab.runs.counted_once import content_hash, first_of_each, told_once
-from zebro_lab.runs.recorded_legs import is_recorded
-from zebro_lab.runs.recorded_tilt import read_recorded_tilt
-from zebro_lab.track.file import read_track
-from zebro_lab.track.folder import TRACK_CSV
-from zebro_lab.track.photographs import photos_of_track
 from zebro_lab.validation.folder import VALIDATION, Summary, summarise_runs, write_validation
 from zebro_lab.validation.judged_run import JudgedRun, judge_run
 from zebro_lab.validation.pictures import ShownRun
-from zebro_lab.validation.shared_clock import estimated_clock, given_clock
-from zebro_lab.walk.folder import PREDICTION
-from zebro_lab.walk.prediction_file import PredictionFile, read_prediction
-
-TRACK = "track"
-
-
-@dataclass(frozen=True)
-class ValidateRequest:
-    """Settings of a validation.
-
-    Attributes:
-        pairs: Prediction and track of each walk.
-        out: Folder to write.
-        anchor: Whether each path starts from the first tracked pose, which is then not scored.
-        time_offset: Offset added to the tracks' times; None to estimate it for each track [s].
-        seed: Seed of all random numbers.
-    """
-
-    pairs: tuple[tuple[Path, Path], ...]
-    out: Path
-    anchor: bool = True
-    time_offset: float | None = 0.0
-    seed: int = 1
+from zebro_lab.validation.predicted_walks import PredictedWalk, pairs_of_run, read_predicted_walks
+from zebro_lab.validation.request import ValidateRequest
+from zebro_lab.validation.shared_clock import estimated_clock, shifted
 
 
 @dataclass(frozen=True)
@@ -65,20 +34,6 @@ class Validated:
     source: str
 
 
-def pairs_of_run(run: Path) -> tuple[Path, Path]:
-    """Return the prediction and the track of a run folder.
-
-    Raises:
-        NotFound: One of them is missing.
-    """
-    prediction, track = settle(run / PREDICTION), settle(run / TRACK)
-    if not (prediction / PATH_CSV).is_file():
-        raise NotFound(f"{prediction}: no prediction; predict {run} --out {prediction} makes it")
-    if not (track / TRACK_CSV).is_file():
-        raise NotFound(f"{track}: no {TRACK_CSV}; track the run's photographs into it first")
-    return prediction, track
-
-
 def validate(request: ValidateRequest, watcher: Watcher) -> Validated:
     """Compute the errors of predicted paths against tracks and write the validation folder.
 
@@ -93,92 +48,49 @@ def validate(request: ValidateRequest, watcher: Watcher) -> Validated:
         ZebroLabError: A file is missing, or prediction and track do not overlap in time.
         ModelError: The errors of a path cannot be computed.
     """
-    if not request.pairs:
+    given = zip(request.predicted, request.track, strict=True)
+    asked = (*map(pairs_of_run, request.runs), *given)
+    if not asked:
         raise SettingsError("missing: nothing to validate", key="--predicted, --track")
-    inputs = [path for pair in request.pairs for path in pair]
-    require_replaceable(request.out, VALIDATION, inputs=inputs)
-    pairs, repeated = first_of_each(request.pairs, key=_content)
-    told = told_once("walks", [(one[0], other[0]) for one, other in repeated])
+    inputs = [path for pair in asked for path in pair]
+    require_replaceable(request.folder, VALIDATION, inputs=inputs)
+    watcher.step("reading", None)
+    walks = read_predicted_walks(asked)
     rng = np.random.default_rng(request.seed)
-    shown, files, sources = [], [], []
-    names = _names([predicted for predicted, _ in pairs])
-    for i, (name, (predicted, tracked)) in enumerate(zip(names, pairs, strict=True)):
-        watcher.step("judging", i / len(names))
-        prediction, track = read_prediction(predicted), read_track(tracked)
-        clock = (
-            estimated_clock(track, prediction.prediction.path)
-            if request.time_offset is None
-            else given_clock(track, request.time_offset)
-        )
-        judged = judge_run(name, prediction, clock.track, anchor=request.anchor, rng=rng)
-        one, read = _with_surroundings(judged, prediction, tracked, clock.offset)
-        shown.append(one if i else _noted(one, told))
-        files += [*prediction.files, track.file, *read]
-        sources += [prediction.source, track.source]
-    runs = [each.run for each in shown]
+    shown = []
+    for i, walk in enumerate(walks):
+        watcher.step("judging", i / len(walks))
+        shown.append(_judge(walk, request, rng))
+    runs = tuple(each.run for each in shown)
     summary = tuple(summarise_runs(runs, rng=rng)) if len(runs) > 1 else ()
-    source = ", ".join(sorted(set(sources)))
+    files = [file for walk, run in zip(walks, runs, strict=True) for file in walk.files_of(run)]
+    source = ", ".join(sorted({each for walk in walks for each in walk.sources}))
+    settings = {
+        "anchor": request.anchor,
+        "time_offset": {each.run.name: each.time_offset for each in shown},
+        "time_offset_estimated": request.estimate_offset,
+        "seed": request.seed,
+    }
     write_validation(
-        request.out,
-        shown,
-        summary=summary,
-        settings={
-            "anchor": request.anchor,
-            "time_offset": {each.run.name: each.time_offset for each in shown},
-            "time_offset_estimated": request.time_offset is None,
-            "seed": request.seed,
-        },
-        inputs=file_hashes(dict.fromkeys(files)),
-        source=source,
+        request.folder, shown, summary=summary, settings=settings,
+        inputs=file_hashes(dict.fromkeys(files)), source=source,
     )  # fmt: skip
-    return Validated(tuple(runs), summary, source)
+    return Validated(runs, summary, source)
 
 
-def _content(pair: tuple[Path, Path]) -> tuple[str, ...]:
-    """Return hashes of a walk's predicted and tracked path, by which copies are recognised."""
-    return tuple(
-        content_hash(file) if file.is_file() else str(file)
-        for path, name in zip(pair, (PATH_CSV, TRACK_CSV), strict=True)
-        for file in [settle(path) / name if path.is_dir() else path]
-    )
-
-
-def _noted(shown: ShownRun, told: Sequence[str]) -> ShownRun:
-    run = shown.run
-    return replace(shown, run=replace(run, notes=(*told, *run.notes)))
-
-
-def _with_surroundings(
-    judged: JudgedRun, prediction: PredictionFile, tracked: Path, offset: float
-) -> tuple[ShownRun, tuple[Path, ...]]:
-    """Add errors against the run's IMU, and photographs of its track; also return files read."""
-    notes, files, photos = list(judged.notes), (), None
-    run = tracked.parent if tracked.name == TRACK else None
-    measured = read_recorded_tilt(run) if run is not None and is_recorded(run) else None
-    if measured is not None and prediction.walk is not None:
+def _judge(walk: PredictedWalk, request: ValidateRequest, rng: np.random.Generator) -> ShownRun:
+    """Compute the errors of a walk's path, and of its roll and pitch if there was an IMU."""
+    offset, tilt, prediction = request.time_offset, None, walk.prediction
+    if request.estimate_offset:
+        track, offset = estimated_clock(walk.track, prediction.prediction.path)
+    else:
+        track = shifted(walk.track, offset)
+    judged = judge_run(walk.name, prediction, track, anchor=request.anchor, rng=rng)
+    notes = [*walk.duplicates, *judged.notes]
+    if walk.tilt is not None and prediction.walk is not None:
         try:
-            judged = replace(
-                judged, tilt=judge_tilt(prediction.walk.path, measured.t, measured.angles)
-            )
-            files = measured.files
+            tilt = judge_tilt(prediction.walk.path, walk.tilt.t, walk.tilt.angles)
         except InsufficientData as error:
             notes.append(f"roll and pitch are not compared: {error}")
-    try:
-        photos = photos_of_track(tracked)
-    except (NotFound, DataError) as error:
-        notes.append(f"photographs are not shown: {error}")
-    judged = replace(judged, notes=tuple(notes))
-    return ShownRun(judged, prediction, photos, offset), files
-
-
-def _names(paths: Sequence[Path]) -> list[str]:
-    """Name walks by their folders, numbered if several have the same name."""
-    names = []
-    for path in paths:
-        place = path if path.is_dir() else path.with_suffix("")
-        absolute = place.absolute()
-        names.append(absolute.parent.name if absolute.name == PREDICTION else absolute.name)
-    return [
-        name if names.count(name) == 1 else f"{name}-{names[: i + 1].count(name)}"
-        for i, name in enumerate(names)
-    ]
+    judged = replace(judged, tilt=tilt, notes=(*notes, *walk.not_shown))
+    return ShownRun(judged, prediction, walk.photos, offset)

@@ -20,8 +20,6 @@ from zebro_lab.files.folder_manifest import read_folder_manifest
 from zebro_lab.files.names import PATH_CSV
 from zebro_lab.files.replacement import settle
 from zebro_lab.files.result_folder import MANIFEST, ResultKind, result_folder
-from zebro_lab.tables.cells import cell_error, require_increasing
-from zebro_lab.tables.raw_table import RawTable
 from zebro_lab.tables.table_files import read_table_file
 
 SCHEMA = 1
@@ -149,11 +147,11 @@ def read_walk(path: Path) -> WalkPath:
         raise NotFound(f"{file}: no such file; name a folder that walk or predict wrote")
     table = read_table_file(file)
     numbers = np.column_stack([
-        _numbers(table, name, may_be_empty=block.may_be_empty)
+        table.finite(name, may_be_empty=block.may_be_empty)
         for block in _BLOCKS
         for name in block.columns
     ])  # fmt: skip
-    require_increasing(table, "t", numbers[:, 0])
+    table.require_increasing("t", numbers[:, 0])
     return _path_from(numbers)
 
 
@@ -166,16 +164,6 @@ def read_walk_manifest(folder: Path) -> Mapping[str, Any]:
     """
     settle(folder)
     return read_folder_manifest(folder / MANIFEST, of="walk", kinds=KINDS, schema=SCHEMA)
-
-
-def _numbers(table: RawTable, name: str, *, may_be_empty: bool) -> Array:
-    values = table.numbers(name)
-    bad = np.isinf(values) if may_be_empty else ~np.isfinite(values)
-    if bad.any():
-        index = int(np.argmax(bad))
-        found = "infinite" if np.isinf(values[index]) else "empty"
-        raise cell_error(table, name, index, f"is {found}; expected a finite number")
-    return values
 
 
 def _path_from(numbers: Array) -> WalkPath:

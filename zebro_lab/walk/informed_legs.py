@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Select what a posterior after walks says about the legs and the floor of a given walk."""
+"""Select the posterior of legs and floor that applies to a given walk."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from model.bayes.walks.posterior import WalkPosterior
-from model.predict import LegState
+from model.leg_state import LegState
 from zebro_lab.calibration.walks_folder import StoredWalks, describe_legs
 from zebro_lab.files.provenance import file_hash
 from zebro_lab.robot.robot_file import RobotFile
@@ -83,14 +83,14 @@ def informed_legs(
     names = ", ".join(walks.posterior.walks)
     if not same:
         floor = walks.posterior.of_floor_alone(rng=np.random.default_rng(_SEED))
-        note = f"walks: {names} inform the floor alone; their legs were another robot's"
+        note = f"walks: {names} inform the floor alone, since another robot walked them"
         return InformedLegs(floor, None, walks.folder, (note,))
     index = _index(walks, logs)
-    notes = [f"walks: legs and floor as {names} have them"]
+    notes = [f"walks: legs and floor are those fitted to {names}"]
     if index is not None:
         notes.append(
-            f"walks: {walks.posterior.walks[index]} is this walk: its own track informed the "
-            "prediction, which the track can confirm but not test"
+            f"walks: {walks.posterior.walks[index]} is this walk: the prediction was fitted to its "
+            "own track, which is therefore no independent test"
         )
     return InformedLegs(walks.posterior, index, walks.folder, tuple(notes))
 

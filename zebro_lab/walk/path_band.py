@@ -1,119 +1,96 @@
 # SPDX-License-Identifier: MIT
 """The band of a predicted path: compute draws, write and read draws, quantiles and picture."""
 
-from dataclasses import asdict, dataclass, field
+from collections.abc import Callable
+from dataclasses import asdict
 from pathlib import Path
 
 import numpy as np
 
 from model.gait.quantised import QuantisedLog
 from model.gait.reference import LegReference
+from model.leg_state import LegState
+from model.path_draws import LEVELS, STATES, anchored, quantiles
 from model.poses import Poses
-from model.predict import (
-    LEVELS,
-    STATES,
-    LegState,
-    ModelSpread,
-    anchored,
-    predict_paths,
-    quantiles,
-    walk_draws,
-)
+from model.predict import ModelSpread, predict_paths, walk_draws
 from model.progress import Watcher
-from model.robot import GRAVITY, Robot
+from model.robot import GRAVITY
 from model.walk.traction import ToeLaw
-from zebro_lab.calibration.slip_argument import NamedSlip
 from zebro_lab.calibration.slip_draws import slip_tables
 from zebro_lab.files.arrays import read_arrays
 from zebro_lab.files.errors import DataError, SettingsError
 from zebro_lab.files.opening import parsing
 from zebro_lab.walk.folder import BAND_CSV, BAND_PICTURE, DRAWS
 from zebro_lab.walk.informed_legs import InformedLegs
+from zebro_lab.walk.request import BandRequest
+from zebro_lab.walk.walking import INFORMED_MODEL, Walked
 
 SAMPLING = 0.1  # s between the poses kept of each draw
 ASSUMED_OFFSET_DEG = 0.3  # of legs whose zero was set by hand
-_TOLD = 50  # progress reports
+_STEPS_SHOWN = 50  # progress reports
 
 
-@dataclass(frozen=True)
-class BandRequest:
-    """Settings of a band.
-
-    Attributes:
-        draws: Number of paths.
-        seed: Seed of all random numbers.
-        offset_sd_deg: Standard deviation of each leg's unknown offset; None for that of
-            quantisation, or `ASSUMED_OFFSET_DEG` if angles are not encoder counts [deg].
-        start_sd: Standard deviation of the start pose: x, y [m] and yaw [deg].
-        spread: Error of the walking model itself.
-        threads: Number of draws computed in parallel.
-    """
-
-    draws: int
-    seed: int = 1
-    offset_sd_deg: float | None = None
-    start_sd: tuple[float, float, float] = (0.0, 0.0, 0.0)
-    spread: ModelSpread = field(default_factory=ModelSpread)
-    threads: int = 2
-
-    def __post_init__(self) -> None:
-        """Check the number of draws and the standard deviations."""
-        if self.draws < 2:
-            raise SettingsError(f"{self.draws} draws make no band; ask for 200", key="--draws")
-        if any(sd < 0 for sd in (*self.start_sd, self.offset_sd_deg or 0.0)):
-            raise SettingsError("a standard deviation is negative", key="--start-sd")
-
-    def settings(self) -> dict[str, object]:
-        """Return the settings, JSON-serialisable."""
-        return asdict(self)
+def band_settings(request: BandRequest) -> dict[str, object]:
+    """Return the settings of a band, JSON-serialisable."""
+    return {**asdict(request), "spread": asdict(ModelSpread())}
 
 
 def predict_band(
     request: BandRequest,
-    robot: Robot,
+    walked: Walked,
     legs: LegReference | QuantisedLog,
-    slip: NamedSlip,
     *,
     duration: float,
     toe: ToeLaw,
-    informed: InformedLegs | None = None,
     watcher: Watcher,
 ) -> Poses:
-    """Compute draws of a path from time zero on, started at the origin.
+    """Compute paths of a walk with its unknown parameters drawn, from time zero on.
 
     Args:
         request: Settings of the band.
-        robot: The robot.
+        walked: The finished single walk.
         legs: Its leg angles.
-        slip: Slip law of the legs.
         duration: Duration of the walk [s].
         toe: Traction of a leg on its toe.
-        informed: Posterior of legs and floor; None without fitted walks.
         watcher: Receives progress.
 
     Raises:
-        SettingsError: A standard deviation of offsets is given although `informed` has them.
+        SettingsError: The model has no band, or a standard deviation of offsets is given although
+            fitted walks have them.
     """
+    if walked.model != INFORMED_MODEL or walked.slip is None:
+        raise SettingsError(
+            f"a band is predicted by the model 'dynamics' only, not by '{walked.model}'",
+            key="--draws",
+        )
     rng = np.random.default_rng(request.seed)
-    state = _leg_state(request, legs, informed, rng)
-    tables = slip_tables(slip, request.draws, weight=robot.mass * GRAVITY, toe=toe, rng=rng)
+    robot = walked.described.robot
+    state = _leg_state(request, legs, walked.informed, rng)
+    weight = robot.mass * GRAVITY
+    tables = slip_tables(walked.slip, request.draws, weight=weight, toe=toe, rng=rng)
     watcher.step("predicting the band", 0.0)
     draws = walk_draws(robot, legs, tables, state, rng=rng)
     t = np.linspace(0.0, duration, max(round(duration / SAMPLING), 1) + 1)
-    told = 0
-
-    def tell(fraction: float) -> None:
-        nonlocal told
-        if fraction * _TOLD >= told + 1:
-            told += 1
-            watcher.step("predicting the band", fraction)
-
     paths = predict_paths(
-        draws, t, state=state, error=request.spread, rng=rng, threads=request.threads, progress=tell
-    )
+        draws, t, state=state, error=ModelSpread(), rng=rng, threads=request.threads,
+        progress=_every(_STEPS_SHOWN, watcher),
+    )  # fmt: skip
     x, y, yaw_deg = request.start_sd
     covariance = np.diag([x, y, np.radians(yaw_deg)]) ** 2
     return anchored(paths, np.zeros(3), at=0.0, covariance=covariance, rng=rng)
+
+
+def _every(steps: int, watcher: Watcher) -> Callable[[float], None]:
+    """Return a progress function that reports each of so many equal steps once."""
+    shown = 0
+
+    def show(fraction: float) -> None:
+        nonlocal shown
+        if fraction * steps >= shown + 1:
+            shown += 1
+            watcher.step("predicting the band", fraction)
+
+    return show
 
 
 def _leg_state(
@@ -123,27 +100,19 @@ def _leg_state(
     rng: np.random.Generator,
 ) -> LegState:
     if informed is None:
-        offset_sd = np.radians(offset_sd_deg(request, legs))
+        offset_sd = np.radians(_offset_sd_deg(request, legs))
         return LegState.of_prior(request.draws, offset_sd=offset_sd, rng=rng)
     if request.offset_sd_deg is not None:
         raise SettingsError(
-            f"the walks of {informed.folder} say what the legs' offsets are; leave it out, or name "
-            "a slip.toml that lies alone",
+            f"the walks of {informed.folder} determine the legs' offsets; leave the option out, or "
+            "name a slip.toml without walks/ beside it",
             key="--offset-sd-deg",
         )
     return informed.draw(request.draws, rng=rng)
 
 
-def offset_sd_deg(request: BandRequest, legs: LegReference | QuantisedLog) -> float:
-    """Return the standard deviation of leg offsets [deg].
-
-    It is the requested value, else that of quantisation, step / sqrt(12), for a log in counts, else
-    `ASSUMED_OFFSET_DEG`.
-
-    Args:
-        request: Request with the standard deviation, if any.
-        legs: Leg angles.
-    """
+def _offset_sd_deg(request: BandRequest, legs: LegReference | QuantisedLog) -> float:
+    """Return the standard deviation of leg offsets; that of a count is step / sqrt(12) [deg]."""
     if request.offset_sd_deg is not None:
         return request.offset_sd_deg
     if isinstance(legs, QuantisedLog):
@@ -172,7 +141,7 @@ def write_band(folder: Path, paths: Poses, *, title: str) -> None:
     pd.DataFrame(columns).to_csv(
         folder / BAND_CSV, index=False, float_format="%.8g", lineterminator="\n"
     )
-    figure = path_band.path_band(paths, title=f"Predicted path: {title}", simulated=True)
+    figure = path_band.path_band(paths, title=f"Predicted path: {title}")
     save(figure, folder / BAND_PICTURE)
 
 

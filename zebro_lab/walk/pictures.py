@@ -41,39 +41,11 @@ def draw_walk(
         "gantt": ("Contact", walk_legs.gantt, end),
     }
     figures = {
-        name: draw(part, title=f"{what}: {title}", simulated=True)  # every path is a model's
-        for name, (what, draw, part) in drawers.items()
+        name: draw(part, title=f"{what}: {title}") for name, (what, draw, part) in drawers.items()
     }
-    figures["path"] = walk_path.path_with_snapshots(
-        path, robot, title=f"Path: {title}", simulated=True
-    )
+    figures["path"] = walk_path.path_with_snapshots(path, robot, title=f"Path: {title}")
     for name, figure in figures.items():
         save(figure, folder / f"{name}.png")
-
-
-def animate_walk(
-    folder: Path,
-    path: WalkPath,
-    robot: Robot,
-    *,
-    title: str,
-    progress: Callable[[float], None] = lambda _: None,
-) -> Path:
-    """Write an animation of the walking robot, as `zebro_lab.plots.animation.animate` does.
-
-    Args:
-        folder: Folder to write to.
-        path: The walk.
-        robot: The robot.
-        title: Title of the animation.
-        progress: Called with the fraction of frames drawn, 0 to 1 [-].
-
-    Returns:
-        The file written.
-    """
-    from zebro_lab.plots.animation import animate
-
-    return animate(path, robot, folder, title=title, simulated=True, progress=progress)
 
 
 def last_cycles(path: WalkPath, period: float | None) -> WalkPath:

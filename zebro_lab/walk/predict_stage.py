@@ -1,53 +1,33 @@
 # SPDX-License-Identifier: MIT
 """Stage of `zebro-lab predict`: read leg angles, compute the path, write the walk folder."""
 
-from dataclasses import dataclass, replace
-from functools import partial
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
-from model.gait.direction import Direction
 from model.gait.quantised import QuantisedLog
 from model.progress import Watcher
 from model.robot import N_LEGS
 from zebro_lab.files.names import PATH_CSV
 from zebro_lab.files.replacement import settle
 from zebro_lab.files.result_folder import require_replaceable
-from zebro_lab.robot.leg_log import LegLog
 from zebro_lab.robot.robot_file import ROBOT_FILE, RobotFile
 from zebro_lab.runs.legs import read_leg_log
 from zebro_lab.runs.recorded_legs import is_recorded
-from zebro_lab.walk.folder import WALKED
+from zebro_lab.walk.folder import PREDICTION, WALKED
 from zebro_lab.walk.leg_angles import angles_from
-from zebro_lab.walk.path_band import BandRequest, write_band
-from zebro_lab.walk.walked_band import band_of
-from zebro_lab.walk.walking import ModelRequest, Walked, robot_of, walk_with, write_walk
+from zebro_lab.walk.output import write_walk
+from zebro_lab.walk.path_band import predict_band
+from zebro_lab.walk.request import PredictRequest
+from zebro_lab.walk.walking import Walked, robot_of, walk_with
 
 
-@dataclass(frozen=True)
-class PredictRequest:
-    """Settings of a prediction.
-
-    Attributes:
-        log: Leg angles: CSV, Parquet, a recorded run or a walk folder.
-        model: Model, slip law, robot, and what to write.
-        columns: A `columns.toml` in place of the one beside the log.
-        direction: Side the gait turns to; only the thesis's model uses it.
-        band: Settings of the band; None for the path alone.
-    """
-
-    log: Path
-    model: ModelRequest
-    columns: Path | None = None
-    direction: Direction = "left"
-    band: BandRequest | None = None
-
-    @property
-    def inputs(self) -> tuple[Path, ...]:
-        """Files and folders that are read, as named."""
-        columns = () if self.columns is None else (self.columns,)
-        return (self.log, *columns, *self.model.inputs)
+def prediction_folder(request: PredictRequest) -> Path:
+    """Return the walk folder to write: `prediction`, in the run if a run is read, by default."""
+    if request.out is not None:
+        return request.out
+    return request.log / PREDICTION if is_recorded(request.log) else Path(PREDICTION)
 
 
 def predict(request: PredictRequest, watcher: Watcher) -> Walked:
@@ -69,12 +49,11 @@ def predict(request: PredictRequest, watcher: Watcher) -> Walked:
     """
     settle(request.log)
     request = _with_own_robot(request)
-    require_replaceable(request.model.out, WALKED["predict"], inputs=request.inputs)
-    described = robot_of(request.model)
-    walked_before = request.log.is_dir() or request.log.name == PATH_CSV
-    walked_before = walked_before and not is_recorded(request.log)
-    if walked_before:
-        described = _as_walked(described)
+    out = prediction_folder(request)
+    require_replaceable(out, WALKED["predict"], inputs=request.inputs)
+    described, is_walk = robot_of(request.model), _is_walk(request.log)
+    if is_walk:
+        described = _without_offsets(described)
     log = read_leg_log(request.log, columns=request.columns, leg_sign=described.leg_sign)
     start, end = float(log.reference.t[0]), float(log.reference.t[-1])
     legs, notes = angles_from(log, start)
@@ -84,25 +63,22 @@ def predict(request: PredictRequest, watcher: Watcher) -> Walked:
         described,
         legs.smooth() if isinstance(legs, QuantisedLog) else legs,
         duration=end - start,
-        what=_what(log),
+        what=f"{'simulated' if log.source.startswith('sim:') else 'logged'} leg angles",
         direction=request.direction,
         logs=log.files,
-        angles_are_true=walked_before,
+        angles_are_true=is_walk,
         notes=(*log.notes, *notes),
     )
-    walked = replace(walked, path=replace(walked.path, t=walked.path.t + start))
-    settings: dict[str, object] = {"leg_angles": log.source, "direction": request.direction}
-    extra = None
-    if request.band is not None:
-        paths = band_of(
-            request.band, walked, legs,
+    if request.model.band.draws:
+        band = predict_band(
+            request.model.band, walked, legs,
             duration=end - start, toe=request.model.toe, watcher=watcher,
         )  # fmt: skip
-        settings["band"] = request.band.settings()
-        extra = partial(write_band, paths=paths.delayed(start), title=walked.title)
+        walked = replace(walked, band=band)
+    walked = walked.delayed(start)
     write_walk(
-        request.model, walked, watcher,
-        kind="predict", settings=settings, files=log.files, extra=extra,
+        out, request.model, walked, watcher, kind="predict", files=log.files,
+        settings={"leg_angles": log.source, "direction": request.direction},
     )  # fmt: skip
     return walked
 
@@ -114,11 +90,12 @@ def _with_own_robot(request: PredictRequest) -> PredictRequest:
     return replace(request, model=replace(request.model, robot=own))
 
 
-def _as_walked(described: RobotFile) -> RobotFile:
+def _is_walk(log: Path) -> bool:
+    """Return whether leg angles are those of a walk folder."""
+    return (log.is_dir() or log.name == PATH_CSV) and not is_recorded(log)
+
+
+def _without_offsets(described: RobotFile) -> RobotFile:
     """Return the robot without leg signs and offsets: angles of a walked path are exact."""
     robot = replace(described.robot, leg_offset=np.zeros(N_LEGS))
     return replace(described, robot=robot, leg_sign=(1,) * N_LEGS)
-
-
-def _what(log: LegLog) -> str:
-    return "simulated leg angles" if log.source.startswith("sim:") else "logged leg angles"

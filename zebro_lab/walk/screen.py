@@ -6,7 +6,6 @@ from pathlib import Path
 
 import numpy as np
 import typer
-from rich import box
 from rich.console import Console
 from rich.table import Table
 from rich.text import Text
@@ -14,36 +13,35 @@ from rich.text import Text
 from model.gait import CyclicReference
 from model.progress import Watcher
 from zebro_lab.files.result_folder import MANIFEST
-from zebro_lab.terminal.messages import plain, say
+from zebro_lab.terminal.messages import plain, say, wide_console
 from zebro_lab.terminal.progress import progress_bar
+from zebro_lab.terminal.tables import plain_table
 from zebro_lab.walk.folder import FILES
+from zebro_lab.walk.output import WalkStopped
 from zebro_lab.walk.summary import WalkSummary, summarise
-from zebro_lab.walk.walking import ModelRequest, Walked, WalkStopped
+from zebro_lab.walk.walking import Walked
 
 INTERRUPTED = 130
 _MANY_UNTESTED = 0.01  # share of the contacts; a few at touchdown do not matter
 
 
-def run_and_report(run: Callable[[Watcher], Walked], request: ModelRequest) -> None:
+def run_and_report(run: Callable[[Watcher], Walked], folder: Path) -> None:
     """Run a stage with a progress bar and print the results.
 
     Args:
         run: The stage.
-        request: Its settings.
+        folder: Walk folder that it writes.
 
     Raises:
         Exit: The walk was stopped.
     """
     try:
-        with progress_bar(Console(stderr=True)) as watcher:
+        with progress_bar() as watcher:
             walked = run(watcher)
     except WalkStopped as stopped:
         say(str(stopped), err=True)
         raise typer.Exit(INTERRUPTED) from None
-    console = Console(highlight=False)
-    if not console.is_terminal:
-        console = Console(highlight=False, width=120)
-    print_walk(console, walked, request.out)
+    print_walk(wide_console(), walked, folder)
 
 
 def print_walk(console: Console, walked: Walked, out: Path) -> None:
@@ -110,13 +108,11 @@ def slip_lines(walked: Walked, summary: WalkSummary) -> list[str]:
 def gait_table(reference: CyclicReference) -> Table:
     """Return a table of a gait's parameters, one row per leg."""
     title = f"the gait, with a cycle of {reference.period:.4g} s"
-    table = Table(title=title, box=box.SIMPLE, title_justify="left")
-    table.add_column("leg")
-    for name in (
-        "touchdown [deg]", "lift-off [deg]", "ground [s]", "flight [s]", "ground [deg/s]",
-        "flight [deg/s]", "at t = 0 [deg]",
-    ):  # fmt: skip
-        table.add_column(name, justify="right")
+    numbers = (
+        "touchdown\n[deg]", "lift-off\n[deg]", "ground\n[s]", "flight\n[s]", "ground\n[deg/s]",
+        "flight\n[deg/s]", "at t = 0\n[deg]",
+    )  # fmt: skip
+    table = plain_table(title, ("leg",), numbers)
     start = np.degrees(reference.angles(0.0)[0]) % 360
     columns = (
         np.degrees(reference.touchdown), np.degrees(reference.liftoff), reference.ground_time,

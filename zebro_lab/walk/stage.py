@@ -1,37 +1,20 @@
 # SPDX-License-Identifier: MIT
 """Stage of `zebro-lab walk`: construct a gait, compute the path, write the walk folder."""
 
-from dataclasses import dataclass
-from functools import partial
+from dataclasses import replace
 from pathlib import Path
 
 from model.progress import Watcher
 from zebro_lab.files.atomic import atomic_write_text
-from zebro_lab.files.errors import AlreadyExists
+from zebro_lab.files.errors import AlreadyExists, SettingsError
 from zebro_lab.files.result_folder import require_replaceable
-from zebro_lab.robot.gait_argument import GaitRequest, make_gait
+from zebro_lab.robot.gait_argument import make_gait
 from zebro_lab.robot.robot_file import render_robot_file
 from zebro_lab.walk.folder import WALKED
-from zebro_lab.walk.path_band import BandRequest, write_band
-from zebro_lab.walk.walked_band import band_of
-from zebro_lab.walk.walking import ModelRequest, Walked, robot_of, walk_with, write_walk
-
-
-@dataclass(frozen=True)
-class WalkRequest:
-    """Settings of a walk.
-
-    Attributes:
-        gait: The gait.
-        model: Model, slip law, robot, and what to write.
-        duration: Duration of the walk [s].
-        band: Settings of the band; None for the path alone.
-    """
-
-    gait: GaitRequest
-    model: ModelRequest
-    duration: float
-    band: BandRequest | None = None
+from zebro_lab.walk.output import write_walk
+from zebro_lab.walk.path_band import predict_band
+from zebro_lab.walk.request import ModelRequest, WalkRequest
+from zebro_lab.walk.walking import Walked, robot_of, walk_with
 
 
 def walk(request: WalkRequest, watcher: Watcher) -> Walked:
@@ -48,32 +31,29 @@ def walk(request: WalkRequest, watcher: Watcher) -> Walked:
         ZebroLabError: A file or an option has an invalid value.
         ModelError: The gait is impossible, or the walk cannot be computed.
     """
-    require_replaceable(request.model.out, WALKED["walk"], inputs=request.model.inputs)
+    if request.duration is None:
+        raise SettingsError("missing: the duration of the walk [s]", key="--duration")
+    require_replaceable(request.out, WALKED["walk"], inputs=request.model.inputs)
     described = robot_of(request.model)
     gait = make_gait(request.gait, leg_arc=described.robot.leg_arc)
     watcher.step("walking", None)
+    duration = request.duration
     walked = walk_with(
-        request.model,
-        described,
-        gait.reference,
-        duration=request.duration,
-        what=gait.what,
-        direction=gait.direction,
-    )
-    settings: dict[str, object] = {
+        request.model, described, gait.reference,
+        duration=duration, what=gait.what, direction=gait.direction,
+    )  # fmt: skip
+    if request.model.band.draws:
+        band = predict_band(
+            request.model.band, walked, gait.reference,
+            duration=duration, toe=request.model.toe, watcher=watcher,
+        )  # fmt: skip
+        walked = replace(walked, band=band)
+    settings = {
         "gait": {"name": request.gait.name, **request.gait.given()},
-        "duration": request.duration,
+        "duration": duration,
         "direction": gait.direction,
     }
-    extra = None
-    if request.band is not None:
-        paths = band_of(
-            request.band, walked, gait.reference,
-            duration=request.duration, toe=request.model.toe, watcher=watcher,
-        )  # fmt: skip
-        settings["band"] = request.band.settings()
-        extra = partial(write_band, paths=paths, title=walked.title)
-    write_walk(request.model, walked, watcher, kind="walk", settings=settings, extra=extra)
+    write_walk(request.out, request.model, walked, watcher, kind="walk", settings=settings)
     return walked
 
 

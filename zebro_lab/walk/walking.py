@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""Shared by `walk` and `predict`: compute a path from leg angles, and write the walk folder."""
+"""Compute a path from leg angles, for `walk` and `predict`."""
 
-from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Final
@@ -11,61 +10,20 @@ import numpy as np
 from model.errors import DefinitionMismatch, DomainError
 from model.gait.direction import Direction
 from model.gait.reference import LegReference
+from model.poses import Poses
 from model.predict import FINE
-from model.progress import Watcher
-from model.robot import Robot
 from model.walk.path import WalkPath
-from model.walk.traction import ToeLaw
 from model.walk_models import MODELS, ModelRun, WalkModel
-from zebro_lab.calibration.slip_argument import EXPECTED_SLIP, THESIS, NamedSlip, parse_slip
-from zebro_lab.files.errors import SettingsError, ZebroLabError
-from zebro_lab.files.provenance import file_hashes
+from zebro_lab.calibration.slip_argument import EXPECTED_SLIP, NamedSlip, parse_slip
+from zebro_lab.files.errors import SettingsError
 from zebro_lab.robot.robot_file import RobotFile, read_robot_file
-from zebro_lab.walk.folder import walk_folder
 from zebro_lab.walk.informed_legs import InformedLegs, informed_legs
-from zebro_lab.walk.pictures import animate_walk, draw_walk
+from zebro_lab.walk.request import ModelRequest
 
 INFORMED_MODEL = "dynamics"  # the model with which legs and floor were fitted to walks
 
 MOST_STEPS: Final = 500_000
 """Largest number of time steps; each takes about 1.1 kB while a path is computed and written."""
-
-
-class WalkStopped(ZebroLabError):
-    """A walk was stopped on request; nothing was written."""
-
-
-@dataclass(frozen=True)
-class ModelRequest:
-    """Model, slip law and robot of a walk, and what is to be written.
-
-    Attributes:
-        out: Walk folder to write.
-        slip: Value of `--slip`; None for a model without slip.
-        model: Name of the model.
-        toe: Traction of a leg on its toe.
-        robot: A `robot.toml`; the thesis's robot when None.
-        arc_deg: Angle of the legs' arc in place of the robot's [deg].
-        dt: Time step; the model's default when None [s].
-        figures: Whether to draw the pictures.
-        animate: Whether to write the animation.
-    """
-
-    out: Path
-    slip: str | None = None
-    model: str = "dynamics"
-    toe: ToeLaw = "saturated"
-    robot: Path | None = None
-    arc_deg: float | None = None
-    dt: float | None = None
-    figures: bool = False
-    animate: bool = False
-
-    @property
-    def inputs(self) -> tuple[Path, ...]:
-        """Files and folders that are read, as named."""
-        slip = () if self.slip in (None, THESIS) else (Path(str(self.slip)),)
-        return (*slip, *((self.robot,) if self.robot is not None else ()))
 
 
 @dataclass(frozen=True)
@@ -82,6 +40,7 @@ class Walked:
         title: Gait and model.
         notes: Notes, one line each.
         informed: Posterior of its legs and floor; None without fitted walks.
+        band: Paths with its unknown parameters drawn; None unless requested.
     """
 
     path: WalkPath
@@ -93,6 +52,12 @@ class Walked:
     title: str
     notes: tuple[str, ...]
     informed: InformedLegs | None = None
+    band: Poses | None = None
+
+    def delayed(self, delay: float) -> "Walked":
+        """Return the walk with a delay added to all times [s]."""
+        path = replace(self.path, t=self.path.t + delay)
+        return replace(self, path=path, band=self.band and self.band.delayed(delay))
 
 
 def robot_of(request: ModelRequest) -> RobotFile:
@@ -142,40 +107,43 @@ def walk_with(
         ModelError: The walk cannot be computed.
     """
     model = MODELS[request.model]
-    slip = None if request.slip is None else parse_slip(request.slip)
-    if slip is not None and not model.slips:
-        notes = (*notes, f"the model '{model.name}' does not slip: --slip {slip.text} not used")
-        slip = None
-    if slip is None and model.slips:
-        raise SettingsError(f"missing: this model slips; name {EXPECTED_SLIP}", key="--slip")
-    dt = model.dt if request.dt is None else request.dt
-    _require_steps(duration, dt)
+    slip, unused = _slip_for(model, request.slip)
     informed = None
     if slip is not None and slip.walks is not None and model.name == INFORMED_MODEL:
-        informed = informed_legs(
-            slip.walks, described, logs=logs, same_legs=False if angles_are_true else None
-        )
-        notes = (*notes, *informed.notes)
-        if request.dt is None:
-            dt = min(dt, FINE.dt)  # the time step with which its legs were fitted
-            _require_steps(duration, dt)
+        same_legs = False if angles_are_true else None
+        informed = informed_legs(slip.walks, described, logs=logs, same_legs=same_legs)
+    dt = _time_step(request, model, duration, informed)
     run = ModelRun(
         described.robot, reference, slip, duration, dt, request.toe, direction,
         None if informed is None else informed.middle,
     )  # fmt: skip
     path = _run(run, model, slip)
-    grip = f", slip {slip.title}" if slip is not None else ""
-    return Walked(
-        path=path,
-        reference=reference,
-        described=described,
-        slip=slip,
-        model=model.name,
-        dt=dt,
-        title=f"{what}, model '{model.name}'{grip}",
-        notes=(*notes, *(slip.notes if slip is not None else ())),
-        informed=informed,
-    )
+    grip = "" if slip is None else f", slip {slip.title}"
+    title = f"{what}, model '{model.name}'{grip}"
+    found = (part.notes for part in (informed, slip) if part is not None)
+    notes = (*notes, *unused, *(note for part in found for note in part))
+    return Walked(path, reference, described, slip, model.name, dt, title, notes, informed)
+
+
+def _slip_for(model: WalkModel, text: str | None) -> tuple[NamedSlip | None, tuple[str, ...]]:
+    """Parse `--slip` for a model; also return a note if the model does not use it."""
+    slip = None if text is None else parse_slip(text)
+    if slip is None and model.slips:
+        raise SettingsError(f"missing: this model slips; name {EXPECTED_SLIP}", key="--slip")
+    if slip is not None and not model.slips:
+        return None, (f"the model '{model.name}' does not slip: --slip {slip.text} not used",)
+    return slip, ()
+
+
+def _time_step(
+    request: ModelRequest, model: WalkModel, duration: float, informed: InformedLegs | None
+) -> float:
+    """Return the time step [s]; that with which its legs were fitted, if it is shorter."""
+    dt = model.dt if request.dt is None else request.dt
+    if informed is not None and request.dt is None:
+        dt = min(dt, FINE.dt)
+    _require_steps(duration, dt)
+    return dt
 
 
 def _run(run: ModelRun, model: WalkModel, slip: NamedSlip | None) -> WalkPath:
@@ -204,84 +172,3 @@ def _require_steps(duration: float, dt: float) -> None:
             "lengthen --dt",
             key="--duration, --dt",
         )
-
-
-def write_walk(
-    request: ModelRequest,
-    walked: Walked,
-    watcher: Watcher,
-    *,
-    kind: str,
-    settings: Mapping[str, object],
-    files: tuple[Path, ...] = (),
-    extra: Callable[[Path], None] | None = None,
-) -> None:
-    """Write the walk folder with the requested pictures.
-
-    Args:
-        request: Output folder, and which pictures to draw.
-        walked: The finished walk.
-        watcher: Receives progress.
-        kind: "walk" or "predict".
-        settings: Settings other than model, robot and slip, JSON-serialisable.
-        files: Files read other than those of robot and slip.
-        extra: Function that writes additional files into the folder.
-
-    Raises:
-        AlreadyExists: The folder is a file, or holds the result of another command.
-        WalkStopped: The watcher asked to stop.
-    """
-    described, slip = walked.described, walked.slip
-    read = [*files, *((described.file,) if described.file else ()), *(slip.files if slip else ())]
-    everything = {
-        "model": walked.model,
-        "dt": walked.dt,
-        "toe": request.toe,
-        "slip": None if slip is None else {"named": slip.text, "source": slip.source},
-        "robot": _robot_settings(described.robot),
-        "walks": None if walked.informed is None else walked.informed.settings(),
-        **settings,
-    }
-    with walk_folder(
-        request.out,
-        walked.path,
-        kind=kind,
-        source=f"sim:{walked.model}",
-        settings=everything,
-        inputs=file_hashes(read),
-    ) as folder:
-        _draw(request, walked, folder, watcher)
-        if extra is not None:
-            extra(folder)
-
-
-def _draw(request: ModelRequest, walked: Walked, folder: Path, watcher: Watcher) -> None:
-    robot, title = walked.described.robot, walked.title
-    _heed(watcher)
-    if request.figures:
-        watcher.step("drawing", None)
-        draw_walk(folder, walked.path, robot, title=title, period=walked.reference.period)
-    if request.animate:
-
-        def follow(fraction: float) -> None:
-            watcher.step("filming", fraction)
-            _heed(watcher)
-
-        animate_walk(folder, walked.path, robot, title=title, progress=follow)
-
-
-def _heed(watcher: Watcher) -> None:
-    if watcher.stop_requested():
-        raise WalkStopped("stopped; nothing was written")
-
-
-def _robot_settings(robot: Robot) -> dict[str, object]:
-    return {
-        "mass": robot.mass,
-        "body_size": list(robot.body_size),
-        "inertia": robot.principal_inertia.tolist(),
-        "leg_radius": robot.leg_radius,
-        "leg_arc": robot.leg_arc,
-        "leg_offset": robot.leg_offset.tolist(),
-        "hips": robot.hips.tolist(),
-    }

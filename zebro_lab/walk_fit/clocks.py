@@ -2,7 +2,6 @@
 """Clock offset between a track and its leg log, estimated from the motion."""
 
 from collections.abc import Callable
-from dataclasses import replace
 from typing import TypeAlias
 
 from model.bayes.walks.misfit import middle
@@ -18,7 +17,9 @@ from zebro_lab.files.errors import DataError
 from zebro_lab.track.file import TrackFile
 from zebro_lab.validation.shared_clock import estimated_clock
 
-OFF = 0.5  # s, and three standard deviations; wrong leg offsets look like a few tenths of a second
+LARGEST_OFFSET = (
+    0.5  # s, and three standard deviations; wrong leg offsets look like a few tenths of a second
+)
 
 Legs: TypeAlias = SampledReference | QuantisedLog
 Clock: TypeAlias = Callable[[TrackFile, Legs, Robot], TrackFile]
@@ -36,12 +37,12 @@ def checked_clock(slip: Slip) -> Clock:
 
     def check(track: TrackFile, legs: Legs, robot: Robot) -> TrackFile:
         try:
-            found = estimate_offset(track.poses, _walked(legs, robot, slip))
+            found = estimate_offset(track.poses, _predicted_path(legs, robot, slip))
         except InsufficientData:
             return track
-        if abs(found.value) > max(OFF, 3 * found.sd):
+        if abs(found.value) > max(LARGEST_OFFSET, 3 * found.sd):
             raise DataError(
-                f"the motion says that its clock is {found.value:+.1f} ± {found.sd:.1f} s behind "
+                f"the motion shows that its clock is {found.value:+.1f} ± {found.sd:.1f} s behind "
                 "the leg log's; expected one clock. Add that to its times, or let "
                 "--estimate-offset do so",
                 file=track.file,
@@ -59,23 +60,13 @@ def estimated_clock_of(slip: Slip) -> Clock:
     """
 
     def estimate(track: TrackFile, legs: Legs, robot: Robot) -> TrackFile:
-        path = _walked(legs, robot, slip)
-        return estimated_clock(track, path, otherwise="Add the offset to its times").track
+        path = _predicted_path(legs, robot, slip)
+        return estimated_clock(track, path, otherwise="Add the offset to its times")[0]
 
     return estimate
 
 
-def since(track: TrackFile, start: float) -> TrackFile:
-    """Shift a track's times so that they count from `start`.
-
-    Args:
-        track: Tracked poses.
-        start: Time of the new origin, in the track's present time base [s].
-    """
-    return replace(track, poses=track.poses.delayed(-start))
-
-
-def _walked(legs: Legs, robot: Robot, slip: Slip) -> Poses:
+def _predicted_path(legs: Legs, robot: Robot, slip: Slip) -> Poses:
     angles = middle(legs)
     draw = WalkDraw(robot, angles, slip.traction_table(weight=robot.mass * GRAVITY))
     return planar_walk(draw, duration=float(legs.t[-1])).poses

@@ -31,7 +31,7 @@ def draw_walks(
             {row.name: row.path for row in run.rows},
             run.track,
             band=run.band,
-            title=f"{run.name}, from what the other walks say",
+            title=f"{run.name}, from a fit of the other walks",
             simulated=simulated,
         )
         save(figure, folder / f"{LEFT_OUT}{run.name}.png")

@@ -2,19 +2,19 @@
 """Terminal output of `calibrate-slip --walks`: posterior, wrong legs, left-out walks."""
 
 import numpy as np
-from rich import box
 from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
 from model.bayes.walks.posterior import Contraction, WalkPosterior
 from model.bayes.walks.prior import FALL, UNITS
+from zebro_lab.files.units import shown_unit
 from zebro_lab.terminal.messages import plain
+from zebro_lab.terminal.tables import plain_table
 from zebro_lab.validation.judged_run import JudgedRun
 from zebro_lab.walk_fit.stage import WalksCalibrated
 
 _LIKELY = 0.01  # probability from which on a case is printed
-_SHOWN = {"rad": (180 / np.pi, "deg"), "rad/m": (180 / np.pi, "deg/m"), "-": (100.0, "%")}
 
 
 def print_walks(console: Console, done: WalksCalibrated) -> None:
@@ -24,7 +24,7 @@ def print_walks(console: Console, done: WalksCalibrated) -> None:
         console: Console to print to.
         done: The finished fit.
     """
-    posterior = done.fitted.posterior
+    posterior = done.posterior
     if "sim:" in done.source:
         console.print(plain(f"SIMULATED: {done.source}"))
     for note in done.notes:
@@ -32,25 +32,23 @@ def print_walks(console: Console, done: WalksCalibrated) -> None:
     console.print(_parameter_table(posterior))
     for line in (*_uninformed(posterior), *_cases(posterior), *_quality(posterior)):
         console.print(plain(line))
-    if done.fitted.left_out:
-        console.print(_left_out_table(done.fitted.left_out))
+    if done.left_out:
+        console.print(_left_out_table(done.left_out))
     else:
-        console.print(plain("one walk alone: none is left to predict; add a second --walks"))
+        console.print(plain("A single walk cannot be predicted from others; add a second --walks."))
     console.print(Text(f"\nwritten to {done.folder}"))
 
 
 def _parameter_table(posterior: WalkPosterior) -> Table:
-    title = f"legs and floor after {len(posterior.walks)} walk(s): {', '.join(posterior.walks)}"
-    table = Table(title=plain(title), box=box.SIMPLE, title_justify="left")
-    table.add_column("parameter", no_wrap=True)
-    for name in ("before", "after", "unit", "informed"):
-        table.add_column(name, justify="right", no_wrap=True)
+    title = f"legs and floor fitted to {len(posterior.walks)} walk(s): {', '.join(posterior.walks)}"
+    numbers = ("prior", "posterior", "unit", "informed")
+    table = plain_table(title, ("parameter",), numbers, no_wrap=True)
     for each, unit in zip(posterior.contractions(), UNITS, strict=True):
-        table.add_row(each.name, *_told(each, unit))
+        table.add_row(each.name, *_cells(each, unit))
     return table
 
 
-def _told(each: Contraction, unit: str) -> tuple[str, str, str, str]:
+def _cells(each: Contraction, unit: str) -> tuple[str, str, str, str]:
     informed = f"{max(0.0, each.contraction):.0%}"
     if unit == "log":  # of a factor
         before = f"1 ×/÷ {np.exp(each.prior_sd):.2f}"
@@ -59,7 +57,7 @@ def _told(each: Contraction, unit: str) -> tuple[str, str, str, str]:
     if each.name == "fall":
         after = f"{FALL + each.mean:.2f} ± {each.sd:.2f}"
         return f"{FALL:g} ± {each.prior_sd:.2f}", after, "factor", informed
-    scale, shown = _SHOWN[unit]
+    scale, shown = shown_unit(unit)
     before = f"0 ± {scale * each.prior_sd:.2f}"
     return before, f"{scale * each.mean:+.2f} ± {scale * each.sd:.2f}", shown, informed
 
@@ -68,7 +66,7 @@ def _uninformed(posterior: WalkPosterior) -> list[str]:
     names = [each.name for each in posterior.contractions() if not each.informed]
     if not names:
         return []
-    return [f"the walks did not inform {', '.join(names)}: what stands there is the prior"]
+    return [f"The walks do not inform {', '.join(names)}: the posterior equals the prior."]
 
 
 def _cases(posterior: WalkPosterior) -> list[str]:
@@ -81,32 +79,30 @@ def _cases(posterior: WalkPosterior) -> list[str]:
             if found.case is None
             else f", by {np.degrees(found.offset):+.1f} ± {np.degrees(found.sd):.1f} deg"
         )
-        lines.append(f"mounted wrong: {found.name}{angle}: probability {found.probability:.0%}")
+        lines.append(f"Mounted wrong: {found.name}{angle}: probability {found.probability:.0%}")
     return lines
 
 
 def _quality(posterior: WalkPosterior) -> list[str]:
     misfits = zip(posterior.walks, posterior.misfit, strict=True)
     lines = [
-        "misfit, mean square of expected: "
+        "Mean square of whitened residuals (about 1 or less is expected): "
         + ", ".join(f"{name} {misfit:.2f}" for name, misfit in misfits),
         f"{posterior.effective:.0f} effective draws",
     ]
     if not posterior.reliable:
-        lines.append("TOO FEW effective draws carry this answer; do not build on it")
+        lines.append("TOO FEW effective draws for a reliable result.")
     return lines
 
 
 def _left_out_table(left_out: tuple[JudgedRun, ...]) -> Table:
-    table = Table(
-        title="each walk predicted from what the others say", box=box.SIMPLE, title_justify="left"
+    numbers = (
+        "error, rms\n[mm]", "of path", "yaw\n[deg]", "radius\n[m]", "tracked\n[m]",
+        "90 % band\nholds x, y, yaw", "CRPS x, y\n[mm]", "best baseline's\n[mm]",
+    )  # fmt: skip
+    table = plain_table(
+        "each walk predicted from a fit of the others", ("walk",), numbers, fold=True
     )
-    table.add_column("walk", overflow="fold")
-    for name in (
-        "error, rms [mm]", "of path", "yaw [deg]", "radius [m]", "tracked [m]",
-        "90 % band holds x, y, yaw", "CRPS x, y [mm]", "best baseline's",
-    ):  # fmt: skip
-        table.add_column(name, justify="right")
     for run in left_out:
         prediction, *others = run.rows
         e, scores = prediction.errors, prediction.scores

@@ -1,48 +1,29 @@
 # SPDX-License-Identifier: MIT
 """Stage of `calibrate-slip --walks`: fit legs and floor to tracked walks, write `walks/`."""
 
-from dataclasses import dataclass, field
+from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
+from model.bayes.walks.posterior import WalkPosterior
 from model.bayes.walks.prior import WalkPrior
 from model.progress import Watcher
 from zebro_lab.calibration.folder import SLIP_TOML
-from zebro_lab.calibration.slip_argument import parse_slip
+from zebro_lab.calibration.request import CalibrationRequest
+from zebro_lab.calibration.slip_argument import NamedSlip, parse_slip
 from zebro_lab.calibration.walks_folder import FOLDER, WALKS, WalksToWrite, write_walks
 from zebro_lab.files.errors import NotFound, SettingsError
 from zebro_lab.files.replacement import settle
 from zebro_lab.files.result_folder import require_replaceable
 from zebro_lab.validation.folder import metrics
+from zebro_lab.validation.judged_run import JudgedRun
 from zebro_lab.walk_fit.clocks import checked_clock, estimated_clock_of
 from zebro_lab.walk_fit.pictures import draw_walks
-from zebro_lab.walk_fit.prediction import WalksFitted, fit_and_leave_out
-from zebro_lab.walk_fit.tracked_walks import read_walks
-
-
-@dataclass(frozen=True)
-class WalksRequest:
-    """Settings of a fit of walks.
-
-    Attributes:
-        walks: Run folders with leg angles and a track.
-        calibration: The rig's calibration folder, into which `walks/` is written.
-        robot: A `robot.toml` in place of those in the folders.
-        prior: Prior of legs and floor.
-        seed: Seed of all random numbers.
-        threads: Number of walks computed in parallel.
-        estimate_offset: Whether to estimate from the motion how far each track's clock is behind
-            that of its leg log.
-    """
-
-    walks: tuple[Path, ...]
-    calibration: Path
-    robot: Path | None = None
-    prior: WalkPrior = field(default_factory=WalkPrior)
-    seed: int = 1
-    threads: int = 2
-    estimate_offset: bool = False
+from zebro_lab.walk_fit.prediction import fit_walks_on_file, judge_left_out
+from zebro_lab.walk_fit.request import WalksRequest
+from zebro_lab.walk_fit.tracked_walks import WalkOnFile, read_walks
 
 
 @dataclass(frozen=True)
@@ -50,71 +31,83 @@ class WalksCalibrated:
     """A finished fit of walks and where it was written.
 
     Attributes:
-        fitted: The fit, with each walk predicted from the others.
+        posterior: The posterior of legs and floor.
+        left_out: Each walk predicted from a fit of the others, with its errors; empty for a single
+            walk.
         folder: Folder that was written.
         source: Where rig data and walks come from.
         notes: Notes, one line each.
     """
 
-    fitted: WalksFitted
+    posterior: WalkPosterior
+    left_out: tuple[JudgedRun, ...]
     folder: Path
     source: str
     notes: tuple[str, ...]
 
 
-def calibrate_walks(request: WalksRequest, watcher: Watcher) -> WalksCalibrated:
+def calibrate_walks(
+    request: WalksRequest, calibration: CalibrationRequest, watcher: Watcher
+) -> WalksCalibrated:
     """Fit legs and floor to walks, predict each from the others, and write `walks/`.
 
     Args:
-        request: Walks, calibration and settings.
+        request: Walks and settings.
+        calibration: Folder of the finished calibration, into which `walks/` is written, seed and
+            number of threads.
         watcher: Receives progress.
 
     Raises:
         ZebroLabError: A walk or the calibration is missing or cannot be used; nothing was written.
         ModelError: A walk diverged; nothing was written.
     """
-    slip_toml = _slip_of(request)
-    require_replaceable(request.calibration / FOLDER, WALKS, inputs=request.walks)
+    slip_toml = _slip_of(request, calibration.out)
+    require_replaceable(calibration.out / FOLDER, WALKS, inputs=request.walks)
     slip = parse_slip(str(slip_toml), with_walks=False)
     watcher.step("reading walks", None)
     clock = estimated_clock_of(slip) if request.estimate_offset else checked_clock(slip)
     walks = read_walks(request.walks, robot=request.robot, clock=clock)
-    fitted = fit_and_leave_out(
-        walks,
-        slip,
-        prior=request.prior,
-        rng=np.random.default_rng(request.seed),
-        threads=request.threads,
-        progress=lambda done: watcher.step("fitting walks", done),
-    )
+    posterior, left_out = _fit(calibration, slip, walks, watcher)
     notes = (*slip.notes, *(f"{walk.name}: {note}" for walk in walks for note in walk.notes))
     source = ", ".join(sorted({slip.source, *(walk.source for walk in walks)}))
     watcher.step("drawing", None)
     folder = write_walks(
-        request.calibration,
+        calibration.out,
         WalksToWrite(
-            posterior=fitted.posterior,
-            left_out={
-                run.name: {row.name: metrics(row) for row in run.rows} for run in fitted.left_out
-            },
+            posterior=posterior,
+            left_out={run.name: {row.name: metrics(row) for row in run.rows} for run in left_out},
             robot=walks[0].robot,
             logs=tuple(walk.files[0] for walk in walks),
             inputs=(slip_toml, *(file for walk in walks for file in walk.files)),
-            settings={"seed": request.seed, "estimate_offset": request.estimate_offset},
+            settings={"seed": calibration.seed, "estimate_offset": request.estimate_offset},
             source=source,
             notes=notes,
         ),
-        draw=lambda draft: draw_walks(
-            draft, fitted.posterior, fitted.left_out, simulated="sim:" in source
-        ),
+        draw=lambda draft: draw_walks(draft, posterior, left_out, simulated="sim:" in source),
     )
-    return WalksCalibrated(fitted, folder, source, notes)
+    return WalksCalibrated(posterior, left_out, folder, source, notes)
 
 
-def _slip_of(request: WalksRequest) -> Path:
+def _fit(
+    request: CalibrationRequest, slip: NamedSlip, walks: Sequence[WalkOnFile], watcher: Watcher
+) -> tuple[WalkPosterior, tuple[JudgedRun, ...]]:
+    """Fit all walks, then predict each from a fit of the others."""
+    rng = np.random.default_rng(request.seed)
+    fit = fit_walks_on_file(
+        walks, slip, prior=WalkPrior(), rng=rng, threads=request.threads,
+        progress=lambda done: watcher.step("fitting walks", 0.7 * done),
+    )  # fmt: skip
+    left_out = judge_left_out(
+        fit, walks, slip, rng=rng, threads=request.threads,
+        progress=lambda done: watcher.step("fitting walks", 0.7 + 0.3 * done),
+    )  # fmt: skip
+    return fit.posterior, left_out
+
+
+def _slip_of(request: WalksRequest, calibration: Path) -> Path:
     if not request.walks:
         raise SettingsError("missing: no walk to fit", key="--walks")
-    slip_toml = settle(request.calibration) / SLIP_TOML
+    slip_toml = settle(calibration) / SLIP_TOML
     if not slip_toml.is_file():
         raise NotFound(
             f"{slip_toml}: no such file; name rig data to calibrate from, or the --out of a "

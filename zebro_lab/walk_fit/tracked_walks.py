@@ -8,23 +8,24 @@ from pathlib import Path
 import numpy as np
 
 from model.bayes.walks.misfit import FEWEST_POSES, TrackedWalk
-from model.bayes.walks.tilt import FEWEST, TIME, TiltSeen
+from model.bayes.walks.tilt import FEWEST, TIME, MeasuredTilt
 from model.gait.quantised import QuantisedLog
 from model.gait.reference import SampledReference
 from zebro_lab.calibration.walks_folder import describe_legs
 from zebro_lab.files.errors import DataError, NotFound, SettingsError
+from zebro_lab.files.names import TRACK, numbered
 from zebro_lab.files.replacement import settle
 from zebro_lab.robot.robot_file import ROBOT_FILE, RobotFile, read_robot_file
-from zebro_lab.runs.counted_once import array_hash, first_of_each, told_once
+from zebro_lab.runs.counted_once import array_hash, duplicates_note, first_of_each
 from zebro_lab.runs.legs import read_leg_log
 from zebro_lab.runs.recorded_legs import is_recorded
 from zebro_lab.runs.recorded_tilt import read_recorded_tilt
 from zebro_lab.track.file import TrackFile, read_track
 from zebro_lab.track.folder import TRACK_CSV
+from zebro_lab.validation.shared_clock import shifted
 from zebro_lab.walk.leg_angles import angles_from
-from zebro_lab.walk_fit.clocks import Clock, since
+from zebro_lab.walk_fit.clocks import Clock
 
-TRACK = "track"
 LEGS = ("legs.csv", "legs.csv.gz", "legs.parquet")
 
 
@@ -50,7 +51,7 @@ class WalkOnFile:
     source: str
     files: tuple[Path, ...]
     notes: tuple[str, ...]
-    tilt: TiltSeen | None = None
+    tilt: MeasuredTilt | None = None
 
     @property
     def tracked(self) -> TrackedWalk:
@@ -87,15 +88,10 @@ def read_walks(
                 file=walk.robot.file,
             )
     walks, repeated = first_of_each(read, key=_content)
-    told = told_once("walks", [(one.name, other.name) for one, other in repeated])
-    walks[:1] = [replace(walk, notes=(*walk.notes, *told)) for walk in walks[:1]]
-    names = [walk.name for walk in walks]
-    return [
-        walk
-        if names.count(walk.name) == 1
-        else replace(walk, name=f"{walk.name}-{names[: i + 1].count(walk.name)}")
-        for i, walk in enumerate(walks)
-    ]
+    duplicates = duplicates_note("walks", [(one.name, other.name) for one, other in repeated])
+    walks[:1] = [replace(walk, notes=(*walk.notes, *duplicates)) for walk in walks[:1]]
+    names = numbered([walk.name for walk in walks])
+    return [replace(walk, name=name) for walk, name in zip(walks, names, strict=True)]
 
 
 def _content(walk: WalkOnFile) -> str:
@@ -123,19 +119,17 @@ def read_walk_on_file(
     log_file = _legs_of(folder)
     track_file = settle(folder / TRACK) / TRACK_CSV
     if not track_file.is_file():
-        raise NotFound(
-            f"{folder}: a walk without a track; zebro-lab track --out {folder / TRACK} makes one"
-        )
+        raise NotFound(f"{folder}: no track; zebro-lab track --out {folder / TRACK} makes one")
     own = folder / ROBOT_FILE
     described = read_robot_file(robot or own) if robot is not None or own.is_file() else RobotFile()
     log = read_leg_log(log_file, leg_sign=described.leg_sign)
     start = float(log.reference.t[0])
     legs, counted = angles_from(log, start)
-    track = since(read_track(track_file), start)
+    track = shifted(read_track(track_file), -start)
     track = track if clock is None else clock(track, legs, described.robot)
     inside, notes = _inside(float(legs.t[-1]), track)
     _require_states(inside)
-    tilt, imu_files, told = _tilt(folder, start, float(log.reference.t[-1]))
+    tilt, imu_files, imu_notes = _tilt(folder, start, float(log.reference.t[-1]))
     sources = sorted({log.source, track.source})
     return WalkOnFile(
         name=folder.absolute().name,
@@ -144,24 +138,24 @@ def read_walk_on_file(
         track=inside,
         source=", ".join(sources),
         files=(*log.files, track.file, *([described.file] if described.file else []), *imu_files),
-        notes=(*log.notes, *counted, *track.notes, *notes, *told),
+        notes=(*log.notes, *counted, *track.notes, *notes, *imu_notes),
         tilt=tilt,
     )
 
 
 def _tilt(
     folder: Path, start: float, end: float
-) -> tuple[TiltSeen | None, tuple[Path, ...], tuple[str, ...]]:
+) -> tuple[MeasuredTilt | None, tuple[Path, ...], tuple[str, ...]]:
     """Read roll and pitch from a run's IMU from `start` to `end` [s]; also files and notes."""
     measured = read_recorded_tilt(folder) if is_recorded(folder) else None
     if measured is None:
         return None, (), ()
     inside = (measured.t >= start) & (measured.t <= end)
     if not inside.any() or np.ptp(measured.t[inside]) < FEWEST * TIME:
-        note = f"roll and pitch do not inform: no IMU from {start:g} to {end:g} s, as the log is"
+        note = f"roll and pitch are not used: no IMU data from {start:g} to {end:g} s, as the legs"
         return None, (), (note,)
-    seen = TiltSeen(measured.t[inside] - start, measured.angles[inside])
-    return seen, measured.files, ("roll and pitch by the IMU inform which leg is off",)
+    seen = MeasuredTilt(measured.t[inside] - start, measured.angles[inside])
+    return seen, measured.files, ("roll and pitch of the IMU inform which leg is mounted wrong",)
 
 
 def _legs_of(folder: Path) -> Path:
@@ -198,10 +192,9 @@ def _inside(end: float, track: TrackFile) -> tuple[TrackFile, tuple[str, ...]]:
 def _require_states(track: TrackFile) -> None:
     """Check that a track has headings and a covariance."""
     if not track.poses.has_yaw:
-        raise DataError("has no headings; a walk can inform a fit only with them", file=track.file)
+        raise DataError("has no headings, which a fit of walks needs", file=track.file)
     if not np.all(np.linalg.eigvalsh(track.covariance) > 0):
         raise DataError(
-            "has no covariance; a walk can inform a fit only when its track says how far it may be "
-            "off: add cov_xx to cov_yawyaw",
+            "has no covariance, which a fit of walks needs: add columns cov_xx to cov_yawyaw",
             file=track.file,
         )

@@ -24,7 +24,7 @@ from model.slip.laws import slip_law
 from zebro_lab.calibration.checkpoint import load_checkpoint
 from zebro_lab.calibration.slip_argument import NamedSlip
 from zebro_lab.calibration.slip_draws import POSTERIOR, law_draws
-from zebro_lab.calibration.walks_folder import read_walks_beside
+from zebro_lab.calibration.walks_folder import read_stored_walks
 from zebro_lab.walk.path_band import DRAWS, read_draws
 
 
@@ -50,7 +50,7 @@ def of_archives() -> Mapping[str, Reader]:
                                  lambda f: load_checkpoint(f.parent, fingerprint="x"),
                                  archives(chains), zip_check, special=lambda: (_zeros(),)),
         "draws.npz of walks": Reader("walks/draws.npz",
-                                     lambda f: read_walks_beside(f.parents[1] / "slip.toml"),
+                                     lambda f: read_stored_walks(f.parents[1] / "slip.toml"),
                                      archives(walks), zip_check, prepare=beside),
         "posterior.nc": Reader(POSTERIOR, _posterior, pool(_posteriors(), 0.8), hdf_check),
     }  # fmt: skip

@@ -21,7 +21,7 @@ from zebro_lab.mcap.raw_log import read_raw_log
 from zebro_lab.mcap.ros_log import read_messages
 from zebro_lab.mcap.ros_messages import Schema
 from zebro_lab.mcap.slip_rig_log import SCHEMA_NAME, SCHEMA_TEXT, TOPIC, read_log
-from zebro_lab.mcap.stream_views import LegsView
+from zebro_lab.mcap.stream_views import legs_view
 
 
 def of_logs() -> Mapping[str, Reader]:
@@ -47,7 +47,7 @@ def of_logs() -> Mapping[str, Reader]:
 def _recorded() -> bytes:
     profile, out = load_leg_profile("zebro-100-serial"), io.BytesIO()
     writer = LogWriter(
-        out, views={"legs": LegsView("legs", profile=profile)},
+        out, views={"legs": legs_view("legs", profile=profile)},
         attachments={"profiles/legs.toml": "x = 1"}, start=0.0, start_ns=10**18,
     )  # fmt: skip
     writer.event(0.0, "began")

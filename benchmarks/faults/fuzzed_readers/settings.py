@@ -21,7 +21,7 @@ from rig.profile import shipped_file
 from rig.slip_rig.profile import load_rig_profile
 from rig.zebro.profile import load_leg_profile
 from zebro_lab.calibration.slip_argument import parse_slip
-from zebro_lab.calibration.walks_folder import SCHEMA, describe_legs, read_walks_beside
+from zebro_lab.calibration.walks_folder import SCHEMA, describe_legs, read_stored_walks
 from zebro_lab.experiment.plan_file import read_plan
 from zebro_lab.files.provenance import file_hash
 from zebro_lab.robot.robot_file import RobotFile, read_robot_file, render_robot_file
@@ -76,7 +76,7 @@ def of_settings() -> Mapping[str, Reader]:
         for name, (read, bases) in named.items()
     } | {
         "walks.toml": Reader(
-            "walks/walks.toml", lambda file: read_walks_beside(file.parent.parent / "slip.toml"),
+            "walks/walks.toml", lambda file: read_stored_walks(file.parent.parent / "slip.toml"),
             documents(as_toml, walks_document()), toml_check, prepare=write_beside_walks,
             special=toml_bombs,
         )

@@ -14,7 +14,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from model.bayes.walks.importance import WeightedDraws, weighted_draws
+from model.bayes.walks.importance import WeightedCaseDraws, weighted_draws
 from model.bayes.walks.misfit import TrackedWalk, WalkMisfit
 from model.bayes.walks.modes import ModeSearch
 from model.bayes.walks.posterior import WalkPosterior, state_in
@@ -55,18 +55,18 @@ def fit_walks(
     """
     if not walks:
         raise InsufficientData("no walk to fit; name one or more with a track")
-    tell = progress or (lambda _: None)
+    report = progress or (lambda _: None)
     misfits = []
     for i, walk in enumerate(walks):
-        tell(0.05 * i / len(walks))
+        report(0.05 * i / len(walks))
         misfits.append(
             WalkMisfit.of(robot, table, walk, spread=prior.spread, rng=rng, threads=threads)
         )
     search = ModeSearch(misfits, prior, threads)
-    modes = search.modes(tell=lambda done: tell(0.05 + 0.25 * done))
+    modes = search.modes(progress=lambda done: report(0.05 + 0.25 * done))
     density = _Density(misfits, prior, threads)
     inner = [mode.within(WALKED) for mode in modes]
-    drawn = weighted_draws(inner, density, rng=rng, tell=lambda done: tell(0.3 + 0.7 * done))
+    drawn = weighted_draws(inner, density, rng=rng, progress=lambda done: report(0.3 + 0.7 * done))
     return WalkFit(density, drawn, tuple(walk.name for walk in walks), rng)
 
 
@@ -93,7 +93,7 @@ class _Density:
         values = np.zeros((len(z), WRONG + 1))
         values[:, WALKED] = z * self.prior.scale[WALKED]
         steering, stride = self.prior.scale[LINEAR]
-        return Terms.beside([
+        return Terms.concat_walks([
             misfit.terms(
                 state_in(values, case, self.cases, walk=w),
                 steering=steering, stride=stride, threads=self.threads,
@@ -108,12 +108,12 @@ class WalkFit:
     def __init__(
         self,
         density: _Density,
-        drawn: WeightedDraws,
+        drawn: WeightedCaseDraws,
         names: tuple[str, ...],
         rng: np.random.Generator,
     ) -> None:
         self._density, self._drawn, self._names, self._rng = density, drawn, names, rng
-        self._terms = Terms.below(density.rounds)
+        self._terms = Terms.concat_draws(density.rounds)
         self.posterior = self._of(range(len(names)))
 
     def without(self, walk: int) -> WalkPosterior:

@@ -56,7 +56,7 @@ class Mode:
 
 
 @dataclass(frozen=True)
-class WeightedDraws:
+class WeightedCaseDraws:
     """Draws with importance weights.
 
     Attributes:
@@ -77,15 +77,15 @@ def weighted_draws(
     log_density: Callable[[Array, NDArray[np.intp]], Array],
     *,
     rng: np.random.Generator,
-    tell: Callable[[float], None],
-) -> WeightedDraws:
+    progress: Callable[[float], None],
+) -> WeightedCaseDraws:
     """Draw weighted samples of the posterior by adaptive importance sampling.
 
     Args:
         modes: One a case, in the order that cases are counted.
         log_density: Log posterior density at points of given cases.
         rng: Source of randomness.
-        tell: Called with the fraction done.
+        progress: Called with the fraction done.
     """
     rounds = [_around_modes(modes)]
     z, case = np.empty((0, len(modes[0].z))), np.empty(0, dtype=np.intp)
@@ -98,9 +98,9 @@ def weighted_draws(
         z, case = np.concatenate([z, more]), np.concatenate([case, of_case])
         log_p = np.concatenate([log_p, log_density(more, of_case)])
         weight = _weights(log_p - log_q)
-        tell(len(rounds) / MOST_ROUNDS)
+        progress(len(rounds) / MOST_ROUNDS)
         if 1 / (weight @ weight) >= WANTED or len(rounds) == MOST_ROUNDS:
-            return WeightedDraws(z, case, weight, log_q)
+            return WeightedCaseDraws(z, case, weight, log_q)
         flat = _tempered(log_p - log_q)
         modes = _adapted(modes, z, case, flat)
         bumps = _around_modes(modes)

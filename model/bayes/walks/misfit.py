@@ -16,21 +16,14 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from model.bayes.walks.terms import Terms
-from model.bayes.walks.tilt import TiltMisfit, TiltSeen
+from model.bayes.walks.tilt import MeasuredTilt, TiltMisfit
 from model.errors import InsufficientData
 from model.gait.quantised import QuantisedLog
 from model.gait.reference import LegReference
-from model.poses import Poses, wrap
-from model.predict import (
-    FINE,
-    LegState,
-    ModelSpread,
-    bent,
-    ensemble_step,
-    law_in,
-    robot_in,
-    states_at,
-)
+from model.leg_state import LegState, law_in, robot_in
+from model.path_draws import bent, states_at
+from model.poses import Poses, moved_onto, wrap
+from model.predict import FINE, ModelSpread, ensemble_step, motions
 from model.robot import N_LEGS, Robot
 from model.slip.law import Array
 from model.walk.dynamics import DynamicsOptions
@@ -68,7 +61,7 @@ class TrackedWalk:
     t: Array
     states: Array
     covariance: Array
-    tilt: TiltSeen | None = None
+    tilt: MeasuredTilt | None = None
 
     def __post_init__(self) -> None:
         """Check that there are enough tracked poses."""
@@ -216,18 +209,14 @@ class WalkMisfit:
 
     def _difference(self, paths: Poses) -> Array:
         """Subtract the tracked poses from paths started at the first; shape (m, 3 (n - 1))."""
-        states = from_first(states_at(paths, self.walk.t), self.walk.states[0])
+        states = states_at(paths, self.walk.t)
+        states = moved_onto(states, states[:, 0], self.walk.states[0])
         difference = states[:, 1:] - self.walk.states[1:]
         difference[..., 2] = wrap(difference[..., 2])
         return difference.reshape(len(states), -1)
 
     def _covariance(self, spread: ModelSpread, rng: np.random.Generator, threads: int) -> Array:
-        legs = self.walk.legs
-        several = (
-            [legs.smooth(rng) for _ in range(RECONSTRUCTIONS)]
-            if isinstance(legs, QuantisedLog)
-            else [legs]
-        )
+        several = motions(self.walk.legs, RECONSTRUCTIONS, rng)
         draws = [WalkDraw(self.robot, each, self.table) for each in several]
         paths = self._walked(draws, threads).poses
         one = paths.draws(slice(1))
@@ -287,21 +276,6 @@ class WalkMisfit:
         paths = self._difference(self._walked(draws, threads).poses)
         moved = 0.5 * (paths[::2] - paths[1::2])
         return moved.T @ moved
-
-
-def from_first(states: Array, first: Array) -> Array:
-    """Move paths rigidly so that they begin at a pose.
-
-    Args:
-        states: x, y, yaw of m paths at n times, shape (m, n, 3) [m, m, rad].
-        first: The pose, shape (3,).
-    """
-    turn = first[2] - states[:, :1, 2]
-    away = states[..., :2] - states[:, :1, :2]
-    c, s = np.cos(turn), np.sin(turn)
-    x = first[0] + c * away[..., 0] - s * away[..., 1]
-    y = first[1] + s * away[..., 0] + c * away[..., 1]
-    return np.stack([x, y, states[..., 2] + turn], axis=-1)
 
 
 def middle(legs: LegReference | QuantisedLog) -> LegReference:

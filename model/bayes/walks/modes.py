@@ -64,25 +64,25 @@ class ModeSearch:
         self.numbers = range(len(misfits)) if numbers is None else numbers
         self.ends = np.cumsum([misfit.size for misfit in misfits])
 
-    def modes(self, *, tell: Callable[[float], None]) -> list[Mode]:
+    def modes(self, *, progress: Callable[[float], None]) -> list[Mode]:
         """Find the mode of every case, in the order of `all_cases`.
 
         Args:
-            tell: Called with the fraction done.
+            progress: Called with the fraction done.
 
         Raises:
             WalkError: A walk diverged.
         """
         plain, J = self.climb(None, np.zeros(WRONG + 1))
-        tell(0.1)
+        progress(0.1)
         scans = self.scan(plain, J), self._scan_at_rest()
         modes = [max(found, key=_evidence) for found in zip(*scans, strict=True)]
         modes[0] = plain
-        tell(0.2)
+        progress(0.2)
         order = sorted(range(1, len(modes)), key=lambda i: -modes[i].log_evidence)[:CLIMBED]
         best = max(map(_evidence, modes))
         for k, i in enumerate(order):
-            tell(0.2 + 0.8 * k / len(order))
+            progress(0.2 + 0.8 * k / len(order))
             if modes[i].log_evidence > best - UNLIKELY:
                 tops = [self.climb(scan[i].case, scan[i].z)[0] for scan in scans]
                 modes[i] = min(tops, key=lambda top: self.cost(top.z, top.case))

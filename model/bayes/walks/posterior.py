@@ -16,7 +16,7 @@ from model.bayes.walks.prior import (
     leg_offsets,
     legs_of,
 )
-from model.predict import LegState
+from model.leg_state import LegState
 from model.robot import N_LEGS
 from model.slip.law import Array
 

@@ -8,7 +8,8 @@ from typing import TypeAlias
 import numpy as np
 
 from model.errors import DomainError
-from model.predict import LegState, ModelSpread
+from model.leg_state import LegState
+from model.predict import ModelSpread
 from model.robot import N_LEGS
 from model.slip.law import Array
 

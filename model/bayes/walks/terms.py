@@ -50,12 +50,12 @@ class Terms:
         )
 
     @classmethod
-    def beside(cls, walks: Sequence["Terms"]) -> "Terms":
+    def concat_walks(cls, walks: Sequence["Terms"]) -> "Terms":
         """Concatenate the terms of several walks at the same draws."""
         return cls(*(np.concatenate(part, axis=1) for part in _parts(walks)))
 
     @classmethod
-    def below(cls, rounds: Sequence["Terms"]) -> "Terms":
+    def concat_draws(cls, rounds: Sequence["Terms"]) -> "Terms":
         """Concatenate the terms of the same walks at further draws."""
         return cls(*(np.concatenate(part, axis=0) for part in _parts(rounds)))
 

@@ -28,7 +28,7 @@ FEWEST = 10  # means of a walk
 
 
 @dataclass(frozen=True)
-class TiltSeen:
+class MeasuredTilt:
     """Roll and pitch as a walk's IMU measured them.
 
     Attributes:
@@ -55,7 +55,7 @@ class TiltMisfit:
     strides: float
 
     @classmethod
-    def of(cls, seen: TiltSeen, t: Array, legs: LegReference | QuantisedLog) -> "TiltMisfit":
+    def of(cls, seen: MeasuredTilt, t: Array, legs: LegReference | QuantisedLog) -> "TiltMisfit":
         """Average the measurement over short times.
 
         Args:

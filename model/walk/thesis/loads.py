@@ -20,7 +20,7 @@ from model.compiled import compiled
 from model.slip.law import Array
 from model.walk.thesis.traction import load_derivative, traction_force
 
-_ROUNDS = 60
+_ROUNDS = 60  # of Gauss-Newton, which converges in a handful
 _CONVERGED = 1e-11  # N
 
 

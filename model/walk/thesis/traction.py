@@ -8,8 +8,8 @@ import numpy as np
 from model.compiled import compiled
 from model.slip.law import Array, SlipLaw, Values
 from model.slip.magic_formula import MagicFormula
-from model.walk.kernel import table_value
 from model.walk.traction import TractionTable, VelocityCoulomb, law_table
+from model.walk.traction_lookup import table_value
 
 
 class Traction(NamedTuple):

@@ -5,7 +5,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from benchmarks.accuracy.chatter import largest_stable_step, sign_changes_per_second
-from model.gait.tripod import tripod_angles, tripod_reference
+from model.gait.steering import tripod_angles, tripod_reference
 from model.robot import GRAVITY, Robot
 from model.walk.thesis import (
     SwitchedLegs,

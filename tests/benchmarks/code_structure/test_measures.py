@@ -6,7 +6,7 @@ import pytest
 from benchmarks.code_structure.__main__ import main
 from benchmarks.code_structure.checkout import read_modules
 from benchmarks.code_structure.deleted import deleted
-from benchmarks.code_structure.measures import MEASURES, Checkout
+from benchmarks.code_structure.measures import MEASURES, Checkout, without_args
 
 FILES = {
     "model/__init__.py": '"""Mathematics."""\n',
@@ -95,6 +95,37 @@ def test_every_measure_finds_what_was_planted(root):
     assert without.endswith("turn")
     assert places["modules with a branch and no test module of their name"] == ("model/path.py",)
     assert places["imports inside functions"] == ("zebro_lab/walk.py:15 import math",)
+
+
+COMMANDS = '''"""Commands."""
+
+from typing import Annotated
+
+import typer
+
+Out = Annotated[str, typer.Option(help="Where to.")]
+
+
+def export(run: Annotated[str, typer.Argument()], out: Out = "out"):
+    """Export."""
+
+
+@app.command()
+@request_command()
+def walk(request: WalkRequest, out: Out = "out"):
+    """Walk."""
+
+
+def half_described(run: str, out: Out = "out"):
+    """Export."""
+'''
+
+
+def test_options_of_commands_are_described_by_their_help(tmp_path):
+    (tmp_path / "zebro_lab").mkdir()
+    (tmp_path / "zebro_lab/command.py").write_text(COMMANDS)
+    [without] = without_args(Checkout.read(tmp_path)).places
+    assert without.endswith("half_described")
 
 
 def test_a_docstring_a_comment_and_a_blank_line_are_no_code(root):

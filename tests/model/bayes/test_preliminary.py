@@ -127,7 +127,7 @@ def test_blocks_last_as_long_as_the_noise_remembers():
     # With each run's mean goes some of its memory: an eighth of it in runs 80 times as long.
     assert chosen.correlation == pytest.approx((1 + rho) / (1 - rho), rel=0.15)
     assert chosen.length == int(np.ceil(chosen.correlation))
-    assert chosen.reason == "the residuals' correlation time"
+    assert chosen.reason == "the correlation time of the noise"
 
 
 @pytest.mark.parametrize("time", [0.2, 2.0])
@@ -141,7 +141,7 @@ def test_however_noisy_the_slip_sensors_a_run_keeps_five_blocks():
     chosen = choice(samples)
     assert chosen.length == PLAN.n_samples // MIN_BLOCKS_PER_RUN
     assert blocks_a_run(samples, chosen.length) == MIN_BLOCKS_PER_RUN
-    assert chosen.reason == "the need for 5 blocks a run"
+    assert chosen.reason == "at least 5 blocks a run"
 
 
 def test_noisy_slip_sensors_ask_for_longer_blocks():
@@ -150,7 +150,7 @@ def test_noisy_slip_sensors_ask_for_longer_blocks():
     chosen = choice(sweep(noisy))
     assert chosen.length > choice(sweep(quiet)).length
     noise = (0.02 / 12) ** 2 * (3.43**2 + 0.5)
-    assert chosen.reason == "the slip sensors' noise"
+    assert chosen.reason == "to average out the slip sensors' noise"
     assert chosen.length == pytest.approx(noise / (SLIP_SCALE / 10) ** 2, rel=0.3)
 
 
@@ -159,7 +159,7 @@ def test_there_are_never_more_blocks_than_the_limit():
     samples = sweep(replace(PERFECT, noise_sd0=0.05), plan=plan)
     chosen = choice(samples)
     assert len(block_means(samples, chosen.length)) <= MAX_BLOCKS
-    assert chosen.reason == f"the limit of {MAX_BLOCKS} blocks"
+    assert chosen.reason == f"at most {MAX_BLOCKS} blocks"
 
 
 def swept(seconds, *, rate=500, correlation=0.98):
@@ -183,13 +183,13 @@ def test_a_fast_sweep_of_slip_shortens_the_blocks_to_its_pace():
     chosen = choice(samples)
     spread = np.sqrt(block_means(samples, chosen.length).slip_wander)
     assert np.quantile(spread, 0.9) <= MAX_SLIP_SPREAD * SLIP_SCALE * 1.1
-    assert chosen.reason == "the pace at which slip is swept"
+    assert chosen.reason == "so that slip changes little within a block"
     assert chosen.length < chosen.correlation
 
 
 def test_a_slow_sweep_keeps_the_blocks_the_noise_asks_for():
     chosen = choice(swept(20.0))
-    assert chosen.reason == "the residuals' correlation time"
+    assert chosen.reason == "the correlation time of the noise"
     assert chosen.length == int(np.ceil(chosen.correlation))
 
 

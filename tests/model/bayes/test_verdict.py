@@ -95,8 +95,14 @@ def test_broken_rule_of_convergence_is_named_with_its_figure(evidence):
 
 TRUST_FAULTS = {
     "residuals are white": ({"lag_one": 0.5}, "intervals are too narrow"),
-    "run means are predicted": ({"inside": 0.4, "inside_p": 1e-4}, "runs that do not belong"),
-    "the law has the data's shape": ({"misfit": 0.12, "misfit_p": 1e-6}, "a bad fit"),
+    "run means are predicted": (
+        {"inside": 0.4, "inside_p": 1e-4},
+        "another material or with a lost zero",
+    ),
+    "the law fits the shape of the curve": (
+        {"misfit": 0.12, "misfit_p": 1e-6},
+        "the law does not fit",
+    ),
 }
 
 
@@ -137,9 +143,9 @@ def test_misfit_must_be_both_large_and_beyond_chance(changes):
 def test_offsets_as_large_as_the_curve_carry_it():
     verdict = verdict_on(values=draws(RIG_VALUES, offset_spread=1.8), offset_scale=5.0)
     (check,) = failed(verdict)
-    assert check.name == "the curve, not the run offsets, carries the data"
-    assert "run offsets 1.8 N" in check.evidence
-    assert "the run offsets carry the curve" in verdict.next_steps()[0]
+    assert check.name == "zero offsets between runs are small"
+    assert "standard deviation is 1.8 N" in check.evidence
+    assert "cannot be separated from the curve" in verdict.next_steps()[0]
 
 
 def test_offsets_far_beyond_the_load_cells_stability_are_not_believed():
@@ -152,7 +158,7 @@ def test_sweep_that_stops_before_the_peak_names_shape_and_friction_weak():
     verdict = verdict_on(blocks=sweep_blocks(0.15, load=1500.0), values=draws(TYRE_VALUES),
                          offset_scale=10.0)  # fmt: skip
     assert set(verdict.weak) == {"shape", "friction"}
-    assert "cannot be told apart" in verdict.weak["shape"]
+    assert "cannot be separated" in verdict.weak["shape"]
     assert "peak force and initial slope" in verdict.weak["friction"]
     assert verdict.trustworthy
     assert verdict.headline().endswith("weakly identified: shape, friction")
@@ -235,4 +241,4 @@ def test_typical_rig_is_trusted():
 def test_offsets_that_swallow_the_curve_are_found_under_any_prior(zero_stability):
     verdict = verdict_on_sweep(offset_sd=1.5, zero_stability=zero_stability)
     assert not verdict.trustworthy
-    assert any("the run offsets carry the curve" in step for step in verdict.next_steps())
+    assert any("cannot be separated from the curve" in step for step in verdict.next_steps())

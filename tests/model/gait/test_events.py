@@ -10,7 +10,7 @@ from model.gait.events import EventTimes, events_reference, scheduled_reference
 from model.gait.notation import TETRAPOD, TRIPOD
 from model.gait.scheduler import straight_system
 from model.gait.stance import stance_intervals
-from model.gait.tripod import TripodAngles, tripod_reference
+from model.gait.steering import TripodAngles, tripod_reference
 from model.gait.turning import turning_system
 
 DOWN, UP = 0.8, 2.2

@@ -43,7 +43,7 @@ def test_the_entry_that_eq_2_12_prints_too_many_changes_nothing(f, g, d):
         np.testing.assert_array_equal(y, [*x.touchdown[k], *x.liftoff[k]])
 
 
-def test_tripod_precedence_is_that_of_its_groups():
+def test_steering_precedence_is_that_of_its_groups():
     P, Q = precedence(TRIPOD, 0.1)
     first, second = [0, 3, 4], [1, 2, 5]
     assert np.all(P[np.ix_(second, first)] == 0.1)

@@ -5,8 +5,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from model.errors import DomainError
+from model.gait.steering import TripodAngles, tripod_reference
 from model.gait.suriana import suriana_reference
-from model.gait.tripod import TripodAngles, tripod_reference
 
 DOWN, UP = np.radians(35.0), np.radians(130.0)  # 5-2-4
 TIMES = {"ground_time": 0.8, "flight_time": 0.8, "turn_time": 0.1}

@@ -7,8 +7,8 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from model.gait.steering import TripodAngles, tripod_angles, tripod_reference
 from model.gait.tetrapod import tetrapod_reference
-from model.gait.tripod import TripodAngles, tripod_angles, tripod_reference
 
 LEGS = [f"th{leg}" for leg in range(1, 7)]
 

@@ -28,7 +28,7 @@ def judged(observed):
 
 
 def test_tracks_of_the_ensemble_s_own_kind_are_plausible_as_often_as_claimed():
-    held = [[each.plausible for each in judged(track(seed))] for seed in range(100, 180)]
+    held = [[each.consistent for each in judged(track(seed))] for seed in range(100, 180)]
     assert np.mean(held) == pytest.approx(0.95, abs=0.04)
 
 
@@ -36,7 +36,7 @@ def test_a_track_off_by_several_spreads_is_not():
     far = judged(track(7) + np.array([0.0, 0.2, 0.0]))
     by_name = {each.name: each for each in far}
     assert tuple(by_name) == STATISTICS
-    assert not by_name["nees"].plausible
+    assert not by_name["nees"].consistent
     assert by_name["nees"].p_value < 0.02
 
 

@@ -38,7 +38,7 @@ def rejected(truths, *, spread=1.0):
     draws = paths(400, rng, spread=spread)
     seen = with_tracker_noise(truths, TRACKER, rng=rng)
     return [
-        {each.name for each in consistency(draws, one, TRACKER, rng=rng) if not each.plausible}
+        {each.name for each in consistency(draws, one, TRACKER, rng=rng) if not each.consistent}
         for one in seen
     ]
 
@@ -156,7 +156,7 @@ def test_shapes_that_do_not_match_are_refused():
 
 
 def test_too_few_draws_have_no_band():
-    with pytest.raises(InsufficientData, match="band"):
+    with pytest.raises(InsufficientData, match="too few for an interval"):
         consistency(
             np.zeros((5, 4, 3)), np.zeros((4, 3)), NO_NOISE[:4], rng=np.random.default_rng()
         )

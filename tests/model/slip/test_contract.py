@@ -10,18 +10,15 @@ from hypothesis import strategies as st
 
 from model.errors import DomainError
 from model.slip import LAWS, Brush, CoulombStribeck, MagicFormula, slip_law
-from model.slip.law import inside_support
 
-LAWS_UNDER_TEST = (
-    MagicFormula(),
+WITH_OPTIONS = (
     MagicFormula(curvature="constant"),
     MagicFormula(curvature=0.0),
     MagicFormula(load_sensitivity=True, reference_load=6.63),
-    CoulombStribeck(),
     CoulombStribeck(stribeck=False),
-    Brush(),
     Brush(kinetic=True),
 )
+LAWS_UNDER_TEST = (*(law() for law in LAWS.values()), *WITH_OPTIONS)
 PEAKED = tuple(law for law in LAWS_UNDER_TEST if law not in (CoulombStribeck(False), Brush()))
 
 # Kept off the edges of each support, where a curve is too sharp for finite differences.
@@ -36,6 +33,15 @@ RANGES = {
     "kinetic_ratio": (0.05, 0.95),
     "stribeck_slip": (0.01, 1.0),
 }
+
+
+def interior(parameter):
+    """Return bounds well inside a parameter's support."""
+    lower, upper = parameter.lower, min(parameter.upper, parameter.lower + 10)
+    inside = (0.9 * lower + 0.1 * upper, 0.1 * lower + 0.9 * upper)
+    return RANGES.get(parameter.name, inside)
+
+
 LOADS = st.floats(0.5, 30.0)
 SLIPS = st.floats(-2.0, 2.0)
 LOG_SPACED = np.geomspace(1e-4, 10, 4001)
@@ -45,7 +51,7 @@ def laws_with_values(laws=LAWS_UNDER_TEST):
     """Draw a law and values inside its support."""
     return st.sampled_from(laws).flatmap(
         lambda law: st.tuples(
-            st.just(law), st.tuples(*(st.floats(*RANGES[p.name]) for p in law.parameters))
+            st.just(law), st.tuples(*(st.floats(*interior(p)) for p in law.parameters))
         )
     )
 
@@ -136,7 +142,6 @@ def test_force_rises_to_its_peak_and_never_after(drawn, load):
 @given(laws_with_values(), LOADS)
 def test_values_inside_the_support_are_valid(drawn, load):
     law, values = drawn
-    assert inside_support(law, values)
     assert law.valid(load, values)
 
 
@@ -156,7 +161,7 @@ def test_force_vanishes_with_load(drawn):
 def test_ensemble_of_values_equals_a_loop_over_walkers(law):
     rng = np.random.default_rng(20)
     walkers = np.array(
-        [[rng.uniform(*RANGES[parameter.name]) for parameter in law.parameters] for _ in range(5)]
+        [[rng.uniform(*interior(parameter)) for parameter in law.parameters] for _ in range(5)]
     )
     slip, load = np.linspace(-0.5, 1.0, 7), np.linspace(1.0, 12.0, 7)
     values = walkers.T[:, :, None]
@@ -179,30 +184,12 @@ def test_parameters_are_named_once_and_described(law):
 
 
 @pytest.mark.parametrize("law", LAWS_UNDER_TEST, ids=repr)
-def test_values_on_or_past_a_bound_are_outside_the_support(law):
-    inside = [sum(RANGES[parameter.name]) / 2 for parameter in law.parameters]
-    for index, parameter in enumerate(law.parameters):
-        for bound in (parameter.lower, parameter.upper):
-            assert not inside_support(law, [*inside[:index], bound, *inside[index + 1 :]])
-
-
-@pytest.mark.parametrize("law", LAWS_UNDER_TEST, ids=repr)
 def test_name_and_fields_make_the_same_law_again(law):
     assert slip_law(law.name, **asdict(law)) == law
 
 
-def test_support_is_judged_walker_by_walker():
-    verdict = inside_support(Brush(), (np.array([1.0, -1.0]), np.array([0.4, 0.4])))
-    assert verdict.tolist() == [True, False]
-
-
-def test_values_of_the_wrong_number_are_refused():
-    with pytest.raises(ValueError, match="zip"):
-        inside_support(Brush(), (20.0,))
-
-
-def test_every_law_has_one_name():
-    assert set(LAWS) == {law.name for law in LAWS_UNDER_TEST}
+def test_every_law_is_under_its_own_name():
+    assert {name: law.name for name, law in LAWS.items()} == {name: name for name in LAWS}
 
 
 def test_unknown_law_is_refused_with_the_nearest_name():

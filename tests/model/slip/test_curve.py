@@ -36,14 +36,3 @@ def test_slip_of_another_definition_is_refused(definition):
 def test_slip_of_no_definition_is_refused():
     with pytest.raises(ValueError, match="materiel"):
         CURVE.force(0.1, 5.0, definition="materiel")
-
-
-@given(st.lists(st.floats(0, 30), min_size=1))
-def test_untested_loads_are_those_outside_the_range(loads):
-    expected = [not 2.0 <= load <= 13.0 for load in loads]
-    assert CURVE.untested_loads(loads).tolist() == expected
-
-
-def test_ends_of_the_tested_range_were_tested():
-    assert not CURVE.untested_loads([2.0, 13.0]).any()
-    assert CURVE.untested_loads(np.nextafter([2.0, 13.0], [0.0, 20.0])).all()

@@ -6,7 +6,7 @@ import pytest
 
 from model.errors import DomainError, WalkError
 from model.gait.reference import SampledReference
-from model.gait.tripod import tripod_angles, tripod_reference
+from model.gait.steering import tripod_angles, tripod_reference
 from model.robot import GRAVITY, Robot
 from model.slip import MagicFormula
 from model.walk.dynamics import DynamicsOptions

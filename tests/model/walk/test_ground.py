@@ -8,8 +8,7 @@ from model.errors import DomainError
 from model.gait.reference import SampledReference
 from model.robot import GRAVITY, Robot
 from model.walk.dynamics import DynamicsOptions, walk
-from model.walk.ground import FLAT, sample_ground
-from model.walk.kernel import ground_at, plane_under
+from model.walk.ground import FLAT, ground_at, plane_under, sample_ground
 from model.walk.traction import VelocityCoulomb
 
 ROBOT = Robot()

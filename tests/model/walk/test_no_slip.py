@@ -9,7 +9,7 @@ from model.frames import attitude, rotation_z
 from model.gait.cyclic import CyclicReference
 from model.gait.notation import TRIPOD
 from model.gait.reference import SampledReference
-from model.gait.tripod import tripod_angles, tripod_reference
+from model.gait.steering import tripod_angles, tripod_reference
 from model.robot import Robot
 from model.walk.no_slip import walk_no_slip, walk_wheels
 from model.walk.path import turning_radius

@@ -6,10 +6,10 @@ from model.errors import DefinitionMismatch
 from model.slip.curve import SlipCurve
 from model.slip.definition import SlipDefinition
 from model.slip.thesis import THESIS_LAW, THESIS_VALUES, thesis_curve
-from model.walk.kernel import table_value
 from model.walk.path import WalkPath
 from model.walk.slip import Slip
 from model.walk.traction import VelocityCoulomb
+from model.walk.traction_lookup import table_value
 
 WEIGHT = 21.3
 THESIS = Slip(thesis_curve(), "thesis")

@@ -1,61 +1,54 @@
 # SPDX-License-Identifier: MIT
-"""The step of the walk against mechanics: free fall, standing, sliding, and its own order."""
+"""Forces of one step: bristles that hold or slide, and contacts that press or do not."""
 
 import numpy as np
 import pytest
 
-from model.robot import GRAVITY, N_LEGS, Robot
-from model.walk.arrays import Contacts, body_arrays
-from model.walk.dynamics import DEFAULT_OPTIONS, Start, start_state
+from model.robot import GRAVITY, Robot
+from model.walk.arrays import Contacts, body_arrays, new_work
+from model.walk.dynamics import DEFAULT_OPTIONS, start_state
 from model.walk.ground import FLAT
-from model.walk.step import run_steps
+from model.walk.step import BRISTLE_STIFFNESS, bristle_pull, leg_turn, one_step
 from model.walk.traction import VelocityCoulomb
 
 ROBOT = Robot()
+WEIGHT = ROBOT.mass * GRAVITY
 CONTACTS = Contacts(DEFAULT_OPTIONS.stiffness, DEFAULT_OPTIONS.damping)
-STANDING = np.full(N_LEGS, np.pi / 2)
+STANDING = np.full(6, np.pi / 2)
 
 
-def run(*, n=200, dt=0.001, height=None, velocity=(0.0, 0.0, 0.0), friction=0.38, theta=None):
-    """Return the poses and the final state after n steps with legs held, or turned by `theta`."""
-    theta = np.tile(STANDING, (n + 1, 1)) if theta is None else theta
-    state = start_state(ROBOT, theta[0], FLAT, Start(), DEFAULT_OPTIONS)
-    if height is not None:
-        state.p[2] = height
-    state.v[:] = velocity
-    poses, legs = np.empty((n, 7)), np.empty((n, N_LEGS, 6))
-    table = VelocityCoulomb(friction).table(weight=ROBOT.mass * GRAVITY)
-    done = run_steps(body_arrays(ROBOT), table, FLAT, CONTACTS, state, theta, dt, poses, legs)
-    assert done == n
-    return poses, state
+def stepped(state, *, speed=0.0, toe="bristle"):
+    table = VelocityCoulomb(0.4).table(weight=WEIGHT, toe=toe)
+    work = new_work()
+    one_step(
+        body_arrays(ROBOT), table, FLAT, CONTACTS, state, work, STANDING, np.full(6, speed), 0.001
+    )
+    return work
 
 
-def test_a_body_in_the_air_falls_freely():
-    poses, state = run(n=100, height=1.0)
-    t = 0.1
-    assert poses[-1, 2] == pytest.approx(1.0 - 0.5 * GRAVITY * t**2, rel=0.002)
-    assert state.v[2] == pytest.approx(-GRAVITY * t)
-    np.testing.assert_allclose(poses[-1, :2], 0.0, atol=1e-12)
+def test_legs_of_a_standing_robot_carry_its_weight():
+    work = stepped(start_state(ROBOT, STANDING, DEFAULT_OPTIONS))
+    assert work.load.sum() == pytest.approx(WEIGHT, rel=1e-3)
+    assert np.all(work.load[:6] > 0)
 
 
-def test_a_standing_robot_stays():
-    poses, state = run(n=500)
-    np.testing.assert_allclose(poses[-1, :3], poses[0, :3], atol=2e-4)
-    np.testing.assert_allclose(state.v, 0.0, atol=1e-3)
+def test_a_body_in_the_air_has_no_contact_and_falls():
+    state = start_state(ROBOT, STANDING, DEFAULT_OPTIONS)
+    state.p[2] = 1.0
+    work = stepped(state)
+    assert not work.load.any()
+    np.testing.assert_allclose(state.v, [0.0, 0.0, -0.001 * GRAVITY], atol=1e-12)
 
 
-def test_a_sliding_robot_is_braked_by_friction():
-    mu, t = 0.2, 0.1
-    _, state = run(n=100, velocity=(1.0, 0.0, 0.0), friction=mu)
-    assert state.v[0] == pytest.approx(1.0 - mu * GRAVITY * t, rel=0.05)
+def test_a_bristle_holds_like_a_spring_and_slides_at_the_largest_traction():
+    table = VelocityCoulomb(0.4).table(weight=WEIGHT, toe="bristle")
+    spring = BRISTLE_STIFFNESS * CONTACTS.stiffness
+    none = np.zeros(3)
+    assert bristle_pull(table, CONTACTS, none, 5.0, 1e-6, 0.0, 0.0) == spring
+    pull = bristle_pull(table, CONTACTS, none, 5.0, 0.03, 0.04, 0.0)
+    assert pull * 0.05 == pytest.approx(0.4 * 5.0)
 
 
-def test_finer_steps_lead_to_the_same_place():
-    def walked(dt):
-        t = np.arange(0.0, 0.4 + dt / 2, dt)
-        theta = STANDING + np.outer(2.0 * t, np.ones(N_LEGS)) - 0.4
-        return run(n=len(t) - 1, dt=dt, theta=theta)[0][-1]
-
-    coarse, fine, finest = walked(0.002), walked(0.001), walked(0.0005)
-    assert np.abs(fine - finest).max() <= np.abs(coarse - finest).max() + 1e-9
-    np.testing.assert_allclose(coarse[:3], finest[:3], atol=2e-3)
+def test_a_legs_turn_over_the_ground_includes_the_pitch_rate_of_the_body():
+    w = np.array([0.1, 0.2, 0.3])
+    assert leg_turn(np.eye(3), np.full(6, 2.0), w, 0) == pytest.approx(2.2)

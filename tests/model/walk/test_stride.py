@@ -4,11 +4,11 @@ import pytest
 
 from model.errors import DomainError, WalkError
 from model.gait.reference import SampledReference
+from model.gait.steering import tripod_angles, tripod_reference
 from model.gait.tetrapod import tetrapod_reference
-from model.gait.tripod import tripod_angles, tripod_reference
 from model.robot import Robot
 from model.slip import MagicFormula
-from model.walk.dynamics import DynamicsOptions, Start, walk
+from model.walk.dynamics import DynamicsOptions, walk
 from model.walk.stride import walk_by_strides
 from model.walk.traction import law_table
 
@@ -32,17 +32,6 @@ def test_the_stride_map_walks_where_every_step_does(gait, duration):
     distance = np.linalg.norm(by_strides.position - by_steps.position[:, :2], axis=1)
     assert distance.max() < 0.002 * by_steps.length
     assert np.abs(by_strides.yaw - by_steps.yaw).max() < np.radians(0.5)
-
-
-def test_a_start_elsewhere_moves_the_whole_path():
-    start = Start(x=0.4, y=-0.2, yaw=1.0)
-    here = walk_by_strides(ROBOT, TURN, SLIP, duration=20.0, options=OPTIONS)
-    there = walk_by_strides(ROBOT, TURN, SLIP, duration=20.0, start=start, options=OPTIONS)
-    c, s = np.cos(1.0), np.sin(1.0)
-    x, y = here.position.T
-    moved = np.column_stack([0.4 + c * x - s * y, -0.2 + s * x + c * y])
-    np.testing.assert_allclose(there.position, moved, atol=1e-7)
-    np.testing.assert_allclose(there.yaw, 1.0 + here.yaw, atol=1e-7)
 
 
 @pytest.mark.parametrize("duration", [0.7, 2.0, 5.0])

@@ -60,7 +60,7 @@ def walks(shared, pattern):
     return files
 
 
-def test_tripods_with_matched_heights_follow_the_engine(shared):
+def test_steerings_with_matched_heights_follow_the_engine(shared):
     for file in walks(shared, "tripod*.json"):
         if "arc200real" in file.name:
             continue

@@ -10,6 +10,7 @@ import pytest
 
 from rig.backends import RigDevices
 from rig.clock import ManualClock
+from rig.experiment.acquire import GuardedAcquisition
 from rig.experiment.bench import make_bench
 from rig.experiment.control import Control
 from rig.experiment.plan import Plan
@@ -20,7 +21,7 @@ from rig.links.memory import MemoryLink
 from rig.slip_rig.board import RigBoard
 from rig.slip_rig.imperfections import TYPICAL_RIG
 from rig.slip_rig.profile import load_rig_profile
-from rig.slip_rig.simulated import RigDynamics, SimulatedRig, simulated_rig
+from rig.slip_rig.simulated import RigDynamics, SimulatedRig
 from rig.slip_rig.simulated_board import SimulatedBoard
 from rig.slip_rig.sweep import SweepPlan
 from rig.toml_table import TomlTable
@@ -97,6 +98,19 @@ class Twin:
         }  # fmt: skip
         return run_plan(wanted or plan(), **(settings | options))
 
+    def acquisition(self, wanted) -> GuardedAcquisition:
+        return GuardedAcquisition(
+            self.bench, limits=wanted.limits, control=self.control, sink=self.sink,
+            clock=self.clock, period=0.01,
+        )  # fmt: skip
+
+    @staticmethod
+    def turn(acquire):
+        """Energise the discs and wait until they turn at a slip ratio of 0.2."""
+        acquire.arm()
+        acquire.start_ramp(12.0, 0.2)
+        acquire.until(lambda _: not acquire.ramping, 2.0)
+
     def at_rest(self) -> bool:
         """Let half a second pass and tell whether both discs stand."""
         self.rig.advance(self.clock.now() + 0.5)
@@ -119,9 +133,7 @@ class At(MemorySink):
 
 def twin(seed=0, *, watchdog=0.2) -> Twin:
     rng = np.random.default_rng(seed)
-    rig = simulated_rig(
-        plan=SweepPlan(), imperfections=TYPICAL_RIG, dynamics=RigDynamics(), rng=rng
-    )
+    rig = SimulatedRig(plan=SweepPlan(), imperfections=TYPICAL_RIG, dynamics=RigDynamics(), rng=rng)
     clock = ManualClock()
     board = SimulatedBoard(rig, profile=PROFILE.board, rng=rng, watchdog=watchdog)
     driver = RigBoard(

@@ -12,13 +12,13 @@ from rig.errors import DeviceFault, LimitExceeded, RigTimeout, StaleReading, Unr
 from rig.experiment.acquire import GuardedAcquisition
 from rig.experiment.bench import make_bench
 from rig.experiment.control import Control
-from rig.experiment.verdict import measured_slip
 from rig.links.can import CanLink
 from rig.slip_rig.can_simple import Command, split_id
+from rig.slip_rig.decode import measured_slip
 from rig.slip_rig.imperfections import RigImperfections
 from rig.slip_rig.profile import load_rig_profile
 from rig.slip_rig.rdt import SATURATED
-from rig.slip_rig.simulated import RigDynamics, simulated_rig
+from rig.slip_rig.simulated import RigDynamics, SimulatedRig
 from rig.slip_rig.simulated_drives import SimulatedDrives
 from rig.slip_rig.simulated_load_cell import SimulatedLoadCell
 from rig.slip_rig.sweep import SweepPlan
@@ -43,7 +43,7 @@ def turning(lab, monkeypatch, *, speed=12.0, slip=0.2, **limits):
             found[_kind] = self
 
         monkeypatch.setattr(kind, "__init__", keep)
-    rig = simulated_rig(
+    rig = SimulatedRig(
         plan=SweepPlan(), imperfections=RigImperfections(),
         dynamics=RigDynamics(), rng=np.random.default_rng(0),
     )  # fmt: skip
@@ -58,7 +58,7 @@ def turning(lab, monkeypatch, *, speed=12.0, slip=0.2, **limits):
             sink=MemorySink(), clock=SYSTEM_CLOCK,
         )  # fmt: skip
         acquire.arm()
-        acquire.aim(speed, slip)
+        acquire.start_ramp(speed, slip)
         acquire.until(lambda _: not acquire.ramping, 2.0)
         acquire.until(lambda _: False, 0.2)
         yield acquire, rig, found[SimulatedDrives], found[SimulatedLoadCell]
@@ -76,7 +76,9 @@ def test_forces_and_speeds_are_lined_up(lab, monkeypatch):
     with turning(lab, monkeypatch) as (acquire, _, drives, _):
         parts = []
         acquire.until(lambda batch: parts.append(batch.readings), 0.3)
-        slip = np.concatenate([measured_slip(part, PROFILE) for part in parts])
+        slip = np.concatenate(
+            [measured_slip(part.omega_leg, part.omega_ground, PROFILE) for part in parts]
+        )
         t = np.concatenate([part.t for part in parts])
         assert slip.mean() == pytest.approx(0.2, abs=0.01)
         assert len(t) > 100

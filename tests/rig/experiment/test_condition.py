@@ -17,7 +17,7 @@ def test_each_ctrl_c_asks_for_a_harder_stop_up_to_the_hardest():
 
 @pytest.mark.parametrize("state", [RigState.STOPPED, RigState.LATCHED])
 def test_no_key_acts_once_the_run_is_over(state):
-    assert Condition(state, False).keys == "no key does anything any more: the run is over"
+    assert Condition(state, False).keys == "keys have no effect: the run has ended"
 
 
 def test_only_stops_harder_than_the_one_obeyed_are_offered():
@@ -29,8 +29,8 @@ def test_only_stops_harder_than_the_one_obeyed_are_offered():
 
 def test_a_held_run_can_go_on_and_says_how_long_it_waits():
     keys = Condition(RigState.HOLDING, True, pending=StopCategory.SOFT, hold=5.0).keys
-    assert keys.startswith("r: go on; ")
-    assert keys.endswith("a safe stop follows after 5 s")
+    assert keys.startswith("r: resume; ")
+    assert keys.endswith("a safe stop follows after 5 s without a command")
 
 
 def test_a_running_one_can_be_confirmed_paused_and_stopped():

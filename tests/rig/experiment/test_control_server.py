@@ -59,7 +59,10 @@ def test_bytes_of_a_foreign_encoding_reach_the_run_as_escapes():
     [
         ("note a\nemergency", "found 2 lines; expected one command"),
         ("note a\r\nb\n", "found 2 lines; expected one command"),
-        ("note " + "x" * LONGEST_NOTE, f"{LONGEST_NOTE + 5} characters; at most {LONGEST_NOTE}"),
+        (
+            "note " + "x" * LONGEST_NOTE,
+            f"{LONGEST_NOTE + 5} characters; its limit is {LONGEST_NOTE}",
+        ),
     ],
 )
 def test_a_command_that_would_be_cut_is_refused(command, message):
@@ -92,5 +95,5 @@ def test_only_this_machine_is_listened_to():
 def test_a_run_that_is_over_does_not_answer():
     with ControlServer(Control()) as server:
         port = server.port
-    with pytest.raises(LinkError, match="is it over"):
+    with pytest.raises(LinkError, match="has it ended"):
         send_command(port, "x", "status")

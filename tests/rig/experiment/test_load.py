@@ -6,13 +6,13 @@ import pytest
 from rig.errors import RigTimeout
 from rig.experiment.load import DrivenShaft, HandShaft
 from rig.experiment.simulated_load import SimulatedAxis
-from rig.experiment.watcher import NobodyWatches
+from rig.experiment.watcher import ExperimentWatcher
 
 
 def test_a_driven_axis_finds_the_loads_and_the_zero(lab):
     twin = lab["twin"]()
     axis = SimulatedAxis(twin.rig, clock=twin.clock)
-    load = DrivenShaft(axis, tolerance=0.3, patience=30.0)
+    load = DrivenShaft(axis, tolerance=0.3, patience=30.0, clock=twin.clock)
     outcome = twin.run(load=load)
     assert outcome.completed
     zero = twin.sink.runs[0].start.zero
@@ -28,9 +28,9 @@ def test_an_axis_that_brings_no_force_is_given_up(lab):
         def move(self, velocity):
             pass
 
-    load = DrivenShaft(Stuck(), tolerance=0.1, patience=2.0)
+    load = DrivenShaft(Stuck(), tolerance=0.1, patience=2.0, clock=twin.clock)
     twin.rig.load = 2.0
-    with pytest.raises(RigTimeout, match="the load axis did not bring 4 N"):
+    with pytest.raises(RigTimeout, match="the load axis did not reach 4 N"):
         twin.run(load=load)
     assert twin.at_rest()
 
@@ -40,7 +40,7 @@ def test_a_person_is_asked_and_believed_only_within_the_tolerance(lab):
     twin.rig.load = 1e-3
     asked = []
 
-    class Operator(NobodyWatches):
+    class Operator(ExperimentWatcher):
         def prompt(self, text, *, normal):
             asked.append(text)
             if asked.count(text) == 5:

@@ -36,6 +36,6 @@ def test_of_a_plans_and_a_rigs_limits_the_smaller_counts(lab):
 
 def test_guards_that_are_off_are_named_with_their_limits(lab):
     limits = lab["plan"]().limits
-    assert limits.off_said == ""
+    assert limits.guards_off_text == ""
     off = replace(limits, silence=2.0, speed_error=9.0, guards_off=("silence", "speed_error"))
-    assert off.off_said == "silence (2 s), speed_error (9 rad/s)"
+    assert off.guards_off_text == "silence (2 s), speed_error (9 rad/s)"

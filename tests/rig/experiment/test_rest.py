@@ -15,7 +15,7 @@ def batch(leg, ground, *, taken):
     return Batch(
         readings=join([]), normal=np.empty(0), traction=np.empty(0),
         speeds={"leg": np.array(leg, float), "ground": np.array(ground, float)},
-        heard={}, further={}, taken={"board": np.full(len(leg), taken)}, fault="", raw={},
+        arrived={}, further={}, taken={"board": np.full(len(leg), taken)}, fault="", raw={},
     )  # fmt: skip
 
 
@@ -47,7 +47,7 @@ def test_an_encoder_may_be_noisier_than_the_limit():
     [
         (lambda t: [0.15], "its mean speed over 0.25 s is 0.15 rad/s; its limit is 0.1 rad/s"),
         (lambda t: [np.nan], "its mean speed over 0.25 s is nan rad/s"),
-        (lambda t: [3.0, -3.0], "its speed swings about zero by 3 rad/s"),
+        (lambda t: [3.0, -3.0], "its speed oscillates, with a root mean square of 3 rad/s"),
         (lambda t: [], "0 readings of its speed in 0.25 s that are not older than 0.25 s, exp"),
         (lambda t: [0.0] if t % 0.1 < 0.01 else [], "[23] readings of its speed"),
     ],

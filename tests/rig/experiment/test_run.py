@@ -7,9 +7,9 @@ import pytest
 from model.slip.thesis import THESIS_LAW, THESIS_VALUES
 from rig.errors import DeviceFault, LimitExceeded, ProtocolError, RigTimeout
 from rig.experiment.sink import SinkFailed
-from rig.experiment.verdict import measured_slip
-from rig.experiment.watcher import NobodyWatches
+from rig.experiment.watcher import ExperimentWatcher
 from rig.safety import StopCategory
+from rig.slip_rig.decode import measured_slip
 from support.memory_sink import MemorySink
 
 
@@ -25,7 +25,7 @@ def test_a_plan_runs_to_its_end_and_every_point_obeys_the_law(lab):
     assert twin.at_rest()
     assert reasons(twin.sink) == ["completed"]
     for run in twin.sink.accepted:
-        slip = measured_slip(run.readings, twin.bench.profile)
+        slip = measured_slip(run.readings.omega_leg, run.readings.omega_ground, twin.bench.profile)
         expected = THESIS_LAW.force(slip, run.readings.normal_force, THESIS_VALUES)
         assert run.readings.traction_force.mean() == pytest.approx(expected.mean(), abs=0.25)
         assert np.all(np.diff(run.readings.t) > 0)
@@ -36,7 +36,7 @@ def test_a_sweep_glides_through_its_slips(lab):
     wanted = lab["plan"](points={"sweep": True, "duration": 4.0}, accept={"slip": 0.05})
     assert twin.run(wanted).completed
     run = twin.sink.accepted[0]
-    slip = measured_slip(run.readings, twin.bench.profile)
+    slip = measured_slip(run.readings.omega_leg, run.readings.omega_ground, twin.bench.profile)
     at = (run.readings.t - run.readings.t[0]) / np.ptp(run.readings.t)
     commanded = np.array([run.start.point.slip_at(f) for f in at])
     assert np.abs(slip - commanded).mean() < 0.03
@@ -182,7 +182,9 @@ def test_a_soft_stop_holds_and_the_point_is_done_anew(lab):
 
     def passing(duration):
         sleep(duration)
-        if twin.control.status.startswith("HOLDING, discs energised: soft stop: planted; r: go on"):
+        if twin.control.status.startswith(
+            "HOLDING, discs energised: soft stop: planted; r: resume"
+        ):
             held.append(twin.clock.now())
             if twin.clock.now() - held[0] > 2.0:
                 speeds.append(twin.rig.speeds()["leg"][1])
@@ -201,7 +203,7 @@ def test_a_soft_stop_without_a_word_becomes_a_safe_one(lab):
     twin = lab["twin"]()
     twin.sink = lab["At"](10, lambda: twin.control.stop.request(StopCategory.SOFT, "planted"))
     outcome = twin.run()
-    assert outcome.reason.startswith("safe stop: held for 5 s without a word")
+    assert outcome.reason.startswith("safe stop: held for 5 s without a command")
     assert twin.at_rest()
 
 
@@ -256,7 +258,7 @@ def test_guards_that_are_off_are_kept_in_the_log_and_shown(lab):
     twin = lab["twin"]()
     shown = []
 
-    class Screen(NobodyWatches):
+    class Screen(ExperimentWatcher):
         def doing(self, what, *, done, of, left):
             shown.append(what)
 

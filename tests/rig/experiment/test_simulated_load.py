@@ -14,10 +14,10 @@ class Rig:
 def test_the_operator_sets_the_load_exactly_and_is_done():
     rig = Rig()
     operator = SimulatedOperator(rig)
-    assert operator.request(6.5, now=0.0) == ""
+    assert operator.request(6.5) == ""
     assert rig.load == 6.5
-    assert operator.follow(0.0, now=0.0)
-    operator.request(0.0, now=0.0)
+    assert operator.follow(0.0)
+    operator.request(0.0)
     assert rig.load == LEAST
 
 

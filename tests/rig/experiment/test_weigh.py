@@ -45,7 +45,7 @@ def test_the_weights_own_error_stays_in_the_slopes():
 
 
 def test_no_weight_at_all_is_refused():
-    with pytest.raises(ProtocolError, match="expected at least one beside no load"):
+    with pytest.raises(ProtocolError, match="expected at least one weight besides no load"):
         check_gain(Weighing((0.0,), (0.1,), (0.01,)))
 
 
@@ -69,7 +69,7 @@ def test_a_gain_error_of_the_twin_is_weighed(lab):
 
 def test_no_weight_is_asked_for_while_a_disc_turns(lab):
     class Bystander:
-        def request(self, target, *, now):
+        def request(self, target):
             raise AssertionError(f"asked to hang {target:g} N on a rig that turns")
 
     twin = lab["twin"]()

@@ -9,14 +9,14 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from rig.errors import ProtocolError
-from rig.links.faults import PERFECT_LINE, Faults, FaultyWire
+from rig.links.faults import PERFECT_LINE, Faults, FaultyLine, FaultyWire
 
 FRAMES = [bytes([k % 256]) * 10 for k in range(2000)]
 PROBABILITIES = [f.name for f in fields(Faults) if f.name != "noise_at_start"]
 
 
 def carried(faults, frames=FRAMES, seed=1):
-    return FaultyWire(faults, rng=np.random.default_rng(seed)).carry(frames)
+    return FaultyWire(faults, rng=np.random.default_rng(seed)).stream(frames)
 
 
 @given(st.lists(st.binary(max_size=20)))
@@ -45,8 +45,8 @@ def test_bits_flip_as_often_as_asked_and_nothing_else_changes():
 def test_a_delayed_frame_comes_after_the_next_one():
     frames = [b"a", b"b", b"c"]
     wire = FaultyWire(Faults(delay=1.0), rng=np.random.default_rng(0))
-    assert wire.carry(frames) == b"ab"  # the last one still waits
-    assert wire.carry([b"d"]) == b"c"
+    assert wire.stream(frames) == b"ab"  # the last one still waits
+    assert wire.stream([b"d"]) == b"c"
 
 
 def test_a_truncated_frame_is_the_beginning_of_it():
@@ -59,11 +59,20 @@ def test_a_truncated_frame_is_the_beginning_of_it():
 
 def test_noise_comes_once_before_the_first_frame():
     wire = FaultyWire(Faults(noise_at_start=7), rng=np.random.default_rng(0))
-    assert wire.carry([b"abc"])[7:] == b"abc"
-    assert wire.carry([b"abc"]) == b"abc"
+    assert wire.stream([b"abc"])[7:] == b"abc"
+    assert wire.stream([b"abc"]) == b"abc"
 
 
 @pytest.mark.parametrize("name", PROBABILITIES)
 def test_what_is_no_probability_is_refused_by_name(name):
     with pytest.raises(ProtocolError, match=f"{name} is 1.5; expected a probability"):
         Faults(**{name: 1.5})
+
+
+def test_frames_that_cannot_be_cut_arrive_whole_or_not_at_all():
+    sent = [object() for _ in range(200)]
+    rng = np.random.default_rng(0)
+    line: FaultyLine[object] = FaultyLine(Faults(truncate=1.0, drop=0.2, delay=0.2), rng=rng)
+    arrived = [frame for each in sent for frame in line.carry(each)]
+    assert set(arrived) < set(sent)
+    assert len(arrived) == len(set(arrived))

@@ -111,7 +111,7 @@ def test_no_damaged_packet_is_taken_at_any_bit_error_rate(flip):
     rng = np.random.default_rng(5)
     sent = [Packet(1, n, 10 * n, rng.bytes(12)) for n in range(4000)]
     faults = Faults(flip=flip, truncate=0.01, duplicate=0.01, garbage=0.01, drop=0.01, delay=0.01)
-    data = FaultyWire(faults, rng=rng).carry([encode_packet(p) for p in sent])
+    data = FaultyWire(faults, rng=rng).stream([encode_packet(p) for p in sent])
     framer = CobsFramer(longest=LONGEST)
     taken = [p for c in framer.feed(data) if (p := decode_packet(c)) is not None]
     assert set(taken) <= set(sent)
@@ -120,7 +120,7 @@ def test_no_damaged_packet_is_taken_at_any_bit_error_rate(flip):
 
 def test_a_perfect_wire_changes_nothing():
     frames = [b"abc", b"defg"]
-    assert FaultyWire(Faults(), rng=np.random.default_rng(0)).carry(frames) == b"abcdefg"
+    assert FaultyWire(Faults(), rng=np.random.default_rng(0)).stream(frames) == b"abcdefg"
 
 
 def test_an_impossible_fault_rate_is_refused():

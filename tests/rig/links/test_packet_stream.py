@@ -10,7 +10,7 @@ from rig.clock import ManualClock
 from rig.errors import DeviceMismatch
 from rig.links.memory import MemoryLink
 from rig.links.packet import Kind, Packet, decode_packet, encode_packet
-from rig.links.packet_stream import FOREIGN_LIMIT, PacketStream
+from rig.links.packet_stream import MAX_FOREIGN, PacketStream
 
 BODY = struct.Struct("<hh")
 
@@ -76,7 +76,7 @@ def test_damaged_impossible_foreign_and_missing_packets_are_counted():
 
 def test_packets_of_another_device_alone_are_a_mismatch():
     reader, feed = stream()
-    feed.out = b"".join(packet(n, kind=Kind.ORIENTATION) for n in range(FOREIGN_LIMIT))
+    feed.out = b"".join(packet(n, kind=Kind.ORIENTATION) for n in range(MAX_FOREIGN))
     with pytest.raises(DeviceMismatch, match=r"of kind 2 .* none of kind 1"):
         reader.read(0.0)
 

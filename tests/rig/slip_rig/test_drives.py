@@ -23,7 +23,7 @@ from rig.slip_rig.can_simple import (
 )
 from rig.slip_rig.drives import DriveBus, disc_speed
 from rig.slip_rig.imperfections import RigImperfections
-from rig.slip_rig.simulated import RigDynamics, simulated_rig
+from rig.slip_rig.simulated import RigDynamics, SimulatedRig
 from rig.slip_rig.simulated_drives import SimulatedDrives
 from rig.slip_rig.sweep import SweepPlan
 from support.drive_twins import PROFILE, WATCHDOG, healthy, turn, twin
@@ -128,7 +128,7 @@ class AdapterPort:
 @contextmanager
 def behind_an_adapter(request):
     """Yield a rig, a manual clock, and the driver of its drives behind an SLCAN adapter."""
-    world = simulated_rig(
+    world = SimulatedRig(
         plan=SweepPlan(), imperfections=RigImperfections(), dynamics=RigDynamics(),
         rng=np.random.default_rng(0),
     )  # fmt: skip

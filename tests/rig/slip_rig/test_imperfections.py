@@ -14,8 +14,8 @@ from rig.slip_rig.imperfections import (
     draw_imperfections,
     lag_one_correlation,
     measured_load,
-    true_load,
 )
+from support.true_load import true_load
 
 
 @pytest.mark.parametrize(

@@ -26,7 +26,7 @@ from rig.slip_rig.rdt import (
     Request,
     describe_status,
 )
-from rig.slip_rig.simulated import RigDynamics, simulated_rig
+from rig.slip_rig.simulated import RigDynamics, SimulatedRig
 from rig.slip_rig.simulated_load_cell import SimulatedLoadCell
 from rig.slip_rig.sweep import SweepPlan
 
@@ -39,7 +39,7 @@ PAGE = (
 
 @contextmanager
 def twin(faults=PERFECT_LINE, *, buffered=False):
-    world = simulated_rig(
+    world = SimulatedRig(
         plan=SweepPlan(loads=(8.0,)),
         imperfections=RigImperfections(),
         dynamics=RigDynamics(),

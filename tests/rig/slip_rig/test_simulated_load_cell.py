@@ -13,7 +13,7 @@ from rig.slip_rig.decode import Forces, decode_forces
 from rig.slip_rig.imperfections import RigImperfections
 from rig.slip_rig.load_cell import NetFtCell
 from rig.slip_rig.profile import load_rig_profile
-from rig.slip_rig.simulated import RigDynamics, simulated_rig
+from rig.slip_rig.simulated import RigDynamics, SimulatedRig
 from rig.slip_rig.simulated_load_cell import SimulatedLoadCell
 from rig.slip_rig.sweep import SweepPlan
 
@@ -22,7 +22,7 @@ PROFILE = load_rig_profile("rig-odrive-netft").load_cell
 
 @contextmanager
 def twin(faults=PERFECT_LINE, *, buffered=False):
-    world = simulated_rig(
+    world = SimulatedRig(
         plan=SweepPlan(loads=(8.0,)),
         imperfections=RigImperfections(),
         dynamics=RigDynamics(),

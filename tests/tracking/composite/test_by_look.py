@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from support.drawn_board import composite, found_in
-from tracking.composite.chain import steady_chain
+from tracking.composite.steps import steady_chain
 from tracking.errors import CompositeError
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The floor's colours are told from the robot's, in shadow too."""
+"""The floor's colours are distinguished from the robot's, in shadow too."""
 
 import cv2
 import numpy as np
@@ -28,6 +28,8 @@ def test_a_robot_on_the_floor_does_not_change_how_the_floor_looks():
     with_robot = FloorColours.of(picture, used, width=60, noise=0.5)
     white = bare.whitening.T @ with_robot.covariance @ bare.whitening
     np.testing.assert_allclose(white, np.eye(3), atol=0.2)
-    far = with_robot.oddness(picture)
+    far = with_robot.floor_distance(picture)
     assert far[130:190, 130:190].min() > 30
-    assert np.median(far[300:]) == pytest.approx(np.median(bare.oddness(picture)[300:]), rel=0.1)
+    assert np.median(far[300:]) == pytest.approx(
+        np.median(bare.floor_distance(picture)[300:]), rel=0.1
+    )

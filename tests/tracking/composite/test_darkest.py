@@ -4,48 +4,32 @@
 import numpy as np
 import pytest
 
-from support.drawn_board import SIZE, composite, likeness
-from tracking.composite.chain import steady_chain
-from tracking.composite.darkest import Chain, DarkestSearch
+from support.drawn_board import composite, likeness
+from tracking.composite.darkest import Chain, DarkestReading
+from tracking.composite.steps import steady_chain
 
 WALK = steady_chain(np.array([-0.15, -0.05, 0.15]), np.array([0.14, 0.0, 0.1]), 0.0, 2, 0)
+APART = np.array([[-0.2, -0.05, 0.2], [0.1, 0.03, 0.35]])
 
 
 @pytest.fixture(scope="module")
-def search() -> DarkestSearch:
+def reading() -> DarkestReading:
     """Return a picture of the darkest values of three exposures, the first one known."""
     picture = likeness(composite(WALK, "darkest"), WALK[0], reach=0.3)
-    return DarkestSearch(*picture.raster(SIZE[0] / 24), SIZE[0])
+    return DarkestReading.of(picture, cells=24)
 
 
-def test_true_exposures_make_the_picture_likelier_and_others_do_not(search):
-    assert search.worth(WALK) > search.worth(WALK[:2]) > search.worth(WALK[:1])
+def test_true_exposures_make_the_picture_likelier_and_others_do_not(reading):
+    assert reading.worth(WALK) > reading.worth(WALK[:2]) > reading.worth(WALK[:1])
     one_more = np.concatenate((WALK, [[-0.1, 0.2, 0.1]]))
-    assert search.worth(one_more) < search.worth(WALK)
-    assert search.worth(np.concatenate((WALK, WALK[-1:] + 1e-3))) == -np.inf
+    assert reading.worth(one_more) < reading.worth(WALK)
+    assert reading.worth(np.concatenate((WALK, WALK[-1:] + 1e-3))) == -np.inf
 
 
-def test_an_exposure_gains_where_it_is_and_not_beside(search):
-    look = search.look(WALK[:2])
-    cover = search.cover(WALK[:2], look)
-    tried = np.array([WALK[2], WALK[2] + [0.0, 0.15, 0.0]])
-    gain, claim, inside = search.gains(tried, look, cover, search.body)
-    assert gain.shape == claim.shape == inside.shape == (2,)
-    assert gain[0] > 0.1 > gain[1]
-    assert claim[0] > 0.3
-    assert inside[0] == 1.0
-
-
-def test_a_chain_is_fitted_to_the_walk(search):
+def test_a_chain_is_fitted_to_the_walk(reading):
     step = np.array([0.13, 0.005, 0.08, 0.0])
-    fitted = search.fitted(WALK[0], Chain(step, 2, 0))
+    fitted = reading.fitted(WALK[0], Chain(step, 2, 0))
     np.testing.assert_allclose(fitted.poses(WALK[0])[:, :2], WALK[:, :2], atol=0.012)
-
-
-def test_a_part_of_the_picture_has_the_same_value(search):
-    rows, columns = (slice(0, size) for size in search.used.shape)
-    part = search.part(rows, columns)
-    assert part.value(WALK) == pytest.approx(search.value(WALK))
 
 
 def test_a_chain_with_some_between_holds_the_chain():
@@ -54,3 +38,14 @@ def test_a_chain_with_some_between_holds_the_chain():
     assert len(some) == 7
     for pose in chain.poses(WALK[0]):
         assert np.hypot(*(some - pose)[:, :2].T).min() < 3e-3
+
+
+def test_places_on_a_raster_are_aligned_and_what_is_none_is_dropped():
+    picture = likeness(composite(APART, "darkest"), APART[0], reach=0.35)
+    near = np.array([APART[0], APART[1] + [0.004, -0.003, 0.02], [0.1, -0.25, 0.3]])
+    found = DarkestReading.of(picture).align(near)
+    poses = np.array([each.alignment.pose.planar for each in found])
+    assert len(poses) == 2
+    np.testing.assert_allclose(poses[:, :2], APART[:, :2], atol=1.5e-3)
+    np.testing.assert_allclose(poses[:, 2], APART[:, 2], atol=0.02)
+    assert [each.visible for each in found] == pytest.approx([0.9, 0.9], abs=0.1)

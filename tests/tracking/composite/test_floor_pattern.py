@@ -17,7 +17,7 @@ def correlation(picture, dy, dx):
 def test_what_is_left_of_a_floor_is_white():
     floor, other = grain(np.random.default_rng(0)), grain(np.random.default_rng(1))
     pattern = FloorPattern.of(floor, np.ones(floor.shape[:2], bool), width=WIDTH)
-    left = pattern.new_in(pattern.flat(other))[10:-10, 10:-10]
+    left = pattern.prediction_error(pattern.flat(other))[10:-10, 10:-10]
     assert correlation(other, 0, 1) > 0.9
     for dy, dx in ((0, 1), (1, 0), (1, 1), (0, 2), (2, 0)):
         assert abs(correlation(left, dy, dx)) < 0.1
@@ -28,10 +28,12 @@ def test_layers_are_foretold_as_each_picture_alone():
     floor = grain(np.random.default_rng(2))
     pattern = FloorPattern.of(floor, np.ones(floor.shape[:2], bool), width=WIDTH)
     layers = np.stack((floor, 2 * floor, floor[::-1]), axis=-1)
-    together = pattern.new_in(layers)
+    together = pattern.prediction_error(layers)
     for k in range(3):
         np.testing.assert_allclose(
-            together[..., k], pattern.new_in(np.ascontiguousarray(layers[..., k])), atol=1e-4
+            together[..., k],
+            pattern.prediction_error(np.ascontiguousarray(layers[..., k])),
+            atol=1e-4,
         )
 
 

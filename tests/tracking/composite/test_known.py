@@ -15,9 +15,9 @@ def test_something_that_lies_on_a_robot_does_not_draw_it_where_odd_points_are_le
     covered = clean.copy()
     covered[seen[1] + 8 : seen[1] + 40, seen[0] - 60 : seen[0] + 8] = (20, 220, 220)
 
-    def off(most_odd):
+    def off(outlier_sd):
         found = view.aligned(planar, covered, view.body_template(clean), ~view.hidden,
-                             least=0.0, most_odd=most_odd)  # fmt: skip
+                             least=0.0, outlier_sd=outlier_sd)  # fmt: skip
         return np.inf if found is None else np.hypot(*(found.pose.planar - planar)[:2])
 
     assert off(2.5) < 5e-4

@@ -5,6 +5,7 @@ import numpy as np
 
 from support.drawn_board import composite, known_at, likeness
 from tracking.composite.match import TURNS, match_whole
+from tracking.composite.pasted import PastedReading
 
 PLANAR = np.array([0.05, 0.0, 2 * np.pi * 3 / TURNS])
 
@@ -12,7 +13,7 @@ PLANAR = np.array([0.05, 0.0, 2 * np.pi * 3 / TURNS])
 def matches(pixels, least=0.5):
     picture = likeness(composite(PLANAR[None], "pasted"), PLANAR, reach=0.3)
     template = picture.body_template(picture.pixels)
-    plane, *_ = picture.raster(template.plate.length / 22)
+    plane = PastedReading.of(picture, cells=22).plane
     return match_whole(plane.read_smooth(pixels), plane, template=template, least=least)
 
 

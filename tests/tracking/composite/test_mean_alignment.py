@@ -6,8 +6,9 @@ import pytest
 
 from support.drawn_board import composite, known_at, likeness
 from tracking.body import Alignment
-from tracking.composite.chain import steady_chain, stepped
+from tracking.composite.floor_pattern import FloorPattern
 from tracking.composite.mean_alignment import MeanAlignment, floor_pattern
+from tracking.composite.steps import steady_chain, stepped
 
 
 @pytest.mark.parametrize("count", [2, 3])
@@ -28,7 +29,8 @@ def test_exposures_aligned_with_each_other_are_moved_to_where_one_is_known_to_be
     off = np.array([0.004, -0.003, 0.02])
     picture = likeness(np.zeros((400, 640, 3), np.uint8), walk[0], reach=0.4)
     found = [Alignment(known_at(stepped(planar, off)), 0.9, 0.0) for planar in walk]
-    moved = MeanAlignment(picture, [], walk).anchored([*found, None])
+    nothing = FloorPattern(5.0, np.zeros((3, 7, 7), np.float32))
+    moved = MeanAlignment(picture, [], walk, nothing).anchored([*found, None])
     assert moved[-1] is None
     planar = [each.pose.planar for each in moved[:-1]]
     np.testing.assert_allclose(planar, walk, atol=1e-9)

@@ -15,7 +15,8 @@ from support.hostile_files import within_two_seconds
 from support.written_photos import write_photo
 from tracking.errors import PhotoError, TrackingError
 from tracking.images import exif_time, find_photos, read_pixels
-from zebro_lab.track.photo_sequence import TimeRequest, open_photos, upright_size
+from zebro_lab.track.photo_sequence import open_photos, upright_size
+from zebro_lab.track.request import TimeRequest
 
 
 def test_photographs_are_counted_as_people_count(tmp_path):

@@ -15,6 +15,7 @@ import pandas as pd
 import pytest
 from scipy.stats import chi2
 
+from model.slip.laws import LAWS
 from model.slip.thesis import THESIS_VALUES
 from zebro_lab.calibration.folder import read_slip
 from zebro_lab.main import slip_app as app
@@ -95,7 +96,7 @@ def test_simulated_data_is_called_simulated_wherever_it_is_read(converged):
 def test_printed_report_has_definition_coefficients_verdict_and_paths(converged):
     process, out = converged
     assert "slip definition: material" in process.stdout
-    assert "120 block means of about 30 samples, set by the length asked for" in process.stdout
+    assert "averaged in 120 blocks of about 30 (as asked for)." in process.stdout
     header = next(line for line in process.stdout.splitlines() if "Fn [N]" in line)
     assert {"B", "C", "D", "E", "x_m", "BCD"} <= set(header.split())
     assert "verdict: converged" in process.stdout
@@ -368,6 +369,11 @@ finally:
     assert "Usage:" in printed
     heavy = {"numpy", "scipy", "pandas", "numba", "matplotlib", "emcee", "arviz", "pyarrow", "pint"}
     assert not heavy & set(modules.split())
+
+
+def test_help_names_every_slip_law():
+    shown = calibrate_slip("--help").stdout
+    assert all(name in shown for name in LAWS)
 
 
 def test_help_names_every_exit_code():

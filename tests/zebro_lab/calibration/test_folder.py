@@ -6,7 +6,7 @@ import pytest
 
 from model.slip import Brush, MagicFormula
 from support.short_calibration import short_calibration
-from zebro_lab.calibration.folder import _distinct_names, read_slip, write_tables
+from zebro_lab.calibration.folder import read_slip, write_tables
 from zebro_lab.files.draws import read_draws_of
 from zebro_lab.files.errors import DataError
 
@@ -86,14 +86,6 @@ def test_what_is_no_calibration_says_what_to_name(tmp_path, content):
         (tmp_path / "slip.toml").write_bytes(content)
     with pytest.raises(DataError, match=r"name a slip\.toml or the folder"):
         read_slip(tmp_path)
-
-
-def test_files_of_one_name_are_told_apart_by_as_few_folders_as_needed():
-    assert _distinct_names(["data/a.csv", "data/b.csv"]) == ["a.csv", "b.csv"]
-    runs = ["data/run1/log.mcap", "data/run2/log.mcap"]
-    assert _distinct_names(runs) == ["run1/log.mcap", "run2/log.mcap"]
-    assert _distinct_names(["x/r/log.mcap", "y/r/log.mcap"]) == ["x/r/log.mcap", "y/r/log.mcap"]
-    assert _distinct_names([]) == []
 
 
 def test_a_fit_is_read_back_with_its_curve_and_draws(tmp_path):

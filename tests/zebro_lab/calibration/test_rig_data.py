@@ -10,10 +10,10 @@ import pytest
 
 from model.slip import convert_slip
 from support.rig_tables import RADII, N, columns, given_slip, louder, speeds, write
+from support.table_runs import slip_rig_run
 from zebro_lab.calibration.rig_data import RigData, read_rig_data
 from zebro_lab.files.errors import SettingsError
 from zebro_lab.mcap.slip_rig_log import SlipRigTable
-from zebro_lab.runs.table_run import write_slip_rig_run
 
 
 def assert_same(found: RigData, expected: RigData) -> None:
@@ -92,7 +92,7 @@ def test_foreign_names_units_and_signs_are_converted(tmp_path, plain):
 
 def test_run_folder_reads_as_its_table(tmp_path, plain):
     table = SlipRigTable(*speeds().to_numpy().T)
-    folder = write_slip_rig_run(
+    folder = slip_rig_run(
         tmp_path / "DATA", table, label="rig", material="steel", operator="a", source="sim:test",
         start=datetime(2026, 1, 2, tzinfo=UTC), radius_leg=0.035, radius_ground=0.12,
     )  # fmt: skip
@@ -106,7 +106,7 @@ def test_run_folder_reads_as_its_table(tmp_path, plain):
 
 def test_row_conditions_and_load_cell_apply_to_run_folders(tmp_path):
     table = SlipRigTable(*speeds().to_numpy().T)
-    folder = write_slip_rig_run(
+    folder = slip_rig_run(
         tmp_path / "DATA", table, label="rig", material="steel", operator="a", source="sim:test",
         start=datetime(2026, 1, 2, tzinfo=UTC), radius_leg=0.035, radius_ground=0.12,
     )  # fmt: skip

@@ -14,7 +14,8 @@ import pytest
 from model.errors import DefinitionMismatch
 from zebro_lab.calibration import stage
 from zebro_lab.calibration.folder import read_slip
-from zebro_lab.calibration.stage import CalibrationRequest, Stopped, calibrate
+from zebro_lab.calibration.request import CalibrationRequest
+from zebro_lab.calibration.stage import Stopped, calibrate
 from zebro_lab.files.errors import AlreadyExists, SettingsError
 
 PICTURES = {f"{name}.png" for name in ("curves", "surface", "corner", "traces", "residuals")}
@@ -224,12 +225,13 @@ def test_slip_toml_gives_back_the_posterior(uninterrupted):
     assert curve.definition == "material"
 
 
-def test_slip_toml_refuses_other_slip_and_flags_untested_loads(uninterrupted):
+def test_slip_toml_refuses_other_slip_and_keeps_the_tested_loads(uninterrupted):
     curve = read_slip(uninterrupted)
     assert curve.force(0.05, 6.0, definition="material") > 0
     with pytest.raises(DefinitionMismatch):
         curve.force(0.05, 6.0, definition="travel")
-    assert curve.untested_loads([0.5, 6.0, 40.0]).tolist() == [True, False, True]
+    low, high = curve.load_range
+    assert 0.5 < low < 6.0 < high < 40.0
 
 
 def test_posterior_nc_has_an_ensemble_as_a_chain(uninterrupted):

@@ -21,13 +21,14 @@ from support.walk_posteriors import (
 )
 from support.watchers import Nobody
 from zebro_lab.calibration.slip_argument import parse_slip
-from zebro_lab.calibration.walks_folder import FOLDER, read_walks_beside
+from zebro_lab.calibration.walks_folder import FOLDER, read_stored_walks
 from zebro_lab.files.errors import DataError, SettingsError
-from zebro_lab.report.stage import ReportRequest, report
+from zebro_lab.report.request import ReportRequest
+from zebro_lab.report.stage import report
 from zebro_lab.walk.folder import read_walk, read_walk_manifest
-from zebro_lab.walk.path_band import BandRequest, read_draws
-from zebro_lab.walk.predict_stage import PredictRequest, predict
-from zebro_lab.walk.walking import ModelRequest
+from zebro_lab.walk.path_band import read_draws
+from zebro_lab.walk.predict_stage import predict
+from zebro_lab.walk.request import BandRequest, ModelRequest, PredictRequest
 
 
 @pytest.fixture
@@ -98,7 +99,7 @@ def test_steering_that_walks_found_turns_the_predicted_path(calibration, legs, t
     informed = predict_log(tmp_path, other, str(calibration))
     turned = informed.path.yaw[-1] - plain.path.yaw[-1]
     assert turned == pytest.approx(0.1 * plain.path.length, rel=0.03)
-    assert "legs and floor as one, two have them" in " ".join(informed.notes)
+    assert "legs and floor are those fitted to one, two" in " ".join(informed.notes)
 
 
 def test_a_band_is_drawn_from_what_walks_said(calibration, legs, tmp_path):
@@ -115,8 +116,8 @@ def test_a_band_is_drawn_from_what_walks_said(calibration, legs, tmp_path):
 def test_offsets_that_walks_told_are_not_asked_for_again(calibration, legs, tmp_path):
     stored(calibration, legs, posterior_of(None))
     request = PredictRequest(
-        legs[0], ModelRequest(tmp_path / "out", slip=str(calibration)),
-        band=BandRequest(5, offset_sd_deg=1.0),
+        legs[0], tmp_path / "out",
+        model=ModelRequest(slip=str(calibration), band=BandRequest(5, offset_sd_deg=1.0)),
     )  # fmt: skip
     with pytest.raises(SettingsError, match="offset-sd-deg"):
         predict(request, Nobody())
@@ -136,10 +137,10 @@ def test_a_report_tells_what_walks_said_and_what_they_did_not(calibration, legs,
     page = tmp_path / "report.html"
     report(ReportRequest(run, calibration, page), made=datetime(2026, 1, 2, tzinfo=UTC))
     text = page.read_text()
-    assert "What walks said of legs and floor" in text
+    assert "Legs and floor estimated from tracked walks" in text
     assert "Mounted wrong: leg 3" in text
     assert "SIMULATED: sim:dynamics, sim:test" in text
     assert text.count("data:image/png") >= 1
-    told = read_walks_beside(calibration / "slip.toml").posterior.contractions()
+    told = read_stored_walks(calibration / "slip.toml").posterior.contractions()
     silent = next(each.name for each in told if not each.informed)
     assert silent.replace("_", " ") in text

@@ -7,7 +7,8 @@ import pytest
 from support.watchers import Onlooker
 from zebro_lab.exchange.export_stage import FORMATS, export_run
 from zebro_lab.files.errors import AlreadyExists
-from zebro_lab.recording.stage import RecordRequest, record
+from zebro_lab.recording.request import RecordRequest
+from zebro_lab.recording.stage import record
 from zebro_lab.runs.folder import read_slip_rig_run
 from zebro_lab.runs.legs import read_leg_log
 from zebro_lab.tables.table_files import read_table_file
@@ -17,7 +18,7 @@ from zebro_lab.tables.table_files import read_table_file
 def recorded(tmp_path_factory):
     """Return a run folder of a simulated robot and rig."""
     data = tmp_path_factory.mktemp("data")
-    return record(RecordRequest(data, "x", zebro="sim", rig="sim", duration=2.0), Onlooker()).folder
+    return record(RecordRequest("x", data, zebro="sim", rig="sim", duration=2.0), Onlooker()).folder
 
 
 @pytest.mark.parametrize("form", FORMATS)

@@ -3,8 +3,8 @@
 
 import pytest
 
-from zebro_lab.runs.folder import read_manifest
 from zebro_lab.runs.legs import read_leg_log
+from zebro_lab.runs.manifest import read_manifest
 
 
 def test_options_reach_the_run_and_it_is_named(files, tmp_path, run_command):

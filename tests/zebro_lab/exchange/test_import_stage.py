@@ -11,12 +11,12 @@ from support.imported_files import COLUMNS, THETA, YAW, T, everything, taken
 from support.watchers import Nobody
 from zebro_lab.exchange.export_stage import export_run
 from zebro_lab.files.errors import DataError, NotFound, SettingsError
-from zebro_lab.runs.folder import read_manifest
 from zebro_lab.runs.legs import read_leg_log
+from zebro_lab.runs.manifest import read_manifest
 from zebro_lab.track.file import read_track
-from zebro_lab.validation.stage import pairs_of_run
-from zebro_lab.walk.predict_stage import PredictRequest, predict
-from zebro_lab.walk.walking import ModelRequest
+from zebro_lab.validation.predicted_walks import pairs_of_run
+from zebro_lab.walk.predict_stage import predict
+from zebro_lab.walk.request import ModelRequest, PredictRequest
 
 
 def test_leg_angles_come_back_in_si_whatever_their_names_and_units(files, tmp_path):
@@ -46,12 +46,12 @@ def test_a_track_is_what_validate_takes(files, tmp_path, track):
 
 def test_a_run_is_walked_by_the_robot_it_keeps(files, tmp_path):
     folder, _ = everything(files, tmp_path)
-    model = ModelRequest(out=tmp_path / "out", model="no-slip-simple")
-    walked = predict(PredictRequest(log=folder, model=model), Nobody())
+    model = ModelRequest(model="no-slip-simple")
+    walked = predict(PredictRequest(folder, tmp_path / "out", model=model), Nobody())
     assert walked.described.robot.mass == 3.0
-    other = ModelRequest(out=tmp_path / "other", model="no-slip-simple", robot=files / "r.toml")
+    other = ModelRequest(model="no-slip-simple", robot=files / "r.toml")
     (files / "r.toml").write_text("mass = 2.0")
-    walked = predict(PredictRequest(log=folder, model=other), Nobody())
+    walked = predict(PredictRequest(folder, tmp_path / "other", model=other), Nobody())
     assert walked.described.robot.mass == 2.0
 
 

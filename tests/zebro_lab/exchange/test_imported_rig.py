@@ -10,7 +10,7 @@ import pytest
 from support.imported_files import taken
 from zebro_lab.calibration.rig_data import read_rig_data
 from zebro_lab.files.errors import DataError
-from zebro_lab.runs.folder import read_manifest
+from zebro_lab.runs.manifest import read_manifest
 
 
 def test_a_rigs_table_is_calibrated_as_the_table_itself(sweep, tmp_path):

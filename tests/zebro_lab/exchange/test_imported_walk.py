@@ -15,8 +15,7 @@ from support.imported_files import COLUMNS, T, everything
 from zebro_lab.files.errors import AlreadyExists
 from zebro_lab.files.provenance import file_hash
 from zebro_lab.mcap.raw_log import read_raw_log
-from zebro_lab.runs.folder import read_manifest
-from zebro_lab.runs.manifest import profile_file
+from zebro_lab.runs.manifest import profile_file, read_manifest
 from zebro_lab.runs.stage import list_runs
 
 
@@ -62,7 +61,7 @@ def test_the_profile_of_a_table_is_no_devices(files, tmp_path):
     folder, _ = everything(files, tmp_path)
     profile = load_leg_profile(str(profile_file(folder, "legs")))
     for make in (lambda: leg_link(profile, "x"), lambda: leg_driver(profile, None)):
-        with pytest.raises(ProfileError, match="no device"):
+        with pytest.raises(ProfileError, match="not a device"):
             make()
 
 

@@ -11,8 +11,8 @@ from zebro_lab.exchange.joint_log import read_joint_log
 from zebro_lab.files.errors import DataError
 from zebro_lab.mcap.message_log import MessageLog
 from zebro_lab.mcap.ros_messages import JOINT_STATE, joint_state
-from zebro_lab.runs.folder import read_manifest
 from zebro_lab.runs.legs import read_leg_log
+from zebro_lab.runs.manifest import read_manifest
 
 
 def test_a_ros_log_of_joint_states_is_a_leg_log(files, tmp_path):

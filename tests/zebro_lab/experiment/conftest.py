@@ -8,9 +8,10 @@ from types import SimpleNamespace
 import pytest
 
 from rig.experiment.control import Control
-from rig.experiment.watcher import NobodyWatches
+from rig.experiment.watcher import ExperimentWatcher
 from zebro_lab.experiment.journal import JOURNAL_FILE
-from zebro_lab.experiment.stage import RigRunRequest, run_experiment
+from zebro_lab.experiment.request import RigRunRequest
+from zebro_lab.experiment.stage import run_experiment
 
 THESIS_PLAN = Path(__file__).parents[3] / "examples" / "plan-source.toml"
 SMALL = {
@@ -43,10 +44,10 @@ def _plan(tmp_path):
 
 def run(plan, data, *, watcher=None, control=None, **options):
     request = RigRunRequest(plan, "sim", data, fast=True, **options)
-    return run_experiment(request, watcher or NobodyWatches(), control or Control())
+    return run_experiment(request, watcher or ExperimentWatcher(), control or Control())
 
 
-class StopAfter(NobodyWatches):
+class StopAfter(ExperimentWatcher):
     """Asks for a stop after so many points."""
 
     def __init__(self, count, action):

@@ -10,7 +10,8 @@ from rig.errors import RigError
 from rig.experiment.sink import SinkFailed
 from zebro_lab.calibration.rig_data import read_rig_data
 from zebro_lab.experiment.folder import ExperimentFolder
-from zebro_lab.runs.folder import find_runs, read_manifest
+from zebro_lab.runs.folder import find_runs
+from zebro_lab.runs.manifest import read_manifest
 
 
 def test_each_point_is_a_run_that_a_calibration_reads(lab, plan, tmp_path):

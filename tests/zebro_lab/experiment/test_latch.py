@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 
 from rig.errors import RigError
-from rig.experiment.acquire import GuardedAcquisition
 from rig.experiment.control import Control
+from rig.experiment.guards import RigGuards
 from rig.safety import StopCategory
 from zebro_lab.experiment.journal import JOURNAL_FILE, JournalWriter
 from zebro_lab.experiment.latch import LATCH_FILE, EmergencyLatch
@@ -41,16 +41,16 @@ def test_a_line_separator_in_the_reason_releases_nothing(lab, plan, tmp_path, se
 
 def test_an_emergency_beside_a_guard_is_latched(lab, plan, tmp_path, monkeypatch):
     plan.write_text(plan.read_text().replace("traction_force = 15.0", "traction_force = 0.6"))
-    data, control, guard = tmp_path / "data", Control(), GuardedAcquisition._guard
+    data, control, guard = tmp_path / "data", Control(), RigGuards.check
 
-    def trip(self, batch, now):
+    def trip(self, batch, **state):
         try:
-            guard(self, batch, now)
+            guard(self, batch, **state)
         except RigError:  # the operator sees it in the same moment
             control.stop.request(StopCategory.EMERGENCY, "planted")
             raise
 
-    monkeypatch.setattr(GuardedAcquisition, "_guard", trip)
+    monkeypatch.setattr(RigGuards, "check", trip)
     with pytest.raises(RigError, match="traction force"):
         lab.run(plan, data, control=control)
     with pytest.raises(SettingsError, match="latched"):

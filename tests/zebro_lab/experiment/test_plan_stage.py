@@ -26,9 +26,9 @@ def test_the_sources_plan_is_foreseen():
 
 
 def test_guards_that_are_off_are_named(plan):
-    said = "guards that are off, as the plan wants: silence (3 s), reading_age (3 s), speed_error_t"
+    said = "guards switched off by the plan: silence (3 s), reading_age (3 s), speed_error_t"
     assert said in zebro_lab("plan", plan).output
-    assert "guards that are off" not in zebro_lab("plan", THESIS_PLAN).output
+    assert "guards switched off" not in zebro_lab("plan", THESIS_PLAN).output
 
 
 def test_every_step_is_listed_where_asked(plan):

@@ -7,8 +7,8 @@ from collections import Counter
 
 import pytest
 
-from zebro_lab.runs.folder import find_runs, read_manifest
-from zebro_lab.runs.manifest import MANIFEST_FILE
+from zebro_lab.runs.folder import find_runs
+from zebro_lab.runs.manifest import MANIFEST_FILE, read_manifest
 
 KILLED_BEFORE_A_POINTS_LINE = """
 import os, signal, sys
@@ -65,15 +65,15 @@ def killed_run_at_exclusion(plan, data):
     """Run a plan in a process that is killed right after the first run's end record."""
     code = """
 import os, signal
-from zebro_lab.recording import recorder
-write = recorder.write_manifest
+from zebro_lab.recording import run_files
+write = run_files.write_manifest
 
 def killed(folder, manifest):
     write(folder, manifest)
     if manifest.exit_status != "recording":
         os.kill(os.getpid(), signal.SIGKILL)
 
-recorder.write_manifest = killed
+run_files.write_manifest = killed
 from zebro_lab.main import main
 main()
 """

@@ -23,7 +23,7 @@ def test_a_fast_twin_passes_its_own_time_and_knows_its_truth():
         assert rig.fast
         assert rig.truth["rig"]["law"] == "magic-formula"
         assert rig.profiles["rig"][0] == TWIN_PROFILE
-        assert set(rig.views()) == {"board"}
+        assert {stream.name for stream in rig.bench.streams} == {"board"}
         profile = rig.bench.profile
         assert rig.constants == {
             "radius_leg": profile.radius_leg, "radius_ground": profile.radius_ground,
@@ -40,7 +40,7 @@ def test_each_seed_is_a_rig_of_its_own_and_one_seed_the_same_again():
 
 def test_drives_and_load_cell_have_views_of_their_own():
     with rig_at_hand("rig-odrive-netft@sim") as rig:
-        assert set(rig.views()) == {"drives", "load_cell"}
+        assert {stream.name for stream in rig.bench.streams} == {"drives", "load_cell"}
         assert rig.twin is not None
 
 
@@ -61,7 +61,7 @@ def test_a_twin_has_an_operator_and_an_axis():
 @pytest.mark.parametrize(("address", "error", "said"), [
     ("rig-board-serial@/dev/null", SettingsError, "only a simulated rig's time"),
     ("rig-odrive-netft@sim", SettingsError, "runs in real time only"),
-    ("replay:RUN", ProfileError, "only plays what was recorded"),
+    ("replay:RUN", ProfileError, "replays a recording"),
 ])  # fmt: skip
 def test_what_cannot_be_fast_says_so(address, error, said):
     with pytest.raises(error, match=said), rig_at_hand(address, fast=True):

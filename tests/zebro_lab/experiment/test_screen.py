@@ -13,8 +13,9 @@ from rig.experiment.steps import Point
 from rig.experiment.verdict import PointVerdict
 from rig.safety import StopCategory
 from support.experiment_plans import short_plan
+from zebro_lab.experiment.request import RigRunRequest
 from zebro_lab.experiment.screen import ExperimentScreen, experiment_screen, slip_chart
-from zebro_lab.experiment.stage import RigRunRequest, run_experiment
+from zebro_lab.experiment.stage import run_experiment
 
 
 @pytest.fixture(name="plan")
@@ -90,5 +91,5 @@ def test_a_hold_is_visible_and_says_which_key_goes_on(plan, tmp_path):
     shown = console.file.getvalue()
     assert "HOLDING" in shown
     assert "discs energised" in shown
-    assert "r: go on" in shown
+    assert "r: resume" in shown
     assert "safe stop" in shown

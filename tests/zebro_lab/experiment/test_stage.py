@@ -16,7 +16,7 @@ from rig.links.serve import PortServer
 from rig.safety import StopCategory
 from rig.slip_rig.imperfections import TYPICAL_RIG
 from rig.slip_rig.profile import load_rig_profile
-from rig.slip_rig.simulated import RigDynamics, simulated_rig
+from rig.slip_rig.simulated import RigDynamics, SimulatedRig
 from rig.slip_rig.simulated_board import SimulatedBoard
 from rig.slip_rig.sweep import SweepPlan
 from zebro_lab.calibration.rig_data import read_rig_data
@@ -65,7 +65,7 @@ def test_an_experiment_is_not_begun_twice_nor_resumed_with_another_plan(lab, pla
     with pytest.raises(AlreadyExists, match="--resume"):
         lab.run(plan, data)
     plan.write_text(plan.read_text() + "# changed\n")
-    with pytest.raises(SettingsError, match="not the plan that was begun here"):
+    with pytest.raises(SettingsError, match="was started with another plan"):
         lab.run(plan, data, resume=True)
 
 
@@ -73,7 +73,7 @@ def test_an_emergency_stop_stays_latched_on_disk_until_it_is_reset(lab, plan, tm
     data, control = tmp_path / "data", Control()
     stop = lab.StopAfter(2, lambda: control.stop.request(StopCategory.EMERGENCY, "planted"))
     assert lab.run(plan, data, watcher=stop, control=control).reason == "emergency stop: planted"
-    with pytest.raises(SettingsError, match="latched; look after the rig"):
+    with pytest.raises(SettingsError, match="latched; inspect the rig"):
         lab.run(plan, data, resume=True)
     assert lab.run(plan, data, resume=True, reset_emergency=True).completed
     assert lab.run(plan, data, resume=True).attempts == 0  # the latch is gone
@@ -93,7 +93,7 @@ class Rig:
         profile = load_rig_profile("rig-board-serial")
         rng = np.random.default_rng(0)
         self.data = data
-        self.rig = simulated_rig(
+        self.rig = SimulatedRig(
             plan=SweepPlan(), imperfections=TYPICAL_RIG, dynamics=RigDynamics(), rng=rng
         )
         self.rig.load = 1e-3
@@ -117,7 +117,7 @@ class Rig:
             try:
                 status = command_run(self.data, "status")
                 again, before = status == before, status
-                if status.startswith("take all load"):
+                if status.startswith("remove all load"):
                     self.rig.load = 1e-3
                 elif status.startswith("set the normal force"):
                     self.rig.load = float(status.split()[5])

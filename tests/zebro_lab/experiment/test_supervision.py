@@ -17,8 +17,8 @@ from rig.experiment.supervision import supervised
 from zebro_lab.experiment import folder as experiment_folder
 from zebro_lab.experiment.folder import ExperimentFolder
 from zebro_lab.experiment.journal import JOURNAL_FILE, JournalWriter
-from zebro_lab.recording.recorder import RunDescription
-from zebro_lab.runs.folder import find_runs, read_manifest
+from zebro_lab.runs.folder import find_runs
+from zebro_lab.runs.manifest import RunManifest, read_manifest
 
 PATIENCE = 30.0
 """Longest time that a run of the small plan may take on a busy machine [s]."""
@@ -47,7 +47,7 @@ def ends(data):
 def test_whatever_ends_the_writer_stops_the_experiment(lab, plan, tmp_path, monkeypatch):
     monkeypatch.setattr(JournalWriter, "append", fail_once(JournalWriter.append, "note"))
     data, control = tmp_path / "data", Control()
-    note = lab.StopAfter(2, lambda: control.obey("note hello", who="test"))
+    note = lab.StopAfter(2, lambda: control.execute("note hello", who="test"))
     with pytest.raises(SinkFailed, match="RuntimeError: planted"):
         lab.run(plan, data, watcher=note, control=control)
     assert "RuntimeError: planted" in ends(data)[-1]
@@ -88,10 +88,10 @@ def folder_without_writer(data, monkeypatch, *, in_step):
         return get(self, *args, **kwargs)
 
     monkeypatch.setattr(queue.Queue, "get", fail)
-    description = RunDescription("slip-rig", "test", "sim:rig")
+    manifest = RunManifest(kind="slip-rig", label="test", source="sim:rig")
     with (
         supervised(Control()),
-        ExperimentFolder(data, description=description, views=dict, in_step=in_step) as folder,
+        ExperimentFolder(data, manifest=manifest, profiles={}, in_step=in_step) as folder,
     ):
         folder._thread.join(PATIENCE)
         assert not folder._thread.is_alive()
@@ -112,14 +112,14 @@ def test_nobody_waits_for_a_writer_that_is_dead(tmp_path, monkeypatch):
         contextlib.suppress(SinkFailed),  # which leaving the folder raises too
         folder_without_writer(tmp_path, monkeypatch, in_step=True) as folder,
     ):
-        require_well, looks = folder._require_well, iter(range(20))
+        require_well, looks = folder._require_working, iter(range(20))
 
         def look():
             if next(looks, None) is None:
                 raise WaitsOn
             require_well()
 
-        monkeypatch.setattr(folder, "_require_well", look)
+        monkeypatch.setattr(folder, "_require_working", look)
         with pytest.raises(SinkFailed, match="the writer has ended"):
             folder.close_run(None, reason="failed")
         monkeypatch.undo()
@@ -129,7 +129,7 @@ def test_nobody_waits_for_a_writer_that_is_dead(tmp_path, monkeypatch):
 def test_a_note_of_undecodable_bytes_is_kept_and_stops_nothing(lab, plan, tmp_path):
     data, control = tmp_path / "data", Control()
     typed = b"note caf\xe9".decode("utf-8", "surrogateescape")
-    note = lab.StopAfter(2, lambda: control.obey(typed, who="keyboard"))
+    note = lab.StopAfter(2, lambda: control.execute(typed, who="keyboard"))
     assert lab.run(plan, data, watcher=note, control=control).completed
     assert b"caf" in (data / JOURNAL_FILE).read_bytes()
 
@@ -179,10 +179,10 @@ def test_a_full_queue_cannot_block_the_stop(tmp_path, monkeypatch):
     monkeypatch.setattr(JournalWriter, "append", hang)
     monkeypatch.setattr(experiment_folder, "MOST_WAITING", 4)
     monkeypatch.setattr(experiment_folder, "JOIN_LIMIT", 0.2)
-    description = RunDescription("slip-rig", "test", "sim:rig")
+    manifest = RunManifest(kind="slip-rig", label="test", source="sim:rig")
 
     def overfill():
-        with ExperimentFolder(tmp_path, description=description, views=dict) as folder:
+        with ExperimentFolder(tmp_path, manifest=manifest, profiles={}) as folder:
             for number in range(10):
                 folder.event("note", str(number))
                 assert entered.wait(PATIENCE)

@@ -7,13 +7,14 @@ from dataclasses import replace
 import pytest
 
 from rig.experiment.control import Control
+from zebro_lab.experiment.request import WeighRequest
 from zebro_lab.experiment.rig_at_hand import rig_at_hand
-from zebro_lab.experiment.weigh_stage import WeighRequest, render_load_cell, weigh_masses
+from zebro_lab.experiment.weigh_stage import render_load_cell, weigh_masses
 from zebro_lab.files.errors import AlreadyExists, SettingsError
 
 
 def test_a_weighing_gives_the_gain_its_prior(tmp_path):
-    request = WeighRequest((0.2, 0.5, 1.0), "sim", tmp_path, fast=True)
+    request = WeighRequest("sim", (0.2, 0.5, 1.0), tmp_path, fast=True)
     weighing, check, written = weigh_masses(request, lambda text, normal: None, Control())
     with rig_at_hand("sim", seed=request.seed, fast=True) as rig:
         gain = rig.truth["rig"]["imperfections"]["gain_normal"]
@@ -27,7 +28,7 @@ def test_a_weighing_gives_the_gain_its_prior(tmp_path):
 @pytest.mark.parametrize("bad", [{"weight_sd": math.inf}, {"weight_sd": math.nan},
                                  {"gravity": math.nan}, {"masses": (0.2, math.inf)}])  # fmt: skip
 def test_numbers_that_are_not_finite_are_not_weighed(bad, tmp_path):
-    request = replace(WeighRequest((0.2, 1.0), "sim", tmp_path, fast=True), **bad)
+    request = replace(WeighRequest("sim", (0.2, 1.0), tmp_path, fast=True), **bad)
     with pytest.raises(SettingsError, match="finite"):
         weigh_masses(request, lambda text, normal: None, Control())
     assert list(tmp_path.iterdir()) == []

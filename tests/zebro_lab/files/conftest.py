@@ -7,7 +7,8 @@ from pathlib import Path
 import pytest
 
 from support.compared_folders import calibration
-from zebro_lab.validation.compare.stage import CompareRequest, compare
+from zebro_lab.validation.compare.request import CompareRequest
+from zebro_lab.validation.compare.stage import compare
 
 
 @pytest.fixture

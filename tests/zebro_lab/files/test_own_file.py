@@ -11,12 +11,13 @@ import pytest
 from PIL import Image
 from PIL.PngImagePlugin import PngInfo
 
+from support.table_runs import slip_rig_run
 from support.written_tracks import content
 from zebro_lab.files.errors import ZebroLabError
 from zebro_lab.mcap.slip_rig_log import SlipRigTable
-from zebro_lab.report.stage import ReportRequest, report
+from zebro_lab.report.request import ReportRequest
+from zebro_lab.report.stage import report
 from zebro_lab.runs.plot_stage import plot_run
-from zebro_lab.runs.table_run import write_slip_rig_run
 from zebro_lab.track.annotate_stage import draw_grid
 
 START = datetime(2026, 3, 4, 5, 6, 7, tzinfo=UTC)
@@ -30,7 +31,7 @@ def run(tmp_path) -> Path:
         np.arange(n) * 1e-3, 12 + rng.normal(size=n) / 10, 2 + rng.normal(size=n) / 10,
         6 + rng.normal(size=n) / 10, rng.normal(size=n),
     )  # fmt: skip
-    return write_slip_rig_run(
+    return slip_rig_run(
         tmp_path / "data", table, label="sweep", material="POM", operator="a", source="real",
         start=START, radius_leg=0.035, radius_ground=0.12,
     )  # fmt: skip

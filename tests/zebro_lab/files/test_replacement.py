@@ -14,7 +14,8 @@ from support.written_tracks import content, write_track
 from zebro_lab.files import replacement
 from zebro_lab.files.errors import ZebroLabError
 from zebro_lab.track.folder import read_track_manifest
-from zebro_lab.validation.compare.stage import CompareRequest, compare
+from zebro_lab.validation.compare.request import CompareRequest
+from zebro_lab.validation.compare.stage import compare
 
 
 class Killed(BaseException):

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from support.written_tracks import Track, content, write_track
+from support.written_tracks import content, path_from, write_track
 from zebro_lab.files.errors import ZebroLabError
 from zebro_lab.files.result_folder import require_replaceable
 from zebro_lab.track.folder import TRACKED, read_track_manifest, track_folder
@@ -50,7 +50,7 @@ def test_another_commands_result_is_kept(tmp_path, compared):
 
 def test_a_manifest_that_names_a_file_of_a_foreign_encoding_is_read_back(tmp_path):
     with track_folder(
-        tmp_path / "track", Track(0.0), source="real", settings={}, inputs={"caf\udce9": "0"},
+        tmp_path / "track", **path_from(0.0), source="real", settings={}, inputs={"caf\udce9": "0"},
         report={},
     ):  # fmt: skip
         pass
@@ -69,7 +69,7 @@ def test_drafts_of_killed_writers_are_removed_and_those_of_living_ones_kept(tmp_
     (tmp_path / ".track.0123abcd.part").mkdir()
     (tmp_path / ".tracks.0123abcd.part").mkdir()
     with track_folder(
-        tmp_path / "track", Track(0.0), source="real", settings={}, inputs={}, report={}
+        tmp_path / "track", **path_from(0.0), source="real", settings={}, inputs={}, report={}
     ) as draft:
         write_track(tmp_path / "track", 1.0)
         assert draft.is_dir()

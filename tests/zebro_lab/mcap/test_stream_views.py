@@ -9,7 +9,7 @@ import pytest
 from rig.device import Sample
 from rig.zebro.profile import decode_angles
 from support.logs import LEGS, VIEWS, by_topic, log_of
-from zebro_lab.mcap.stream_views import LegsView
+from zebro_lab.mcap.stream_views import UnwrappedAngles
 
 
 def test_joint_states_wrenches_and_imu_are_in_si():
@@ -37,6 +37,6 @@ def test_shown_angles_go_on_where_the_batch_before_ended():
         Sample(0.01 * n, 0.01 * n, n, tuple((7 * n + leg) % 100 for leg in range(6)))
         for n in range(60)
     ]
-    view = LegsView("legs", profile=LEGS)
-    shown = [view._continued(turning[first : first + 7]) for first in range(0, 60, 7)]
+    unwrapped = UnwrappedAngles(LEGS)
+    shown = [unwrapped(turning[first : first + 7]) for first in range(0, 60, 7)]
     np.testing.assert_allclose(np.vstack(shown), decode_angles(LEGS, turning).theta)

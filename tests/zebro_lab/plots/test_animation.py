@@ -19,7 +19,7 @@ def film(walked, tmp_path_factory):
         patch.setattr(FFMpegWriter, "isAvailable", classmethod(lambda _: False))
         file = animate(
             walked.part(slice(101)), Robot(), tmp_path_factory.mktemp("film"), title="A walk",
-            simulated=True, progress=progress.append,
+            progress=progress.append,
         )  # fmt: skip
     assert file.name == "animation.gif"
     with Image.open(file) as image:

@@ -31,7 +31,7 @@ def test_runs_of_one_block_leave_a_note_in_place_of_lags(few):
 
 def test_wild_residuals_are_counted_and_do_not_squeeze_the_histogram(one_load):
     whitened = np.append(np.zeros(60), [50.0, -1e6])
-    marks = {"run_score": np.array([0.0, 3.0]), "title": "Bad", "simulated": True}
+    marks = {"run_score": np.array([0.0, 3.0]), "simulated": True}
     figure = residuals(one_load.blocks, whitened=whitened, **marks)
     assert figure.axes[1].get_xlim()[1] < 10
     legends = [axes.get_legend() for axes in figure.axes]

@@ -17,7 +17,7 @@ from zebro_lab.plots.walk_legs import (
 
 
 def test_legs_are_where_they_are_on_the_robot(walked):
-    figure = normal_forces(walked, title="A walk", simulated=True)
+    figure = normal_forces(walked, title="A walk")
     names = [axes.get_title(loc="left") for axes in figure.axes]
     assert names[0] == "leg 1, left front"
     assert names[5] == "leg 6, right rear"
@@ -38,13 +38,13 @@ def test_paired_traction_leaves_nothing_of_what_alternates(walked):
     sign = np.where(np.arange(len(walked.t)) % 2 == 0, 5.0, -5.0)[:, None, None]
     chatter = replace(walked, traction_force=walked.traction_force + sign)
     for axes, noisy in zip(
-        *(paired_traction(p, title="", simulated=True).axes for p in (walked, chatter)), strict=True
+        *(paired_traction(p, title="").axes for p in (walked, chatter)), strict=True
     ):
         np.testing.assert_allclose(axes.lines[1].get_ydata(), noisy.lines[1].get_ydata(), atol=1e-9)
 
 
 def test_bars_of_contact_are_the_stances_of_each_leg(walked):
-    (axes,) = gantt(walked, title="A walk", simulated=True).axes
+    (axes,) = gantt(walked, title="A walk").axes
     assert len(axes.collections) == 6
     for leg, bars in enumerate(axes.collections):
         boxes = [path.get_extents() for path in bars.get_paths()]

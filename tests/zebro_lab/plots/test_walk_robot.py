@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
 from model.robot import Robot
-from zebro_lab.plots.walk_robot import body_corners, leg_arcs, outline, rotation, to_world
+from zebro_lab.plots.walk_robot import body_corners, leg_arcs, outline, to_world
 
 angles = st.floats(-3, 3)
 
@@ -16,7 +16,8 @@ angles = st.floats(-3, 3)
 @given(angles, angles, angles)
 def test_rotation_is_roll_then_pitch_then_yaw(roll, pitch, yaw):
     expected = Rotation.from_euler("ZYX", [yaw, pitch, roll]).as_matrix()
-    np.testing.assert_allclose(rotation(np.array([roll, pitch, yaw])), expected, atol=1e-12)
+    turned = to_world(np.eye(3), np.zeros(3), np.array([roll, pitch, yaw]))
+    np.testing.assert_allclose(turned, expected.T, atol=1e-12)
 
 
 @given(st.lists(st.floats(0.0, 2 * np.pi), min_size=6, max_size=6), st.floats(np.pi, 4.0))

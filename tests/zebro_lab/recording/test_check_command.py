@@ -2,12 +2,9 @@
 """`zebro check` asks a person and writes a profile."""
 
 import subprocess
-import sys
-from pathlib import Path
 
 from rig.zebro.profile import load_leg_profile
-
-COMMAND = str(Path(sys.executable).with_name("zebro-lab"))
+from support.commands import COMMAND
 
 
 def test_zebro_check_fixes_order_and_writes_a_profile(tmp_path):

@@ -11,7 +11,8 @@ from rig.zebro.check import MovedLeg
 from rig.zebro.profile import load_leg_profile
 from zebro_lab.files.errors import AlreadyExists
 from zebro_lab.recording import check_stage
-from zebro_lab.recording.check_stage import CheckRequest, check_zebro, latest_counts_as_targets
+from zebro_lab.recording.check_stage import check_zebro, latest_counts_as_targets
+from zebro_lab.recording.request import CheckRequest
 
 
 class Person:
@@ -46,7 +47,7 @@ def test_a_profile_that_is_there_is_kept_and_no_robot_moved(tmp_path):
 
 
 def test_a_replay_is_no_robot(tmp_path):
-    with pytest.raises(ProfileError, match="only plays what was recorded"):
+    with pytest.raises(ProfileError, match="replays a recording"):
         check_zebro(CheckRequest("replay:RUN", tmp_path / "mine.toml"), Person())
     assert list(tmp_path.iterdir()) == []
 

@@ -10,12 +10,13 @@ from rig.slip_rig.profile import load_rig_profile
 from support.watchers import RecordWatcher
 from zebro_lab.files.errors import SettingsError
 from zebro_lab.recording.devices import ForceCheck
-from zebro_lab.recording.stage import RecordRequest, record
+from zebro_lab.recording.request import RecordRequest
+from zebro_lab.recording.stage import record
 from zebro_lab.runs.folder import read_slip_rig_run
 
 
 def test_a_board_is_data_for_a_calibration(tmp_path):
-    request = RecordRequest(tmp_path, "board", rig="rig-board-serial@sim", duration=30.0)
+    request = RecordRequest("board", tmp_path, rig="rig-board-serial@sim", duration=30.0)
     recorded = record(request, RecordWatcher(samples={"board": 600}))
     table = read_slip_rig_run(recorded.folder).table
     assert len(table) >= 600
@@ -34,7 +35,7 @@ def test_a_board_is_data_for_a_calibration(tmp_path):
 )
 def test_what_cannot_be_recorded_leaves_nothing(tmp_path, changes, error, message):
     with pytest.raises(error, match=message):
-        record(RecordRequest(tmp_path, "x", **changes), RecordWatcher())
+        record(RecordRequest("x", tmp_path, **changes), RecordWatcher())
     assert list(tmp_path.iterdir()) == []
 
 
@@ -42,7 +43,7 @@ def test_a_malformed_profile_is_named_and_leaves_nothing(tmp_path):
     profile = tmp_path / "mine.toml"
     profile.write_text('schema = 1\ndevice = "legs"\n')
     with pytest.raises(ProfileError, match=r"mine\.toml"):
-        record(RecordRequest(tmp_path / "data", "x", zebro=f"{profile}@sim"), RecordWatcher())
+        record(RecordRequest("x", tmp_path / "data", zebro=f"{profile}@sim"), RecordWatcher())
     assert not (tmp_path / "data").exists()
 
 

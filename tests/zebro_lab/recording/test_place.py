@@ -8,7 +8,7 @@ import pytest
 
 from support.recorders import count_in, recorder, some, until
 from zebro_lab.mcap.raw_log import read_raw_log
-from zebro_lab.runs.folder import read_manifest
+from zebro_lab.runs.manifest import read_manifest
 
 REMOVALS = {
     "the run folder removed": lambda folder: shutil.rmtree(folder),

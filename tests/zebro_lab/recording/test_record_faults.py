@@ -7,17 +7,14 @@ import os
 import shutil
 import signal
 import subprocess
-import sys
 import termios
 import time
-from pathlib import Path
 
 import numpy as np
 import pytest
 
+from support.commands import COMMAND
 from zebro_lab.mcap.raw_log import read_raw_log
-
-COMMAND = str(Path(sys.executable).with_name("zebro-lab"))
 
 
 @contextlib.contextmanager

@@ -15,9 +15,10 @@ from support.recorders import PROFILE, count_in, recorder, some, until
 from zebro_lab.files.errors import AlreadyExists, RecordingError
 from zebro_lab.mcap.raw_log import read_raw_log
 from zebro_lab.recording import recorder as module
+from zebro_lab.recording import run_files
 from zebro_lab.recording.devices import profile_text
-from zebro_lab.runs.folder import read_manifest, run_state
-from zebro_lab.runs.manifest import profile_file
+from zebro_lab.runs.folder import run_state
+from zebro_lab.runs.manifest import profile_file, read_manifest
 from zebro_lab.runs.stage import list_runs
 
 
@@ -93,9 +94,9 @@ class FullDisk:
 
 
 def test_a_full_disk_ends_the_writing_and_leaves_what_was_written(tmp_path, monkeypatch):
-    original = module.LogWriter
+    original = run_files.LogWriter
     monkeypatch.setattr(
-        module, "LogWriter", lambda file, **given: original(FullDisk(file, 30_000), **given)
+        run_files, "LogWriter", lambda file, **given: original(FullDisk(file, 30_000), **given)
     )
     with recorder(tmp_path) as run:
         for first in range(0, 100_000, 20):
@@ -218,7 +219,7 @@ def test_an_end_record_that_cannot_be_written_is_a_failure_that_says_so(tmp_path
         raise OSError(errno.ENOSPC, "No space left on device")
 
     with recorder(tmp_path) as run:
-        monkeypatch.setattr(module, "write_manifest", fail)
+        monkeypatch.setattr(run_files, "write_manifest", fail)
     assert "end record" in run.failure
     assert "No space left on device" in run.failure
 

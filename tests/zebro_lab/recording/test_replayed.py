@@ -8,15 +8,16 @@ import pytest
 
 from rig.errors import ProfileError
 from rig.openers import resolve
+from support.table_runs import slip_rig_run
 from support.watchers import Onlooker
 from zebro_lab.files.errors import DataError, NotFound, SettingsError
 from zebro_lab.mcap.raw_log import read_raw_log
 from zebro_lab.mcap.slip_rig_log import SlipRigTable
 from zebro_lab.recording.devices import DevicesRequest, open_devices
 from zebro_lab.recording.replayed import read_replay
-from zebro_lab.recording.stage import RecordRequest, record
+from zebro_lab.recording.request import RecordRequest
+from zebro_lab.recording.stage import record
 from zebro_lab.runs.folder import read_slip_rig_run
-from zebro_lab.runs.table_run import write_slip_rig_run
 
 
 @pytest.fixture
@@ -26,7 +27,7 @@ def make(tmp_path):
     def write(source):
         t = np.arange(100) * 2e-3
         table = SlipRigTable(t, 12 + t, 3.5 - t, 6 + np.sin(t), np.cos(t))
-        return write_slip_rig_run(
+        return slip_rig_run(
             tmp_path / "first", table, label="a", material="", operator="", source=source,
             start=datetime(2026, 1, 1, tzinfo=UTC), radius_leg=0.035, radius_ground=0.12,
         )  # fmt: skip
@@ -36,7 +37,7 @@ def make(tmp_path):
 
 def test_a_replay_is_recorded_to_the_last_sample_and_says_what_it_is(make, tmp_path):
     run = make("real")
-    recorded = record(RecordRequest(tmp_path / "again", "b", rig=f"replay:{run}"), Onlooker())
+    recorded = record(RecordRequest("b", tmp_path / "again", rig=f"replay:{run}"), Onlooker())
     assert recorded.manifest.source == f"replay:{run.name}"
     assert recorded.manifest.sources == {"board": f"replay:{run.name}"}
     assert recorded.manifest.exit_status == "completed"
@@ -69,7 +70,7 @@ def test_a_run_that_is_not_there_or_lost_its_profile_is_named(make, tmp_path):
 
 
 def test_a_replay_moves_nothing(make):
-    with pytest.raises(ProfileError, match="only plays what was recorded"):
+    with pytest.raises(ProfileError, match="replays a recording"):
         resolve("replay:RUN", default="rig-board-serial")
     play = DevicesRequest(zebro=f"replay:{make('real')}", play=object())
     with pytest.raises(SettingsError, match="takes no set-points"), open_devices(play):

@@ -13,7 +13,7 @@ from rich.live import Live
 
 from rig.device import Counters
 from zebro_lab.recording.screen import RecordScreen, record_screen
-from zebro_lab.recording.stage import RecordStatus, StreamStatus
+from zebro_lab.recording.status import RecordStatus, StreamStatus
 
 SIGNALS = (signal.SIGINT, signal.SIGTERM)
 STREAMS = {

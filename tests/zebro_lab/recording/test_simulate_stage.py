@@ -9,13 +9,8 @@ from rig.clock import ManualClock
 from rig.openers import legs_at
 from zebro_lab.files.errors import SettingsError
 from zebro_lab.recording.devices import default_gait
-from zebro_lab.recording.simulate_stage import (
-    TwinRequest,
-    serve_imu,
-    serve_rig,
-    serve_zebro,
-    wait_until,
-)
+from zebro_lab.recording.request import ImuTwinRequest, RigTwinRequest, ZebroTwinRequest
+from zebro_lab.recording.simulate_stage import serve_imu, serve_rig, serve_zebro, wait_until
 
 
 def first(stream):
@@ -27,14 +22,14 @@ def first(stream):
 
 
 def test_an_imu_is_read_at_its_address():
-    with serve_imu(TwinRequest("imu-quaternion-serial")) as served:
+    with serve_imu(ImuTwinRequest()) as served:
         assert served.source == "sim:imu"
         assert first(open_imu(served.address))
 
 
 @pytest.mark.parametrize("profile", ["zebro-100-serial", "zebro-100-can"])
 def test_a_robot_is_read_at_its_address_and_on_can_behind_an_adapter(profile):
-    with serve_zebro(TwinRequest(profile)) as served:
+    with serve_zebro(ZebroTwinRequest(profile)) as served:
         assert ("slcan:" in served.address) == profile.endswith("can")
         rng = np.random.default_rng(0)
         with legs_at(served.address, default_gait(), rng=rng) as legs:
@@ -43,14 +38,14 @@ def test_a_robot_is_read_at_its_address_and_on_can_behind_an_adapter(profile):
 
 @pytest.mark.parametrize("profile", ["rig-board-serial", "rig-odrive-netft"])
 def test_every_device_of_a_rig_is_read_at_its_address(profile):
-    with serve_rig(TwinRequest(profile)) as served:
+    with serve_rig(RigTwinRequest(profile)) as served:
         assert served.source == "sim:rig"
         for stream in open_rig(served.address).streams:
             assert first(stream)
 
 
 def test_a_bus_that_cannot_be_opened_is_named():
-    request = TwinRequest("zebro-100-can", can="nosuch:bus")
+    request = ZebroTwinRequest("zebro-100-can", can="nosuch:bus")
     with pytest.raises(SettingsError, match="cannot open nosuch:bus"), serve_zebro(request):
         pass
 

@@ -12,6 +12,7 @@ import pytest
 from model.gait.reference import SampledReference
 from rig.acquisition import Acquisition, Device, acquiring
 from rig.backends import leg_driver, leg_link
+from rig.clock import ManualClock
 from rig.device import Counters, Sample
 from rig.errors import DeviceMismatch
 from rig.links.serve import PortServer
@@ -22,16 +23,17 @@ from rig.zebro.profile import load_leg_profile
 from support.watchers import RecordWatcher
 from zebro_lab.files.errors import DataError, RecordingError
 from zebro_lab.mcap.raw_log import read_raw_log
-from zebro_lab.mcap.stream_views import LegsView
 from zebro_lab.recording import stage as module
-from zebro_lab.recording.devices import OpenDevices, default_gait
-from zebro_lab.recording.recorder import RunDescription, RunRecorder
-from zebro_lab.recording.simulate_stage import TwinRequest, serve_zebro
-from zebro_lab.recording.stage import RecordRequest, record
+from zebro_lab.recording import status
+from zebro_lab.recording.devices import OpenDevices, default_gait, profile_text
+from zebro_lab.recording.recorder import RunRecorder
+from zebro_lab.recording.request import RecordRequest, ZebroTwinRequest
+from zebro_lab.recording.simulate_stage import serve_zebro
+from zebro_lab.recording.stage import record
 from zebro_lab.robot.gait_player import LEAD_IN
 from zebro_lab.runs.folder import read_slip_rig_run
 from zebro_lab.runs.legs import read_leg_log
-from zebro_lab.runs.manifest import profile_file
+from zebro_lab.runs.manifest import RunManifest, profile_file
 from zebro_lab.runs.stage import list_runs
 
 LEGS = load_leg_profile("zebro-100-serial")
@@ -56,7 +58,7 @@ def everything(tmp_path_factory):
     """
     watcher = RecordWatcher(samples=ENOUGH)
     request = RecordRequest(
-        tmp_path_factory.mktemp("data"), "all", zebro="sim", imus=("sim", "sim"), rig="sim",
+        "all", tmp_path_factory.mktemp("data"), zebro="sim", imus=("sim", "sim"), rig="sim",
         duration=30.0, material="POM", operator="a",
     )  # fmt: skip
     return record(request, watcher), watcher
@@ -98,9 +100,10 @@ def test_a_recorded_rig_is_data_for_a_calibration(everything):
 def test_recorded_samples_replay_through_the_drivers_interface(everything):
     stream = read_raw_log(everything[0].folder / "log.mcap").streams["/load_cell/raw"]
     samples = stream
-    replay = ReplayStream(samples, name="load_cell", source="replay:RUN", speed=1e6)
+    clock = ManualClock()
+    replay = ReplayStream(samples, name="load_cell", source="replay:RUN", clock=clock)
     with replay:
-        time.sleep(0.01)
+        clock.sleep(1e3)
         again = replay.read(0.1)
     assert [s[1:] for s in again] == [s[1:] for s in samples]
 
@@ -115,7 +118,7 @@ def walked(tmp_path_factory):
     (folder / "legs.csv").write_text(
         "\n".join([",".join(["t", *(f"theta{leg}" for leg in range(1, 7))]), *rows])
     )
-    request = RecordRequest(folder, "walk", zebro="sim", play=folder / "legs.csv")
+    request = RecordRequest("walk", folder, zebro="sim", play=folder / "legs.csv")
     return record(request, RecordWatcher()), gait
 
 
@@ -146,21 +149,21 @@ def test_a_wrong_zero_found_later_is_repaired_in_the_runs_own_profile(walked):
 
 
 def test_a_run_without_legs_is_no_leg_log(everything, tmp_path):
-    request = RecordRequest(tmp_path, "imu", imus=("sim",), duration=0.2)
+    request = RecordRequest("imu", tmp_path, imus=("sim",), duration=0.2)
     folder = record(request, RecordWatcher()).folder
     with pytest.raises((DataError, FileNotFoundError), match="leg"):
         read_leg_log(folder)
 
 
 def test_a_wish_to_stop_is_the_reason(tmp_path):
-    recorded = record(RecordRequest(tmp_path, "x", imus=("sim",)), RecordWatcher(looks=3))
+    recorded = record(RecordRequest("x", tmp_path, imus=("sim",)), RecordWatcher(looks=3))
     assert recorded.manifest.exit_status == "stopped: key"
     assert recorded.manifest.log_sha256 is not None
 
 
 def test_a_display_that_raises_ends_no_run(tmp_path):
     watcher = RecordWatcher(error=RuntimeError("screen"))
-    found = record(RecordRequest(tmp_path, "x", imus=("sim",), duration=2.0), watcher)
+    found = record(RecordRequest("x", tmp_path, imus=("sim",), duration=2.0), watcher)
     assert found.manifest.exit_status == "completed"
     assert found.manifest.streams["/imu/raw"] > 40
     assert len(watcher.seen) == 3
@@ -172,16 +175,16 @@ def test_a_watcher_that_cannot_say_whether_to_stop_ends_the_run_with_its_record(
     watcher = RecordWatcher()
     watcher.stop_reason = lambda: 1 / 0
     with pytest.raises(ZeroDivisionError):
-        record(RecordRequest(tmp_path, "x", imus=("sim",)), watcher)
+        record(RecordRequest("x", tmp_path, imus=("sim",)), watcher)
     (listed,) = list_runs(tmp_path)
     assert listed.state == "failed: ZeroDivisionError: division by zero"
 
 
 def test_swapped_devices_end_the_run_with_a_line_that_says_so(tmp_path):
-    with serve_zebro(TwinRequest("zebro-100-serial")) as served:
+    with serve_zebro(ZebroTwinRequest("zebro-100-serial")) as served:
         address = f"imu-quaternion-serial@{served.places['robot']}"
         with pytest.raises(RecordingError, match="are two ports swapped"):
-            record(RecordRequest(tmp_path, "x", imus=(address,), duration=5.0), RecordWatcher())
+            record(RecordRequest("x", tmp_path, imus=(address,), duration=5.0), RecordWatcher())
     (listed,) = list_runs(tmp_path)
     assert listed.state.startswith(f"failed: imu: {DeviceMismatch.__name__}")
 
@@ -195,11 +198,11 @@ def wait_until(met, limit=20.0):
 
 def test_an_unplugged_robot_is_a_gap_that_is_counted_and_the_run_goes_on(tmp_path):
     twin = robot_twin(LEGS, default_gait(), rng=np.random.default_rng(0))
-    description = RunDescription(kind="walk", label="gap", source=twin.source)
+    manifest = RunManifest(kind="walk", label="gap", source=twin.source)
     with PortServer(twin) as server:
         legs = leg_driver(LEGS, leg_link(LEGS, server.port, source=twin.source))
-        views = {"legs": LegsView("legs", profile=LEGS)}
-        recorder = RunRecorder(tmp_path, description=description, views=views)
+        profiles = {"legs": (LEGS.name, profile_text(LEGS.name))}
+        recorder = RunRecorder(tmp_path, manifest=manifest, profiles=profiles)
         with (
             legs,
             recorder,
@@ -215,7 +218,7 @@ def test_an_unplugged_robot_is_a_gap_that_is_counted_and_the_run_goes_on(tmp_pat
     assert counters.reconnected == 1
     assert counters.lost > 50
     found = " ".join(events(recorder.folder))
-    for part in ("legs: silent", "legs: sends again", "legs: reconnected", "samples lost"):
+    for part in ("legs: silent", "legs: samples arrive again", "legs: reconnected", "samples lost"):
         assert part in found
     stream = read_raw_log(recorder.folder / "log.mcap").streams["/legs/raw"]
     assert np.diff(stream.host_time).max() > 1.2
@@ -286,14 +289,14 @@ def given(monkeypatch):
 
     def give(*streams, **changes):
         devices = [Device(s, **changes) for s in streams]
-        views = {s.name: LegsView(s.name, profile=LEGS) for s in streams}
+        profiles = {s.name: (LEGS.name, profile_text(LEGS.name)) for s in streams}
 
         @contextmanager
         def opened(_request):
             for device in devices:
                 device.stream.__enter__()
             try:
-                yield OpenDevices(tuple(devices), views, {})
+                yield OpenDevices(devices, profiles)
             finally:
                 for device in devices:
                     device.stream.__exit__(None, None, None)
@@ -321,7 +324,7 @@ def ended(act, limit):
 
 def test_the_duration_counts_from_the_first_sample_of_the_stream_that_begins_last(tmp_path, given):
     given(Legs("legs"), Legs("late", late=0.6))
-    found = record(RecordRequest(tmp_path, "x", zebro="sim", duration=0.5), RecordWatcher())
+    found = record(RecordRequest("x", tmp_path, zebro="sim", duration=0.5), RecordWatcher())
     assert spans(found.folder)["late"] >= 0.48
     assert spans(found.folder)["legs"] >= 1.0
     assert found.manifest.exit_status == "completed"
@@ -330,10 +333,10 @@ def test_the_duration_counts_from_the_first_sample_of_the_stream_that_begins_las
 
 
 def test_a_device_without_a_first_sample_ends_a_run_with_a_duration(tmp_path, given, monkeypatch):
-    monkeypatch.setattr(module, "FIRST_SAMPLE", 0.3, raising=False)
+    monkeypatch.setattr(status, "FIRST_SAMPLE", 0.3)
     given(Legs("legs"), Legs("silent", late=1e6))
     with pytest.raises(RecordingError, match=r"no sample of silent within 0\.3 s"):
-        record(RecordRequest(tmp_path, "x", zebro="sim", duration=0.2), RecordWatcher())
+        record(RecordRequest("x", tmp_path, zebro="sim", duration=0.2), RecordWatcher())
     (listed,) = list_runs(tmp_path)
     assert "no sample of silent" in listed.state
 
@@ -341,7 +344,7 @@ def test_a_device_without_a_first_sample_ends_a_run_with_a_duration(tmp_path, gi
 def test_a_slow_disk_falsifies_neither_duration_nor_clocks(tmp_path, monkeypatch):
     real = os.fsync
     monkeypatch.setattr(os, "fsync", lambda file: (time.sleep(0.7), real(file))[1])
-    found = record(RecordRequest(tmp_path, "x", zebro="sim", duration=1.0), RecordWatcher())
+    found = record(RecordRequest("x", tmp_path, zebro="sim", duration=1.0), RecordWatcher())
     assert 0.98 < spans(found.folder)["legs"] < 1.5
     assert set(found.manifest.clocks) == {"legs"}
     assert found.manifest.counters["legs"]["lost"] == 0
@@ -350,7 +353,7 @@ def test_a_slow_disk_falsifies_neither_duration_nor_clocks(tmp_path, monkeypatch
 def test_a_display_that_hangs_holds_up_nothing(tmp_path):
     watcher, released = RecordWatcher(), threading.Event()
     watcher.show = lambda _status: released.wait(60)
-    request = RecordRequest(tmp_path, "x", imus=("sim",), duration=0.5)
+    request = RecordRequest("x", tmp_path, imus=("sim",), duration=0.5)
     try:
         found = ended(lambda: record(request, watcher), limit=8.0)
     finally:
@@ -377,7 +380,7 @@ def test_a_thread_that_cannot_be_started_ends_the_run_with_its_record(
 
     monkeypatch.setattr(threading.Thread, "start", fail)
     with pytest.raises(RecordingError, match="can't start new thread"):
-        record(RecordRequest(tmp_path, "x", zebro="sim", duration=0.2), RecordWatcher())
+        record(RecordRequest("x", tmp_path, zebro="sim", duration=0.2), RecordWatcher())
     assert first.closed
     assert stopped == [True, True]
     (listed,) = list_runs(tmp_path)
@@ -392,7 +395,7 @@ def test_whatever_ends_a_reader_ends_the_run(tmp_path, given, error):
     watcher = RecordWatcher()
     watcher.stop_reason = lambda: legs.fails.set()
     with pytest.raises(RecordingError, match="over"):
-        record(RecordRequest(tmp_path, "x", zebro="sim", duration=2.0), watcher)
+        record(RecordRequest("x", tmp_path, zebro="sim", duration=2.0), watcher)
     (listed,) = list_runs(tmp_path)
     assert "over" in listed.state
 
@@ -411,12 +414,12 @@ def test_a_fault_in_the_last_read_is_not_completed(tmp_path, given):
 
     watcher.stop_reason = stop_reason
     with pytest.raises(RecordingError, match="link lost"):
-        record(RecordRequest(tmp_path, "x", zebro="sim"), watcher)
+        record(RecordRequest("x", tmp_path, zebro="sim"), watcher)
 
 
 def test_all_streams_end_together(tmp_path, given):
     given(*[Legs(f"legs{k}") for k in range(3)], pause=0.3)
-    found = record(RecordRequest(tmp_path, "x", zebro="sim", duration=1.0), RecordWatcher())
+    found = record(RecordRequest("x", tmp_path, zebro="sim", duration=1.0), RecordWatcher())
     streams = read_raw_log(found.folder / "log.mcap").streams.values()
     assert np.ptp([stream.host_time[-1] for stream in streams]) < 0.15
     assert min(stream.host_time[0] for stream in streams) < 0.2
@@ -432,7 +435,7 @@ def test_a_display_that_cannot_be_started_ends_no_run(tmp_path, given, monkeypat
         start(thread)
 
     monkeypatch.setattr(threading.Thread, "start", fail)
-    found = record(RecordRequest(tmp_path, "x", zebro="sim", duration=0.2), RecordWatcher())
+    found = record(RecordRequest("x", tmp_path, zebro="sim", duration=0.2), RecordWatcher())
     assert found.manifest.exit_status == "completed"
     assert any("display cannot be started" in text for text in events(found.folder))
 
@@ -443,5 +446,5 @@ def test_a_loop_that_is_held_up_ends_no_recording_late(tmp_path, given, pause):
     watcher = RecordWatcher()
     looks = iter([0.0] * 4)
     watcher.stop_reason = lambda: time.sleep(next(looks, 0.7))
-    found = record(RecordRequest(tmp_path, "x", zebro="sim", duration=0.5), watcher)
+    found = record(RecordRequest("x", tmp_path, zebro="sim", duration=0.5), watcher)
     assert 0.48 < spans(found.folder)["legs"] < 0.65

@@ -17,7 +17,8 @@ import pytest
 from PIL import Image
 
 from zebro_lab.files.errors import DataError
-from zebro_lab.report.stage import ReportRequest, report
+from zebro_lab.report.request import ReportRequest
+from zebro_lab.report.stage import report
 from zebro_lab.runs.stage import list_runs
 
 MADE = datetime(2026, 1, 2, 3, 4, 5, tzinfo=UTC)

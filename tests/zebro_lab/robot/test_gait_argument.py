@@ -9,7 +9,8 @@ from hypothesis import strategies as st
 from model.errors import DomainError
 from model.gait import tripod_angles, tripod_reference
 from zebro_lab.files.errors import SettingsError
-from zebro_lab.robot.gait_argument import GAITS, GaitRequest, make_gait
+from zebro_lab.robot.gait_argument import GAITS, make_gait
+from zebro_lab.robot.gait_request import GaitRequest
 
 
 def make(**options):
@@ -17,7 +18,7 @@ def make(**options):
 
 
 @given(steering=st.floats(1.0, 1.8), direction=st.sampled_from(["left", "right"]))
-def test_tripod_is_the_models_tripod(steering, direction):
+def test_steering_is_the_models_tripod(steering, direction):
     found = make(steering=steering, direction=direction, touchdown_deg="50", cycle=1.5)
     angles = tripod_angles(np.radians(50), steering)
     expected = tripod_reference(angles, 1.5, direction=direction)

@@ -4,7 +4,8 @@
 import pytest
 
 from support.watchers import Onlooker
-from zebro_lab.recording.stage import RecordRequest, record
+from zebro_lab.recording.request import RecordRequest
+from zebro_lab.recording.stage import record
 
 
 @pytest.fixture(scope="session")

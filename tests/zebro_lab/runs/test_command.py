@@ -5,7 +5,7 @@ import os
 
 from support.written_runs import edit, make_run
 from zebro_lab.calibration.rig_data import read_rig_data
-from zebro_lab.runs.folder import read_manifest
+from zebro_lab.runs.manifest import read_manifest
 
 
 def test_a_second_exclusion_keeps_the_first_reason(tmp_path, run_command):

@@ -11,10 +11,11 @@ import pytest
 
 from support.watchers import Nobody
 from zebro_lab.calibration.rig_data import RigData, read_rig_data
-from zebro_lab.exchange.import_stage import ImportRequest, import_run
+from zebro_lab.exchange.import_request import ImportRequest
+from zebro_lab.exchange.import_stage import import_run
 from zebro_lab.experiment.check_stage import check_runs
 from zebro_lab.runs.counted_once import content_hash
-from zebro_lab.runs.folder import exclude_run
+from zebro_lab.runs.exclusion import exclude_run
 
 START = datetime(2026, 3, 4, 5, 6, 7, tzinfo=UTC)
 

@@ -7,7 +7,8 @@ from contextlib import contextmanager
 import pytest
 
 from zebro_lab.runs.data_paths import find_sources
-from zebro_lab.runs.folder import MANIFEST_FILE, find_runs
+from zebro_lab.runs.folder import find_runs
+from zebro_lab.runs.manifest import MANIFEST_FILE
 
 
 @contextmanager

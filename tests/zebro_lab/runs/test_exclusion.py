@@ -5,7 +5,7 @@ import pytest
 
 from support.written_runs import edit, make_run
 from zebro_lab.files.errors import DataError, NotFound
-from zebro_lab.runs.exclusion import UNSAID, exclude_run, past_reasons, take_in_again
+from zebro_lab.runs.exclusion import NO_REASON, exclude_run, past_reasons, take_in_again
 from zebro_lab.runs.manifest import read_manifest
 
 
@@ -18,7 +18,7 @@ def test_every_reason_is_kept_in_order(tmp_path):
     manifest = read_manifest(folder)
     assert manifest.excluded == {"why": "wrong disc"}
     assert [(each["did"], each["why"]) for each in manifest.exclusions] == [
-        ("excluded", "belt slipped"), ("undone", UNSAID), ("excluded", "wrong disc"),
+        ("excluded", "belt slipped"), ("undone", NO_REASON), ("excluded", "wrong disc"),
     ]  # fmt: skip
     assert past_reasons(manifest) == ("belt slipped",)
     assert past_reasons(take_in_again(folder, why="no")) == ("wrong disc", "belt slipped")

@@ -2,6 +2,7 @@
 """Run folders: what is written is read back, and damage is told."""
 
 from datetime import datetime, timedelta, timezone
+from importlib.metadata import version
 
 import numpy as np
 import pytest
@@ -13,7 +14,8 @@ from zebro_lab.mcap.cdr import CdrWriter
 from zebro_lab.mcap.message_log import MessageLog
 from zebro_lab.mcap.ros_messages import Schema
 from zebro_lab.mcap.slip_rig_log import SCHEMA_NAME, SCHEMA_TEXT, TOPIC
-from zebro_lab.runs.folder import read_manifest, read_slip_rig_run
+from zebro_lab.runs.folder import read_slip_rig_run
+from zebro_lab.runs.manifest import read_manifest
 
 FIELDS = ("t", "omega_leg", "omega_ground", "normal_force", "traction_force")
 
@@ -44,7 +46,7 @@ def test_a_run_of_an_earlier_version_is_read_to_the_last_bit(tmp_path):
 
 
 def test_manifest_tells_what_was_recorded(tmp_path):
-    folder = make_run(tmp_path, 200, commit="abc")
+    folder = make_run(tmp_path, 200)
     manifest = read_manifest(folder)
     assert folder.name == "20260304T050607Z_slip-rig_Delrin-steel"
     assert sorted(path.name for path in folder.iterdir()) == ["log.mcap", "profiles", "run.json"]
@@ -53,7 +55,7 @@ def test_manifest_tells_what_was_recorded(tmp_path):
     )  # fmt: skip
     assert manifest.constants == {"radius_leg": 0.035, "radius_ground": 0.12}
     assert manifest.streams == {"/board/raw": 200}
-    assert manifest.software["commit"] == "abc"
+    assert manifest.software["version"] == version("zebro-lab")
     assert datetime.fromisoformat(manifest.stop) - START == timedelta(seconds=0.199)
 
 

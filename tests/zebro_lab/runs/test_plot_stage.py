@@ -5,7 +5,7 @@ import pytest
 
 from support.written_runs import make_run
 from zebro_lab.files.errors import NotFound, SettingsError
-from zebro_lab.runs.folder import exclude_run
+from zebro_lab.runs.exclusion import exclude_run
 from zebro_lab.runs.plot_stage import plot_run
 
 

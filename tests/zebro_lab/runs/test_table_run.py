@@ -7,15 +7,16 @@ import numpy as np
 import pytest
 
 from rig.slip_rig.profile import load_rig_profile
+from support.table_runs import slip_rig_run
 from zebro_lab.files.errors import DataError
 from zebro_lab.mcap.raw_log import read_raw_log
 from zebro_lab.mcap.slip_rig_log import SlipRigTable
-from zebro_lab.runs.folder import read_manifest, read_slip_rig_run
-from zebro_lab.runs.table_run import write_slip_rig_run
+from zebro_lab.runs.folder import read_slip_rig_run
+from zebro_lab.runs.manifest import read_manifest
 
 
 def write(folder, table):
-    return write_slip_rig_run(
+    return slip_rig_run(
         folder, table, label="a", material="", operator="", source="real",
         start=datetime(2026, 1, 1, tzinfo=UTC), radius_leg=0.03, radius_ground=0.1,
     )  # fmt: skip

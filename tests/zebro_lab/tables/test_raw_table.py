@@ -65,5 +65,18 @@ def test_a_row_is_found_below_comments_and_blank_lines(tmp_path):
     file = tmp_path / "a.csv"
     file.write_text("# bench\n\nt,x\n1,2\n\n\n3,4\n")
     raw = read_csv_file(file)
-    assert [raw.line(row) for row in (1, 2, 3)] == [4, 7, None]
-    assert table(t=[1.0]).line(1) is None
+    assert [raw.fault("is bad", "x", index).line for index in (0, 1, 2)] == [4, 7, None]
+    assert str(raw.fault("is bad", "x", 1)) == f"{file}, column 'x', row 2 (line 7): is bad"
+    assert raw.fault("is bad", "x").line is None
+    assert table(t=[1.0]).fault("is bad", "t", 0).line is None
+
+
+@given(st.lists(st.integers(-5, 5), min_size=1, max_size=6))
+def test_times_that_do_not_increase_are_named_by_their_row(times):
+    first = next((row for row in range(1, len(times)) if times[row] <= times[row - 1]), None)
+    if first is None:
+        table(t=times).require_increasing("t", np.array(times, dtype=float))
+        return
+    with pytest.raises(DataError, match="expected increasing times") as raised:
+        table(t=times).require_increasing("t", np.array(times, dtype=float))
+    assert (raised.value.column, raised.value.row) == ("t", first + 1)

@@ -2,34 +2,14 @@
 """Commands run in this process, on the bundled walk."""
 
 import shutil
-import sys
 import tomllib
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from support.bundled_walk import COMMAND, SOME, WALK
-from zebro_lab.main import app
-from zebro_lab.terminal.ending import run as run_app
+from support.bundled_walk import SOME, WALK
 from zebro_lab.track.request import TrackRequest
-
-
-@pytest.fixture
-def run(monkeypatch, capsys):
-    """Return a runner of the command in this process: exit code, stdout, stderr."""
-
-    def runner(*arguments: object) -> tuple[int, str, str]:
-        monkeypatch.setattr(sys, "argv", [COMMAND, *map(str, arguments)])
-        try:
-            with pytest.raises(SystemExit) as ended:
-                run_app(app)
-            code = ended.value.code
-        finally:
-            streams = capsys.readouterr()
-        return int(code or 0), streams.out, streams.err
-
-    return runner
 
 
 @pytest.fixture

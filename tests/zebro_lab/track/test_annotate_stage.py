@@ -12,7 +12,8 @@ import pytest
 from tracking.corrections import Delete, Flip, Move, Order
 from zebro_lab.files.errors import AlreadyExists, NotFound, SettingsError
 from zebro_lab.robot.robot_file import RobotFile
-from zebro_lab.track.annotate_stage import AnnotateRequest, annotate, draw_grid, photo_names
+from zebro_lab.track.annotate_request import AnnotateRequest
+from zebro_lab.track.annotate_stage import annotate, draw_grid, photo_names
 from zebro_lab.track.annotations import read_annotations
 
 
@@ -35,7 +36,7 @@ def asked(photos, tmp_path) -> AnnotateRequest:
 def test_corrections_come_as_moves_flips_deletions_and_order(asked):
     said = annotate(replace(
         asked, moves=("p1.png:0.5,-0.1,90",), flips=("p2.png",), deletes=("p1.png",),
-        order=("p2.png", "p1.png"),
+        order="p2.png,p1.png",
     ))  # fmt: skip
     assert said.corrections == (
         Move("p1.png", 0.5, -0.1, pi / 2), Flip("p2.png"), Delete("p1.png"),
@@ -51,7 +52,7 @@ def test_corrections_come_as_moves_flips_deletions_and_order(asked):
 def test_the_top_and_points_of_the_floor_are_clicked_on(asked):
     corners = "1,2 3,2 3,8 1,8"
     said = annotate(replace(
-        asked, photo="p1.png", corners=corners, plate="194mmx251mm@35mm", margin=0.01,
+        asked, photo="p1.png", corners=corners, plate="194mmx251mm@35mm", margin="10mm",
         clicks=("p2.png:door=10,20.5",),
     ))  # fmt: skip
     assert said.template is not None
@@ -71,10 +72,10 @@ def test_without_a_plate_the_top_is_the_body_of_the_robot(asked):
 def test_what_another_file_says_is_added_but_never_to_itself(asked, tmp_path):
     other = tmp_path / "other.toml"
     annotate(replace(asked, out=other, flips=("p1.png",)))
-    said = annotate(replace(asked, said=other, deletes=("p2.png",)))
+    said = annotate(replace(asked, added=other, deletes=("p2.png",)))
     assert set(said.corrections) == {Flip("p1.png"), Delete("p2.png")}
     with pytest.raises(AlreadyExists, match="name another"):
-        annotate(replace(asked, said=asked.out))
+        annotate(replace(asked, added=asked.out))
 
 
 @pytest.mark.parametrize(

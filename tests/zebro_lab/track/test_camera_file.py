@@ -30,7 +30,7 @@ def test_a_calibration_comes_back(tmp_path_factory, numbers, distortion, name):
     file = tmp_path_factory.getbasetemp() / "camera.toml"
     fit = calibration(numbers, distortion)
     file.write_text(render_camera_file(fit, photos={name: "0" * 64}), encoding="utf-8")
-    camera = read_camera_file(file).camera
+    camera = read_camera_file(file)
     assert camera.size == (1600, 1200)
     np.testing.assert_allclose(camera.matrix, fit.camera.matrix, rtol=1e-11)
     np.testing.assert_allclose(camera.distortion, fit.camera.distortion, rtol=1e-11)
@@ -38,7 +38,7 @@ def test_a_calibration_comes_back(tmp_path_factory, numbers, distortion, name):
 
 def test_a_lens_without_distortion_needs_none_stated(tmp_path):
     (tmp_path / "camera.toml").write_text(GOOD)
-    assert not read_camera_file(tmp_path / "camera.toml").camera.distortion.any()
+    assert not read_camera_file(tmp_path / "camera.toml").distortion.any()
 
 
 FAULTS = {

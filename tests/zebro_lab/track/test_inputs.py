@@ -10,7 +10,8 @@ from tracking.composite import Merged
 from tracking.errors import PhotoError
 from zebro_lab.files.errors import SettingsError
 from zebro_lab.track.inputs import HowMergedUnknown, read_inputs
-from zebro_lab.track.photo_sequence import TimeRequest, open_photos
+from zebro_lab.track.photo_sequence import open_photos
+from zebro_lab.track.request import TimeRequest
 
 
 def checked(asked):

@@ -14,7 +14,8 @@ from tracking.camera import Camera
 from tracking.errors import TimesError
 from tracking.images import clock_picture
 from zebro_lab.files.errors import DataError, NotFound, SettingsError
-from zebro_lab.track.photo_sequence import TimeRequest, calibrated_for, exposure_times, open_photos
+from zebro_lab.track.photo_sequence import calibrated_for, exposure_times, open_photos
+from zebro_lab.track.request import TimeRequest
 
 START = datetime(2020, 6, 1, 12, 0, 0, tzinfo=UTC)
 STARTED = START.timestamp()
@@ -27,11 +28,15 @@ def photo(path: Path, seconds: float | None, pixels=None) -> None:
     path.write_bytes(jpeg if taken is None else with_time_stamp(jpeg, taken))
 
 
+def names_of(sequence) -> tuple[str, ...]:
+    return tuple(photo.name for photo in sequence.photos)
+
+
 def test_photographs_are_ordered_by_their_own_clock(tmp_path):
     for name, seconds in (("a.jpg", 4.25), ("b.jpg", 0.5), ("c.jpg", 2.0)):
         photo(tmp_path / name, seconds)
     with open_photos(tmp_path, TimeRequest()) as sequence:
-        assert sequence.names == ("b.jpg", "c.jpg", "a.jpg")
+        assert names_of(sequence) == ("b.jpg", "c.jpg", "a.jpg")
         assert sequence.source == "sim:photographs"
         np.testing.assert_allclose(sequence.times.t - STARTED, [0.5, 2.0, 4.25], atol=1e-3)
 
@@ -41,14 +46,14 @@ def test_a_file_that_is_no_picture_does_not_keep_the_others_from_their_times(tmp
         photo(tmp_path / f"p{number}.jpg", 2.0 * number + 0.25)
     (tmp_path / "p1a.jpg").write_bytes(b"")
     with open_photos(tmp_path, TimeRequest()) as sequence:
-        assert len(sequence.names) == 4
+        assert len(sequence.photos) == 4
 
 
 def test_an_interval_counts_in_the_order_a_person_counts(tmp_path):
     for number in (1, 2, 10):
         photo(tmp_path / f"p{number}.jpg", None)
     with open_photos(tmp_path, TimeRequest(interval=2.0)) as sequence:
-        assert sequence.names == ("p1.jpg", "p2.jpg", "p10.jpg")
+        assert names_of(sequence) == ("p1.jpg", "p2.jpg", "p10.jpg")
         np.testing.assert_allclose(sequence.times.t, [0, 2, 4])
 
 
@@ -58,7 +63,7 @@ def test_a_table_may_reorder(tmp_path):
     table = tmp_path / "times.csv"
     table.write_text("photo,t_s,t_sigma\na.jpg,7,0.1\nb.jpg,3,0.1\n")
     with open_photos(tmp_path, TimeRequest(table=table)) as sequence:
-        assert sequence.names == ("b.jpg", "a.jpg")
+        assert names_of(sequence) == ("b.jpg", "a.jpg")
 
 
 def test_no_times_at_all_says_what_to_give(tmp_path):
@@ -73,7 +78,7 @@ def test_a_photographed_code_ties_the_cameras_clock_to_the_computers(tmp_path):
     for number in range(2):
         photo(tmp_path / f"p{number}.jpg", 10.5 + 2.0 * number)
     with open_photos(tmp_path, TimeRequest(clock=tmp_path / "clock.jpg")) as sequence:
-        assert sequence.names == ("p0.jpg", "p1.jpg")
+        assert names_of(sequence) == ("p0.jpg", "p1.jpg")
         assert "camera's clock +3599.9" in sequence.times.source
         np.testing.assert_allclose(sequence.times.t - STARTED, [-3589.5, -3587.5], atol=0.1)
 
@@ -86,8 +91,8 @@ def test_frames_of_a_video_keep_their_own_times_and_leave_no_files(tmp_path):
     writer.release()
     with open_photos(video, TimeRequest(every=0.5)) as sequence:
         np.testing.assert_allclose(np.diff(sequence.times.t), 0.5, atol=5e-3)
-        assert sequence.names[1] == "walk.avi#5"
-        kept = sequence.paths
+        assert sequence.photos[1].name == "walk.avi#5"
+        kept = [photo.path for photo in sequence.photos]
         assert all(path.is_file() for path in kept)
     assert not any(path.exists() for path in kept)
 

@@ -10,10 +10,12 @@ from tracking.detect import Detection
 from tracking.floor import FloorMap, FloorMarker, FloorView
 from tracking.markers import Sighting
 from tracking.path import PoseObservation, assemble_track
+from zebro_lab.track.photographs import PlacedPhoto
 from zebro_lab.track.pictures import draw_track, seen_marks
 
 LENS = Camera((320, 240), np.array([[300.0, 0, 160], [0, 300, 120], [0, 0, 1]]), np.zeros(5))
 DOWN = CameraPose.from_matrix(np.diag([1.0, -1.0, -1.0]), np.array([-0.5, 0.3, 2.0]))
+PHOTO = PlacedPhoto(np.full((240, 320, 3), 130, np.uint8), LENS, DOWN)
 FLOOR = FloorMap("4x4_50", (FloorMarker(10, 0.1, 0.1, 0.1), FloorMarker(11, 0.1, 0.9, 0.5)))
 
 
@@ -29,9 +31,8 @@ def track():
 
 
 def test_three_pictures_are_drawn(track, tmp_path):
-    pixels = np.full((240, 320, 3), 130, np.uint8)
     draw_track(
-        tmp_path, track, pixels, camera=LENS, view=DOWN, floor=FLOOR, detection=None,
+        tmp_path, track, PHOTO, floor=FLOOR, detection=None,
         title="a walk", simulated=True,
     )  # fmt: skip
     for name in ("overlay.png", "map.png", "residuals.png"):
@@ -41,13 +42,13 @@ def test_three_pictures_are_drawn(track, tmp_path):
 
 
 def test_marks_are_outlined_where_the_map_has_them_and_the_robots_where_it_is_seen():
-    alone = seen_marks(LENS, DOWN, FLOOR, None)
+    alone = seen_marks(PHOTO, FLOOR, None)
     assert [each.labels for each in alone] == [["10", "11"]]
     np.testing.assert_allclose(
         alone[0].outlines_px[0], project(LENS, DOWN, FLOOR.markers[0].points)
     )
     corners = np.array([[10.0, 10], [20, 10], [20, 20], [10, 20]])
     sighting = Sighting(3, corners, np.eye(8), 1.0, 0.7)
-    both = seen_marks(LENS, DOWN, FLOOR, Detection("p.jpg", FloorView.of("p.jpg"), sighting))
+    both = seen_marks(PHOTO, FLOOR, Detection("p.jpg", FloorView.of("p.jpg"), sighting))
     assert both[1].labels == ["robot 3"]
     np.testing.assert_array_equal(both[1].outlines_px[0], corners)

@@ -3,7 +3,6 @@
 
 import json
 import shutil
-import sys
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
 
@@ -14,15 +13,11 @@ import pytest
 
 from rig.clock import ManualClock
 from rig.device import Sample
-from rig.zebro.profile import load_leg_profile
 from support.synthetic import with_time_stamp
 from tracking.images import clock_picture
-from zebro_lab.main import app
-from zebro_lab.mcap.stream_views import LegsView
 from zebro_lab.recording.devices import profile_text
-from zebro_lab.recording.recorder import RunDescription, RunRecorder
-from zebro_lab.runs.folder import read_manifest
-from zebro_lab.terminal.ending import run as run_app
+from zebro_lab.recording.recorder import RunRecorder
+from zebro_lab.runs.manifest import RunManifest, read_manifest
 
 WALK = Path(__file__).parents[3] / "datasets/walk-sim"
 PROFILE = "zebro-100-serial"
@@ -41,12 +36,15 @@ def recorded(tmp_path_factory) -> Path:
         shutil.copy(WALK / f"photos/simulated_{number:02d}.jpg", folder / "photos")
     legs = pd.read_csv(WALK / "legs.csv").query(f"t < {2 * SOME}")
     counts = legs[[f"count{leg}" for leg in range(1, 7)]].to_numpy()
-    description = RunDescription(
-        kind="walk", label="circle", source="sim:walk-sim", sources={"legs": "sim:walk-sim"},
+    clock = ManualClock()
+    recorder = RunRecorder(
+        folder / "data", clock=clock,
+        manifest=RunManifest(
+            kind="walk", label="circle", source="sim:walk-sim", sources={"legs": "sim:walk-sim"}
+        ),
         profiles={"legs": (PROFILE, profile_text(PROFILE))},
     )  # fmt: skip
-    views, clock = {"legs": LegsView("legs", profile=load_leg_profile(PROFILE))}, ManualClock()
-    with RunRecorder(folder / "data", description=description, views=views, clock=clock) as run:
+    with recorder as run:
         run.write("legs", [
             Sample(t, t, n, tuple(row))
             for n, (t, row) in enumerate(zip(legs["t"].tolist(), counts.tolist(), strict=True))
@@ -66,20 +64,6 @@ def lab(recorded, tmp_path, monkeypatch) -> Path:
     return tmp_path
 
 
-@pytest.fixture
-def run(monkeypatch, capsys):
-    """Return a runner of the command in this process: exit code, stdout, stderr."""
-
-    def runner(*arguments: object) -> tuple[int, str, str]:
-        monkeypatch.setattr(sys, "argv", ["zebro-lab", *map(str, arguments)])
-        with pytest.raises(SystemExit) as ended:
-            run_app(app)
-        streams = capsys.readouterr()
-        return int(ended.value.code or 0), streams.out, streams.err
-
-    return runner
-
-
 def photographed_clock(lab: Path, *, ahead: timedelta) -> Path:
     """Photograph the computer's clock 5 s before the run, with a camera that is ahead of it."""
     begun = datetime.fromisoformat(read_manifest(lab / "run").start)
@@ -90,10 +74,12 @@ def photographed_clock(lab: Path, *, ahead: timedelta) -> Path:
     return file
 
 
-def test_a_recorded_run_is_tracked_predicted_and_validated_on_its_own_clock(lab, run):
+def test_a_recorded_run_is_tracked_predicted_and_validated_on_its_own_clock(lab, run_command):
     begun = datetime.fromisoformat(read_manifest(lab / "run").start)
     clock = photographed_clock(lab, ahead=BEGUN - begun)
-    code, out, _ = run("track", "photos", *BENCH, "--run", "run", "--clock", clock.resolve())
+    code, out, _ = run_command(
+        "track", "photos", *BENCH, "--run", "run", "--clock", clock.resolve()
+    )
     assert code == 0
     assert f"{SOME} of {SOME} photographs" in out
     assert "counted from the run's start" in out
@@ -102,9 +88,11 @@ def test_a_recorded_run_is_tracked_predicted_and_validated_on_its_own_clock(lab,
     true = pd.read_csv(WALK / "photos.csv").iloc[:SOME]
     np.testing.assert_allclose(track["t_s"], true["t"], atol=0.06)  # the code is renewed at 10 Hz
     assert json.loads(Path("run/track/manifest.json").read_text())["source"] == "sim:photographs"
-    code, _, _ = run("predict", "run", "--slip", "coulomb:0.38", "--robot", WALK / "robot.toml")
+    code, _, _ = run_command(
+        "predict", "run", "--slip", "coulomb:0.38", "--robot", WALK / "robot.toml"
+    )
     assert code == 0
-    code, out, _ = run("validate", "run")
+    code, out, _ = run_command("validate", "run")
     assert code == 0
     assert "SIMULATED: sim:dynamics, sim:photographs" in out
     metrics = pd.read_csv("run/validation/metrics.csv")
@@ -112,16 +100,18 @@ def test_a_recorded_run_is_tracked_predicted_and_validated_on_its_own_clock(lab,
     assert row["ate_m"] < 0.02
 
 
-def test_untied_clocks_are_pointed_at_and_still_tracked(lab, run):
-    code, out, _ = run("track", "photos", *BENCH, "--run", "run")
+def test_untied_clocks_are_pointed_at_and_still_tracked(lab, run_command):
+    code, out, _ = run_command("track", "photos", *BENCH, "--run", "run")
     assert code == 0
     assert "WARNING: time is counted from the first photograph" in out
     assert "--clock" in out
     assert pd.read_csv("run/track/track.csv")["t_s"].iloc[0] == 0
 
 
-def test_a_moment_of_the_cameras_clock_is_the_runs_start(lab, run):
-    code, out, _ = run("track", "photos", *BENCH, "--run", "run", "--start", "2020-06-01T12:00:01")
+def test_a_moment_of_the_cameras_clock_is_the_runs_start(lab, run_command):
+    code, out, _ = run_command(
+        "track", "photos", *BENCH, "--run", "run", "--start", "2020-06-01T12:00:01"
+    )
     assert code == 0
     assert "WARNING: 1 of 5 photographs were taken before or after the run" in out
     assert pd.read_csv("run/track/track.csv")["t_s"].iloc[0] == pytest.approx(-1, abs=0.1)
@@ -136,17 +126,17 @@ FAULTS = {
 
 
 @pytest.mark.parametrize(("arguments", "message"), FAULTS.values(), ids=FAULTS)
-def test_times_that_cannot_be_are_one_line_and_write_nothing(arguments, message, lab, run):
+def test_times_that_cannot_be_are_one_line_and_write_nothing(arguments, message, lab, run_command):
     named = () if "--run" in arguments else ("--run", "run")
-    code, out, err = run("track", "photos", *BENCH, *named, *arguments)
+    code, out, err = run_command("track", "photos", *BENCH, *named, *arguments)
     assert (code, out) == (1, "")
     assert message in err
     assert err.count("\n") == 1
     assert not Path("run/track").exists()
 
 
-def test_a_moment_with_a_time_zone_is_wrong_usage(lab, run):
-    code, _, err = run(
+def test_a_moment_with_a_time_zone_is_wrong_usage(lab, run_command):
+    code, _, err = run_command(
         "track", "photos", *BENCH, "--run", "run", "--start", "2020-06-01T12:00+02:00"
     )
     assert code == 2

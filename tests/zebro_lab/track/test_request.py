@@ -3,14 +3,15 @@
 
 from dataclasses import replace
 from pathlib import Path
+from typing import get_args
 
 import pytest
 
 from support.bundled_walk import COMPOSITE
 from tracking.composite import Merged
 from zebro_lab.files.errors import SettingsError
-from zebro_lab.track.photo_sequence import TimeRequest
-from zebro_lab.track.request import TrackRequest
+from zebro_lab.track.request import MergedAs, TimeRequest, TrackRequest
+from zebro_lab.track.robot import WALKING_HEIGHT_SD
 
 ASKED = TrackRequest(Path("photos"), Path("camera.toml"), Path("floor.toml"))
 
@@ -31,3 +32,16 @@ def test_photographs_of_a_folder_are_not_merged(request_):
     with pytest.raises(SettingsError, match="only with one composite picture"):
         replace(request_, merged=Merged.MEAN)
     assert replace(request_, photos=COMPOSITE, merged=Merged.MEAN).merged is Merged.MEAN
+
+
+def test_the_option_knows_all_ways_to_merge():
+    assert set(get_args(MergedAs)) == set(Merged)
+
+
+def test_lengths_and_frame_steps_are_those_of_the_help():
+    assert ASKED.walking_height_sd == WALKING_HEIGHT_SD
+    assert replace(ASKED, height_sd="2 cm").walking_height_sd == pytest.approx(0.02)
+    assert ASKED.standing_height is None
+    assert replace(ASKED, body_height="60mm").standing_height == pytest.approx(0.06)
+    assert TimeRequest().frame_step == 0.5
+    assert TimeRequest(every=0.0).frame_step == 0.0

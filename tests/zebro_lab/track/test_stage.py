@@ -19,10 +19,10 @@ from tracking.photos import search
 from tracking.pose import BodyPose
 from zebro_lab.files.errors import AlreadyExists, SettingsError
 from zebro_lab.files.result_folder import MANIFEST
-from zebro_lab.track.annotate_stage import AnnotateRequest, annotate
+from zebro_lab.track.annotate_request import AnnotateRequest
+from zebro_lab.track.annotate_stage import annotate
 from zebro_lab.track.folder import TRACKED
-from zebro_lab.track.photo_sequence import TimeRequest
-from zebro_lab.track.request import TrackRequest
+from zebro_lab.track.request import TimeRequest, TrackRequest
 from zebro_lab.track.stage import track
 
 

@@ -5,7 +5,8 @@ import pytest
 
 from support.validated_walks import predicted, write_walk_data
 from support.watchers import Nobody
-from zebro_lab.validation.stage import ValidateRequest, pairs_of_run, validate
+from zebro_lab.validation.request import ValidateRequest
+from zebro_lab.validation.stage import validate
 
 
 @pytest.fixture(scope="session")
@@ -21,5 +22,5 @@ def walk(tmp_path_factory):
 
 @pytest.fixture(scope="session")
 def validated(walk):
-    request = ValidateRequest((pairs_of_run(walk),), walk / "validation")
+    request = ValidateRequest((walk,), out=walk / "validation")
     return validate(request, Nobody())

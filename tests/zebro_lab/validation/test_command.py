@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """`zebro-lab validate` prints errors, bands and what is simulated."""
 
-from zebro_lab.validation.stage import pairs_of_run
+from zebro_lab.validation.predicted_walks import pairs_of_run
 
 
 def test_the_command_prints_a_table_and_says_simulated(walk, tmp_path, run_command):
@@ -12,4 +12,5 @@ def test_the_command_prints_a_table_and_says_simulated(walk, tmp_path, run_comma
     printed = ended.out
     assert "SIMULATED" in printed
     assert "no-slip-simple" in printed
-    assert "90% band holds" in printed
+    assert "coverage of the 90% band: x " in printed
+    assert "predicted uncertainty (NEES)" in printed

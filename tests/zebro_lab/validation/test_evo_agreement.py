@@ -6,7 +6,8 @@ import pandas as pd
 import pytest
 
 from support.watchers import Nobody
-from zebro_lab.validation.stage import ValidateRequest, validate
+from zebro_lab.validation.request import ValidateRequest
+from zebro_lab.validation.stage import validate
 
 pytest.importorskip("evo", reason="evo is an extra: pip install zebro-lab[evo]")
 from evo.core.metrics import APE, RPE, PoseRelation, StatisticsType, Unit
@@ -27,8 +28,8 @@ def judged(tmp_path_factory):
         table = pd.DataFrame(np.column_stack([xy, yaw]) + noise, columns=["x", "y", "yaw"])
         table.insert(0, "t", t)
         table.iloc[keep].to_csv(folder / f"{name}.csv", index=False)
-    pair = ((folder / "path.csv", folder / "track.csv"),)
-    done = validate(ValidateRequest(pair, folder / "out"), Nobody())
+    pair = {"predicted": (folder / "path.csv",), "track": (folder / "track.csv",)}
+    done = validate(ValidateRequest(**pair, out=folder / "out"), Nobody())
     return done.runs[0].rows[0].errors, folder / "out"
 
 

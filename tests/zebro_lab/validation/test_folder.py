@@ -7,10 +7,10 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from support.validated_walks import predicted, rows_of, write_walk_data
+from support.validated_walks import predicted, request_of, rows_of, write_walk_data
 from support.watchers import Nobody
 from zebro_lab.validation.folder import metrics
-from zebro_lab.validation.stage import ValidateRequest, validate
+from zebro_lab.validation.stage import validate
 
 
 def test_the_folder_holds_tables_pictures_tum_files_and_a_manifest(validated, walk):
@@ -32,7 +32,7 @@ def test_several_walks_get_a_mean_with_an_interval(tmp_path):
         folder.mkdir()
         legs, track = write_walk_data(folder, steering=steering, seed=i)
         pairs.append((predicted(folder, legs, draws=0), track))
-    done = validate(ValidateRequest(tuple(pairs), tmp_path / "out"), Nobody())
+    done = validate(request_of(pairs, tmp_path / "out"), Nobody())
     assert {run.name for run in done.runs} == {"walk0", "walk1", "walk2"}
     ate = next(s for s in done.summary if (s.model, s.metric) == ("prediction", "ate_m"))
     assert ate.interval.low <= ate.interval.mean <= ate.interval.high

@@ -9,11 +9,13 @@ import pytest
 
 from model.judgement import Prediction
 from model.poses import Poses
+from support.validated_walks import request_of
 from support.watchers import Nobody
 from zebro_lab.files.errors import DataError, SettingsError
 from zebro_lab.track.file import TrackFile
 from zebro_lab.validation.judged_run import judge_run
-from zebro_lab.validation.stage import ValidateRequest, pairs_of_run, validate
+from zebro_lab.validation.predicted_walks import pairs_of_run
+from zebro_lab.validation.stage import validate
 from zebro_lab.walk.prediction_file import PredictionFile
 
 
@@ -27,7 +29,7 @@ def test_a_track_of_two_poses_is_refused(walk, tmp_path):
     pd.read_csv(track / "track.csv").iloc[:2].to_csv(tmp_path / "two.csv", index=False)
     pair = ((prediction, tmp_path / "two.csv"),)
     with pytest.raises(DataError, match="has 2 poses; expected 3 or more"):
-        validate(ValidateRequest(pair, tmp_path / "out"), Nobody())
+        validate(request_of(pair, tmp_path / "out"), Nobody())
 
 
 T = np.linspace(0.0, 4.0, 9)

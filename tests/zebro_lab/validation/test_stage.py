@@ -7,10 +7,12 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from support.validated_walks import rows_of
+from support.validated_walks import request_of, rows_of
 from support.watchers import Nobody
 from zebro_lab.files.errors import AlreadyExists, NotFound
-from zebro_lab.validation.stage import ValidateRequest, pairs_of_run, validate
+from zebro_lab.validation.predicted_walks import pairs_of_run
+from zebro_lab.validation.request import ValidateRequest
+from zebro_lab.validation.stage import validate
 
 
 def test_a_prediction_from_counted_angles_is_within_two_percent_of_the_path(validated):
@@ -34,7 +36,7 @@ def test_a_track_of_the_same_physics_is_plausible(validated):
 def test_another_command_s_folder_is_not_renewed(walk):
     prediction, _ = pairs_of_run(walk)
     with pytest.raises(AlreadyExists, match="another command"):
-        validate(ValidateRequest((pairs_of_run(walk),), prediction), Nobody())
+        validate(ValidateRequest((walk,), out=prediction), Nobody())
 
 
 def test_a_run_without_a_track_says_what_to_do(walk, tmp_path):
@@ -62,7 +64,7 @@ def test_a_stranger_s_wheeled_robot_goes_through_unbent(shared, tmp_path):
     truth = np.array([row[1:4] for row in rows if row[0] == "point2"], dtype=float)
     pd.DataFrame(truth, columns=["t", "x", "y"]).to_csv(tmp_path / "truth.csv", index=False)
     pair = ((tmp_path / "wheels.csv", tmp_path / "truth.csv"),)
-    done = validate(ValidateRequest(pair, tmp_path / "out", anchor=False), Nobody())
+    done = validate(request_of(pair, tmp_path / "out", anchor=False), Nobody())
     errors = rows_of(done)["prediction"].errors
     assert 0.05 < errors.ate_aligned < 0.07
     assert errors.ate > errors.ate_aligned
@@ -70,8 +72,7 @@ def test_a_stranger_s_wheeled_robot_goes_through_unbent(shared, tmp_path):
 
 def test_a_run_under_two_names_is_averaged_once_and_told(walk, tmp_path):
     copy = shutil.copytree(walk, tmp_path / "copy")
-    pairs = tuple(pairs_of_run(folder) for folder in (walk, copy))
-    done = validate(ValidateRequest(pairs, tmp_path / "out"), Nobody())
+    done = validate(ValidateRequest((walk, copy), out=tmp_path / "out"), Nobody())
     assert len(done.runs) == 1
     assert not done.summary
     assert any("copy" in note and "once" in note for note in done.runs[0].notes)

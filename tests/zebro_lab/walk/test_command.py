@@ -4,31 +4,10 @@
 import json
 import subprocess
 import sys
-from pathlib import Path
 
 import pytest
 
-from zebro_lab.main import app
-from zebro_lab.terminal.ending import run as run_app
-
-COMMAND = str(Path(sys.executable).with_name("zebro-lab"))
-
-
-@pytest.fixture
-def run(monkeypatch, capsys):
-    """Return a runner of the command in this process: exit code, stdout, stderr."""
-
-    def runner(*arguments: object) -> tuple[int, str, str]:
-        monkeypatch.setattr(sys, "argv", [COMMAND, *map(str, arguments)])
-        try:
-            with pytest.raises(SystemExit) as ended:
-                run_app(app)
-            code = ended.value.code
-        finally:
-            streams = capsys.readouterr()
-        return int(code or 0), streams.out, streams.err
-
-    return runner
+from support.commands import COMMAND
 
 
 @pytest.mark.parametrize("command", ["walk", "predict"])
@@ -62,8 +41,8 @@ def test_walk_in_a_pipe_prints_gait_and_end_and_writes_its_folder(tmp_path):
     assert json.loads((out / "manifest.json").read_text())["kind"] == "walk"
 
 
-def test_robot_file_is_started(run, tmp_path):
-    code, out, _ = run("walk", "--write-robot", tmp_path / "robot.toml", "--arc-deg", 200)
+def test_robot_file_is_started(run_command, tmp_path):
+    code, out, _ = run_command("walk", "--write-robot", tmp_path / "robot.toml", "--arc-deg", 200)
     assert (code, out) == (0, f"wrote {tmp_path / 'robot.toml'}\n")
     assert "arc_deg = 200.0" in (tmp_path / "robot.toml").read_text()
 
@@ -74,17 +53,19 @@ ERRORS = {
     "option of another gait": (("--tau-turn", 0.1), "--tau-turn: means nothing to the gait 'trip"),
     "no such robot": (("--robot", "none.toml"), "none.toml: no such file"),
     "no slip law": (("--slip", "ice"), "--slip: 'ice' is no file or folder"),
-    "no friction": (("--slip", "coulomb:0"), "'coulomb:0' is no friction"),
+    "no friction": (("--slip", "coulomb:0"), "'coulomb:0' is not a friction law"),
     "no time": (("--duration", 0), "is no walk"),
     "no arc": (("--arc-deg", 10), "leg_arc is 10 degrees"),
 }  # fmt: skip
 
 
 @pytest.mark.parametrize(("options", "message"), ERRORS.values(), ids=ERRORS)
-def test_error_is_one_line_and_exit_1_and_nothing_is_written(options, message, run, tmp_path):
+def test_error_is_one_line_and_exit_1_and_nothing_is_written(
+    options, message, run_command, tmp_path
+):
     out = tmp_path / "out"
     given = ["walk", "--slip", "coulomb:0.4", "--duration", 2, "--out", out, *options]
-    code, stdout, stderr = run(*given)
+    code, stdout, stderr = run_command(*given)
     assert (code, stdout) == (1, "")
     assert stderr.startswith("error: ")
     assert message in stderr
@@ -103,7 +84,7 @@ USAGE = {
 
 
 @pytest.mark.parametrize("arguments", USAGE.values(), ids=USAGE)
-def test_wrong_usage_is_exit_2(arguments, run):
-    code, stdout, stderr = run(*arguments)
+def test_wrong_usage_is_exit_2(arguments, run_command):
+    code, stdout, stderr = run_command(*arguments)
     assert (code, stdout) == (2, "")
     assert "Usage: " in stderr

@@ -21,7 +21,7 @@ def test_a_leg_knocked_off_in_one_walk_is_off_where_that_walk_is_predicted(
     assert (own.index, other.index) == (1, 0)
     assert own.middle.offset[0, 2] == pytest.approx(OFF)
     assert not other.middle.offset.any()
-    assert "can confirm but not test" in own.notes[1]
+    assert "no independent test" in own.notes[1]
     to_come = informed_legs(walks, RobotFile())
     assert to_come.index is None
     assert not to_come.middle.offset.any()

@@ -16,11 +16,11 @@ from zebro_lab.files.errors import DataError, NotFound, SettingsError
 from zebro_lab.walk.path_band import (
     ASSUMED_OFFSET_DEG,
     DRAWS,
-    BandRequest,
     offset_sd_deg,
     predict_band,
     read_draws,
 )
+from zebro_lab.walk.request import BandRequest
 
 
 def test_draws_come_back_and_stale_ones_go(tmp_path):

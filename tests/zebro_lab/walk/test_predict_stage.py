@@ -9,10 +9,10 @@ from model.walk_models import MODELS
 from support.walk_requests import request, write_log
 from support.watchers import Nobody
 from zebro_lab.walk.folder import read_walk_manifest
-from zebro_lab.walk.predict_stage import PredictRequest, predict
+from zebro_lab.walk.predict_stage import predict
+from zebro_lab.walk.request import ModelRequest, PredictRequest
 from zebro_lab.walk.stage import walk
 from zebro_lab.walk.summary import summarise
-from zebro_lab.walk.walking import ModelRequest
 
 
 @pytest.mark.parametrize("model", MODELS)
@@ -20,8 +20,9 @@ def test_right_turn_mirrors_the_left_one_in_its_log(model, tmp_path):
     ends = []
     for side in ("left", "right"):
         log = write_log(tmp_path, direction=side)
-        asked = ModelRequest(tmp_path / side, slip="coulomb:0.4", model=model)
-        ends.append(summarise(predict(PredictRequest(log, asked, direction=side), Nobody()).path))
+        asked = ModelRequest(slip="coulomb:0.4", model=model)
+        wanted = PredictRequest(log, tmp_path / side, direction=side, model=asked)
+        ends.append(summarise(predict(wanted, Nobody()).path))
     assert np.sign(ends[0].yaw_rate) == 1
     assert np.sign(ends[1].yaw_rate) == -1
 
@@ -30,7 +31,8 @@ def test_predicting_a_gaits_own_log_walks_the_gait(tmp_path):
     walked = walk(request(tmp_path / "walk"), Nobody()).path
     log = write_log(tmp_path, start=100.0)
     predicted = predict(
-        PredictRequest(log, ModelRequest(tmp_path / "predicted", slip="coulomb:0.4")), Nobody()
+        PredictRequest(log, tmp_path / "predicted", model=ModelRequest(slip="coulomb:0.4")),
+        Nobody(),
     ).path
     assert predicted.t[0] == 100.0
     np.testing.assert_allclose(predicted.t - 100, walked.t, atol=1e-9)
@@ -43,8 +45,8 @@ def test_walked_path_leads_where_it_led_though_legs_are_offset(name, tmp_path):
     robot = tmp_path / "robot.toml"
     robot.write_text("[legs]\noffset_deg = [0, 0, -5, 0, 0, 0]\nsign = [-1, 1, 1, 1, 1, 1]\n")
     walked = walk(request(tmp_path / "walk", robot=robot), Nobody()).path
-    asked = ModelRequest(tmp_path / "again", slip="coulomb:0.4", robot=robot)
-    again = predict(PredictRequest(tmp_path / name, asked), Nobody()).path
+    asked = ModelRequest(slip="coulomb:0.4", robot=robot)
+    again = predict(PredictRequest(tmp_path / name, tmp_path / "again", model=asked), Nobody()).path
     np.testing.assert_allclose(again.theta, walked.theta, atol=1e-9)
     np.testing.assert_allclose(again.position, walked.position, atol=1e-6)
 
@@ -53,13 +55,14 @@ def test_robot_file_changes_robot_and_reading_of_the_log(tmp_path):
     robot = tmp_path / "robot.toml"
     robot.write_text("mass = 3.0\n[legs]\nsign = [-1, -1, -1, -1, -1, -1]\n")
     plain = predict(
-        PredictRequest(write_log(tmp_path), ModelRequest(tmp_path / "a", slip="coulomb:0.4")),
+        PredictRequest(write_log(tmp_path), tmp_path / "a", model=ModelRequest(slip="coulomb:0.4")),
         Nobody(),
     )
     signed = predict(
         PredictRequest(
             write_log(tmp_path, sign=-1),
-            ModelRequest(tmp_path / "b", slip="coulomb:0.4", robot=robot),
+            tmp_path / "b",
+            model=ModelRequest(slip="coulomb:0.4", robot=robot),
         ),
         Nobody(),
     )
@@ -83,7 +86,8 @@ def test_log_of_the_virtual_world_leads_where_its_robot_went(shared, tmp_path):
     walked = predict(
         PredictRequest(
             shared / "virtual-world" / "walks" / name,
-            ModelRequest(tmp_path / "out", slip="coulomb:0.38:0.001", arc_deg=200.0),
+            tmp_path / "out",
+            model=ModelRequest(slip="coulomb:0.38:0.001", arc_deg=200.0),
             columns=columns,
         ),
         Nobody(),

@@ -13,6 +13,8 @@ from rich.console import Console
 from model.gait import tripod_angles, tripod_reference
 from zebro_lab.calibration.slip_argument import parse_slip
 from zebro_lab.robot.robot_file import RobotFile
+from zebro_lab.walk.output import WalkStopped
+from zebro_lab.walk.request import ModelRequest
 from zebro_lab.walk.screen import (
     INTERRUPTED,
     gait_table,
@@ -22,7 +24,7 @@ from zebro_lab.walk.screen import (
     summary_lines,
 )
 from zebro_lab.walk.summary import summarise
-from zebro_lab.walk.walking import ModelRequest, Walked, WalkStopped
+from zebro_lab.walk.walking import Walked
 
 GAIT = tripod_reference(tripod_angles(np.radians(50.0), 1.3), 2.0, direction="left")
 

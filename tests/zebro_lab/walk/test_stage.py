@@ -13,9 +13,10 @@ from support.watchers import Impatient, Nobody
 from zebro_lab.files.errors import AlreadyExists, SettingsError
 from zebro_lab.robot.robot_file import read_robot_file
 from zebro_lab.walk.folder import PICTURES, read_walk, read_walk_manifest
+from zebro_lab.walk.output import WalkStopped
+from zebro_lab.walk.request import ModelRequest
 from zebro_lab.walk.stage import walk, write_robot
 from zebro_lab.walk.summary import summarise
-from zebro_lab.walk.walking import ModelRequest, WalkStopped
 
 
 @pytest.mark.parametrize("model", MODELS)
@@ -84,7 +85,7 @@ def test_a_walk_of_more_steps_than_memory_holds_is_refused(model, tmp_path):
 
 
 def test_robot_written_out_is_the_robot_asked_for(tmp_path):
-    file = write_robot(tmp_path / "robot.toml", ModelRequest(tmp_path, arc_deg=200.0))
+    file = write_robot(tmp_path / "robot.toml", ModelRequest(arc_deg=200.0))
     assert np.degrees(read_robot_file(file).robot.leg_arc) == pytest.approx(200)
     with pytest.raises(AlreadyExists, match="edit it, or name another"):
-        write_robot(file, ModelRequest(tmp_path))
+        write_robot(file, ModelRequest())

@@ -1,25 +1,24 @@
 # SPDX-License-Identifier: MIT
 """A model walks leg angles as asked, or says in one line what it needs."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 
-from model.gait.tripod import tripod_angles, tripod_reference
+from model.gait.steering import tripod_angles, tripod_reference
 from model.slip.curve import SlipCurve
 from model.slip.definition import SlipDefinition
 from model.slip.thesis import thesis_curve
 from zebro_lab.calibration.slip_argument import NamedSlip
 from zebro_lab.files.errors import SettingsError
 from zebro_lab.robot.robot_file import RobotFile
-from zebro_lab.walk.walking import MOST_STEPS, ModelRequest, robot_of, walk_with
+from zebro_lab.walk.request import ModelRequest
+from zebro_lab.walk.walking import MOST_STEPS, robot_of, walk_with
 
 GAIT = tripod_reference(tripod_angles(np.radians(50.0), 1.0), 2.0)
 
 
 def walked(*, duration=1.0, **options):
-    request = ModelRequest(Path("out"), **options)
+    request = ModelRequest(**options)
     return walk_with(request, RobotFile(), GAIT, duration=duration, what="a tripod")
 
 
@@ -52,7 +51,7 @@ def test_steps_that_make_no_walk_or_too_long_a_one_are_an_error(options):
 
 
 def test_an_arc_in_place_of_the_robot_s_own():
-    robot = robot_of(ModelRequest(Path("out"), arc_deg=200.0)).robot
+    robot = robot_of(ModelRequest(arc_deg=200.0)).robot
     assert robot.leg_arc == pytest.approx(np.radians(200.0))
     with pytest.raises(SettingsError, match="--arc-deg"):
-        robot_of(ModelRequest(Path("out"), arc_deg=10.0))
+        robot_of(ModelRequest(arc_deg=10.0))

@@ -11,19 +11,21 @@ from support.judged_walks import judged_walk
 from support.tracked_walks import write_walk
 from support.walk_posteriors import posterior_of, write_calibration
 from support.watchers import Nobody
-from zebro_lab.calibration.walks_folder import read_walks_beside
+from zebro_lab.calibration.request import CalibrationRequest
+from zebro_lab.calibration.walks_folder import read_stored_walks
 from zebro_lab.files.errors import NotFound, SettingsError
 from zebro_lab.walk_fit import stage
 from zebro_lab.walk_fit.prediction import WalksFitted
-from zebro_lab.walk_fit.stage import WalksRequest, calibrate_walks
+from zebro_lab.walk_fit.request import WalksRequest
+from zebro_lab.walk_fit.stage import calibrate_walks
 
 
 def test_walks_need_a_calibration(tmp_path):
-    folder = write_walk(tmp_path / "walk")
+    folder, none = write_walk(tmp_path / "walk"), CalibrationRequest(out=tmp_path / "none")
     with pytest.raises(NotFound, match="finished calibration"):
-        calibrate_walks(WalksRequest((folder,), tmp_path / "none"), Nobody())
+        calibrate_walks(WalksRequest((folder,)), none, Nobody())
     with pytest.raises(SettingsError, match="--walks"):
-        calibrate_walks(WalksRequest((), tmp_path / "none"), Nobody())
+        calibrate_walks(WalksRequest(), none, Nobody())
 
 
 def test_the_fit_is_written_beside_the_calibration_with_what_it_was_made_of(tmp_path, monkeypatch):
@@ -45,7 +47,7 @@ def test_the_fit_is_written_beside_the_calibration_with_what_it_was_made_of(tmp_
     assert ("fitting walks", 0.5) in watcher.seen
     assert [what for what, _ in watcher.seen][-1] == "drawing"
     assert any(note.startswith("one: ") for note in done.notes)
-    stored = read_walks_beside(calibration / "slip.toml")
+    stored = read_stored_walks(calibration / "slip.toml")
     np.testing.assert_array_equal(stored.posterior.values, posterior.values)
     manifest = json.loads((done.folder / "manifest.json").read_text())
     assert manifest["settings"]["seed"] == 3

@@ -1,16 +1,19 @@
 # SPDX-License-Identifier: MIT
 """`zebro-lab camera kit | calibrate | clock`: preparations before photographs are taken."""
 
-from enum import StrEnum
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Literal, TypeAlias
 
 import typer
 
 from zebro_lab.terminal.messages import say
+from zebro_lab.terminal.request_command import request_command
+from zebro_lab.track.camera.request import CameraRequest
 
 if TYPE_CHECKING:
     from zebro_lab.track.camera.stage import CameraResult
+
+Paper: TypeAlias = Literal["a4", "letter"]
 
 app = typer.Typer(
     no_args_is_help=True, help="Print the tracking kit, calibrate the camera, tie its clock."
@@ -25,64 +28,27 @@ zebro-lab camera calibrate board-photos --board checkerboard:9x6:25mm --out came
 """
 
 
-class Paper(StrEnum):
-    """Paper sizes of the kit."""
-
-    A4 = "a4"
-    LETTER = "letter"
-
-
-class LensModel(StrEnum):
-    """Lens distortion models, in order of complexity."""
-
-    AUTO = "auto"
-    NONE = "none"
-    K1 = "k1"
-    K1_K2 = "k1-k2"
-    FULL = "full"
-
-
-Workers = Annotated[int, typer.Option(min=1, help="Processes to use.")]
-
-
 @app.command()
 def kit(
     out: Annotated[Path, typer.Option(help="Folder to write.")] = Path("tracking-kit"),
-    paper: Annotated[Paper, typer.Option(help="Size of the paper.")] = Paper.A4,
+    paper: Annotated[Paper, typer.Option(help="Size of the paper.")] = "a4",
 ) -> None:
     """Write a true-scale PDF of markers, board and ruler, and a floor.toml to edit."""
     from zebro_lab.track.camera.stage import write_kit
 
-    for file in write_kit(out, paper=paper.value):
+    for file in write_kit(out, paper=paper):
         say(f"wrote {file}")
     say("print at 100 % and measure the 100 mm bar of every page")
 
 
 @app.command(epilog=CALIBRATE_EPILOG)
-def calibrate(
-    photos: Annotated[Path, typer.Argument(help="Folder of photographs of the board.")],
-    board: Annotated[
-        str,
-        typer.Option(
-            metavar="BOARD",
-            help="kit, checkerboard:COLUMNSxROWS:SQUARE (inner corners) or "
-            "charuco:COLUMNSxROWS:SQUARE:MARKER:DICTIONARY (squares).",
-        ),
-    ] = "kit",
-    out: Annotated[Path, typer.Option(help="File to write.")] = Path("camera.toml"),
-    lens: Annotated[
-        LensModel, typer.Option(help="Distortion to fit; auto: no more than the photographs show.")
-    ] = LensModel.AUTO,
-    workers: Workers = 2,
-) -> None:
+@request_command()
+def calibrate(request: CameraRequest) -> None:
     """Calibrate the lens from photographs of a board: camera.toml."""
-    from rich.console import Console
-
     from zebro_lab.terminal.progress import progress_bar
-    from zebro_lab.track.camera.stage import CameraRequest, calibrate_camera
+    from zebro_lab.track.camera.stage import calibrate_camera
 
-    request = CameraRequest(photos, out, board, lens.value, workers)
-    with progress_bar(Console(stderr=True)) as watcher:
+    with progress_bar() as watcher:
         result = calibrate_camera(request, watcher)
     for line in calibration_lines(result):
         say(line)
@@ -119,14 +85,12 @@ def calibration_lines(result: "CameraResult") -> list[str]:
 @app.command()
 def clock(
     duration: Annotated[
-        float | None, typer.Option(min=0.0, help="How long; without it until Ctrl-C [s].")
+        float | None, typer.Option(min=0.0, help="Duration [s]; default: until Ctrl-C.")
     ] = None,
 ) -> None:
     """Show the computer's time as a QR code to photograph; give the photograph to track --clock."""
-    from rich.console import Console
-
     from zebro_lab.terminal.progress import progress_bar
     from zebro_lab.track.camera.clock_screen import show_clock
 
-    with progress_bar(Console(stderr=True)) as watcher:
+    with progress_bar() as watcher:
         show_clock(watcher.stop_requested, duration=duration)

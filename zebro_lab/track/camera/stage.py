@@ -17,31 +17,13 @@ from zebro_lab.files.own_file import require_own, text_file
 from zebro_lab.files.provenance import file_hash
 from zebro_lab.track.camera.board_argument import parse_board
 from zebro_lab.track.camera.kit import kit_pages, starter_floor
+from zebro_lab.track.camera.request import CameraRequest
 from zebro_lab.track.camera_file import HEADING, render_camera_file
 from zebro_lab.track.floor_file import FLOOR_FILE, render_floor_file
 from zebro_lab.track.photo_sequence import upright_size
 
 KIT_FILE = "kit.pdf"
 LENS = text_file("camera calibrate", HEADING)
-
-
-@dataclass(frozen=True)
-class CameraRequest:
-    """Options of a camera calibration.
-
-    Attributes:
-        photos: Folder of photographs of the board.
-        out: The `camera.toml` to write.
-        board: Description of the board, as for `--board`.
-        lens_model: "auto" or the distortion to fit.
-        workers: Processes to use.
-    """
-
-    photos: Path
-    out: Path
-    board: str = "kit"
-    lens_model: str = "auto"
-    workers: int = 1
 
 
 @dataclass(frozen=True)
@@ -88,7 +70,7 @@ def calibrate_camera(request: CameraRequest, progress: Progress) -> CameraResult
     if not views:
         raise CalibrationError(_why_none(request, left_out))
     progress.step("lens", None)
-    fit = calibrate(views, size, lens_model=request.lens_model)
+    fit = calibrate(views, size, lens_model=request.lens)
     used = {path.name: file_hash(path) for path in paths if path.name not in left_out}
     atomic_write_text(target, render_camera_file(fit, photos=used))
     return CameraResult(request.out, fit, left_out)
@@ -130,7 +112,7 @@ def write_kit(out: Path, *, paper: str = "a4") -> tuple[Path, ...]:
     pages = kit_pages(paper)
     if (out / FLOOR_FILE).exists():
         raise AlreadyExists(
-            f"{out / FLOOR_FILE} exists already and may hold what a tape said; name another --out"
+            f"{out / FLOOR_FILE} exists already and may hold measured positions; name another --out"
         )
     drawn = BytesIO()
     save_pages(pages, drawn)
@@ -152,5 +134,5 @@ def _require_same(file: Path, content: bytes) -> None:
 
 
 _HEADING = """\
-The floor's markers. Replace x, y and yaw_deg by what the tape says; delete what is not laid.
-Markers as `zebro-lab camera kit` prints them; the places are an advice, not a measurement."""
+The floor's markers. Replace x, y and yaw_deg by what was measured; delete markers not used.
+Markers as `zebro-lab camera kit` prints them; the positions are a suggestion, not measured."""

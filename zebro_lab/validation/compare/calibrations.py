@@ -12,11 +12,11 @@ from model.slip.law import Array
 from zebro_lab.calibration.slip_argument import NamedSlip, parse_slip
 from zebro_lab.calibration.slip_draws import law_draws
 from zebro_lab.files.errors import DataError
+from zebro_lab.files.units import shown_unit
 from zebro_lab.validation.compare.values import Comparison, Curve, Quantity
 
 DRAWS = 1000
 SLIPS = 200  # points of a drawn curve
-_WALK_UNITS = {"rad": (180 / np.pi, "deg"), "rad/m": (180 / np.pi, "deg/m"), "-": (100.0, "%")}
 
 
 def compare_calibrations(
@@ -122,20 +122,19 @@ def _walk_quantities(
     """Compare the posteriors after walks if both calibrations have one; also return notes."""
     one, other = (slip.walks for slip in slips)
     if one is None or other is None:
-        return [], ["what walks said is not compared: not both have any"] if one or other else []
+        return [], [
+            "legs and floor are not compared: only one was fitted to walks"
+        ] if one or other else []
     posteriors = (one.posterior, other.posterior)
-    told = [posterior.contractions() for posterior in posteriors]
-    drawn = [_drawn(posterior, rng) for posterior in posteriors]
+    contractions = [posterior.contractions() for posterior in posteriors]
+    first, second = (_drawn(posterior, rng) for posterior in posteriors)
     quantities = []
     for i, (name, unit) in enumerate(zip(NAMES, UNITS, strict=True)):
-        if not any(each[i].informed for each in told):
+        if not any(each[i].informed for each in contractions):
             continue
-        scale, shown = _WALK_UNITS.get(unit, (1.0, "log of factor"))
-        quantities.append(
-            Quantity(
-                name.replace("_", " "), shown, (scale * drawn[0][:, i], scale * drawn[1][:, i])
-            )
-        )
+        scale, shown = shown_unit(unit)
+        draws = (scale * first[:, i], scale * second[:, i])
+        quantities.append(Quantity(name.replace("_", " "), shown, draws))
     return quantities, []
 
 

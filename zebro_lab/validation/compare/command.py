@@ -1,12 +1,11 @@
 # SPDX-License-Identifier: MIT
 """`zebro-lab compare A B`: compare two calibrations or two runs."""
 
-from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING
 
-import typer
-
-from zebro_lab.terminal.messages import plain
+from zebro_lab.terminal.messages import plain, wide_console
+from zebro_lab.terminal.request_command import request_command
+from zebro_lab.validation.compare.request import CompareRequest
 
 if TYPE_CHECKING:
     from rich.table import Table
@@ -26,29 +25,21 @@ independent; a track's errors are taken for independent from pose to pose.
 """
 
 
-def compare(
-    first: Annotated[Path, typer.Argument(metavar="A", help="Calibration folder or run folder.")],
-    second: Annotated[Path, typer.Argument(metavar="B", help="Another of the same kind.")],
-    out: Annotated[Path, typer.Option(help="Folder to write.")] = Path("comparison"),
-    seed: Annotated[int, typer.Option(help="Seed of everything random.")] = 1,
-) -> None:
+@request_command()
+def compare(request: CompareRequest) -> None:
     """Compare two calibrations or two runs: overlay them and list differences with intervals."""
-    from rich.console import Console
     from rich.text import Text
 
-    from zebro_lab.validation.compare.stage import CompareRequest
-    from zebro_lab.validation.compare.stage import compare as run
+    from zebro_lab.validation.compare import stage
 
-    done = run(CompareRequest(first, second, out, seed))
-    console = Console(highlight=False)
-    if not console.is_terminal:
-        console = Console(highlight=False, width=120)
+    done = stage.compare(request)
+    console = wide_console()
     if "sim:" in done.comparison.source:
         console.print(plain(f"SIMULATED: {done.comparison.source}"))
     console.print(_table(done))
     for note in done.comparison.notes:
         console.print(plain(note))
-    console.print(Text(f"\nwritten to {out}"))
+    console.print(Text(f"\nwritten to {request.out}"))
 
 
 def _table(done: "Compared") -> "Table":

@@ -8,8 +8,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from model.metrics.difference import Difference
-from zebro_lab.plots.sheet import BLUE, RED, legend_below, new_figure, styled
-from zebro_lab.validation.compare.values import Comparison, Curve, Walked
+from zebro_lab.plots.sheet import BLUE, RED, legend_below, map_axes, new_figure, styled
+from zebro_lab.validation.compare.values import Comparison, Curve, RunPaths
 
 _COLOURS = (BLUE, RED)
 _SHOWN_DRAWS = 40
@@ -39,7 +39,7 @@ def overlay(compared: Comparison, differences: Sequence[Difference], *, simulate
         panels[0].set_ylabel("traction force [N]")
         panels[0].set_xlabel(f"slip ratio, {compared.definition} definition [-]")
     else:
-        _draw_walked(figure.add_subplot(grid[0, 0]), compared.walked, compared.names)
+        _draw_paths(figure.add_subplot(grid[0, 0]), compared.paths, compared.names)
     _draw_differences(figure.add_subplot(grid[1, :]), compared, differences)
     legend_below(figure, columns=4)
     return figure
@@ -53,8 +53,8 @@ def _draw_curve(axes: Axes, curve: Curve, names: Sequence[str]) -> None:
     axes.grid(color="0.92", lw=0.6)
 
 
-def _draw_walked(axes: Axes, walked: Sequence[Walked], names: Sequence[str]) -> None:
-    for run, colour, name in zip(walked, _COLOURS, names, strict=True):
+def _draw_paths(axes: Axes, runs: Sequence[RunPaths], names: Sequence[str]) -> None:
+    for run, colour, name in zip(runs, _COLOURS, names, strict=True):
         if run.band is not None:
             for position in run.band.position[:_SHOWN_DRAWS]:
                 axes.plot(*position.T, color=colour, lw=0.5, alpha=0.2)
@@ -64,9 +64,8 @@ def _draw_walked(axes: Axes, walked: Sequence[Walked], names: Sequence[str]) -> 
                 *run.track.position.T, ls="none", marker="o", ms=4, color=colour,
                 label=f"{name}, tracked",
             )  # fmt: skip
-    axes.set(xlabel="x from the start [m]", ylabel="y [m]", aspect="equal")
-    axes.set_adjustable("datalim")
-    axes.grid(color="0.92", lw=0.6)
+    map_axes(axes)
+    axes.set_xlabel("x from the start [m]")
 
 
 def _draw_differences(axes: Axes, compared: Comparison, differences: Sequence[Difference]) -> None:

@@ -6,18 +6,18 @@ from pathlib import Path
 import numpy as np
 
 from model.metrics.turning import mean_yaw_rate
+from model.path_draws import states_at
 from model.poses import Poses
-from model.predict import states_at
 from model.slip.law import Array
 from zebro_lab.files.errors import DataError, NotFound
+from zebro_lab.files.names import TRACK
 from zebro_lab.files.replacement import settle
 from zebro_lab.track.file import TrackFile, read_track
 from zebro_lab.track.folder import TRACK_CSV
-from zebro_lab.validation.compare.values import Comparison, Quantity, Walked
+from zebro_lab.validation.compare.values import Comparison, Quantity, RunPaths
 from zebro_lab.walk.folder import DRAWS, PREDICTION, read_walk_manifest
 from zebro_lab.walk.path_band import read_draws
 
-TRACK = "track"
 TRACKS = 1000  # paths drawn with a track's covariance
 EVERY = 1.0  # s between poses of a predicted path without a track
 _SUMMARY = (("speed", "mm/s", 1e3), ("yaw rate", "deg/s", 180 / np.pi), ("curvature", "1/m", 1.0))
@@ -61,7 +61,7 @@ def compare_runs(
         source=", ".join(sorted({each for run in runs for each in run.sources})),
         files=tuple(dict.fromkeys(file for run in runs for file in run.files)),
         notes=tuple(f"{n}: {note}" for n, r in zip(names, runs, strict=True) for note in r.notes),
-        walked=tuple(run.walked for run in runs),
+        paths=tuple(run.paths for run in runs),
     )
 
 
@@ -111,10 +111,10 @@ class _Run:
         return _summaries(t, states_at(self.band, t))
 
     @property
-    def walked(self) -> Walked:
+    def paths(self) -> RunPaths:
         """Track and band, both started at the origin along x."""
         track = None if self.track is None else _from_origin(self.track.poses)
-        return Walked(track, self.band)
+        return RunPaths(track, self.band)
 
 
 def _summaries(t: Array, states: Array) -> Array:

@@ -51,7 +51,7 @@ class Curve:
 
 
 @dataclass(frozen=True)
-class Walked:
+class RunPaths:
     """Track and prediction of one run for the picture, started at the origin along x.
 
     Attributes:
@@ -72,7 +72,7 @@ class Comparison:
         names: Names to show for them.
         quantities: Quantities that both have.
         curves: Their slip curves, one per load; empty for runs.
-        walked: Their paths; empty for calibrations.
+        paths: Their paths; empty for calibrations.
         definition: Slip definition; empty for runs.
         source: Where the data come from.
         files: Files that were read.
@@ -86,5 +86,5 @@ class Comparison:
     files: tuple[Path, ...]
     notes: tuple[str, ...] = ()
     curves: tuple[Curve, ...] = ()
-    walked: tuple[Walked, ...] = ()
+    paths: tuple[RunPaths, ...] = ()
     definition: str = ""

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from model.bayes.walks.fit import fit_walks
-from model.bayes.walks.misfit import TrackedWalk, from_first
+from model.bayes.walks.misfit import TrackedWalk
 from model.bayes.walks.prior import FLOOR, NAMES, WalkPrior, WrongLeg, all_cases, legs_of
 from model.errors import InsufficientData
 from model.gait import tripod_angles, tripod_reference
@@ -119,14 +119,6 @@ def test_probabilities_of_cases_are_one_in_all():
     for walks in (1, 2, 4):
         logs = [PRIOR.log_probability(case, walks=walks) for case in all_cases(walks)]
         assert np.exp(logs).sum() == pytest.approx(1.0)
-
-
-def test_a_path_moved_to_a_pose_begins_there():
-    states = np.random.default_rng(1).normal(size=(3, 5, 3))
-    moved = from_first(states, np.array([1.0, 2.0, 0.5]))
-    np.testing.assert_allclose(moved[:, 0], np.broadcast_to([1.0, 2.0, 0.5], (3, 3)))
-    steps = [np.linalg.norm(np.diff(a[..., :2], axis=1), axis=2) for a in (moved, states)]
-    np.testing.assert_allclose(*steps)
 
 
 def test_no_walk_and_a_track_of_two_poses_are_refused():

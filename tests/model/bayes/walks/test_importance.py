@@ -18,7 +18,7 @@ def modes(log_evidence):
 
 def drawn(log_density, *, log_evidence=(0.0, 0.0), seed=1):
     rng = np.random.default_rng(seed)
-    return weighted_draws(modes(log_evidence), log_density, rng=rng, tell=lambda _: None)
+    return weighted_draws(modes(log_evidence), log_density, rng=rng, progress=lambda _: None)
 
 
 def test_a_gaussian_comes_back_from_a_wrong_start():
@@ -61,7 +61,7 @@ def test_a_kink_comes_back_from_a_narrow_start():
     grid = rng.standard_normal((400_000, D))
     weight = np.exp(kinked(grid, None) + 0.5 * (grid**2).sum(axis=1))
     truth = weight @ grid / weight.sum()
-    result = weighted_draws(narrow, kinked, rng=rng, tell=lambda _: None)
+    result = weighted_draws(narrow, kinked, rng=rng, progress=lambda _: None)
     assert 1 / (result.weight @ result.weight) > 60
     np.testing.assert_allclose(result.weight @ result.z, truth, atol=0.25)
 
@@ -72,7 +72,7 @@ def test_bumps_around_draws_leave_the_weights_right(monkeypatch):
     density = lambda z, case: -0.5 * (z**2).sum(axis=1) + np.log(np.where(case == 1, 0.75, 0.25))  # noqa: E731
     wide = [Mode(case, np.ones(D), 0.3 * np.eye(D), 0.0) for case in CASES]
     results = [
-        weighted_draws(wide, density, rng=np.random.default_rng(seed), tell=lambda _: None)
+        weighted_draws(wide, density, rng=np.random.default_rng(seed), progress=lambda _: None)
         for seed in range(8)
     ]
     shares = [result.weight[result.case == 1].sum() for result in results]

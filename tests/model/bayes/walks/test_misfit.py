@@ -2,11 +2,11 @@
 import numpy as np
 import pytest
 
-from model.bayes.walks.misfit import TrackedWalk, WalkMisfit, from_first
+from model.bayes.walks.misfit import TrackedWalk, WalkMisfit
 from model.bayes.walks.prior import WRONG, legs_of
 from model.errors import InsufficientData
 from model.gait.reference import SampledReference
-from model.gait.tripod import tripod_angles, tripod_reference
+from model.gait.steering import tripod_angles, tripod_reference
 from model.predict import ModelSpread
 from model.robot import Robot
 from model.walk.ensemble import WalkDraw, planar_walk
@@ -59,14 +59,6 @@ def test_terms_say_what_residuals_do_for_small_steering_and_stride(misfit):
     y = np.array([[0.7, -0.4]])
     bent = misfit.residuals(legs(steering=0.7e-3, stride=-0.4e-3), threads=1)
     assert terms.squares_at(y)[0, 0] == pytest.approx(squares(bent), rel=0.02, abs=1e-3)
-
-
-def test_paths_are_moved_to_begin_at_a_pose():
-    states = np.array([[[1.0, 1.0, 0.5], [2.0, 1.0, 0.6]]])
-    moved = from_first(states, np.array([0.0, 0.0, 0.5 + np.pi / 2]))
-    np.testing.assert_allclose(
-        moved[0], [[0, 0, 0.5 + np.pi / 2], [0, 1, 0.6 + np.pi / 2]], atol=1e-12
-    )
 
 
 def test_two_poses_are_no_track(walk):

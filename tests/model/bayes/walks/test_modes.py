@@ -42,7 +42,7 @@ def test_the_leg_that_is_wrong_is_the_likeliest_case():
     offset = np.zeros(N_LEGS)
     offset[3] = np.radians(6.0)
     told = []
-    modes = search(offset).modes(tell=told.append)
+    modes = search(offset).modes(progress=told.append)
     best = max(modes, key=lambda mode: mode.log_evidence)
     assert best.case == WrongLeg(3)
     assert best.z[WRONG] * WalkPrior().wrong_sd == pytest.approx(np.radians(6.0), rel=0.1)
@@ -50,5 +50,5 @@ def test_the_leg_that_is_wrong_is_the_likeliest_case():
 
 
 def test_legs_as_described_are_likeliest_without_a_wrong_one():
-    modes = search(np.zeros(N_LEGS)).modes(tell=lambda _: None)
+    modes = search(np.zeros(N_LEGS)).modes(progress=lambda _: None)
     assert max(modes, key=lambda mode: mode.log_evidence).case is None

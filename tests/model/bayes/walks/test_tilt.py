@@ -4,7 +4,7 @@
 import numpy as np
 import pytest
 
-from model.bayes.walks.tilt import SD, TiltMisfit, TiltSeen
+from model.bayes.walks.tilt import SD, MeasuredTilt, TiltMisfit
 from model.errors import InsufficientData, WalkError
 from model.gait import tripod_angles, tripod_reference
 from model.gait.reference import SampledReference
@@ -55,7 +55,7 @@ def test_a_gait_that_is_walked_by_strides_keeps_no_tilt():
 
 def test_the_leg_that_is_off_is_told_from_one_that_bends_the_path_alike():
     t, tilt = tilted(off(3, 5.0), off(1, 6.0), off(3, 4.0), np.zeros(6))
-    misfit = TiltMisfit.of(TiltSeen(t, tilt[0]), t, log())
+    misfit = TiltMisfit.of(MeasuredTilt(t, tilt[0]), t, log())
     right, other, near, none = squares(misfit, tilt)
     assert right < 1e-12
     assert near < 0.2 * none
@@ -65,7 +65,8 @@ def test_the_leg_that_is_off_is_told_from_one_that_bends_the_path_alike():
 def test_how_a_unit_is_mounted_does_not_count():
     t, tilt = tilted(off(3, 5.0), np.zeros(6))
     level, mounted = (
-        TiltMisfit.of(TiltSeen(t, tilt[0] + by), t, log()) for by in (0.0, np.radians([1.0, -2.0]))
+        TiltMisfit.of(MeasuredTilt(t, tilt[0] + by), t, log())
+        for by in (0.0, np.radians([1.0, -2.0]))
     )
     np.testing.assert_allclose(mounted.residuals(tilt), level.residuals(tilt), atol=1e-9)
 
@@ -74,7 +75,7 @@ def test_strides_that_repeat_say_as_much_as_one():
     said = []
     for duration in (8.0, 16.0):
         t, tilt = tilted(off(3, 5.0), np.zeros(6), duration=duration)
-        misfit = TiltMisfit.of(TiltSeen(t, tilt[0]), t, log(duration))
+        misfit = TiltMisfit.of(MeasuredTilt(t, tilt[0]), t, log(duration))
         assert misfit.count == pytest.approx(2 * 2.0 / 0.1, rel=0.05)
         said.append(squares(misfit, tilt)[1])
     assert said[1] == pytest.approx(said[0], rel=0.1)
@@ -83,7 +84,7 @@ def test_strides_that_repeat_say_as_much_as_one():
 def test_a_difference_of_one_standard_deviation_counts_as_one():
     t = np.arange(0.0, 4.0, 0.02)
     still = SampledReference(t, np.zeros((len(t), 6)))
-    misfit = TiltMisfit.of(TiltSeen(t, np.zeros((len(t), 2))), t, still)
+    misfit = TiltMisfit.of(MeasuredTilt(t, np.zeros((len(t), 2))), t, still)
     swing = SD * np.sign(np.sin(np.pi * (t + 0.01)))[:, None] * np.ones(2)
     assert squares(misfit, swing[None])[0] == pytest.approx(misfit.count, rel=0.05)
 
@@ -91,4 +92,4 @@ def test_a_difference_of_one_standard_deviation_counts_as_one():
 def test_an_imu_of_another_time_is_refused():
     t, tilt = tilted(np.zeros(6))
     with pytest.raises(InsufficientData, match="share"):
-        TiltMisfit.of(TiltSeen(t + 100.0, tilt[0]), t, log())
+        TiltMisfit.of(MeasuredTilt(t + 100.0, tilt[0]), t, log())

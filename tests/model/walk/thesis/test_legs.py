@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from model.errors import DomainError
-from model.gait.tripod import tripod_angles, tripod_reference
+from model.gait.steering import tripod_angles, tripod_reference
 from model.walk.thesis import SwitchedLegs
 from model.walk.thesis.legs import leg_motion
 

@@ -6,8 +6,8 @@ import pandas as pd
 import pytest
 
 from benchmarks.accuracy.chatter import sign_changes_per_second
+from model.gait.steering import tripod_angles, tripod_reference
 from model.gait.suriana import suriana_reference
-from model.gait.tripod import tripod_angles, tripod_reference
 from model.robot import Robot
 from model.walk.thesis import (
     SwitchedLegs,

@@ -6,9 +6,9 @@ import pytest
 
 from model.errors import DomainError, WalkError
 from model.gait.reference import SampledReference
+from model.gait.steering import tripod_angles, tripod_reference
 from model.gait.suriana import suriana_reference
 from model.gait.tetrapod import tetrapod_reference
-from model.gait.tripod import tripod_angles, tripod_reference
 from model.robot import GRAVITY, Robot
 from model.slip import CoulombStribeck
 from model.walk.no_slip import walk_no_slip

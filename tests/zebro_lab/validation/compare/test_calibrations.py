@@ -5,7 +5,8 @@ import pytest
 
 from support.compared_folders import calibration, compared
 from zebro_lab.files.errors import DataError
-from zebro_lab.validation.compare.stage import CompareRequest, compare
+from zebro_lab.validation.compare.request import CompareRequest
+from zebro_lab.validation.compare.stage import compare
 
 
 def test_more_friction_is_more_traction_and_the_same_slope(tmp_path):

@@ -6,7 +6,7 @@ import numpy as np
 from model.metrics.difference import Difference
 from model.poses import Poses
 from zebro_lab.validation.compare.pictures import overlay
-from zebro_lab.validation.compare.values import Comparison, Curve, Quantity, Walked
+from zebro_lab.validation.compare.values import Comparison, Curve, Quantity, RunPaths
 
 T = np.linspace(0.0, 1.0, 5)
 APART = (Difference(1.0, 0.5, 1.5, 0.99), Difference(0.1, -0.9, 1.1, 0.6))
@@ -36,8 +36,8 @@ def test_curves_have_a_panel_a_load_and_a_line_each():
 def test_differences_are_black_where_zero_lies_outside():
     path = Poses(T, np.column_stack([T, T]), 0 * T)
     band = Poses(T, np.stack([path.position] * 50), np.zeros((50, len(T))))
-    walked = (Walked(path, band), Walked(path, None))
-    figure = overlay(comparison(walked=walked), APART, simulated=False)
+    paths = (RunPaths(path, band), RunPaths(path, None))
+    figure = overlay(comparison(paths=paths), APART, simulated=False)
     above, below = figure.axes
     assert len(above.lines) == 40 + 1 + 1 + 1  # draws, their name, two tracks
     assert above.get_xlabel() == "x from the start [m]"

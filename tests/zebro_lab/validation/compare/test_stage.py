@@ -8,7 +8,8 @@ import pytest
 
 from support.compared_folders import calibration, compared, run_folder
 from zebro_lab.files.errors import AlreadyExists, DataError, NotFound, SettingsError
-from zebro_lab.validation.compare.stage import CompareRequest, compare
+from zebro_lab.validation.compare.request import CompareRequest
+from zebro_lab.validation.compare.stage import compare
 
 
 def test_the_folder_holds_a_table_a_picture_and_where_it_comes_from(tmp_path):

@@ -1,0 +1,122 @@
+# SPDX-License-Identifier: MIT
+"""Draws of how legs and floor differ from the description of the robot and its slip law."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from model.robot import N_LEGS, Robot
+from model.slip.law import Array
+from model.walk.traction import TractionTable
+
+ARCS = (np.pi / 2, np.radians(359.0))  # a robot's legs are arcs of these angles
+
+
+@dataclass(frozen=True)
+class LegState:
+    """Draws of what differs from the description of the robot and the slip law.
+
+    They come from a prior or a posterior.
+
+    Attributes:
+        offset: Further offset of each leg, shape (m, 6) [rad].
+        grip: Factor on traction, shape (m,) [-].
+        stiffness: Factor on slip stiffness, shape (m,) [-].
+        fall: Factor on the post-peak drop, shape (m,) [-].
+        arc: Further angle of the legs' arc, shape (m,) [rad].
+        steering: Constant curvature added to the path, whatever the legs do, shape (m,) [rad/m].
+        stride: Relative error of distance: legs that are longer or shorter, shape (m,) [-].
+    """
+
+    offset: Array
+    grip: Array
+    stiffness: Array
+    fall: Array
+    arc: Array
+    steering: Array
+    stride: Array
+
+    def __len__(self) -> int:
+        """Return the number of draws."""
+        return len(self.grip)
+
+    @staticmethod
+    def of_prior(n: int, *, offset_sd: float, rng: np.random.Generator) -> "LegState":
+        """Draw leg offsets from a uniform prior, with every other unknown at its described value.
+
+        An encoder's zero known to one count is uniform over it: standard deviation count/sqrt(12).
+
+        Args:
+            n: Number of draws.
+            offset_sd: Standard deviation of an offset [rad].
+            rng: Source of randomness.
+        """
+        reach = np.sqrt(3.0) * offset_sd
+        offset = rng.uniform(-reach, reach, (n, N_LEGS))
+        one, no = np.ones(n), np.zeros(n)
+        return LegState(offset, one, one, one, no, no, no)
+
+
+def robot_in(robot: Robot, state: LegState, i: int) -> Robot:
+    """Return the robot with the leg offsets and arc of one draw.
+
+    Args:
+        robot: The robot as described.
+        state: Draws of the legs' state.
+        i: Index of the draw.
+    """
+    return replace(
+        robot,
+        leg_offset=robot.leg_offset + state.offset[i],
+        leg_arc=float(np.clip(robot.leg_arc + state.arc[i], *ARCS)),
+    )
+
+
+def law_in(table: TractionTable, state: LegState, i: int) -> TractionTable:
+    """Return the slip law scaled by the grip, slip stiffness and post-peak drop of one draw.
+
+    Args:
+        table: The slip law as calibrated.
+        state: Draws of the legs' state.
+        i: Index of the draw.
+    """
+    return scaled_table(
+        table,
+        grip=float(state.grip[i]),
+        stiffness=float(state.stiffness[i]),
+        fall=float(state.fall[i]),
+    )
+
+
+def scaled_table(
+    table: TractionTable, *, grip: float, stiffness: float, fall: float = 1.0
+) -> TractionTable:
+    """Scale a law's traction and, independently, its slip stiffness and its post-peak drop.
+
+    A rig measures the post-peak drop under legs that slide for seconds. A walking leg lifts off
+    earlier, and its slip is a velocity as much as a ratio. The post-peak drop is therefore the part
+    of a law that applies least to a walk.
+
+    Args:
+        table: The law.
+        grip: Factor on traction at large slip [-].
+        stiffness: Factor on traction per slip at zero slip [-].
+        fall: Factor on the post-peak drop; there is none at zero [-].
+    """
+    table = _with_fall(table, fall)
+    shrink = stiffness / grip
+    return table._replace(
+        phi=table.phi * grip,
+        slope=table.slope * grip,
+        toe=table.toe * grip,
+        scale=table.scale if table.by_velocity else table.scale / shrink,
+        speed_scale=table.speed_scale / shrink,
+    )
+
+
+def _with_fall(table: TractionTable, fall: float) -> TractionTable:
+    top = table.phi.max(axis=1)
+    beyond = np.arange(table.phi.shape[1]) >= table.phi.argmax(axis=1)[:, None]
+    phi = np.where(beyond, top[:, None] - fall * (top[:, None] - table.phi), table.phi)
+    slope = np.where(beyond, fall * table.slope, table.slope)
+    return table._replace(phi=phi, slope=slope, toe=top - fall * (top - table.toe))

@@ -1,0 +1,121 @@
+# SPDX-License-Identifier: MIT
+"""Draws of a planar path: bent, anchored at a pose, interpolated and summarised by quantiles."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from model.errors import DomainError
+from model.poses import Poses, moved_onto
+from model.slip.law import Array
+from model.walk.path import WalkPath
+
+LEVELS = (0.025, 0.05, 0.25, 0.5, 0.75, 0.95, 0.975)
+STATES = ("x", "y", "yaw")
+
+
+def bent(paths: Poses, *, distance: Array, curvature: Array) -> Poses:
+    r"""Stretch and bend paths: :math:`d s' = (1 + \epsilon) ds, \; d\psi' = d\psi + \kappa\, ds`.
+
+    Args:
+        paths: Paths of m draws.
+        distance: Relative error of distance of each, shape (m,) [-].
+        curvature: Curvature added to each, shape (m,) [rad/m].
+    """
+    step = np.diff(paths.position, axis=1)
+    forward = step[..., 0] + 1j * step[..., 1]
+    travelled = _from_zero(np.abs(forward))
+    turned = curvature[:, None] * travelled
+    middle = 0.5 * (turned[:, 1:] + turned[:, :-1])
+    steps = (1 + distance[:, None]) * forward * np.exp(1j * middle)
+    moved = np.stack([_from_zero(np.real(steps)), _from_zero(np.imag(steps))], axis=-1)
+    position = paths.position[:, :1] + moved
+    return Poses(paths.t, position, paths.yaw + turned)
+
+
+def bent_walk(path: WalkPath, *, distance: float, curvature: float) -> WalkPath:
+    """Stretch and bend one walked path as `bent` does; slip and forces in its heading frame stay.
+
+    Args:
+        path: The path.
+        distance: Relative error of distance [-].
+        curvature: Curvature added [rad/m].
+    """
+    one = path.poses.draws()
+    moved = bent(one, distance=np.array([distance]), curvature=np.array([curvature]))
+    return replace(
+        path,
+        position=np.column_stack([moved.position[0], path.position[:, 2]]),
+        orientation=np.column_stack([path.orientation[:, :2], moved.yaw[0]]),
+    )
+
+
+def anchored(
+    paths: Poses,
+    pose: Array,
+    *,
+    at: float,
+    covariance: Array | None = None,
+    rng: np.random.Generator,
+) -> Poses:
+    """Move every path rigidly so that it passes a known pose, or a draw of an uncertain one.
+
+    Args:
+        paths: Paths.
+        pose: x, y [m] and yaw [rad] at that time, shape (3,).
+        at: The time, within the paths' [s].
+        covariance: Covariance of the pose, shape (3, 3); None when it is exact.
+        rng: Source of randomness.
+
+    Raises:
+        DomainError: The time lies outside the paths'.
+    """
+    if not paths.t[0] <= at <= paths.t[-1]:
+        raise DomainError(
+            f"the known pose is of {at:g} s, but paths run from {paths.t[0]:g} to {paths.t[-1]:g} s"
+        )
+    here = states_at(paths, np.array([at]))[:, 0]
+    wanted = pose
+    if covariance is not None:
+        wanted = rng.multivariate_normal(pose, covariance, size=len(here), method="eigh")
+    return Poses.of_states(paths.t, moved_onto(paths.states, here, wanted))
+
+
+def states_at(paths: Poses, t: Array) -> Array:
+    """Interpolate x, y and yaw of every draw linearly at given times.
+
+    Args:
+        paths: The draws.
+        t: Times, shape (k,) [s]; outside the paths the ends are extrapolated.
+
+    Returns:
+        States, shape (draws, k, 3) [m, m, rad].
+    """
+    values = paths.states
+    after = np.clip(np.searchsorted(paths.t, t, side="right"), 1, len(paths.t) - 1)
+    share = (t - paths.t[after - 1]) / (paths.t[after] - paths.t[after - 1])
+    return values[:, after - 1] + share[:, None] * (values[:, after] - values[:, after - 1])
+
+
+def quantiles(paths: Poses, levels: Sequence[float] = LEVELS) -> Array:
+    """Compute quantiles over the draws of x, y and yaw at every time.
+
+    Args:
+        paths: The draws.
+        levels: Levels of the quantiles, from 0 to 1 [-].
+
+    Returns:
+        Quantiles, shape (levels, n, 3) [m, m, rad].
+    """
+    return np.quantile(paths.states, np.asarray(levels), axis=0)
+
+
+def mean_path(paths: Poses) -> Poses:
+    """Return the mean position and heading at every time."""
+    return Poses(paths.t, paths.position.mean(axis=0), paths.yaw.mean(axis=0))
+
+
+def _from_zero(steps: Array) -> Array:
+    """Return the cumulative sum of steps along axis 1, starting at zero."""
+    return np.concatenate([np.zeros((len(steps), 1)), np.cumsum(steps, axis=1)], axis=1)

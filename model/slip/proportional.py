@@ -1,0 +1,76 @@
+# SPDX-License-Identifier: MIT
+"""Slip laws whose traction is the load times a function of slip alone."""
+
+from collections.abc import Callable
+from typing import ClassVar
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from model.slip.law import Array, Values
+
+
+class ProportionalLaw:
+    """Methods of a `SlipLaw` whose traction over load does not depend on load.
+
+    Attributes:
+        traction_over_load: Function of slip ratio and the law's coefficients [-].
+        slope_over_load: Its derivative with respect to slip ratio [-].
+    """
+
+    traction_over_load: ClassVar[Callable[..., Array]]
+    slope_over_load: ClassVar[Callable[..., Array]]
+
+    def coefficients(self, values: Values) -> tuple[Array, ...]:
+        """Compute the coefficients of `traction_over_load`, in its order, from parameter values.
+
+        Args:
+            values: Parameter values, one entry a parameter.
+        """
+        raise NotImplementedError
+
+    def peak(self, values: Values) -> Array:
+        """Compute the slip ratio at which traction peaks, infinite where it never falls [-].
+
+        Args:
+            values: Parameter values, one entry a parameter.
+        """
+        raise NotImplementedError
+
+    def force(self, slip: ArrayLike, load: ArrayLike, values: Values) -> Array:
+        """Compute the traction force [N]; see `SlipLaw.force`.
+
+        Args:
+            slip: Slip ratio [-].
+            load: Normal force, positive [N].
+            values: Parameter values, one entry a parameter.
+        """
+        return np.asarray(load) * self.traction_over_load(slip, *self.coefficients(values))
+
+    def slip_derivative(self, slip: ArrayLike, load: ArrayLike, values: Values) -> Array:
+        """Compute the derivative of the force with respect to slip ratio [N].
+
+        Args:
+            slip: Slip ratio [-].
+            load: Normal force, positive [N].
+            values: Parameter values, one entry a parameter.
+        """
+        return np.asarray(load) * self.slope_over_load(slip, *self.coefficients(values))
+
+    def valid(self, load: ArrayLike, values: Values) -> NDArray[np.bool_]:
+        """Return where the curve has its shape: everywhere inside the support.
+
+        Args:
+            load: Normal force, positive [N].
+            values: Parameter values, one entry a parameter.
+        """
+        return np.ones(np.broadcast(load, *values).shape, dtype=bool)
+
+    def peak_slip(self, load: ArrayLike, values: Values) -> Array:
+        """Compute the slip ratio at which the force peaks, the same at every load [-].
+
+        Args:
+            load: Normal force, positive [N].
+            values: Parameter values, one entry a parameter.
+        """
+        return np.broadcast_to(self.peak(values), np.broadcast(load, *values).shape)

@@ -1,0 +1,152 @@
+# SPDX-License-Identifier: MIT
+"""Kinematics of the thesis's legs: contact points, hip heights and the state set from them."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from model.compiled import compiled
+from model.leg import (
+    contact_angle,
+    contact_in_body,
+    hip_height,
+    hip_height_acceleration,
+    hip_height_rate,
+    thesis_lowest_angle,
+    thesis_lowest_angle_rate,
+    thesis_tilt,
+    thesis_tilt_rate,
+)
+from model.slip.law import Array
+
+
+class Legs(NamedTuple):
+    """Kinematics of the six legs at one instant, overwritten at every step."""
+
+    phi: Array
+    phi_rate: Array
+    height: Array
+    height_rate: Array
+    height_acceleration: Array
+    point: Array
+    hip: Array
+
+
+@compiled
+def turn(q, vector, out):
+    """Rotate a body vector to the inertial frame by Rx(roll) Ry(pitch) Rz(yaw), Eq. (3-7).
+
+    Args:
+        q: Coordinates x, y, z [m], roll, pitch and yaw [rad], shape (6,).
+        vector: Vector in the body frame, shape (3,).
+        out: Filled: the vector in the inertial frame, shape (3,).
+    """
+    cr, sr, cp, sp = np.cos(q[3]), np.sin(q[3]), np.cos(q[4]), np.sin(q[4])
+    cy, sy = np.cos(q[5]), np.sin(q[5])
+    x, y = cy * vector[0] - sy * vector[1], sy * vector[0] + cy * vector[1]
+    x, z = cp * x + sp * vector[2], -sp * x + cp * vector[2]
+    out[0], out[1], out[2] = x, cr * y - sr * z, sr * y + cr * z
+
+
+@compiled
+def place_legs(machine, q, v, theta, speed, stance_speed, centre_before, legs):
+    """Compute the kinematics of the legs at one instant.
+
+    Hips are placed from the body's position one step ago, as in the listing, where that variable
+    is set after its use.
+
+    Args:
+        machine: The robot.
+        q: Coordinates x, y, z [m], roll, pitch and yaw [rad], shape (6,).
+        v: Their rates, shape (6,) [m/s, rad/s].
+        theta: Leg angles, shape (6,) [rad].
+        speed: Leg speeds, shape (6,) [rad/s].
+        stance_speed: Speeds that legs have, or would have, on the ground, shape (6,) [rad/s].
+        centre_before: Position of the body one step ago, shape (3,) [m].
+        legs: Filled: kinematics of the legs.
+
+    Returns:
+        Tilt X of Eq. (3-21) [-].
+    """
+    r, beyond = machine.radius, machine.toe_beyond
+    tilt = thesis_tilt(q[3], q[4], q[5])
+    tilt_rate = thesis_tilt_rate(q[3], q[4], q[5], v[3], v[4], v[5])
+    vector = np.empty(3)
+    for i in range(6):
+        phi = thesis_lowest_angle(theta[i], tilt)
+        phi_rate = thesis_lowest_angle_rate(speed[i], tilt, tilt_rate)
+        legs.phi[i], legs.phi_rate[i] = phi, phi_rate
+        legs.height[i] = hip_height(phi, r, beyond)
+        legs.height_rate[i] = hip_height_rate(phi, -stance_speed[i], r, beyond)
+        legs.height_acceleration[i] = hip_height_acceleration(phi, phi_rate, r, beyond)
+        x, z = contact_in_body(theta[i], contact_angle(phi, beyond), r)
+        vector[0], vector[1] = machine.hips[i, 0] + x, machine.hips[i, 1]
+        vector[2] = machine.hips[i, 2] + z
+        turn(q, vector, legs.point[i])
+        turn(q, machine.hips[i], legs.hip[i])
+        for a in range(3):
+            legs.point[i, a] += q[a]
+            legs.hip[i, a] += centre_before[a]
+    return tilt
+
+
+@compiled
+def side_mean(values, contact, side):
+    """Average over the legs on the ground of one side.
+
+    Args:
+        values: One value a leg, shape (6,).
+        contact: Whether a leg is on the ground, shape (6,).
+        side: 0 for left, 1 for right.
+
+    Returns:
+        The mean; NaN with no leg of the side on the ground.
+    """
+    total, count = 0.0, 0
+    for i in range(side, 6, 2):
+        if contact[i]:
+            total += values[i]
+            count += 1
+    return total / count
+
+
+@compiled
+def roll_rate(machine, manner, legs, sides, roll):
+    """Compute the kinematic roll rate from the rates of the hip heights, Eq. (3-41).
+
+    Args:
+        machine: The robot.
+        manner: Settings of the steps.
+        legs: Kinematics of the legs.
+        sides: Whether a leg is on the ground, shape (6,).
+        roll: Roll [rad].
+
+    Returns:
+        Roll rate [rad/s].
+    """
+    inner = side_mean(legs.height_rate, sides, manner.inner)
+    outer = side_mean(legs.height_rate, sides, 1 - manner.inner)
+    return manner.roll_sign * (inner - outer) / (np.cos(roll) * machine.track)
+
+
+@compiled
+def reset(machine, manner, legs, sides, q, v):
+    """Set the state that kinematics determines, at a change of contacts: Eq. (3-40), (3-41).
+
+    Args:
+        machine: The robot.
+        manner: Settings of the steps.
+        legs: Kinematics of the legs.
+        sides: Whether a leg is on the ground, shape (6,).
+        q: Coordinates; roll, pitch and, where asked for, height are overwritten, shape (6,)
+            [m, rad].
+        v: Their rates; those of height and roll are overwritten, shape (6,) [m/s, rad/s].
+    """
+    inner = side_mean(legs.height, sides, manner.inner) * np.cos(q[3])
+    outer = side_mean(legs.height, sides, 1 - manner.inner) * np.cos(q[3])
+    v[3] = roll_rate(machine, manner, legs, sides, q[3])
+    v[2] = 0.5 * (side_mean(legs.height_rate, sides, 0) + side_mean(legs.height_rate, sides, 1))
+    q[3] = manner.roll_sign * np.arcsin((inner - outer) / machine.track)
+    q[4] = 0.0
+    if manner.reset_height:
+        q[2] = 0.5 * (inner + outer)

@@ -1,0 +1,108 @@
+# SPDX-License-Identifier: MIT
+"""Slip ratios of the thesis's walk, longitudinal and lateral, Eq. (4-31) to (4-42)."""
+
+import numpy as np
+
+from model.compiled import compiled
+from model.leg import TOE, leg_state
+
+LARGEST_SLIP = 100.0  # where Listing A.19 cuts the slip ratio off [-]
+
+
+@compiled
+def along(axis, v, arm):
+    """Compute the component of the velocity v + w x arm along an axis.
+
+    Args:
+        axis: Unit vector, shape (3,) [-].
+        v: Rates of the six coordinates: v [m/s], then w [rad/s], shape (6,).
+        arm: Point from the body's centre, shape (3,) [m].
+
+    Returns:
+        Velocity [m/s].
+    """
+    x = v[0] + v[4] * arm[2] - v[5] * arm[1]
+    y = v[1] + v[5] * arm[0] - v[3] * arm[2]
+    z = v[2] + v[3] * arm[1] - v[4] * arm[0]
+    return axis[0] * x + axis[1] * y + axis[2] * z
+
+
+@compiled
+def walk_slip(leg_speed, ground_speed, signed):
+    r"""Compute the walk's slip ratio, Eq. (4-31) and (4-36), as Listing A.19 has it [-].
+
+    .. math::
+        \kappa = \frac{v_R - v_C}{v_C} \text{ rolling}, \qquad
+        \kappa = \frac{v_T - v_H}{v_H} \text{ on the toe}
+
+    with absolute values in the denominators, cut off at 100. Rolling, the listing takes
+    sign(v_R) (v_R - |v_C|) for the numerator. This is the same while robot and legs go forward, but
+    a leg that turns back very slowly gets full traction.
+
+    Args:
+        leg_speed: Speed of the leg's surface, v_R or v_T [m/s].
+        ground_speed: Speed of the robot over the ground, v_C or v_H [m/s].
+        signed: Whether to take the difference as in the equation above instead of the listing's.
+    """
+    if leg_speed == 0.0 and ground_speed == 0.0:
+        return 0.0
+    difference = leg_speed - ground_speed
+    if not signed:
+        difference = np.sign(leg_speed) * (leg_speed - abs(ground_speed))
+    kappa = difference / abs(ground_speed)
+    return min(max(kappa, -LARGEST_SLIP), LARGEST_SLIP)
+
+
+@compiled
+def lateral_walk_slip(axes, v, signed):
+    """Compute the lateral slip of Eq. (4-41), (4-42) from the body's velocity, Listing A.21 [-].
+
+    The listing has the wrong sign for a body that goes backward.
+
+    Args:
+        axes: Forward, left and up of the contact frames, in rows, shape (3, 3) [-].
+        v: Rates of the six coordinates, shape (6,) [m/s, rad/s].
+        signed: Whether to take the right sign instead of the listing's.
+    """
+    forward = axes[0, 0] * v[0] + axes[0, 1] * v[1] + axes[0, 2] * v[2]
+    left = axes[1, 0] * v[0] + axes[1, 1] * v[1] + axes[1, 2] * v[2]
+    if left == 0.0:
+        return 0.0
+    if signed:
+        return np.arctan2(-left, abs(forward)) / (np.pi / 2)
+    return np.arctan(-left / forward) / (np.pi / 2)
+
+
+@compiled
+def find_slip(machine, manner, traction, legs, three, q, v, balance):
+    """Compute the lever arms and slip ratios of the three legs that carry load.
+
+    v_R of Eq. (4-32) and v_T of Eq. (4-37) are the same, the rate of phi times the hip's height.
+
+    Args:
+        machine: The robot.
+        manner: Settings of the steps.
+        traction: The slip law.
+        legs: Kinematics of the legs.
+        three: Indices of the legs that carry load, shape (3,).
+        q: Coordinates, shape (6,) [m, rad].
+        v: Their rates, shape (6,) [m/s, rad/s].
+        balance: Its `axes` are used; its `arms` and `slip` are filled.
+    """
+    arm = np.empty(3)
+    for k in range(3):
+        i = three[k]
+        toe = leg_state(legs.phi[i], machine.toe_beyond) == TOE
+        for a in range(3):
+            balance.arms[k, a] = legs.point[i, a] - q[a]
+            arm[a] = legs.hip[i, a] - q[a] if toe else balance.arms[k, a]
+        leg_speed = -legs.phi_rate[i] * legs.height[i]
+        ground_speed = along(balance.axes[0], v, arm)
+        if traction.table.by_velocity:
+            scale = traction.table.speed_scale
+            balance.slip[k, 0] = (leg_speed - ground_speed) / scale
+            body = balance.axes[1]
+            balance.slip[k, 1] = -(body[0] * v[0] + body[1] * v[1] + body[2] * v[2]) / scale
+        else:
+            balance.slip[k, 0] = walk_slip(leg_speed, ground_speed, toe or manner.mend_slip)
+            balance.slip[k, 1] = lateral_walk_slip(balance.axes, v, manner.mend_slip)

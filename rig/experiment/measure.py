@@ -1,0 +1,108 @@
+# SPDX-License-Identifier: MIT
+"""Take the zero of the load cell, settle the discs at a point, and record its samples."""
+
+from typing import Final
+
+from rig.clock import Clock
+from rig.experiment.acquire import GuardedAcquisition
+from rig.experiment.plan import Plan
+from rig.experiment.readings import Batch, Readings, join
+from rig.experiment.sink import RunSink
+from rig.experiment.steps import Point
+from rig.experiment.verdict import LEAST_COVERED, is_steady, span
+from rig.slip_rig.decode import Forces, Zero, tare
+
+ZERO_ATTEMPTS: Final = 3
+
+
+def take_zero(acquire: GuardedAcquisition, duration: float) -> Zero:
+    """Average the readings of an unloaded load cell; repeat if too few of them arrive.
+
+    Args:
+        acquire: The rig, unloaded and at standstill.
+        duration: Time over which the zero is averaged [s].
+
+    Raises:
+        ProtocolError: There are too few readings.
+    """
+    readings = join([])
+    for _ in range(ZERO_ATTEMPTS):
+        readings = _collect(acquire, duration)
+        if span(readings) >= LEAST_COVERED * duration:
+            break  # otherwise the host was delayed
+    return tare(Forces(readings.t, readings.normal_force, readings.traction_force))
+
+
+def settle(acquire: GuardedAcquisition, plan: Plan, point: Point, zero: Zero) -> bool:
+    """Ramp the discs to the set-points of a point and wait for a steady state.
+
+    Args:
+        acquire: The rig, armed.
+        plan: The plan.
+        point: The point.
+        zero: Zero of the load cell.
+
+    Returns:
+        Whether the rig was steady before the plan's timeout.
+    """
+    criterion = plan.settle
+    acquire.start_ramp(plan.points.omega_leg, point.slips[0])
+    acquire.until(lambda _: not acquire.ramping, float("inf"))
+    wanted = acquire.wanted
+    window: list[Readings] = []
+
+    def steady(batch: Batch) -> bool:
+        if not len(batch.readings):
+            return False
+        window.append(batch.readings.without(zero))
+        start = window[-1].t[-1] - criterion.window
+        while window[0].t[-1] < start:
+            window.pop(0)
+        return is_steady(join(window).since(start), wanted, criterion)
+
+    return acquire.until(steady, criterion.timeout)
+
+
+def record(
+    acquire: GuardedAcquisition,
+    sink: RunSink,
+    plan: Plan,
+    point: Point,
+    zero: Zero,
+    *,
+    clock: Clock,
+) -> Readings:
+    """Record the samples of a point; a sweep changes the set-points meanwhile.
+
+    Args:
+        acquire: The rig, at the point's set-points.
+        sink: Recorder of the samples; its run is open.
+        plan: The plan.
+        point: The point.
+        zero: Zero of the load cell.
+        clock: Host time.
+
+    Returns:
+        The recorded samples, zero subtracted.
+    """
+    duration = plan.points.duration
+    start = clock.now()
+    kept: list[Readings] = []
+
+    def keep(batch: Batch) -> None:
+        # Samples can be older than the recording, because they waited for their speeds.
+        readings = batch.readings.without(zero).since(start)
+        kept.append(readings)
+        sink.write(readings, batch)
+        if point.kind == "sweep":
+            slip = point.slip_at((clock.now() - start) / duration)
+            acquire.start_ramp(plan.points.omega_leg, slip)
+
+    acquire.until(keep, duration)
+    return join(kept)
+
+
+def _collect(acquire: GuardedAcquisition, duration: float) -> Readings:
+    parts: list[Readings] = []
+    acquire.until(lambda batch: parts.append(batch.readings), duration)
+    return join(parts)

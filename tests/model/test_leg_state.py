@@ -1,0 +1,43 @@
+# SPDX-License-Identifier: MIT
+import numpy as np
+import pytest
+
+from model.leg_state import scaled_table
+from model.slip.magic_formula import MagicFormula
+from model.walk.traction import VelocityCoulomb, law_table
+from model.walk.traction_lookup import table_value
+
+TABLE = VelocityCoulomb(0.38).table(weight=21.0)
+
+
+def test_scaling_a_law_scales_its_traction_and_its_stiffness_apart():
+    values = (34.0, 1.56, 0.38, 0.0066)
+    law = MagicFormula(curvature=0.0)
+    table = law_table(law, values[: len(law.parameters)], weight=21.0)
+    for grip, stiffness in ((1.0, 1.0), (0.5, 1.0), (1.0, 1.7), (1.3, 0.6)):
+        scaled = scaled_table(table, grip=grip, stiffness=stiffness)
+        small, large = 1e-6, 50.0
+        assert table_value(scaled, 7.0, small) == pytest.approx(
+            stiffness * table_value(table, 7.0, small), rel=1e-3
+        )
+        assert table_value(scaled, 7.0, large) == pytest.approx(
+            grip * table_value(table, 7.0, large), rel=0.02
+        )
+
+
+def test_without_its_fall_traction_keeps_its_peak():
+    table = law_table(MagicFormula(curvature=0.0), (34.0, 1.56, 0.38), weight=21.0)
+    top = table.phi.max()
+    kept = scaled_table(table, grip=1.0, stiffness=1.0, fall=0.0)
+    half = scaled_table(table, grip=1.0, stiffness=1.0, fall=0.5)
+    assert table_value(kept, 7.0, 50.0) == pytest.approx(top, rel=1e-3)
+    assert kept.toe[0] == pytest.approx(top)
+    lost = [top - table_value(each, 7.0, 50.0) for each in (table, half)]
+    assert lost[1] == pytest.approx(lost[0] / 2, rel=1e-3)
+    for slip in (1e-6, 1e-3, 0.01):  # before the peak nothing changes
+        assert table_value(kept, 7.0, slip) == pytest.approx(table_value(table, 7.0, slip))
+
+
+def test_friction_that_does_not_fall_has_no_fall():
+    scaled = scaled_table(TABLE, grip=1.0, stiffness=1.0, fall=0.0)
+    np.testing.assert_allclose(scaled.phi, TABLE.phi)

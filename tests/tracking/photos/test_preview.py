@@ -1,0 +1,40 @@
+# SPDX-License-Identifier: MIT
+"""One photograph tells its scale, where the robot is, and whether the tape agrees."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from tracking.errors import PhotoError
+from tracking.photos.preview import preview_photo
+
+
+def test_tape_and_photograph_agree_and_the_robot_is_where_it_was(scene, photos, walk):
+    seen = preview_photo(scene, photos[0])
+    assert seen.photo == photos[0].name
+    assert seen.unseen == ()
+    assert len(seen.tape) == len(seen.marks) * (len(seen.marks) - 1) / 2
+    assert not any(check.is_off for check in seen.tape)
+    np.testing.assert_allclose(seen.robot, walk[0], atol=3e-3)
+    assert seen.robot_side_px > 0
+
+
+def test_a_wrong_tape_is_worst_at_its_marker(scene, photos):
+    first, *others = scene.floor.markers
+    moved = replace(first, x=first.x + 0.05, y=first.y + 0.02)
+    wrong = replace(scene, floor=replace(scene.floor, markers=(moved, *others)))
+    worst = max(preview_photo(wrong, photos[0]).tape, key=lambda each: abs(each.seen - each.tape))
+    assert worst.is_off
+    assert str(first.marker_id) in worst.marks
+
+
+def test_without_a_robot_to_look_for_none_is_found(scene, photos):
+    seen = preview_photo(replace(scene, robot=None), photos[0])
+    assert (seen.robot, seen.robot_side_px) == (None, None)
+
+
+def test_a_photograph_that_cannot_be_used_is_named(scene, photos, tmp_path):
+    (tmp_path / "empty.jpg").write_bytes(b"")
+    with pytest.raises(PhotoError, match=photos[0].name):
+        preview_photo(scene, replace(photos[0], path=tmp_path / "empty.jpg"))

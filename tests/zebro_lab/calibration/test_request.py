@@ -1,0 +1,17 @@
+# SPDX-License-Identifier: MIT
+"""Options of a calibration, as the fit takes them."""
+
+from pathlib import Path
+
+from zebro_lab.calibration.request import CalibrationRequest
+
+
+def test_only_properties_of_the_load_cell_that_are_given_replace_those_of_the_data():
+    assert CalibrationRequest().load_cell == {}
+    assert CalibrationRequest(gain_sd=0.0).load_cell == {"gain_sd": 0.0}
+
+
+def test_what_is_read_are_the_data_and_the_column_map():
+    data, columns = Path("data"), Path("columns.toml")
+    assert CalibrationRequest((data,)).inputs == (data,)
+    assert CalibrationRequest((data,), columns=columns).inputs == (data, columns)

@@ -1,0 +1,17 @@
+# SPDX-License-Identifier: MIT
+"""Options of a gait."""
+
+from typing import get_args
+
+from zebro_lab.robot.gait_argument import GAITS
+from zebro_lab.robot.gait_request import GaitName, GaitRequest
+
+
+def test_options_offer_the_gaits_that_there_are():
+    assert set(get_args(GaitName)) == set(GAITS)
+
+
+def test_a_turn_is_to_the_left_unless_a_side_is_given():
+    assert GaitRequest().side == "left"
+    assert GaitRequest(direction="right").side == "right"
+    assert GaitRequest(direction="right", cycle=2.0).given() == {"direction": "right", "cycle": 2.0}

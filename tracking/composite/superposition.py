@@ -1,0 +1,71 @@
+# SPDX-License-Identifier: MIT
+"""A picture that is a sum of one robot's picture at several poses, and the robot solved from it."""
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse.linalg import LinearOperator, cg
+
+from tracking.camera.lens import Array
+from tracking.composite.body_raster import BodyRaster
+
+_DAMPING = 0.02
+
+
+def superposed(body: BodyRaster, poses: Array, robot: NDArray[np.float32]) -> NDArray[np.float32]:
+    """Compute the sum of the robot's picture at all poses.
+
+    Args:
+        body: The robot's raster.
+        poses: Exposures, shape (n, 3) [m, m, rad].
+        robot: The robot's picture, on its raster, shape (m, k, 3).
+
+    Returns:
+        Sum on the plane's raster, shape (rows, columns, 3).
+    """
+    total = np.zeros((*body.plane.seen_px.shape[:2], 3), np.float32)
+    for pose in poses:
+        window, laid = body.laid(robot, pose)
+        total[window] += laid
+    return total
+
+
+def solve_robot(
+    body: BodyRaster, poses: Array, picture: NDArray[np.float32]
+) -> NDArray[np.float32]:
+    """Solve for the robot's picture whose sum at all poses is nearest to a picture.
+
+    Damped least squares by conjugate gradients. What the exposures do not determine is held near
+    zero. The mean of the colours at all poses is not enough: where exposures repeat by a steady
+    step, a pattern that alternates with it shows only at the two ends of the walk.
+
+    Args:
+        body: The robot's raster.
+        poses: Exposures, shape (n, 3) [m, m, rad].
+        picture: Difference from the floor, or its detail, shape (rows, columns, 3).
+
+    Returns:
+        The robot's picture, on its raster, shape (m, k, 3).
+    """
+    seen = np.mean([body.read(picture, pose) for pose in poses], axis=0)
+    shape, columns_rows = seen.shape, seen.shape[1::-1]
+    shifts = [
+        body.between(pose, other)
+        for k, pose in enumerate(poses)
+        for other in np.delete(poses, k, axis=0)
+    ]
+
+    def normal(values: Array) -> Array:
+        """Apply the normal equations' matrix: sum the robot shifted by all pairs of poses."""
+        robot = values.reshape(shape).astype(np.float32)
+        total = (1 + _DAMPING) * robot
+        for shift in shifts:
+            flags = cv2.INTER_LINEAR | cv2.WARP_INVERSE_MAP
+            total += cv2.warpAffine(robot, shift, columns_rows, flags=flags) / len(poses)
+        return total.ravel().astype(float)
+
+    if len(poses) == 1:
+        return seen.astype(np.float32)
+    operator = LinearOperator((seen.size, seen.size), matvec=normal, dtype=float)  # pyright: ignore[reportCallIssue] # SciPy's documented arguments
+    solved, _ = cg(operator, seen.ravel().astype(float), rtol=2e-3, maxiter=40)
+    return solved.reshape(shape).astype(np.float32)

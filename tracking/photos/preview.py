@@ -1,0 +1,144 @@
+# SPDX-License-Identifier: MIT
+"""Preview of a track: detections in one photograph, its scale, and a check of the tape."""
+
+from dataclasses import dataclass
+from itertools import combinations
+
+import numpy as np
+
+from tracking.camera import CameraPose, to_floor
+from tracking.detect import Detection
+from tracking.errors import PhotoError
+from tracking.floor import FloorView, refine_floor
+from tracking.photos.scene import Photo, Scene
+from tracking.photos.search import Wanted, look_at
+from tracking.pose import fit_pose
+
+_FAR = 4e-3  # disagreement of tape and picture worth a warning [m]
+
+
+@dataclass(frozen=True)
+class TapeCheck:
+    """Distance between two marks of the floor, by tape and by photograph.
+
+    Attributes:
+        marks: Their names.
+        tape: Between their places in the map [m].
+        seen: Between where the photograph shows them [m].
+    """
+
+    marks: tuple[str, str]
+    tape: float
+    seen: float
+
+    @property
+    def is_off(self) -> bool:
+        """Return whether tape and photograph disagree."""
+        return abs(self.seen - self.tape) > _FAR
+
+
+@dataclass(frozen=True)
+class Preview:
+    """Detections, scale and tape checks of a photograph.
+
+    Attributes:
+        detection: What is detected in it.
+        pose: Pose of the camera.
+        marks: Marks of the floor that are seen.
+        unseen: Marks of the floor that are not.
+        misfit_px: Distance of marks from where the map has them, root mean square [px].
+        scale: Size of a pixel on the floor in the middle of the marks [m/px].
+        robot: x, y [m] and yaw [rad] of the robot, shape (3,); None where its marker is not seen.
+        robot_side_px: Side of its marker in the photograph [px].
+        tape: Tape checks of all pairs.
+    """
+
+    detection: Detection
+    pose: CameraPose
+    marks: tuple[str, ...]
+    unseen: tuple[str, ...]
+    misfit_px: float
+    scale: float
+    robot: tuple[float, float, float] | None
+    robot_side_px: float | None
+    tape: tuple[TapeCheck, ...]
+
+    @property
+    def photo(self) -> str:
+        """Name of the photograph."""
+        return self.detection.photo
+
+    @property
+    def camera_height(self) -> float:
+        """Height of the camera over the floor [m]."""
+        return float(self.pose.position[2])
+
+
+def preview_photo(scene: Scene, photo: Photo) -> Preview:
+    """Detect the marks of floor and robot in one photograph, and compare distances with the tape.
+
+    Args:
+        scene: Camera, floor and robot.
+        photo: The photograph.
+
+    Raises:
+        PhotoError: It cannot be read, or shows no mark of the floor.
+        TrackingError: The floor's map does not fit.
+    """
+    look = look_at(photo, Wanted(scene.camera.size, scene.floor, scene.robot))
+    if look.seen is None:
+        raise PhotoError(photo.name, str(look.problem))
+    view = scene.with_clicks(look.seen.floor)
+    fit = refine_floor(scene.camera, scene.floor, [view])
+    pose, marks = fit.stands[0].pose, scene.floor.marks
+    seen = [key for key in marks if key in view.pixels]
+    return Preview(
+        look.seen, pose, tuple(map(str, seen)),
+        tuple(str(key) for key in marks if key not in view.pixels),
+        fit.misfit_px, _scale(scene, view, pose), _robot_pose(scene, look.seen, pose),
+        None if look.seen.robot is None else _side_px(look.seen.robot.corners_px),
+        _tape_checks(scene, view, pose),
+    )  # fmt: skip
+
+
+def _scale(scene: Scene, view: FloorView, pose: CameraPose) -> float:
+    """Compute the size of a pixel on the floor in the middle of the marks [m/px]."""
+    seen = [view.pixels[key] for key in scene.floor.marks if key in view.pixels]
+    middle = np.mean([pixels.mean(axis=0) for pixels in seen], axis=0)
+    ends = to_floor(scene.camera, pose, np.add(middle, [[-0.5, 0.0], [0.5, 0.0]]))
+    return float(np.linalg.norm(ends[1] - ends[0]))
+
+
+def _side_px(corners_px: np.ndarray) -> float:
+    return float(np.linalg.norm(corners_px - np.roll(corners_px, 1, axis=0), axis=1).mean())
+
+
+def _robot_pose(
+    scene: Scene, detection: Detection, pose: CameraPose
+) -> tuple[float, float, float] | None:
+    if scene.robot is None or detection.robot is None:
+        return None
+    marker = scene.robot.marker
+    found = fit_pose(
+        scene.camera, pose, points_body=marker.points_body, corners_px=detection.robot.corners_px,
+        covariance=detection.robot.covariance, prior=scene.prior,
+        scale_sd=marker.side_sd / marker.side,
+    )  # fmt: skip
+    x, y, yaw = found.planar.tolist()
+    return x, y, yaw
+
+
+def _tape_checks(scene: Scene, view: FloorView, pose: CameraPose) -> tuple[TapeCheck, ...]:
+    places = {}
+    for key, mark in scene.floor.marks.items():
+        if key in view.pixels:
+            seen = to_floor(scene.camera, pose, view.pixels[key], float(mark.points[0, 2]))
+            places[str(key)] = (mark.points[:, :2].mean(axis=0), seen.mean(axis=0))
+    return tuple(
+        TapeCheck(
+            (a, b),
+            float(np.linalg.norm(places[a][0] - places[b][0])),
+            float(np.linalg.norm(places[a][1] - places[b][1])),
+        )
+        for a, b in combinations(places, 2)
+    )

@@ -1,0 +1,84 @@
+# SPDX-License-Identifier: MIT
+"""Options of a calibration."""
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated
+
+from typer import Argument, Option
+
+
+@dataclass(frozen=True)
+class CalibrationRequest:
+    """Options of `calibrate-slip`."""
+
+    data: Annotated[
+        tuple[Path, ...], Argument(help="Run folders, or files or folders of CSV or Parquet.")
+    ] = ()
+    out: Annotated[Path, Option(help="Calibration folder to write.")] = Path("calibration")
+    columns: Annotated[
+        Path | None, Option(help="columns.toml to use in place of those beside the tables.")
+    ] = None
+    slip_definition: Annotated[
+        str | None,
+        Option(
+            help="Definition of the slip ratio to fit in: material, travel or larger; default: "
+            "that of the data."
+        ),
+    ] = None
+    law: Annotated[str, Option(help="Slip law: magic-formula, brush or coulomb-stribeck.")] = (
+        "magic-formula"
+    )
+    curvature: Annotated[
+        str,
+        Option(
+            help="Curvature E of the Magic Formula: auto (compares peak and constant); peak (the "
+            "slip of the peak grows with load); constant; or a fixed number."
+        ),
+    ] = "auto"
+    load_sensitivity: Annotated[
+        bool, Option("--load-sensitivity", help="Let friction and stiffness vary with load.")
+    ] = False
+    block_length: Annotated[
+        int | None, Option(min=1, help="Samples in a block mean; default: chosen from the data.")
+    ] = None
+    zero_stability: Annotated[
+        float | None, Option(min=0.0, help="Prior scale of the zero offsets' spread [N].")
+    ] = None
+    gain_sd: Annotated[
+        float | None, Option(min=0.0, help="Relative gain error of the load cell (sd) [-].")
+    ] = None
+    ensembles: Annotated[int, Option(min=4, help="Independent ensembles of walkers.")] = 4
+    max_steps: Annotated[
+        int,
+        Option(
+            min=1, help="Largest number of sampler moves; a fit that has not converged ends then."
+        ),
+    ] = 30_000
+    seed: Annotated[int, Option(help="Seed of all random numbers.")] = 1
+    threads: Annotated[int, Option(min=1, help="Ensembles advanced in parallel.")] = 2
+    resume: Annotated[bool, Option("--resume", help="Resume the stopped fit in --out.")] = False
+
+    @property
+    def load_cell(self) -> dict[str, float]:
+        """Properties of the load cell that replace those of `columns.toml`, by name."""
+        given = {"zero_stability": self.zero_stability, "gain_sd": self.gain_sd}
+        return {name: value for name, value in given.items() if value is not None}
+
+    @property
+    def inputs(self) -> tuple[Path, ...]:
+        """Files and folders that are read, as named."""
+        return (*self.data, *((self.columns,) if self.columns is not None else ()))
+
+    def decisive(self) -> dict[str, object]:
+        """Return the settings that affect the results, JSON-serialisable."""
+        return {
+            "slip_definition": self.slip_definition,
+            "law": self.law,
+            "curvature": self.curvature,
+            "load_sensitivity": self.load_sensitivity,
+            "block_length": self.block_length,
+            "load_cell": self.load_cell,
+            "ensembles": self.ensembles,
+            "seed": self.seed,
+        }

@@ -1,0 +1,146 @@
+# SPDX-License-Identifier: MIT
+"""Read one table or run folder of a rig experiment as samples in SI."""
+
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from model.slip.definition import SlipDefinition
+from model.slip.law import Array
+from zebro_lab.runs.counted_once import run_keys
+from zebro_lab.runs.data_paths import DataSource
+from zebro_lab.runs.folder import read_slip_rig_run
+from zebro_lab.runs.manifest import RIG, TABLE
+from zebro_lab.runs.recorded_sweeps import SWEEP, recorded_sweeps
+from zebro_lab.tables.columns import Columns, RunRule
+from zebro_lab.tables.raw_table import RawTable
+from zebro_lab.tables.rig_table import RigTable, kept_rows, normal_force
+from zebro_lab.tables.run_separation import Runs, run_times, separate_runs
+from zebro_lab.tables.slip_source import SlipColumn, converted, slip
+from zebro_lab.tables.table_files import read_table_file
+
+
+@dataclass(frozen=True)
+class RigPart:
+    """Samples of one table or run folder, not yet joined with others.
+
+    Attributes:
+        path: The table or run folder.
+        columns: Its column map.
+        sources: Sources stated for it.
+        rows_read: Number of rows before `[rows] keep`.
+        slip: Slip ratios with their definition.
+        normal_force: Normal force, shape (n,) [N].
+        traction_force: Traction force, shape (n,) [N].
+        runs: Run of each sample.
+        time: Time, shape (n,) [s]; None without one.
+        notes: Notes, one line each.
+        files: Every file read.
+    """
+
+    path: Path
+    columns: Columns
+    sources: tuple[str, ...]
+    rows_read: int
+    slip: SlipColumn
+    normal_force: Array
+    traction_force: Array
+    runs: Runs
+    time: Array | None
+    notes: tuple[str, ...]
+    files: tuple[Path, ...]
+
+    @property
+    def keys(self) -> tuple[str, ...]:
+        """Key of each run, by which copies are recognised."""
+        forces = (self.normal_force, self.traction_force)
+        return run_keys(forces, self.runs.index, len(self.runs.names))
+
+    def with_runs(self, chosen: NDArray[np.bool_]) -> "RigPart":
+        """Return a part with only the chosen runs.
+
+        Args:
+            chosen: Whether to keep each run, shape (n_runs,).
+        """
+        rows = chosen[self.runs.index]
+        index = (np.cumsum(chosen) - 1)[self.runs.index[rows]]
+        names = tuple(name for name, keep in zip(self.runs.names, chosen, strict=True) if keep)
+        return replace(
+            self,
+            rows_read=self.rows_read - int((~rows).sum()),
+            slip=replace(self.slip, ratio=self.slip.ratio[rows]),
+            normal_force=self.normal_force[rows],
+            traction_force=self.traction_force[rows],
+            runs=replace(self.runs, index=index, names=names),
+            time=None if self.time is None else self.time[rows],
+        )
+
+
+def read_part(
+    source: DataSource, columns: Columns, label: str, wanted: SlipDefinition | None
+) -> RigPart:
+    """Read one table or run folder.
+
+    Args:
+        source: The table or run folder.
+        columns: Its column map.
+        label: Prefix of its runs' names.
+        wanted: Definition to convert slip ratios to; None keeps theirs.
+
+    Raises:
+        ZebroLabError: The file, its column map or its data are at fault.
+    """
+    if source.is_run_folder:
+        raw, columns, files = _run_folder_table(source.path, columns)
+    else:
+        raw, files = read_table_file(source.path), (source.path,)
+    table = RigTable(raw, columns, kept_rows(raw, columns))
+    slip_column = slip(table)
+    if wanted is not None:
+        slip_column = converted(table, slip_column, wanted)
+    runs = separate_runs(table, label)
+    return RigPart(
+        path=source.path,
+        columns=columns,
+        sources=tuple(s for s in (columns.source, raw.source) if s),
+        rows_read=len(raw),
+        slip=slip_column,
+        normal_force=normal_force(table),
+        traction_force=table.si("traction_force"),
+        runs=runs,
+        time=run_times(table, runs),
+        notes=(*raw.notes, *_conversions(table)),
+        files=files if columns.file is None else (*files, columns.file),
+    )
+
+
+def _run_folder_table(folder: Path, columns: Columns) -> tuple[RawTable, Columns, tuple[Path, ...]]:
+    """Read a run folder as a table.
+
+    Its columns are canonical, and it is one run or one run per sweep. Only the row conditions and
+    the load cell of a `columns.toml` apply to it.
+    """
+    import pandas as pd
+
+    run, notes, rule = read_slip_rig_run(folder), (), RunRule()
+    columns_read = dict(vars(run.table))
+    if run.manifest.profiles.get(RIG, TABLE) != TABLE:  # raw device samples: not segmented yet
+        number, notes = recorded_sweeps(run)
+        rule = RunRule(by=(SWEEP,)) if number.max() > 1 else rule
+        columns_read = {
+            name: values[number > 0] for name, values in {**columns_read, SWEEP: number}.items()
+        }
+    series = {name: pd.Series(values) for name, values in columns_read.items()}
+    raw = RawTable(folder, series, source=run.manifest.source, notes=(*run.notes, *notes))
+    own = replace(columns, source=None, columns={}, constants=run.manifest.constants, runs=rule)
+    return raw, own, run.files
+
+
+def _conversions(table: RigTable) -> tuple[str, ...]:
+    return tuple(
+        f"{name}: '{column.name}' in {column.unit} times {column.factor:g}"
+        for name, column in table.columns.columns.items()
+        if column.factor != 1.0
+    )

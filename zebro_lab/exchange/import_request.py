@@ -1,0 +1,55 @@
+# SPDX-License-Identifier: MIT
+"""Options of an import."""
+
+from dataclasses import dataclass
+from datetime import datetime
+from pathlib import Path
+from typing import Annotated
+
+from typer import BadParameter, Option
+
+
+def _moment(text: str) -> datetime:
+    try:
+        return datetime.fromisoformat(text)
+    except ValueError as error:
+        message = f"found '{text}'; expected a time such as 2026-03-04T05:06:07+00:00"
+        raise BadParameter(message, param_hint="--start") from error
+
+
+@dataclass(frozen=True)
+class ImportRequest:
+    """Options of `zebro-lab import`."""
+
+    data: Annotated[Path, Option(metavar="DIR", help="Folder of run folders.")]
+    legs: Annotated[
+        Path | None,
+        Option(metavar="FILE", help="Leg angles: CSV, Parquet, or a ROS 2 log in MCAP."),
+    ] = None
+    track: Annotated[
+        Path | None,
+        Option(metavar="FILE", help="The robot's path: CSV, Parquet or TUM (.tum, .txt)."),
+    ] = None
+    imu: Annotated[
+        Path | None, Option(metavar="FILE", help="Orientation of the body: CSV or Parquet.")
+    ] = None
+    rig: Annotated[
+        Path | None, Option(metavar="FILE", help="Table of a slip rig: CSV or Parquet.")
+    ] = None
+    robot: Annotated[Path | None, Option(metavar="FILE", help="robot.toml, kept with the run.")] = (
+        None
+    )
+    columns: Annotated[
+        Path | None, Option(metavar="FILE", help="columns.toml in place of those beside the files.")
+    ] = None
+    label: Annotated[str | None, Option(help="Name of the run; default: the file's.")] = None
+    start: Annotated[
+        datetime | None,
+        Option(
+            metavar="TIME",
+            parser=_moment,
+            help="Date of the files' time 0, such as 2026-03-04T05:06:07+00:00.",
+        ),
+    ] = None
+    material: Annotated[str, Option(help="Leg and ground material.")] = "unknown"
+    operator: Annotated[str, Option(help="Who recorded the files.")] = "unknown"

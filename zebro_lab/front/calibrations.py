@@ -1,0 +1,131 @@
+# SPDX-License-Identifier: MIT
+"""Read rig data and fit slip laws, for notebooks."""
+
+import io
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from model.bayes.calibration import Calibration
+from model.bayes.verdict import Verdict
+from model.progress import Watcher
+from model.slip.curve import SlipCurve
+from zebro_lab.calibration import folder as calibration_folder
+from zebro_lab.calibration import stage as calibration_stage
+from zebro_lab.calibration.request import CalibrationRequest
+from zebro_lab.calibration.rig_data import RigData
+from zebro_lab.calibration.rig_data import read_rig_data as read_rig_files
+from zebro_lab.front.defaults import PathLike, Silent, kept_or_temporary, optional
+
+if TYPE_CHECKING:
+    import arviz as az
+    import pandas as pd
+
+
+@dataclass(frozen=True)
+class CalibrationResult:
+    """A finished calibration.
+
+    Attributes:
+        calibration: Everything that the fit concluded.
+        data: The rig data that it was made from.
+        curve: The slip curve, as `slip.toml` keeps it.
+    """
+
+    calibration: Calibration
+    data: RigData
+    curve: SlipCurve
+
+    @property
+    def verdict(self) -> Verdict:
+        """Whether the fit converged and can be trusted, and what to do next."""
+        return self.calibration.verdict
+
+    @property
+    def summary(self) -> "pd.DataFrame":
+        """Posterior of each parameter with its diagnostics, one row each, SI units."""
+        import pandas as pd
+
+        table = calibration_folder.summary_csv(self.calibration)
+        return pd.read_csv(io.StringIO(table), index_col="parameter")
+
+    @property
+    def posterior(self) -> "az.InferenceData":
+        """Posterior draws and observed block means; a chain is an ensemble of walkers."""
+        return calibration_folder.inference_data(self.calibration)
+
+
+def read_rig_data(
+    *data: PathLike, columns: PathLike | None = None, slip_definition: str | None = None
+) -> RigData:
+    """Read rig experiments from tables, run folders or folders of either.
+
+    Args:
+        data: Files and folders.
+        columns: A `columns.toml` for tables that have none beside them.
+        slip_definition: Definition to convert slip ratios to; that of the data when None.
+
+    Returns:
+        Samples in SI with their source, the files read, and notes.
+
+    Raises:
+        ZebroLabError: A file is missing or cannot be used; names file, row and column.
+    """
+    return read_rig_files(
+        [Path(each) for each in data], columns=optional(columns), slip_definition=slip_definition
+    )
+
+
+def calibrate(
+    *data: PathLike,
+    out: PathLike | None = None,
+    columns: PathLike | None = None,
+    slip_definition: str | None = None,
+    law: str = "magic-formula",
+    ensembles: int = 4,
+    max_steps: int = 30_000,
+    seed: int = 1,
+    watcher: Watcher | None = None,
+) -> CalibrationResult:
+    """Fit a slip law to rig data by Bayesian inference, as `calibrate-slip` does.
+
+    Args:
+        data: Files and folders of rig data.
+        out: Calibration folder to write; None to keep no files.
+        columns: A `columns.toml` for tables that have none beside them.
+        slip_definition: Definition of the slip ratio to fit in; that of the data when None.
+        law: "magic-formula", "brush" or "coulomb-stribeck".
+        ensembles: Independent ensembles of walkers.
+        max_steps: Sampler moves after which a fit that has not converged ends as such.
+        seed: Seed of all random numbers.
+        watcher: Follows the progress and may ask to stop.
+
+    Raises:
+        ZebroLabError: The data cannot be used.
+        ModelError: The fit failed.
+    """
+    with kept_or_temporary(out) as folder:
+        request = CalibrationRequest(
+            data=tuple(Path(each) for each in data),
+            out=folder,
+            columns=optional(columns),
+            slip_definition=slip_definition,
+            law=law,
+            ensembles=ensembles,
+            max_steps=max_steps,
+            seed=seed,
+        )
+        found, rig_data = calibration_stage.calibrate(request, watcher or Silent())
+        return CalibrationResult(found, rig_data, calibration_folder.read_slip(folder))
+
+
+def read_slip_curve(path: PathLike) -> SlipCurve:
+    """Read the slip curve of a calibration.
+
+    Args:
+        path: A `slip.toml`, or the folder that holds it.
+
+    Raises:
+        DataError: It is missing, damaged, or of a later schema.
+    """
+    return calibration_folder.read_slip(Path(path))

@@ -1,0 +1,140 @@
+# SPDX-License-Identifier: MIT
+"""Compute and predict walks, for notebooks."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from model.gait.direction import Direction
+from model.poses import Poses
+from model.walk.path import WalkPath
+from zebro_lab.front.defaults import PathLike, Silent, kept_or_temporary, optional
+from zebro_lab.robot.gait_request import GaitName, GaitRequest
+from zebro_lab.robot.leg_log import LegLog
+from zebro_lab.runs.legs import read_leg_log
+from zebro_lab.walk.path_band import read_draws
+from zebro_lab.walk.predict_stage import predict
+from zebro_lab.walk.request import (
+    BandRequest,
+    ModelName,
+    ModelRequest,
+    PredictRequest,
+    WalkRequest,
+)
+from zebro_lab.walk.stage import walk
+from zebro_lab.walk.walking import Walked
+
+
+@dataclass(frozen=True)
+class WalkResult:
+    """A walk, or a predicted walk.
+
+    Attributes:
+        walk: Body, legs, slip and forces over time.
+        draws: Paths with the unknowns drawn; None unless draws were asked for.
+        notes: Notes, one line each.
+    """
+
+    walk: WalkPath
+    draws: Poses | None
+    notes: tuple[str, ...]
+
+    @property
+    def path(self) -> Poses:
+        """The body's path over the ground."""
+        return self.walk.poses
+
+
+def read_legs(path: PathLike, *, columns: PathLike | None = None) -> LegLog:
+    """Read leg angles over time from a table, a recorded run or a walk folder.
+
+    Args:
+        path: What to read.
+        columns: A `columns.toml` in place of the one beside the table.
+
+    Raises:
+        ZebroLabError: A file is missing or cannot be used; names file, row and column.
+    """
+    return read_leg_log(Path(path), columns=optional(columns))
+
+
+def walk_gait(
+    gait: GaitName = "tripod",
+    *,
+    slip: str | None = "thesis",
+    duration: float = 10.0,
+    model: ModelName = "dynamics",
+    steering: float | None = None,
+    direction: Direction | None = None,
+    robot: PathLike | None = None,
+    draws: int = 0,
+    seed: int = 1,
+    out: PathLike | None = None,
+) -> WalkResult:
+    """Compute the path of a gait, as `zebro-lab walk` does.
+
+    Args:
+        gait: Name of the gait.
+        slip: A calibration folder or `slip.toml`, "coulomb:MU[:V]" or "thesis"; None for a model
+            without slip.
+        duration: Time to walk [s].
+        model: "dynamics", "thesis", "no-slip" or "no-slip-simple".
+        steering: Ratio of the outer to the inner legs' stance angle; 1 walks straight [-].
+        direction: Side to turn to.
+        robot: A `robot.toml`; the thesis's robot when None.
+        draws: Paths to draw for a band, at least two; 0 for the single path.
+        seed: Seed of all random numbers.
+        out: Walk folder to write; None to keep nothing.
+
+    Raises:
+        ZebroLabError: A file or an option cannot be used.
+        ModelError: The walk cannot be computed.
+    """
+    with kept_or_temporary(out) as folder:
+        request = WalkRequest(
+            GaitRequest(gait, steering=steering, direction=direction),
+            duration,
+            folder,
+            ModelRequest(slip, model, robot=optional(robot), band=BandRequest(draws, seed)),
+        )
+        return _walk_result(walk(request, Silent()), folder, draws)
+
+
+def predict_walk(
+    legs: PathLike,
+    *,
+    slip: str | None,
+    model: ModelName = "dynamics",
+    robot: PathLike | None = None,
+    columns: PathLike | None = None,
+    draws: int = 0,
+    seed: int = 1,
+    out: PathLike | None = None,
+) -> WalkResult:
+    """Predict the path from measured leg angles, as `zebro-lab predict` does.
+
+    Args:
+        legs: A table of leg angles, a recorded run, or a walk folder.
+        slip: As in `walk_gait`.
+        model: As in `walk_gait`.
+        robot: A `robot.toml`; the run's own, else the thesis's robot, when None.
+        columns: A `columns.toml` in place of the one beside the table.
+        draws: Paths to draw for a band, at least two; 0 for the single path.
+        seed: Seed of all random numbers.
+        out: Walk folder to write; None to keep nothing.
+
+    Raises:
+        ZebroLabError: A file or an option cannot be used.
+        ModelError: The walk cannot be computed.
+    """
+    with kept_or_temporary(out) as folder:
+        request = PredictRequest(
+            Path(legs),
+            folder,
+            optional(columns),
+            model=ModelRequest(slip, model, robot=optional(robot), band=BandRequest(draws, seed)),
+        )
+        return _walk_result(predict(request, Silent()), folder, draws)
+
+
+def _walk_result(walked: Walked, folder: Path, draws: int) -> WalkResult:
+    return WalkResult(walked.path, read_draws(folder) if draws else None, walked.notes)

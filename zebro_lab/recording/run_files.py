@@ -1,0 +1,130 @@
+# SPDX-License-Identifier: MIT
+"""Files of a run while it is recorded: log, profiles, manifest, and space kept for its end."""
+
+import contextlib
+import os
+from collections.abc import Mapping
+from dataclasses import replace
+from pathlib import Path
+from typing import Final
+
+from zebro_lab.files.errors import RecordingError
+from zebro_lab.files.provenance import file_hash
+from zebro_lab.mcap.log_writer import LogWriter
+from zebro_lab.recording.place import OpenPlace, sync_files
+from zebro_lab.runs.folder import LOG_FILE, epoch_ns
+from zebro_lab.runs.manifest import (
+    MANIFEST_FILE,
+    RunManifest,
+    manifest_text,
+    profile_file,
+    write_manifest,
+)
+from zebro_lab.runs.profile_views import stored_views
+
+RESERVE: Final = 1 << 16
+"""Space reserved in the run folder for the end record on a full disk [bytes]."""
+_RESERVE_FILE = ".reserve"
+
+
+class RunFiles:
+    """Open files of a run folder; making one writes the beginning of the run.
+
+    Args:
+        folder: The run folder, empty.
+        manifest: Manifest of the run that begins.
+        profiles: TOML text of each profile, by its name in the run folder.
+        start: Host time at which the run began [s].
+
+    Attributes:
+        folder: The run folder; its new path if it was renamed before its end was written.
+        log: The log.
+        streams: Names of the streams that the profiles describe.
+
+    Raises:
+        OSError: A file cannot be written.
+    """
+
+    def __init__(
+        self,
+        folder: Path,
+        manifest: RunManifest,
+        *,
+        profiles: Mapping[str, str],
+        start: float,
+    ) -> None:
+        self.folder = folder
+        for name, text in profiles.items():
+            profile_file(folder, name).parent.mkdir(exist_ok=True)
+            profile_file(folder, name).write_text(text, encoding="utf-8", newline="")
+        self._first = [folder / MANIFEST_FILE, *(profile_file(folder, name) for name in profiles)]
+        views = stored_views(folder, profiles)
+        self.streams = tuple(views)
+        (folder / _RESERVE_FILE).write_bytes(os.urandom(RESERVE))
+        self._file = (folder / LOG_FILE).open("xb")
+        try:
+            self._place = OpenPlace(folder / LOG_FILE, self._file)
+            self.log = LogWriter(
+                self._file, views=views, start=start,
+                attachments={f"profiles/{name}.toml": text for name, text in profiles.items()},
+                start_ns=epoch_ns(manifest.began),
+            )  # fmt: skip
+            self.log.event(start, f"recording '{manifest.label}' began, source {manifest.source}")
+            self.log.flush()
+            draft = folder / f".{MANIFEST_FILE}.part"
+            draft.write_text(manifest_text(manifest), encoding="utf-8", newline="")
+            draft.replace(folder / MANIFEST_FILE)
+        except BaseException:
+            self._file.close()
+            raise
+
+    def sync_first(self) -> None:
+        """Flush manifest and profiles to the disk (fsync)."""
+        sync_files(self._first)
+
+    def sync_log(self) -> None:
+        """Flush the written log to the disk (fsync)."""
+        os.fsync(self._file.fileno())
+
+    def require_place(self) -> None:
+        """Check that the log is still found under its path.
+
+        Raises:
+            RecordingError: Its folder was removed, renamed or replaced.
+        """
+        problem = self._place.problem()
+        if problem is not None:
+            raise RecordingError(f"{problem} while recording")
+
+    def free_reserve(self) -> None:
+        """Free the reserved space, for the end of the run."""
+        (self.folder / _RESERVE_FILE).unlink(missing_ok=True)
+
+    def finish_log(self) -> None:
+        """Write the end of the log and flush it to the disk."""
+        self.log.finish()
+        self._file.flush()
+        self.sync_log()
+
+    def write_end(self, manifest: RunManifest, *, whole: bool) -> None:
+        """Write the end record, also into a folder that was renamed.
+
+        Args:
+            manifest: Manifest of the run that ended.
+            whole: The log is complete, so that its checksum is stored.
+
+        Raises:
+            RecordingError: The folder is gone.
+            OSError: It cannot be written.
+        """
+        folder = self._place.folder()
+        if folder is None:
+            raise RecordingError(f"{self.folder}: gone; its end record cannot be written")
+        self.folder = folder
+        log_sha256 = file_hash(folder / LOG_FILE) if whole else None
+        write_manifest(folder, replace(manifest, streams=self.log.written, log_sha256=log_sha256))
+
+    def close(self) -> None:
+        """Close the log's file; an error of the disk is ignored."""
+        with contextlib.suppress(OSError):
+            self._file.close()

@@ -1,0 +1,140 @@
+# SPDX-License-Identifier: MIT
+"""Status of a recording: when its streams began, their rates and counters, what ends it."""
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Final
+
+from rig.acquisition import Acquisition, Device
+from rig.device import Counters
+from zebro_lab.recording.recorder import RunRecorder
+
+COUNT_EVERY: Final = 1.0
+"""Interval at which counters are logged and rates computed [s]."""
+FIRST_SAMPLE: Final = 10.0
+"""Timeout for the first sample of every stream, from which a duration counts [s]."""
+
+
+@dataclass(frozen=True)
+class StreamStatus:
+    """Status of a stream.
+
+    Attributes:
+        source: Origin of its samples.
+        rate: Sample rate over about the last second [Hz].
+        counters: Counters of the stream so far.
+        dropped: Number of samples that the recorder dropped.
+    """
+
+    source: str
+    rate: float
+    counters: Counters
+    dropped: int
+
+
+@dataclass(frozen=True)
+class RecordStatus:
+    """Status of a recording.
+
+    Attributes:
+        folder: The run folder.
+        elapsed: Time since every stream has sent its first sample [s].
+        duration: Planned duration; None where unknown [s].
+        streams: Status of each stream, by its name.
+    """
+
+    folder: Path
+    elapsed: float
+    duration: float | None
+    streams: Mapping[str, StreamStatus] = field(default_factory=dict)
+
+
+class StreamWatch:
+    """Timing and counters of all streams of a recording, for the log and for the watcher.
+
+    Args:
+        recorder: Writer of the run.
+        readers: Reader of each stream, by its name.
+        devices: The devices that they read.
+        duration: Planned duration; None where unknown [s].
+    """
+
+    def __init__(
+        self,
+        recorder: RunRecorder,
+        readers: Mapping[str, Acquisition],
+        devices: Iterable[Device],
+        duration: float | None,
+    ) -> None:
+        self._recorder = recorder
+        self._readers = readers
+        self._sources = {device.name: device.stream.source for device in devices}
+        self._duration = duration
+        self._rates = dict.fromkeys(readers, 0.0)
+        self._before = (recorder.start, dict.fromkeys(readers, 0))
+        self._began: float | None = None
+
+    def left(self, now: float) -> float:
+        """Return the least remaining duration of the recording [s]."""
+        if self._duration is None:
+            return float("inf")
+        began = self._first_samples()
+        return self._duration if began is None else began + self._duration - now
+
+    def problem(self, now: float) -> str | None:
+        """Return the problem that ends the recording; None without one."""
+        problem = self._recorder.failure or reading_failure(self._readers)
+        waited = now - self._recorder.start
+        if problem is None and self._duration is not None and waited > FIRST_SAMPLE:
+            silent = [name for name, reader in self._readers.items() if reader.first is None]
+            if silent:
+                return (
+                    f"no sample of {', '.join(silent)} within {FIRST_SAMPLE:g} s, and --duration "
+                    "counts from the first samples; switch it on, or leave it out"
+                )
+        return problem
+
+    def count(self) -> None:
+        """Write all counters to the log."""
+        for name, reader in self._readers.items():
+            self._recorder.count(name, reader.counters)
+
+    def status(self, now: float) -> RecordStatus:
+        """Return the status of the recording."""
+        began, received = self._before
+        if now - began >= COUNT_EVERY:
+            current = {name: r.counters.received for name, r in self._readers.items()}
+            self._rates = {name: (current[name] - received[name]) / (now - began)
+                           for name in current}  # fmt: skip
+            self._before = (now, current)
+        streams = {
+            name: StreamStatus(
+                self._sources[name], self._rates[name], reader.counters,
+                self._recorder.dropped(name),
+            )
+            for name, reader in self._readers.items()
+        }  # fmt: skip
+        first = self._first_samples()
+        elapsed = 0.0 if first is None else now - first
+        return RecordStatus(self._recorder.folder, elapsed, self._duration, streams)
+
+    def _first_samples(self) -> float | None:
+        """Return the time by which every stream had sent a sample, and log it; None before."""
+        firsts = [reader.first for reader in self._readers.values()]
+        known = [first for first in firsts if first is not None]
+        if self._began is None and len(known) == len(firsts):
+            self._began = max(known)
+            if self._duration is not None:
+                self._recorder.count_duration(self._duration, since=self._began)
+                for reader in self._readers.values():
+                    reader.end_at(self._began + self._duration)
+        return self._began
+
+
+def reading_failure(readers: Mapping[str, Acquisition]) -> str | None:
+    """Return which stream could not be read on, and why; None where all could."""
+    for name, reader in readers.items():
+        if reader.failure is not None:
+            return f"{name}: {type(reader.failure).__name__}: {reader.failure}"
+    return None

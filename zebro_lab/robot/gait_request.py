@@ -1,0 +1,53 @@
+# SPDX-License-Identifier: MIT
+"""Options that describe a gait."""
+
+from dataclasses import asdict, dataclass
+from typing import Annotated, Literal, TypeAlias
+
+from typer import Option
+
+GaitName: TypeAlias = Literal["tripod", "suriana", "maxplus", "tetrapod", "buehler"]
+Side: TypeAlias = Literal["left", "right"]
+_PAIR = "INNER[,OUTER]"
+
+
+@dataclass(frozen=True)
+class GaitRequest:
+    """Parameters of a gait; None for the gait's default."""
+
+    name: Annotated[GaitName, Option("--gait", help="Pattern of the legs.")] = "tripod"
+    steering: Annotated[
+        float | None, Option(help="Outer over inner stance angle of the tripod; 1 is straight.")
+    ] = None
+    direction: Annotated[
+        Side | None, Option(help="Side to turn to, for tripod, suriana and maxplus.")
+    ] = None
+    touchdown_deg: Annotated[
+        str | None, Option(metavar=_PAIR, help="Leg angle at touchdown [deg].")
+    ] = None
+    liftoff_deg: Annotated[
+        str | None,
+        Option(metavar=_PAIR, help="Leg angle at lift-off [deg]; computed for the tripod."),
+    ] = None
+    cycle: Annotated[
+        float | None, Option(help="Duration of a cycle, for tripod, tetrapod and buehler [s].")
+    ] = None
+    tau_ground: Annotated[
+        float | None, Option(help="Time on the ground, for suriana, maxplus and buehler [s].")
+    ] = None
+    tau_flight: Annotated[
+        float | None, Option(help="Time in flight, for suriana and maxplus [s].")
+    ] = None
+    tau_turn: Annotated[
+        float | None,
+        Option(help="Extra stance time of the inner legs, for suriana and maxplus [s]."),
+    ] = None
+
+    def given(self) -> dict[str, object]:
+        """Return the options that were given, by name, without the name of the gait."""
+        return {k: v for k, v in asdict(self).items() if v is not None and k != "name"}
+
+    @property
+    def side(self) -> Side:
+        """Side to turn to."""
+        return self.direction or "left"

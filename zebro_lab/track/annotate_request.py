@@ -1,0 +1,61 @@
+# SPDX-License-Identifier: MIT
+"""Options of a person's annotations of photographs."""
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated
+
+from typer import Argument, Option
+
+
+@dataclass(frozen=True)
+class AnnotateRequest:
+    """Options of `zebro-lab annotate`: the annotations to write."""
+
+    photos: Annotated[Path, Argument(help="Photographs, as given to track.")]
+    out: Annotated[Path, Option(help="File to write or to add to.")] = Path("annotations.toml")
+    photo: Annotated[
+        str | None, Option(metavar="NAME", help="Photograph of --corners and --grid.")
+    ] = None
+    corners: Annotated[
+        str | None,
+        Option(
+            metavar="U,V U,V U,V U,V",
+            help="Robot's top: front left, front right, rear right, rear left [px].",
+        ),
+    ] = None
+    plate: Annotated[
+        str | None, Option(metavar="LENGTHxWIDTH@HEIGHT", help="Robot's top; default: its body.")
+    ] = None
+    margin: Annotated[
+        str, Option(metavar="LENGTH", help="Width around the top that belongs to the template.")
+    ] = "20mm"
+    robot: Annotated[Path | None, Option(help="robot.toml; default: the thesis's robot.")] = None
+    clicks: Annotated[
+        tuple[str, ...],
+        Option("--click", metavar="PHOTO:NAME=U,V", help="Point of floor.toml [px]; repeatable."),
+    ] = ()
+    moves: Annotated[
+        tuple[str, ...],
+        Option("--move", metavar="PHOTO:X,Y,YAW", help="Pose of the robot [m, m, deg]."),
+    ] = ()
+    flips: Annotated[
+        tuple[str, ...],
+        Option("--flip", metavar="PHOTO", help="Head and tail are exchanged; repeatable."),
+    ] = ()
+    deletes: Annotated[
+        tuple[str, ...],
+        Option("--delete", metavar="PHOTO", help="Detection is not the robot; repeatable."),
+    ] = ()
+    order: Annotated[
+        str | None, Option(metavar="PHOTO,PHOTO,…", help="Order in which they were taken.")
+    ] = None
+    added: Annotated[
+        Path | None, Option("--from", metavar="TOML", help="File of annotations to add.")
+    ] = None
+
+    @property
+    def is_empty(self) -> bool:
+        """Whether there is nothing to write."""
+        return not any((self.corners, self.clicks, self.moves, self.flips, self.deletes,
+                        self.order, self.added))  # fmt: skip

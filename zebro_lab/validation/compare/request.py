@@ -1,0 +1,18 @@
+# SPDX-License-Identifier: MIT
+"""Options of a comparison."""
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated
+
+from typer import Argument, Option
+
+
+@dataclass(frozen=True)
+class CompareRequest:
+    """Options of `zebro-lab compare`."""
+
+    first: Annotated[Path, Argument(metavar="A", help="Calibration folder or run folder.")]
+    second: Annotated[Path, Argument(metavar="B", help="Another of the same kind.")]
+    out: Annotated[Path, Option(help="Folder to write.")] = Path("comparison")
+    seed: Annotated[int, Option(help="Seed of all random numbers.")] = 1

@@ -1,0 +1,111 @@
+# SPDX-License-Identifier: MIT
+"""Read what a validation compares: predictions, tracks, and IMU and photographs of the walks."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from zebro_lab.files.errors import DataError, NotFound
+from zebro_lab.files.names import PATH_CSV, TRACK, numbered
+from zebro_lab.files.replacement import settle
+from zebro_lab.runs.counted_once import content_hash, duplicates_note, first_of_each
+from zebro_lab.runs.recorded_legs import is_recorded
+from zebro_lab.runs.recorded_tilt import Tilt, read_recorded_tilt
+from zebro_lab.track.file import TrackFile, read_track
+from zebro_lab.track.folder import TRACK_CSV
+from zebro_lab.track.photographs import TrackedPhotos, photos_of_track
+from zebro_lab.validation.judged_run import JudgedRun
+from zebro_lab.walk.folder import PREDICTION
+from zebro_lab.walk.prediction_file import PredictionFile, read_prediction
+
+
+@dataclass(frozen=True)
+class PredictedWalk:
+    """A walk with its prediction and its track, as read from files.
+
+    Attributes:
+        name: Its name.
+        prediction: The prediction.
+        track: The track, in its own time base.
+        tilt: Roll and pitch by the run's IMU; None without one.
+        photos: The photographs of its track; None if they cannot be shown.
+        duplicates: Note on walks that were named twice, on the first walk only.
+        not_shown: Note on why photographs cannot be shown.
+    """
+
+    name: str
+    prediction: PredictionFile
+    track: TrackFile
+    tilt: Tilt | None
+    photos: TrackedPhotos | None
+    duplicates: tuple[str, ...]
+    not_shown: tuple[str, ...]
+
+    @property
+    def sources(self) -> tuple[str, str]:
+        """Where prediction and track come from."""
+        return self.prediction.source, self.track.source
+
+    def files_of(self, judged: JudgedRun) -> tuple[Path, ...]:
+        """Return the files that a judgement of the walk is based on."""
+        tilt = () if self.tilt is None or judged.tilt is None else self.tilt.files
+        return (*self.prediction.files, self.track.file, *tilt)
+
+
+def pairs_of_run(run: Path) -> tuple[Path, Path]:
+    """Return the prediction and the track of a run folder.
+
+    Raises:
+        NotFound: One of them is missing.
+    """
+    prediction, track = settle(run / PREDICTION), settle(run / TRACK)
+    if not (prediction / PATH_CSV).is_file():
+        raise NotFound(f"{prediction}: no prediction; predict {run} --out {prediction} makes it")
+    if not (track / TRACK_CSV).is_file():
+        raise NotFound(f"{track}: no {TRACK_CSV}; track the run's photographs into it first")
+    return prediction, track
+
+
+def read_predicted_walks(pairs: Sequence[tuple[Path, Path]]) -> list[PredictedWalk]:
+    """Read predictions and tracks; a pair that was named twice is read once.
+
+    Args:
+        pairs: Prediction and track of each walk.
+
+    Raises:
+        ZebroLabError: A file is missing or damaged.
+    """
+    pairs, repeated = first_of_each(pairs, key=_content)
+    duplicates = duplicates_note("walks", [(one[0], other[0]) for one, other in repeated])
+    names = numbered([_name(predicted) for predicted, _ in pairs])
+    return [
+        _read(name, *pair, () if i else duplicates)
+        for i, (name, pair) in enumerate(zip(names, pairs, strict=True))
+    ]
+
+
+def _read(name: str, predicted: Path, tracked: Path, duplicates: tuple[str, ...]) -> PredictedWalk:
+    run = tracked.parent if tracked.name == TRACK and is_recorded(tracked.parent) else None
+    tilt = None if run is None else read_recorded_tilt(run)
+    prediction, track = read_prediction(predicted), read_track(tracked)
+    photos, not_shown = None, ()
+    try:
+        photos = photos_of_track(tracked)
+    except (NotFound, DataError) as error:
+        not_shown = (f"photographs are not shown: {error}",)
+    return PredictedWalk(name, prediction, track, tilt, photos, duplicates, not_shown)
+
+
+def _content(pair: tuple[Path, Path]) -> tuple[str, ...]:
+    """Return hashes of a walk's predicted and tracked path, by which copies are recognised."""
+    return tuple(
+        content_hash(file) if file.is_file() else str(file)
+        for path, name in zip(pair, (PATH_CSV, TRACK_CSV), strict=True)
+        for file in [settle(path) / name if path.is_dir() else path]
+    )
+
+
+def _name(predicted: Path) -> str:
+    """Return the name of a walk's folder."""
+    place = (predicted if predicted.is_dir() else predicted.with_suffix("")).absolute()
+    return place.parent.name if place.name == PREDICTION else place.name

@@ -1,0 +1,57 @@
+# SPDX-License-Identifier: MIT
+"""Options of a validation."""
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated
+
+from typer import Argument, Option
+
+
+@dataclass(frozen=True)
+class ValidateRequest:
+    """Options of `zebro-lab validate`."""
+
+    runs: Annotated[
+        tuple[Path, ...], Argument(help="Run folders with prediction/ and track/.")
+    ] = ()
+    predicted: Annotated[
+        tuple[Path, ...],
+        Option(help="Walk folder of predict, or a table with t, x, y, yaw; repeatable."),
+    ] = ()
+    track: Annotated[
+        tuple[Path, ...], Option(help="track.csv or its folder; one for each --predicted.")
+    ] = ()
+    out: Annotated[
+        Path | None,
+        Option(
+            help="Validation folder to write; default: RUN/validation for one run, else validation."
+        ),
+    ] = None
+    anchor: Annotated[
+        bool,
+        Option(
+            "--anchor/--no-anchor",
+            help="Start each path from the first tracked pose, or leave it where it is.",
+        ),
+    ] = True
+    time_offset: Annotated[
+        float, Option(help="Offset added to the track's times, whose clock is behind by that [s].")
+    ] = 0.0
+    estimate_offset: Annotated[
+        bool,
+        Option(
+            "--estimate-offset",
+            help="Estimate from the motion how far the track's clock is behind; the walk must "
+            "have starts, stops or turns.",
+        ),
+    ] = False
+    seed: Annotated[int, Option(help="Seed of all random numbers.")] = 1
+
+    @property
+    def folder(self) -> Path:
+        """Folder to write: `out`, else `validation`, in the run if one run is validated."""
+        if self.out is not None:
+            return self.out
+        alone = len(self.runs) == 1 and not self.predicted
+        return self.runs[0] / "validation" if alone else Path("validation")

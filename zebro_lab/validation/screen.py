@@ -1,0 +1,102 @@
+# SPDX-License-Identifier: MIT
+"""Terminal output of `validate`: errors of each walk, consistency of its band, means over walks."""
+
+from pathlib import Path
+
+import numpy as np
+from rich.console import Console
+from rich.table import Table
+from rich.text import Text
+
+from model.metrics.consistency import Consistency
+from zebro_lab.terminal.messages import plain
+from zebro_lab.terminal.tables import plain_table
+from zebro_lab.validation.judged_run import JudgedRun
+from zebro_lab.validation.stage import Validated
+
+_STATISTICS = {
+    "nees": ("error relative to predicted uncertainty (NEES)", 1.0, ""),
+    "along": ("mean error along the path", 1e3, " mm"),
+    "cross": ("mean error across the path", 1e3, " mm"),
+    "yaw": ("mean error of yaw", 180 / np.pi, " deg"),
+}  # meaning, scale and unit of each statistic of the band's consistency
+
+
+def print_validated(console: Console, validated: Validated, out: Path) -> None:
+    """Print a table for each walk, the means over walks, and the output folder.
+
+    Args:
+        console: Console to print to.
+        validated: Results of the validation.
+        out: Folder that was written.
+    """
+    if "sim:" in validated.source:
+        console.print(plain(f"SIMULATED: {validated.source}"))
+    for run in validated.runs:
+        console.print(_table(run))
+        for line in (*_verdict(run), *_tilt(run), *run.notes):
+            console.print(plain(line))
+    for each in validated.summary:
+        mean, low, high = each.interval
+        console.print(plain(f"{each.model}: {each.metric} {mean:.4g} ({low:.4g} to {high:.4g})"))
+    if validated.summary:
+        console.print(plain(f"means over {len(validated.runs)} walks, 90 % intervals over walks"))
+    console.print(Text(f"\nwritten to {out}"))
+
+
+def _table(run: JudgedRun) -> Table:
+    length = run.rows[0].errors.length
+    title = f"{run.name}: {run.rows[0].errors.poses} poses, {length:.3f} m"
+    numbers = (
+        "ATE\n[mm]", "of path", "along\n[mm]", "across\n[mm]", "yaw\n[deg]", "end\n[mm]",
+        "aligned\n[mm]", "radius\n[m]", "CRPS x, y\n[mm]",
+    )  # fmt: skip
+    table = plain_table(title, ("model",), numbers)
+    for row in run.rows:
+        e = row.errors
+        crps = " ".join(f"{1000 * value:.1f}" for value in row.scores.crps[:2])
+        table.add_row(
+            row.name, f"{1000 * e.ate:.1f}", f"{e.ate_of_length:.2%}", f"{1000 * e.along:.1f}",
+            f"{1000 * e.cross:.1f}", f"{np.degrees(e.yaw):.2f}", f"{1000 * e.final_distance:.1f}",
+            f"{1000 * e.ate_aligned:.1f}", f"{e.radius[0]:.3f}", crps,
+        )  # fmt: skip
+    table.add_row("track", *[""] * 7, f"{run.rows[0].errors.radius[1]:.3f}", "")
+    return table
+
+
+def _tilt(run: JudgedRun) -> list[str]:
+    """Format lines on the errors of roll and pitch against the IMU."""
+    if run.tilt is None:
+        return []
+    errors = run.tilt.errors
+    return [
+        f"{name}: error against the IMU {rms:.2f} deg rms without bias, bias {bias:+.2f} deg, "
+        f"swing {swing:.2f} deg"
+        for name, rms, swing, bias in zip(
+            ("roll", "pitch"), np.degrees(errors.rms_unbiased), np.degrees(errors.swing),
+            np.degrees(errors.bias), strict=True,
+        )
+    ]  # fmt: skip
+
+
+def _verdict(run: JudgedRun) -> list[str]:
+    """Format lines on coverage and consistency (NEES) of the band."""
+    row = run.rows[0]
+    if run.band is None:
+        return []
+    states = ("x", "y", "yaw")
+    lines = [
+        f"coverage of the {level:.0%} band: "
+        + ", ".join(f"{s} {c:.0%}" for s, c in zip(states, cover, strict=True))
+        for level, cover in zip(row.scores.levels, row.scores.coverage, strict=True)
+    ]
+    return [*lines, *map(_consistency, row.consistency)]
+
+
+def _consistency(each: Consistency) -> str:
+    meaning, scale, unit = _STATISTICS[each.name]
+    return (
+        f"{meaning} {scale * each.value:.3g}{unit}, expected {scale * each.low:.3g} to "
+        f"{scale * each.high:.3g}{unit}: {'consistent' if each.consistent else 'NOT consistent'} "
+        f"(p {each.p_value:.2g})"
+    )

@@ -1,0 +1,98 @@
+# SPDX-License-Identifier: MIT
+"""Write a finished walk: the walk folder with path, band and the requested pictures."""
+
+from collections.abc import Mapping
+from pathlib import Path
+
+from model.progress import Watcher
+from model.robot import Robot
+from zebro_lab.files.errors import ZebroLabError
+from zebro_lab.files.provenance import file_hashes
+from zebro_lab.walk.folder import walk_folder
+from zebro_lab.walk.path_band import band_settings, write_band
+from zebro_lab.walk.pictures import draw_walk
+from zebro_lab.walk.request import ModelRequest
+from zebro_lab.walk.walking import Walked
+
+
+class WalkStopped(ZebroLabError):
+    """A walk was stopped on request; nothing was written."""
+
+
+def write_walk(
+    out: Path,
+    request: ModelRequest,
+    walked: Walked,
+    watcher: Watcher,
+    *,
+    kind: str,
+    settings: Mapping[str, object],
+    files: tuple[Path, ...] = (),
+) -> None:
+    """Write the walk folder with the requested pictures.
+
+    Args:
+        out: Folder to write.
+        request: Settings of the band, and which pictures to draw.
+        walked: The finished walk.
+        watcher: Receives progress.
+        kind: "walk" or "predict".
+        settings: Settings other than model, robot, slip and band, JSON-serialisable.
+        files: Files read other than those of robot and slip.
+
+    Raises:
+        AlreadyExists: The folder is a file, or holds the result of another command.
+        WalkStopped: The watcher asked to stop.
+    """
+    described, slip = walked.described, walked.slip
+    read = [*files, *((described.file,) if described.file else ()), *(slip.files if slip else ())]
+    everything = {
+        "model": walked.model,
+        "dt": walked.dt,
+        "toe": request.toe,
+        "slip": None if slip is None else {"named": slip.text, "source": slip.source},
+        "robot": _robot_settings(described.robot),
+        "walks": None if walked.informed is None else walked.informed.settings(),
+        **settings,
+        **({} if walked.band is None else {"band": band_settings(request.band)}),
+    }
+    source, inputs = f"sim:{walked.model}", file_hashes(read)
+    with walk_folder(
+        out, walked.path, kind=kind, source=source, settings=everything, inputs=inputs
+    ) as folder:
+        _draw(request, walked, folder, watcher)
+        if walked.band is not None:
+            write_band(folder, walked.band, title=walked.title)
+
+
+def _draw(request: ModelRequest, walked: Walked, folder: Path, watcher: Watcher) -> None:
+    robot, title = walked.described.robot, walked.title
+    _raise_if_stopped(watcher)
+    if request.figures:
+        watcher.step("drawing", None)
+        draw_walk(folder, walked.path, robot, title=title, period=walked.reference.period)
+    if request.animate:
+        from zebro_lab.plots.animation import animate  # matplotlib takes most of a second
+
+        def follow(fraction: float) -> None:
+            watcher.step("filming", fraction)
+            _raise_if_stopped(watcher)
+
+        animate(walked.path, robot, folder, title=title, progress=follow)
+
+
+def _raise_if_stopped(watcher: Watcher) -> None:
+    if watcher.stop_requested():
+        raise WalkStopped("stopped; nothing was written")
+
+
+def _robot_settings(robot: Robot) -> dict[str, object]:
+    return {
+        "mass": robot.mass,
+        "body_size": list(robot.body_size),
+        "inertia": robot.principal_inertia.tolist(),
+        "leg_radius": robot.leg_radius,
+        "leg_arc": robot.leg_arc,
+        "leg_offset": robot.leg_offset.tolist(),
+        "hips": robot.hips.tolist(),
+    }

@@ -1,0 +1,144 @@
+# SPDX-License-Identifier: MIT
+"""Options of `walk` and `predict`."""
+
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Annotated, Literal, TypeAlias
+
+from typer import Argument, BadParameter, Option
+
+from zebro_lab.files.errors import SettingsError
+from zebro_lab.robot.gait_request import GaitRequest, Side
+
+ModelName: TypeAlias = Literal["dynamics", "thesis", "no-slip", "no-slip-simple"]
+ToeName: TypeAlias = Literal["saturated", "peak", "bristle"]
+
+
+@dataclass(frozen=True)
+class BandRequest:
+    """Draws of a path, and what is unknown in each."""
+
+    draws: Annotated[
+        int,
+        Option(
+            min=0, help="Number of draws for the band (draws.npz, band.csv, band.png); 0 for none."
+        ),
+    ] = 0
+    seed: Annotated[int, Option(help="Seed of the band's draws.")] = 1
+    offset_sd_deg: Annotated[
+        float | None,
+        Option(
+            min=0.0,
+            help="Standard deviation of the unknown leg offsets [deg]; default: that of an "
+            "encoder count, or 0.3.",
+        ),
+    ] = None
+    start_sd: Annotated[
+        tuple[float, float, float],
+        Option(help="Standard deviation of the start pose: x y [m] yaw [deg].", metavar="X Y YAW"),
+    ] = (0.0, 0.0, 0.0)
+    threads: Annotated[int, Option(min=1, help="Draws computed in parallel.")] = 2
+
+    def __post_init__(self) -> None:
+        """Check the number of draws and the standard deviations."""
+        if self.draws < 2 and self.draws != 0:
+            raise SettingsError(f"{self.draws} draws make no band; ask for 200", key="--draws")
+        if self.draws and any(sd < 0 for sd in (*self.start_sd, self.offset_sd_deg or 0.0)):
+            raise SettingsError("a standard deviation is negative", key="--start-sd")
+
+
+@dataclass(frozen=True)
+class ModelRequest:
+    """Model, slip law and robot of a walk, and what is to be computed and drawn of it."""
+
+    slip: Annotated[
+        str | None,
+        Option(
+            help="Slip law: a slip.toml, its folder, coulomb:MU[:V] (V in m/s) or thesis. "
+            "Required by models with slip.",
+            metavar="SLIP",
+        ),
+    ] = None
+    model: Annotated[
+        ModelName,
+        Option(
+            help="Walking model. dynamics: rigid body on slipping legs; thesis: the thesis's, "
+            "with its errors; no-slip: exact kinematics; no-slip-simple: wheels."
+        ),
+    ] = "dynamics"
+    toe: Annotated[
+        ToeName, Option(help="Traction law of a leg on its toe, for dynamics; no rig measures it.")
+    ] = "saturated"
+    robot: Annotated[Path | None, Option(help="robot.toml; default: the thesis's robot.")] = None
+    arc_deg: Annotated[
+        float | None, Option(help="Arc of the legs, 180 to 200, in place of the robot's [deg].")
+    ] = None
+    dt: Annotated[
+        float | None, Option(min=0.0, help="Time step [s]; default: that of the model.")
+    ] = None
+    band: BandRequest = field(default_factory=BandRequest)
+    figures: Annotated[
+        bool, Option("--figures", help="Draw figures of path, motion, forces and contacts.")
+    ] = False
+    animate: Annotated[
+        bool, Option("--animate", help="Write an animation of the robot: mp4, or gif.")
+    ] = False
+
+    @property
+    def inputs(self) -> tuple[Path, ...]:
+        """Files and folders that are read, as named."""
+        slip = () if self.slip in (None, "thesis") else (Path(self.slip),)
+        return (*slip, *((self.robot,) if self.robot is not None else ()))
+
+    def require_slip(self) -> None:
+        """Check that `--slip` is given if the model needs it.
+
+        Raises:
+            BadParameter: The model has slipping legs and `--slip` is missing.
+        """
+        if self.slip is None and self.model in ("dynamics", "thesis"):
+            raise BadParameter(
+                f"missing: legs slip in the model '{self.model}'; name a slip.toml, the folder "
+                "that holds it, coulomb:MU[:V] or thesis",
+                param_hint="'--slip'",
+            )
+
+
+@dataclass(frozen=True)
+class WalkRequest:
+    """Options of `zebro-lab walk`."""
+
+    gait: GaitRequest = field(default_factory=GaitRequest)
+    duration: Annotated[float | None, Option(help="Duration of the walk [s].")] = None
+    out: Annotated[Path, Option(help="Walk folder to write.")] = Path("walk")
+    model: ModelRequest = field(default_factory=ModelRequest)
+
+
+@dataclass(frozen=True)
+class PredictRequest:
+    """Options of `zebro-lab predict`."""
+
+    log: Annotated[
+        Path,
+        Argument(
+            metavar="LEGLOG",
+            help="Leg angles over time: CSV, Parquet, a recorded run or a walk folder.",
+        ),
+    ]
+    out: Annotated[
+        Path | None,
+        Option(help="Walk folder to write; default: RUN/prediction for a run, else prediction."),
+    ] = None
+    columns: Annotated[
+        Path | None, Option(help="columns.toml to use in place of that beside LEGLOG.")
+    ] = None
+    direction: Annotated[
+        Side, Option(help="Side the gait turns to; used by --model thesis only.")
+    ] = "left"
+    model: ModelRequest = field(default_factory=ModelRequest)
+
+    @property
+    def inputs(self) -> tuple[Path, ...]:
+        """Files and folders that are read, as named."""
+        columns = () if self.columns is None else (self.columns,)
+        return (self.log, *columns, *self.model.inputs)

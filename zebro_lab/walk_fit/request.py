@@ -1,0 +1,29 @@
+# SPDX-License-Identifier: MIT
+"""Options of a fit of tracked walks."""
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated
+
+from typer import Option
+
+
+@dataclass(frozen=True)
+class WalksRequest:
+    """Options of `calibrate-slip --walks`, beside those of the calibration."""
+
+    walks: Annotated[
+        tuple[Path, ...],
+        Option(help="Run folder of a tracked walk, to fit legs and floor to; repeatable."),
+    ] = ()
+    robot: Annotated[
+        Path | None, Option(help="robot.toml of the walks, in place of those in their folders.")
+    ] = None
+    estimate_offset: Annotated[
+        bool,
+        Option(
+            "--estimate-offset",
+            help="Estimate from the motion how far each track's clock is behind that of its leg "
+            "log.",
+        ),
+    ] = False

@@ -44,7 +44,7 @@ def test_lags_are_drawn_with_the_band_of_white_noise(rig):
     rng = np.random.default_rng(1)
     n = len(rig.blocks.slip)
     figure = residuals(rig.blocks, whitened=rng.normal(size=n), run_score=rng.normal(size=5),
-                       title="A fit", simulated=True)  # fmt: skip
+                       simulated=True)  # fmt: skip
     lags = figure.axes[2]
     points = next(line for line in lags.lines if line.get_marker() == "o")
     assert points.get_xdata().tolist() == [1, 2]  # three blocks a run
@@ -61,6 +61,6 @@ def test_lags_are_drawn_with_the_band_of_white_noise(rig):
 def test_runs_are_drawn_by_rank(rig):
     score = np.array([1.0, -2.0, 0.5])
     figure = residuals(rig.blocks, whitened=np.zeros(len(rig.blocks.slip)) + 1e-3,
-                       run_score=score, title="A fit", simulated=True)  # fmt: skip
+                       run_score=score, simulated=True)  # fmt: skip
     points = next(line for line in figure.axes[3].lines if line.get_marker() == "o")
     np.testing.assert_array_equal(points.get_xydata(), [[1, -2.0], [2, 0.5], [3, 1.0]])

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The band of a path is drawn at its quantiles, beside what was tracked."""
+"""The band of a path is drawn at its quantiles."""
 
 import numpy as np
 import pytest
@@ -20,7 +20,7 @@ def draws() -> Poses:
 
 
 def test_bands_hold_half_and_nine_tenths_of_the_draws(draws):
-    above, x, y, yaw = path_band(draws, title="A walk", simulated=True).axes
+    above, x, y, yaw = path_band(draws, title="A walk").axes
     assert len(above.lines) == 60 + 1
     np.testing.assert_allclose(above.lines[-1].get_xydata(), np.column_stack([T, 0 * T]), atol=1e-9)
     for axes, end in ((y, 2.0), (yaw, 20.0)):
@@ -32,13 +32,8 @@ def test_bands_hold_half_and_nine_tenths_of_the_draws(draws):
     assert yaw.get_xlabel() == "time [s]"
 
 
-def test_a_track_is_drawn_from_above_and_over_time(draws):
-    track = draws.draws(0).at([0.5, 1.0])
-    figure = path_band(draws, title="A walk", simulated=False, track=track)
-    above, _, _, yaw = figure.axes
-    np.testing.assert_array_equal(above.lines[-1].get_xydata(), track.position)
-    expected = np.column_stack([track.t, np.degrees(track.yaw)])
-    np.testing.assert_allclose(yaw.lines[-1].get_xydata(), expected)
+def test_a_predicted_band_is_called_simulated_and_its_levels_are_named(draws):
+    figure = path_band(draws, title="A walk")
     names = [text.get_text() for text in figure.legends[0].get_texts()]
-    assert set(names) == {"90 %", "50 %", "median", "track"}
-    assert figure.get_suptitle() == "A walk"
+    assert set(names) == {"90 %", "50 %", "median"}
+    assert figure.get_suptitle() == "A walk (simulated)"

@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: MIT
 """Draws of a path start where asked, are the same by seed, and come back from their file."""
 
+from collections.abc import Callable
+from dataclasses import replace
+
 import numpy as np
 import pandas as pd
 import pytest
@@ -8,19 +11,20 @@ import pytest
 from model.gait import tripod_angles, tripod_reference
 from model.gait.quantised import QuantisedLog
 from model.poses import Poses
-from model.robot import Robot
 from support.validated_walks import predicted, write_walk_data
 from support.watchers import Nobody
 from zebro_lab.calibration.slip_argument import parse_slip
 from zebro_lab.files.errors import DataError, NotFound, SettingsError
+from zebro_lab.robot.robot_file import RobotFile
 from zebro_lab.walk.path_band import (
     ASSUMED_OFFSET_DEG,
     DRAWS,
-    offset_sd_deg,
+    _offset_sd_deg,
     predict_band,
     read_draws,
 )
 from zebro_lab.walk.request import BandRequest
+from zebro_lab.walk.walking import Walked
 
 
 def test_draws_come_back_and_stale_ones_go(tmp_path):
@@ -38,18 +42,26 @@ def test_draws_come_back_and_stale_ones_go(tmp_path):
 GAIT = tripod_reference(tripod_angles(np.radians(50.0), 1.2), 2.0)
 
 
-def band(*, seed: int = 1, **options) -> Poses:
-    request = BandRequest(3, seed, offset_sd_deg=1.0, **options)
-    return predict_band(request, Robot(), GAIT, parse_slip("coulomb:0.4"), duration=0.5,
-                        toe="saturated", watcher=Nobody())  # fmt: skip
+@pytest.fixture(scope="module")
+def band(walked) -> Callable[..., Poses]:
+    """Return what draws a band of three paths of that gait."""
+    slip = parse_slip("coulomb:0.4")
+    single = Walked(walked, GAIT, RobotFile(), slip, "dynamics", 0.001, "a walk", ())
+
+    def draw(*, seed: int = 1, model: str = "dynamics", **options) -> Poses:
+        request = BandRequest(3, seed, offset_sd_deg=1.0, **options)
+        return predict_band(request, replace(single, model=model), GAIT, duration=0.5,
+                            toe="saturated", watcher=Nobody())  # fmt: skip
+
+    return draw
 
 
 @pytest.fixture(scope="module")
-def three() -> Poses:
+def three(band) -> Poses:
     return band()
 
 
-def test_draws_start_at_the_origin_and_are_the_same_by_seed(three):
+def test_draws_start_at_the_origin_and_are_the_same_by_seed(three, band):
     np.testing.assert_allclose(three.t, np.linspace(0.0, 0.5, 6))
     np.testing.assert_allclose(three.states[:, 0], 0.0, atol=1e-12)
     assert len({path.tobytes() for path in three.position}) == 3
@@ -57,25 +69,24 @@ def test_draws_start_at_the_origin_and_are_the_same_by_seed(three):
     assert not np.array_equal(band(seed=2).states, three.states)
 
 
-def test_a_start_pose_that_is_not_known_spreads_the_draws():
+def test_a_start_pose_that_is_not_known_spreads_the_draws(band):
     start = band(start_sd=(0.0, 0.05, 0.0)).states[:, 0]
     np.testing.assert_allclose(start[:, [0, 2]], 0.0, atol=1e-12)
     assert 0.005 < np.ptp(start[:, 1]) < 0.5
+
+
+def test_a_model_that_does_not_slip_has_no_band(band):
+    with pytest.raises(SettingsError, match="by the model 'dynamics' only, not by 'thesis'"):
+        band(model="thesis")
 
 
 def test_offsets_spread_as_asked_by_the_count_or_as_assumed():
     request = BandRequest(2)
     t = np.linspace(0.0, 1.0, 11)
     counted = QuantisedLog(t, np.zeros((11, 6)), np.radians(3.6))
-    assert offset_sd_deg(BandRequest(2, offset_sd_deg=0.7), counted) == 0.7
-    assert offset_sd_deg(request, counted) == pytest.approx(3.6 / np.sqrt(12))
-    assert offset_sd_deg(request, GAIT) == ASSUMED_OFFSET_DEG
-
-
-def test_a_negative_spread_is_refused():
-    for options in ({"offset_sd_deg": -1.0}, {"start_sd": (0.0, -1.0, 0.0)}):
-        with pytest.raises(SettingsError, match="a standard deviation is negative"):
-            BandRequest(2, **options)
+    assert _offset_sd_deg(BandRequest(2, offset_sd_deg=0.7), counted) == 0.7
+    assert _offset_sd_deg(request, counted) == pytest.approx(3.6 / np.sqrt(12))
+    assert _offset_sd_deg(request, GAIT) == ASSUMED_OFFSET_DEG
 
 
 @pytest.mark.parametrize(

@@ -8,9 +8,10 @@ import pytest
 from model.walk_models import MODELS
 from support.walk_requests import request, write_log
 from support.watchers import Nobody
+from zebro_lab.files.errors import SettingsError
 from zebro_lab.walk.folder import read_walk_manifest
 from zebro_lab.walk.predict_stage import predict
-from zebro_lab.walk.request import ModelRequest, PredictRequest
+from zebro_lab.walk.request import BandRequest, ModelRequest, PredictRequest
 from zebro_lab.walk.stage import walk
 from zebro_lab.walk.summary import summarise
 
@@ -97,3 +98,9 @@ def test_log_of_the_virtual_world_leads_where_its_robot_went(shared, tmp_path):
     assert error < 0.01 * walked.path.length
     assert summarise(walked.path).radius == pytest.approx(1.5295, rel=0.02)
     assert "simulated leg angles" in walked.title
+
+
+def test_a_band_needs_the_model_that_has_one(tmp_path):
+    model = ModelRequest(model="no-slip", band=BandRequest(10))
+    with pytest.raises(SettingsError, match="dynamics"):
+        predict(PredictRequest(write_log(tmp_path), tmp_path / "out", model=model), Nobody())

@@ -14,9 +14,28 @@ from zebro_lab.files.errors import AlreadyExists, SettingsError
 from zebro_lab.robot.robot_file import read_robot_file
 from zebro_lab.walk.folder import PICTURES, read_walk, read_walk_manifest
 from zebro_lab.walk.output import WalkStopped
-from zebro_lab.walk.request import ModelRequest
+from zebro_lab.walk.path_band import read_draws
+from zebro_lab.walk.request import BandRequest, ModelRequest
 from zebro_lab.walk.stage import walk, write_robot
 from zebro_lab.walk.summary import summarise
+
+
+def test_a_gait_has_a_band_around_its_path(tmp_path):
+    asked = request(tmp_path / "out", dt=0.005, band=BandRequest(12, offset_sd_deg=1.0))
+    walked = walk(asked, Nobody())
+    draws = read_draws(tmp_path / "out")
+    assert draws.position.shape[0] == 12
+    end, spread = draws.position[:, -1], draws.position[:, -1].std(axis=0)
+    assert np.all(np.abs(end.mean(axis=0) - walked.path.position[-1, :2]) < 3 * spread)
+    assert np.all(spread > 1e-4)
+    assert read_walk_manifest(tmp_path / "out")["settings"]["band"]["draws"] == 12
+
+
+def test_a_gait_walked_by_a_model_without_a_band_is_refused_and_leaves_nothing(tmp_path):
+    asked = request(tmp_path / "out", model="no-slip", band=BandRequest(12))
+    with pytest.raises(SettingsError, match="dynamics"):
+        walk(asked, Nobody())
+    assert not (tmp_path / "out").exists()
 
 
 @pytest.mark.parametrize("model", MODELS)

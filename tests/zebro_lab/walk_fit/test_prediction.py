@@ -6,17 +6,11 @@ import pytest
 
 from model.bayes.walks.prior import WalkPrior
 from model.errors import ModelError
-from support.judged_walks import judged_walk
 from support.tracked_walks import write_walk
 from support.walk_posteriors import posterior_of
 from zebro_lab.calibration.slip_argument import parse_slip
 from zebro_lab.walk_fit import prediction
-from zebro_lab.walk_fit.prediction import (
-    fit_and_leave_out,
-    fit_walks_on_file,
-    judge_from,
-    predict_from,
-)
+from zebro_lab.walk_fit.prediction import fit_walks_on_file, judge_left_out, predict_from
 from zebro_lab.walk_fit.tracked_walks import read_walk_on_file
 
 
@@ -34,9 +28,15 @@ def walk(tmp_path_factory):
     return read_walk_on_file(write_walk(folder))
 
 
+@pytest.fixture(autouse=True)
+def few_draws(monkeypatch):
+    """Draw four paths a band; they take most of the time."""
+    monkeypatch.setattr(prediction, "DRAWS", 4)
+
+
 def test_a_walk_is_predicted_from_a_posterior_without_its_track(walk):
     rng = np.random.default_rng(1)
-    found = predict_from(posterior_of(None), walk, SLIP, rng=rng, draws=4)
+    found = predict_from(posterior_of(None), walk, SLIP, rng=rng)
     path, band = found.prediction.path, found.prediction.draws
     assert (path.t[0], path.t[-1]) == (0.0, pytest.approx(walk.duration))
     assert band.position.shape == (4, len(path), 2)
@@ -44,41 +44,42 @@ def test_a_walk_is_predicted_from_a_posterior_without_its_track(walk):
     assert 0.5 < path.length < 1.5
     assert {"no-slip", "no-slip-simple"} <= set(found.prediction.baselines)
     assert found.files == walk.files
-    judged = judge_from(posterior_of(None), walk, SLIP, rng=rng, draws=4)
-    assert judged.name == walk.name
-    assert judged.rows[0].name == "prediction"
 
 
-def test_a_wrong_leg_of_the_posterior_turns_the_predicted_path(walk):
+def test_steering_of_the_posterior_turns_the_predicted_path(walk):
     def end(posterior):
-        rng = np.random.default_rng(1)
-        found = predict_from(posterior, walk, SLIP, rng=rng, draws=2)
+        found = predict_from(posterior, walk, SLIP, rng=np.random.default_rng(1))
         return found.prediction.path.yaw[-1]
 
     steered = end(posterior_of(None, steering=0.1)) - end(posterior_of(None))
     assert steered == pytest.approx(0.1 * 1.0, rel=0.2)
 
 
-def test_all_walks_are_fitted_and_each_is_predicted_from_the_others(walk, monkeypatch):
-    asked = []
+class Fit:
+    """A fit of walks that keeps which of them were left out."""
 
-    class Fit:
-        posterior = posterior_of(None)
+    def __init__(self) -> None:
+        self.posterior = posterior_of(None)
+        self.asked: list[int] = []
 
-        def without(self, index):
-            asked.append(index)
-            return self.posterior
+    def without(self, index: int):
+        self.asked.append(index)
+        return self.posterior
 
-    monkeypatch.setattr(prediction, "fit_walks", lambda *_, **__: Fit())
-    monkeypatch.setattr(
-        prediction, "judge_from", lambda _, walk, *__, **___: judged_walk(walk.name, off=0.02)
-    )
-    seen = []
-    given = {"prior": WalkPrior(), "rng": np.random.default_rng(1), "progress": seen.append}
-    alone = fit_and_leave_out([walk], SLIP, **given)
-    assert (alone.left_out, asked) == ((), [])
-    assert fit_walks_on_file([walk], SLIP, **given).posterior is Fit.posterior
-    both = fit_and_leave_out([walk, walk], SLIP, **given)
-    assert asked == [0, 1]
-    assert [run.name for run in both.left_out] == [walk.name] * 2
-    assert seen == sorted(seen)
+
+def test_all_walks_are_fitted_by_the_model(walk, monkeypatch):
+    fit = Fit()
+    monkeypatch.setattr(prediction, "fit_walks", lambda *_, **__: fit)
+    given = {"prior": WalkPrior(), "rng": np.random.default_rng(1)}
+    assert fit_walks_on_file([walk], SLIP, **given) is fit
+
+
+def test_each_walk_is_predicted_from_the_others_and_one_alone_is_not(walk):
+    fit, seen, rng = Fit(), [], np.random.default_rng(1)
+    assert judge_left_out(fit, [walk], SLIP, rng=rng) == ()
+    assert fit.asked == []
+    both = judge_left_out(fit, [walk, walk], SLIP, rng=rng, progress=seen.append)
+    assert fit.asked == [0, 1]
+    assert [run.name for run in both] == [walk.name] * 2
+    assert both[0].rows[0].name == "prediction"
+    assert seen == [0.0, 0.5]

@@ -11,15 +11,16 @@ from rich.console import Console
 from model.bayes.walks.prior import NAMES, WrongLeg
 from support.judged_walks import judged_walk
 from support.walk_posteriors import posterior_of
-from zebro_lab.walk_fit.prediction import WalksFitted
 from zebro_lab.walk_fit.screen import print_walks
 from zebro_lab.walk_fit.stage import WalksCalibrated
 
 
 def printed(*, left_out=(), source="sim:x", case=None) -> str:
-    fitted = WalksFitted((), posterior_of(case), left_out)
     console = Console(file=io.StringIO(), width=200)
-    print_walks(console, WalksCalibrated(fitted, Path("out/walks"), source, ("[bold]note",)))
+    print_walks(
+        console,
+        WalksCalibrated(posterior_of(case), left_out, Path("out/walks"), source, ("[bold]note",)),
+    )
     return console.file.getvalue()
 
 
@@ -36,16 +37,16 @@ def test_every_parameter_is_told_before_and_after_in_its_unit():
     grip = next(each for each in posterior.contractions() if each.name == "grip")
     assert f"{np.exp(grip.sd):.2f}" in found["grip"]
     assert found["grip"][-2] == "factor"
-    assert "the walks did not inform " in text
-    assert "mounted wrong: leg 3" in text
+    assert "The walks do not inform " in text
+    assert "Mounted wrong: leg 3" in text
     assert "by +5.0 ± 0.0 deg: probability 100%" in text
 
 
 def test_misfits_effective_draws_and_the_folder_are_told():
     text = printed()
-    assert "misfit, mean square of expected: one 0.90, two 1.10" in text
+    assert "(about 1 or less is expected): one 0.90, two 1.10" in text
     assert "40 effective draws" in text
-    assert "one walk alone: none is left to predict" in text
+    assert "A single walk cannot be predicted from others" in text
     assert text.rstrip().endswith("written to out/walks")
 
 

@@ -15,7 +15,6 @@ from zebro_lab.calibration.request import CalibrationRequest
 from zebro_lab.calibration.walks_folder import read_stored_walks
 from zebro_lab.files.errors import NotFound, SettingsError
 from zebro_lab.walk_fit import stage
-from zebro_lab.walk_fit.prediction import WalksFitted
 from zebro_lab.walk_fit.request import WalksRequest
 from zebro_lab.walk_fit.stage import calibrate_walks
 
@@ -31,20 +30,24 @@ def test_walks_need_a_calibration(tmp_path):
 def test_the_fit_is_written_beside_the_calibration_with_what_it_was_made_of(tmp_path, monkeypatch):
     posterior = posterior_of(None)
 
-    def fit(walks, slip, *, prior, rng, threads, progress) -> WalksFitted:
-        progress(0.5)
-        run = judged_walk(walks[0].name, off=0.02)
-        return WalksFitted(tuple(walks), posterior, (run,))
+    class Fit:
+        def __init__(self, progress):
+            progress(0.5)
+            self.posterior = posterior
 
-    monkeypatch.setattr(stage, "fit_and_leave_out", fit)
+    run = judged_walk("one", off=0.02)
+    monkeypatch.setattr(stage, "fit_walks_on_file", lambda *_, progress, **__: Fit(progress))
+    monkeypatch.setattr(stage, "judge_left_out", lambda *_, **__: (run,))
     saved = figures_saved(monkeypatch)
     calibration = write_calibration(tmp_path)
     walks = (write_walk(tmp_path / "one"), write_walk(tmp_path / "two", begin=7.0, every=1.5))
     watcher = Nobody()
-    done = calibrate_walks(WalksRequest(walks, calibration, seed=3), watcher)
+    done = calibrate_walks(
+        WalksRequest(walks), CalibrationRequest(out=calibration, seed=3), watcher
+    )
     assert done.folder == calibration / "walks"
     assert done.source == "sim:rig-sweep, unknown"
-    assert ("fitting walks", 0.5) in watcher.seen
+    assert ("fitting walks", 0.35) in watcher.seen
     assert [what for what, _ in watcher.seen][-1] == "drawing"
     assert any(note.startswith("one: ") for note in done.notes)
     stored = read_stored_walks(calibration / "slip.toml")

@@ -60,5 +60,4 @@ def test_faults_are_marked_with_their_evidence(printed):
 
 def test_data_source_and_files_are_told_and_names_are_no_markup(printed):
     assert "SIMULATED data, source 'sim:rig-sweep': 3600 samples in " in printed
-    assert "sampled in 2 s" in printed
     assert "[bold]slip.toml" in printed

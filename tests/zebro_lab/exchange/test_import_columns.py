@@ -37,18 +37,18 @@ def find(tmp_path):
 
 
 def test_each_file_has_its_section_and_the_common_source(find, tmp_path):
-    legs, imu, rig, track = (find(what, SECTIONS) for what in ("legs", "imu", "rig", "track"))
-    assert legs.topic == "/joints"
-    assert imu.topic is None
-    mapped = legs.series("legs")
+    legs, imu = find("legs", SECTIONS), find("imu", SECTIONS)
+    assert (legs.topic, imu.topic) == ("/joints", None)
+    mapped, rig = legs.series("legs"), find("rig", SECTIONS).rig()
     raw = RawTable(Path("a.csv"), {"fl": pd.Series([180.0])})
     found = mapped.numbers(raw, "theta1", what="", advice="")
     np.testing.assert_allclose(found, [np.pi])
     assert imu.series("imu").mapped["roll"].name == "R"
-    assert rig.rig().columns["t"].name == "time"
-    assert track.series("track").mapped["x_m"].name == "x_m"
-    assert {legs.series("legs").source, track.series("track").source, rig.rig().source} == {"sim:x"}
-    assert legs.series("legs").file == tmp_path / "columns.toml"
+    assert rig.columns["t"].name == "time"
+    track = find("track", SECTIONS).series("track")
+    assert track.mapped["x_m"].name == "x_m"
+    assert {mapped.source, track.source, rig.source} == {"sim:x"}
+    assert mapped.file == tmp_path / "columns.toml"
 
 
 def test_a_file_without_sections_is_of_legs_and_rigs_alone(find):

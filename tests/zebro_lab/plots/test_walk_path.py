@@ -19,7 +19,7 @@ def test_snapshots_show_the_body_where_it_is(walked):
 
 
 def test_motion_is_drawn_with_its_derivatives(walked):
-    panels = np.reshape(motion(walked, title="A walk", simulated=True).axes, (3, 3))
+    panels = np.reshape(motion(walked, title="A walk").axes, (3, 3))
     for column in range(3):
         position, speed, _ = (axes.lines[0].get_ydata() for axes in panels[:, column])
         np.testing.assert_array_equal(position, walked.position[:, column])
@@ -29,7 +29,7 @@ def test_motion_is_drawn_with_its_derivatives(walked):
 
 
 def test_angles_are_drawn_in_degrees(walked):
-    panels = np.reshape(orientation(walked, title="A walk", simulated=True).axes, (3, 3))
+    panels = np.reshape(orientation(walked, title="A walk").axes, (3, 3))
     for column, axes in enumerate(panels[0]):
         shown = axes.lines[0].get_ydata()
         np.testing.assert_allclose(shown, np.degrees(walked.orientation[:, column]))

@@ -12,5 +12,5 @@ from zebro_lab.recording.stage import record
 def recorded(tmp_path_factory):
     """Return a run of all devices, two seconds long."""
     data = tmp_path_factory.mktemp("runs")
-    request = RecordRequest(data, "all", zebro="sim", imus=("sim",), rig="sim", duration=2.0)
+    request = RecordRequest("all", data, zebro="sim", imus=("sim",), rig="sim", duration=2.0)
     return record(request, Onlooker()).folder

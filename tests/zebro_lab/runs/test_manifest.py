@@ -66,7 +66,7 @@ def test_a_manifest_is_read_back_as_it_was_written(tmp_path):
     written = RunManifest(
         kind="walk", label="caf\udce9", material="x", operator="ü", source="sim:zebro",
         start="2026-01-01T00:00:00+00:00", stop=None, exit_status="recording",
-        software=software_version("abc"), constants={}, streams={"/legs/raw": 3},
+        software=software_version(), constants={}, streams={"/legs/raw": 3},
         exclusions=({"did": "excluded", "why": "belt"},), duration={"/legs/raw": 0.5},
     )  # fmt: skip
     write_manifest(tmp_path, written)

@@ -14,7 +14,6 @@ from model.gait import tripod_angles, tripod_reference
 from zebro_lab.calibration.slip_argument import parse_slip
 from zebro_lab.robot.robot_file import RobotFile
 from zebro_lab.walk.output import WalkStopped
-from zebro_lab.walk.request import ModelRequest
 from zebro_lab.walk.screen import (
     INTERRUPTED,
     gait_table,
@@ -36,7 +35,7 @@ def finished(walked, *, slip="coulomb:0.4") -> Walked:
 
 def test_the_gait_has_a_row_a_leg_with_angles_times_and_speeds():
     table = gait_table(GAIT)
-    assert table.title == "the gait, with a cycle of 2 s"
+    assert str(table.title) == "the gait, with a cycle of 2 s"
     columns = [list(column.cells) for column in table.columns]
     assert columns[0] == [
         f"{leg}{' inner' if leg - 1 in GAIT.inner else ' outer'}" for leg in range(1, 7)
@@ -94,6 +93,6 @@ def test_a_stopped_walk_is_one_line_and_exit_130(capsys):
         raise WalkStopped("stopped; nothing was written")
 
     with pytest.raises(typer.Exit) as ended:
-        run_and_report(stop, ModelRequest(Path("out")))
+        run_and_report(stop, Path("out"))
     assert ended.value.exit_code == INTERRUPTED
     assert capsys.readouterr() == ("", "stopped; nothing was written\n")

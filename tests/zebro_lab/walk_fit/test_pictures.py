@@ -12,7 +12,7 @@ def test_parameters_and_each_walk_left_out_are_drawn(tmp_path, monkeypatch):
     left_out = [judged_walk(name, off=0.02) for name in ("one", "two")]
     draw_walks(tmp_path, posterior_of(None), left_out, simulated=True)
     titles = {name: figure.get_suptitle() for name, figure in saved.items()}
-    title = "Prediction and track: {}, from what the other walks say (simulated)"
+    title = "Prediction and track: {}, from a fit of the other walks (simulated)"
     assert titles == {
         "walk_parameters.png": "Legs and floor after 2 walk(s): prior and posterior (simulated)",
         "left_out.one.png": title.format("one"),

@@ -1,15 +1,13 @@
 # SPDX-License-Identifier: MIT
 """Prediction with a band and its validation, on walks simulated with other numbers."""
 
-import shutil
-
 import numpy as np
 import pandas as pd
 import pytest
 
 from support.validated_walks import request_of, rows_of
 from support.watchers import Nobody
-from zebro_lab.files.errors import AlreadyExists, NotFound
+from zebro_lab.files.errors import AlreadyExists
 from zebro_lab.validation.predicted_walks import pairs_of_run
 from zebro_lab.validation.request import ValidateRequest
 from zebro_lab.validation.stage import validate
@@ -39,14 +37,6 @@ def test_another_command_s_folder_is_not_renewed(walk):
         validate(ValidateRequest((walk,), out=prediction), Nobody())
 
 
-def test_a_run_without_a_track_says_what_to_do(walk, tmp_path):
-    with pytest.raises(NotFound, match="predict"):
-        pairs_of_run(tmp_path)
-    (tmp_path / "prediction").symlink_to(walk / "prediction")
-    with pytest.raises(NotFound, match=r"track\.csv"):
-        pairs_of_run(tmp_path)
-
-
 @pytest.mark.reference
 def test_a_stranger_s_wheeled_robot_goes_through_unbent(shared, tmp_path):
     """Two wheels without slip: the aligned error its data's keeper measured, 62 mm."""
@@ -68,11 +58,3 @@ def test_a_stranger_s_wheeled_robot_goes_through_unbent(shared, tmp_path):
     errors = rows_of(done)["prediction"].errors
     assert 0.05 < errors.ate_aligned < 0.07
     assert errors.ate > errors.ate_aligned
-
-
-def test_a_run_under_two_names_is_averaged_once_and_told(walk, tmp_path):
-    copy = shutil.copytree(walk, tmp_path / "copy")
-    done = validate(ValidateRequest((walk, copy), out=tmp_path / "out"), Nobody())
-    assert len(done.runs) == 1
-    assert not done.summary
-    assert any("copy" in note and "once" in note for note in done.runs[0].notes)

@@ -25,8 +25,7 @@ def open_profile(name: str, *, device: str) -> TomlTable:
         The whole file as a table; `schema` and `device` are already read.
 
     Raises:
-        ProfileError: There is no such profile, it is not TOML, or it describes another kind of
-            device.
+        ProfileError: There is no such profile, it is not TOML, or it is of another device.
     """
     source = _find(name)
     try:

@@ -17,7 +17,7 @@ from benchmarks.code_structure.checkout import PACKAGES, Function, Module
 from benchmarks.code_structure.deleted import public_names
 from benchmarks.code_structure.measures import Checkout
 
-STAGES = ("calibrate", "track", "predict", "validate", "record")
+STAGES = ("calibrate", "track", "calibrate_walks", "predict", "validate", "record")
 NOT_COUNTED = ("files", "terminal", "plots")
 
 

@@ -143,8 +143,7 @@ def eigenvalue(A: Array) -> float:
     r"""Compute the largest circuit mean, by Karp's formula: the cycle time of A.
 
     .. math::
-        \lambda = \max_i \min_{k < n} \frac{[A^{\otimes n} \otimes 0]_i - [A^{\otimes k} \otimes
-        0]_i}{n - k}
+        \lambda = \max_i \min_{k < n} \frac{[a_n - a_k]_i}{n - k}, a_k = A^{\otimes k} \otimes 0
 
     Args:
         A: Square matrix, shape (n, n).

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: MIT
 """The slip laws by name."""
 
-from collections.abc import Mapping
 from dataclasses import fields
 from difflib import get_close_matches
 from types import MappingProxyType
@@ -13,9 +12,8 @@ from model.slip.coulomb import CoulombStribeck
 from model.slip.law import SlipLaw
 from model.slip.magic_formula import MagicFormula
 
-LAWS: Mapping[str, type[MagicFormula | CoulombStribeck | Brush]] = MappingProxyType(
-    {law.name: law for law in (MagicFormula, CoulombStribeck, Brush)}
-)
+LAWS = MappingProxyType({law.name: law for law in (MagicFormula, CoulombStribeck, Brush)})
+"""Every slip law by its name."""
 
 
 def slip_law(name: str, **options: Any) -> SlipLaw:

@@ -51,7 +51,6 @@ def start_thread(work: Callable[[], None], *, name: str, control: Control) -> th
     try:
         thread.start()
     except RuntimeError as error:
-        failure = PartFailed(name, error)
         control.fail(name, error)
-        raise failure from error
+        raise PartFailed(name, error) from error
     return thread

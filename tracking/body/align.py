@@ -219,13 +219,10 @@ class _Job:
         wrapped = state[:6].copy()
         wrapped[5] = np.arctan2(np.sin(state[5]), np.cos(state[5]))
         effective = residual.size / self.correlated
-        return Alignment(
-            BodyPose(
-                wrapped, spread[:6, :6] + self.floor, camera_covariance[:6, :6], 0.0, effective
-            ),
-            score,
-            -0.5 * effective * float(np.log(max(noise.mean(), 1e-6))),
-        )
+        covariance = spread[:6, :6] + self.floor
+        pose = BodyPose(wrapped, covariance, camera_covariance[:6, :6], 0.0, effective)
+        log_likelihood = -0.5 * effective * float(np.log(max(noise.mean(), 1e-6)))
+        return Alignment(pose, score, log_likelihood)
 
     def _used(self, seen: Array) -> NDArray[np.bool_]:
         """Compute the mask of points in the window and not hidden, by pixels of shape (n, 2)."""

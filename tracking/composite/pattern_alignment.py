@@ -52,7 +52,13 @@ class PatternResidual(NamedTuple):
 
     @classmethod
     def of(cls, seen: Array, expected: Array, slopes: Array) -> "PatternResidual":
-        """Compute the residual's noise and weights, the template at its best gain."""
+        """Compute the residual's noise and weights, the template at its best gain.
+
+        Args:
+            seen: Of the photograph, shape (n,).
+            expected: Of the template, shape (n,).
+            slopes: Derivative of `expected`, shape (n, m).
+        """
         gain = expected @ seen / max(expected @ expected, 1e-9)
         size = np.abs(seen - gain * expected)
         noise = max(1.4826 * float(np.median(size)), 1e-6)

@@ -270,7 +270,13 @@ def is_near(pose: Array, expected: Array, length: float) -> bool:
 
 
 def is_apart(pose: Array, others: Iterable[Array], distance: float) -> bool:
-    """Return whether a pose is farther than a distance [m] from all others, shape (3,) each."""
+    """Return whether a pose is far from all others.
+
+    Args:
+        pose: x, y [m] and yaw [rad], shape (3,).
+        others: The others, shape (3,) each.
+        distance: Least distance [m].
+    """
     return all(np.hypot(*(pose - other)[:2]) > distance for other in others)
 
 

@@ -122,8 +122,7 @@ def parsing(
         fault: Type of error to raise.
 
     Raises:
-        DataError: The body raised an error of another project (`SettingsError` if `fault` is that
-            type).
+        DataError: The body raised an error of another project; of type `fault`.
     """
     try:
         yield

@@ -41,7 +41,7 @@ def residuals(blocks: SlipBlocks, *, whitened: Array, run_score: Array, simulate
         blocks.slip, whitened, c=blocks.normal_force, cmap="viridis", s=8, linewidths=0, alpha=0.8
     )
     over_slip.axhline(0, color="black", lw=0.6)
-    over_slip.set(xlabel=slip_label(blocks), ylabel="whitened residual [-]")
+    over_slip.set(xlabel=slip_label(blocks.definition), ylabel="whitened residual [-]")
     figure.colorbar(points, ax=over_slip, label="normal force [N]")
     _draw_distribution(distribution, whitened)
     _draw_autocorrelation(lags, whitened, blocks.run)

@@ -17,7 +17,6 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from pint import Unit
 
-from model.bayes.blocks import SlipBlocks
 from model.poses import Poses
 from model.slip.law import Array, Parameter
 from zebro_lab.files.own_file import COMMENT, SOFTWARE
@@ -149,9 +148,12 @@ def draw_band(axes: Axes, band: Poses | None, *, label: str | None = None, **sty
         axes.plot(*position.T, label=None if i else label, **style)
 
 
-def slip_label(blocks: SlipBlocks) -> str:
+TRACTION_LABEL = "traction force [N]"
+
+
+def slip_label(definition: str) -> str:
     """Return the label of the slip axis, with the slip definition."""
-    return f"slip ratio, {blocks.definition} definition [-]"
+    return f"slip ratio, {definition} definition [-]"
 
 
 def point_alpha(count: int) -> float:

@@ -18,6 +18,7 @@ from zebro_lab.plots.sheet import (
     BLUE,
     NARROW,
     RED,
+    TRACTION_LABEL,
     legend_below,
     new_figure,
     plain,
@@ -69,10 +70,10 @@ def slip_curves(
         cells = [grid[row, column + i] for i in range(width)]
         panels = _draw_load(figure, cells, blocks, curve, reach)
         if column == 0:
-            panels[0].set_ylabel("traction force [N]")
+            panels[0].set_ylabel(TRACTION_LABEL)
         if index + groups >= len(curves):  # the last panel of its column
             for axes in panels:
-                axes.set_xlabel(slip_label(blocks))
+                axes.set_xlabel(slip_label(blocks.definition))
     legend_below(figure, columns=3)
     return figure
 

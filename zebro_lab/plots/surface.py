@@ -52,7 +52,7 @@ def slip_surface(blocks: SlipBlocks, law: SlipLaw, *, values: ArrayLike, simulat
         mew=0.2, mec="white", color="black", alpha=point_alpha(len(blocks.slip)),
         label="block means",
     )  # fmt: skip
-    axes.set_xlabel(slip_label(blocks), labelpad=8)
+    axes.set_xlabel(slip_label(blocks.definition), labelpad=8)
     axes.set_ylabel("normal force [N]", labelpad=6)
     axes.set_zlabel("traction force [N]", labelpad=8)
     axes.zaxis.set_tick_params(pad=5)

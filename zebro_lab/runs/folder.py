@@ -57,8 +57,7 @@ def read_slip_rig_run(folder: Path) -> SlipRigRun:
 
     Raises:
         NotFound: There is no manifest or no log.
-        DataError: The run is of another kind, or its log cannot be read or is not the one
-            that was recorded.
+        DataError: The run is of another kind, or its log is damaged or not the recorded one.
     """
     manifest = read_manifest(folder)
     if manifest.kind != "slip-rig":

@@ -21,8 +21,7 @@ def read_leg_log(
 ) -> LegLog:
     """Read leg angles over time from CSV or Parquet: `t` [s] and `theta1` to `theta6` [rad].
 
-    Other names and units are mapped by a `columns.toml`, beside the table or as named. Angles may
-    be wrapped to one turn or not.
+    Other names and units are mapped by a `columns.toml`. Angles may be wrapped to one turn.
 
     Args:
         path: The table; a walk folder, whose path.csv holds the same columns; or a recorded run,

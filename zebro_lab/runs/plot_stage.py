@@ -39,7 +39,7 @@ def plot_run(folder: Path, *, out: Path | None = None) -> Drawn:
     Raises:
         SettingsError: `out` is no name of a PNG file.
         AlreadyExists: `out` is no picture of this command.
-        NotFound: It is no run folder, its log is missing, or the picture's folder is.
+        NotFound: It is no run folder, or its log or the picture's folder is missing.
         DataError: It cannot be read, or holds no samples.
     """
     place = folder.absolute()

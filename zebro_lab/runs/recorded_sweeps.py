@@ -15,9 +15,6 @@ SWEEP = "sweep"
 def recorded_sweeps(run: SlipRigRun) -> tuple[NDArray[np.intp], tuple[str, ...]]:
     """Number the sweeps of a recorded run.
 
-    Args:
-        run: The run.
-
     Returns:
         Sweep number of each sample, from 1; 0 outside sweeps, shape (n,). Then notes, one line
         each.

@@ -47,7 +47,6 @@ def read_recorded_tilt(folder: Path) -> Tilt | None:
     name = next((name for name in IMUS if profile_file(folder, name).is_file()), None)
     if name is None or not log.is_file():
         return None
-
     stream = read_raw_log(log).streams.get(raw_topic(name))
     if stream is None:
         return None

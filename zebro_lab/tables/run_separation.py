@@ -38,8 +38,7 @@ def separate_runs(table: RigTable, label: str) -> Runs:
         label: Name of the table; prefix of every run's name.
 
     Raises:
-        DataError: A column of the rule is missing, or the rule needs a time column and there is
-            none.
+        DataError: A column of the rule, or the time column that it needs, is missing.
     """
     rule, mapped_run = table.columns.runs, table.source_of("run")
     if rule.each_row:

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Read CSV and Parquet files as raw tables."""
 
+from collections.abc import Callable, Mapping
 from pathlib import Path
 
 from zebro_lab.files.errors import DataError, NotFound
@@ -8,12 +9,19 @@ from zebro_lab.tables.csv_files import read_csv_file
 from zebro_lab.tables.parquet_files import read_parquet_file
 from zebro_lab.tables.raw_table import RawTable
 
-TABLE_SUFFIXES = (".csv", ".csv.gz", ".parquet")
+READERS: Mapping[str, Callable[[Path], RawTable]] = {
+    ".csv": read_csv_file,
+    ".csv.gz": read_csv_file,
+    ".parquet": read_parquet_file,
+}
+"""Reader of each table format, by the suffix of its files."""
+
+TABLE_SUFFIXES = tuple(READERS)
 
 
 def is_table_file(path: Path) -> bool:
     """Return whether a file has the suffix of a supported table format."""
-    return path.name.lower().endswith(TABLE_SUFFIXES)
+    return bool(_suffix(path))
 
 
 def read_table_file(path: Path) -> RawTable:
@@ -29,8 +37,7 @@ def read_table_file(path: Path) -> RawTable:
         raise DataError(
             f"is no table file; expected one that ends in {', '.join(TABLE_SUFFIXES)}", file=path
         )
-    is_parquet = path.name.lower().endswith(".parquet")
-    table = read_parquet_file(path) if is_parquet else read_csv_file(path)
+    table = READERS[_suffix(path)](path)
     if len(table) == 0:
         raise DataError("has a header but no rows", file=path)
     return table
@@ -42,5 +49,9 @@ def table_stem(path: Path) -> str:
     >>> table_stem(Path("rig/sweep.csv.gz"))
     'sweep'
     """
-    suffix = next((s for s in TABLE_SUFFIXES if path.name.lower().endswith(s)), "")
-    return path.name[: len(path.name) - len(suffix)]
+    return path.name[: len(path.name) - len(_suffix(path))]
+
+
+def _suffix(path: Path) -> str:
+    """Return the suffix of a table file, in lower case; empty for any other file."""
+    return next((s for s in TABLE_SUFFIXES if path.name.lower().endswith(s)), "")

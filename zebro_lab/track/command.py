@@ -12,7 +12,7 @@ from zebro_lab.terminal.request_command import request_command
 from zebro_lab.track.request import TrackRequest
 
 if TYPE_CHECKING:
-    from zebro_lab.track.preview_stage import Preview
+    from tracking.photos.preview import Preview
     from zebro_lab.track.stage import TrackResult
 
 INTERRUPTED = 130
@@ -106,7 +106,7 @@ def _preview(request: TrackRequest, file: Path) -> None:
     from zebro_lab.track.preview_stage import preview
 
     seen = preview(request, file)
-    for line in preview_lines(seen):
+    for line in (*preview_lines(seen), f"wrote {file}"):
         say(line)
     if any(check.is_off for check in seen.tape):
         sys.stderr.write("the tape and the photograph disagree; measure the floor again\n")
@@ -129,10 +129,10 @@ def preview_lines(seen: "Preview") -> list[str]:
             f"robot at x {x:.3f} m, y {y:.3f} m, yaw {degrees(yaw):.1f} deg; its marker is "
             f"{seen.robot_side_px:.0f} px wide"
         )
-    lines += [
+    pairs = [
         f"  {a} to {b}: tape {check.tape:.4f} m, photograph {check.seen:.4f} m"
         f"{'  <-- off' if check.is_off else ''}"
         for check in seen.tape
         for a, b in [check.marks]
     ]
-    return [*lines, f"wrote {seen.file}"]
+    return [*lines, *pairs]

@@ -1,13 +1,12 @@
 # SPDX-License-Identifier: MIT
 """Draw the preview of a track: what is detected in the first photograph."""
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from io import BytesIO
 from pathlib import Path
 
 from tracking.images import read_pixels
-from tracking.photos.preview import Preview as PhotoPreview
-from tracking.photos.preview import preview_photo
+from tracking.photos.preview import Preview, preview_photo
 from zebro_lab.files.atomic import atomic_write_bytes
 from zebro_lab.files.own_file import picture, require_own
 from zebro_lab.track.inputs import read_inputs
@@ -17,17 +16,6 @@ from zebro_lab.track.pictures import draw_preview
 from zebro_lab.track.request import TrackRequest
 
 PREVIEW = picture("track --preview")
-
-
-@dataclass(frozen=True)
-class Preview(PhotoPreview):
-    """What the first photograph shows, and the picture that was drawn of it.
-
-    Attributes:
-        file: The picture.
-    """
-
-    file: Path
 
 
 def preview(request: TrackRequest, file: Path) -> Preview:
@@ -55,4 +43,4 @@ def preview(request: TrackRequest, file: Path) -> Preview:
             simulated=inputs.source_of(sequence).startswith("sim:"), command=PREVIEW.command,
         )  # fmt: skip
         atomic_write_bytes(target, drawn.getvalue())
-        return Preview(**vars(found), file=file)
+        return found

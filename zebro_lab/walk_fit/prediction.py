@@ -17,6 +17,7 @@ from model.robot import GRAVITY
 from model.walk_models import baseline_paths
 from zebro_lab.calibration.slip_argument import NamedSlip
 from zebro_lab.calibration.slip_draws import slip_tables
+from zebro_lab.validation.folder import metrics
 from zebro_lab.validation.judged_run import JudgedRun, judge_run
 from zebro_lab.walk.prediction_file import PredictionFile
 from zebro_lab.walk_fit.tracked_walks import WalkOnFile
@@ -92,6 +93,11 @@ def judge_left_out(
         prediction = predict_from(fit.without(i), walk, slip, rng=rng, threads=threads)
         judged.append(judge_run(walk.name, prediction, walk.track, anchor=True, rng=rng))
     return tuple(judged)
+
+
+def metrics_by_model(left_out: Sequence[JudgedRun]) -> dict[str, dict[str, dict[str, float]]]:
+    """Return the metrics of left-out walks, by walk, model and column."""
+    return {run.name: {row.name: metrics(row) for row in run.rows} for run in left_out}
 
 
 def predict_from(

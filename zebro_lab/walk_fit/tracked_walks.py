@@ -20,13 +20,14 @@ from zebro_lab.runs.counted_once import array_hash, duplicates_note, first_of_ea
 from zebro_lab.runs.legs import read_leg_log
 from zebro_lab.runs.recorded_legs import is_recorded
 from zebro_lab.runs.recorded_tilt import read_recorded_tilt
+from zebro_lab.tables.table_files import TABLE_SUFFIXES
 from zebro_lab.track.file import TrackFile, read_track
 from zebro_lab.track.folder import TRACK_CSV
 from zebro_lab.validation.shared_clock import shifted
 from zebro_lab.walk.leg_angles import angles_from
 from zebro_lab.walk_fit.clocks import Clock
 
-LEGS = ("legs.csv", "legs.csv.gz", "legs.parquet")
+LEGS = tuple(f"legs{suffix}" for suffix in TABLE_SUFFIXES)
 
 
 @dataclass(frozen=True)
@@ -89,7 +90,7 @@ def read_walks(
             )
     walks, repeated = first_of_each(read, key=_content)
     duplicates = duplicates_note("walks", [(one.name, other.name) for one, other in repeated])
-    walks[:1] = [replace(walk, notes=(*walk.notes, *duplicates)) for walk in walks[:1]]
+    walks[0] = replace(walks[0], notes=(*walks[0].notes, *duplicates))
     names = numbered([walk.name for walk in walks])
     return [replace(walk, name=name) for walk, name in zip(walks, names, strict=True)]
 

@@ -106,7 +106,7 @@ def test_a_folder_of_photographs_with_a_fifo_is_read_without_it(tmp_path):
 
     def names():
         with open_photos(tmp_path, TimeRequest()) as sequence:
-            return sequence.names
+            return tuple(photo.name for photo in sequence.photos)
 
     said = within_two_seconds(names)
     assert said is not None

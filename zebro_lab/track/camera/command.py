@@ -69,8 +69,8 @@ def calibration_lines(result: "CameraResult") -> list[str]:
         for name, value, spread in zip(names, fit.camera.distortion, sd[4:], strict=True)
         if spread > 0
     ]
-    lines = [f"{name}: {reason}; left out" for name, reason in result.left_out.items()]
-    lines += [
+    return [
+        *(f"{name}: {reason}; left out" for name, reason in result.left_out.items()),
         f"{len(fit.view_names)} photographs of {width}x{height} px, lens model '{fit.lens_model}'",
         ", ".join(f"{name} {value:.2f} ± {spread:.2f} px" for name, value, spread in numbers),
         f"distortion {', '.join(bent) or 'none seen'}",
@@ -79,7 +79,6 @@ def calibration_lines(result: "CameraResult") -> list[str]:
         *(f"WARNING: {warning}" for warning in fit.warnings),
         f"wrote {result.file}",
     ]
-    return lines
 
 
 @app.command()

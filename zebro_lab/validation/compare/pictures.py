@@ -8,7 +8,16 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from model.metrics.difference import Difference
-from zebro_lab.plots.sheet import BLUE, RED, legend_below, map_axes, new_figure, styled
+from zebro_lab.plots.sheet import (
+    BLUE,
+    RED,
+    TRACTION_LABEL,
+    legend_below,
+    map_axes,
+    new_figure,
+    slip_label,
+    styled,
+)
 from zebro_lab.validation.compare.values import Comparison, Curve, RunPaths
 
 _COLOURS = (BLUE, RED)
@@ -36,8 +45,8 @@ def overlay(compared: Comparison, differences: Sequence[Difference], *, simulate
         panels = [figure.add_subplot(grid[0, i]) for i in range(columns)]
         for axes, curve in zip(panels, compared.curves, strict=True):
             _draw_curve(axes, curve, compared.names)
-        panels[0].set_ylabel("traction force [N]")
-        panels[0].set_xlabel(f"slip ratio, {compared.definition} definition [-]")
+        panels[0].set_ylabel(TRACTION_LABEL)
+        panels[0].set_xlabel(slip_label(compared.definition))
     else:
         _draw_paths(figure.add_subplot(grid[0, 0]), compared.paths, compared.names)
     _draw_differences(figure.add_subplot(grid[1, :]), compared, differences)

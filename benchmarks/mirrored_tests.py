@@ -31,12 +31,15 @@ PASSED, FAILED, NO_TESTS = 0, 1, 5  # pytest's exit codes
 
 
 def largest_function(module: Module) -> tuple[Function, bool] | None:
-    """Return the function or method with the most lines of code, and whether it is a method."""
+    """Return the function or method with the most lines of code, and whether it is a method.
+
+    Functions that do nothing, whose body is a docstring or `...`, do not count.
+    """
     found: list[tuple[int, Function, bool]] = []
     for parent in ast.walk(module.tree):
         if isinstance(parent, ast.Module | ast.ClassDef):
             for node in parent.body:
-                if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef):
+                if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef) and not _is_empty(node):
                     lines = range(node.lineno, (node.end_lineno or node.lineno) + 1)
                     size = len(module.code_lines.intersection(lines))
                     found.append((size, node, isinstance(parent, ast.ClassDef)))
@@ -44,6 +47,12 @@ def largest_function(module: Module) -> tuple[Function, bool] | None:
         return None
     _, node, is_method = max(found, key=lambda each: each[0])
     return node, is_method
+
+
+def _is_empty(node: Function) -> bool:
+    return all(
+        isinstance(each, ast.Expr) and isinstance(each.value, ast.Constant) for each in node.body
+    )
 
 
 def broken(module: Module) -> str | None:

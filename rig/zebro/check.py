@@ -99,8 +99,8 @@ def move_channel(robot: CheckedLegs, channel: int, *, clock: Clock = SYSTEM_CLOC
     targets[channel] = (targets[channel] + step) % around
     robot.set_points(tuple(targets), DURATION)
     end = clock.now() + DURATION + SETTLING
-    while clock.now() < end:
-        robot.read(min(0.05, end - clock.now()))
+    while (left := end - clock.now()) > 0:
+        robot.read(min(0.05, left))
     after = latest_counts(robot, clock=clock)
     for other, (was, now) in enumerate(zip(before, after, strict=True)):
         moved = (now - was + around / 2) % around - around / 2

@@ -49,6 +49,14 @@ def test_a_docstring_stays():
     )
 
 
+@pytest.mark.parametrize("body", ['"""Do nothing."""', "...", '"""Do nothing."""\n    ...'])
+def test_a_function_that_does_nothing_is_not_replaced(body):
+    empty = f"def f(\n    a: int,\n    b: int,\n    c: int,\n):\n    {body}\n"
+    assert broken(Module(Path("model/a.py"), empty)) is None
+    found = broken(Module(Path("model/a.py"), f"{empty}\n\ndef g(a):\n    return a or 1\n"))
+    assert found == f"{empty}\n\ndef g(a):\n    return a\n"
+
+
 def test_a_test_that_looks_away_survives_and_one_that_looks_does_not(tmp_path, capsys):
     for name, claim in (("seen", "larger(1, 2) == 2"), ("unseen", "larger(2, 1) == 2")):
         (tmp_path / "model").mkdir(exist_ok=True)

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from rig.device import Sample
 from rig.errors import LimitExceeded, RigError, RigTimeout
-from rig.safety import SampleGuard, SilenceGuard, require_within
+from rig.safety import FollowingGuard, SampleGuard, SilenceGuard, require_within
 
 
 @given(st.floats(allow_nan=True), st.floats(0.1, 100))
@@ -56,3 +56,21 @@ def test_silence_is_an_event_that_names_the_stream():
     with pytest.raises(RigTimeout, match=r"'legs' sent nothing within 0\.6 s") as silence:
         guard.check([], now=11.0)
     assert isinstance(silence.value, RigError | TimeoutError)
+
+
+def test_a_speed_off_its_set_point_trips_only_when_it_stays_off():
+    guard = FollowingGuard(2.0, name="leg disc", longest=0.5)
+    guard.check(9.0, 12.0, now=1.0)
+    guard.check(10.5, 12.0, now=1.4)  # within again: the time starts anew
+    guard.check(9.0, 12.0, now=1.6)
+    guard.check(9.0, 12.0, now=2.0)
+    with pytest.raises(LimitExceeded, match="departure of the leg disc") as raised:
+        guard.check(9.0, 12.0, now=2.1)
+    assert (raised.value.value, raised.value.limit) == (-3.0, 2.0)
+
+
+@pytest.mark.parametrize(("speed", "narrower"), [(math.nan, math.inf), (12.5, 0.3)])
+def test_no_speed_and_one_beyond_a_narrower_limit_are_off(speed, narrower):
+    guard = FollowingGuard(2.0, name="leg disc", longest=0.0)
+    with pytest.raises(LimitExceeded):
+        guard.check(speed, 12.0, now=1.0, narrower=narrower)

@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: MIT
-"""What tests of stages and commands share: a runner, a simulated sweep on disk, a walked path."""
+"""What tests of stages and commands share: running a command, a simulated sweep, a walked path."""
 
 import sys
+from collections.abc import Callable
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 import pandas as pd
@@ -14,7 +16,7 @@ from rig.slip_rig.imperfections import TYPICAL_RIG
 from rig.slip_rig.sweep import SweepPlan, simulate_sweep
 from support.commands import COMMAND
 from zebro_lab.main import app
-from zebro_lab.terminal.ending import run as run_app
+from zebro_lab.terminal.ending import run
 
 COLUMNS = """
 source = "sim:rig-sweep"
@@ -23,21 +25,25 @@ load_cell.zero_stability = "0.1 N"
 """
 
 
+class Ended(NamedTuple):
+    """How a command ended: exit code, and what it printed."""
+
+    code: int
+    out: str
+    err: str
+
+
 @pytest.fixture
-def run(monkeypatch, capsys):
-    """Return a runner of the command in this process: exit code, stdout, stderr."""
+def run_command(monkeypatch, capsys) -> Callable[..., Ended]:
+    """Return what runs `zebro-lab` with arguments in this process."""
 
-    def runner(*arguments: object) -> tuple[int, str, str]:
+    def run_with(*arguments: object) -> Ended:
         monkeypatch.setattr(sys, "argv", [COMMAND, *map(str, arguments)])
-        try:
-            with pytest.raises(SystemExit) as ended:
-                run_app(app)
-            code = ended.value.code
-        finally:
-            streams = capsys.readouterr()
-        return int(code or 0), streams.out, streams.err
+        with pytest.raises(SystemExit) as ended:
+            run(app)
+        return Ended(int(ended.value.code or 0), *capsys.readouterr())
 
-    return runner
+    return run_with
 
 
 @pytest.fixture(scope="session")

@@ -44,8 +44,6 @@ def _print_data(console: Console, calibration: Calibration, data: RigData) -> No
         f"Samples are averaged in {len(blocks)} blocks of about {choice.length} ({choice.reason})"
         + (f"; the noise is correlated over {correlation:.0f} samples." if correlation else "."),
     ]
-    if choice.correlation is not None:
-        lines.append(f"The noise is correlated over {choice.correlation:.0f} samples.")
     lines += _comparison_lines(calibration)
     for line in lines:
         console.print(plain(line))

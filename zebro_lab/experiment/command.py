@@ -69,7 +69,7 @@ def _say_latched(data: Path) -> None:
     from zebro_lab.terminal.last_words import say_in_time
 
     say_in_time(
-        f"an emergency stop is latched in {data}; look after the rig, then go on with "
+        f"an emergency stop is latched in {data}; check the rig, then continue with "
         "--resume --reset-emergency",
         err=True,
     )
@@ -84,7 +84,7 @@ def _end(outcome: "Outcome", data: Path, *, latched: bool) -> NoReturn:
         f"{outcome.attempts} attempts; {data}"
     )
     if not outcome.completed and not latched:
-        words += "\ngo on with --resume"
+        words += "\ncontinue with --resume"
     refused = REFUSED if outcome.refused else 0
     code = refused if outcome.completed else STOPPED
     if not say_in_time(words):

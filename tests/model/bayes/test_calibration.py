@@ -4,30 +4,12 @@
 import numpy as np
 import pytest
 
-from model.bayes.calibration import conclude
-from model.bayes.convergence import assess
-from model.bayes.fit import prepare_fit
-from model.bayes.posterior import LoadCell
-from model.bayes.sampler import advance, start_chains
-from model.slip.thesis import THESIS_LAW, THESIS_VALUES
-from rig.slip_rig.imperfections import TYPICAL_RIG
-from rig.slip_rig.sweep import SweepPlan, simulate_sweep
+from support.short_calibration import short_calibration
 
 
 @pytest.fixture(scope="module")
 def calibration():
-    rng = np.random.default_rng(2)
-    plan = SweepPlan(slips=tuple(np.linspace(0.005, 0.3, 8)), loads=(4.0, 12.0), rate=40.0)
-    samples = simulate_sweep(
-        THESIS_LAW, THESIS_VALUES, plan=plan, imperfections=TYPICAL_RIG, rng=rng
-    ).samples
-    fit = prepare_fit(samples, THESIS_LAW, load_cell=LoadCell(), rng=rng, threads=1)
-    density = fit.posterior.log_density
-    chains = start_chains(density, fit.approximation, ensembles=2, thin=5, rng=rng)
-    chains = advance(density, chains, steps=100, approximation=fit.approximation, threads=1)
-    return conclude(
-        fit, None, chains, assess(chains), samples, source="sim:test", seconds=1.5, rng=rng
-    )
+    return short_calibration()
 
 
 def test_estimates_are_quantiles_of_the_draws(calibration):

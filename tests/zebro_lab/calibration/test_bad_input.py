@@ -1,9 +1,6 @@
 # SPDX-License-Identifier: MIT
 """Every fault of the input is one line that names the place and what to try."""
 
-import gzip
-import re
-from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -148,15 +145,6 @@ def test_error_carries_its_values(tmp_path):
     assert (error.line, error.value, error.unit) == (13, -0.3, "N")
 
 
-def test_line_is_right_below_comments_and_blank_lines(tmp_path):
-    lines = put("normal_force", 5, "bad").to_csv(index=False).splitlines()
-    path = tmp_path / "rig.csv"
-    path.write_text("\n".join(["# a", "", *lines[:3], "", *lines[3:]]))
-    found = re.search(r"row 5 \(line (\d+)\)", message_of(path))
-    assert found
-    assert "bad" in path.read_text().splitlines()[int(found[1]) - 1]
-
-
 COLUMN_FAULTS = {
     "unknown unit": ("[columns.normal_force]\nunit = 'Newtom'", "unknown unit 'Newtom'"),
     "wrong dimension": (
@@ -185,18 +173,6 @@ def test_fault_in_the_column_map_is_named(tmp_path, fault):
     assert expected in message_of(tmp_path)
 
 
-def test_radius_given_twice_is_refused(tmp_path):
-    (tmp_path / "columns.toml").write_text("constants.radius_leg = 0.035")
-    with_speeds().to_csv(tmp_path / "rig.csv", index=False)
-    assert "given twice" in message_of(tmp_path)
-
-
-def test_definition_stated_differently_in_map_and_file_is_refused(tmp_path):
-    (tmp_path / "columns.toml").write_text("columns.slip_ratio.definition = 'travel'")
-    good().to_csv(tmp_path / "rig.csv", index=False)
-    assert "slip definition is 'material' here and 'travel' in" in message_of(tmp_path)
-
-
 def test_two_definitions_in_two_files_are_refused(tmp_path):
     good().to_csv(tmp_path / "a.csv", index=False)
     good().assign(slip_definition="travel").to_csv(tmp_path / "b.csv", index=False)
@@ -206,89 +182,6 @@ def test_two_definitions_in_two_files_are_refused(tmp_path):
     other = good().assign(slip_definition="travel").eval("normal_force = 1.01 * normal_force")
     other.to_csv(tmp_path / "b.csv", index=False)
     assert len(read_rig_data([tmp_path], slip_definition="travel").samples) == 2 * N
-
-
-def test_slip_outside_what_conversion_allows_names_file_and_row(tmp_path):
-    path = tmp_path / "rig.csv"
-    put("slip_ratio", 8, 1.05).to_csv(path, index=False)
-    message = message_of(path, slip_definition="travel")
-    assert message.startswith(f"{path}, column 'slip_ratio', row 8 (line 9): slip ratio 1.05 is")
-
-
-def test_slip_infinite_in_the_asked_definition_names_the_row(tmp_path):
-    path = tmp_path / "rig.csv"
-    put("slip_ratio", 8, 1.0).to_csv(path, index=False)
-    message = message_of(path, slip_definition="travel")
-    assert "row 8 (line 9): material slip 1 is infinite as 'travel'" in message
-
-
-def _truncated_gzip() -> bytes:
-    return gzip.compress(good().to_csv(index=False).encode())[:-40]
-
-
-RAW_FAULTS: dict[str, tuple[str, Callable[[], bytes], str]] = {
-    "empty": ("a.csv", lambda: b"", "is empty"),
-    "blank": ("a.csv", lambda: b"\n\n", "is empty"),
-    "binary": ("a.csv", lambda: bytes(range(256)) * 8, "binary file"),
-    "latin-1": ("a.csv", lambda: "t,Kraft µN\n1,2\n".encode("latin-1"), "is not UTF-8 text"),
-    "utf-16": ("a.csv", lambda: "t,F\n1,2\n".encode("utf-16"), "UTF-16"),
-    "parquet named csv": ("a.csv", lambda: b"PAR1....", "a Parquet file; name it .parquet"),
-    "spreadsheet named csv": ("a.csv", lambda: b"PK\x03\x04", "a zip or spreadsheet file"),
-    "gzip named csv": ("a.csv", _truncated_gzip, "a gzip file; name it .csv.gz"),
-    "csv named gzip": ("a.csv.gz", lambda: b"t,F\n1,2\n", "is not a whole gzip file"),
-    "truncated gzip": ("a.csv.gz", _truncated_gzip, "is not a whole gzip file"),
-    "csv named parquet": ("a.parquet", lambda: b"t,F\n1,2\n", "is not a whole Parquet file"),
-    "no header": ("a.csv", lambda: b"0.1,0.2\n0.3,0.4\n", "has no names"),
-    "decimal commas between commas": (
-        "a.csv",
-        lambda: b"t,normal_force\n0,1,5,2\n0,2,5,3\n",
-        "row 1 (line 2): 4 cells under a header of 2; do decimal commas separate cells?",
-    ),
-    "ambiguous separators": ("a.csv", lambda: b"a,b;c\n1,2;3\n", "commas or semicolons"),
-    "surplus cell far down": (
-        "a.csv",
-        lambda: b"t,F\n" + b"1,2\n" * 20_000 + b"1,2,3\n",
-        "is no regular table",
-    ),
-    "open quote": ("a.csv", lambda: b't,F\n1,"2\n3,4\n', "is no regular table"),
-}
-
-
-@pytest.mark.parametrize("fault", RAW_FAULTS)
-def test_file_that_is_no_table_is_named(tmp_path, fault):
-    name, content, expected = RAW_FAULTS[fault]
-    (tmp_path / name).write_bytes(content())
-    message = message_of(tmp_path / name)
-    assert expected in message
-    assert message.startswith(str(tmp_path / name))
-
-
-def test_truncated_parquet_is_named(tmp_path):
-    path = tmp_path / "rig.parquet"
-    good().to_parquet(path)
-    path.write_bytes(path.read_bytes()[:-100])
-    assert f"{path}: is not a whole Parquet file" in message_of(path)
-
-
-def test_dates_in_parquet_are_no_numbers(tmp_path):
-    path = tmp_path / "rig.parquet"
-    good().assign(t=pd.date_range("2026-01-01", periods=N)).to_parquet(path)
-    assert "column 't': holds dates, expected numbers" in message_of(path)
-
-
-def test_decimal_comma_mixed_with_points_names_the_cell(tmp_path):
-    path = tmp_path / "rig.csv"
-    put("normal_force", 4, "5,1").to_csv(path, index=False, sep=";")
-    assert "row 4 (line 5): '5,1' is not a number; write decimals" in message_of(path)
-
-
-def test_repeated_header_is_refused_only_where_it_is_needed(tmp_path):
-    path = tmp_path / "rig.csv"
-    text = good().assign(x=1, y=2).to_csv(index=False)
-    path.write_text(text.replace("x,y\n", "x,x\n"))
-    assert len(read_rig_data([path]).samples) == N
-    path.write_text(text.replace("x,y\n", "t,x\n"))
-    assert "column 't': heads more than one column" in message_of(path)
 
 
 def test_empty_folder_and_wrong_paths_are_named(tmp_path):

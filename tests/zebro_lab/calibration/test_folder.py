@@ -5,7 +5,9 @@ import numpy as np
 import pytest
 
 from model.slip import Brush, MagicFormula
-from zebro_lab.calibration.folder import read_slip
+from support.short_calibration import short_calibration
+from zebro_lab.calibration.folder import read_slip, write_tables
+from zebro_lab.files.draws import read_draws_of
 from zebro_lab.files.errors import DataError
 
 GOOD = """
@@ -84,3 +86,22 @@ def test_what_is_no_calibration_says_what_to_name(tmp_path, content):
         (tmp_path / "slip.toml").write_bytes(content)
     with pytest.raises(DataError, match=r"name a slip\.toml or the folder"):
         read_slip(tmp_path)
+
+
+def test_a_fit_is_read_back_with_its_curve_and_draws(tmp_path):
+    calibration = short_calibration()
+    write_tables(tmp_path, calibration, inputs={"a.csv": "0" * 64})
+    curve, law = read_slip(tmp_path), calibration.posterior.law
+    k = len(law.parameters)
+    draws = calibration.draws.flat[:, :k]
+    assert curve.law == law
+    np.testing.assert_allclose(curve.values, draws.mean(axis=0), rtol=1e-6)
+    np.testing.assert_allclose(curve.covariance, np.cov(draws.T), rtol=1e-3)
+    assert curve.definition == calibration.posterior.blocks.definition
+    found, _ = read_draws_of(tmp_path / "posterior.nc", "posterior",
+                             [each.name for each in law.parameters], advice="")  # fmt: skip
+    for i, parameter in enumerate(law.parameters):
+        np.testing.assert_array_equal(np.sort(found[parameter.name]), np.sort(draws[:, i]))
+    text = (tmp_path / "slip.toml").read_text()
+    assert "SIMULATED data: nothing here was measured." in text
+    assert len((tmp_path / "summary.csv").read_text().splitlines()) > k

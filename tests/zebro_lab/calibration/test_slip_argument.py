@@ -2,6 +2,7 @@
 """`--slip`: everything it may name, and every way in which it may name nothing."""
 
 import dataclasses
+import re
 
 import numpy as np
 import pytest
@@ -12,6 +13,7 @@ from model.errors import DefinitionMismatch
 from model.slip import SlipDefinition
 from model.walk.path import WalkPath
 from model.walk.traction import VelocityCoulomb
+from support.bounded_reading import refusal
 from zebro_lab.calibration.slip_argument import parse_slip
 from zebro_lab.files.errors import DataError, NotFound, SettingsError
 
@@ -117,3 +119,23 @@ def test_loads_below_the_tested_are_counted_in_contact_alone(calibration, walked
     path: WalkPath = dataclasses.replace(walked, normal_force=load, contact=contact)
     assert parse_slip(str(calibration)).loads_below_tested(path) == 0.5
     assert parse_slip("coulomb:0.4").loads_below_tested(path) is None
+
+
+@pytest.mark.parametrize(
+    "more", ["verdict = 5", "verdict = [1]", 'verdict = "fine"', "verdict = { headline = [1] }"]
+)
+def test_a_verdict_that_is_no_table_is_refused(more, calibration):
+    file = calibration / "slip.toml"
+    file.write_text(re.sub(r"(?m)^verdict = .*$", more, file.read_text()))
+    refusal(lambda folder: parse_slip(str(folder)), calibration)
+
+
+def test_slip_toml_is_read_once(calibration, monkeypatch):
+    import tomllib
+
+    parsed = []
+    loads = tomllib.loads
+    monkeypatch.setattr(tomllib, "loads", lambda text: parsed.append(text) or loads(text))
+    parse_slip(str(calibration))
+    if len(parsed) != 1:
+        pytest.fail(f"parsed {len(parsed)} times")

@@ -2,116 +2,45 @@
 """What walks said, stored beside a calibration, and what predictions make of it."""
 
 import json
-from dataclasses import replace
 from datetime import UTC, datetime
 
 import numpy as np
 import pandas as pd
 import pytest
 
-from model.bayes.walks.posterior import WalkPosterior
-from model.bayes.walks.prior import LINEAR, NAMES, WRONG, WalkPrior, WrongLeg, all_cases
-from model.gait import tripod_angles, tripod_reference
-from model.robot import Robot
+from model.bayes.walks.prior import NAMES, WrongLeg, all_cases
+from support.walk_posteriors import (
+    KNOCKED,
+    OFF,
+    SLIP_TOML,
+    posterior_of,
+    predict_log,
+    stored,
+    write_calibration,
+    write_legs,
+)
 from support.watchers import Nobody
 from zebro_lab.calibration.slip_argument import parse_slip
-from zebro_lab.calibration.walks_folder import FOLDER, WalksToWrite, read_stored_walks, write_walks
+from zebro_lab.calibration.walks_folder import FOLDER, read_stored_walks
 from zebro_lab.files.errors import DataError, SettingsError
 from zebro_lab.report.request import ReportRequest
 from zebro_lab.report.stage import report
-from zebro_lab.robot.robot_file import RobotFile
 from zebro_lab.walk.folder import read_walk, read_walk_manifest
-from zebro_lab.walk.informed_legs import informed_legs
 from zebro_lab.walk.path_band import read_draws
 from zebro_lab.walk.predict_stage import predict
-from zebro_lab.walk.prediction_file import read_prediction
 from zebro_lab.walk.request import BandRequest, ModelRequest, PredictRequest
-from zebro_lab.walk_fit.pictures import draw_walks
-
-SLIP_TOML = """
-schema = 1
-source = "sim:rig-sweep"
-slip_definition = "material"
-law = { name = "coulomb-stribeck", stribeck = false }
-[parameters]
-slip_stiffness = { mean = 20.0 }
-friction = { mean = 0.4 }
-[covariance]
-matrix = [[1.0, 0.0], [0.0, 0.0001]]
-[tested]
-normal_force = [2.0, 13.0]
-slip_ratio = [0.0, 1.0]
-"""
-STEERING, STRIDE = LINEAR
-GRIP = NAMES.index("grip")
-KNOCKED = WrongLeg(2, walk=1)
-OFF = np.radians(5.0)
-
-
-def posterior_of(case, *, steering=0.0):
-    """Return a posterior that is sure: leg 3 off by 5 degrees in `case`, all else as described."""
-    cases = all_cases(2)
-    values = np.zeros((40, WRONG + 1))
-    values[:, WRONG], values[:, STEERING] = OFF, steering
-    values[:, GRIP] = WalkPrior().grip_sd * np.linspace(-1.7, 1.7, len(values))  # not informed
-    n = len(values)
-    return WalkPosterior(
-        prior=WalkPrior(),
-        walks=("one", "two"),
-        cases=cases,
-        values=values,
-        case=np.full(n, cases.index(case)),
-        weight=np.full(n, 1 / n),
-        best=values[20],
-        best_case=case,
-        misfit=(0.9, 1.1),
-    )
 
 
 @pytest.fixture
 def legs(tmp_path):
     """Return two leg logs."""
-    files = []
-    for i, steering in enumerate((1.0, 1.2)):
-        gait = tripod_reference(tripod_angles(np.radians(50.0), steering), 2.0)
-        t = np.arange(0.0, 6.0, 0.01)
-        table = pd.DataFrame(
-            {"t": t} | {f"theta{k + 1}": a for k, a in enumerate(gait.angles(t).T)}
-        )
-        files.append(tmp_path / f"legs{i}.csv")
-        table.to_csv(files[-1], index=False)
-    return files
+    return write_legs(tmp_path)
 
 
 @pytest.fixture
 def calibration(tmp_path):
     """Return a calibration without walks."""
-    folder = tmp_path / "calibration"
-    folder.mkdir()
-    (folder / "slip.toml").write_text(SLIP_TOML)
-    return folder
-
-
-def stored(calibration, legs, posterior):
-    slip = calibration / "slip.toml"
-    write_walks(
-        calibration,
-        WalksToWrite(
-            posterior=posterior, left_out={}, robot=RobotFile(), logs=tuple(legs),
-            inputs=(slip, *legs), settings={"seed": 1}, source="sim:test", notes=("a note",),
-        ),
-        draw=lambda draft: draw_walks(draft, posterior, (), simulated=True),
-    )  # fmt: skip
-    return read_stored_walks(slip)
-
-
-def predicted(tmp_path, log, slip, *, name="prediction", robot=None, draws=0, model="dynamics"):
-    request = PredictRequest(
-        log,
-        tmp_path / name,
-        model=ModelRequest(slip=slip, model=model, robot=robot, band=BandRequest(draws)),
-    )
-    return predict(request, Nobody())
+    return write_calibration(tmp_path)
 
 
 def test_a_posterior_comes_back_as_it_was(calibration, legs):
@@ -162,61 +91,26 @@ def test_a_calibration_without_walks_has_none(calibration):
 
 
 def test_steering_that_walks_found_turns_the_predicted_path(calibration, legs, tmp_path):
-    plain = predicted(tmp_path, legs[0], str(calibration), name="plain")
+    plain = predict_log(tmp_path, legs[0], str(calibration), name="plain")
     stored(calibration, legs, posterior_of(None, steering=0.1))
     # Another log than those that were fitted, of the same gait.
     other = tmp_path / "other.csv"
     pd.read_csv(legs[0]).iloc[:-1].to_csv(other, index=False)
-    informed = predicted(tmp_path, other, str(calibration))
+    informed = predict_log(tmp_path, other, str(calibration))
     turned = informed.path.yaw[-1] - plain.path.yaw[-1]
     assert turned == pytest.approx(0.1 * plain.path.length, rel=0.03)
     assert "legs and floor are those fitted to one, two" in " ".join(informed.notes)
 
 
-def test_a_leg_knocked_off_in_one_walk_is_off_where_that_walk_is_predicted(
-    calibration, legs, tmp_path
-):
-    walks = stored(calibration, legs, posterior_of(KNOCKED))
-    own, other = (informed_legs(walks, RobotFile(), logs=[log]) for log in legs[::-1])
-    assert (own.index, other.index) == (1, 0)
-    assert own.middle.offset[0, 2] == pytest.approx(OFF)
-    assert not other.middle.offset.any()
-    assert "no independent test" in own.notes[1]
-    to_come = informed_legs(walks, RobotFile())
-    assert to_come.index is None
-    assert not to_come.middle.offset.any()
-
-
-def test_another_robot_shares_the_floor_alone(calibration, legs):
-    walks = stored(calibration, legs, posterior_of(WrongLeg(2)))
-    other = replace(RobotFile(), robot=Robot(leg_arc=np.radians(200.0)))
-    informed = informed_legs(walks, other)
-    assert not informed.middle.offset.any()
-    assert "another robot" in informed.notes[0]
-    marked = RobotFile(file=legs[0])  # the same robot, from another file
-    assert informed_legs(walks, marked).middle.offset[0, 2] == pytest.approx(OFF)
-
-
 def test_a_band_is_drawn_from_what_walks_said(calibration, legs, tmp_path):
     stored(calibration, legs, posterior_of(WrongLeg(2)))
-    predicted(tmp_path, legs[0], str(calibration), draws=12)
+    predict_log(tmp_path, legs[0], str(calibration), draws=12)
     draws = read_draws(tmp_path / "prediction")
     settings = read_walk_manifest(tmp_path / "prediction")["settings"]
     assert settings["walks"]["leg_offset"][2] == pytest.approx(OFF)
     single = read_walk(tmp_path / "prediction")
     ahead = np.quantile(draws.position[:, -1, 0], [0.0, 1.0])
     assert ahead[0] - 0.01 < single.position[-1, 0] < ahead[1] + 0.01
-
-
-def test_baselines_know_the_legs_as_described_not_as_fitted(calibration, legs, tmp_path):
-    predicted(tmp_path, legs[0], str(calibration), name="plain")
-    stored(calibration, legs, posterior_of(WrongLeg(2)))
-    predicted(tmp_path, legs[0], str(calibration), name="fitted")
-    plain, fitted = (
-        read_prediction(tmp_path / name).prediction.baselines for name in ("plain", "fitted")
-    )
-    for name in ("no-slip", "no-slip-simple"):
-        np.testing.assert_allclose(plain[name].position, fitted[name].position, atol=1e-6)
 
 
 def test_offsets_that_walks_told_are_not_asked_for_again(calibration, legs, tmp_path):
@@ -231,22 +125,15 @@ def test_offsets_that_walks_told_are_not_asked_for_again(calibration, legs, tmp_
 
 def test_a_model_without_slip_takes_nothing_from_walks(calibration, legs, tmp_path):
     stored(calibration, legs, posterior_of(None, steering=0.1))
-    done = predicted(tmp_path, legs[0], str(calibration), model="no-slip")
+    done = predict_log(tmp_path, legs[0], str(calibration), model="no-slip")
     assert done.informed is None
-
-
-def test_a_walked_path_is_not_given_offsets_twice(calibration, legs, tmp_path):
-    stored(calibration, legs, posterior_of(WrongLeg(2)))
-    predicted(tmp_path, legs[0], str(calibration))
-    again = predicted(tmp_path, tmp_path / "prediction", str(calibration), name="again")
-    assert not again.informed.middle.offset.any()
 
 
 def test_a_report_tells_what_walks_said_and_what_they_did_not(calibration, legs, tmp_path):
     stored(calibration, legs, posterior_of(WrongLeg(2)))
     run = tmp_path / "run"
     run.mkdir()
-    predicted(run, legs[0], str(calibration))
+    predict_log(run, legs[0], str(calibration))
     page = tmp_path / "report.html"
     report(ReportRequest(run, calibration, page), made=datetime(2026, 1, 2, tzinfo=UTC))
     text = page.read_text()

@@ -10,7 +10,6 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from zebro_lab.calibration.rig_data import read_rig_data
-from zebro_lab.exchange.column_guesses import guess_columns, guess_set_points
 from zebro_lab.exchange.init_stage import render_template, write_columns_template
 from zebro_lab.files.errors import AlreadyExists, DataError, NotFound
 from zebro_lab.tables.columns import Columns, read_columns
@@ -75,24 +74,6 @@ def test_template_reads_its_data_once_the_gaps_are_filled(tmp_path):
     file.write_text(text)
     data = read_rig_data([tmp_path])
     assert (len(data.samples), data.samples.n_runs, data.source) == (N, 2, "real")
-
-
-def test_canonical_header_is_recognised_whole():
-    names = ["t", "omega_leg", "omega_ground", "radius_leg", "radius_ground", "normal_force",
-             "traction_force", "run"]  # fmt: skip
-    table = RawTable(Path("a.csv"), {name: pd.Series([1.0, 2.0]) for name in names})
-    assert {canonical: guess.name for canonical, guess in guess_columns(table).items()} == {
-        name: name for name in names
-    }
-
-
-def test_set_point_is_what_changes_seldom():
-    steps, slope = np.repeat([1.0, 2.0, 3.0], 50), np.arange(150.0)
-    table = RawTable(
-        Path("a.csv"),
-        {"set": pd.Series(steps), "slope": pd.Series(slope), "one": pd.Series(np.ones(150))},
-    )
-    assert guess_set_points(table) == ["set"]
 
 
 @given(st.lists(st.text(min_size=1), min_size=1, max_size=6, unique=True))

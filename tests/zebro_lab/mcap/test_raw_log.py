@@ -3,11 +3,13 @@
 
 import math
 
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from rig.device import Sample
-from zebro_lab.mcap.raw_log import RAW_SCHEMAS, decode_raw, encode_raw
+from support.logs import COUNTS, START, log_of
+from zebro_lab.mcap.raw_log import RAW_SCHEMAS, decode_raw, encode_raw, raw_topic, read_raw_log
 
 
 @st.composite
@@ -55,3 +57,14 @@ def test_any_bytes_are_samples_or_a_value_error(data):
         except ValueError:
             continue
         assert len(list(found)) == len(found)
+
+
+@pytest.mark.parametrize("stream", COUNTS)
+def test_a_log_is_read_back_with_every_sample(stream, tmp_path):
+    file, given_samples = log_of(stream)
+    (tmp_path / "log.mcap").write_bytes(file.getvalue())
+    found = read_raw_log(tmp_path / "log.mcap")
+    assert found.damage is None
+    assert list(found.streams) == [raw_topic(stream)]
+    since_start = [each._replace(host_time=each.host_time - START) for each in given_samples]
+    assert same(found.streams[raw_topic(stream)], since_start)

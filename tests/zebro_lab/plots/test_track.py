@@ -6,7 +6,6 @@ from itertools import combinations
 import numpy as np
 import pytest
 
-from zebro_lab.plots.pixel_grid import pixel_grid
 from zebro_lab.plots.sheet import save
 from zebro_lab.plots.track import SeenMarks, over_floor, over_photo, residual_page
 
@@ -86,9 +85,3 @@ def test_the_photograph_has_v_down_and_half_a_pixel_around_it():
 def test_every_way_of_finding_is_told_apart():
     labels = residuals().axes[0].get_legend_handles_labels()[1]
     assert {"by marker", "by hand", "by body"} <= set(labels)
-
-
-def test_a_part_of_a_photograph_is_drawn_enlarged_and_cut_at_its_edge():
-    (axes,) = pixel_grid(PIXELS, title="p", around=(5, 50), reach=20).axes
-    assert axes.get_xlim() == (-0.5, 25.0)
-    assert axes.get_ylim() == (70.0, 30.0)

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: MIT
 """A robot and a person who watches it in, a profile out."""
 
+import math
+
 import pytest
 
 from rig.clock import SYSTEM_CLOCK
@@ -8,6 +10,7 @@ from rig.errors import ProfileError
 from rig.zebro.check import MovedLeg
 from rig.zebro.profile import load_leg_profile
 from zebro_lab.files.errors import AlreadyExists
+from zebro_lab.recording import check_stage
 from zebro_lab.recording.check_stage import check_zebro, latest_counts_as_targets
 from zebro_lab.recording.request import CheckRequest
 
@@ -59,3 +62,15 @@ def test_counts_of_a_full_turn_are_the_set_point_of_none():
             return [Sample(0.0, None, 0, (self.profile.counts_per_revolution, 1, 2, 3, 4, 5))]
 
     assert latest_counts_as_targets(Robot()) == (0, 1, 2, 3, 4, 5)
+
+
+def test_lift_off_is_where_the_hip_is_as_high_as_at_touchdown(tmp_path, monkeypatch):
+    class Measuring(Person):
+        def measure_height(self, theta_deg):
+            return 0.07 * math.sin(math.radians(theta_deg))
+
+    monkeypatch.setattr(check_stage, "MOVING", 0.01)
+    asked = CheckRequest("sim", tmp_path / "mine.toml", touchdown_deg=54.0)
+    found = check_zebro(asked, Measuring()).lift_off
+    assert found.theta_deg == pytest.approx(126.0, abs=3.6)  # of a count
+    assert abs(found.mismatch) < 0.07 * math.radians(3.6)

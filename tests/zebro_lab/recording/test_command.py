@@ -44,26 +44,26 @@ def test_help_loads_nothing_heavy(command):
     assert not loaded & HEAVY
 
 
-def test_a_recording_prints_counts_clocks_and_folder_and_is_listed(run, tmp_path):
+def test_a_recording_prints_counts_clocks_and_folder_and_is_listed(run_command, tmp_path):
     options = ("--zebro", "sim", "--duration", 1.0, "--label", "first")
-    code, out, err = run("record", "--data", tmp_path, *options)
+    code, out, err = run_command("record", "--data", tmp_path, *options)
     assert (code, err) == (0, "")
     assert re.search(r"SIMULATED legs: \d+ samples, 0 lost, 0 rejected, 0 dropped", out)
     assert "clock of legs: offset" in out
     (folder,) = tmp_path.iterdir()
     assert f"completed: {folder}" in out
-    code, out, _ = run("runs", tmp_path)
+    code, out, _ = run_command("runs", tmp_path)
     assert code == 0
     assert re.search(r"_walk_first  completed  \d\.\d s  \d+ /legs/raw  SIMULATED sim:zebro", out)
     assert "1 run in" in out
 
 
-def test_an_excluded_run_is_kept_and_listed_with_the_reason(run, tmp_path):
-    run("record", "--imu", "sim", "--duration", 0.2, "--label", "x", "--data", tmp_path)
+def test_an_excluded_run_is_kept_and_listed_with_the_reason(run_command, tmp_path):
+    run_command("record", "--imu", "sim", "--duration", 0.2, "--label", "x", "--data", tmp_path)
     (folder,) = tmp_path.iterdir()
-    assert run("exclude", folder, "--why", "belt came off")[0] == 0
-    assert "excluded (belt came off)" in run("runs", tmp_path)[1]
-    code, _, err = run("exclude", folder, "--why", " ")
+    assert run_command("exclude", folder, "--why", "belt came off")[0] == 0
+    assert "excluded (belt came off)" in run_command("runs", tmp_path)[1]
+    code, _, err = run_command("exclude", folder, "--why", " ")
     assert (code, err.count("\n")) == (1, 1)
 
 
@@ -81,18 +81,18 @@ def test_a_signal_ends_a_recording_with_a_complete_record(number, tmp_path):
     assert read_raw_log(folder / "log.mcap").damage is None
 
 
-def test_a_killed_recording_is_recovered(run, tmp_path):
+def test_a_killed_recording_is_recovered(run_command, tmp_path):
     with started("record", "--zebro", "sim", "--label", "x", "--data", tmp_path) as process:
         folder = growing(tmp_path)
         process.kill()
         process.wait(20)
     assert read_raw_log(folder / "log.mcap").streams["/legs/raw"]
     os.utime(folder / "log.mcap", (0, 0))
-    assert "  recovered  " in run("runs", tmp_path)[1]
+    assert "  recovered  " in run_command("runs", tmp_path)[1]
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="limits of a process")
-def test_a_disk_that_takes_no_more_ends_a_recording_with_its_record(run, tmp_path):
+def test_a_disk_that_takes_no_more_ends_a_recording_with_its_record(run_command, tmp_path):
     import resource
 
     def limited():
@@ -112,10 +112,12 @@ def test_a_disk_that_takes_no_more_ends_a_recording_with_its_record(run, tmp_pat
     assert len(read_raw_log(folder / "log.mcap").streams["/load_cell/raw"]) > 100
 
 
-def test_a_run_is_exported_as_tables(run, tmp_path):
-    run("record", "--zebro", "sim", "--duration", 0.3, "--label", "x", "--data", tmp_path / "data")
+def test_a_run_is_exported_as_tables(run_command, tmp_path):
+    run_command(
+        "record", "--zebro", "sim", "--duration", 0.3, "--label", "x", "--data", tmp_path / "data"
+    )
     (folder,) = (tmp_path / "data").iterdir()
-    code, out, _ = run("export", folder, "--out", tmp_path / "out", "--to", "parquet")
+    code, out, _ = run_command("export", folder, "--out", tmp_path / "out", "--to", "parquet")
     assert code == 0
     assert f"wrote {tmp_path / 'out' / 'legs.parquet'}" in out
 
@@ -129,23 +131,23 @@ ERRORS = {
 
 
 @pytest.mark.parametrize(("options", "message"), ERRORS.values(), ids=ERRORS)
-def test_an_error_is_one_line_and_nothing_is_written(options, message, run, tmp_path):
-    code, out, err = run("record", "--data", tmp_path / "data", *options)
+def test_an_error_is_one_line_and_nothing_is_written(options, message, run_command, tmp_path):
+    code, out, err = run_command("record", "--data", tmp_path / "data", *options)
     assert (code, out) == (1, "")
     assert message in err
     assert err.count("\n") == 1
     assert not (tmp_path / "data").exists()
 
 
-def test_a_run_needs_a_label_and_a_place(run):
-    assert run("record", "--zebro", "sim")[0] == 2
+def test_a_run_needs_a_label_and_a_place(run_command):
+    assert run_command("record", "--zebro", "sim")[0] == 2
 
 
-def test_a_recorded_walk_is_predicted_with_the_robots_leg_offsets(run, tmp_path):
+def test_a_recorded_walk_is_predicted_with_the_robots_leg_offsets(run_command, tmp_path):
     data, robot = tmp_path / "data", tmp_path / "robot.toml"
-    run("record", "--zebro", "sim", "--duration", 1.5, "--label", "walk", "--data", data)
+    run_command("record", "--zebro", "sim", "--duration", 1.5, "--label", "walk", "--data", data)
     (folder,) = data.iterdir()
-    run("walk", "--write-robot", robot)
+    run_command("walk", "--write-robot", robot)
     plain = robot.read_text()
     predicted = []
     for offset in ("0.0", "4.0"):
@@ -153,19 +155,19 @@ def test_a_recorded_walk_is_predicted_with_the_robots_leg_offsets(run, tmp_path)
         robot.write_text(text)
         out = tmp_path / f"predicted-{offset}"
         asked = ["--slip", "coulomb:0.38", "--robot", robot, "--out", out]
-        assert run("predict", folder, *asked)[0] == 0
+        assert run_command("predict", folder, *asked)[0] == 0
         predicted.append(read_walk(out).theta)
     apart = np.degrees(predicted[1] - predicted[0])
     np.testing.assert_allclose(apart, np.tile([0, 4.0, 0, 0, 0, 0], (len(apart), 1)), atol=1e-6)
 
 
-def test_others_files_are_imported_and_say_that_they_are_simulated(run, tmp_path):
+def test_others_files_are_imported_and_say_that_they_are_simulated(run_command, tmp_path):
     walk = Path(__file__).parents[3] / "datasets" / "walk-sim"
     start = ("--start", "2026-03-04T05:06:07Z", "--data", tmp_path)
-    code, out, err = run("import", "--legs", walk / "legs.csv", "--label", "bought", *start)
+    code, out, err = run_command("import", "--legs", walk / "legs.csv", "--label", "bought", *start)
     assert (code, err) == (0, "")
     assert re.search(r"SIMULATED sim:mujoco-walk: 1500 /legs/raw: .*_walk_bought", out)
     for options in (("--legs", walk / "legs.csv", "--start", "tomorrow"), ()):
-        code, _, err = run("import", "--data", tmp_path, *options)
+        code, _, err = run_command("import", "--data", tmp_path, *options)
         assert code in (1, 2)
         assert "--start" in err or "nothing to import" in err

@@ -7,13 +7,15 @@ import signal
 from support.commands import started
 
 
-def test_a_twin_prints_its_port_and_any_program_can_record_it(run, tmp_path):
+def test_a_twin_prints_its_port_and_any_program_can_record_it(run_command, tmp_path):
     with started("sim", "zebro", "--socket", "--drop", "0.1", "--seed", "3") as twin:
         line = twin.stdout.readline()
         assert line.startswith("SIMULATED robot (sim:zebro), profile zebro-100-serial: socket://")
         port = line.split()[-1]
-        code, out, _ = run("record", "--zebro", f"zebro-100-serial@{port}", "--duration", 1.0,
-                           "--label", "x", "--data", tmp_path)  # fmt: skip
+        code, out, _ = run_command(
+            "record", "--zebro", f"zebro-100-serial@{port}", "--duration", 1.0, "--label", "x",
+            "--data", tmp_path,
+        )  # fmt: skip
         twin.send_signal(signal.SIGTERM)
         assert twin.wait(20) == 0
     assert code == 0

@@ -9,13 +9,13 @@ import html
 import json
 import shutil
 import subprocess
-import sys
 from datetime import UTC, datetime
 from pathlib import Path
 
 import pytest
 from PIL import Image
 
+from support.commands import COMMAND
 from zebro_lab.files.errors import DataError
 from zebro_lab.report.request import ReportRequest
 from zebro_lab.report.stage import report
@@ -57,7 +57,6 @@ median = 1.5
 q05 = 1.4
 q95 = 1.6
 """
-COMMAND = Path(sys.executable).with_name("zebro-lab")
 CHROMIUM = next(filter(None, map(shutil.which, ("chromium", "chromium-browser"))), None)
 
 

@@ -39,10 +39,10 @@ def test_preview_in_a_pipe_says_what_is_seen_and_draws_it(files):
     assert (files / "preview.png").is_file()
 
 
-def test_a_wrong_tape_is_pointed_at(run, files):
+def test_a_wrong_tape_is_pointed_at(run_command, files):
     floor = files / "floor.toml"
     floor.write_text(floor.read_text().replace("x = 2.2", "x = 2.215"))
-    code, out, err = run(
+    code, out, err = run_command(
         "track", PHOTOS, "--camera", files / "camera.toml", "--floor", floor,
         "--robot", WALK / "robot.toml", "--preview", files / "preview.png",
     )  # fmt: skip
@@ -66,14 +66,14 @@ ERRORS = {
 
 @pytest.mark.parametrize(("arguments", "message"), ERRORS.values(), ids=ERRORS)
 def test_an_error_is_one_line_and_exit_1_and_nothing_is_written(
-    arguments, message, run, files, monkeypatch
+    arguments, message, run_command, files, monkeypatch
 ):
     monkeypatch.chdir(files)
     Path("robot.toml").write_text("[marker]\nposition = [0, 0, 0.0385]\n")
     robot = () if "--robot" in arguments else ("--robot", WALK / "robot.toml")
     camera = () if "--camera" in arguments else ("--camera", "camera.toml")
     given = ("track", *arguments, *robot, *camera, "--floor", "floor.toml", "--out", "out")
-    code, out, err = run(*given)
+    code, out, err = run_command(*given)
     assert (code, out) == (1, "")
     assert err.startswith("error: ")
     assert message in err
@@ -81,19 +81,19 @@ def test_an_error_is_one_line_and_exit_1_and_nothing_is_written(
     assert not Path("out").exists()
 
 
-def test_nowhere_to_write_and_nothing_to_say_are_wrong_usage(run, files):
-    code, _, err = run("track", PHOTOS, "--camera", files / "camera.toml", "--floor",
+def test_nowhere_to_write_and_nothing_to_say_are_wrong_usage(run_command, files):
+    code, _, err = run_command("track", PHOTOS, "--camera", files / "camera.toml", "--floor",
                        files / "floor.toml")  # fmt: skip
     assert code == 2
     assert "--out FOLDER" in err
-    code, _, err = run("annotate", PHOTOS, "--out", files / "said.toml")
+    code, _, err = run_command("annotate", PHOTOS, "--out", files / "said.toml")
     assert code == 2
     assert "no annotation is given" in err
 
 
-def test_how_a_composite_was_merged_is_asked_for_with_a_line_for_each_way(run, files):
+def test_how_a_composite_was_merged_is_asked_for_with_a_line_for_each_way(run_command, files):
     composite = WALK / "composite/simulated_pasted.jpg"
-    code, _, err = run(
+    code, _, err = run_command(
         "track", composite, "--camera", files / "camera.toml", "--floor", files / "floor.toml",
         "--robot", WALK / "robot.toml", "--interval", "4", "--out", files / "out",
     )  # fmt: skip

@@ -74,10 +74,12 @@ def photographed_clock(lab: Path, *, ahead: timedelta) -> Path:
     return file
 
 
-def test_a_recorded_run_is_tracked_predicted_and_validated_on_its_own_clock(lab, run):
+def test_a_recorded_run_is_tracked_predicted_and_validated_on_its_own_clock(lab, run_command):
     begun = datetime.fromisoformat(read_manifest(lab / "run").start)
     clock = photographed_clock(lab, ahead=BEGUN - begun)
-    code, out, _ = run("track", "photos", *BENCH, "--run", "run", "--clock", clock.resolve())
+    code, out, _ = run_command(
+        "track", "photos", *BENCH, "--run", "run", "--clock", clock.resolve()
+    )
     assert code == 0
     assert f"{SOME} of {SOME} photographs" in out
     assert "counted from the run's start" in out
@@ -86,9 +88,11 @@ def test_a_recorded_run_is_tracked_predicted_and_validated_on_its_own_clock(lab,
     true = pd.read_csv(WALK / "photos.csv").iloc[:SOME]
     np.testing.assert_allclose(track["t_s"], true["t"], atol=0.06)  # the code is renewed at 10 Hz
     assert json.loads(Path("run/track/manifest.json").read_text())["source"] == "sim:photographs"
-    code, _, _ = run("predict", "run", "--slip", "coulomb:0.38", "--robot", WALK / "robot.toml")
+    code, _, _ = run_command(
+        "predict", "run", "--slip", "coulomb:0.38", "--robot", WALK / "robot.toml"
+    )
     assert code == 0
-    code, out, _ = run("validate", "run")
+    code, out, _ = run_command("validate", "run")
     assert code == 0
     assert "SIMULATED: sim:dynamics, sim:photographs" in out
     metrics = pd.read_csv("run/validation/metrics.csv")
@@ -96,16 +100,18 @@ def test_a_recorded_run_is_tracked_predicted_and_validated_on_its_own_clock(lab,
     assert row["ate_m"] < 0.02
 
 
-def test_untied_clocks_are_pointed_at_and_still_tracked(lab, run):
-    code, out, _ = run("track", "photos", *BENCH, "--run", "run")
+def test_untied_clocks_are_pointed_at_and_still_tracked(lab, run_command):
+    code, out, _ = run_command("track", "photos", *BENCH, "--run", "run")
     assert code == 0
     assert "WARNING: time is counted from the first photograph" in out
     assert "--clock" in out
     assert pd.read_csv("run/track/track.csv")["t_s"].iloc[0] == 0
 
 
-def test_a_moment_of_the_cameras_clock_is_the_runs_start(lab, run):
-    code, out, _ = run("track", "photos", *BENCH, "--run", "run", "--start", "2020-06-01T12:00:01")
+def test_a_moment_of_the_cameras_clock_is_the_runs_start(lab, run_command):
+    code, out, _ = run_command(
+        "track", "photos", *BENCH, "--run", "run", "--start", "2020-06-01T12:00:01"
+    )
     assert code == 0
     assert "WARNING: 1 of 5 photographs were taken before or after the run" in out
     assert pd.read_csv("run/track/track.csv")["t_s"].iloc[0] == pytest.approx(-1, abs=0.1)
@@ -120,17 +126,17 @@ FAULTS = {
 
 
 @pytest.mark.parametrize(("arguments", "message"), FAULTS.values(), ids=FAULTS)
-def test_times_that_cannot_be_are_one_line_and_write_nothing(arguments, message, lab, run):
+def test_times_that_cannot_be_are_one_line_and_write_nothing(arguments, message, lab, run_command):
     named = () if "--run" in arguments else ("--run", "run")
-    code, out, err = run("track", "photos", *BENCH, *named, *arguments)
+    code, out, err = run_command("track", "photos", *BENCH, *named, *arguments)
     assert (code, out) == (1, "")
     assert message in err
     assert err.count("\n") == 1
     assert not Path("run/track").exists()
 
 
-def test_a_moment_with_a_time_zone_is_wrong_usage(lab, run):
-    code, _, err = run(
+def test_a_moment_with_a_time_zone_is_wrong_usage(lab, run_command):
+    code, _, err = run_command(
         "track", "photos", *BENCH, "--run", "run", "--start", "2020-06-01T12:00+02:00"
     )
     assert code == 2

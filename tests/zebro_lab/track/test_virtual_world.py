@@ -3,7 +3,6 @@
 
 import csv
 import json
-import sys
 from pathlib import Path
 
 import numpy as np
@@ -12,8 +11,6 @@ import pytest
 
 from tracking.camera import Camera, CameraPose, project
 from tracking.pose import rotation_with_derivatives
-from zebro_lab.main import app
-from zebro_lab.terminal.ending import run as run_app
 
 pytestmark = pytest.mark.reference
 
@@ -51,18 +48,13 @@ def lab(world, tmp_path, monkeypatch) -> Path:
     return tmp_path
 
 
-def run(monkeypatch, *arguments: object) -> None:
-    monkeypatch.setattr(sys, "argv", ["zebro-lab", *map(str, arguments)])
-    with pytest.raises(SystemExit) as ended:
-        run_app(app)
-    assert not ended.value.code
-
-
-def track(monkeypatch, photos: Path, *options: object) -> np.ndarray:
+def track(run_command, photos: Path, *options: object) -> np.ndarray:
     """Track and return x, y [m] and yaw [rad] of every photograph."""
-    run(monkeypatch, "track", photos, "--camera", "camera.toml", "--floor", "floor.toml",
-        "--robot", "robot.toml", "--interval", 2, "--source", "sim:virtual-world", "--out", "out",
-        *options)  # fmt: skip
+    ended = run_command(
+        "track", photos, "--camera", "camera.toml", "--floor", "floor.toml", "--robot",
+        "robot.toml", "--interval", 2, "--source", "sim:virtual-world", "--out", "out", *options,
+    )  # fmt: skip
+    assert ended.code == 0
     table = pd.read_csv("out/track.csv")
     assert len(table) == len(list(photos.glob("*.jpg")))
     return table[["x_m", "y_m", "yaw_rad"]].to_numpy()
@@ -90,18 +82,18 @@ def _rms(values: np.ndarray) -> float:
     return float(np.sqrt(np.mean(values**2)))
 
 
-def test_the_marked_walk_is_within_three_millimetres(lab, shared, monkeypatch):
+def test_the_marked_walk_is_within_three_millimetres(lab, shared, run_command):
     photos = shared / "virtual-world/photos/s1.10_A"
-    assert_within(track(monkeypatch, photos), read_truth(photos), 3e-3, 0.3)
+    assert_within(track(run_command, photos), read_truth(photos), 3e-3, 0.3)
 
 
-def test_the_unmarked_walk_is_within_five_millimetres(lab, world, shared, monkeypatch):
+def test_the_unmarked_walk_is_within_five_millimetres(lab, world, shared, run_command):
     photos = shared / "virtual-world/photos/s1.10_B"
     truth = read_truth(photos)
     photo = sorted(path.name for path in photos.glob("*.jpg"))[7]
-    run(monkeypatch, "annotate", photos, "--photo", photo, "--corners",
-        clicked(world, truth[7]), "--plate", "150mmx150mm@38.5mm")  # fmt: skip
-    poses = track(monkeypatch, photos, "--without-marker", "--annotations", "annotations.toml")
+    corners = ("--corners", clicked(world, truth[7]), "--plate", "150mmx150mm@38.5mm")
+    assert run_command("annotate", photos, "--photo", photo, *corners).code == 0
+    poses = track(run_command, photos, "--without-marker", "--annotations", "annotations.toml")
     assert_within(poses, truth, 5e-3, 2.0)
 
 

@@ -41,17 +41,8 @@ def test_walk_in_a_pipe_prints_gait_and_end_and_writes_its_folder(tmp_path):
     assert json.loads((out / "manifest.json").read_text())["kind"] == "walk"
 
 
-def test_predict_takes_what_walk_wrote(run, tmp_path):
-    walk = tmp_path / "walk"
-    assert run("walk", "--slip", "coulomb:0.4", "--duration", 3, "--out", walk)[0] == 0
-    code, out, _ = run("predict", walk, "--model", "no-slip", "--out", tmp_path / "predicted")
-    assert code == 0
-    assert "logged leg angles, model 'no-slip'" in out
-    assert "straight ahead" in out
-
-
-def test_robot_file_is_started(run, tmp_path):
-    code, out, _ = run("walk", "--write-robot", tmp_path / "robot.toml", "--arc-deg", 200)
+def test_robot_file_is_started(run_command, tmp_path):
+    code, out, _ = run_command("walk", "--write-robot", tmp_path / "robot.toml", "--arc-deg", 200)
     assert (code, out) == (0, f"wrote {tmp_path / 'robot.toml'}\n")
     assert "arc_deg = 200.0" in (tmp_path / "robot.toml").read_text()
 
@@ -69,24 +60,17 @@ ERRORS = {
 
 
 @pytest.mark.parametrize(("options", "message"), ERRORS.values(), ids=ERRORS)
-def test_error_is_one_line_and_exit_1_and_nothing_is_written(options, message, run, tmp_path):
+def test_error_is_one_line_and_exit_1_and_nothing_is_written(
+    options, message, run_command, tmp_path
+):
     out = tmp_path / "out"
     given = ["walk", "--slip", "coulomb:0.4", "--duration", 2, "--out", out, *options]
-    code, stdout, stderr = run(*given)
+    code, stdout, stderr = run_command(*given)
     assert (code, stdout) == (1, "")
     assert stderr.startswith("error: ")
     assert message in stderr
     assert stderr.count("\n") == 1
     assert not out.exists()
-
-
-def test_leg_log_with_a_gap_is_one_line_with_its_place(run, tmp_path):
-    log = tmp_path / "legs.csv"
-    rows = [f"{t / 100},{','.join([str(t / 50)] * 6)}" for t in (*range(30), *range(60, 90))]
-    log.write_text("\n".join(["t,theta1,theta2,theta3,theta4,theta5,theta6", *rows]) + "\n")
-    code, _, stderr = run("predict", log, "--slip", "thesis", "--out", tmp_path / "out")
-    assert code == 1
-    assert stderr.startswith(f"error: {log}, column 't', row 31 (line 32): time jumps from 0.29")
 
 
 USAGE = {
@@ -100,7 +84,7 @@ USAGE = {
 
 
 @pytest.mark.parametrize("arguments", USAGE.values(), ids=USAGE)
-def test_wrong_usage_is_exit_2(arguments, run):
-    code, stdout, stderr = run(*arguments)
+def test_wrong_usage_is_exit_2(arguments, run_command):
+    code, stdout, stderr = run_command(*arguments)
     assert (code, stdout) == (2, "")
     assert "Usage: " in stderr

@@ -31,5 +31,6 @@ def test_a_band_has_two_draws_or_none_and_no_negative_standard_deviation():
     assert BandRequest().draws == 0
     with pytest.raises(SettingsError, match="no band"):
         BandRequest(1)
-    with pytest.raises(SettingsError, match="negative"):
-        BandRequest(2, start_sd=(0.0, -1.0, 0.0))
+    for options in ({"offset_sd_deg": -1.0}, {"start_sd": (0.0, -1.0, 0.0)}):
+        with pytest.raises(SettingsError, match="a standard deviation is negative"):
+            BandRequest(2, **options)

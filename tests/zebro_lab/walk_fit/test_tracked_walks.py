@@ -2,54 +2,18 @@
 """Walks that are to inform a fit: what is read, and every way in which one cannot."""
 
 import shutil
-from pathlib import Path
 
 import numpy as np
 import pandas as pd
 import pytest
 
-from model.bayes.walks.prior import WalkPrior
-from model.errors import ModelError
-from model.gait import tripod_angles, tripod_reference
 from model.gait.quantised import QuantisedLog
+from support.tracked_walks import SD, WALK, write_walk
 from support.watchers import Nobody
-from zebro_lab.calibration.request import CalibrationRequest
-from zebro_lab.calibration.slip_argument import parse_slip
 from zebro_lab.exchange.import_request import ImportRequest
 from zebro_lab.exchange.import_stage import import_run
 from zebro_lab.files.errors import DataError, NotFound, SettingsError
-from zebro_lab.walk_fit.prediction import fit_walks_on_file
-from zebro_lab.walk_fit.request import WalksRequest
-from zebro_lab.walk_fit.stage import calibrate_walks
 from zebro_lab.walk_fit.tracked_walks import read_walk_on_file, read_walks
-
-WALK = Path(__file__).parents[3] / "datasets" / "walk-sim"
-STEP = np.radians(3.6)
-SD = 0.002
-
-
-def write_walk(folder, *, begin=5.0, late=0.0, covariance=True, yaw=True, robot=None, every=2.0):
-    """Write a walk with a counted leg log from `begin` on and a track `late` by its clock."""
-    gait = tripod_reference(tripod_angles(np.radians(50.0), 1.2), 2.0)
-    t = np.arange(0.0, 12.0, 0.01)
-    counted = STEP * np.round(gait.angles(t) / STEP)
-    (folder / "track").mkdir(parents=True)
-    pd.DataFrame({"t": t + begin} | {f"theta{i + 1}": a for i, a in enumerate(counted.T)}).to_csv(
-        folder / "legs.csv", index=False
-    )
-    seen = np.arange(0.0, 12.0, every)
-    table = pd.DataFrame({"t_s": seen + begin + late, "x_m": 0.08 * seen, "y_m": 0.0})
-    if yaw:
-        table["yaw_rad"] = 0.0
-    if covariance:
-        for name in ("xx", "yy", "yawyaw"):
-            table[f"cov_{name}"] = SD**2
-        for name in ("xy", "xyaw", "yyaw"):
-            table[f"cov_{name}"] = 0.0
-    table.to_csv(folder / "track" / "track.csv", index=False)
-    if robot is not None:
-        (folder / "robot.toml").write_text(robot)
-    return folder
 
 
 def test_a_walk_comes_with_its_time_from_zero_and_its_counts_recognised(tmp_path):
@@ -145,25 +109,12 @@ def test_roll_and_pitch_of_a_run_s_imu_come_with_the_walk(tmp_path):
     assert any("IMU inform" in note for note in walk.notes)
 
 
-def test_no_walks_are_refused_as_the_model_refuses_them():
-    with pytest.raises(ModelError, match="no walk to fit"):
-        fit_walks_on_file([], parse_slip("thesis"), prior=WalkPrior(), rng=np.random.default_rng(1))
-
-
 def test_walks_of_one_name_are_told_apart(tmp_path):
     folders = [
         write_walk(tmp_path / day / "walk", every=every)
         for day, every in (("monday", 2.0), ("tuesday", 1.5))
     ]
     assert [walk.name for walk in read_walks(folders)] == ["walk-1", "walk-2"]
-
-
-def test_walks_need_a_calibration(tmp_path):
-    folder, none = write_walk(tmp_path / "walk"), CalibrationRequest(out=tmp_path / "none")
-    with pytest.raises(NotFound, match="finished calibration"):
-        calibrate_walks(WalksRequest((folder,)), none, Nobody())
-    with pytest.raises(SettingsError, match="--walks"):
-        calibrate_walks(WalksRequest(), none, Nobody())
 
 
 def test_a_walk_under_two_names_counts_once_and_is_told(tmp_path):

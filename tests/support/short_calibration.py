@@ -1,0 +1,32 @@
+# SPDX-License-Identifier: MIT
+"""A finished fit of few samples and steps, made once."""
+
+from functools import cache
+
+import numpy as np
+
+from model.bayes.calibration import Calibration, conclude
+from model.bayes.convergence import assess
+from model.bayes.fit import prepare_fit
+from model.bayes.posterior import LoadCell
+from model.bayes.sampler import advance, start_chains
+from model.slip.thesis import THESIS_LAW, THESIS_VALUES
+from rig.slip_rig.imperfections import TYPICAL_RIG
+from rig.slip_rig.sweep import SweepPlan, simulate_sweep
+
+
+@cache
+def short_calibration() -> Calibration:
+    """Fit a simulated sweep at two loads with 100 steps; it is far from converged."""
+    rng = np.random.default_rng(2)
+    plan = SweepPlan(slips=tuple(np.linspace(0.005, 0.3, 8)), loads=(4.0, 12.0), rate=40.0)
+    samples = simulate_sweep(
+        THESIS_LAW, THESIS_VALUES, plan=plan, imperfections=TYPICAL_RIG, rng=rng
+    ).samples
+    fit = prepare_fit(samples, THESIS_LAW, load_cell=LoadCell(), rng=rng, threads=1)
+    density = fit.posterior.log_density
+    chains = start_chains(density, fit.approximation, ensembles=2, thin=5, rng=rng)
+    chains = advance(density, chains, steps=100, approximation=fit.approximation, threads=1)
+    return conclude(
+        fit, None, chains, assess(chains), samples, source="sim:test", seconds=1.5, rng=rng
+    )

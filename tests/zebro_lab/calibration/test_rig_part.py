@@ -1,0 +1,100 @@
+# SPDX-License-Identifier: MIT
+"""One table or run folder becomes samples in SI, with its runs apart."""
+
+from datetime import UTC, datetime
+
+import numpy as np
+import pytest
+
+from model.slip import SlipDefinition, convert_slip
+from support.rig_tables import RADII, N, columns, given_slip, speeds, write
+from support.table_runs import slip_rig_run
+from support.written_runs import edit
+from zebro_lab.calibration.rig_part import RigPart, read_part
+from zebro_lab.mcap.slip_rig_log import SlipRigTable
+from zebro_lab.runs.data_paths import DataSource
+from zebro_lab.tables.columns import Columns, read_columns
+
+TWICE = '[columns.normal_force]\nname = "FZ"\nunit = "kN"\nsign = -1\n[runs]\nby = ["day"]\n'
+
+
+def part_of(path, *, mapped: Columns | None = None, wanted=None) -> RigPart:
+    return read_part(DataSource(path, path.parent), mapped or Columns(), "rig", wanted)
+
+
+@pytest.fixture
+def two_runs(tmp_path) -> RigPart:
+    """Return a table of two days, its normal force in kN and of the other sign."""
+    table = speeds().assign(day=np.repeat(["mon", "tue"], [20, 20]))
+    table["FZ"] = -table.pop("normal_force") / 1e3
+    mapped = read_columns(columns(tmp_path, TWICE + RADII))
+    return part_of(write(tmp_path, table), mapped=mapped)
+
+
+def test_columns_are_converted_and_every_file_and_conversion_is_told(two_runs, tmp_path):
+    np.testing.assert_allclose(two_runs.normal_force, speeds().normal_force)
+    np.testing.assert_allclose(two_runs.traction_force, speeds().traction_force)
+    np.testing.assert_allclose(two_runs.time, speeds().t)
+    np.testing.assert_allclose(two_runs.slip.ratio, np.linspace(0.0, 0.5, N), atol=1e-12)
+    assert two_runs.files == (tmp_path / "rig.csv", tmp_path / "columns.toml")
+    assert two_runs.notes == ("normal_force: 'FZ' in kN times -1000",)
+    assert (two_runs.rows_read, two_runs.sources) == (N, ())
+
+
+def test_a_chosen_run_is_kept_whole_and_alone(two_runs):
+    chosen = two_runs.with_runs(np.array([False, True]))
+    assert chosen.runs.names == two_runs.runs.names[1:]
+    assert set(chosen.runs.index) == {0}
+    for name in ("normal_force", "traction_force", "time"):
+        np.testing.assert_array_equal(getattr(chosen, name), getattr(two_runs, name)[20:])
+    np.testing.assert_array_equal(chosen.slip.ratio, two_runs.slip.ratio[20:])
+    assert chosen.rows_read == 20
+    assert chosen.keys == two_runs.keys[1:]
+    assert two_runs.with_runs(np.array([True, True])).keys == two_runs.keys
+
+
+def test_a_part_without_times_has_none_after_choosing_either(tmp_path):
+    part = part_of(write(tmp_path, given_slip().drop(columns="t")))
+    assert part.time is None
+    assert part.with_runs(np.array([True])).time is None
+
+
+@pytest.mark.parametrize("wanted", [None, *SlipDefinition])
+def test_given_slip_keeps_its_definition_unless_another_is_wanted(tmp_path, wanted):
+    part = part_of(write(tmp_path, given_slip("travel")), wanted=wanted)
+    assert part.slip.definition == (wanted or "travel")
+    expected = convert_slip(np.linspace(0.0, 0.5, N), "material", wanted or "travel")
+    np.testing.assert_allclose(part.slip.ratio, expected, atol=1e-12)
+
+
+def test_a_run_folder_is_read_by_its_own_constants_whatever_the_map_says(tmp_path):
+    table = SlipRigTable(*speeds().to_numpy().T)
+    folder = slip_rig_run(
+        tmp_path / "DATA", table, label="rig", material="steel", operator="a", source="sim:test",
+        start=datetime(2026, 1, 2, tzinfo=UTC), radius_leg=0.035, radius_ground=0.12,
+    )  # fmt: skip
+    text = 'source = "real"\nrows.keep = ["t >= 0.04"]\n[columns]\nt = "no such"\n'
+    mapped = read_columns(columns(tmp_path, text))
+    part = part_of(folder, mapped=mapped)
+    np.testing.assert_allclose(part.slip.ratio, np.linspace(0.0, 0.5, N)[10:], atol=1e-12)
+    assert part.sources == ("sim:test",)
+    assert part.rows_read == N
+    assert part.runs.names == ("rig",)
+    assert set(part.files) == {folder / "run.json", folder / "log.mcap", tmp_path / "columns.toml"}
+
+
+def test_a_recorded_run_is_one_run_a_sweep(tmp_path):
+    t = np.arange(0.0, 6.0, 0.005)
+    leg = np.full_like(t, 12.0)
+    ground = (1 - 0.9 * (t % 2.0) / 2.0) * leg * 0.035 / 0.12
+    table = SlipRigTable(t, leg, ground, np.full_like(t, 5.0), np.full_like(t, 1.0))
+    folder = slip_rig_run(
+        tmp_path, table, label="rig", material="steel", operator="a", source="sim:test",
+        start=datetime(2026, 1, 2, tzinfo=UTC), radius_leg=0.035, radius_ground=0.12,
+    )  # fmt: skip
+    assert len(part_of(folder).runs.names) == 1  # a table was cut into runs before
+    edit(folder, profiles={"rig": "of-the-bench"})
+    part = part_of(folder)
+    assert len(part.runs.names) == 3
+    assert part.rows_read == len(part.normal_force) < len(t)
+    assert "of the samples left out, in which slip jumped" in part.notes[0]

@@ -1,0 +1,63 @@
+# SPDX-License-Identifier: MIT
+"""What is printed of a calibration has the fit's numbers, its faults and its files."""
+
+import io
+
+import pytest
+from rich.console import Console
+
+from support.short_calibration import short_calibration
+from zebro_lab.calibration.rig_data import read_rig_data
+from zebro_lab.calibration.screen import print_calibration
+
+
+@pytest.fixture(scope="module")
+def printed(sweep, tmp_path_factory) -> str:
+    out = tmp_path_factory.mktemp("calibration")
+    (out / "[bold]slip.toml").touch()
+    console = Console(file=io.StringIO(), width=160)
+    print_calibration(console, short_calibration(), read_rig_data([sweep]), out)
+    return console.file.getvalue()
+
+
+def row_of(printed: str, name: str) -> str:
+    (line,) = [each for each in printed.splitlines() if each.strip().startswith(f"{name} ")]
+    return line
+
+
+def test_every_parameter_has_median_interval_and_diagnostics(printed):
+    calibration = short_calibration()
+    free = [parameter.name for parameter in calibration.posterior.free]
+    assert "and of the measurement (simulated)" in printed
+    for each in calibration.parameters:
+        row = row_of(printed, each.parameter.name)
+        assert f"{each.median:.4g}" in row
+        if each.parameter.name in free:
+            i = free.index(each.parameter.name)
+            assert f"{each.low:.4g} … {each.high:.4g}" in row
+            assert f"{calibration.convergence.r_hat[i]:.3f}" in row
+            assert f"{calibration.convergence.ess_bulk[i]:.0f}" in row
+        else:
+            assert "fixed" in row
+
+
+def test_the_curve_is_told_at_each_load(printed):
+    calibration = short_calibration()
+    for load, row in zip(calibration.levels, calibration.curves, strict=True):
+        line = row_of(printed, f"{load:.4g}")
+        assert all(f"{each.median:.4g}" in line for each in row)
+
+
+def test_faults_are_marked_with_their_evidence(printed):
+    verdict = short_calibration().verdict
+    assert f"verdict: {verdict.headline()}" in printed
+    for check in (*verdict.convergence, *verdict.trust):
+        assert f"  {'ok  ' if check.passed else 'FAIL'} {check.name}: " in printed
+    assert "FAIL" in printed
+    for step in verdict.next_steps():
+        assert f"next: {step[:60]}" in printed
+
+
+def test_data_source_and_files_are_told_and_names_are_no_markup(printed):
+    assert "SIMULATED data, source 'sim:rig-sweep': 3600 samples in " in printed
+    assert "[bold]slip.toml" in printed

@@ -1,0 +1,77 @@
+# SPDX-License-Identifier: MIT
+"""Laws are drawn from the posterior beside a calibration, or from its Gaussian."""
+
+import dataclasses
+from pathlib import Path
+
+import h5py
+import numpy as np
+import pytest
+
+from model.slip.curve import SlipCurve
+from model.slip.definition import SlipDefinition
+from model.slip.laws import slip_law
+from zebro_lab.calibration.slip_argument import NamedSlip, parse_slip
+from zebro_lab.calibration.slip_draws import POSTERIOR, law_draws, slip_tables
+from zebro_lab.files.errors import DataError
+
+
+def slip_of(folder: Path) -> tuple[NamedSlip, SlipCurve]:
+    curve = SlipCurve(
+        law=slip_law("brush"), values=np.array([5.0, 0.4]), covariance=np.eye(2) * 1e-3,
+        definition=SlipDefinition.MATERIAL, load_range=(1.0, 2.0), slip_range=(0.0, 1.0),
+    )  # fmt: skip
+    return NamedSlip(curve, "real", "x", (folder / "slip.toml",)), curve
+
+
+def draw_posterior(folder: Path) -> object:
+    slip, curve = slip_of(folder)
+    return law_draws(slip, curve, 10, rng=np.random.default_rng(1))
+
+
+def test_a_parameter_whose_name_is_no_text_is_one_line(tmp_path):
+    (tmp_path / "slip.toml").write_text("")
+    with h5py.File(tmp_path / POSTERIOR, "w") as data:
+        data.create_group("posterior")[b"stiff\xff"] = np.arange(4.0)
+    with pytest.raises(DataError, match=r"holds draws of stiff\\xff, but") as raised:
+        draw_posterior(tmp_path)
+    assert "\n" not in str(raised.value)
+
+
+def test_an_assumed_law_has_one_draw(tmp_path):
+    slip, curve = slip_of(tmp_path)
+    assumed = dataclasses.replace(curve, covariance=np.zeros((2, 2)))
+    np.testing.assert_array_equal(
+        law_draws(slip, assumed, 7, rng=np.random.default_rng(1)), [curve.values]
+    )
+    coulomb = parse_slip("coulomb:0.4")
+    tables = slip_tables(coulomb, 7, weight=20.0, rng=np.random.default_rng(1))
+    assert len(tables) == 1
+
+
+def test_without_a_posterior_draws_have_the_fitted_mean_and_covariance(tmp_path):
+    slip, curve = slip_of(tmp_path)
+    draws = law_draws(slip, curve, 20_000, rng=np.random.default_rng(1))
+    np.testing.assert_allclose(draws.mean(axis=0), curve.values, atol=1e-3)
+    np.testing.assert_allclose(np.cov(draws.T), curve.covariance, atol=5e-5)
+
+
+@pytest.mark.parametrize("n", [3, 10])
+def test_a_posterior_is_drawn_from_row_by_row_and_fixed_parameters_stay(n, tmp_path):
+    (tmp_path / "slip.toml").write_text("")
+    with h5py.File(tmp_path / POSTERIOR, "w") as data:
+        data.create_group("posterior")["friction"] = np.array([0.3, 0.4, 0.5])
+    slip, curve = slip_of(tmp_path)
+    draws = law_draws(slip, curve, n, rng=np.random.default_rng(1))
+    names = [parameter.name for parameter in curve.law.parameters]
+    friction = draws[:, names.index("friction")]
+    assert set(friction) <= {0.3, 0.4, 0.5}
+    assert len(set(friction)) == 3  # all draws are used before one is used again
+    np.testing.assert_array_equal(draws[:, names.index("slip_stiffness")], np.full(n, 5.0))
+
+
+def test_every_draw_of_the_law_has_a_table_of_its_own(tmp_path):
+    slip, _ = slip_of(tmp_path)
+    tables = slip_tables(slip, 3, weight=20.0, rng=np.random.default_rng(1))
+    assert len(tables) == 3
+    assert len({table.phi.tobytes() for table in tables}) == 3

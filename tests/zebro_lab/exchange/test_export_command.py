@@ -1,0 +1,30 @@
+# SPDX-License-Identifier: MIT
+"""`zebro-lab export` names every file that it writes."""
+
+from pathlib import Path
+
+import pytest
+
+from support.written_runs import make_run
+from zebro_lab.exchange import export_mcap_stage
+from zebro_lab.exchange.export_mcap_stage import Exported
+
+
+@pytest.mark.parametrize("form", ["csv", "parquet"])
+def test_every_table_is_named(tmp_path, run_command, form):
+    out = tmp_path / "out"
+    ended = run_command("export", make_run(tmp_path), "--out", out, "--to", form)
+    assert (ended.code, ended.err) == (0, "")
+    files = sorted(f"wrote {file}" for file in out.iterdir() if file.suffix == f".{form}")
+    assert len(files) == 2
+    assert sorted(line for line in ended.out.splitlines() if line.endswith(form)) == files
+
+
+def test_topics_of_a_log_for_viewers_are_counted(tmp_path, run_command, monkeypatch):
+    def export_mcap(run: Path, *, out: Path) -> Exported:
+        return Exported(out, {"/tf": 12, "/track": 3}, (f"of {run.name}",))
+
+    monkeypatch.setattr(export_mcap_stage, "export_mcap", export_mcap)
+    ended = run_command("export", "a-run", "--out", tmp_path / "a.mcap", "--to", "mcap")
+    assert (ended.code, ended.err) == (0, "")
+    assert ended.out == f"/tf: 12\n/track: 3\nof a-run\nwrote {tmp_path / 'a.mcap'}\n"

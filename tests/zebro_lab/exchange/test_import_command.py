@@ -1,0 +1,41 @@
+# SPDX-License-Identifier: MIT
+"""`zebro-lab import` takes every file that is named, and says what became of it."""
+
+import pytest
+
+from zebro_lab.runs.legs import read_leg_log
+from zebro_lab.runs.manifest import read_manifest
+
+
+def test_options_reach_the_run_and_it_is_named(files, tmp_path, run_command):
+    data = tmp_path / "data"
+    ended = run_command(
+        "import", "--legs", files / "legs.csv", "--imu", files / "imu.csv", "--track",
+        files / "track.csv", "--robot", files / "robot.toml", "--columns", files / "columns.toml",
+        "--label", "circle", "--start", "2026-03-04T05:06:07+00:00", "--material", "PLA",
+        "--operator", "a", "--data", data,
+    )  # fmt: skip
+    assert (ended.code, ended.err) == (0, "")
+    folder = data / "20260304T050607Z_walk_circle"
+    *notes, last = ended.out.splitlines()
+    assert last == f"SIMULATED sim:other-lab: 100 /legs/raw, 100 /imu/raw: {folder}"
+    assert any("without yaw" in note for note in notes)
+    manifest = read_manifest(folder)
+    assert (manifest.material, manifest.operator, manifest.robot) == ("PLA", "a", "robot")
+    assert (folder / "track" / "track.csv").is_file()
+    assert len(read_leg_log(folder).reference.t) == 100
+
+
+def test_a_rigs_runs_are_all_named(sweep, tmp_path, run_command):
+    ended = run_command("import", "--rig", sweep / "sweep.csv", "--data", tmp_path,
+                        "--start", "2026-01-01T00:00:00+00:00")  # fmt: skip
+    assert ended.code == 0
+    named = [line for line in ended.out.splitlines() if line.startswith("SIMULATED sim:rig-sweep")]
+    assert len(named) == len(list(tmp_path.iterdir())) == 24
+
+
+@pytest.mark.parametrize("start", ["yesterday", "2026-13-01"])
+def test_a_start_that_is_no_time_is_named(tmp_path, run_command, start):
+    ended = run_command("import", "--legs", "legs.csv", "--data", tmp_path, "--start", start)
+    assert ended.code == 2
+    assert f"found '{start}'; expected a time such as" in " ".join(ended.err.split())

@@ -1,0 +1,40 @@
+# SPDX-License-Identifier: MIT
+"""The table of a slip rig becomes a run folder for each run in it."""
+
+from datetime import UTC, datetime
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from support.imported_files import taken
+from zebro_lab.calibration.rig_data import read_rig_data
+from zebro_lab.files.errors import DataError
+from zebro_lab.runs.manifest import read_manifest
+
+
+def test_a_rigs_table_is_calibrated_as_the_table_itself(sweep, tmp_path):
+    table = sweep / "sweep.csv"
+    imported = taken(tmp_path, rig=table, material="POM", start=datetime(2026, 1, 1, tzinfo=UTC))
+    assert len(imported.folders) == 24
+    ours, theirs = read_rig_data([tmp_path / "data"]), read_rig_data([table])
+    order = np.argsort([ours.samples.run_names.index(f.name) for f in imported.folders])
+    assert np.array_equal(order, np.arange(24))  # folders are named by when each run began
+    for column in ("slip", "normal_force", "traction_force", "run"):
+        ours_column, theirs_column = getattr(ours.samples, column), getattr(theirs.samples, column)
+        np.testing.assert_allclose(ours_column, theirs_column, rtol=1e-12)
+    assert ours.source == theirs.source == "sim:rig-sweep"
+    assert ours.load_cell == theirs.load_cell == {"zero_stability": 0.1}
+    assert read_manifest(imported.folders[0]).material == "POM"
+
+
+def test_a_rig_without_speeds_or_with_trials_is_left_to_the_calibration(sweep, tmp_path):
+    table = pd.read_csv(sweep / "sweep.csv")
+    given = table.drop(columns=["omega_leg"]).assign(slip_ratio=0.1)
+    given.to_csv(tmp_path / "slip.csv", index=False)
+    with pytest.raises(DataError, match="calibrate-slip reads this table"):
+        taken(tmp_path, rig=tmp_path / "slip.csv")
+    table.to_csv(tmp_path / "trials.csv", index=False)
+    (tmp_path / "columns.toml").write_text("[runs]\neach_row = true")
+    with pytest.raises(DataError, match="averages of trials"):
+        taken(tmp_path, rig=tmp_path / "trials.csv")

@@ -1,0 +1,80 @@
+# SPDX-License-Identifier: MIT
+"""An imported walk is a run folder like a recorded one."""
+
+import json
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+from rig.backends import leg_driver, leg_link
+from rig.errors import ProfileError
+from rig.imu.profile import decode_orientation, load_imu_profile
+from rig.zebro.profile import load_leg_profile
+from support.imported_files import COLUMNS, T, everything
+from zebro_lab.files.errors import AlreadyExists
+from zebro_lab.files.provenance import file_hash
+from zebro_lab.mcap.raw_log import read_raw_log
+from zebro_lab.runs.manifest import profile_file, read_manifest
+from zebro_lab.runs.stage import list_runs
+
+
+def test_a_run_says_what_it_was_made_from_and_is_listed(files, tmp_path):
+    folder, notes = everything(files, tmp_path)
+    manifest = read_manifest(folder)
+    assert folder.name == "20260304T050607Z_walk_circle"
+    assert (manifest.exit_status, manifest.source) == ("imported", "sim:other-lab")
+    names = ["legs.csv", "imu.csv", "track.csv", "robot.toml", "columns.toml"]
+    assert manifest.inputs == {str(files / n): file_hash(files / n) for n in names}
+    (run,) = list_runs(tmp_path / "data")
+    assert (run.state, run.duration) == ("imported", "2.0 s")
+    assert run.samples == "100 /legs/raw, 100 /imu/raw"
+    assert any("without yaw" in note for note in notes)
+
+
+def test_orientation_is_decoded_as_of_any_imu(files, tmp_path):
+    folder, _ = everything(files, tmp_path)
+    stream = read_raw_log(folder / "log.mcap").streams["/imu/raw"]
+    profile = load_imu_profile(str(profile_file(folder, "imu")))
+    seen = decode_orientation(profile, stream)
+    np.testing.assert_allclose(seen.roll, 0.1 * np.sin(T), atol=1e-12)
+    np.testing.assert_allclose(seen.pitch, 0.2 * np.cos(T), atol=1e-12)
+    np.testing.assert_allclose(stream.counts[:, 6], np.radians(5.0))
+    assert np.isnan(stream.counts[:, [4, 5, 7, 8, 9]]).all()
+
+
+def test_nobody_stated_a_source_so_that_the_file_is_it(files, tmp_path):
+    (files / "columns.toml").write_text(COLUMNS.replace('source = "sim:other-lab"', ""))
+    folder, _ = everything(files, tmp_path)
+    assert read_manifest(folder).source == "import:legs.csv+imu.csv"
+
+
+def test_a_run_that_is_there_is_not_written_over(files, tmp_path):
+    folder, _ = everything(files, tmp_path)
+    before = (folder / "run.json").read_bytes()
+    with pytest.raises(AlreadyExists, match="another label"):
+        everything(files, tmp_path)
+    assert (folder / "run.json").read_bytes() == before
+
+
+def test_the_profile_of_a_table_is_no_devices(files, tmp_path):
+    folder, _ = everything(files, tmp_path)
+    profile = load_leg_profile(str(profile_file(folder, "legs")))
+    for make in (lambda: leg_link(profile, "x"), lambda: leg_driver(profile, None)):
+        with pytest.raises(ProfileError, match="not a device"):
+            make()
+
+
+def test_the_log_shows_angles_and_orientation_to_any_viewer(files, tmp_path):
+    from mcap.reader import make_reader
+    from mcap_ros2.decoder import DecoderFactory
+
+    folder, _ = everything(files, tmp_path)
+    with (folder / "log.mcap").open("rb") as file:
+        reader = make_reader(file, decoder_factories=[DecoderFactory()])
+        shown = {c.topic: m for _, c, _, m in reader.iter_decoded_messages()}
+    assert len(shown["/legs/joint_states"].position) == 6
+    q = shown["/imu/data"].orientation
+    roll = Rotation.from_quat([q.x, q.y, q.z, q.w]).as_euler("ZYX")[2]
+    assert roll == pytest.approx(0.1 * np.sin(T[-1]))
+    assert json.loads((folder / "track" / "manifest.json").read_text())["kind"] == "track"

@@ -1,0 +1,51 @@
+# SPDX-License-Identifier: MIT
+"""Messages of errors are one line, begin with the place, and errors carry their values."""
+
+import pytest
+
+from zebro_lab.files import errors
+from zebro_lab.files.errors import DataError, SettingsError, UnitError, ZebroLabError
+
+
+@pytest.mark.parametrize(
+    ("place", "expected"),
+    [
+        ({}, "is bad"),
+        ({"file": "a.csv"}, "a.csv: is bad"),
+        ({"file": "a.csv", "column": "FZ", "row": 3}, "a.csv, column 'FZ', row 3: is bad"),
+        ({"column": "FZ", "row": 3, "line": 4}, "column 'FZ', row 3 (line 4): is bad"),
+    ],
+)
+def test_a_fault_of_data_is_placed_by_what_is_known_of_its_place(place, expected):
+    assert str(DataError("is bad", **place)) == expected
+
+
+def test_a_fault_of_data_carries_what_was_found():
+    error = DataError("is bad", file="a", column="b", row=1, line=2, value=-0.3, unit="N")
+    found = (error.problem, error.file, error.column, error.row, error.line, error.value)
+    assert found == ("is bad", "a", "b", 1, 2, -0.3)
+    assert error.unit == "N"
+
+
+def test_a_fault_of_settings_is_placed_by_file_and_key():
+    assert str(SettingsError("is 3", file="x.toml", key="a.b")) == "x.toml, a.b: is 3"
+    assert str(SettingsError("is 3", key="--seed")) == "--seed: is 3"
+    assert UnitError("unknown unit 'm2'", unit="m2").unit == "m2"
+
+
+@pytest.mark.parametrize("error", [DataError, SettingsError])
+def test_messages_of_other_libraries_become_one_short_line_without_control_characters(error):
+    message = str(error("first\n\tsecond \x1b[31m" + "x" * 5000, file="a"))
+    assert message.startswith(r"a: first second \x1b[31m")
+    assert len(message) < 1100
+
+
+@pytest.mark.parametrize(
+    ("name", "builtin"),
+    [("DataError", ValueError), ("SettingsError", ValueError), ("UnitError", ValueError),
+     ("NotFound", FileNotFoundError), ("AlreadyExists", FileExistsError),
+     ("NotWritten", OSError), ("RecordingError", OSError)],
+)  # fmt: skip
+def test_every_error_is_ours_and_also_pythons(name, builtin):
+    assert issubclass(getattr(errors, name), ZebroLabError)
+    assert issubclass(getattr(errors, name), builtin)

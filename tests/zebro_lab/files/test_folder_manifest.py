@@ -1,0 +1,48 @@
+# SPDX-License-Identifier: MIT
+"""The manifest of a result folder is read if it is of the expected kind and schema."""
+
+import json
+
+import pytest
+
+from zebro_lab.files.errors import DataError, NotFound
+from zebro_lab.files.folder_manifest import read_folder_manifest, read_json_object
+
+
+def read(file):
+    return read_folder_manifest(file, of="walk", kinds=("walk", "prediction"), schema=2)
+
+
+@pytest.fixture
+def file(tmp_path):
+    return tmp_path / "manifest.json"
+
+
+@pytest.mark.parametrize("kind", ["walk", "prediction"])
+def test_a_manifest_of_an_expected_kind_is_returned_whole(file, kind):
+    content = {"kind": kind, "schema": 2, "settings": {"dt": 0.01}}
+    file.write_text(json.dumps(content))
+    assert read(file) == content
+
+
+@pytest.mark.parametrize(
+    ("content", "message"),
+    [
+        ({"kind": "track", "schema": 2}, "is not of a walk; expected kind walk or prediction"),
+        ({"kind": ["walk"], "schema": 2}, "is not of a walk"),
+        ({"schema": 2}, "is not of a walk"),
+        ({"kind": "walk", "schema": 3}, "has schema 3, this version reads 2; update zebro-lab"),
+        ({"kind": "walk"}, "has schema None"),
+        (["kind", "walk"], "is not a JSON object"),
+    ],
+)
+def test_a_manifest_of_another_kind_or_schema_is_refused(file, content, message):
+    file.write_text(json.dumps(content))
+    with pytest.raises(DataError, match=message) as raised:
+        read(file)
+    assert raised.value.file == file
+
+
+def test_a_folder_without_its_file_is_none_of_the_kind(file):
+    with pytest.raises(NotFound, match=r"is no run folder: it has no manifest\.json"):
+        read_json_object(file, of="run folder")

@@ -1,0 +1,125 @@
+# SPDX-License-Identifier: MIT
+"""A single file is overwritten only if the same command wrote it."""
+
+import json
+import os
+from datetime import UTC, datetime
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image
+from PIL.PngImagePlugin import PngInfo
+
+from support.table_runs import slip_rig_run
+from support.written_tracks import content
+from zebro_lab.files.errors import ZebroLabError
+from zebro_lab.mcap.slip_rig_log import SlipRigTable
+from zebro_lab.report.request import ReportRequest
+from zebro_lab.report.stage import report
+from zebro_lab.runs.plot_stage import plot_run
+from zebro_lab.track.annotate_stage import draw_grid
+
+START = datetime(2026, 3, 4, 5, 6, 7, tzinfo=UTC)
+
+
+@pytest.fixture
+def run(tmp_path) -> Path:
+    """Return a run folder of the slip rig."""
+    rng, n = np.random.default_rng(1), 200
+    table = SlipRigTable(
+        np.arange(n) * 1e-3, 12 + rng.normal(size=n) / 10, 2 + rng.normal(size=n) / 10,
+        6 + rng.normal(size=n) / 10, rng.normal(size=n),
+    )  # fmt: skip
+    return slip_rig_run(
+        tmp_path / "data", table, label="sweep", material="POM", operator="a", source="real",
+        start=START, radius_leg=0.035, radius_ground=0.12,
+    )  # fmt: skip
+
+
+@pytest.fixture
+def photos(tmp_path) -> Path:
+    folder = tmp_path / "photos"
+    folder.mkdir()
+    Image.new("RGB", (64, 48), "white").save(folder / "p01.png")
+    return folder
+
+
+@pytest.mark.parametrize("name", ["log.mcap", "run.json"])
+def test_a_report_does_not_replace_what_it_reports_on(run, name):
+    before = content(run)
+    request = ReportRequest(run, run / "no-calibration", run / name)
+    with pytest.raises(ZebroLabError, match=name):
+        report(request, made=START)
+    assert content(run) == before
+
+
+@pytest.mark.parametrize("link", [os.symlink, os.link])
+def test_a_report_does_not_replace_its_input_through_a_link(run, tmp_path, link):
+    out = tmp_path / "report.html"
+    link(run / "log.mcap", out)
+    with pytest.raises(ZebroLabError, match=r"report\.html"):
+        report(ReportRequest(run, run / "none", out), made=START)
+    assert out.samefile(run / "log.mcap")
+
+
+def test_a_foreign_page_is_kept(run, tmp_path):
+    out = tmp_path / "index.html"
+    out.write_text("<!DOCTYPE html>\n<html><body>My thesis</body></html>")
+    with pytest.raises(ZebroLabError, match=r"index\.html"):
+        report(ReportRequest(run, run / "none", out), made=START)
+    assert "My thesis" in out.read_text()
+
+
+@pytest.mark.timeout(60)
+def test_a_manifest_that_is_a_fifo_beside_a_page_is_not_waited_for(run, tmp_path):
+    page = tmp_path / "r.html"
+    report(ReportRequest(run, run / "none", page), made=START)
+    os.mkfifo(tmp_path / "manifest.json")
+    report(ReportRequest(run, run / "none", page), made=START)
+
+
+def test_a_plot_keeps_a_foreign_picture(run, tmp_path):
+    out = tmp_path / "robot.png"
+    Image.new("RGB", (8, 8), "red").save(out)
+    before = out.read_bytes()
+    with pytest.raises(ZebroLabError, match=r"robot\.png"):
+        plot_run(run, out=out)
+    assert out.read_bytes() == before
+
+
+def test_a_grid_does_not_replace_its_photograph(photos):
+    before = content(photos)
+    with pytest.raises(ZebroLabError, match=r"p01\.png"):
+        draw_grid(photos, "p01.png", photos / "p01.png")
+    assert content(photos) == before
+
+
+def test_a_grid_is_not_written_among_the_photographs_that_are_tracked(photos):
+    with pytest.raises(ZebroLabError, match="photograph"):
+        draw_grid(photos, "p01.png", photos / "grid.png")
+    assert list(content(photos)) == ["p01.png"]
+
+
+def test_results_of_the_same_command_are_replaced(run, photos, compared, tmp_path):
+    for _ in range(2):
+        compared(tmp_path / "out")
+        report(ReportRequest(run, run / "none", tmp_path / "r.html"), made=START)
+        plot_run(run, out=tmp_path / "p.png")
+        draw_grid(photos, "p01.png", tmp_path / "g.png")
+
+
+def test_a_picture_is_known_by_its_command_and_one_of_a_result_is_kept(run, photos, tmp_path):
+    grid = tmp_path / "grid.png"
+    draw_grid(photos, "p01.png", grid)
+    with pytest.raises(ZebroLabError, match="not made by plot"):
+        plot_run(run, out=grid)
+    early = tmp_path / "early.png"
+    words = PngInfo()
+    words.add_text("Software", "zebro-lab")
+    Image.new("RGB", (8, 8)).save(early, pnginfo=words)
+    (tmp_path / "manifest.json").write_text(json.dumps({"outputs": {"early.png": "0"}}))
+    with pytest.raises(ZebroLabError, match="belongs to the result"):
+        plot_run(run, out=early)
+    (tmp_path / "manifest.json").unlink()
+    plot_run(run, out=early)

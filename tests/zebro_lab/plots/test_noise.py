@@ -1,0 +1,66 @@
+# SPDX-License-Identifier: MIT
+"""Residuals are shown as they are, and never paired across runs."""
+
+import numpy as np
+import pytest
+
+from zebro_lab.plots import (
+    residuals,
+)
+from zebro_lab.plots.noise import _autocorrelation
+
+
+def test_autocorrelation_never_pairs_blocks_of_two_runs():
+    whitened = np.array([1.0, 1.0, -1.0, -1.0, 1.0, 1.0])
+    lags, correlations, counts = _autocorrelation(whitened, np.array([0, 0, 1, 1, 2, 2]))
+    assert (lags.tolist(), correlations.tolist(), counts.tolist()) == ([1], [1.0], [3])
+
+
+def test_autocorrelation_of_an_ar1_series_decays_as_its_powers():
+    rng, series = np.random.default_rng(5), np.zeros(20_000)
+    for index in range(1, len(series)):
+        series[index] = 0.6 * series[index - 1] + rng.normal()
+    lags, correlations, _ = _autocorrelation(series, np.zeros(len(series), dtype=int))
+    np.testing.assert_allclose(correlations, 0.6**lags, atol=0.05)
+
+
+def test_runs_of_one_block_leave_a_note_in_place_of_lags(few):
+    panel = few.picture("residuals").axes[2]
+    assert [text.get_text() for text in panel.texts] == ["no run has two blocks"]
+
+
+def test_wild_residuals_are_counted_and_do_not_squeeze_the_histogram(one_load):
+    whitened = np.append(np.zeros(60), [50.0, -1e6])
+    marks = {"run_score": np.array([0.0, 3.0]), "simulated": True}
+    figure = residuals(one_load.blocks, whitened=whitened, **marks)
+    assert figure.axes[1].get_xlim()[1] < 10
+    legends = [axes.get_legend() for axes in figure.axes]
+    entries = [text.get_text() for each in legends if each for text in each.get_texts()]
+    assert "blocks (2 beyond ±8 at the edges)" in entries
+    assert "central 90 %, 1 of 2 outside" in entries
+
+
+def test_lags_are_drawn_with_the_band_of_white_noise(rig):
+    rng = np.random.default_rng(1)
+    n = len(rig.blocks.slip)
+    figure = residuals(rig.blocks, whitened=rng.normal(size=n), run_score=rng.normal(size=5),
+                       simulated=True)  # fmt: skip
+    lags = figure.axes[2]
+    points = next(line for line in lags.lines if line.get_marker() == "o")
+    assert points.get_xdata().tolist() == [1, 2]  # three blocks a run
+    chance = [bar.get_height() / 2 for bar in lags.patches]
+    runs = int(rig.blocks.run[-1]) + 1
+    pairs = [n - runs, n - 2 * runs]  # of neighbours, and of next neighbours
+    assert chance[0] == pytest.approx(1.96 / np.sqrt(pairs[0]), rel=0.02)
+    assert chance[1] == pytest.approx(1.96 / np.sqrt(pairs[1]), rel=0.05)
+    assert (lags.get_xlabel(), lags.get_ylabel()) == (
+        "lag within a run [blocks]", "autocorrelation [-]",
+    )  # fmt: skip
+
+
+def test_runs_are_drawn_by_rank(rig):
+    score = np.array([1.0, -2.0, 0.5])
+    figure = residuals(rig.blocks, whitened=np.zeros(len(rig.blocks.slip)) + 1e-3,
+                       run_score=score, simulated=True)  # fmt: skip
+    points = next(line for line in figure.axes[3].lines if line.get_marker() == "o")
+    np.testing.assert_array_equal(points.get_xydata(), [[1, -2.0], [2, 0.5], [3, 1.0]])

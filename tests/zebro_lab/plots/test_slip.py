@@ -1,0 +1,68 @@
+# SPDX-License-Identifier: MIT
+"""Blocks and curves stand at the load that they belong to."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from support.calibration_scenes import RIG_LOADS, labelled_lines, scatters
+
+
+def test_every_block_is_drawn_once_and_at_its_nearest_load(rig):
+    wholes = rig.curves().axes[::2]
+    for load, axes in zip(RIG_LOADS, wholes, strict=True):
+        points = np.concatenate([np.asarray(each.get_offsets()) for each in scatters(axes)])
+        mine = np.argmin(np.abs(rig.blocks.normal_force[:, None] - RIG_LOADS), axis=1)
+        rows = RIG_LOADS[mine] == load
+        expected = np.column_stack([rig.blocks.slip[rows], rig.blocks.traction_force[rows]])
+        np.testing.assert_allclose(sorted(points.tolist()), sorted(expected.tolist()))
+
+
+def test_blocks_far_off_their_load_are_hollow(one_load):
+    load = one_load.blocks.normal_force.copy()
+    load[::4] *= 1.5
+    shifted = replace(one_load, blocks=replace(one_load.blocks, normal_force=load))
+    full, hollow = scatters(shifted.curves().axes[0])
+    assert (len(full.get_offsets()), len(hollow.get_offsets())) == (46, 16)
+    assert len(hollow.get_facecolors()) == 0
+    assert hollow.get_label() == "block means, load more than 10 % off"
+
+
+def test_the_median_of_one_repeated_draw_is_the_law(tyre):
+    repeated = replace(tyre, draws=np.tile(tyre.truth, (5, 1)))
+    medians = labelled_lines(repeated.curves(), "posterior median")
+    for load, line in zip(tyre.load_levels, medians, strict=True):
+        slip, force = line.get_data()
+        np.testing.assert_allclose(force, tyre.law.force(slip, load, tyre.truth))
+
+
+def test_peaks_are_marked_where_the_law_has_them(any_scene):
+    repeated = replace(any_scene, draws=np.tile(any_scene.truth, (5, 1)))
+    marks = labelled_lines(repeated.curves(), "peak")
+    expected = any_scene.law.peak_slip(any_scene.load_levels, any_scene.truth)
+    found = np.unique([abs(slip) for mark in marks for slip in mark.get_xdata()])
+    step = np.ptp(any_scene.blocks.slip) / 249
+    assert len(found)
+    for slip in found:
+        assert np.abs(expected - slip).min() <= step
+
+
+def test_a_narrow_peak_gets_a_close_up_and_a_wide_one_none(rig, one_load, tyre):
+    assert (len(rig.curves().axes), len(one_load.curves().axes)) == (8, 2)
+    assert rig.curves().axes[1].get_xlim()[1] == pytest.approx(0.15)
+    assert len(tyre.curves().axes) == 4
+
+
+@pytest.mark.parametrize("count", [1, 3, 5, 8])
+def test_up_to_eight_loads_have_a_panel_each(rig, count):
+    figure = replace(rig, load_levels=np.linspace(2, 16, count)).curves()
+    assert len(figure.axes) == 2 * count
+    assert max(figure.get_size_inches()) < 14
+
+
+def test_a_load_without_blocks_still_shows_its_curve(one_load):
+    figure = replace(one_load, load_levels=np.array([6.63, 100.0])).curves()
+    titles = [axes.get_title(loc="left") for axes in figure.axes]
+    assert "load 100 N (no blocks)" in titles
+    assert len(labelled_lines(figure, "posterior median")) == 4

@@ -1,0 +1,58 @@
+# SPDX-License-Identifier: MIT
+"""Each leg has the panel, the contact and the force that are its own."""
+
+from dataclasses import replace
+
+import numpy as np
+from hypothesis import given
+from hypothesis import strategies as st
+from hypothesis.extra.numpy import arrays
+
+from zebro_lab.plots.walk_legs import (
+    gantt,
+    normal_forces,
+    paired_traction,
+    stances,
+)
+
+
+def test_legs_are_where_they_are_on_the_robot(walked):
+    figure = normal_forces(walked, title="A walk")
+    names = [axes.get_title(loc="left") for axes in figure.axes]
+    assert names[0] == "leg 1, left front"
+    assert names[5] == "leg 6, right rear"
+    for leg, axes in enumerate(figure.axes):  # the first line is zero
+        np.testing.assert_array_equal(axes.lines[1].get_ydata(), walked.normal_force[:, leg])
+
+
+@given(arrays(bool, st.integers(1, 30)))
+def test_stances_are_where_the_contact_is(contact):
+    t = np.arange(float(len(contact)))
+    found = np.zeros(len(contact), dtype=bool)
+    for start, end in stances(t, contact):
+        found[(t >= start) & ((t < end) | ((t == t[-1]) & (end == t[-1]) & contact[-1]))] = True
+    np.testing.assert_array_equal(found, contact)
+
+
+def test_paired_traction_leaves_nothing_of_what_alternates(walked):
+    sign = np.where(np.arange(len(walked.t)) % 2 == 0, 5.0, -5.0)[:, None, None]
+    chatter = replace(walked, traction_force=walked.traction_force + sign)
+    for axes, noisy in zip(
+        *(paired_traction(p, title="").axes for p in (walked, chatter)), strict=True
+    ):
+        np.testing.assert_allclose(axes.lines[1].get_ydata(), noisy.lines[1].get_ydata(), atol=1e-9)
+
+
+def test_bars_of_contact_are_the_stances_of_each_leg(walked):
+    (axes,) = gantt(walked, title="A walk").axes
+    assert len(axes.collections) == 6
+    for leg, bars in enumerate(axes.collections):
+        boxes = [path.get_extents() for path in bars.get_paths()]
+        drawn = [(box.x0, box.x1) for box in boxes]
+        np.testing.assert_allclose(drawn, stances(walked.t, walked.contact[:, leg]))
+        assert all(box.y0 < leg + 1 < box.y1 for box in boxes)
+    low, high = axes.get_ylim()
+    assert low > high  # leg 1 on top
+    names = [label.get_text() for label in axes.get_yticklabels()]
+    assert names[0] == "1  left front"
+    assert (axes.get_xlabel(), axes.get_xlim()) == ("time [s]", (walked.t[0], walked.t[-1]))

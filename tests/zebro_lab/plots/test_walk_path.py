@@ -1,0 +1,35 @@
+# SPDX-License-Identifier: MIT
+"""The body is drawn where and when it was there."""
+
+import numpy as np
+
+from model.robot import Robot
+from zebro_lab.plots.walk_path import motion, orientation, path_with_snapshots
+
+
+def test_snapshots_show_the_body_where_it_is(walked):
+    figure = path_with_snapshots(walked, Robot(), title="A walk")
+    axes = figure.axes[0]
+    assert axes.get_aspect() == 1.0
+    bodies = [patch.get_path().vertices for patch in axes.patches]
+    assert len(bodies) == 6
+    for body, index in zip(bodies[::5], (0, -1), strict=True):
+        middle = (body.min(axis=0) + body.max(axis=0)) / 2
+        np.testing.assert_allclose(middle, walked.position[index, :2], atol=0.03)
+
+
+def test_motion_is_drawn_with_its_derivatives(walked):
+    panels = np.reshape(motion(walked, title="A walk").axes, (3, 3))
+    for column in range(3):
+        position, speed, _ = (axes.lines[0].get_ydata() for axes in panels[:, column])
+        np.testing.assert_array_equal(position, walked.position[:, column])
+        np.testing.assert_allclose(speed, np.gradient(position, walked.t), atol=1e-12)
+    labels = [axes.get_ylabel() for axes in panels[:, 0]]
+    assert labels == ["position [m]", "velocity [m/s]", "acceleration [m/s²]"]
+
+
+def test_angles_are_drawn_in_degrees(walked):
+    panels = np.reshape(orientation(walked, title="A walk").axes, (3, 3))
+    for column, axes in enumerate(panels[0]):
+        shown = axes.lines[0].get_ydata()
+        np.testing.assert_allclose(shown, np.degrees(walked.orientation[:, column]))

@@ -1,0 +1,71 @@
+# SPDX-License-Identifier: MIT
+"""A page is escaped, says what is simulated, and tells its parts to every reader."""
+
+import base64
+import hashlib
+import json
+import re
+
+from support.report_pages import HOSTILE, MADE, made
+from zebro_lab.report.page import render_report
+from zebro_lab.report.sources import find_sources
+
+
+def test_errors_and_bands_of_every_model_are_in_the_tables(walk):
+    rows = json.loads((walk / "validation/manifest.json").read_text())["runs"]["run"]
+    keys = {attrs["data-key"] for attrs, _ in made(walk).numbers}
+    for model in rows:
+        assert {
+            f"/runs/run/{model}/{name}" for name in ("ate_m", "yaw_rms_deg", "energy_m")
+        } <= keys
+    assert "/runs/run/prediction/coverage90_yaw" in keys
+    assert "/imu/run/pitch_rms_unbiased_deg" in keys
+
+
+def test_what_operators_write_is_text_and_never_markup(walk):
+    page = made(walk, title=HOSTILE)
+    assert HOSTILE in page.text
+    assert "p<3>.jpg" in page.text
+    assert not page.all("script")
+
+
+def test_simulated_sources_stand_in_the_title_and_on_top(walk):
+    page = made(walk)
+    title = (walk.parent / "report.html").read_text().split("<title>")[1]
+    assert title.startswith("SIMULATED")
+    assert "SIMULATED: sim:robot, sim:test" in page.text
+
+
+def test_pages_tell_their_parts_to_readers_and_screen_readers(walk):
+    page = made(walk)
+    assert page.all("html")[0]["lang"] == "en"
+    assert "width=device-width" in str(page.all("meta"))
+    ids = {attrs["id"] for _, attrs in page.tags if "id" in attrs}
+    assert {attrs["href"][1:] for attrs in page.all("a")} <= ids
+    assert {attrs["aria-labelledby"] for attrs in page.all("section")} <= ids
+    assert all(attrs.get("scope") in ("col", "row") for attrs in page.all("th"))
+
+
+def test_the_page_is_the_same_whenever_it_is_made_but_for_its_date(walk):
+    sources = find_sources(walk, calibration=walk.parent / "calibration")
+    first, second = (
+        render_report(sources, title="A walk", made=MADE.replace(year=year))
+        for year in (2026, 2027)
+    )
+    assert first != second
+    assert first.replace("2026-01-02", "2027-01-02") == second
+    assert "<h1" in first
+    assert "A walk" in first
+
+
+def test_the_policy_allows_the_pages_own_style_and_no_other(walk):
+    (style,) = re.findall(r"<style>(.*?)</style>", html_of(walk), re.DOTALL)
+    digest = base64.b64encode(hashlib.sha256(style.encode()).digest()).decode()
+    policy = next(meta["content"] for meta in made(walk).all("meta") if "http-equiv" in meta)
+    assert f"style-src 'sha256-{digest}'" in policy
+    assert "default-src 'none'" in policy
+
+
+def html_of(walk) -> str:
+    sources = find_sources(walk, calibration=walk.parent / "calibration")
+    return render_report(sources, title="A walk", made=MADE)

@@ -1,0 +1,66 @@
+# SPDX-License-Identifier: MIT
+"""Orientation comes from quaternions or from angles, the same by both."""
+
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from scipy.spatial.transform import Rotation
+
+from zebro_lab.files.errors import DataError
+from zebro_lab.robot.imu_log import IMU_UNITS, ImuLog, imu_of_table
+from zebro_lab.tables.mapped_columns import canonical_columns
+from zebro_lab.tables.raw_table import RawTable
+
+T = [0.0, 0.1]
+
+
+def read(**columns) -> ImuLog:
+    series = {name: pd.Series(values) for name, values in ({"t": T} | columns).items()}
+    return imu_of_table(RawTable(Path("imu.csv"), series), canonical_columns(IMU_UNITS))
+
+
+def orientation(log: ImuLog) -> np.ndarray:
+    return vars(log)["values"][:, :4]
+
+
+@given(roll=st.floats(-3, 3), pitch=st.floats(-1.5, 1.5), yaw=st.floats(-3, 3))
+def test_angles_and_their_quaternion_are_the_same_orientation(roll, pitch, yaw):
+    by_angles = read(roll=[0.0, roll], pitch=[0.0, pitch], yaw=[0.0, yaw])
+    quaternion = dict(zip(("qw", "qx", "qy", "qz"), orientation(by_angles).T, strict=True))
+    np.testing.assert_array_equal(orientation(read(**quaternion)), orientation(by_angles))
+    found = Rotation.from_quat(orientation(by_angles)[1], scalar_first=True).as_matrix()
+    expected = (Rotation.from_rotvec([0, 0, yaw]) * Rotation.from_rotvec([0, pitch, 0])
+                * Rotation.from_rotvec([roll, 0, 0])).as_matrix()  # fmt: skip
+    np.testing.assert_allclose(found, expected, atol=1e-12)
+    assert by_angles.notes == ()
+
+
+def test_what_is_not_measured_is_nan_and_a_missing_yaw_is_noted():
+    log = read(roll=[0.0, 0.0], pitch=[0.0, 0.0], rate_y=[1.0, 2.0], force_z=[9.8, 9.9])
+    np.testing.assert_array_equal(orientation(log), [[1, 0, 0, 0]] * 2)
+    np.testing.assert_array_equal(
+        vars(log)["values"][:, 4:], [[np.nan, 1.0, np.nan, np.nan, np.nan, 9.8],
+                            [np.nan, 2.0, np.nan, np.nan, np.nan, 9.9]],
+    )  # fmt: skip
+    np.testing.assert_array_equal(log.t, T)
+    assert log.notes == ("imu.csv: without yaw; its heading is kept as 0",)
+
+
+@pytest.mark.parametrize(
+    ("columns", "message"),
+    [
+        ({"qw": [1.0, 0.9], "qx": [0.0, 0.0], "qy": [0.0, 0.0], "qz": [0.0, 0.0]},
+         "column 'qw', row 2: the quaternion has length 0.9; expected 1"),
+        ({"qw": [1.0, 1.0], "qx": [0.0, 0.0], "qy": [0.0, 0.0]}, "'qz': missing, the qz of the b"),
+        ({"roll": [0.0, 0.0]}, "'pitch': missing, the pitch of the body"),
+        ({"heading": [0.0, 0.0]}, "holds no orientation; expected qw, qx, qy, qz, or roll and p"),
+        ({"t": [0.1, 0.1], "roll": [0.0, 0.0], "pitch": [0.0, 0.0]}, "expected increasing times"),
+    ],
+)  # fmt: skip
+def test_what_is_no_orientation_is_named(columns, message):
+    with pytest.raises(DataError, match=message):
+        read(**columns)

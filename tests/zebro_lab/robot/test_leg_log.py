@@ -1,0 +1,81 @@
+# SPDX-License-Identifier: MIT
+"""Leg angles of a table are unwrapped, and no fault passes."""
+
+import dataclasses
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from support.leg_tables import leg_table
+from zebro_lab.files.errors import DataError
+from zebro_lab.robot.leg_log import ANGLES, LEG_UNITS, LegLog, legs_of_table
+from zebro_lab.tables.mapped_columns import canonical_columns
+from zebro_lab.tables.raw_table import RawTable
+from zebro_lab.tables.table_files import read_table_file
+
+
+def read(table: pd.DataFrame, folder: Path, **options) -> LegLog:
+    table.to_csv(folder / "legs.csv", index=False)
+    raw = read_table_file(folder / "legs.csv")
+    return legs_of_table(raw, canonical_columns(LEG_UNITS), files=[raw.path], **options)
+
+
+def in_memory(table: pd.DataFrame) -> RawTable:
+    return RawTable(Path("legs.csv"), {name: table[name] for name in table})
+
+
+@given(start=st.floats(-10, 10))
+def test_angles_wrapped_to_a_turn_are_unwrapped(start):
+    table, angles = leg_table(), list(ANGLES)
+    wrapped = table.assign(**(table[angles] + start) % (2 * np.pi))
+    found = legs_of_table(
+        in_memory(wrapped), canonical_columns(LEG_UNITS), files=[Path("legs.csv")]
+    )
+    growth = table[angles].to_numpy() - table[angles].to_numpy()[0]
+    theta = found.reference.theta
+    np.testing.assert_allclose(theta - theta[0], growth, atol=1e-9)
+
+
+def test_signs_of_the_robots_legs_are_applied_and_backward_legs_noted(tmp_path):
+    found = read(leg_table(), tmp_path, leg_sign=(1, -1, 1, 1, 1, 1))
+    np.testing.assert_allclose(found.reference.theta[:, 1], -leg_table().theta2)
+    assert found.notes[0] == "leg log: 200 samples over 1.99 s, about 100 Hz"
+    assert "legs 2 turn backwards" in found.notes[-1]
+
+
+def test_the_source_of_the_table_is_kept_and_unknown_without_one():
+    for source, expected in (("sim:zebro", "sim:zebro"), (None, "unknown")):
+        raw = dataclasses.replace(in_memory(leg_table()), source=source)
+        found = legs_of_table(raw, canonical_columns(LEG_UNITS), files=[raw.path])
+        assert (found.source, found.files) == (expected, (raw.path,))
+
+
+def without(name: str, row: int, value: float = np.nan):
+    return lambda table: table.assign(**{name: table[name].where(table.index != row, value)})
+
+
+FAULTS = {
+    "missing leg": (lambda t: t.drop(columns="theta4"), "column 'theta4': missing, the angle of l"),
+    "missing time": (lambda t: t.drop(columns="t"), "column 't': missing, the time"),
+    "empty cell": (without("theta2", 7), "column 'theta2', row 8 (line 9): is empty"),
+    "infinite angle": (without("theta5", 0, np.inf), "column 'theta5', row 1 (line 2): is infinit"),
+    "reversed time": (lambda t: t.iloc[::-1], "column 't', row 2 (line 3): time goes from 1.99 to"),
+    "repeated time": (without("t", 5, 0.04), "column 't', row 6 (line 7): time goes from 0.04 to"),
+    "gap": (lambda t: t.drop(index=range(50, 60)), "column 't', row 51 (line 52): time jumps from"),
+    "half a turn": (lambda t: t.iloc[::90], "column 'theta1', row 2 (line 3): leg 1 turns by 2.7"),
+    "one row": (lambda t: t.head(1), "has 1 row; a leg log needs two or more"),
+    "text": (lambda t: t.assign(theta1="x"), "column 'theta1', row 1 (line 2): 'x' is not a num"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(("spoil", "message"), FAULTS.values(), ids=FAULTS)
+def test_fault_is_one_line_that_names_file_column_and_row(spoil, message, tmp_path):
+    with pytest.raises(DataError) as caught:
+        read(spoil(leg_table()), tmp_path)
+    assert message in str(caught.value)
+    assert str(tmp_path / "legs.csv") in str(caught.value)
+    assert "\n" not in str(caught.value)

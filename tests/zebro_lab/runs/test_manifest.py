@@ -1,0 +1,92 @@
+# SPDX-License-Identifier: MIT
+"""A run's manifest is read back as it was written, and what is wrong in it is named."""
+
+import json
+from pathlib import Path
+
+import pytest
+
+from support.bounded_reading import refusal
+from zebro_lab.runs.manifest import (
+    RunManifest,
+    manifest_text,
+    read_manifest,
+    software_version,
+    write_manifest,
+)
+
+RUN = {
+    "schema_version": 1, "kind": "walk", "label": "x", "material": "x", "operator": "x",
+    "source": "real", "start": "2026-01-01T00:00:00+00:00", "exit_status": "completed",
+    "software": {"version": "1"}, "constants": {"radius_leg": 0.035}, "streams": {"/a/raw": 3},
+    "stop": "2026-01-01T00:00:01+00:00",
+}  # fmt: skip
+
+
+def run_json(folder: Path, text: str) -> Path:
+    (folder / "run.json").write_text(text)
+    return folder
+
+
+@pytest.mark.parametrize(
+    "start", ["yesterday", "", "2026-01-01", "2026-01-01T00:00:00", "9999-99-99T99:99:99+00:00"]
+)
+def test_a_start_that_is_no_moment_with_a_time_zone_is_refused(start, tmp_path):
+    assert "'start'" in refusal(
+        read_manifest, run_json(tmp_path, json.dumps(RUN | {"start": start}))
+    )
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        {"stop": "tomorrow"},
+        {"streams": {"/a/raw": "many"}},
+        {"streams": {"/a/raw": [1]}},
+        {"excluded": {"why": ["x"]}},
+        {"constants": {"radius_leg": "wide"}},
+        {"profiles": {"legs": 3}},
+        {"counters": {"legs": 3}},
+        {"clocks": {"legs": {"offset": "x"}}},
+    ],
+    ids=lambda change: next(iter(change)),
+)
+def test_a_value_of_another_type_in_run_json_is_refused(change, tmp_path):
+    assert f"'{next(iter(change))}'" in refusal(
+        read_manifest, run_json(tmp_path, json.dumps(RUN | change))
+    )
+
+
+def test_half_a_pair_of_surrogates_is_refused(tmp_path):
+    folder = run_json(tmp_path, json.dumps(RUN | {"label": "half \ud800"}))
+    assert "unpaired surrogate" in refusal(read_manifest, folder)
+
+
+def test_a_manifest_is_read_back_as_it_was_written(tmp_path):
+    written = RunManifest(
+        kind="walk", label="caf\udce9", material="x", operator="ü", source="sim:zebro",
+        start="2026-01-01T00:00:00+00:00", stop=None, exit_status="recording",
+        software=software_version(), constants={}, streams={"/legs/raw": 3},
+        exclusions=({"did": "excluded", "why": "belt"},), duration={"/legs/raw": 0.5},
+    )  # fmt: skip
+    write_manifest(tmp_path, written)
+    read = read_manifest(tmp_path)
+    assert read.label == r"caf\udce9"
+    assert manifest_text(read) == manifest_text(written)
+    assert "truth" not in (tmp_path / "run.json").read_text()
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"schema_version": 2}, "schema_version is 2, expected 1"),
+        ({"schema_version": None}, "schema_version is None"),
+        ({"operator": 3}, "'operator' is 3, expected a text"),
+        ({"kind": "slip_rig"}, "unknown kind 'slip_rig'; did you mean 'slip-rig'"),
+        ({"exclusions": [{"did": "excluded"}]}, "expected did and why"),
+    ],
+)
+def test_a_manifest_of_another_form_is_named(change, message, tmp_path):
+    found = refusal(read_manifest, run_json(tmp_path, json.dumps(RUN | change)))
+    assert found.startswith(str(tmp_path / "run.json"))
+    assert message in found

@@ -1,0 +1,58 @@
+# SPDX-License-Identifier: MIT
+"""Leg angles of a recorded run are those that its picture shows, and damage is told."""
+
+import shutil
+
+import numpy as np
+import pytest
+
+from support.written_runs import make_run
+from zebro_lab.files.errors import DataError, NotFound
+from zebro_lab.runs.recorded_legs import is_recorded, read_recorded_legs
+from zebro_lab.runs.signals import read_signals
+
+
+@pytest.fixture
+def folder(recorded, tmp_path):
+    """Return a copy of the recorded run that a test may damage."""
+    return shutil.copytree(recorded, tmp_path / recorded.name)
+
+
+def test_angles_are_unwrapped_at_increasing_times(recorded):
+    table, files = read_recorded_legs(recorded)
+    assert list(table.columns) == ["t", *(f"theta{leg}" for leg in range(1, 7))]
+    t = table.numbers("t")
+    assert np.all(np.diff(t) > 0)
+    shown = next(p for p in read_signals(recorded).panels if p.title == "legs: angles, unwrapped")
+    for leg in range(1, 7):
+        expected = np.interp(t, shown.t, shown.lines[f"leg {leg}"])
+        np.testing.assert_allclose(table.numbers(f"theta{leg}"), expected, atol=1e-12)
+    assert [file.name for file in files] == ["run.json", "legs.toml", "log.mcap"]
+    assert (table.source, table.notes) == ("sim:zebro", ())
+    assert is_recorded(recorded)
+    assert not is_recorded(recorded.parent)
+
+
+def test_a_log_cut_short_is_read_so_far_with_a_note(folder):
+    log = folder / "log.mcap"
+    log.write_bytes(log.read_bytes()[: log.stat().st_size // 2])
+    table, _ = read_recorded_legs(folder)
+    assert len(table) > 10
+    assert "log.mcap is cut short" in table.notes[0]
+
+
+@pytest.mark.parametrize("name", ["log.mcap", "profiles/legs.toml"])
+def test_a_missing_file_is_named(folder, name):
+    (folder / name).unlink()
+    with pytest.raises(NotFound, match=f"{name}: missing"):
+        read_recorded_legs(folder)
+
+
+def test_a_damaged_profile_and_a_run_without_legs_are_named(folder, tmp_path):
+    (folder / "profiles" / "legs.toml").write_text("schema = 99")
+    with pytest.raises(DataError, match=r"legs\.toml"):
+        read_recorded_legs(folder)
+    rig = make_run(tmp_path)
+    (rig / "profiles" / "legs.toml").write_text("")
+    with pytest.raises(DataError, match="holds no samples on /legs/raw"):
+        read_recorded_legs(rig)

@@ -1,0 +1,98 @@
+# SPDX-License-Identifier: MIT
+"""CSV files of every separator and encoding are read as the same table, or named."""
+
+import gzip
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+
+from support.bounded_reading import refusal
+from support.rig_tables import N, given_slip
+from zebro_lab.tables.csv_files import read_csv_file
+from zebro_lab.tables.table_files import read_table_file
+
+SEPARATORS = {";": "semicolons", "\t": "tabs"}
+
+
+@pytest.mark.parametrize("separator", [",", ";", "\t"])
+@pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig"])
+@pytest.mark.parametrize("end", ["\n", "\r\n", "\r"])
+def test_separator_encoding_and_line_ends_do_not_matter(tmp_path, separator, encoding, end):
+    lines = ["ü s, x", "0.5, 1", "1.5, 2"]
+    text = end.join(line.replace(",", separator) for line in lines)
+    (tmp_path / "a.csv").write_bytes(text.encode(encoding))
+    table = read_csv_file(tmp_path / "a.csv")
+    assert list(table.columns) == ["ü s", "x"]
+    np.testing.assert_array_equal(table.numbers("ü s"), [0.5, 1.5])
+    assert table.notes == (("a.csv: read as separated by " + SEPARATORS[separator],)
+                           if separator != "," else ())  # fmt: skip
+
+
+def test_headers_that_are_empty_or_repeated_are_told_apart(tmp_path):
+    (tmp_path / "a.csv").write_text("t,,x,x\n1,2,3,4\n")
+    table = read_csv_file(tmp_path / "a.csv")
+    assert list(table.columns) == ["t", "column 2", "x", "x (2)"]
+    assert table.repeated == {"x"}
+
+
+def test_a_header_of_very_many_columns_is_refused(tmp_path):
+    file = tmp_path / "wide.csv"
+    file.write_text(",".join(f"c{i}" for i in range(9000)) + "\n" + ",".join("1" * 9000) + "\n")
+    assert "columns" in refusal(read_csv_file, file)
+
+
+def test_comments_and_blank_lines_are_no_rows(tmp_path):
+    text = "# bench 3\n\n" + given_slip().to_csv(index=False).replace("\n", "\n\n")
+    (tmp_path / "rig.csv").write_text(text)
+    assert len(read_csv_file(tmp_path / "rig.csv")) == N
+
+
+def test_numbers_survive_to_the_last_bit(tmp_path):
+    rng = np.random.default_rng(0)
+    table = given_slip().assign(traction_force=rng.normal(size=N))
+    with gzip.open(tmp_path / "a.csv.gz", "wt") as file:
+        table.to_csv(file, index=False)
+    read = read_csv_file(tmp_path / "a.csv.gz").numbers("traction_force")
+    np.testing.assert_array_max_ulp(read, table.traction_force.to_numpy(), 1)
+
+
+def _truncated_gzip() -> bytes:
+    return gzip.compress(given_slip().to_csv(index=False).encode())[:-40]
+
+
+RAW_FAULTS: dict[str, tuple[str, Callable[[], bytes], str]] = {
+    "empty": ("a.csv", lambda: b"", "is empty"),
+    "blank": ("a.csv", lambda: b"\n\n", "is empty"),
+    "binary": ("a.csv", lambda: bytes(range(256)) * 8, "binary file"),
+    "latin-1": ("a.csv", lambda: "t,Kraft µN\n1,2\n".encode("latin-1"), "is not UTF-8 text"),
+    "utf-16": ("a.csv", lambda: "t,F\n1,2\n".encode("utf-16"), "UTF-16"),
+    "parquet named csv": ("a.csv", lambda: b"PAR1....", "a Parquet file; name it .parquet"),
+    "spreadsheet named csv": ("a.csv", lambda: b"PK\x03\x04", "a zip or spreadsheet file"),
+    "gzip named csv": ("a.csv", _truncated_gzip, "a gzip file; name it .csv.gz"),
+    "csv named gzip": ("a.csv.gz", lambda: b"t,F\n1,2\n", "is not a whole gzip file"),
+    "truncated gzip": ("a.csv.gz", _truncated_gzip, "is not a whole gzip file"),
+    "csv named parquet": ("a.parquet", lambda: b"t,F\n1,2\n", "is not a whole Parquet file"),
+    "no header": ("a.csv", lambda: b"0.1,0.2\n0.3,0.4\n", "has no names"),
+    "decimal commas between commas": (
+        "a.csv",
+        lambda: b"t,normal_force\n0,1,5,2\n0,2,5,3\n",
+        "row 1 (line 2): 4 cells under a header of 2; do decimal commas separate cells?",
+    ),
+    "ambiguous separators": ("a.csv", lambda: b"a,b;c\n1,2;3\n", "commas or semicolons"),
+    "surplus cell far down": (
+        "a.csv",
+        lambda: b"t,F\n" + b"1,2\n" * 20_000 + b"1,2,3\n",
+        "is no regular table",
+    ),
+    "open quote": ("a.csv", lambda: b't,F\n1,"2\n3,4\n', "is no regular table"),
+}
+
+
+@pytest.mark.parametrize("fault", RAW_FAULTS)
+def test_file_that_is_no_table_is_named(tmp_path, fault):
+    name, content, expected = RAW_FAULTS[fault]
+    (tmp_path / name).write_bytes(content())
+    message = refusal(read_table_file, tmp_path / name)
+    assert expected in message
+    assert message.startswith(str(tmp_path / name))

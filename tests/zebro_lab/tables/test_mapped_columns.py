@@ -1,0 +1,65 @@
+# SPDX-License-Identifier: MIT
+"""Columns of a time series are found under other names, in SI with the canonical sign."""
+
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from zebro_lab.files.errors import DataError, SettingsError
+from zebro_lab.files.settings_table import SettingsTable
+from zebro_lab.tables.mapped_columns import canonical_columns, parse_mapped_columns
+from zebro_lab.tables.raw_table import RawTable
+
+UNITS = {"t": "s", "roll": "rad"}
+READ = {"what": "roll of the body", "advice": "delete such rows"}
+
+
+def table(**columns) -> RawTable:
+    return RawTable(Path("imu.csv"), {name: pd.Series(each) for name, each in columns.items()})
+
+
+def parse(**content):
+    return parse_mapped_columns(SettingsTable(content, file="columns.toml", path="imu"), UNITS)
+
+
+def test_names_units_and_signs_of_the_map_are_applied_and_others_stay():
+    found = parse(source="real", columns={"roll": {"name": "R", "unit": "deg", "sign": -1}})
+    raw = table(t=[0.0, 1.0], R=[90.0, -180.0])
+    np.testing.assert_allclose(found.numbers(raw, "roll", **READ), [-np.pi / 2, np.pi])
+    np.testing.assert_array_equal(found.numbers(raw, "t", **READ), [0.0, 1.0])
+    assert (found.source, found.file) == ("real", Path("columns.toml"))
+    assert found.has(raw, "roll")
+    assert not canonical_columns(UNITS).has(raw, "roll")
+
+
+def test_another_header_keeps_the_unit():
+    found = parse(columns={"roll": {"unit": "deg"}}).called("roll", "phi")
+    np.testing.assert_allclose(found.numbers(table(phi=[180.0]), "roll", **READ), [np.pi])
+
+
+def test_a_missing_column_says_where_to_map_it():
+    with pytest.raises(DataError, match=r"'roll': missing, the roll of the body; .*'rol'.*"
+                       r"map it in columns\.toml as \[imu\.columns\.roll\]"):  # fmt: skip
+        parse().numbers(table(rol=[1.0]), "roll", **READ)
+
+
+@pytest.mark.parametrize(("cell", "found"), [(np.nan, "empty"), (-np.inf, "infinite")])
+def test_a_cell_without_a_finite_number_is_named(cell, found):
+    message = f"row 2: is {found}; expected a number in rad: delete such rows"
+    with pytest.raises(DataError, match=message):
+        parse().numbers(table(roll=[1.0, cell]), "roll", **READ)
+
+
+@pytest.mark.parametrize(
+    ("content", "message"),
+    [
+        ({"sources": "real"}, "imu.sources: unknown key; did you mean 'source'"),
+        ({"columns": {"yaw": {}}}, "imu.columns.yaw: unknown key"),
+        ({"columns": {"roll": {"unit": "m"}}}, "unit 'm' cannot be converted to rad"),
+    ],
+)
+def test_a_fault_of_the_map_names_its_key(content, message):
+    with pytest.raises(SettingsError, match=message):
+        parse(**content)

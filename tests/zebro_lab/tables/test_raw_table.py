@@ -1,0 +1,82 @@
+# SPDX-License-Identifier: MIT
+"""Cells become numbers, or an error names file, column, row and line."""
+
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from zebro_lab.files.errors import DataError
+from zebro_lab.tables.csv_files import read_csv_file
+from zebro_lab.tables.raw_table import RawTable
+
+
+def table(**columns) -> RawTable:
+    return RawTable(Path("a.csv"), {name: pd.Series(cells) for name, cells in columns.items()})
+
+
+@given(st.lists(st.floats(allow_nan=False) | st.none(), min_size=1))
+def test_numbers_and_their_texts_are_the_same_and_empty_cells_are_nan(values):
+    expected = [np.nan if value is None else value for value in values]
+    texts = [None if value is None else repr(value) for value in values]
+    np.testing.assert_array_equal(table(x=pd.Series(texts, dtype=object)).numbers("x"), expected)
+    np.testing.assert_array_equal(table(x=pd.Series(values, dtype=float)).numbers("x"), expected)
+
+
+def test_a_column_is_returned_as_it_is():
+    raw = table(t=[1.0, 2.0], name=["a", "b"])
+    assert len(raw) == 2
+    assert raw.column("name").tolist() == ["a", "b"]
+
+
+@pytest.mark.parametrize(
+    ("raw", "message"),
+    [
+        (table(tt=[1.0]), "column 't': missing; did you mean 'tt'"),
+        (RawTable(Path("a.csv"), {"t": pd.Series([1.0])}, frozenset({"t"})),
+         "column 't': heads more than one column"),
+        (RawTable(Path("a.csv"), {"t": pd.Series([None])}, unreadable={"t": "list<int>"}),
+         "column 't': holds cells of type list<int>; expected numbers"),
+        (table(t=pd.date_range("2026-01-01", periods=3)), "'t': holds dates, expected numbers"),
+        (table(t=["[s]", "1"]), r"row 1: '\[s\]' is not a number; delete a row of units"),
+        (table(t=["1", "n/m"]), "row 2: 'n/m' is not a number; correct or delete the row"),
+        (table(t=["1", "0,5"]), "row 2: '0,5' is not a number; write decimals with a point"),
+    ],
+)  # fmt: skip
+def test_a_column_that_has_no_numbers_is_named(raw, message):
+    with pytest.raises(DataError, match=message) as raised:
+        raw.numbers("t")
+    assert (raised.value.file, raised.value.column) == (Path("a.csv"), "t")
+
+
+def test_decimal_commas_are_read_unless_points_occur_too():
+    cells = {"x": pd.Series(["0,5", "-1,25e1", None])}
+    raw = RawTable(Path("a.csv"), cells, decimal_comma=True)
+    np.testing.assert_array_equal(raw.numbers("x"), [0.5, -12.5, np.nan])
+    mixed = RawTable(Path("a.csv"), {"x": pd.Series(["5.0", "5,1"])}, decimal_comma=True)
+    with pytest.raises(DataError, match="row 2: '5,1' is not a number"):
+        mixed.numbers("x")
+
+
+def test_a_row_is_found_below_comments_and_blank_lines(tmp_path):
+    file = tmp_path / "a.csv"
+    file.write_text("# bench\n\nt,x\n1,2\n\n\n3,4\n")
+    raw = read_csv_file(file)
+    assert [raw.fault("is bad", "x", index).line for index in (0, 1, 2)] == [4, 7, None]
+    assert str(raw.fault("is bad", "x", 1)) == f"{file}, column 'x', row 2 (line 7): is bad"
+    assert raw.fault("is bad", "x").line is None
+    assert table(t=[1.0]).fault("is bad", "t", 0).line is None
+
+
+@given(st.lists(st.integers(-5, 5), min_size=1, max_size=6))
+def test_times_that_do_not_increase_are_named_by_their_row(times):
+    first = next((row for row in range(1, len(times)) if times[row] <= times[row - 1]), None)
+    if first is None:
+        table(t=times).require_increasing("t", np.array(times, dtype=float))
+        return
+    with pytest.raises(DataError, match="expected increasing times") as raised:
+        table(t=times).require_increasing("t", np.array(times, dtype=float))
+    assert (raised.value.column, raised.value.row) == ("t", first + 1)

@@ -1,0 +1,71 @@
+# SPDX-License-Identifier: MIT
+"""Columns of a rig table in SI: radii, conditions on rows, signs of the load."""
+
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from support.rig_tables import N, columns, given_slip, write
+from zebro_lab.calibration.rig_data import read_rig_data
+from zebro_lab.files.errors import DataError
+from zebro_lab.tables.columns import Columns, MappedColumn
+from zebro_lab.tables.raw_table import RawTable
+from zebro_lab.tables.rig_table import RigTable, normal_force
+
+
+def table_of(columns: dict[str, MappedColumn], constants: dict[str, float], **values) -> RigTable:
+    """Return a rig table of two rows, of which the second is kept."""
+    series = {name: pd.Series(each) for name, each in values.items()}
+    settings = Columns(file=Path("columns.toml"), columns=columns, constants=constants)
+    return RigTable(RawTable(Path("rig.csv"), series), settings, np.array([1]))
+
+
+def test_columns_are_in_si_with_the_canonical_sign_of_the_kept_rows():
+    mapped = {"normal_force": MappedColumn("FZ", "kN", -1e3)}
+    table = table_of(mapped, {}, FZ=[-1.0, -2.0], t=[0.0, 0.1], run=["a", "b"])
+    np.testing.assert_array_equal(table.si("normal_force"), [2000.0])
+    np.testing.assert_array_equal(table.si("t"), [0.1])
+    assert table.texts("run").tolist() == ["b"]
+    assert table.source_of("traction_force") is None
+
+
+def test_a_cell_is_named_as_the_file_has_it():
+    table = table_of({"normal_force": MappedColumn("FZ", "kN", -1e3)}, {}, FZ=[-1.0, 2.0])
+    with pytest.raises(DataError, match="column 'FZ', row 2: normal force is 2 kN, expected more"):
+        normal_force(table)
+    with pytest.raises(DataError, match=r"column 'omega_leg': missing; .*columns.omega_leg"):
+        table.si("omega_leg")
+
+
+def test_a_load_that_is_negative_nearly_everywhere_is_given_its_sign():
+    with pytest.raises(DataError, match="sign = -1"):
+        normal_force(table_of({}, {}, normal_force=[-5.0, -5.0]))
+
+
+def test_a_radius_is_a_constant_or_a_column_and_positive():
+    assert table_of({}, {"radius_leg": 0.035}).constant_or_column("radius_leg") == 0.035
+    by_row = table_of({}, {}, radius_leg=[0.1, 0.2]).constant_or_column("radius_leg")
+    np.testing.assert_array_equal(by_row, [0.2])
+    with pytest.raises(DataError, match=r"columns\.toml, column 'radius_leg': radius is 0 m"):
+        table_of({}, {"radius_leg": 0.0}).constant_or_column("radius_leg")
+    with pytest.raises(DataError, match=r"column 'radius_leg', row 2: radius is -1 m, expected"):
+        table_of({}, {}, radius_leg=[0.1, -1.0]).constant_or_column("radius_leg")
+    with pytest.raises(DataError, match="missing, needed for slip from disc speeds"):
+        table_of({}, {}).constant_or_column("radius_leg")
+    with pytest.raises(DataError, match="given twice"):
+        table_of({}, {"radius_leg": 0.1}, radius_leg=[0.1, 0.1]).constant_or_column("radius_leg")
+
+
+def test_conditions_drop_rows_that_are_no_numbers(tmp_path):
+    table = given_slip()
+    table.loc[3, "normal_force"] = np.nan
+    columns(tmp_path, "rows.keep = ['normal_force < 1e9']")
+    assert len(read_rig_data([write(tmp_path, table)]).samples) == N - 1
+
+
+def test_table_without_any_condition_met_is_an_error(tmp_path):
+    columns(tmp_path, "rows.keep = ['t > 100']")
+    with pytest.raises(DataError, match=r"no row of 40 is left by \[rows\] keep: t > 100"):
+        read_rig_data([write(tmp_path, given_slip())])

@@ -1,0 +1,56 @@
+# SPDX-License-Identifier: MIT
+"""Rows are assigned to runs by a column, by pauses, or one by one."""
+
+import numpy as np
+import pytest
+
+from support.rig_tables import N, columns, given_slip, write
+from zebro_lab.calibration.rig_data import read_rig_data
+from zebro_lab.files.errors import DataError
+
+
+def test_run_column_and_by_separate_the_same_runs(tmp_path):
+    by_column = write(tmp_path / "1", given_slip().assign(run=np.repeat([3, 1, 3, 2], N // 4)))
+    by_rule = write(tmp_path / "2", given_slip().assign(set=np.repeat([3, 1, 3, 2], N // 4)))
+    columns(by_rule.parent, "runs.by = 'set'")
+    first, second = read_rig_data([by_column]).samples, read_rig_data([by_rule]).samples
+    np.testing.assert_array_equal(first.run, second.run)
+    assert first.run_names == ("rig run=3", "rig run=1", "rig run=3 (2)", "rig run=2")
+    assert second.run_names[0] == "rig set=3"
+
+
+def test_pause_separates_runs_and_left_out_rows_do_not(tmp_path):
+    table = given_slip()
+    table.loc[20:, "t"] += 2.0
+    table["warm"] = 1
+    table.loc[5:10, "warm"] = 0
+    columns(tmp_path, "runs.gap = '0.01 s'\nrows.keep = ['warm == 1']")
+    data = read_rig_data([write(tmp_path, table)])
+    assert data.samples.run_names == ("rig run 1", "rig run 2")
+    assert data.samples.run.tolist() == [0] * 14 + [1] * 20
+    assert "6 of 40 rows left out; kept where warm == 1" in data.notes
+
+
+def test_each_row_is_a_trial_without_time(tmp_path):
+    columns(tmp_path, "runs.each_row = true")
+    data = read_rig_data([write(tmp_path, given_slip().head(12))])
+    assert data.samples.n_runs == len(data.samples) == 12
+    assert data.samples.time is None
+
+
+@pytest.mark.parametrize(
+    ("t", "message"),
+    [(0.0, "time runs backwards to 0 s; if a new run begins here"),
+     (0.016, "time 0.016 s is given twice in one run")],
+)  # fmt: skip
+def test_time_increases_within_a_run_and_may_restart_with_another(tmp_path, t, message):
+    table = given_slip()
+    table.loc[5, "t"] = t
+    path = write(tmp_path, table.assign(trial=np.where(table.index < 5, "a", "b")))
+    with pytest.raises(DataError, match=message) as raised:
+        read_rig_data([path])
+    assert (raised.value.column, raised.value.row, raised.value.line) == ("t", 6, 7)
+    columns(tmp_path, "runs.by = 'trial'")
+    samples = read_rig_data([path]).samples
+    assert samples.run_names == ("rig trial=a", "rig trial=b")
+    np.testing.assert_array_equal(samples.time[4:6], [0.016, t])

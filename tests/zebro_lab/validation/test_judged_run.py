@@ -1,0 +1,70 @@
+# SPDX-License-Identifier: MIT
+"""A prediction is judged from the first tracked pose on, where both have times."""
+
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from model.judgement import Prediction
+from model.poses import Poses
+from support.validated_walks import request_of
+from support.watchers import Nobody
+from zebro_lab.files.errors import DataError, SettingsError
+from zebro_lab.track.file import TrackFile
+from zebro_lab.validation.judged_run import judge_run
+from zebro_lab.validation.predicted_walks import pairs_of_run
+from zebro_lab.validation.stage import validate
+from zebro_lab.walk.prediction_file import PredictionFile
+
+
+def test_the_first_tracked_pose_starts_the_prediction_and_is_not_scored(validated, walk):
+    tracked = pd.read_csv(walk / "track/track.csv")
+    assert len(validated.runs[0].track) == len(tracked) - 1
+
+
+def test_a_track_of_two_poses_is_refused(walk, tmp_path):
+    prediction, track = pairs_of_run(walk)
+    pd.read_csv(track / "track.csv").iloc[:2].to_csv(tmp_path / "two.csv", index=False)
+    pair = ((prediction, tmp_path / "two.csv"),)
+    with pytest.raises(DataError, match="has 2 poses; expected 3 or more"):
+        validate(request_of(pair, tmp_path / "out"), Nobody())
+
+
+T = np.linspace(0.0, 4.0, 9)
+PATH = Poses(T, np.column_stack([0.1 * T, 0.0 * T]), 0.0 * T)
+
+
+def judge(track: Poses, *, anchor: bool = False):
+    file = TrackFile(track, "real", Path("track.csv"), notes=("tracked",))
+    return judge_run("walk", PredictionFile(Prediction(PATH), "sim:x", (), ("predicted",)), file,
+                     anchor=anchor, rng=np.random.default_rng(1))  # fmt: skip
+
+
+def test_errors_are_those_of_the_prediction_against_the_track():
+    found = judge(Poses(T, PATH.position + np.array([0.0, 0.03]), PATH.yaw))
+    assert found.name == "walk"
+    assert [row.name for row in found.rows] == ["prediction", "stand still"]
+    assert found.rows[0].errors.ate == pytest.approx(0.03)
+    assert found.notes == ("tracked", "predicted")
+
+
+def test_an_anchored_path_starts_at_the_first_tracked_pose():
+    moved = PATH.moved(rotation=0.5, translation=[1.0, 2.0])
+    assert judge(moved, anchor=True).rows[0].errors.ate == pytest.approx(0.0, abs=1e-12)
+    assert judge(moved).rows[0].errors.ate > 1.0
+
+
+def test_poses_outside_the_predicted_time_are_left_out_and_noted():
+    found = judge(PATH.delayed(2.5))
+    assert found.rows[0].errors.poses == 4
+    assert found.notes[-1].startswith("5 tracked poses lie outside the predicted time")
+    with pytest.raises(DataError, match="fewer than two"):
+        judge(PATH.delayed(3.2), anchor=True)
+
+
+def test_a_track_without_headings_cannot_start_a_prediction():
+    blind = Poses(T, PATH.position, np.full_like(T, np.nan))
+    with pytest.raises(SettingsError, match="--no-anchor"):
+        judge(blind, anchor=True)

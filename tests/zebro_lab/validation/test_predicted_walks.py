@@ -1,0 +1,59 @@
+# SPDX-License-Identifier: MIT
+"""Predictions and tracks are read in pairs, each once, with what else their runs hold."""
+
+import shutil
+
+import pytest
+
+from support.watchers import Nobody
+from zebro_lab.files.errors import NotFound
+from zebro_lab.validation.predicted_walks import pairs_of_run, read_predicted_walks
+from zebro_lab.validation.request import ValidateRequest
+from zebro_lab.validation.stage import validate
+
+
+def test_a_run_without_a_track_says_what_to_do(walk, tmp_path):
+    with pytest.raises(NotFound, match="predict"):
+        pairs_of_run(tmp_path)
+    (tmp_path / "prediction").symlink_to(walk / "prediction")
+    with pytest.raises(NotFound, match=r"track\.csv"):
+        pairs_of_run(tmp_path)
+
+
+def test_a_run_under_two_names_is_averaged_once_and_told(walk, tmp_path):
+    copy = shutil.copytree(walk, tmp_path / "copy")
+    done = validate(ValidateRequest((walk, copy), out=tmp_path / "out"), Nobody())
+    assert len(done.runs) == 1
+    assert not done.summary
+    assert any("copy" in note and "once" in note for note in done.runs[0].notes)
+
+
+def test_a_walk_has_its_folders_name_its_sources_and_why_there_are_no_photographs(walk):
+    (found,) = read_predicted_walks([pairs_of_run(walk)])
+    assert found.name == walk.name
+    assert found.sources == (found.prediction.source, found.track.source)
+    assert found.prediction.source == "sim:dynamics"
+    assert (found.tilt, found.photos, found.duplicates) == (None, None, ())
+    assert found.not_shown[0].startswith("photographs are not shown: ")
+
+
+def test_walks_of_one_name_are_numbered(walk, tmp_path):
+    for place in ("one", "other"):
+        shutil.copytree(walk, tmp_path / place / "walk")
+    track = tmp_path / "other/walk/track/track.csv"
+    track.write_text("".join(track.read_text().splitlines(keepends=True)[:-1]))
+    pairs = [pairs_of_run(tmp_path / place / "walk") for place in ("one", "other")]
+    assert [found.name for found in read_predicted_walks(pairs)] == ["walk-1", "walk-2"]
+
+
+def test_a_pair_of_files_is_named_by_the_predicted_file(walk, tmp_path):
+    shutil.copy(walk / "prediction/path.csv", tmp_path / "guess.csv")
+    (found,) = read_predicted_walks([(tmp_path / "guess.csv", walk / "track/track.csv")])
+    assert found.name == "guess"
+
+
+def test_files_of_a_judgement_are_those_that_were_read(validated, walk):
+    (found,) = read_predicted_walks([pairs_of_run(walk)])
+    files = found.files_of(validated.runs[0])
+    assert walk / "track/track.csv" in files
+    assert walk / "prediction/path.csv" in files

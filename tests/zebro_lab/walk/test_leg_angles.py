@@ -1,0 +1,39 @@
+# SPDX-License-Identifier: MIT
+"""Counts of an encoder are recognised, and other angles are taken as they are."""
+
+import numpy as np
+import pytest
+
+from model.gait.quantised import QuantisedLog
+from model.gait.reference import SampledReference
+from zebro_lab.robot.leg_log import LegLog
+from zebro_lab.runs.legs import read_leg_log
+from zebro_lab.walk.leg_angles import angles_from
+
+
+def test_the_log_of_the_bundled_walk_is_counted():
+    from pathlib import Path
+
+    from model.gait.quantised import find_step
+
+    log = read_leg_log(Path(__file__).parents[3] / "datasets/walk-sim/legs.csv")
+    assert np.degrees(find_step(log.reference.theta)) == pytest.approx(3.6, rel=1e-3)
+
+
+def leg_log(theta: np.ndarray) -> LegLog:
+    return LegLog(SampledReference(5.0 + 0.01 * np.arange(len(theta)), theta), "real", ())
+
+
+def test_counted_angles_are_recognised_and_others_taken_as_they_are():
+    theta = np.linspace(0.0, 2.8, 400)[:, None] ** 2 + np.arange(6)
+    legs, notes = angles_from(leg_log(theta), 5.0)
+    assert isinstance(legs, SampledReference)
+    np.testing.assert_array_equal(legs.theta, theta)
+    assert legs.t[0] == 0.0
+    assert notes == ()
+    step = np.radians(3.6)
+    counted, notes = angles_from(leg_log(step * np.round(theta / step)), 5.0)
+    assert isinstance(counted, QuantisedLog)
+    assert counted.step == pytest.approx(step)
+    assert counted.t[0] == 0.0
+    assert "counted in steps of 3.6 deg" in notes[0]

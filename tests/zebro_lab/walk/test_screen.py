@@ -1,0 +1,98 @@
+# SPDX-License-Identifier: MIT
+"""What is printed of a walk has the numbers of the walk, with units and sides."""
+
+import io
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+import typer
+from rich.console import Console
+
+from model.gait import tripod_angles, tripod_reference
+from zebro_lab.calibration.slip_argument import parse_slip
+from zebro_lab.robot.robot_file import RobotFile
+from zebro_lab.walk.output import WalkStopped
+from zebro_lab.walk.screen import (
+    INTERRUPTED,
+    gait_table,
+    print_walk,
+    run_and_report,
+    slip_lines,
+    summary_lines,
+)
+from zebro_lab.walk.summary import summarise
+from zebro_lab.walk.walking import Walked
+
+GAIT = tripod_reference(tripod_angles(np.radians(50.0), 1.3), 2.0, direction="left")
+
+
+def finished(walked, *, slip="coulomb:0.4") -> Walked:
+    return Walked(walked, GAIT, RobotFile(), parse_slip(slip), "dynamics", 0.01,
+                  "tripod, model 'dynamics'", ("[bold]a note",))  # fmt: skip
+
+
+def test_the_gait_has_a_row_a_leg_with_angles_times_and_speeds():
+    table = gait_table(GAIT)
+    assert str(table.title) == "the gait, with a cycle of 2 s"
+    columns = [list(column.cells) for column in table.columns]
+    assert columns[0] == [
+        f"{leg}{' inner' if leg - 1 in GAIT.inner else ' outer'}" for leg in range(1, 7)
+    ]
+    numbers = np.array(columns[1:], dtype=float).T
+    expected = np.column_stack([
+        np.degrees(GAIT.touchdown), np.degrees(GAIT.liftoff), GAIT.ground_time, GAIT.flight_time,
+        np.degrees(GAIT.ground_speed), np.degrees(GAIT.flight_speed),
+        np.degrees(GAIT.angles(0.0)[0]) % 360,
+    ])  # fmt: skip
+    np.testing.assert_allclose(numbers, expected, atol=1e-4)
+
+
+@pytest.mark.parametrize(("sign", "side"), [(1, "left"), (-1, "right")])
+def test_the_end_of_the_path_and_its_turn_are_told(walked, sign, side):
+    mirrored = replace(
+        walked, position=walked.position * [1, sign, 1], orientation=walked.orientation * sign
+    )
+    first, second, _ = summary_lines(summarise(mirrored))
+    x, y = mirrored.position[-1, :2]
+    assert first == f"after 4 s at x {x:.4f} m, y {y:.4f} m, yaw {sign * np.degrees(0.6):.2f} deg"
+    assert f"turning {side}, radius 0.5" in second
+    straight = replace(walked, position=walked.position * [1, 0, 1],
+                       orientation=0 * walked.orientation)  # fmt: skip
+    assert "straight ahead, yaw rate 0.000 deg/s" in summary_lines(summarise(straight))[1]
+
+
+def test_assumed_slip_and_loads_below_the_tested_are_told(walked):
+    done = finished(walked)
+    mean, assumed = slip_lines(done, summarise(walked))
+    assert mean.startswith("legs in contact slip at ")
+    assert assumed == "slip: coulomb:0.4 is assumed, not measured"
+    light = replace(walked, normal_force=0.1 * walked.normal_force)
+    *_, warning = slip_lines(finished(light, slip="thesis"), summarise(light))
+    assert warning == (
+        "WARNING: 100% of the contacts carry less than 2.13 N, the lowest load the slip law was "
+        "tested at"
+    )
+
+
+def test_everything_is_printed_and_notes_are_no_markup(walked, tmp_path):
+    (tmp_path / "path.csv").touch()
+    (tmp_path / "mine.txt").touch()
+    console = Console(file=io.StringIO(), width=120)
+    print_walk(console, finished(walked), tmp_path)
+    printed = console.file.getvalue()
+    assert "SIMULATED walk: tripod, model 'dynamics', dt 0.01 s" in printed
+    assert "[bold]a note" in printed
+    assert "path.csv" in printed
+    assert "mine.txt" not in printed
+
+
+def test_a_stopped_walk_is_one_line_and_exit_130(capsys):
+    def stop(_) -> Walked:
+        raise WalkStopped("stopped; nothing was written")
+
+    with pytest.raises(typer.Exit) as ended:
+        run_and_report(stop, Path("out"))
+    assert ended.value.exit_code == INTERRUPTED
+    assert capsys.readouterr() == ("", "stopped; nothing was written\n")

@@ -1,0 +1,69 @@
+# SPDX-License-Identifier: MIT
+"""What is printed of a fit of walks has its posterior, wrong legs and errors."""
+
+import io
+from pathlib import Path
+
+import numpy as np
+import pytest
+from rich.console import Console
+
+from model.bayes.walks.prior import NAMES, WrongLeg
+from support.judged_walks import judged_walk
+from support.walk_posteriors import posterior_of
+from zebro_lab.walk_fit.screen import print_walks
+from zebro_lab.walk_fit.stage import WalksCalibrated
+
+
+def printed(*, left_out=(), source="sim:x", case=None) -> str:
+    console = Console(file=io.StringIO(), width=200)
+    print_walks(
+        console,
+        WalksCalibrated(posterior_of(case), left_out, Path("out/walks"), source, ("[bold]note",)),
+    )
+    return console.file.getvalue()
+
+
+def rows(text: str) -> dict[str, list[str]]:
+    return {line.split()[0]: line.split() for line in text.splitlines() if line.strip()}
+
+
+def test_every_parameter_is_told_before_and_after_in_its_unit():
+    posterior = posterior_of(WrongLeg(2))
+    text = printed(case=WrongLeg(2))
+    found = rows(text)
+    assert set(NAMES) <= set(found)
+    assert found["leg_offset3"][-5:] == ["+5.00", "±", "0.00", "deg", "100%"]
+    grip = next(each for each in posterior.contractions() if each.name == "grip")
+    assert f"{np.exp(grip.sd):.2f}" in found["grip"]
+    assert found["grip"][-2] == "factor"
+    assert "The walks do not inform " in text
+    assert "Mounted wrong: leg 3" in text
+    assert "by +5.0 ± 0.0 deg: probability 100%" in text
+
+
+def test_misfits_effective_draws_and_the_folder_are_told():
+    text = printed()
+    assert "(about 1 or less is expected): one 0.90, two 1.10" in text
+    assert "40 effective draws" in text
+    assert "A single walk cannot be predicted from others" in text
+    assert text.rstrip().endswith("written to out/walks")
+
+
+@pytest.mark.parametrize(("source", "simulated"), [("real", False), ("real, sim:x", True)])
+def test_simulated_data_are_told_and_notes_are_no_markup(source, simulated):
+    text = printed(source=source)
+    assert ("SIMULATED: " in text) == simulated
+    assert "[bold]note" in text
+
+
+def test_walks_left_out_have_their_errors_beside_the_best_baselines():
+    run = judged_walk("one", off=0.02)
+    row = rows(printed(left_out=(run,)))["one"]
+    prediction, still = run.rows
+    assert row[1] == "20.0"
+    assert row[2] == f"{prediction.errors.ate_of_length:.2%}"
+    held = prediction.scores.coverage[list(prediction.scores.levels).index(0.9)]
+    assert row[6:9] == [f"{share:.0%}" for share in held]
+    assert row[9:11] == [f"{1000 * value:.1f}" for value in prediction.scores.crps[:2]]
+    assert row[11:13] == [f"{1000 * value:.1f}" for value in still.scores.crps[:2]]

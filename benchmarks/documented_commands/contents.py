@@ -19,6 +19,8 @@ import pyarrow.parquet as pq
 from mcap.reader import make_reader
 
 from benchmarks.documented_commands.normal import Normaliser
+from rig.sample_columns import SampleColumns
+from zebro_lab.mcap.raw_log import RAW_SCHEMAS, decode_raw
 
 Content = Mapping[str, object]
 _STAMPED = re.compile(
@@ -154,7 +156,13 @@ def _mcap(data: bytes, normal: Normaliser) -> Content:
     found: dict[str, object] = {}
     reader = make_reader(io.BytesIO(data))
     start: int | None = None
+    raw: dict[str, list[SampleColumns]] = {}
     for schema, channel, message in reader.iter_messages(log_time_order=False):
+        if schema is not None and schema.name in RAW_SCHEMAS:
+            # How many samples are in a message depends on when they were read.
+            samples = decode_raw(message.data, dtype=RAW_SCHEMAS[schema.name][0])
+            raw.setdefault(channel.topic, []).append(samples)
+            continue
         payloads = found.setdefault(f"messages {channel.topic}", [])
         assert isinstance(payloads, list)
         start = message.log_time if start is None else start
@@ -162,6 +170,11 @@ def _mcap(data: bytes, normal: Normaliser) -> Content:
         if schema is not None and _STAMPED.match(schema.data):
             data = data[: _STAMP.start] + data[_STAMP.stop :]
         payloads.append((message.log_time - start, message.sequence, data))
+    for topic, parts in raw.items():
+        samples = SampleColumns.joined(parts)
+        columns = {**vars(samples), "host_time": samples.host_time - samples.host_time[0]}
+        for name, column in columns.items():
+            found[f"samples {topic}: {name}"] = (column.shape, column.tobytes())
     for attachment in reader.iter_attachments():
         text = attachment.data.decode(errors="replace")
         found[f"attachment {attachment.name}"] = normal.text(text)

@@ -19,7 +19,7 @@ from scipy.stats import chi2
 from model.slip.thesis import THESIS_LAW, THESIS_VALUES
 from zebro_lab.calibration.folder import read_slip
 
-PLAN = Path(__file__).parents[2] / "examples" / "plan-source.toml"
+PLAN = Path(__file__).parents[2] / "examples" / "plan-thesis.toml"
 BIN = Path(sys.executable).parent
 NAMES = [parameter.name for parameter in THESIS_LAW.parameters]
 

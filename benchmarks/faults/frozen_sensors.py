@@ -36,7 +36,7 @@ from support.memory_sink import MemorySink
 from zebro_lab.experiment.plan_file import read_plan
 
 PERIOD = 0.02
-THESIS_PLAN = Path(__file__).parents[2] / "examples" / "plan-source.toml"
+THESIS_PLAN = Path(__file__).parents[2] / "examples" / "plan-thesis.toml"
 RESOLUTIONS = ((1e-5, 1e-4), (0.001, 0.001), (0.01, 0.01), (0.02, 0.02), (0.1, 0.05), (0.1, 0.1),
                (0.5, 0.2))  # fmt: skip
 """Newtons and rad/s of one count; the first are those of the shipped profile."""

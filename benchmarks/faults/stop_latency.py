@@ -93,7 +93,7 @@ def folder_for(row: Row) -> Iterator[Path]:
 
 def write_plan(file: Path, row: Row) -> None:
     """Write the thesis's plan with one long point."""
-    text = (PROJECT / "examples" / "plan-source.toml").read_text(encoding="utf-8")
+    text = (PROJECT / "examples" / "plan-thesis.toml").read_text(encoding="utf-8")
     changes = {
         "loads": f"[{LOAD}]", "slips": "[0.3]", "duration": "60.0", "tare_duration": "0.2",
         "length": '"duration"', "free_space": "1e6" if row.way == "fill" else "100e6",

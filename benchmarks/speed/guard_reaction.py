@@ -18,7 +18,7 @@ from zebro_lab.experiment.plan_file import read_plan
 from zebro_lab.experiment.rig_at_hand import rig_at_hand
 
 TRIPS = 200
-PLAN = read_plan(Path(__file__).parents[2] / "examples" / "plan-source.toml")
+PLAN = read_plan(Path(__file__).parents[2] / "examples" / "plan-thesis.toml")
 
 
 def main() -> None:

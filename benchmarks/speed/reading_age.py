@@ -207,7 +207,7 @@ def make_devices(place: dict[str, object]) -> RigDevices:
 
 def limits(seconds: float) -> RunLimits:
     """Return the thesis plan's limits with a slow ramp, and patient where the load may hold up."""
-    plan = read_plan(PROJECT / "examples" / "plan-source.toml")
+    plan = read_plan(PROJECT / "examples" / "plan-thesis.toml")
     return replace(
         plan.limits, acceleration=TOP_SPEED / seconds, silence=1.0, reading_age=1.0,
         speed_error_time=1.0,

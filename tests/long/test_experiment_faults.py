@@ -28,7 +28,7 @@ from zebro_lab.runs.manifest import read_manifest
 
 pytestmark = pytest.mark.long
 
-THESIS_PLAN = Path(__file__).parents[2] / "examples" / "plan-source.toml"
+THESIS_PLAN = Path(__file__).parents[2] / "examples" / "plan-thesis.toml"
 WATCHDOG = 1.0
 """Five times a real one's [s]: a busy machine holds a process up for longer than that."""
 SMALL = {

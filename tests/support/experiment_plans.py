@@ -3,7 +3,7 @@
 
 from pathlib import Path
 
-THESIS_PLAN = Path(__file__).parents[2] / "examples" / "plan-source.toml"
+THESIS_PLAN = Path(__file__).parents[2] / "examples" / "plan-thesis.toml"
 
 _SHORT = {
     "loads = [2.13, 6.63, 8.13, 12.75]": "loads = [8.0]",

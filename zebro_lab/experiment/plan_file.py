@@ -12,7 +12,7 @@ def read_plan(file: Path) -> Plan:
     """Read a plan.
 
     Args:
-        file: TOML; `examples/plan-source.toml` shows every key.
+        file: TOML; `examples/plan-thesis.toml` shows every key.
 
     Returns:
         The plan.
@@ -21,4 +21,4 @@ def read_plan(file: Path) -> Plan:
         NotFound: There is no such file.
         SettingsError: It is not TOML, or a key is missing, unknown or impossible.
     """
-    return parse_plan(read_settings(file, advice="examples/plan-source.toml is one"))
+    return parse_plan(read_settings(file, advice="examples/plan-thesis.toml is one"))

@@ -51,7 +51,7 @@ def of_settings() -> Mapping[str, Reader]:
         "correction": [{"photo": "a.jpg", "leave_out": True}],
     }  # fmt: skip
     camera, floor = (tomllib.loads(text[name].decode()) for name in ("camera", "floor"))
-    plan = tomllib.loads((ROOT / "examples/plan-source.toml").read_text())
+    plan = tomllib.loads((ROOT / "examples/plan-thesis.toml").read_text())
     named: dict[str, tuple[Take, tuple[dict[str, Any], ...]]] = {
         "robot.toml": (read_robot_file, (robot, tomllib.loads(text["robot"].decode()))),
         "columns.toml": (read_columns, (columns,)),

@@ -13,7 +13,7 @@ from zebro_lab.experiment.journal import JOURNAL_FILE
 from zebro_lab.experiment.request import RigRunRequest
 from zebro_lab.experiment.stage import run_experiment
 
-THESIS_PLAN = Path(__file__).parents[3] / "examples" / "plan-source.toml"
+THESIS_PLAN = Path(__file__).parents[3] / "examples" / "plan-thesis.toml"
 SMALL = {
     "loads = [2.13, 6.63, 8.13, 12.75]": "loads = [4.0, 8.0]",
     "slips = { first = 0.0, last = 1.0, count = 62 }": "slips = [0.02, 0.1, 0.6]",

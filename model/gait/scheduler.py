@@ -69,7 +69,7 @@ def straight_system(
 
 
 def require_times(**times: float) -> None:
-    """Check that ground and flight times are positive and other times not negative."""
+    """Raise `DomainError` unless ground and flight time are positive and others not negative."""
     for name, value in times.items():
         least = "more than zero" if name in ("ground_time", "flight_time") else "zero or more"
         if not (np.isfinite(value) and (value > 0 or (value == 0 and least == "zero or more"))):

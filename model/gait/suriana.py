@@ -42,13 +42,14 @@ def suriana_reference(
         ground_time: tau_g [s].
         flight_time: tau_f [s].
         turn_time: tau_p, how much longer inner legs stand and outer legs fly [s].
-        direction: Where to turn.
+        direction: Side to which the robot turns.
 
     Returns:
         Leg angles.
 
     Raises:
-        DomainError: A time is negative, or lift-off does not exceed touchdown.
+        DomainError: The turn time is negative, another time not positive, the direction unknown, or
+            lift-off does not exceed touchdown by less than a turn.
     """
     if not turn_time >= 0:
         raise DomainError(

@@ -38,7 +38,8 @@ def tetrapod_reference(
         Leg angles.
 
     Raises:
-        DomainError: Lift-off does not exceed touchdown, or `middle_start` is not between them.
+        DomainError: Lift-off does not exceed touchdown by less than a turn, `middle_start` is not
+            between the two, or the cycle time is not positive.
     """
     ground_time, flight_time = 2 * cycle_time / 3, cycle_time / 3
     share = 0.5

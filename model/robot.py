@@ -17,6 +17,7 @@ HIP_X, HIP_Y = 0.097, 0.1156  # Listing A.1; the text's w/2 puts hip_y at 0.1256
 
 
 def _source_hips() -> Array:
+    """Return the hip positions of the thesis's robot, Listing A.1, shape (6, 3) [m]."""
     x, y = (HIP_X, HIP_X, 0.0, 0.0, -HIP_X, -HIP_X), (HIP_Y, -HIP_Y) * 3
     return np.column_stack([x, y, np.zeros(N_LEGS)])
 
@@ -110,6 +111,7 @@ def cuboid_inertia(mass: float, size: tuple[float, float, float]) -> Array:
 
 
 def _require_shape(name: str, values: Array, shape: tuple[int, ...]) -> None:
+    """Raise `DomainError` unless an array has the expected shape and is finite."""
     if values.shape != shape:
         raise DomainError(f"{name} has shape {values.shape}; expected {shape}")
     if not np.isfinite(values).all():
@@ -117,5 +119,6 @@ def _require_shape(name: str, values: Array, shape: tuple[int, ...]) -> None:
 
 
 def _require_positive(name: str, value: float, unit: str) -> None:
+    """Raise `DomainError` unless a value is positive and finite."""
     if not (value > 0 and np.isfinite(value)):
         raise DomainError(f"{name} is {value:g} {unit}; expected more than zero")

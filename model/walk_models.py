@@ -31,7 +31,7 @@ class ModelRun:
 
     Attributes:
         robot: The robot.
-        reference: Its leg angles over time, from time zero on.
+        reference: Leg angles over time, from time zero on.
         slip: The slip law; None for a model without slip.
         duration: Time walked [s].
         dt: Length of a step [s].
@@ -144,12 +144,14 @@ def _legs_of_the_thesis(reference: LegReference) -> "LegReference | SwitchedLegs
 
 
 def _no_slip(run: ModelRun) -> WalkPath:
+    """Walk by `walk_no_slip`."""
     from model.walk.no_slip import walk_no_slip
 
     return walk_no_slip(run.robot, run.reference, duration=run.duration, dt=run.dt)
 
 
 def _wheels(run: ModelRun) -> WalkPath:
+    """Walk by `walk_wheels`."""
     from model.walk.no_slip import walk_wheels
 
     return walk_wheels(run.robot, run.reference, duration=run.duration, dt=run.dt)

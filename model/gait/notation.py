@@ -21,9 +21,9 @@ class Gait:
         \{L_{1,1}, \ldots, L_{1,j}\} \prec \ldots \prec \{L_{r,1}, \ldots, L_{r,p}\}
 
     Legs of one group move together; a group lifts off once the group to its left has touched
-    down, and the first once the last has. Section 2-2-1 says it the other way round (once the
-    group to its *right* has touched down), but its matrices P and Q and its tetrapod, Eq. (5-5) to
-    (5-12), mean this one; with two groups they are the same.
+    down, and the first group once the last has. Section 2-2-1 has the reverse (once the group to
+    its *right* has touched down), but the thesis's matrices P and Q and its tetrapod, Eq. (5-5) to
+    (5-12), have this order; with two groups the orders are the same.
 
     A gait repeats, so groups that are rotated make an equal gait; legs of a group have no order.
 

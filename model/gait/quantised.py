@@ -131,6 +131,7 @@ class QuantisedLog:
 
     @cached_property
     def _legs(self) -> list[CountedLeg | None]:
+        """Fitted lines of each leg; None for a leg that never moves."""
         return [CountedLeg.of(self.t, theta, self.step) for theta in self.theta.T]
 
     def smooth(self, rng: np.random.Generator | None = None) -> SampledReference:

@@ -103,6 +103,7 @@ def ideal_liftoff(touchdown: ArrayLike, leg_arc: float = np.pi) -> Array:
 
 
 def _highest_hip(leg_arc: float) -> float:
+    """Return the leg angle at which the hip is highest [rad]."""
     # On the arc of a long leg, on the toe of a short one.
     return min(np.pi / 2, leg_arc / 2)
 

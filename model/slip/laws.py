@@ -24,7 +24,7 @@ def slip_law(name: str, **options: Any) -> SlipLaw:
 
     Args:
         name: A key of `LAWS`.
-        options: The law's own options, such as `curvature` of the Magic Formula.
+        options: Fields of the law's class, such as `curvature` of the Magic Formula.
 
     Returns:
         The law.

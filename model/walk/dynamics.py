@@ -106,7 +106,7 @@ def walk(
         The path; its first sample is the start, with the slip and forces of the first step's end.
 
     Raises:
-        DomainError: The duration is not finite or less than a step.
+        DomainError: The duration is not finite or rounds to no step.
         WalkError: The robot cannot stand at the start, or a step diverged; the message says where.
     """
     t = step_times(duration, options.dt)

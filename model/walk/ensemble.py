@@ -124,6 +124,7 @@ def _tilt_of(path: PlanarWalk) -> Array:
 
 
 def _require_draws(draws: Sequence[WalkDraw], t: Array) -> None:
+    """Raise `DomainError` unless there is a draw and times increase from zero or later."""
     if not draws:
         raise DomainError("an ensemble of no draws has no paths; expected at least one")
     if t.ndim != 1 or not len(t) or not (t[0] >= 0 and np.all(np.diff(t) > 0)):
@@ -149,7 +150,7 @@ def planar_walk(
         tilt: Return roll and pitch too; ignored for periodic gaits, which are walked by strides.
 
     Raises:
-        DomainError: The duration is not finite or less than a step.
+        DomainError: The duration is not finite or rounds to no step.
         WalkError: The robot cannot stand at the start, or a step diverged.
     """
     options = draw.options(options)

@@ -117,6 +117,7 @@ def _steps(body, table, ground, contacts, state, theta, dt, pose, legs, spare):
 
 @inlined
 def _copy(values, to):
+    """Copy a vector into another of the same length."""
     for i in range(len(values)):
         to[i] = values[i]
 

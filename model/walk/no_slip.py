@@ -77,7 +77,7 @@ def walk_no_slip(
         NaN on the ground and zero in the air, slip ratios NaN.
 
     Raises:
-        DomainError: The duration is not finite or less than a step.
+        DomainError: The duration is not finite or rounds to no step.
         WalkError: At some instant no three legs hold the robot; the message says when.
     """
     return _walk(robot, reference, duration, dt, wheels=False)
@@ -100,7 +100,7 @@ def walk_wheels(
         heading; forces are NaN on the ground and zero in the air, slip ratios NaN.
 
     Raises:
-        DomainError: The duration is not finite or less than a step.
+        DomainError: The duration is not finite or rounds to no step.
         WalkError: At some instant no three legs hold the robot; the message says when.
     """
     return _walk(robot, reference, duration, dt, wheels=True)

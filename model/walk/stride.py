@@ -52,7 +52,7 @@ def walk_by_strides(
         The path on flat ground from x, y and yaw zero, sampled at every step.
 
     Raises:
-        DomainError: The duration is not finite or less than a step.
+        DomainError: The duration is not finite or rounds to no step.
         WalkError: The gait has no period, the robot cannot stand, or a step diverged.
     """
     period = reference.period

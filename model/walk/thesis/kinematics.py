@@ -71,7 +71,7 @@ def place_legs(machine, q, v, theta, speed, stance_speed, centre_before, legs):
         v: Rates of the coordinates, shape (6,) [m/s, rad/s].
         theta: Leg angles, shape (6,) [rad].
         speed: Leg speeds, shape (6,) [rad/s].
-        stance_speed: Speeds that legs have, or would have, on the ground, shape (6,) [rad/s].
+        stance_speed: Speed of each leg when on the ground, shape (6,) [rad/s].
         centre_before: Position of the body one step ago, shape (3,) [m].
         legs: Filled: kinematics of the legs.
 

@@ -20,7 +20,7 @@ class LegMotion(NamedTuple):
     Attributes:
         theta: Angles at the beginning of each step, shape (n, 6) [rad].
         speed: Speeds during each step, shape (n, 6) [rad/s].
-        stance_speed: Speeds that legs have, or would have, on the ground, shape (n, 6) [rad/s].
+        stance_speed: Speed of each leg when on the ground, shape (n, 6) [rad/s].
     """
 
     theta: Array

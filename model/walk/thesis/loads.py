@@ -25,14 +25,14 @@ _CONVERGED = 1e-11  # N
 
 
 class Balance(NamedTuple):
-    """Contacts of three legs and the accelerations that their normal forces have to produce.
+    """Contacts of the three legs that carry load, and what their normal forces have to produce.
 
     Attributes:
         arms: Contact points from the body's centre, inertial frame, shape (3, 3) [m].
         axes: Forward, left and up of the contact frames, shape (3, 3) [-].
         slip: Longitudinal and lateral slip of each leg, shape (3, 2) [-].
         inertia: Moments of inertia about roll and pitch axes, shape (2,) [kg m2].
-        wanted: Roll and pitch accelerations to come from contact moments, shape (2,) [rad/s2].
+        wanted: Roll and pitch acceleration that contact moments have to produce, (2,) [rad/s2].
     """
 
     arms: Array
@@ -82,7 +82,7 @@ def leg_force(axes, forward, left, up, force):
 
 @compiled
 def accelerations(balance, traction, loads, excess, slopes):
-    """Compute roll and pitch acceleration minus those wanted, and their derivatives by load.
+    """Compute roll and pitch acceleration less `balance.wanted`, and their derivatives by load.
 
     Args:
         balance: The contacts; see `Balance`.

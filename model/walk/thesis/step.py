@@ -179,7 +179,7 @@ def accelerate(machine, manner, traction, balance, loads, spin, v, forces):
 
 @compiled
 def demands(machine, manner, legs, sides, q, v, spin, balance):
-    """Compute the roll and pitch accelerations wanted and the sum of normal forces, Eq. (4-22).
+    """Compute what normal forces have to produce: roll and pitch acceleration and sum, Eq. (4-22).
 
     The ground does not pull. Where the kinematic acceleration asks for a negative sum (a leg that
     meets the ground at flight speed), the sum is zero. The thesis's problem has no solution there.

@@ -105,7 +105,7 @@ def walk_thesis(
         material contact point.
 
     Raises:
-        DomainError: The duration is not finite or less than a step, or the gait is not a tripod:
+        DomainError: The duration is not finite or rounds to no step, or the gait is not a tripod:
             two legs of a tripod's side are more than 45 degrees apart.
         WalkError: The walk diverged; the message says when and in what state.
     """
@@ -124,6 +124,7 @@ def walk_thesis(
 
 
 def _machine(robot: Robot) -> Machine:
+    """Convert a robot's geometry, mass and inertia to the arrays of the thesis's loop."""
     return Machine(
         robot.hips, robot.leg_radius, robot.toe_beyond, robot.mass, robot.principal_inertia,
         robot.track,
@@ -175,6 +176,7 @@ def _side_heights(robot: Robot, theta: Array) -> Array:
 
 
 def _empty_record(rows: int) -> Record:
+    """Allocate a record of as many samples as rows, all legs without contact."""
     shape = (rows, N_LEGS)
     return Record(
         np.empty((rows, 6)), np.zeros(shape, dtype=bool), np.full(shape, np.nan),
@@ -202,6 +204,7 @@ def _path(record: Record, motion: LegMotion, t: Array, options: ThesisOptions) -
 
 
 def _diverged(t: float, q: Array, rates: Array) -> WalkError:
+    """Create the error of a walk that diverged at time t with coordinates q and their rates."""
     x, y, z = q[:3]
     roll, pitch, yaw = np.degrees(q[3:])
     return WalkError(

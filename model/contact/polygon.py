@@ -8,7 +8,7 @@ from model.slip.law import Array
 
 
 def side_products(point: Array, triangle: Array) -> Array:
-    r"""Compute the left sides of Eq. (3-30) to (3-32), one for each corner [m4].
+    r"""Compute on which side of a triangle's three sides a point lies, Eq. (3-30) to (3-32) [m4].
 
     .. math::
         \bigl((B - A) \times (p - A)\bigr) \cdot \bigl((B - A) \times (C - A)\bigr)

@@ -47,7 +47,7 @@ def switch_by_table(heights: Array, contact: NDArray[np.bool_]) -> bool:
 
 
 def switch_by_listing(heights: Array, contact: NDArray[np.bool_], inner: int) -> bool:
-    """Change the standing tripod by Listing A.32: once an inner leg in flight has a higher hip.
+    """Change the standing tripod by Listing A.32, once an inner leg in flight has a higher hip.
 
     The inner legs in flight take over as soon as any of their hips is higher than any of the
     standing inner legs' hips; the outer side follows, so that always one whole tripod stands. In

@@ -150,7 +150,7 @@ class CyclicReference:
         return np.where(stands, self.ground_speed, np.where(flies, self.flight_speed, 0.0))
 
     def stance_intervals(self, span: tuple[float, float]) -> Intervals:
-        """Compute the intervals in which each leg is between touchdown and lift-off.
+        """Compute the intervals in which each leg's angle less `offset` is on the ground.
 
         Args:
             span: Start and end; intervals are cut there [s].

@@ -117,7 +117,7 @@ def _events(x: Array) -> EventTimes:
 def scheduled_reference(
     system: EventSystem, touchdown: ArrayLike, *, liftoff: ArrayLike, inner: tuple[int, ...] = ()
 ) -> CyclicReference:
-    """Compute leg angles linear between the events of a schedule's steady state.
+    """Compute periodic leg angles, linear between the events of a schedule's steady state.
 
     Time zero is the first touchdown of the first group.
 

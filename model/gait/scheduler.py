@@ -34,7 +34,7 @@ def precedence(gait: Gait, double_stance: float) -> tuple[Array, Array]:
 def straight_system(
     gait: Gait, *, ground_time: float, flight_time: float, double_stance: float = 0.0
 ) -> EventSystem:
-    r"""Build the scheduler of a straight walk, Eq. (2-13).
+    r"""Build the max-plus system of a straight walk from leg groups and times, Eq. (2-13).
 
     .. math::
         x(k) = \begin{bmatrix} \mathcal{E} & \tau_f \otimes E \\ P & \mathcal{E} \end{bmatrix}

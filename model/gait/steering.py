@@ -49,7 +49,7 @@ class TripodAngles:
 
     @property
     def steering_factor(self) -> float:
-        """Outer over inner stance angle, Eq. (2-18) [-]."""
+        """Stance angle of the outer legs over that of the inner legs, Eq. (2-18) [-]."""
         outer = self.outer_liftoff - self.outer_touchdown
         return outer / (self.inner_liftoff - self.inner_touchdown)
 
@@ -184,7 +184,7 @@ def tripod_angles(
     outer_touchdown: float | None = None,
     outer_liftoff: float | None = None,
 ) -> TripodAngles:
-    """Compute the angles of a tripod from a touchdown angle and a steering factor, 2-6-2.
+    """Compute touchdown and lift-off angles of a turning tripod from a steering factor, 2-6-2.
 
     Given angles are kept, missing ones (None) computed. A missing outer touchdown follows from the
     ideal lift-off angles even where other lift-offs are given, as on the thesis's robot (Tables 5-3

@@ -11,7 +11,7 @@ from model.slip.law import Array, SlipLaw
 
 @dataclass(frozen=True)
 class SlipCurve:
-    """A slip law with fitted parameter values.
+    """A slip law with fitted parameter values, their covariance and the tested range.
 
     Attributes:
         law: The slip law, of k parameters.

@@ -34,7 +34,7 @@ class Parameter:
 
 
 class SlipLaw(Protocol):
-    """Longitudinal traction as a function of slip ratio and normal force.
+    """Protocol of a slip law: longitudinal traction as a function of slip ratio and normal force.
 
     `values` holds one entry a parameter, in the order of `parameters`; an entry is a number or an
     array that broadcasts against `slip` and `load`, so that a whole ensemble of parameter vectors
@@ -55,7 +55,7 @@ class SlipLaw(Protocol):
         ...
 
     def force(self, slip: ArrayLike, load: ArrayLike, values: Values) -> Array:
-        """Compute the traction force.
+        """Compute the traction force from slip ratio, load and parameter values.
 
         Args:
             slip: Slip ratio in the definition the values were fitted with [-].

@@ -48,7 +48,7 @@ class Contacts(NamedTuple):
 
 
 class State(NamedTuple):
-    """Motion of the body between two steps; a step overwrites every array with its end's values.
+    """Position, orientation, velocities and bristles of the body; each step overwrites them.
 
     Attributes:
         p: Position of the body's centre in the world frame, shape (3,) [m].

@@ -12,7 +12,7 @@ from model.slip.law import Array
 
 @dataclass(frozen=True)
 class WalkPath:
-    """Result of a walking model, sample by sample.
+    """Pose of the body and angle, slip and forces of each leg, at every sample of a walk.
 
     Attributes:
         t: Times, shape (n,) [s].

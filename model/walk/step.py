@@ -151,7 +151,7 @@ def bristle_pull(table, contacts, stretch, load, x, y, z):
 
 @inlined
 def contacts_agree(contacts, work, n, dt):
-    """Compute contact loads at the solved velocities; return whether the same contacts press.
+    """Compute contact loads at the solved velocities; return whether contacts press as assumed.
 
     Args:
         contacts: Stiffness and damping of contacts.

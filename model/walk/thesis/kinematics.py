@@ -143,9 +143,10 @@ def roll_rate(machine, manner, legs, sides, roll):
 
 @compiled
 def reset(machine, manner, legs, sides, q, v):
-    """Set height, roll, pitch and their rates from hip heights at a change of contacts.
+    """Set roll, pitch and the rates of height and roll from hip heights at a change of contacts.
 
-    Eq. (3-40), (3-41): roll from the difference of mean inner and outer hip height, pitch zero.
+    Eq. (3-40), (3-41): roll from the difference of mean inner and outer hip height, pitch zero;
+    with `manner.reset_height` height too, to the mean of both sides.
 
     Args:
         machine: The robot.

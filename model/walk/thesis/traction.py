@@ -13,7 +13,7 @@ from model.walk.traction_lookup import table_value
 
 
 class Traction(NamedTuple):
-    """A slip law for the compiled loop, as a named tuple, which numba accepts directly.
+    """A slip law for the thesis's compiled loop: Magic Formula coefficients, or a table.
 
     Attributes:
         exact: Whether the Magic Formula with these four coefficients is used instead of the table.
@@ -59,7 +59,7 @@ def law_traction(law: SlipLaw, values: Values, *, weight: float) -> Traction:
 
 
 def table_traction(table: TractionTable) -> Traction:
-    """Wrap a table for the thesis's model; its slip velocity, if by velocity, is v_R - v_C."""
+    """Wrap a tabulated law for the thesis's model; a law by slip velocity gets v_R - v_C."""
     return Traction(False, 0.0, 2.0, 0.0, 0.0, table)
 
 
@@ -117,7 +117,7 @@ def load_derivative(traction, kappa, load, force):
 
 
 def paired_sum(traction_force: Array) -> Array:
-    """Sum samples in pairs, as for the net force of Fig. 5-19.
+    """Sum successive samples of traction in pairs, as for the net force of Fig. 5-19.
 
     The thesis's traction changes sign at every step; the sum of a pair is what it calls the net
     force. It is twice the mean. As in the listing, the first sample is left out and pairs start

@@ -7,15 +7,15 @@ class ModelError(Exception):
 
 
 class DomainError(ModelError, ValueError):
-    """A number lies outside the domain of the equation that received it."""
+    """An argument is invalid: outside an equation's domain, of another shape, an unknown name."""
 
 
 class DefinitionMismatch(ModelError, ValueError):
-    """Slip ratios of two definitions were used in one computation.
+    """Slip ratios were given in another definition than the computation expects.
 
     Attributes:
-        found: Definition of the slip ratio that was handed in.
-        expected: Definition that the receiver's parameters were fitted with.
+        found: Definition of the slip ratios that were given.
+        expected: Definition that the law's parameters were fitted with.
     """
 
     def __init__(self, found: str, expected: str) -> None:
@@ -36,4 +36,4 @@ class FitError(ModelError, RuntimeError):
 
 
 class WalkError(ModelError, RuntimeError):
-    """A walk could not be computed to its end; the message states the time and the state."""
+    """A walk diverged, or its robot or leg angles do not suit the model; the message says which."""

@@ -12,25 +12,25 @@ from model.slip.law import Array
 
 
 def rotation_x(angle: ArrayLike) -> Array:
-    """Return the rotation about x, R_r of Eq. (3-7), shape (..., 3, 3)."""
+    """Return rotation matrices about x by angles [rad], R_r of Eq. (3-7), shape (..., 3, 3)."""
     c, s, one, zero = _entries(angle)
     return _matrix([[one, zero, zero], [zero, c, -s], [zero, s, c]])
 
 
 def rotation_y(angle: ArrayLike) -> Array:
-    """Return the rotation about y, R_p of Eq. (3-7) and R_theta of Eq. (3-10)."""
+    """Return rotation matrices about y by angles [rad], R_p of Eq. (3-7), shape (..., 3, 3)."""
     c, s, one, zero = _entries(angle)
     return _matrix([[c, zero, s], [zero, one, zero], [-s, zero, c]])
 
 
 def rotation_z(angle: ArrayLike) -> Array:
-    """Return the rotation about z, R_y of Eq. (3-7)."""
+    """Return rotation matrices about z by angles [rad], R_y of Eq. (3-7), shape (..., 3, 3)."""
     c, s, one, zero = _entries(angle)
     return _matrix([[c, -s, zero], [s, c, zero], [zero, zero, one]])
 
 
 def attitude(roll: ArrayLike, pitch: ArrayLike, yaw: ArrayLike) -> Array:
-    """Return the body's rotation in the inertial frame, Rz(yaw) Ry(pitch) Rx(roll).
+    """Return the rotation from body to inertial frame, Rz(yaw) Ry(pitch) Rx(roll), (..., 3, 3).
 
     Args:
         roll: Roll [rad].
@@ -41,11 +41,11 @@ def attitude(roll: ArrayLike, pitch: ArrayLike, yaw: ArrayLike) -> Array:
 
 
 def thesis_attitude(roll: ArrayLike, pitch: ArrayLike, yaw: ArrayLike) -> Array:
-    """Return the thesis's rotation, Rx(roll) Ry(pitch) Rz(yaw), Eq. (3-7).
+    """Return the thesis's rotation from body to inertial frame, Rx(roll) Ry(pitch) Rz(yaw).
 
-    Its roll turns the robot about an axis fixed to the ground: for a robot that heads along y it is
-    a pitch. The angles agree with those of `attitude`, to first order, only for a robot that heads
-    along x.
+    Eq. (3-7), shape (..., 3, 3). Its roll turns the robot about an axis fixed to the ground: for a
+    robot that heads along y it is a pitch. The angles agree with those of `attitude`, to first
+    order, only for a robot that heads along x.
 
     Args:
         roll: Roll [rad].
@@ -56,13 +56,13 @@ def thesis_attitude(roll: ArrayLike, pitch: ArrayLike, yaw: ArrayLike) -> Array:
 
 
 def roll_pitch_yaw(rotation: Array) -> Array:
-    """Compute the angles of `attitude` from a rotation.
+    """Compute roll, pitch and yaw, as `attitude` takes them, from rotation matrices.
 
     Args:
-        rotation: Rotation matrices, shape (..., 3, 3).
+        rotation: Rotation matrices from body to inertial frame, shape (..., 3, 3).
 
     Returns:
-        Roll in (-pi, pi], pitch in [-pi/2, pi/2] and yaw in (-pi, pi], shape (..., 3) [rad].
+        Roll in [-pi, pi], pitch in [-pi/2, pi/2] and yaw in [-pi, pi], shape (..., 3) [rad].
     """
     R = rotation
     return np.stack(
@@ -83,7 +83,7 @@ def transform(rotation: Array, position: ArrayLike) -> Array:
         position: Position, shape (3,) [m].
 
     Returns:
-        Transform, shape (4, 4).
+        Matrix with the rotation top left and the position in the last column, shape (4, 4).
     """
     H = np.eye(4)
     H[:3, :3], H[:3, 3] = rotation, position
@@ -91,7 +91,7 @@ def transform(rotation: Array, position: ArrayLike) -> Array:
 
 
 def body_from_hip(theta: float, hip: ArrayLike) -> Array:
-    """Return the transform from the hip frame to the body frame, Eq. (3-11).
+    """Return the homogeneous transform from hip to body frame, Eq. (3-11), shape (4, 4).
 
     Args:
         theta: Leg angle [rad].
@@ -101,7 +101,7 @@ def body_from_hip(theta: float, hip: ArrayLike) -> Array:
 
 
 def hip_from_contact(phi: float, contact: float, *, roll: float, radius: float) -> Array:
-    """Return the transform from the contact frame to the hip frame, Eq. (3-14) and (3-16).
+    """Return the homogeneous transform from contact to hip frame, Eq. (3-14), (3-16), (4, 4).
 
     Args:
         phi: Angle of the lowest point of the leg's full circle [rad].
@@ -114,9 +114,11 @@ def hip_from_contact(phi: float, contact: float, *, roll: float, radius: float) 
 
 
 def _entries(angle: ArrayLike) -> tuple[Array, Array, Array, Array]:
+    """Return cosine and sine of angles [rad], and ones and zeros of the angles' shape."""
     a = np.asarray(angle, dtype=float)
     return np.cos(a), np.sin(a), np.ones_like(a), np.zeros_like(a)
 
 
 def _matrix(rows: list[list[Array]]) -> Array:
+    """Stack three rows of three arrays of one shape (...) to matrices of shape (..., 3, 3)."""
     return np.stack([np.stack(row, axis=-1) for row in rows], axis=-2)

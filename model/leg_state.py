@@ -9,23 +9,21 @@ from model.robot import N_LEGS, Robot
 from model.slip.law import Array
 from model.walk.traction import TractionTable
 
-ARCS = (np.pi / 2, np.radians(359.0))  # a robot's legs are arcs of these angles
+ARCS = (np.pi / 2, np.radians(359.0))  # least and largest angle of a leg's arc [rad]
 
 
 @dataclass(frozen=True)
 class LegState:
-    """Draws of what differs from the description of the robot and the slip law.
-
-    They come from a prior or a posterior.
+    """Corrections to the description of robot and slip law: m draws from a prior or a posterior.
 
     Attributes:
-        offset: Further offset of each leg, shape (m, 6) [rad].
+        offset: Angles added to `Robot.leg_offset`, shape (m, 6) [rad].
         grip: Factor on traction, shape (m,) [-].
         stiffness: Factor on slip stiffness, shape (m,) [-].
-        fall: Factor on the post-peak drop, shape (m,) [-].
-        arc: Further angle of the legs' arc, shape (m,) [rad].
-        steering: Constant curvature added to the path, whatever the legs do, shape (m,) [rad/m].
-        stride: Relative error of distance: legs that are longer or shorter, shape (m,) [-].
+        fall: Factor on the post-peak drop; 0 removes the drop, shape (m,) [-].
+        arc: Angle added to `Robot.leg_arc`, shape (m,) [rad].
+        steering: Constant curvature added to the path, positive to the left, shape (m,) [rad/m].
+        stride: Relative error of distance: the path is 1 + stride times as long, shape (m,) [-].
     """
 
     offset: Array
@@ -42,7 +40,7 @@ class LegState:
 
     @staticmethod
     def of_prior(n: int, *, offset_sd: float, rng: np.random.Generator) -> "LegState":
-        """Draw leg offsets from a uniform prior, with every other unknown at its described value.
+        """Draw leg offsets from a uniform prior of mean zero; leave all else as described.
 
         An encoder's zero known to one count is uniform over it: standard deviation count/sqrt(12).
 
@@ -58,7 +56,9 @@ class LegState:
 
 
 def robot_in(robot: Robot, state: LegState, i: int) -> Robot:
-    """Return the robot with the leg offsets and arc of one draw.
+    """Return a copy of the robot with the leg offsets and the leg arc of one draw added.
+
+    The arc is held to 90 to 359 degrees.
 
     Args:
         robot: The robot as described.
@@ -73,7 +73,7 @@ def robot_in(robot: Robot, state: LegState, i: int) -> Robot:
 
 
 def law_in(table: TractionTable, state: LegState, i: int) -> TractionTable:
-    """Return the slip law scaled by the grip, slip stiffness and post-peak drop of one draw.
+    """Return a slip law's table scaled by the grip, stiffness and fall factors of one draw.
 
     Args:
         table: The slip law as calibrated.
@@ -91,7 +91,7 @@ def law_in(table: TractionTable, state: LegState, i: int) -> TractionTable:
 def scaled_table(
     table: TractionTable, *, grip: float, stiffness: float, fall: float = 1.0
 ) -> TractionTable:
-    """Scale a law's traction and, independently, its slip stiffness and its post-peak drop.
+    """Scale a table's traction and, independently, its slip stiffness and its post-peak drop.
 
     A rig measures the post-peak drop under legs that slide for seconds. A walking leg lifts off
     earlier, and its slip is a velocity as much as a ratio. The post-peak drop is therefore the part
@@ -99,9 +99,9 @@ def scaled_table(
 
     Args:
         table: The law.
-        grip: Factor on traction at large slip [-].
-        stiffness: Factor on traction per slip at zero slip [-].
-        fall: Factor on the post-peak drop; there is none at zero [-].
+        grip: Factor on traction, peak and toe included [-].
+        stiffness: Factor on slip stiffness; slips are scaled by grip over stiffness [-].
+        fall: Factor on how far traction falls beyond its peak; 0 keeps it at the peak [-].
     """
     table = _with_fall(table, fall)
     shrink = stiffness / grip
@@ -115,6 +115,7 @@ def scaled_table(
 
 
 def _with_fall(table: TractionTable, fall: float) -> TractionTable:
+    """Multiply each row's drop below its peak, at slips beyond the peak and on a toe, by `fall`."""
     top = table.phi.max(axis=1)
     beyond = np.arange(table.phi.shape[1]) >= table.phi.argmax(axis=1)[:, None]
     phi = np.where(beyond, top[:, None] - fall * (top[:, None] - table.phi), table.phi)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""How a long computation reports progress and is asked to stop."""
+"""Protocol through which a long computation reports progress and learns that it should stop."""
 
 from typing import Protocol
 

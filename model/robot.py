@@ -17,6 +17,7 @@ HIP_X, HIP_Y = 0.097, 0.1156  # Listing A.1; the text's w/2 puts hip_y at 0.1256
 
 
 def _source_hips() -> Array:
+    """Return the hip positions of the thesis's robot, Listing A.1, shape (6, 3) [m]."""
     x, y = (HIP_X, HIP_X, 0.0, 0.0, -HIP_X, -HIP_X), (HIP_Y, -HIP_Y) * 3
     return np.column_stack([x, y, np.zeros(N_LEGS)])
 
@@ -35,11 +36,11 @@ class Robot:
         body_size: Length, width and height of the body, shape (3,) [m].
         inertia: Principal moments of inertia about x, y and z; those of a uniform cuboid of
             `body_size` when None, Eq. (4-9) [kg m2].
-        leg_offset: Angle of each leg beyond the one it reports, shape (6,) [rad].
+        leg_offset: True minus reported angle of each leg, shape (6,) [rad].
 
     Raises:
-        DomainError: A length, mass or inertia is not positive, the arc is out of range, or an array
-            has another shape or is not finite.
+        DomainError: A length, mass or inertia is not positive, the arc is not from 90 to below 360
+            degrees, or an array has another shape or is not finite.
     """
 
     hips: Array = field(default_factory=_source_hips)
@@ -51,7 +52,7 @@ class Robot:
     leg_offset: Array = field(default_factory=lambda: np.zeros(N_LEGS))
 
     def __post_init__(self) -> None:
-        """Check that masses and lengths are positive and that arrays have the expected shapes."""
+        """Convert hips and offsets to arrays; check shapes, signs and the range of the arc."""
         for name, shape in (("hips", (N_LEGS, 3)), ("leg_offset", (N_LEGS,))):
             values = np.ascontiguousarray(getattr(self, name), dtype=float)
             _require_shape(name, values, shape)
@@ -73,7 +74,7 @@ class Robot:
 
     @property
     def principal_inertia(self) -> Array:
-        """Moments of inertia about the body's axes, shape (3,) [kg m2]."""
+        """Moments of inertia about x, y, z: given ones, or a cuboid's, shape (3,) [kg m2]."""
         return (
             cuboid_inertia(self.mass, self.body_size)
             if self.inertia is None
@@ -87,13 +88,13 @@ class Robot:
 
     @property
     def track(self) -> float:
-        """Distance between the left and right hips, averaged over the legs [m]."""
+        """Mean y of the left hips minus mean y of the right hips [m]."""
         y = self.hips[:, 1]
         return float(y[list(LEFT)].mean() - y[list(RIGHT)].mean())
 
 
 def cuboid_inertia(mass: float, size: tuple[float, float, float]) -> Array:
-    r"""Compute the principal moments of inertia of a uniform cuboid, Eq. (4-9) [kg m2].
+    r"""Compute the moments of inertia of a uniform cuboid, Eq. (4-9), shape (3,) [kg m2].
 
     .. math::
         I_{xx} = m (w^2 + h^2)/12, \quad I_{yy} = m (l^2 + h^2)/12, \quad I_{zz} = m (w^2 + l^2)/12
@@ -110,6 +111,7 @@ def cuboid_inertia(mass: float, size: tuple[float, float, float]) -> Array:
 
 
 def _require_shape(name: str, values: Array, shape: tuple[int, ...]) -> None:
+    """Raise `DomainError` unless an array has the expected shape and is finite."""
     if values.shape != shape:
         raise DomainError(f"{name} has shape {values.shape}; expected {shape}")
     if not np.isfinite(values).all():
@@ -117,5 +119,6 @@ def _require_shape(name: str, values: Array, shape: tuple[int, ...]) -> None:
 
 
 def _require_positive(name: str, value: float, unit: str) -> None:
+    """Raise `DomainError` unless a value is positive and finite."""
     if not (value > 0 and np.isfinite(value)):
         raise DomainError(f"{name} is {value:g} {unit}; expected more than zero")

@@ -31,14 +31,14 @@ class ModelRun:
 
     Attributes:
         robot: The robot.
-        reference: Its leg angles over time, from time zero on.
+        reference: Leg angles over time, from time zero on.
         slip: The slip law; None for a model without slip.
         duration: Time walked [s].
         dt: Length of a step [s].
-        toe: Traction of a leg on its toe.
+        toe: Traction of a leg on its toe, see `law_table`; only the model "dynamics" uses it.
         direction: Side to which the gait turns; only the thesis's model uses it.
-        legs: One draw of leg and floor parameters that differ from the description; only the
-            model "dynamics" uses it.
+        legs: Corrections to robot, slip law and path, of which draw 0 is used; None for none. Only
+            the model "dynamics" uses them.
     """
 
     robot: Robot
@@ -56,10 +56,10 @@ class WalkModel:
     """A walking model.
 
     Attributes:
-        name: Name under which it is chosen.
-        slips: Whether it needs a slip law.
-        dt: Default length of its step [s].
-        run: Function that computes the walk.
+        name: Key of the model in `MODELS`.
+        slips: Whether the model needs a slip law.
+        dt: Default length of a step [s].
+        run: Function that computes the path from the model's inputs.
     """
 
     name: str
@@ -71,16 +71,19 @@ class WalkModel:
 def baseline_paths(
     robot: Robot, reference: SampledReference, *, direction: Direction = "left", start: float = 0.0
 ) -> tuple[dict[str, Poses], tuple[str, ...]]:
-    """Compute the paths of leg angles by every baseline model.
+    """Compute the path of a leg log by every baseline model, `BASELINES`.
+
+    The thesis's model walks with the thesis's slip curve, the others without slip.
 
     Args:
         robot: The robot.
-        reference: True leg angles from time zero on; all of them are walked.
+        reference: True leg angles; walked from time zero to the last sample.
         direction: Side the gait turns to; only the thesis's model uses it.
         start: Added to the paths' times [s].
 
     Returns:
-        Paths by the models' names, and one line for each model that cannot walk these angles.
+        Paths by the models' names, and one line of text with the reason for each model that cannot
+        walk these angles and is left out.
     """
     duration = float(reference.t[-1])
     paths, notes = {}, []
@@ -98,6 +101,7 @@ def baseline_paths(
 
 
 def _dynamics(run: ModelRun) -> WalkPath:
+    """Walk by the project's model; with `legs`, correct robot, law and path by their draw 0."""
     from model.walk.dynamics import DynamicsOptions, walk
 
     table = _slip_of(run).traction_table(weight=run.robot.mass * GRAVITY, toe=run.toe)
@@ -111,6 +115,7 @@ def _dynamics(run: ModelRun) -> WalkPath:
 
 
 def _thesis(run: ModelRun) -> WalkPath:
+    """Walk by the thesis's model; the slip ratio is mended unless a cyclic gait is walked."""
     from model.walk.thesis import ThesisOptions, walk_thesis
 
     traction = _slip_of(run).thesis_traction(weight=run.robot.mass * GRAVITY)
@@ -123,9 +128,10 @@ def _thesis(run: ModelRun) -> WalkPath:
 
 
 def _legs_of_the_thesis(reference: LegReference) -> "LegReference | SwitchedLegs":
-    """Convert a gait's legs to ones that switch speed by angle, as the thesis's do.
+    """Convert a cyclic gait to legs that switch speed by angle, as the thesis's do.
 
-    Legs of a log, and gaits that pause or whose angles leave a turn, are followed by the clock.
+    A log is returned unchanged, and so is a gait with pauses or offsets, or with touchdown or
+    lift-off outside 0 to 360 degrees: these are followed by the clock.
     """
     from model.walk.thesis import SwitchedLegs
 
@@ -138,18 +144,21 @@ def _legs_of_the_thesis(reference: LegReference) -> "LegReference | SwitchedLegs
 
 
 def _no_slip(run: ModelRun) -> WalkPath:
+    """Walk by `walk_no_slip`."""
     from model.walk.no_slip import walk_no_slip
 
     return walk_no_slip(run.robot, run.reference, duration=run.duration, dt=run.dt)
 
 
 def _wheels(run: ModelRun) -> WalkPath:
+    """Walk by `walk_wheels`."""
     from model.walk.no_slip import walk_wheels
 
     return walk_wheels(run.robot, run.reference, duration=run.duration, dt=run.dt)
 
 
 def _slip_of(run: ModelRun) -> Slip:
+    """Return the slip law of a run; raise `DomainError` if the run has none."""
     if run.slip is None:
         raise DomainError("this walking model needs a slip law; none was given")
     return run.slip
@@ -164,4 +173,4 @@ MODELS: Mapping[str, WalkModel] = MappingProxyType({
         WalkModel("no-slip-simple", slips=False, dt=0.002, run=_wheels),
     )
 })  # fmt: skip
-"""The project's own model, the thesis's, and the two baselines without slip."""
+"""Walking models by name: the project's own, the thesis's, and the two without slip."""

@@ -17,26 +17,27 @@ Contact = tuple[int, ...]
 def next_stance(
     robot: Robot, theta: Array, *, contact: Contact, always_balanced: bool = False
 ) -> Stance:
-    """Find the stance after the legs have turned, from the contact state before.
+    """Find the stance on three legs after the legs have turned, from the contact state before.
 
-    A leg in flight that would be below the ground touches down, Eq. (3-27). The new contact state
-    is the one that includes it, leaves no leg below the ground and has the centre of mass inside
-    its triangle; the legs it leaves out lift off. A leg that is no longer in one plane with the
-    others lifts off too.
+    A leg in flight that would be on or below the ground touches down, Eq. (3-27). The new stance
+    includes such a leg, leaves no leg below the ground and has the centre of mass inside its
+    triangle, the most level if several do, the nearest to it if none does; legs that then do not
+    reach the ground lift off.
 
     Args:
         robot: The robot.
         theta: Leg angles after the step, shape (6,) [rad].
         contact: Indices of the legs that touched the ground before, three or more.
-        always_balanced: Also let the robot topple when the centre of mass leaves the contact
-            polygon while no leg touches down. The text describes both; its sequence, Eq. (3-33),
-            is computed without.
+        always_balanced: Also let the robot topple onto other legs when the centre of mass leaves
+            the triangle while no leg touches down. The thesis's text describes both; its sequence,
+            Eq. (3-33), is computed without.
 
     Returns:
         The stance; `Stance.standing` is the new contact state.
 
     Raises:
-        DomainError: No contact state fits.
+        DomainError: All legs of `contact` lie on one line, or no three legs leave every leg above
+            the ground.
     """
     before = _widest(robot, theta, contact)
     touched = np.flatnonzero(_touchdowns(before, contact))
@@ -49,7 +50,11 @@ def next_stance(
 
 
 def _widest(robot: Robot, theta: Array, contact: Contact) -> Stance:
-    """Stand on the three legs of a contact state that hold the weight best, and can."""
+    """Stand on the three contact legs with the centre of mass deepest inside their triangle.
+
+    Triples that leave every contact leg on or above the ground go first. Raise `DomainError` if the
+    contact legs lie on one line.
+    """
     stances = _stances(robot, theta, [np.array(three) for three in combinations(contact, 3)])
     if not stances:
         numbers = ", ".join(str(leg + 1) for leg in contact)
@@ -60,16 +65,19 @@ def _widest(robot: Robot, theta: Array, contact: Contact) -> Stance:
 
 
 def _above_ground(stance: Stance, contact: Contact) -> bool:
+    """Return whether no leg of `contact` is below the ground of a stance."""
     return bool(np.all(stance.clearance[list(contact)] >= -ON_GROUND))
 
 
 def _touchdowns(stance: Stance, contact: Contact) -> NDArray[np.bool_]:
+    """Return which legs outside `contact` are on or below the ground of a stance, shape (6,)."""
     flying = np.ones(N_LEGS, dtype=bool)
     flying[list(contact)] = False
     return flying & (stance.clearance <= 0)
 
 
 def _best(robot: Robot, theta: Array, triples: list[NDArray[np.intp]]) -> Stance:
+    """Select the most level feasible stance that holds the robot, else that nearest to holding."""
     feasible = [stance for stance in _stances(robot, theta, triples) if stance.feasible]
     if not feasible:
         angles = ", ".join(f"{angle:.4g}" for angle in theta)
@@ -84,11 +92,12 @@ def _best(robot: Robot, theta: Array, triples: list[NDArray[np.intp]]) -> Stance
 
 
 def _stances(robot: Robot, theta: Array, triples: list[NDArray[np.intp]]) -> list[Stance]:
+    """Stand on each triple of legs whose hips span a triangle."""
     return [stand(robot, theta, legs=three) for three in triples if spans(robot, three)]
 
 
 def spans(robot: Robot, legs: NDArray[np.intp]) -> bool:
-    """Return whether three legs span a triangle; those of one side lie on a line.
+    """Return whether the hips of three legs span a triangle seen from above.
 
     Args:
         robot: The robot.

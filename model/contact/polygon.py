@@ -8,7 +8,7 @@ from model.slip.law import Array
 
 
 def side_products(point: Array, triangle: Array) -> Array:
-    r"""Compute the left sides of Eq. (3-30) to (3-32), one for each corner [m4].
+    r"""Compute on which side of a triangle's three sides a point lies, Eq. (3-30) to (3-32) [m4].
 
     .. math::
         \bigl((B - A) \times (p - A)\bigr) \cdot \bigl((B - A) \times (C - A)\bigr)
@@ -20,7 +20,7 @@ def side_products(point: Array, triangle: Array) -> Array:
         triangle: Contact points seen from above, shape (3, 2) [m].
 
     Returns:
-        The product for the side across from each corner, shape (3,).
+        Product for the side opposite each corner, shape (3,); negative beyond that side.
     """
     products = np.empty(3)
     for corner in range(3):
@@ -33,16 +33,16 @@ def side_products(point: Array, triangle: Array) -> Array:
 
 
 def depth_in_triangle(point: Array, triangle: Array) -> float:
-    """Compute the signed distance of a point inside a triangle to its nearest side [m].
+    """Compute the signed distance from a point in a triangle to the triangle's nearest side [m].
 
-    It is negative outside. `side_products` gives the same signs, in other units.
+    Outside it is negative, to the line of the side that the point lies furthest beyond.
 
     Args:
         point: The point seen from above, shape (2,) [m].
         triangle: The corners seen from above, shape (3, 2) [m].
 
     Returns:
-        Distance to the line of the nearest side [m]; minus infinity when the corners lie on a line.
+        Least distance to the sides' lines [m]; minus infinity when the corners lie on a line.
     """
     products = side_products(point, triangle)
     across = triangle[1] - triangle[0]
@@ -79,15 +79,15 @@ def contains(point: Array, triangle: Array) -> bool:
 def lifting_corner(point: Array, triangle: Array) -> int | None:
     """Find the leg that lifts when the centre of mass is outside the contact triangle.
 
-    It is the corner opposite the side that the point lies beyond; beyond two sides, that of the
-    side with the most negative product of `side_products`.
+    The leg is the one at the corner opposite the side that the centre of mass lies beyond; beyond
+    two sides, opposite the one with the more negative product of `side_products`.
 
     Args:
         point: Centre of mass seen from above, shape (2,) [m].
         triangle: Contact points seen from above, shape (3, 2) [m].
 
     Returns:
-        Index of the corner; None when the point is inside the triangle.
+        Row of the leg in `triangle`; None when the point is inside the triangle or on its edge.
     """
     products = side_products(point, triangle)
     worst = int(np.argmin(products))

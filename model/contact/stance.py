@@ -15,7 +15,7 @@ from model.robot import N_LEGS, Robot
 from model.slip.law import Array
 
 TRIPLES = np.array(list(combinations(range(N_LEGS), 3)))
-ON_GROUND = 1e-9  # clearance within which a leg stands, and a weight on an edge is inside [m]
+ON_GROUND = 1e-9  # tolerance: clearance of a leg that stands, depth of a mass on an edge [m]
 
 _TURNS = 60  # rounds of finding contact points and the plane through them
 _SETTLED = 1e-14
@@ -30,8 +30,10 @@ class Stance:
         up: Vertical direction in the body frame, shape (3,) [-].
         height: Height of the body's centre above the ground [m].
         points: Lowest point of every leg in the body frame, shape (6, 3) [m].
-        clearance: Height of every leg's lowest point; negative below the ground, shape (6,) [m].
-        depth: How far inside the three legs' triangle the centre of mass is; negative outside [m].
+        clearance: Height of every leg's lowest point above the ground plane through the three legs'
+            points; negative below it, shape (6,) [m].
+        depth: Distance of the centre of mass inside the three legs' triangle seen from above;
+            negative outside [m].
     """
 
     legs: NDArray[np.intp]
@@ -43,27 +45,27 @@ class Stance:
 
     @property
     def roll(self) -> float:
-        """Roll, R = Rz(yaw) Ry(pitch) Rx(roll) [rad]."""
+        """Roll of the body, in R = Rz(yaw) Ry(pitch) Rx(roll) [rad]."""
         return float(np.arctan2(self.up[1], self.up[2]))
 
     @property
     def pitch(self) -> float:
-        """Pitch [rad]."""
+        """Pitch of the body, in R = Rz(yaw) Ry(pitch) Rx(roll) [rad]."""
         return float(-np.arcsin(self.up[0]))
 
     @property
     def standing(self) -> NDArray[np.bool_]:
-        """Which legs are on the ground: the three, and any other that just reaches it."""
+        """Whether each leg is within `ON_GROUND` of the ground, as the three are, shape (6,)."""
         return np.abs(self.clearance) <= ON_GROUND
 
     @property
     def feasible(self) -> bool:
-        """Whether no leg would have to be below the ground."""
+        """Whether no leg is below the ground by more than `ON_GROUND`."""
         return bool(np.all(self.clearance >= -ON_GROUND))
 
 
 def stand(robot: Robot, theta: Array, *, legs: NDArray[np.intp] | tuple[int, ...]) -> Stance:
-    """Orient the robot such that three given legs touch the ground, step 3 of section 3-5-2.
+    """Compute the stance in which three given legs touch the ground, step 3 of section 3-5-2.
 
     Args:
         robot: The robot.
@@ -71,7 +73,7 @@ def stand(robot: Robot, theta: Array, *, legs: NDArray[np.intp] | tuple[int, ...
         legs: Indices of three legs that do not lie on one line.
 
     Returns:
-        The stance; other legs may be below the ground and the centre of mass outside.
+        The stance; other legs may be below the ground, the centre of mass outside the triangle.
 
     Raises:
         DomainError: The three legs lie on one line.
@@ -92,7 +94,7 @@ def stand(robot: Robot, theta: Array, *, legs: NDArray[np.intp] | tuple[int, ...
 def resting_stance(robot: Robot, theta: Array) -> Stance:
     """Find the three legs on which the robot rests, its centre of mass inside their triangle.
 
-    No leg is below the ground. Of several such stances the most level one is taken; another may
+    No leg is below the ground. Of several such stances the most level one is returned; another may
     lie on its nose.
 
     Args:
@@ -135,12 +137,12 @@ def lowest_points(theta, hips, radius, toe_beyond, up, points):
 
 @compiled
 def plane_normal(points, legs, up):
-    """Compute the normal of the plane through three legs' points.
+    """Compute the upward unit normal of the plane through three legs' points.
 
     Args:
         points: Lowest point of each leg in the body frame, shape (6, 3) [m].
         legs: Indices of the three legs, shape (3,).
-        up: Overwritten with the unit normal, shape (3,) [-]; kept when the points lie on a line.
+        up: Overwritten with the normal, shape (3,) [-]; kept when the points lie on a line.
 
     Returns:
         Largest change of a component of `up` [-]; infinity when the points lie on a line seen from
@@ -161,7 +163,7 @@ def plane_normal(points, legs, up):
 
 @compiled
 def seen_from_above(points, up, seen):
-    """Project points along the vertical, with x along the heading and y to the left.
+    """Project points along the vertical to x along the heading and y to the left.
 
     Args:
         points: Points in the body frame, shape (6, 3) [m].
@@ -212,7 +214,7 @@ def on_three_legs(theta, hips, radius, toe_beyond, legs, points, up, seen):
 
 @compiled
 def holds(theta, hips, radius, toe_beyond, legs, points, up, seen):
-    """Compute the static stability margin on three legs.
+    """Compute the static stability margin on three legs: how far inside the centre of mass is.
 
     Args:
         theta: Leg angles, shape (6,) [rad].

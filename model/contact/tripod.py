@@ -17,19 +17,19 @@ TIE = 1e-12  # hip heights closer than rounding are equal [m]
 
 
 def switch_by_table(heights: Array, contact: NDArray[np.bool_]) -> bool:
-    r"""Apply Table 3-1: each side changes legs when the other ones' hips are higher on average.
+    r"""Change each side's stance legs by Table 3-1: to those with the higher mean hip height.
 
     .. math::
         \mathcal C^i = \{1, 5\} \to \{3\} \text{ when } z_{h,3} > \tfrac12 (z_{h,1} + z_{h,5}),
         \text{ and back when it is lower}
 
-    The same holds for {2, 6} and {4}. Table 3-1 prints all four inequalities the other way round;
-    taken so, a side would stand on the legs that do not reach the ground. The listing has them
-    right.
+    The same holds for {2, 6} and {4}; heights within 1e-12 m are equal and change nothing. Table
+    3-1 prints all four inequalities the other way round; taken so, a side would stand on the legs
+    that do not reach the ground. The listing has them right.
 
     Args:
         heights: Hip heights above each leg's lowest point, shape (6,) [m].
-        contact: Legs on the ground; changed in place, shape (6,).
+        contact: Whether a leg is on the ground; changed in place, shape (6,).
 
     Returns:
         Whether any leg changed.
@@ -47,16 +47,16 @@ def switch_by_table(heights: Array, contact: NDArray[np.bool_]) -> bool:
 
 
 def switch_by_listing(heights: Array, contact: NDArray[np.bool_], inner: int) -> bool:
-    """Apply Listing A.32: only the inner legs are compared, and one of them is enough.
+    """Change the standing tripod by Listing A.32, once an inner leg in flight has a higher hip.
 
-    The inner legs in flight take over as soon as any of their hips is as high as any of the
-    standing ones'; the outer side follows, so that always one whole tripod stands. In the listing a
-    tie switches to the legs in flight. At the start of a matched gait, where heights are equal but
-    for rounding, the rounding then decides. Here a tie changes nothing.
+    The inner legs in flight take over as soon as any of their hips is higher than any of the
+    standing inner legs' hips; the outer side follows, so that always one whole tripod stands. In
+    the listing a tie switches to the legs in flight. At the start of a matched gait, where heights
+    are equal but for rounding, the rounding then decides. Here a tie changes nothing.
 
     Args:
         heights: Hip heights above each leg's lowest point, shape (6,) [m].
-        contact: Legs on the ground; changed in place, shape (6,).
+        contact: Whether a leg is on the ground; changed in place, shape (6,).
         inner: 0 when the left legs are the inner ones, 1 when the right ones are.
 
     Returns:

@@ -46,9 +46,9 @@ def buehler_clock(
 
     The right tripod is the left one half a cycle later, Eq. (2-6).
 
-    The thesis has Theta = pi in place of 2 pi: its legs turn by half a turn in a cycle and jump by
-    pi between cycles. It also lost a sign in the condition of its third case. With the default
-    `turn` the clock closes on a whole turn.
+    The thesis has Theta = pi instead of 2 pi: its legs turn by half a turn in a cycle and jump by
+    pi between cycles. The thesis also lost a sign in the condition of the third case. With the
+    default `turn` the clock closes on a whole turn.
 
     Args:
         t: Times from mid stance of the left tripod [s].
@@ -61,7 +61,8 @@ def buehler_clock(
         Angles in [-turn/2, turn/2], zero at mid stance [rad].
 
     Raises:
-        DomainError: The ground time or the stance angle does not fit into the cycle.
+        DomainError: The ground time is not between zero and the cycle time, or the stance angle not
+            between zero and `turn`.
     """
     _require_clock(stance_angle, ground_time=ground_time, cycle_time=cycle_time, turn=turn)
     t_bar = centred_time(t, cycle_time)
@@ -86,11 +87,11 @@ def buehler_reference(
         cycle_time: tau_c [s].
 
     Returns:
-        Leg angles around (touchdown + liftoff)/2 in mid stance.
+        Leg angles of six legs, (touchdown + liftoff)/2 in mid stance.
 
     Raises:
-        DomainError: The ground time does not fit into the cycle, or lift-off does not exceed
-            touchdown.
+        DomainError: The ground time is not between zero and the cycle time, or lift-off does not
+            exceed touchdown by less than a turn.
     """
     _require_clock(
         liftoff - touchdown, ground_time=ground_time, cycle_time=cycle_time, turn=2 * np.pi
@@ -108,6 +109,7 @@ def buehler_reference(
 def _require_clock(
     stance_angle: float, *, ground_time: float, cycle_time: float, turn: float
 ) -> None:
+    """Raise `DomainError` unless 0 < ground time < cycle time and 0 < stance angle < turn."""
     if not 0 < ground_time < cycle_time:
         raise DomainError(
             f"ground time {ground_time:g} s of a cycle of {cycle_time:g} s; expected more than "

@@ -17,7 +17,7 @@ _BY_LEG = ("touchdown", "liftoff", "ground_time", "flight_time", "phase", "pause
 
 @dataclass(frozen=True, eq=False)
 class CyclicReference:
-    r"""Legs that turn steadily from touchdown to lift-off, and steadily on to the next touchdown.
+    r"""Periodic leg angles: one speed from touchdown to lift-off, another to the next touchdown.
 
     .. math::
         \theta(t) = 2\pi k + \begin{cases}
@@ -28,12 +28,11 @@ class CyclicReference:
         \dot\theta_g = \frac{\theta_{LO} - \theta_{TD}}{\tau_g}, \quad
         \dot\theta_f = \frac{2\pi - (\theta_{LO} - \theta_{TD})}{\tau_f - \tau_w}
 
-    with u the time since the leg's last touchdown, of which it is the k-th: Eq. (2-20) to (2-22)
-    and the kind of the others, with a pause tau_w. Vary one with `dataclasses.replace`: every
-    gait can be given pauses and offsets.
+    with u the time since the leg's last touchdown, its k-th: Eq. (2-20) to (2-22), with a pause
+    tau_w. `dataclasses.replace` gives any gait pauses and offsets.
 
-    Every array has one entry a leg, and numbers stand for all legs. The robot has six; the class
-    takes any number.
+    Every array has one entry a leg, and a number stands for all legs. The robot has six; the class
+    takes any number of legs.
 
     Attributes:
         touchdown: Touchdown angles, shape (n,) [rad].
@@ -41,14 +40,15 @@ class CyclicReference:
         ground_time: Times from touchdown to lift-off, shape (n,) [s].
         flight_time: Times from lift-off to touchdown, the pause included, shape (n,) [s].
         phase: Share of the period by which each leg is past touchdown at time zero; 1 more puts
-            it a turn ahead, shape (n,) [-].
+            the leg a turn ahead, shape (n,) [-].
         inner: Indices of the legs on the inner side of a turn; empty for a straight walk.
         pause: How long a leg waits at lift-off before its flight, shape (n,) [s].
-        offset: Angle of each leg beyond its commanded one, shape (n,) [rad].
+        offset: Angle added to each leg's angle of the equation above, shape (n,) [rad].
 
     Raises:
-        DomainError: Lift-off does not exceed touchdown, a time is not positive, legs differ in
-            period, or a pause leaves no time to fly.
+        DomainError: Shapes do not match, a value is not finite, lift-off does not exceed touchdown
+            by less than a turn, a time is not positive, legs differ in period, or a pause is
+            negative or leaves no time to fly.
     """
 
     touchdown: Array
@@ -76,6 +76,7 @@ class CyclicReference:
         self._require_times()
 
     def _require_times(self) -> None:
+        """Raise `DomainError` unless times are positive, pauses fit and all periods are equal."""
         pause = np.asarray(self.pause)
         for leg in range(self.n_legs):
             ground, flight, wait = self.ground_time[leg], self.flight_time[leg], pause[leg]
@@ -102,12 +103,12 @@ class CyclicReference:
 
     @property
     def period(self) -> float:
-        """Time of a whole turn of every leg, tau_c [s]."""
+        """Cycle time tau_c, in which every leg turns by 2 pi: ground plus flight time [s]."""
         return float(self.ground_time[0] + self.flight_time[0])
 
     @property
     def stance_angle(self) -> Array:
-        """Angles covered on the ground, shape (n,) [rad]."""
+        """Lift-off minus touchdown angles, shape (n,) [rad]."""
         return self.liftoff - self.touchdown
 
     @property
@@ -117,14 +118,14 @@ class CyclicReference:
 
     @property
     def flight_speed(self) -> Array:
-        """Leg speeds in flight, shape (n,) [rad/s]."""
+        """Leg speeds in flight after the pause, shape (n,) [rad/s]."""
         return (2 * np.pi - self.stance_angle) / (self.flight_time - self.pause)
 
     def mirrored(self) -> "CyclicReference":
-        """Mirror the walk: exchange the left and right legs of a six-legged robot.
+        """Return the mirror image of the gait, left and right legs of six exchanged.
 
         Raises:
-            DomainError: The robot does not have six legs.
+            DomainError: The gait does not have six legs.
         """
         if self.n_legs != N_LEGS:
             raise DomainError(f"{self.n_legs} legs have no mirror image; expected {N_LEGS}")
@@ -133,7 +134,7 @@ class CyclicReference:
         return replace(self, **swapped, inner=tuple(sorted(other[leg] for leg in self.inner)))
 
     def angles(self, t: ArrayLike) -> Array:
-        """Compute the leg angles at times t of shape (m,), shape (m, n) [rad]."""
+        """Compute the unwrapped leg angles at times t, (m,) or a number, [s]: (m, n) [rad]."""
         turns, since = self._since_touchdown(t)
         ground = self.touchdown + self.ground_speed * since
         flown = np.maximum(since - self.ground_time - self.pause, 0.0)
@@ -142,20 +143,20 @@ class CyclicReference:
         return 2 * np.pi * turns + within + self.offset
 
     def speeds(self, t: ArrayLike) -> Array:
-        """Compute the leg speeds at times t, from the right at a kink, shape (m, n) [rad/s]."""
+        """Compute leg speeds at times t [s], at a kink those after it, shape (m, n) [rad/s]."""
         _, since = self._since_touchdown(t)
         flies = since >= self.ground_time + self.pause
         stands = since < self.ground_time
         return np.where(stands, self.ground_speed, np.where(flies, self.flight_speed, 0.0))
 
     def stance_intervals(self, span: tuple[float, float]) -> Intervals:
-        """Find when each leg is between touchdown and lift-off.
+        """Compute the intervals in which each leg's angle less `offset` is on the ground.
 
         Args:
             span: Start and end; intervals are cut there [s].
 
         Returns:
-            One array of rows (start, end) for each leg [s].
+            One array of rows (start, end), shape (k, 2), for each leg [s].
         """
         first = np.floor(span[0] / self.period + self.phase.min())
         last = np.floor(span[1] / self.period + self.phase.max())
@@ -163,6 +164,7 @@ class CyclicReference:
         return event_intervals(down, down + self.ground_time, span)
 
     def _since_touchdown(self, t: ArrayLike) -> tuple[Array, Array]:
+        """Return the number of touchdowns so far and the time since the last [s], (m, n) each."""
         # Times on a kink must not fall before it by rounding: the speed there is that after it.
         cycles = np.atleast_1d(np.asarray(t, dtype=float))[:, None] / self.period + self.phase
         turns = np.floor(cycles + _KINK)

@@ -28,5 +28,5 @@ def inner_legs(direction: Direction) -> tuple[int, ...]:
 
 
 def is_inner(direction: Direction) -> NDArray[np.bool_]:
-    """Return for each leg whether it is inner, shape (6,)."""
+    """Return whether each leg is on the side that the robot turns to, shape (6,)."""
     return np.isin(np.arange(N_LEGS), inner_legs(direction))

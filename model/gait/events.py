@@ -23,28 +23,28 @@ class EventTimes:
     """Touchdown and lift-off times of each leg, cycle by cycle.
 
     Attributes:
-        touchdown: Time of the k-th touchdown of each leg, shape (k, n) [s].
-        liftoff: Time of the lift-off before it, shape (k, n) [s].
+        touchdown: Touchdown of each leg (column) in each cycle (row), shape (k, n) [s].
+        liftoff: Lift-off that precedes that touchdown, shape (k, n) [s].
     """
 
     touchdown: Array
     liftoff: Array
 
     def stance_intervals(self, span: tuple[float, float]) -> Intervals:
-        """Find the stance intervals of each leg, from its first touchdown to its last lift-off.
+        """Pair each touchdown of a leg with the lift-off of the next cycle.
 
         Args:
             span: Start and end; intervals are cut there [s].
 
         Returns:
-            One array of rows (start, end) for each leg [s].
+            One array of stance intervals, rows (start, end), shape (k, 2), for each leg [s].
         """
         return event_intervals(self.touchdown[:-1], self.liftoff[1:], span)
 
 
 @dataclass(frozen=True, eq=False)
 class EventSystem:
-    r"""A gait as a max-plus linear system.
+    r"""A gait as a max-plus linear system of touchdown and lift-off times.
 
     .. math::
         x(k) = A_0 \otimes x(k) \oplus A_1 \otimes x(k-1), \qquad
@@ -53,8 +53,9 @@ class EventSystem:
     with the touchdown times t and lift-off times l of n legs in cycle k, Eq. (2-13) and (2-14).
 
     Attributes:
-        A0: Least delays after events of the same cycle, shape (2n, 2n) [s].
-        A1: Least delays after events of the cycle before, shape (2n, 2n) [s].
+        A0: Least delay of each event (row) after events of the same cycle (columns), -inf for
+            none, shape (2n, 2n) [s].
+        A1: Least delay of each event (row) after events of the cycle before (columns), likewise.
         gait: The groups of legs.
     """
 
@@ -79,14 +80,11 @@ class EventSystem:
 
     @cached_property
     def steady_state(self) -> EventTimes:
-        """Event times of one cycle of the steady state, shape (1, n) each [s].
-
-        They repeat every `cycle_time`.
-        """
+        """Event times of one cycle of the steady state, (1, n) each; repeat every `cycle_time`."""
         return _events(eigenvector(self.matrix)[None])
 
     def events(self, cycles: int, *, start: ArrayLike | None = None) -> EventTimes:
-        """Compute the events of some cycles.
+        """Compute the touchdowns and lift-offs of a number of cycles from a start.
 
         Args:
             cycles: Number of cycles after the start.
@@ -111,6 +109,7 @@ class EventSystem:
 
 
 def _events(x: Array) -> EventTimes:
+    """Split rows of n touchdown and n lift-off times, shape (k, 2n), into event times."""
     n = x.shape[1] // 2
     return EventTimes(x[:, :n], x[:, n:])
 
@@ -118,21 +117,21 @@ def _events(x: Array) -> EventTimes:
 def scheduled_reference(
     system: EventSystem, touchdown: ArrayLike, *, liftoff: ArrayLike, inner: tuple[int, ...] = ()
 ) -> CyclicReference:
-    """Compute the leg angles of the steady state of a schedule: straight lines between its events.
+    """Compute periodic leg angles, linear between the events of a schedule's steady state.
 
-    At time zero the first group begins to touch down.
+    Time zero is the first touchdown of the first group.
 
     Args:
         system: The scheduler.
         touchdown: Touchdown angles, a number or shape (n,) [rad].
         liftoff: Lift-off angles, a number or shape (n,) [rad].
-        inner: Indices of the inner legs of a turn, which the result records.
+        inner: Indices of the inner legs of a turn; only stored in the result.
 
     Returns:
         Leg angles; their period is the system's cycle time.
 
     Raises:
-        DomainError: A lift-off angle does not exceed touchdown.
+        DomainError: A lift-off angle does not exceed touchdown by less than a turn.
     """
     period = system.cycle_time
     down, up = system.steady_state.touchdown[0], system.steady_state.liftoff[0]
@@ -155,7 +154,7 @@ def events_reference(
 ) -> SampledReference:
     """Interpolate leg angles linearly between given events, periodic or not.
 
-    Legs rest at touchdown until the events begin, and again once they end.
+    Each leg rests at its touchdown angle before its first touchdown and after its last.
 
     Args:
         events: Touchdowns and lift-offs of six legs, in order.
@@ -163,11 +162,11 @@ def events_reference(
         liftoff: Lift-off angles, a number or shape (6,) [rad].
 
     Returns:
-        Leg angles from the first touchdown to the last.
+        Leg angles from the first touchdown of any leg to the last.
 
     Raises:
-        DomainError: A lift-off angle does not exceed touchdown, a leg's events are out of order,
-            or the legs are not six.
+        DomainError: A lift-off angle does not exceed touchdown by less than a turn, a leg's events
+            are out of order, or the legs are not six.
     """
     cycles, n_legs = events.touchdown.shape
     down, up = (np.broadcast_to(np.asarray(a, dtype=float), n_legs) for a in (touchdown, liftoff))
@@ -185,6 +184,7 @@ def events_reference(
 
 
 def _require_order(times: Array) -> None:
+    """Raise `DomainError` unless the times of each leg (column) increase."""
     late = np.argwhere(np.diff(times, axis=0) <= 0)
     if len(late):
         event, leg = late[0]

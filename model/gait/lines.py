@@ -9,19 +9,19 @@ from numpy.typing import NDArray
 from model.compiled import compiled
 from model.slip.law import Array
 
-FASTEST = 60.0  # rad/s, beyond any leg
-HALVINGS = 60
-OWN = 6  # changes of a line; of longer lines the last ones may belong to the next line
+FASTEST = 60.0  # largest speed of a line, beyond any leg's [rad/s]
+HALVINGS = 60  # bisections of a line's speed before it is rejected
+OWN = 6  # changes of a line; of lines with so many the last may belong to the next line
 
 
 class Changes(NamedTuple):
-    """Changes of one leg's count: the sample before and the one after each.
+    """Changes of one leg's count: the samples just before and just after each change.
 
     Attributes:
-        early: Times of the samples before, shape (n,) [s].
-        late: Times of the samples after, shape (n,) [s].
-        before: Angles before: middles of their bins, shape (n,) [rad].
-        after: Angles after, shape (n,) [rad].
+        early: Time of the sample before each change, shape (n,) [s].
+        late: Time of the sample after each change, shape (n,) [s].
+        before: Angle counted before each change, the middle of its bin, shape (n,) [rad].
+        after: Angle counted after each change, the middle of its bin, shape (n,) [rad].
     """
 
     early: Array
@@ -31,12 +31,12 @@ class Changes(NamedTuple):
 
 
 class Lines(NamedTuple):
-    """Straight lines through a leg's angle: successive constant speeds.
+    """Straight lines of a leg's angle over time: successive constant speeds.
 
     Attributes:
         x: A time on each line, shape (k,) [s].
-        angle: The angle there, shape (k,) [rad].
-        speed: The speed, shape (k,) [rad/s].
+        angle: Angle of each line at that time, shape (k,) [rad].
+        speed: Slope of each line, shape (k,) [rad/s].
     """
 
     x: Array
@@ -49,10 +49,10 @@ class Log(NamedTuple):
 
     Attributes:
         begin: Time of the first sample [s].
-        first: Angle counted there [rad].
+        first: Angle counted in the first sample [rad].
         end: Time of the last sample [s].
-        last: Angle counted there [rad].
-        half: Half a count, with the tolerance of a line [rad].
+        last: Angle counted in the last sample [rad].
+        half: Half a count plus the tolerance of a line [rad].
     """
 
     begin: float
@@ -64,14 +64,14 @@ class Log(NamedTuple):
 
 @compiled
 def split(changes: Changes, half: float) -> NDArray[np.intp]:
-    """Split the changes of count into the fewest straight lines.
+    """Split the changes of count into the fewest successive groups that a straight line passes.
 
     Args:
         changes: The changes, at least one.
-        half: Half a count, with the tolerance of a line [rad].
+        half: Half a count plus the tolerance of a line [rad].
 
     Returns:
-        Index of each line's first change, and the number of changes, shape (k + 1,).
+        Index of each line's first change, then the number of changes, shape (k + 1,).
     """
     n = len(changes.early)
     first = np.empty(n + 1, dtype=np.intp)
@@ -86,10 +86,10 @@ def split(changes: Changes, half: float) -> NDArray[np.intp]:
 
 @compiled
 def _reach(changes, start, half):
-    """Return the first change that no line from the change `start` on still passes.
+    """Return the index of the first change that no line through all changes from `start` on passes.
 
-    A line passes a change when, at the sample before, it lies within the bin of the count before,
-    and at the sample after, within that of the count after.
+    The number of changes if there is none. A line passes a change when the line lies, at the sample
+    before, within `half` of the angle before, and at the sample after, of the angle after.
     """
     early, late, before, after = changes
     n = len(early)
@@ -127,11 +127,13 @@ def _reach(changes, start, half):
 
 @compiled
 def fitted(changes: Changes, first: NDArray[np.intp], place: Array) -> Lines:
-    """Fit a line to each group of changes.
+    """Fit a line by least squares to the times and angles of each group of changes.
+
+    Speed is zero for a single change; the last changes of long groups are left out (`_own_end`).
 
     Args:
         changes: The changes.
-        first: From `split`.
+        first: Index of each line's first change, from `split`, shape (k + 1,).
         place: Time of each change between its two samples, 0 to 1, shape (n,) [-].
     """
     n = len(first) - 1
@@ -159,15 +161,18 @@ def drawn(
     outwards: float,
     half: float,
 ) -> Lines:
-    """Move lines towards those of other times of the changes, so that they still pass every change.
+    """Move lines towards lines fitted to other times of the changes, while they pass every change.
 
     Args:
-        lines: Lines that pass the changes: from `fitted` at their middles.
+        lines: Lines from `fitted` with each change halfway between its samples.
         changes: The changes.
-        first: From `split`.
-        place: Time of each change between its two samples, 0 to 1, shape (n,) [-].
+        first: Index of each line's first change, from `split`, shape (k + 1,).
+        place: Other time of each change between its two samples, 0 to 1, shape (n,) [-].
         outwards: How far to move, as a share of the largest admissible distance [-].
-        half: Half a count, with the tolerance of a line [rad].
+        half: Half a count plus the tolerance of a line [rad].
+
+    Returns:
+        The moved lines, at the same times `x`.
     """
     other = fitted(changes, first, place)
     moved = Lines(lines.x, np.empty(len(lines.x)), np.empty(len(lines.x)))
@@ -181,10 +186,10 @@ def drawn(
 
 @compiled
 def _room(lines, other, i, changes, first, half):
-    """Return the largest share of the way to another line that passes all changes, at most 1.
+    """Return how far line i can move towards `other` and pass all its changes, share from 0 to 1.
 
-    It is 1 where the line itself does not pass them: then the leg did not move along a straight
-    line, and each change is known only on its own.
+    The share is 1 where line i itself does not pass them: then the leg did not move along a
+    straight line, and each change is known only on its own.
     """
     room = 1.0
     for k in range(first[i], _own_end(first[i], first[i + 1])):
@@ -205,7 +210,8 @@ def _room(lines, other, i, changes, first, half):
 def rests(lines: Lines, changes: Changes, first: NDArray[np.intp]) -> NDArray[np.bool_]:
     """Detect whether a leg rested between each line and the next.
 
-    It did where it reached its resting angle well before it left it again.
+    A leg rested if, while the count stayed the same, the first line reaches that angle before the
+    next line leaves it, by more than half the time between the two changes.
 
     Args:
         lines: The lines, k of them.
@@ -240,13 +246,13 @@ def knots(
     Args:
         lines: The lines.
         changes: The changes of count.
-        first: From `split`.
-        rested: From `rests`.
-        rest: Angle within its count at which a leg rests [rad].
-        log: The log's ends.
+        first: Index of each line's first change, from `split`, shape (k + 1,).
+        rested: Whether the leg rested after each line but the last, from `rests`, shape (k - 1,).
+        rest: Angle at which a leg rests, from the middle of its count [rad].
+        log: First and last sample.
 
     Returns:
-        Times [s] and angles [rad], shape (2, m).
+        Rows of times, not decreasing, [s] and of angles [rad], shape (2, m).
     """
     found = np.empty((2, 2 * len(lines.x) + 2))
     n = _end(lines, 0, log.begin, log.first, rest, log.half, found, 0)
@@ -264,10 +270,10 @@ def knots(
 
 @compiled
 def _junction(lines, i, early, late, angle, rested, found, n):
-    """Add the knots at which a line passes into the next; return the number of knots so far.
+    """Add the knots between line i and the next to `found`; return the number of knots so far.
 
-    They are a plateau, if the leg rested between the lines; the intersection, if that is about
-    where the count stayed the same; else the ends of both lines.
+    The ends of a plateau, if the leg rested; the lines' intersection, if that is near the time in
+    which the count stayed the same; else both lines at the ends of that time.
     """
     if rested:
         n = _add(found, n, _when(lines, i, angle), angle)
@@ -284,7 +290,10 @@ def _junction(lines, i, early, late, angle, rested, found, n):
 
 @compiled
 def _end(lines, i, t, theta, rest, half, found, n):
-    """Add a log's first knots: on its line, or at rest until that line is reached."""
+    """Add the knots at a log's end t: on line i, or at rest up to the line; return the number.
+
+    The number is that of all knots in `found`.
+    """
     if abs(_at(lines, i, t) - theta) <= half or lines.speed[i] == 0:
         return _add(found, n, t, _at(lines, i, t))
     n = _add(found, n, t, theta + rest)
@@ -293,30 +302,31 @@ def _end(lines, i, t, theta, rest, half, found, n):
 
 @compiled
 def _add(found, n, t, angle):
+    """Write a knot to column n of `found`; return n + 1."""
     found[0, n], found[1, n] = t, angle
     return n + 1
 
 
 @compiled
 def _stay(changes, change):
-    """Return the interval in which the count stayed the same before a change, and its angle."""
+    """Return start, end [s] and angle [rad] of the constant count before a change (an index)."""
     early = 0.5 * (changes.early[change - 1] + changes.late[change - 1])
     return early, 0.5 * (changes.early[change] + changes.late[change]), changes.after[change - 1]
 
 
 @compiled
 def _at(lines, i, t):
-    """Return a line's angle at a time [rad]."""
+    """Return the angle of line i at a time [rad]."""
     return lines.angle[i] + lines.speed[i] * (t - lines.x[i])
 
 
 @compiled
 def _when(lines, i, angle):
-    """Return the time at which a line passes an angle [s]."""
+    """Return the time at which line i passes an angle [s]."""
     return lines.x[i] + (angle - lines.angle[i]) / lines.speed[i]
 
 
 @compiled
 def _own_end(begin, end):
-    """Return where a line's own changes end; the last ones may belong to the next line."""
+    """Return `end`, less a twelfth of the changes, at least one, if there are `OWN` or more."""
     return end - max(1, (end - begin) // 12) if end - begin >= OWN else end

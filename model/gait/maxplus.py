@@ -25,7 +25,7 @@ def oplus(a: ArrayLike, b: ArrayLike) -> Array:
     .. math::
         [A \oplus B]_{ij} = \max(a_{ij}, b_{ij})
 
-    The thesis prints + in place of the comma.
+    The thesis prints + instead of the comma.
 
     Args:
         a: First array.
@@ -66,12 +66,12 @@ def otimes(a: ArrayLike, b: ArrayLike) -> Array:
 
 
 def identity(n: int) -> Array:
-    """Return E_n, Eq. (2-9): e on the diagonal, epsilon elsewhere."""
+    """Return the identity E_n, Eq. (2-9), shape (n, n): e on the diagonal, epsilon elsewhere."""
     return diagonal(np.full(n, ONE))
 
 
 def diagonal(entries: ArrayLike) -> Array:
-    """Return a matrix with these entries on the diagonal and epsilon elsewhere."""
+    """Return a matrix, shape (n, n), of n entries on the diagonal and epsilon elsewhere."""
     values = np.asarray(entries, dtype=float)
     return np.where(np.eye(len(values), dtype=bool), values, EPSILON)
 
@@ -87,13 +87,13 @@ def zeros(rows: int, columns: int) -> Array:
 
 
 def plus(A: Array) -> Array:
-    r"""Compute the heaviest paths of at least one step.
+    r"""Compute the weights of the heaviest paths of at least one step in a matrix's graph.
 
     .. math::
         A^+ = A \oplus A^{\otimes 2} \oplus A^{\otimes 3} \oplus \ldots
 
-    Entry (i, j) is the greatest sum along any path from j to i. It exists if no circuit has a
-    positive sum; then n powers suffice, and the Floyd-Warshall algorithm computes it.
+    Entry (i, j) is the greatest sum along any path from j to i. A+ exists if no circuit has a
+    positive sum; then n powers suffice, and the Floyd-Warshall algorithm computes them.
 
     Args:
         A: Square matrix, shape (n, n).
@@ -114,7 +114,7 @@ def plus(A: Array) -> Array:
 
 
 def star(A: Array) -> Array:
-    r"""Compute :math:`A^* = E \oplus A \oplus A^{\otimes 2} \oplus \ldots`.
+    r"""Compute the Kleene star :math:`A^* = E \oplus A \oplus A^{\otimes 2} \oplus \ldots`, (n, n).
 
     Raises:
         DomainError: A circuit has a positive sum.
@@ -140,7 +140,7 @@ def solve_implicit(A: Array, b: Array) -> Array:
 
 
 def eigenvalue(A: Array) -> float:
-    r"""Compute the largest circuit mean, by Karp's formula: the cycle time of A.
+    r"""Compute a matrix's eigenvalue, the largest circuit mean, by Karp's formula.
 
     .. math::
         \lambda = \max_i \min_{k < n} \frac{[a_n - a_k]_i}{n - k}, a_k = A^{\otimes k} \otimes 0
@@ -149,7 +149,7 @@ def eigenvalue(A: Array) -> float:
         A: Square matrix, shape (n, n).
 
     Returns:
-        The eigenvalue; epsilon for a matrix without circuits.
+        The eigenvalue, the cycle time of A [s]; epsilon for a matrix without circuits.
 
     >>> eigenvalue(np.array([[EPSILON, 3.0], [1.0, EPSILON]]))
     2.0

@@ -21,17 +21,17 @@ class Gait:
         \{L_{1,1}, \ldots, L_{1,j}\} \prec \ldots \prec \{L_{r,1}, \ldots, L_{r,p}\}
 
     Legs of one group move together; a group lifts off once the group to its left has touched
-    down, and the first once the last has. Section 2-2-1 says it the other way round (once the
-    group to its *right* has touched down), but its matrices P and Q and its tetrapod, Eq. (5-5) to
-    (5-12), mean this one; with two groups they are the same.
+    down, and the first group once the last has. Section 2-2-1 has the reverse (once the group to
+    its *right* has touched down), but the thesis's matrices P and Q and its tetrapod, Eq. (5-5) to
+    (5-12), have this order; with two groups the orders are the same.
 
     A gait repeats, so groups that are rotated make an equal gait; legs of a group have no order.
 
     Attributes:
-        groups: Leg numbers, which count from 1, group by group.
+        groups: Leg numbers from 1, sorted, by group in the order of stepping.
 
     Raises:
-        DomainError: A group is empty, or the legs are not 1 to n, once each.
+        DomainError: There is no group, a group is empty, or the legs are not 1 to n, once each.
 
     >>> Gait(((2, 3, 6), (5, 4, 1))) == TRIPOD
     True
@@ -40,7 +40,7 @@ class Gait:
     groups: tuple[tuple[int, ...], ...]
 
     def __post_init__(self) -> None:
-        """Check that each leg is named once, and sort the legs within their groups."""
+        """Check groups and that each leg is in one; sort the legs within their groups."""
         if not self.groups:
             raise DomainError("a gait without groups; write one such as {1,4,5} < {2,3,6}")
         for number, group in enumerate(self.groups, start=1):
@@ -56,7 +56,7 @@ class Gait:
 
     @property
     def group_of(self) -> NDArray[np.int_]:
-        """Index of the group, from 0, of each leg, shape (n,)."""
+        """Index, from 0, of each leg's group in `groups`, shape (n,)."""
         found = np.empty(self.n_legs, dtype=int)
         for number, group in enumerate(self.groups):
             found[np.array(group) - 1] = number
@@ -64,6 +64,7 @@ class Gait:
 
     @property
     def _from_leg_1(self) -> tuple[tuple[int, ...], ...]:
+        """Groups rotated so that the group of leg 1 is first."""
         first = int(self.group_of[0])
         return self.groups[first:] + self.groups[:first]
 
@@ -78,6 +79,7 @@ class Gait:
 
 
 def _require_each_leg_once(legs: list[int]) -> None:
+    """Raise `DomainError` unless the leg numbers are 1 to n, once each."""
     twice = sorted(leg for leg, count in Counter(legs).items() if count > 1)
     if twice:
         raise DomainError(f"leg {twice[0]} stands in the gait twice; every leg steps once a cycle")
@@ -96,13 +98,14 @@ def parse_gait(text: str, n_legs: int | None = None) -> Gait:
 
     Args:
         text: Groups of leg numbers in braces, with < or ≺ between them.
-        n_legs: Number of legs of the robot; taken from the text when None.
+        n_legs: Number of legs that the gait must have; any number when None.
 
     Returns:
         The gait, its groups in the order of the text.
 
     Raises:
-        DomainError: The text is not in group notation, or its legs are not 1 to n, once each.
+        DomainError: The text is not in group notation, its legs are not 1 to n, once each, or n is
+            not `n_legs`.
 
     >>> print(parse_gait("{1,4} < {2,5} < {3,6}"))
     {1,4} ≺ {2,5} ≺ {3,6}
@@ -114,6 +117,7 @@ def parse_gait(text: str, n_legs: int | None = None) -> Gait:
 
 
 def _parse_group(part: str, text: str) -> tuple[int, ...]:
+    """Parse the leg numbers of one group, such as {1,4,5}; `text` is for the error's message."""
     match = _GROUP.fullmatch(part)
     if match is None:
         raise DomainError(

@@ -20,8 +20,8 @@ from model.gait.reference import SampledReference
 from model.slip.law import Array
 
 SAME = 1e-9  # rad: angles no further apart are one count
-LARGEST_STEP = np.radians(10.0)
-FEWEST_CHANGES = 8
+LARGEST_STEP = np.radians(10.0)  # of one count
+FEWEST_CHANGES = 8  # of count, to estimate the angle of one count
 SLACK = 0.03  # of a count: tolerance of a line for rounded corners and clock jitter
 
 
@@ -31,10 +31,10 @@ class CountedLeg:
 
     Attributes:
         changes: The changes, at least one.
-        first: First change of each line, and the number of changes, shape (k + 1,).
-        lines: The lines, fitted with each change halfway between its two samples.
+        first: Index of each line's first change, then the number of changes, shape (k + 1,).
+        lines: The k lines, fitted with each change halfway between its two samples.
         rested: Whether the leg rested between each line and the next, shape (k - 1,).
-        log: The log's ends.
+        log: First and last sample, and the tolerance of a line.
     """
 
     changes: Changes
@@ -53,7 +53,7 @@ class CountedLeg:
             step: Angle of one count [rad].
 
         Returns:
-            The lines; None for a leg that never moves.
+            The leg with its lines; None where the count never changes.
         """
         at = np.flatnonzero(np.abs(np.diff(theta)) > SAME)
         if len(at) == 0:
@@ -66,7 +66,7 @@ class CountedLeg:
         return cls(changes, first, lines, rests(lines, changes, first), log)
 
     def drawn(self, step: float, rng: np.random.Generator) -> Lines:
-        """Draw lines that still pass every change, by random deviations from the middle ones.
+        """Draw lines that still pass every change, by random deviations from `lines`.
 
         Twenty changes confine a line to a small polygon of offset and speed, far smaller than
         twenty independent errors would leave. A direction is therefore taken from changes that fall
@@ -90,13 +90,13 @@ class CountedLeg:
         )  # fmt: skip
 
     def angles(self, t: Array, step: float, rng: np.random.Generator | None) -> Array:
-        """Interpolate the leg angle along the fitted lines.
+        """Compute the leg angle along the fitted lines, or along a draw of them.
 
         Args:
             t: Times, shape (n,) [s].
             step: Angle of one count [rad].
-            rng: Source of randomness, to draw lines that the counts allow; None for the middle
-                ones.
+            rng: Source of randomness, to draw lines and the angle of rest; None for the fitted
+                lines, with rests at the middle of a count.
 
         Returns:
             Leg angles, shape (n,) [rad].
@@ -109,7 +109,7 @@ class CountedLeg:
 
 @dataclass(frozen=True)
 class QuantisedLog:
-    """Leg angles as an encoder counts them, each the middle of its bin.
+    """Leg angles of a log as an encoder counts them, each the middle of its bin.
 
     Attributes:
         t: Times, strictly increasing, shape (n,) [s].
@@ -117,7 +117,7 @@ class QuantisedLog:
         step: Angle of one count [rad].
 
     Raises:
-        DomainError: The step is not positive.
+        DomainError: The step is not positive and finite.
     """
 
     t: Array
@@ -125,25 +125,25 @@ class QuantisedLog:
     step: float
 
     def __post_init__(self) -> None:
-        """Check that the angle of a count is positive."""
+        """Check that the angle of a count is positive and finite."""
         if not (self.step > 0 and np.isfinite(self.step)):
             raise DomainError(f"a count of {self.step:g} rad; expected more than zero")
 
     @cached_property
     def _legs(self) -> list[CountedLeg | None]:
+        """Fitted lines of each leg; None for a leg that never moves."""
         return [CountedLeg.of(self.t, theta, self.step) for theta in self.theta.T]
 
     def smooth(self, rng: np.random.Generator | None = None) -> SampledReference:
-        """Reconstruct the angles, at the log's times.
+        """Reconstruct smooth leg angles at the log's times from the counts.
 
         Args:
             rng: Source of randomness, to draw one of the motions that the counts allow; None for
-                the middle one.
+                the fitted lines. A leg that never moves is drawn within its count.
 
         Returns:
-            The angles. Whether counts are rounded or truncated is not known here: that half count
-                is a
-            constant offset of the leg.
+            The angles, less a constant offset: whether counts are rounded or truncated, half a
+            count, is not known here.
         """
         columns = [
             self._still(theta, rng) if leg is None else leg.angles(self.t, self.step, rng)
@@ -152,18 +152,20 @@ class QuantisedLog:
         return SampledReference(self.t, np.column_stack(columns))
 
     def _still(self, theta: Array, rng: np.random.Generator | None) -> Array:
+        """Return the counts of a leg that never moves, shifted by a draw within half a count."""
         half = 0.5 * self.step
         return theta + (0.0 if rng is None else rng.uniform(-half, half))
 
 
 def find_step(theta: Array) -> float | None:
-    """Detect quantised angles: find the largest angle of which all differences are multiples.
+    """Estimate the angle of one count: that of which nearly all differences are multiples.
 
     Args:
         theta: Unwrapped angles, shape (n, legs) [rad].
 
     Returns:
-        The step, or None for angles that were not counted, or counted finely [rad].
+        The step [rad]; None with fewer than 8 changes, if 2 % or more are not multiples, or if the
+        step is not between 0.001 rad and 10 degrees.
 
     >>> counted = np.radians(3.6) * np.arange(20.0).round()[:, None]
     >>> float(np.degrees(find_step(counted)).round(3))

@@ -15,7 +15,7 @@ from model.slip.law import Array
 class LegReference(Protocol):
     """Angles and speeds of six legs over time.
 
-    Angles are unwrapped: a leg that walks forward only ever grows, by 2 pi a cycle.
+    Angles are unwrapped: that of a leg that walks forward never falls, and grows by 2 pi a cycle.
     """
 
     @property
@@ -24,11 +24,11 @@ class LegReference(Protocol):
         ...
 
     def angles(self, t: ArrayLike) -> Array:
-        """Compute the leg angles at times t of shape (n,), shape (n, 6) [rad]."""
+        """Compute the unwrapped leg angles at times t, shape (n,) [s]; shape (n, 6) [rad]."""
         ...
 
     def speeds(self, t: ArrayLike) -> Array:
-        """Compute the leg speeds at times t, from the right at a kink, shape (n, 6) [rad/s]."""
+        """Compute leg speeds at times t [s], at a kink those after it, shape (n, 6) [rad/s]."""
         ...
 
 
@@ -41,14 +41,14 @@ class SampledReference:
         theta: Unwrapped leg angles, shape (m, 6) [rad].
 
     Raises:
-        DomainError: The times do not increase, or shapes do not match.
+        DomainError: The times do not increase, there are fewer than two, or shapes do not match.
     """
 
     t: Array
     theta: Array
 
     def __post_init__(self) -> None:
-        """Check that shapes match and that times increase."""
+        """Check that shapes match and that there are two times or more, which increase."""
         if self.t.ndim != 1 or len(self.t) < 2 or self.theta.shape != (len(self.t), 6):
             raise DomainError(
                 f"times have shape {self.t.shape} and leg angles {self.theta.shape}; "
@@ -68,13 +68,13 @@ class SampledReference:
         return None
 
     def angles(self, t: ArrayLike) -> Array:
-        """Interpolate the leg angles linearly; constant outside the samples."""
+        """Interpolate leg angles linearly at times t [s], constant outside; shape (n, 6) [rad]."""
         at = np.atleast_1d(np.asarray(t, dtype=float))
         t, theta, at = (np.ascontiguousarray(a, dtype=float) for a in (self.t, self.theta, at))
         return _between(t, theta, at)
 
     def speeds(self, t: ArrayLike) -> Array:
-        """Compute the slope of the line at times t; zero outside the samples [rad/s]."""
+        """Compute the slope of the angles just after times t [s], zero outside, (n, 6) [rad/s]."""
         at = np.atleast_1d(np.asarray(t, dtype=float))
         index = np.searchsorted(self.t, at, side="right") - 1
         slopes = np.diff(self.theta, axis=0) / np.diff(self.t)[:, None]
@@ -84,7 +84,10 @@ class SampledReference:
 
 @compiled
 def _between(t, values, at):
-    """Interpolate columns linearly at times, fast where these increase; constant outside."""
+    """Interpolate columns of `values` over t linearly at times `at`, constant outside.
+
+    Fast where the times `at` increase.
+    """
     out = np.empty((len(at), values.shape[1]))
     last, j = len(t) - 1, 0
     for i in range(len(at)):

@@ -34,7 +34,7 @@ def precedence(gait: Gait, double_stance: float) -> tuple[Array, Array]:
 def straight_system(
     gait: Gait, *, ground_time: float, flight_time: float, double_stance: float = 0.0
 ) -> EventSystem:
-    r"""Build the scheduler of a straight walk, Eq. (2-13).
+    r"""Build the max-plus system of a straight walk from leg groups and times, Eq. (2-13).
 
     .. math::
         x(k) = \begin{bmatrix} \mathcal{E} & \tau_f \otimes E \\ P & \mathcal{E} \end{bmatrix}
@@ -69,7 +69,7 @@ def straight_system(
 
 
 def require_times(**times: float) -> None:
-    """Check that ground and flight times are positive and other times not negative."""
+    """Raise `DomainError` unless ground and flight time are positive and others not negative."""
     for name, value in times.items():
         least = "more than zero" if name in ("ground_time", "flight_time") else "zero or more"
         if not (np.isfinite(value) and (value > 0 or (value == 0 and least == "zero or more"))):

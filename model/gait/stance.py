@@ -11,7 +11,7 @@ Intervals = tuple[Array, ...]  # by leg; rows of start and end, shape (k, 2) [s]
 
 
 def stance_intervals(t: Array, theta: Array, touchdown: ArrayLike, liftoff: ArrayLike) -> Intervals:
-    """Find when leg angles lie between touchdown and lift-off.
+    """Compute the intervals in which leg angles, modulo a turn, are from touchdown to lift-off.
 
     Angles are interpolated linearly between the samples; the sense of rotation does not matter.
 
@@ -41,15 +41,15 @@ def stance_intervals(t: Array, theta: Array, touchdown: ArrayLike, liftoff: Arra
 
 
 def event_intervals(touchdown: Array, liftoff: Array, span: tuple[float, float]) -> Intervals:
-    """Pair touchdown times with the lift-offs that end them.
+    """Pair touchdown times with lift-off times to stance intervals inside a span.
 
     Args:
         touchdown: Times at which legs come down, in order, shape (k, n) [s].
-        liftoff: Times at which they leave the ground again, shape (k, n) [s].
-        span: Start and end of the chart; intervals are cut there [s].
+        liftoff: Times at which the same stances end, shape (k, n) [s].
+        span: Start and end of the chart; intervals are cut there and dropped outside [s].
 
     Returns:
-        One array of rows (start, end) for each leg [s].
+        One array of rows (start, end), shape (up to k, 2), for each leg [s].
     """
     pairs = np.clip(np.stack([touchdown, liftoff], axis=-1), *span)
     return tuple(leg[leg[:, 1] > leg[:, 0]] for leg in pairs.swapaxes(0, 1))
@@ -75,6 +75,7 @@ def require_stance_angles(touchdown: Array, liftoff: Array) -> None:
 
 
 def _leg_intervals(t: Array, past_touchdown: Array, stance_angle: float) -> Array:
+    """Return rows (start, end) in which an angle modulo a turn is below the stance angle [s]."""
     knots = np.unique(
         np.concatenate(
             [
@@ -93,7 +94,7 @@ def _leg_intervals(t: Array, past_touchdown: Array, stance_angle: float) -> Arra
 
 
 def _crossings(t: Array, angle: Array) -> Array:
-    """Find the times at which an angle, straight between samples, is a whole number of turns."""
+    """Compute the times at which an angle, linear between samples, is a whole number of turns."""
     turns = angle / (2 * np.pi)
     levels = np.arange(np.ceil(turns.min()), np.floor(turns.max()) + 1)
     found = [_level_crossings(t, turns - level) for level in levels]
@@ -101,6 +102,7 @@ def _crossings(t: Array, angle: Array) -> Array:
 
 
 def _level_crossings(t: Array, value: Array) -> Array:
+    """Compute the times at which a value, linear between samples, crosses zero [s]."""
     before, after = value[:-1], value[1:]
     at = np.flatnonzero((before <= 0) != (after <= 0))
     share = before[at] / (before[at] - after[at])

@@ -26,7 +26,7 @@ class TripodAngles:
         outer_liftoff: Lift-off angle of the outer legs [rad].
 
     Raises:
-        DomainError: A side's lift-off does not exceed its touchdown.
+        DomainError: A side's lift-off does not exceed its touchdown by less than a turn.
     """
 
     inner_touchdown: float
@@ -49,7 +49,7 @@ class TripodAngles:
 
     @property
     def steering_factor(self) -> float:
-        """Outer over inner stance angle, Eq. (2-18) [-]."""
+        """Stance angle of the outer legs over that of the inner legs, Eq. (2-18) [-]."""
         outer = self.outer_liftoff - self.outer_touchdown
         return outer / (self.inner_liftoff - self.inner_touchdown)
 
@@ -103,11 +103,13 @@ def ideal_liftoff(touchdown: ArrayLike, leg_arc: float = np.pi) -> Array:
 
 
 def _highest_hip(leg_arc: float) -> float:
+    """Return the leg angle at which the hip is highest [rad]."""
     # On the arc of a long leg, on the toe of a short one.
     return min(np.pi / 2, leg_arc / 2)
 
 
 def _ideal_liftoff(theta: Array, leg_arc: float) -> Array:
+    """Compute `ideal_liftoff` without a check of the touchdown angles theta."""
     last_on_arc, chord = leg_arc - np.pi / 2, 2 * np.sin(leg_arc / 2)
     lean = (leg_arc - np.pi) / 2
     height = np.where(theta <= last_on_arc, 1 + np.sin(theta), chord * np.sin(theta - lean))
@@ -182,12 +184,12 @@ def tripod_angles(
     outer_touchdown: float | None = None,
     outer_liftoff: float | None = None,
 ) -> TripodAngles:
-    """Compute the angles of a tripod from a touchdown angle and a steering factor, 2-6-2.
+    """Compute touchdown and lift-off angles of a turning tripod from a steering factor, 2-6-2.
 
-    Given angles are kept and the others computed. The outer touchdown follows from the
-    ideal lift-off angles even where other ones are given, as on the thesis's robot (Tables 5-3 to
-    5-5). A missing outer lift-off is the ideal one, or, where the inner one is given, that which
-    keeps the steering factor, Eq. (2-18).
+    Given angles are kept, missing ones (None) computed. A missing outer touchdown follows from the
+    ideal lift-off angles even where other lift-offs are given, as on the thesis's robot (Tables 5-3
+    to 5-5). A missing outer lift-off is the ideal one, or, where the inner lift-off is given, that
+    which keeps the steering factor, Eq. (2-18).
 
     Args:
         inner_touchdown: Touchdown angle of the inner legs [rad].
@@ -195,10 +197,11 @@ def tripod_angles(
         leg_arc: Angle of the leg's arc [rad].
         inner_liftoff: Lift-off angle of the inner legs; Eq. (2-17) when None [rad].
         outer_touchdown: Touchdown angle of the outer legs; Eq. (2-19) when None [rad].
-        outer_liftoff: Lift-off angle of the outer legs [rad].
+        outer_liftoff: Lift-off angle of the outer legs; as above when None [rad].
 
     Raises:
-        DomainError: The steering factor has no solution, or a lift-off does not exceed touchdown.
+        DomainError: A touchdown angle has no ideal lift-off, the steering factor has no solution,
+            or a lift-off does not exceed touchdown by less than a turn.
 
     >>> angles = tripod_angles(np.radians(50.0), 1.1)
     >>> np.degrees([angles.outer_touchdown, angles.outer_liftoff]).round(4).tolist()
@@ -224,14 +227,14 @@ def tripod_reference(
 ) -> CyclicReference:
     """Compute the leg angles of the steering-factor tripod, Eq. (2-20) to (2-22).
 
-    Half the cycle on the ground, half in flight. At time zero legs 1, 4 and 5 touch down and legs
-    2, 3 and 6 lift off, whichever way it turns (Listing A.4); so a right turn is the mirror image
-    of a left one half a cycle later.
+    Legs are half the cycle on the ground, half in flight. At time zero legs 1, 4 and 5 touch down
+    and legs 2, 3 and 6 lift off, whichever way the robot turns (Listing A.4); so a right turn is
+    the mirror image of a left turn half a cycle later.
 
     Args:
         angles: Touchdown and lift-off angles of both sides.
         cycle_time: tau_c [s].
-        direction: Where to turn.
+        direction: Side to which the robot turns.
 
     Returns:
         Leg angles.

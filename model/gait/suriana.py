@@ -27,12 +27,12 @@ def suriana_reference(
         \dot\theta_f^o = \frac{2\pi - (\theta_{LO} - \theta_{TD})}{\tau_f + \tau_p}
 
     Inner and outer legs share the period tau_g + tau_f + tau_p. At time zero legs 1, 4 and 5 touch
-    down and legs 2, 3 and 6 lift off, whichever way it turns (Listing A.6). For that reason, and as
-    its sides differ in timing, a right turn is not the mirror image of a left one at any later
-    time, as the steering-factor tripod's is; `CyclicReference.mirrored` makes the image.
+    down and legs 2, 3 and 6 lift off, whichever way the robot turns (Listing A.6). For that reason,
+    and as the sides differ in timing, a right turn is not the mirror image of a left turn at any
+    later time, as the steering-factor tripod's is; `CyclicReference.mirrored` returns the image.
 
-    The text of 5-2-1 lets speeds switch as contact is detected, its listing (A.33) as the angle
-    passes touchdown and lift-off, and so does this. For tau_g = tau_f the outer legs of one tripod
+    In the text of 5-2-1 speeds switch as contact is detected; in Listing A.33, and here, as the
+    angle passes touchdown and lift-off. For tau_g = tau_f the outer legs of one tripod
     lift off tau_p before those of the other touch down: for that long, once a cycle, every outer
     leg is in flight. `turning_system` schedules the same turn without it.
 
@@ -42,13 +42,14 @@ def suriana_reference(
         ground_time: tau_g [s].
         flight_time: tau_f [s].
         turn_time: tau_p, how much longer inner legs stand and outer legs fly [s].
-        direction: Where to turn.
+        direction: Side to which the robot turns.
 
     Returns:
         Leg angles.
 
     Raises:
-        DomainError: A time is negative, or lift-off does not exceed touchdown.
+        DomainError: The turn time is negative, another time not positive, the direction unknown, or
+            lift-off does not exceed touchdown by less than a turn.
     """
     if not turn_time >= 0:
         raise DomainError(

@@ -25,7 +25,7 @@ def tetrapod_reference(
     if pi/2 lies halfway between touchdown and lift-off, as it does in the thesis's simulation, pi/4
     and 3 pi/4. The angles set on its robot, 38 and 117 degrees, do not: there legs 2 and 5 would
     run ahead of the rhythm by a tenth of a cycle and fly while 1 and 4 still do. `middle_start`
-    None puts them back into it.
+    None puts legs 2 and 5 back into the rhythm.
 
     Args:
         touchdown: Touchdown angle [rad].
@@ -38,7 +38,8 @@ def tetrapod_reference(
         Leg angles.
 
     Raises:
-        DomainError: Lift-off does not exceed touchdown, or `middle_start` is not between them.
+        DomainError: Lift-off does not exceed touchdown by less than a turn, `middle_start` is not
+            between the two, or the cycle time is not positive.
     """
     ground_time, flight_time = 2 * cycle_time / 3, cycle_time / 3
     share = 0.5

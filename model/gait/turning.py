@@ -19,7 +19,7 @@ def turning_system(
     turn_time: float,
     double_stance: float = 0.0,
 ) -> EventSystem:
-    r"""Build the scheduler of a turn, Eq. (2-15).
+    r"""Build the max-plus system of a turn from leg groups and times, Eq. (2-15).
 
     .. math::
         x(k) = \begin{bmatrix} \mathcal{E} & \tau_f \otimes M \\ R & \mathcal{E} \end{bmatrix}
@@ -65,8 +65,8 @@ def turning_system(
         inner: Indices (leg number minus one) of the legs on the inner side of the turn.
         ground_time: tau_g [s].
         flight_time: tau_f [s].
-        turn_time: tau_p [s].
-        double_stance: tau_Delta [s].
+        turn_time: tau_p, by which inner legs stand and outer legs fly longer [s].
+        double_stance: tau_Delta, the time that a group and its successor stand together [s].
 
     Raises:
         DomainError: A time is negative, a leg has no time in flight or on the ground, or an inner

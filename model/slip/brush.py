@@ -12,7 +12,7 @@ from model.slip.proportional import ProportionalLaw
 
 
 def sliding_share(sigma: ArrayLike, K: ArrayLike, mu_s: ArrayLike) -> Array:
-    r"""Compute the share of the contact patch that slides.
+    r"""Compute the share of the brush model's contact patch that slides at a slip ratio.
 
     .. math::
         \psi = \min\Bigl(\frac{K |\sigma|}{3 \mu_s},\ 1\Bigr)
@@ -33,7 +33,7 @@ def sliding_share(sigma: ArrayLike, K: ArrayLike, mu_s: ArrayLike) -> Array:
 
 
 def brush(sigma: ArrayLike, K: ArrayLike, mu_s: ArrayLike, q: ArrayLike = 1.0) -> Array:
-    r"""Compute traction over load.
+    r"""Compute traction over load of the brush model at a material slip ratio.
 
     .. math::
         \frac{f}{F_n} = \operatorname{sgn}(\sigma)\, \mu_s
@@ -109,8 +109,9 @@ class Brush(ProportionalLaw):
     another definition must be converted first.
 
     Attributes:
-        kinetic: Let sliding bristles have less friction than sticking ones, which gives the curve
-            a peak. Without it traction only rises, to full sliding at 3·mu/K.
+        kinetic: Let sliding bristles have less friction than sticking ones, with the further
+            parameter q, which gives the curve a peak. Without it traction only rises, to full
+            sliding at slip 3·mu/K.
     """
 
     kinetic: bool = False
@@ -121,11 +122,11 @@ class Brush(ProportionalLaw):
 
     @property
     def parameters(self) -> tuple[Parameter, ...]:
-        """The law's parameters, in the order of `values`."""
+        """The parameters K, mu and, if `kinetic`, q, in the order of `values`."""
         return (*_COMMON, *(_KINETIC if self.kinetic else ()))
 
     def coefficients(self, values: Values) -> tuple[Array, Array, Array]:
-        """Compute K, the bristle's static friction mu_s and q, with q = 1 unless `kinetic`.
+        """Compute K, a bristle's static friction mu_s from the peak mu, and q, 1 unless `kinetic`.
 
         Args:
             values: Parameter values, one entry a parameter.

@@ -28,12 +28,12 @@ def breakaway_slip(K: ArrayLike, mu: ArrayLike) -> Array:
 
 
 def regularised_sign(kappa: ArrayLike, kappa_c: ArrayLike) -> Array:
-    r"""Compute the sign of the slip, with a cubic in place of its step.
+    r"""Compute the sign of the slip ratio, smoothed by a cubic between -kappa_c and kappa_c.
 
     .. math::
-        \sigma(u) = \tfrac12 (3u - u^3), \qquad u = \kappa/\kappa_c \text{ held to } [-1, 1]
+        \sigma(u) = \tfrac12 (3u - u^3), \qquad u = \kappa/\kappa_c \text{ clipped to } [-1, 1]
 
-    The rise of contact models in multibody codes. It is complete at kappa_c, where its slope is
+    Contact models in multibody codes rise so. The rise is complete at kappa_c, where its slope is
     zero, unlike tanh or u/sqrt(1 + u²), which only approach one and so would leave the peak of the
     law below its static friction by an amount without a closed form.
 
@@ -49,7 +49,7 @@ def regularised_sign(kappa: ArrayLike, kappa_c: ArrayLike) -> Array:
 
 
 def stribeck_fall(kappa: ArrayLike, kappa_c: ArrayLike, kappa_s: ArrayLike, q: ArrayLike) -> Array:
-    r"""Compute the share of static friction left at a slip ratio (Stribeck curve).
+    r"""Compute the ratio of friction at a slip ratio to static friction (Stribeck curve).
 
     .. math::
         \beta(\kappa) = q + (1 - q)\,e^{-z^2}, \qquad
@@ -62,7 +62,7 @@ def stribeck_fall(kappa: ArrayLike, kappa_c: ArrayLike, kappa_s: ArrayLike, q: A
         q: Kinetic over static friction [-].
 
     Returns:
-        A number in (q, 1], even in `kappa` [-].
+        Friction over static friction, in (q, 1], even in `kappa` [-].
     """
     q = np.asarray(q)
     return q + (1 - q) * np.exp(-(_slip_past_breakaway(kappa, kappa_c, kappa_s) ** 2))
@@ -71,7 +71,7 @@ def stribeck_fall(kappa: ArrayLike, kappa_c: ArrayLike, kappa_s: ArrayLike, q: A
 def coulomb_stribeck(
     kappa: ArrayLike, K: ArrayLike, mu: ArrayLike, q: ArrayLike, kappa_s: ArrayLike
 ) -> Array:
-    r"""Compute traction over load.
+    r"""Compute traction over load of Coulomb friction with a Stribeck drop, at a slip ratio.
 
     .. math::
         f / F_n = \mu\, \sigma(\kappa/\kappa_c)\, \beta(\kappa)
@@ -125,6 +125,7 @@ def coulomb_stribeck_slope(
 
 
 def _slip_past_breakaway(kappa: ArrayLike, kappa_c: ArrayLike, kappa_s: ArrayLike) -> Array:
+    """Compute z, slip beyond break-away over Stribeck slip, clipped to [0, 40]."""
     # Beyond 40 Stribeck slips exp(-z²) is zero in double precision; the bound keeps infinite slip
     # (a locked leg by material slip) from giving inf·0.
     past = (np.abs(np.asarray(kappa)) - np.asarray(kappa_c)) / np.asarray(kappa_s)
@@ -148,11 +149,11 @@ class CoulombStribeck(ProportionalLaw):
 
     @property
     def parameters(self) -> tuple[Parameter, ...]:
-        """The law's parameters, in the order of `values`."""
+        """The parameters K, mu and, if `stribeck`, q and kappa_s, in the order of `values`."""
         return (*_COMMON, *(_STRIBECK if self.stribeck else ()))
 
     def coefficients(self, values: Values) -> tuple[Array, Array, Array, Array]:
-        """Return K, mu, q and kappa_s, with q = 1 without a post-peak drop.
+        """Return K, mu, q and kappa_s as arrays; q and kappa_s are 1 unless `stribeck`.
 
         Args:
             values: Parameter values, one entry a parameter.
@@ -166,7 +167,7 @@ class CoulombStribeck(ProportionalLaw):
         return K, mu, np.asarray(values[2], dtype=float), np.asarray(values[3], dtype=float)
 
     def peak(self, values: Values) -> Array:
-        """Compute the slip ratio at which traction peaks, infinite without a post-peak drop [-].
+        """Compute the slip ratio kappa_c at which traction peaks, infinite unless `stribeck` [-].
 
         Args:
             values: Parameter values, one entry a parameter.

@@ -11,13 +11,13 @@ from model.slip.law import Array, SlipLaw
 
 @dataclass(frozen=True)
 class SlipCurve:
-    """A slip law with fitted parameter values.
+    """A slip law with fitted parameter values, their covariance and the tested range.
 
     Attributes:
         law: The slip law, of k parameters.
-        values: Posterior mean of its parameters, shape (k,).
-        covariance: Posterior covariance of its parameters, shape (k, k).
-        definition: Definition of the slip ratios.
+        values: Posterior mean of the law's parameters, shape (k,).
+        covariance: Posterior covariance of the law's parameters, shape (k, k).
+        definition: Slip definition that the values were fitted in.
         load_range: Smallest and largest load that was tested [N].
         slip_range: Smallest and largest slip ratio that was tested [-].
     """
@@ -30,18 +30,18 @@ class SlipCurve:
     slip_range: tuple[float, float]
 
     def force(self, slip: ArrayLike, load: ArrayLike, *, definition: SlipDefinition | str) -> Array:
-        """Compute the traction force at the posterior mean.
+        """Compute the traction force of the law at the posterior mean of its parameters.
 
         Args:
             slip: Slip ratio [-].
             load: Normal force [N].
-            definition: What `slip` is divided by.
+            definition: Slip definition of `slip`.
 
         Returns:
-            Traction force [N].
+            Traction force, in the shape to which `slip` and `load` broadcast [N].
 
         Raises:
-            DefinitionMismatch: The curve was fitted in another definition.
+            DefinitionMismatch: `definition` is not the curve's.
         """
         require_definition(definition, self.definition)
         return self.law.force(slip, load, self.values)

@@ -23,7 +23,8 @@ class SlipDefinition(StrEnum):
             leg spins on the spot, minus infinity when it is locked.
         TRAVEL: (v_l - v_g) / v_g, Eq. (4-29): tyre data. Infinite when the leg spins on the spot,
             -1 when it is locked.
-        LARGER: (v_l - v_g) / max(v_l, v_g): soil bins. 1 spinning on the spot, -1 locked.
+        LARGER: (v_l - v_g) / max(v_l, v_g): soil bins. 1 when the leg spins on the spot, -1 when it
+            is locked.
     """
 
     MATERIAL = "material"
@@ -39,10 +40,10 @@ def slip_ratio(
     Args:
         speed_leg: v_l = omega_l·r_l, Eq. (4-43) [m/s].
         speed_ground: v_g = omega_g·r_g, Eq. (4-43) [m/s].
-        definition: What to divide by.
+        definition: Slip definition, which names the divisor.
 
     Returns:
-        Slip ratio [-]; infinite or NaN where the divisor is zero, as the arithmetic has it.
+        Slip ratio [-]; where the divisor is zero infinite, or NaN if both speeds are zero.
 
     >>> slip_ratio(0.4, 0.3, "material").round(3), slip_ratio(0.4, 0.3, "travel").round(3)
     (np.float64(0.25), np.float64(0.333))
@@ -62,19 +63,19 @@ def convert_slip(
 ) -> Array:
     """Convert slip ratios from one definition to another.
 
-    Goes by the material slip s = 1 - v_g/v_l, with travel slip = s/(1 - s).
+    By way of the material slip s = 1 - v_g/v_l, with travel slip = s/(1 - s).
 
     Args:
         slip: Slip ratio in `source`'s definition [-].
         source: Definition of `slip`.
-        target: Definition wanted.
+        target: Definition of the result.
 
     Returns:
         Slip ratio in `target`'s definition, infinite at the limits named in `SlipDefinition` [-].
 
     Raises:
-        DomainError: A slip ratio lies outside what its definition can take (a disc would turn
-            backwards).
+        DomainError: The definitions differ and a slip ratio lies outside the range of `source`'s (a
+            disc would turn backwards).
 
     >>> float(convert_slip(0.5, "material", "travel"))
     1.0
@@ -100,7 +101,7 @@ def convert_slip(
 
 
 def walk_slip_from_material(slip: ArrayLike, leg_angle: ArrayLike) -> Array:
-    r"""Convert the rig's slip ratio to the walk's of Eq. (4-31) for a rolling leg.
+    r"""Convert the rig's slip ratio, Eq. (4-44), to the walk's, Eq. (4-31), for a rolling leg.
 
     .. math::
         \kappa_{walk} = \frac{\kappa_{rig}}{1 + \sin\theta - \kappa_{rig}}
@@ -127,7 +128,7 @@ def require_definition(found: SlipDefinition | str, expected: SlipDefinition | s
         expected: Definition that the parameters were fitted with.
 
     Raises:
-        DefinitionMismatch: The two differ.
+        DefinitionMismatch: The two definitions differ.
     """
     if SlipDefinition(found) is not SlipDefinition(expected):
         raise DefinitionMismatch(str(found), str(expected))
@@ -142,6 +143,7 @@ _UPPER = {SlipDefinition.MATERIAL: 1.0, SlipDefinition.TRAVEL: np.inf, SlipDefin
 
 
 def _require_possible(kappa: Array, definition: SlipDefinition) -> None:
+    """Raise `DomainError` if a slip ratio lies outside its definition's range, NaN excepted."""
     impossible = (kappa < _LOWER[definition]) | (kappa > _UPPER[definition])
     if np.any(impossible):
         raise DomainError(

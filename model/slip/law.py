@@ -18,11 +18,11 @@ class Parameter:
 
     Attributes:
         name: Spelled-out name, unique within the law.
-        symbol: The thesis's symbol.
+        symbol: Symbol in the law's equation.
         unit: Unit as pint spells it; "dimensionless" where there is none.
-        lower: Greatest lower bound of the support (excluded).
-        upper: Least upper bound of the support (excluded).
-        meaning: One line a newcomer can read.
+        lower: Lower bound of the support (excluded).
+        upper: Upper bound of the support (excluded).
+        meaning: Explanation in one line.
     """
 
     name: str
@@ -34,7 +34,7 @@ class Parameter:
 
 
 class SlipLaw(Protocol):
-    """Longitudinal traction as a function of slip ratio and normal force.
+    """Protocol of a slip law: longitudinal traction as a function of slip ratio and normal force.
 
     `values` holds one entry a parameter, in the order of `parameters`; an entry is a number or an
     array that broadcasts against `slip` and `load`, so that a whole ensemble of parameter vectors
@@ -55,7 +55,7 @@ class SlipLaw(Protocol):
         ...
 
     def force(self, slip: ArrayLike, load: ArrayLike, values: Values) -> Array:
-        """Compute the traction force.
+        """Compute the traction force from slip ratio, load and parameter values.
 
         Args:
             slip: Slip ratio in the definition the values were fitted with [-].
@@ -78,7 +78,7 @@ class SlipLaw(Protocol):
         ...
 
     def valid(self, load: ArrayLike, values: Values) -> NDArray[np.bool_]:
-        """Return where the curve has the shape that the law defines, for values inside its support.
+        """Return at which loads the curve has the law's shape, for values inside the support.
 
         Args:
             load: Normal force, positive [N].

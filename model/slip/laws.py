@@ -13,7 +13,7 @@ from model.slip.law import SlipLaw
 from model.slip.magic_formula import MagicFormula
 
 LAWS = MappingProxyType({law.name: law for law in (MagicFormula, CoulombStribeck, Brush)})
-"""Every slip law by its name."""
+"""Class of every slip law, by the law's name."""
 
 
 def slip_law(name: str, **options: Any) -> SlipLaw:
@@ -24,13 +24,13 @@ def slip_law(name: str, **options: Any) -> SlipLaw:
 
     Args:
         name: A key of `LAWS`.
-        options: The law's own options, such as `curvature` of the Magic Formula.
+        options: Fields of the law's class, such as `curvature` of the Magic Formula.
 
     Returns:
         The law.
 
     Raises:
-        DomainError: There is no such law, or it has no such option.
+        DomainError: No law has this name, or the law has no option of a given name.
 
     >>> [parameter.name for parameter in slip_law("brush", kinetic=True).parameters]
     ['slip_stiffness', 'friction', 'kinetic_ratio']
@@ -43,6 +43,7 @@ def slip_law(name: str, **options: Any) -> SlipLaw:
 
 
 def _require_known(what: str, found: str, known: tuple[str, ...]) -> None:
+    """Raise `DomainError` with the nearest known name unless `found` is one of `known`."""
     if found in known:
         return
     nearest = get_close_matches(found, known, n=1, cutoff=0.3)

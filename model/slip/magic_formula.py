@@ -14,7 +14,7 @@ from model.slip.law import Array, Parameter, Values
 def magic_formula(
     kappa: ArrayLike, B: ArrayLike, C: ArrayLike, D: ArrayLike, E: ArrayLike
 ) -> Array:
-    r"""Compute the traction force of Eq. (4-23).
+    r"""Compute the traction force by Pacejka's Magic Formula, Eq. (4-23).
 
     .. math::
         f = D \sin\bigl(C \arctan(B\kappa - E (B\kappa - \arctan B\kappa))\bigr)
@@ -44,7 +44,7 @@ def magic_formula(
 def magic_formula_slope(
     kappa: ArrayLike, B: ArrayLike, C: ArrayLike, D: ArrayLike, E: ArrayLike
 ) -> Array:
-    r"""Compute the derivative of Eq. (4-23) with respect to slip ratio [N].
+    r"""Compute the derivative of `magic_formula` with respect to slip ratio [N].
 
     .. math::
         f' = D \cos(C \arctan\varphi)\, \frac{C}{1+\varphi^2}\, \varphi', \qquad
@@ -54,7 +54,7 @@ def magic_formula_slope(
         kappa: Slip ratio [-].
         B: Stiffness factor [-].
         C: Shape factor [-].
-        D: Peak factor [N].
+        D: Peak force [N].
         E: Curvature factor [-].
     """
     B, C, E = np.asarray(B), np.asarray(C), np.asarray(E)
@@ -87,8 +87,9 @@ def curvature_from_peak(B: ArrayLike, C: ArrayLike, x_m: ArrayLike) -> Array:
 
 
 def _minus_arctan(x: Array) -> Array:
-    # x - arctan(x); the difference loses its digits at small x (and is zero below 1e-8, the
-    # loads of a leg about to lift off), its series is exact to 3e-13 up to 0.01.
+    """Compute x - arctan(x), by its series where |x| < 0.01."""
+    # The difference loses its digits at small x (and is zero below 1e-8, the loads of a leg about
+    # to lift off), its series is exact to 3e-13 up to 0.01.
     difference = x - np.arctan(x)
     small = np.abs(x) < 0.01
     if not small.any():  # powers cost more than the arctangent
@@ -100,15 +101,16 @@ def _minus_arctan(x: Array) -> Array:
 class MagicFormula:
     """The Magic Formula as a slip law, with D = mu * Fn.
 
-    It is parametrised by what data determine best: the slip stiffness K = B·C·mu (slope at zero
-    slip for each newton of load) in place of B.
+    Its parameters are those that data determine best: the slip stiffness K = B·C·mu (slope at zero
+    slip for each newton of load) instead of B.
 
     Attributes:
         curvature: "peak" (E from the peak's position, which grows with load: x_m = c·Fn),
             "constant" (one E at every load), or a number, the E to keep fixed.
-        load_sensitivity: Let mu and K vary with load as (Fn / reference_load) to a power.
-        reference_load: Load at which mu and K have their printed values when `load_sensitivity`
-            is set [N].
+        load_sensitivity: Multiply mu and K by (Fn / reference_load) to powers that are further
+            parameters.
+        reference_load: Load at which mu and K have their parameters' values when
+            `load_sensitivity` is set [N].
     """
 
     curvature: Literal["peak", "constant"] | float = "peak"
@@ -119,7 +121,7 @@ class MagicFormula:
 
     @property
     def parameters(self) -> tuple[Parameter, ...]:
-        """The law's parameters, in the order of `values`."""
+        """The parameters K, C, mu and those of the law's options, in the order of `values`."""
         return (
             *_COMMON,
             *((_CURVATURE[self.curvature],) if isinstance(self.curvature, str) else ()),
@@ -127,7 +129,7 @@ class MagicFormula:
         )
 
     def coefficients(self, load: ArrayLike, values: Values) -> tuple[Array, Array, Array, Array]:
-        """Compute the plain B, C, D, E at a load.
+        """Compute the Magic Formula's coefficients B, C, D, E at a load from parameter values.
 
         Args:
             load: Normal force [N].
@@ -172,7 +174,7 @@ class MagicFormula:
         return magic_formula_slope(slip, *self.coefficients(load, values))
 
     def valid(self, load: ArrayLike, values: Values) -> NDArray[np.bool_]:
-        """Return where E <= 1, so that the curve has one peak and keeps its sign.
+        """Return at which loads E <= 1, so that the curve has one peak and keeps its sign.
 
         Args:
             load: Normal force, positive [N].
@@ -181,7 +183,7 @@ class MagicFormula:
         return self.coefficients(load, values)[3] <= 1.0
 
     def peak_slip(self, load: ArrayLike, values: Values) -> Array:
-        """Compute the slip ratio at which the force peaks (inf where C <= 1: no peak) [-].
+        """Compute the slip ratio at which the force peaks, infinite without a peak (C <= 1) [-].
 
         Args:
             load: Normal force, positive [N].
@@ -192,7 +194,7 @@ class MagicFormula:
 
 
 def peak_slip(B: ArrayLike, C: ArrayLike, E: ArrayLike) -> Array:
-    r"""Find the slip ratio of the peak, the inverse of Eq. (4-27) [-].
+    r"""Compute the slip ratio of the Magic Formula's peak, the inverse of Eq. (4-27) [-].
 
     Solves Bx - E (Bx - arctan Bx) = tan(pi/2C) by bisection, since the left side grows with x for
     E <= 1. Infinite where C <= 1, or where E = 1 keeps the left side below the right.

@@ -14,15 +14,16 @@ class ProportionalLaw:
     """Methods of a `SlipLaw` whose traction over load does not depend on load.
 
     Attributes:
-        traction_over_load: Function of slip ratio and the law's coefficients [-].
-        slope_over_load: Its derivative with respect to slip ratio [-].
+        traction_over_load: Function from slip ratio and the law's coefficients to traction over
+            load [-].
+        slope_over_load: Derivative of `traction_over_load` with respect to slip ratio [-].
     """
 
     traction_over_load: ClassVar[Callable[..., Array]]
     slope_over_load: ClassVar[Callable[..., Array]]
 
     def coefficients(self, values: Values) -> tuple[Array, ...]:
-        """Compute the coefficients of `traction_over_load`, in its order, from parameter values.
+        """Compute the coefficients of `traction_over_load` from parameter values, in its order.
 
         Args:
             values: Parameter values, one entry a parameter.
@@ -38,7 +39,7 @@ class ProportionalLaw:
         raise NotImplementedError
 
     def force(self, slip: ArrayLike, load: ArrayLike, values: Values) -> Array:
-        """Compute the traction force [N]; see `SlipLaw.force`.
+        """Compute the traction force, load times `traction_over_load` [N].
 
         Args:
             slip: Slip ratio [-].
@@ -58,7 +59,7 @@ class ProportionalLaw:
         return np.asarray(load) * self.slope_over_load(slip, *self.coefficients(values))
 
     def valid(self, load: ArrayLike, values: Values) -> NDArray[np.bool_]:
-        """Return where the curve has its shape: everywhere inside the support.
+        """Return True in the shape to which load and values broadcast: the shape is never lost.
 
         Args:
             load: Normal force, positive [N].

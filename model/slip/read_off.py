@@ -16,7 +16,7 @@ _RISE_TERMS = 3  # kappa, kappa³, kappa⁵: the slope is then within 0.1 % up t
 
 @dataclass(frozen=True)
 class CurveFeatures:
-    """Features of a slip curve at one load, Fig. 4-5.
+    """Features of a slip curve at one load, Fig. 4-5: peak, asymptote and initial slope.
 
     Attributes:
         peak_force: D, greatest force [N].
@@ -49,7 +49,7 @@ class Coefficients:
 
 
 def shape_factor(y_a: ArrayLike, D: ArrayLike, *, has_peak: bool = True) -> Array:
-    r"""Compute the shape factor from peak and asymptote, Eq. (4-25).
+    r"""Compute the Magic Formula's shape factor C from peak and asymptote, Eq. (4-25).
 
     .. math::
         C = 1 \pm \Bigl(1 - \frac{2}{\pi} \arcsin\frac{y_a}{D}\Bigr)
@@ -83,7 +83,7 @@ def shape_factor(y_a: ArrayLike, D: ArrayLike, *, has_peak: bool = True) -> Arra
 
 
 def stiffness_factor(H: ArrayLike, C: ArrayLike, D: ArrayLike) -> Array:
-    r"""Compute the stiffness factor from the slope at zero slip, Eq. (4-26).
+    r"""Compute the Magic Formula's stiffness factor B from the slope at zero slip, Eq. (4-26).
 
     .. math::
         B = \frac{H}{C D}
@@ -94,23 +94,23 @@ def stiffness_factor(H: ArrayLike, C: ArrayLike, D: ArrayLike) -> Array:
         D: Peak force [N].
 
     Returns:
-        Stiffness factor [-].
+        Stiffness factor B [-].
     """
     return np.asarray(H, dtype=float) / (np.asarray(C) * np.asarray(D))
 
 
 def coefficients_from_features(features: CurveFeatures) -> Coefficients:
-    """Compute B, C, D, E from a curve's features: C, then B, then E.
+    """Compute the Magic Formula's coefficients from a curve's features by Eq. (4-25) to (4-27).
 
     Args:
-        features: Peak, its slip, asymptote and initial slope.
+        features: Peak force, slip of the peak, asymptote and initial slope.
 
     Returns:
-        The Magic Formula's coefficients.
+        B, C, D and E.
 
     Raises:
-        DomainError: The asymptote does not suit the peak, Eq. (4-25), or the peak lies too far
-            out for the other three, so that Eq. (4-27) gives E > 1 and a curve that changes sign.
+        DomainError: The asymptote is negative or above the peak, or the peak lies too far out for
+            the other three, so that Eq. (4-27) gives E > 1 and a curve that changes sign.
     """
     D = features.peak_force
     C = float(shape_factor(features.asymptote, D))
@@ -126,7 +126,7 @@ def coefficients_from_features(features: CurveFeatures) -> Coefficients:
 
 
 def curve_features(slip: ArrayLike, force: ArrayLike) -> CurveFeatures:
-    """Find the features of a slip curve at one load.
+    """Estimate peak, asymptote and initial slope of a slip curve at one load from its samples.
 
     The samples are taken as exact: smooth a measured curve first. The peak is the vertex of the
     parabola through the highest sample and its neighbours; the slope that of an odd polynomial
@@ -138,11 +138,12 @@ def curve_features(slip: ArrayLike, force: ArrayLike) -> CurveFeatures:
         force: Traction force, positive, shape (n,) [N].
 
     Returns:
-        Peak, its slip, asymptote and initial slope.
+        Peak force, slip of the peak, asymptote and initial slope.
 
     Raises:
-        DomainError: The arrays do not describe a curve, it has no peak within its range, too few
-            samples on the rise, or is still falling at its end.
+        DomainError: The arrays do not describe a curve; or the curve has no peak within its range,
+            fewer than three samples on the rise, ends before twice the peak's slip, or is still
+            falling there.
     """
     kappa, f = _as_curve(slip, force)
     x_m, D = _vertex(kappa, f)
@@ -169,6 +170,7 @@ def read_off(slip: ArrayLike, force: ArrayLike) -> Coefficients:
 
 
 def _as_curve(slip: ArrayLike, force: ArrayLike) -> tuple[Array, Array]:
+    """Convert slip and force to arrays (n,); raise `DomainError` unless finite, slip increasing."""
     kappa, f = np.asarray(slip, dtype=float), np.asarray(force, dtype=float)
     if kappa.ndim != 1 or kappa.shape != f.shape:
         raise DomainError(
@@ -186,6 +188,7 @@ def _as_curve(slip: ArrayLike, force: ArrayLike) -> tuple[Array, Array]:
 
 
 def _vertex(kappa: Array, f: Array) -> tuple[float, float]:
+    """Return slip ratio and force of the peak: a parabola's through top sample and neighbours."""
     top = int(np.argmax(f))
     if top in (0, len(f) - 1) or f[top] <= 0:
         raise DomainError(
@@ -201,6 +204,7 @@ def _vertex(kappa: Array, f: Array) -> tuple[float, float]:
 
 
 def _initial_slope(kappa: Array, f: Array, D: float) -> float:
+    """Return the slope at zero slip [N], of an odd quintic fitted up to half the peak force D."""
     end = int(np.argmax(f > D / 2))
     rise = slice(1 if kappa[0] == 0 else 0, end)
     reach, count = kappa[end], len(kappa[rise])
@@ -214,6 +218,7 @@ def _initial_slope(kappa: Array, f: Array, D: float) -> float:
 
 
 def _asymptote(kappa: Array, f: Array, x_m: float, D: float) -> float:
+    """Extrapolate the force to infinite slip [N], linearly in 1/slip from the outer half."""
     tail = kappa >= kappa[-1] / 2
     if kappa[-1] < 2 * x_m or np.count_nonzero(tail) < 2:
         raise DomainError(

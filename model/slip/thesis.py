@@ -19,7 +19,7 @@ _LOADS = (2.13, 12.75)  # Fig. 4-14 [N]
 
 
 def thesis_curve() -> SlipCurve:
-    """Return the slip curve of the thesis with its values as given: standard deviations zero."""
+    """Return the thesis's slip curve: `THESIS_LAW` with `THESIS_VALUES` and covariance zero."""
     k = len(THESIS_VALUES)
     return SlipCurve(
         law=THESIS_LAW,

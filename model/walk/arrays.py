@@ -14,13 +14,13 @@ N_CONTACTS = N_LEGS + 8  # legs, then the corners of the body
 
 
 class Body(NamedTuple):
-    """A robot as arrays for numba; see `Robot`.
+    """A robot as arrays for compiled code; see `Robot`.
 
     Attributes:
         hips: Hip positions, shape (6, 3) [m].
         leg_radius: Radius of the legs' arcs [m].
         toe_cos: Cosine of the arcs' angle beyond a half circle [-].
-        toe_sin: Its sine [-].
+        toe_sin: Sine of the arcs' angle beyond a half circle [-].
         mass: Mass [kg].
         inertia: Principal moments of inertia, shape (3,) [kg m2].
         half_size: Half the body's length, width and height, shape (3,) [m].
@@ -36,7 +36,7 @@ class Body(NamedTuple):
 
 
 class Contacts(NamedTuple):
-    """Stiffness and damping of contacts.
+    """Stiffness and damping of every contact along the ground's normal.
 
     Attributes:
         stiffness: Normal force for each metre of sinkage [N/m].
@@ -48,14 +48,14 @@ class Contacts(NamedTuple):
 
 
 class State(NamedTuple):
-    """State at the start of a step; every array is overwritten by the step.
+    """Position, orientation, velocities and bristles of the body; each step overwrites them.
 
     Attributes:
-        p: Position of the body [m].
-        q: Its orientation as a unit quaternion (w, x, y, z), body to world.
-        v: Velocity [m/s].
-        w: Angular velocity in the world frame [rad/s].
-        stretch: Stretch of each contact's bristle, shape (14, 3) [m].
+        p: Position of the body's centre in the world frame, shape (3,) [m].
+        q: Orientation as a unit quaternion (w, x, y, z), body to world, shape (4,).
+        v: Velocity of the body's centre in the world frame, shape (3,) [m/s].
+        w: Angular velocity in the world frame, shape (3,) [rad/s].
+        stretch: Stretch of each contact's bristle in the world frame, shape (14, 3) [m].
     """
 
     p: Array
@@ -70,7 +70,7 @@ class Work(NamedTuple):
 
     Attributes:
         place: Contact from the body's centre, world frame, shape (14, 3) [m].
-        velocity: Velocity of its material point relative to the body, world frame,
+        velocity: Velocity of the contact's material point relative to the body, world frame,
             shape (14, 3) [m/s].
         normal: Normal of the ground, shape (14, 3) [-].
         gap: Distance over the ground, negative below it, shape (14,) [m].
@@ -79,13 +79,13 @@ class Work(NamedTuple):
         load: Normal force, zero in the air, shape (14,) [N].
         secant: Traction over slip velocity, zero where a bristle holds, shape (14,) [N s/m].
         R: Rotation of the body, body to world, shape (3, 3).
-        A: Matrix of the step, lower half, shape (6, 6).
-        b: Its right side and solution, shape (6,).
+        A: Matrix of the step's linear system, lower half, shape (6, 6).
+        b: Right side of the system, then its solution: final v [m/s] and w [rad/s], shape (6,).
         v: Guess of the final velocity, shape (3,) [m/s].
         w: Guess of the final angular velocity, shape (3,) [rad/s].
-        force: Force of a contact, shape (3,) [N].
-        point: Velocity of a material contact point, shape (3,) [m/s].
-        P: Decrease of a contact's force per velocity, shape (3, 3) [N s/m].
+        force: Force on one contact at zero velocity of the body, shape (3,) [N].
+        point: Velocity of one material contact point, shape (3,) [m/s].
+        P: Decrease of one contact's force per velocity of the body there, shape (3, 3) [N s/m].
         inertia: Inertia in the world frame, shape (3, 3) [kg m2].
         gyro: Gyroscopic moment, shape (3,) [N m].
     """
@@ -111,7 +111,7 @@ class Work(NamedTuple):
 
 
 def body_arrays(robot: Robot) -> Body:
-    """Convert a robot to the arrays of the compiled loop."""
+    """Convert a robot's geometry, mass and inertia to the arrays of the compiled loop."""
     return Body(
         robot.hips, robot.leg_radius, float(np.cos(robot.toe_beyond)),
         float(np.sin(robot.toe_beyond)), robot.mass,
@@ -121,7 +121,7 @@ def body_arrays(robot: Robot) -> Body:
 
 @compiled
 def new_work():
-    """Allocate the work arrays of a step, with all loads zero."""
+    """Allocate the work arrays of a step, loads, secants and kinds zero, others uninitialised."""
     n = N_CONTACTS
     return Work(
         np.empty((n, 3)), np.empty((n, 3)), np.empty((n, 3)), np.empty(n), np.empty(n),
@@ -133,17 +133,17 @@ def new_work():
 
 @compiled
 def new_state():
-    """Allocate an uninitialised state."""
+    """Allocate a state whose arrays are uninitialised."""
     return State(np.empty(3), np.empty(4), np.empty(3), np.empty(3), np.empty((N_CONTACTS, 3)))
 
 
 @inlined
 def copy_state(state, to):
-    """Copy a state into another.
+    """Copy the values of a state's arrays into the arrays of another state.
 
     Args:
         state: State to copy.
-        to: Overwritten with the copy.
+        to: State whose arrays are overwritten.
     """
     for i in range(3):
         to.p[i], to.v[i], to.w[i] = state.p[i], state.v[i], state.w[i]

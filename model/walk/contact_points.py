@@ -14,7 +14,7 @@ NEAR = 0.01  # height over the ground below which the body's corners are compute
 
 @inlined
 def lowest_point(theta, down_x, down_z, r, toe_cos, toe_sin):
-    """Find a leg's lowest point in its plane, from the hip, with its state.
+    """Compute a leg's lowest point in its plane, from the hip, and whether it rolls.
 
     Args:
         theta: Leg angle: direction from the hip to the arc's centre [rad].
@@ -22,7 +22,7 @@ def lowest_point(theta, down_x, down_z, r, toe_cos, toe_sin):
         down_z: Component of "down" along the body's z axis [-].
         r: Radius of the arc [m].
         toe_cos: Cosine of the arc's angle beyond a half circle [-].
-        toe_sin: Its sine [-].
+        toe_sin: Sine of that angle [-].
 
     Returns:
         x and z from the hip in the body frame [m], and HIP, ROLLING or TOE.
@@ -50,25 +50,25 @@ def lowest_point(theta, down_x, down_z, r, toe_cos, toe_sin):
 
 @inlined
 def find_contacts(body, ground, p, R, theta, speed, place, velocity, normal, gap, state, flow):
-    """Find the potential contact of each leg and body corner, and its distance from the ground.
+    """Compute the lowest point of each leg, the body's corners, and their gaps to the ground.
 
     Args:
         body: Robot as arrays; see `Body`.
         ground: The ground.
         p: Position of the body, shape (3,) [m].
-        R: Its rotation, body to world, shape (3, 3).
+        R: Rotation of the body, body to world, shape (3, 3).
         theta: Leg angles at the end of the step, shape (6,) [rad].
         speed: Leg speeds in the step, shape (6,) [rad/s].
         place: Filled: contact from the body's centre, world frame, shape (14, 3) [m].
-        velocity: Filled: velocity of the material point relative to the body, world frame,
-            shape (14, 3) [m/s].
+        velocity: Filled: velocity of each material contact point relative to the body, world
+            frame, shape (14, 3) [m/s].
         normal: Filled: normal of the ground, shape (14, 3) [-].
         gap: Filled: distance over the ground, negative below it, shape (14,) [m].
-        state: Filled: HIP, ROLLING or TOE, shape (14,).
-        flow: Filled: arc radius where a leg rolls, shape (14,) [m].
+        state: Filled: HIP, ROLLING or TOE, for corners TOE, shape (14,).
+        flow: Filled: arc radius where a leg rolls, else zero, shape (14,) [m].
 
     Returns:
-        Number of contacts computed: the corners only where the body comes near the ground.
+        Number of contacts computed: 14, or 6 where the body is more than `NEAR` above all ground.
     """
     for i in range(N_LEGS):
         hip = body.hips[i]
@@ -99,26 +99,28 @@ def find_contacts(body, ground, p, R, theta, speed, place, velocity, normal, gap
 
 @inlined
 def _to_world(R, x, y, z, out):
+    """Rotate the body vector (x, y, z) to the world frame by R and fill `out` with it."""
     for a in range(3):
         out[a] = R[a, 0] * x + R[a, 1] * y + R[a, 2] * z
 
 
 @inlined
 def _gap(ground, p, place, normal):
+    """Return a contact's distance over the ground along its normal [m], and fill `normal`."""
     h, normal[0], normal[1], normal[2] = ground_at(ground, p[0] + place[0], p[1] + place[1])
     return (p[2] + place[2] - h) * normal[2]
 
 
 @inlined
 def point_velocity(v, w, place, velocity, out):
-    """Compute the velocity of a material contact point from those of body and leg.
+    """Compute the world velocity of a material contact point from motion of body and leg.
 
     Args:
         v: Velocity of the body, shape (3,) [m/s].
         w: Angular velocity of the body in the world frame, shape (3,) [rad/s].
         place: Contact from the body's centre, world frame, shape (3,) [m].
         velocity: Velocity of the point relative to the body, world frame, shape (3,) [m/s].
-        out: Filled: velocity of the point, shape (3,) [m/s].
+        out: Filled: velocity of the point in the world frame, shape (3,) [m/s].
     """
     out[0] = v[0] + w[1] * place[2] - w[2] * place[1] + velocity[0]
     out[1] = v[1] + w[2] * place[0] - w[0] * place[2] + velocity[1]

@@ -30,7 +30,7 @@ STICKY = VelocityCoulomb(3.0, 1e-4).table(weight=1.0)  # to settle on a slope wi
 
 @dataclass(frozen=True)
 class DynamicsOptions:
-    """How the walk is computed.
+    """Step length, and stiffness and damping of contacts, of the walking model.
 
     Attributes:
         dt: Length of a step [s].
@@ -38,6 +38,9 @@ class DynamicsOptions:
         damping: Normal force for each metre a second of sinking; a quarter of critical for a
             third of the body's mass, to which the implicit step adds stiffness times its length,
             so that legs do not bounce [N s/m].
+
+    Raises:
+        DomainError: A value is not positive and finite.
     """
 
     dt: float = 0.002
@@ -45,7 +48,7 @@ class DynamicsOptions:
     damping: float = 200.0
 
     def __post_init__(self) -> None:
-        """Check that step, stiffness and damping are positive."""
+        """Check that step, stiffness and damping are positive and finite."""
         for name, unit in (("dt", "s"), ("stiffness", "N/m"), ("damping", "N s/m")):
             value = getattr(self, name)
             if not (value > 0 and np.isfinite(value)):
@@ -57,15 +60,15 @@ DEFAULT_OPTIONS = DynamicsOptions()
 
 @dataclass(frozen=True)
 class Start:
-    """Initial pose and velocity of a walk.
+    """Initial pose and velocity of a walk in the inertial frame.
 
     Attributes:
-        x: Position of the body's centre [m].
-        y: Position of the body's centre [m].
+        x: x of the body's centre [m].
+        y: y of the body's centre [m].
         yaw: Heading [rad].
-        height: Height of the body's centre, with the body level and at rest, to be dropped from;
-            None to stand on the legs as they are, settled [m].
-        velocity: Velocity of the body in the inertial frame [m/s].
+        height: z of the body's centre, from which the level body drops; None to start settled on
+            the legs [m].
+        velocity: Velocity of the body, in either case [m/s].
     """
 
     x: float = 0.0
@@ -88,23 +91,23 @@ def walk(
     start: Start = ORIGIN,
     options: DynamicsOptions = DEFAULT_OPTIONS,
 ) -> WalkPath:
-    """Walk for a time, sampled at every step.
+    """Compute the walk of a robot whose legs follow given angles, sampled at every step.
 
     Args:
-        robot: The robot.
-        reference: Its leg angles over time.
+        robot: The robot; its leg offsets are added to the angles.
+        reference: Leg angles over time.
         table: The slip law; see `model.walk.traction`.
         duration: Time walked, from the reference's time zero on [s].
         ground: The ground.
-        start: Where it starts.
-        options: How it is computed.
+        start: Initial pose and velocity.
+        options: Step length and contacts.
 
     Returns:
-        The path, its first sample the settled start, with the forces of the first step.
+        The path; its first sample is the start, with the slip and forces of the first step's end.
 
     Raises:
-        DomainError: The duration is shorter than a step.
-        WalkError: A step diverged; the message says when and in what state.
+        DomainError: The duration is not finite or rounds to no step.
+        WalkError: The robot cannot stand at the start, or a step diverged; the message says where.
     """
     t = step_times(duration, options.dt)
     theta = reference.angles(t) + robot.leg_offset
@@ -114,7 +117,7 @@ def walk(
 
 
 def step_times(duration: float, dt: float) -> Array:
-    """Compute the times of all steps: the nearest whole number of them in the duration.
+    """Compute the times 0, dt, 2 dt, ... of all steps, as many as fit the duration when rounded.
 
     Args:
         duration: Time walked [s].
@@ -124,7 +127,7 @@ def step_times(duration: float, dt: float) -> Array:
         Times from zero, shape (n + 1,) [s].
 
     Raises:
-        DomainError: The duration is not finite or shorter than a step.
+        DomainError: The duration is not finite or rounds to no step.
     """
     n = round(duration / dt) if duration > 0 and np.isfinite(duration) else 0
     if n < 1:
@@ -143,24 +146,24 @@ def integrate(
     keep_legs: bool = False,
     began: float = 0.0,
 ) -> tuple[Array, Array]:
-    """Integrate the motion from a state through leg angles at equal steps.
+    """Integrate the body's motion from an initial state through leg angles at equal steps.
 
     Args:
         robot: The robot.
         table: The slip law.
         state: Initial state, overwritten with the final one.
         theta: Leg angles at every step's start and the last one's end, shape (n + 1, 6) [rad].
-        options: How the walk is computed.
+        options: Step length and contacts.
         ground: The ground.
-        keep_legs: Whether to return the state of the legs.
+        keep_legs: Whether to return slip and forces of the legs.
         began: Time of the first step, for the message of an error [s].
 
     Returns:
-        Position and quaternion at the times of `theta`, shape (n + 1, 7), and the state of the
-        legs at each step's end as in `run_steps`, shape (n, 6, 6), or (0, 6, 6) where not kept.
+        Position [m] and quaternion (w, x, y, z) at the times of `theta`, shape (n + 1, 7), and slip
+        and forces at each step's end as in `run_steps`, shape (n, 6, 6), or (0, 6, 6) if not kept.
 
     Raises:
-        WalkError: A step diverged; the message says when and in what state.
+        WalkError: A step diverged; the message says when and where.
     """
     n = len(theta) - 1
     pose, legs = np.empty((n + 1, 7)), np.empty((n if keep_legs else 0, N_LEGS, 6))
@@ -186,14 +189,17 @@ def start_state(
     ground: Ground = FLAT,
     start: Start = ORIGIN,
 ) -> State:
-    """Compute the initial state: the robot on its legs, or held above them, at the start's pose.
+    """Compute the initial state: the robot settled on its legs, or level at the start's height.
 
     Args:
         robot: The robot.
         theta: Leg angles to stand on, shape (6,) [rad].
-        options: How the walk is computed.
+        options: Stiffness and damping of contacts.
         ground: The ground.
-        start: Where to stand.
+        start: Initial pose and velocity.
+
+    Raises:
+        WalkError: The robot cannot stand: settling diverged.
     """
     half = 0.5 * start.yaw
     highest = _highest_under(robot, ground, start)
@@ -211,7 +217,7 @@ def start_state(
 
 
 def _highest_under(robot: Robot, ground: Ground, start: Start) -> float:
-    """Find the highest ground within the robot's reach of the start [m]."""
+    """Return the largest ground height on the grid within the robot's reach of the start [m]."""
     far = float(np.linalg.norm(robot.hips, axis=1).max()) + 2 * robot.leg_radius
     m, n = ground.height.shape
     i = (np.array([start.x - far, start.x + far]) - ground.x) / ground.step
@@ -228,7 +234,10 @@ def _settled(
     state: State,
     options: DynamicsOptions,
 ) -> State:
-    """Simulate until the robot rests on motionless legs, then move it back to its start."""
+    """Simulate 1 s on motionless legs and sticky ground; move the body back to its x, y and yaw.
+
+    The state is overwritten; its velocity is the initial one again, its angular velocity zero.
+    """
     x, y = state.p[:2]
     yaw = 2 * np.arctan2(state.q[3], state.q[0])
     velocity = state.v.copy()
@@ -252,6 +261,7 @@ def _settled(
 
 
 def _path(t: Array, pose: Array, theta: Array, legs: Array) -> WalkPath:
+    """Convert poses (n + 1, 7) and the legs' rows of `run_steps`, (n, 6, 6), to a path."""
     orientation = roll_pitch_yaw(pose[:, 3:])
     legs = np.concatenate([legs[:1], legs])
     load: NDArray[np.float64] = legs[..., 0]
@@ -269,7 +279,7 @@ def _path(t: Array, pose: Array, theta: Array, legs: Array) -> WalkPath:
 
 
 def _to_heading(vectors: Array, yaw: Array) -> Array:
-    """Rotate world vectors (n, 6, 2) to forward and left of the heading."""
+    """Rotate world vectors (x, y), shape (n, 6, 2), by -yaw to components forward and left."""
     c, s = np.cos(yaw)[:, None], np.sin(yaw)[:, None]
     x, y = vectors[..., 0], vectors[..., 1]
     return np.stack([c * x + s * y, c * y - s * x], axis=-1)

@@ -26,14 +26,14 @@ from model.walk.traction import TractionTable
 
 @dataclass(frozen=True)
 class WalkDraw:
-    """One draw of all inputs of a path.
+    """One draw of all inputs of a walk.
 
     Attributes:
-        robot: The robot, with its leg offsets.
+        robot: The robot, with the draw's leg offsets.
         reference: Leg angles over time.
         table: The slip law.
-        stiffness: Factor on the contacts' stiffness of the options [-].
-        damping: Factor on their damping [-].
+        stiffness: Factor on the contact stiffness of an ensemble's options [-].
+        damping: Factor on the contact damping of an ensemble's options [-].
     """
 
     robot: Robot
@@ -43,7 +43,7 @@ class WalkDraw:
     damping: float = 1.0
 
     def options(self, common: DynamicsOptions) -> DynamicsOptions:
-        """Return an ensemble's options with the contacts of this draw."""
+        """Return the common options, contact stiffness and damping times this draw's factors."""
         return replace(
             common,
             stiffness=common.stiffness * self.stiffness,
@@ -53,12 +53,12 @@ class WalkDraw:
 
 @dataclass(frozen=True)
 class PlanarWalk:
-    """Planar path of a walk, or of each draw of one.
+    """Planar path of one walk, or paths of all draws of a walk.
 
     Attributes:
         poses: The path, or one path for each draw.
         tilt: Roll and pitch at the times of the poses, shape (n, 2) or (draws, n, 2); None where
-            they were not asked for [rad].
+            they were not kept [rad].
     """
 
     poses: Poses
@@ -74,22 +74,22 @@ def walk_ensemble(
     tilt: bool = False,
     progress: Callable[[float], None] | None = None,
 ) -> PlanarWalk:
-    """Walk every draw on flat ground; periodic gaits by their stride map.
+    """Compute the path of every draw on flat ground; periodic gaits by `walk_by_strides`.
 
     Args:
         draws: The draws to walk.
         t: Times of the poses, increasing, none before zero, shape (n,) [s].
-        options: How the walks are computed.
-        threads: Number of draws walked at once.
+        options: Step length and contacts, the same for all draws but for the draws' factors.
+        threads: Number of draws computed at once.
         tilt: Return roll and pitch too; not available for periodic gaits.
-        progress: Called with the fraction done.
+        progress: Called after each draw with the fraction of draws done, from 0 to 1.
 
     Returns:
-        The paths of all draws, interpolated at `t`.
+        The paths of all draws, interpolated linearly at `t`.
 
     Raises:
-        DomainError: There is no draw, or the times do not increase from zero.
-        WalkError: A walk diverged (the message says which), or `tilt` is asked of a periodic gait.
+        DomainError: There is no draw or no time, or times are negative or do not increase.
+        WalkError: A walk failed (the message says of which draw), or `tilt` with a periodic gait.
     """
     _require_draws(draws, t)
     duration = max(float(t[-1]), options.dt)
@@ -115,6 +115,7 @@ def walk_ensemble(
 
 
 def _tilt_of(path: PlanarWalk) -> Array:
+    """Return roll and pitch as rows, shape (2, n) [rad]; raise `WalkError` if not kept."""
     if path.tilt is None:
         raise WalkError(
             "roll and pitch of a gait walked by strides are not kept; sample its leg angles"
@@ -123,6 +124,7 @@ def _tilt_of(path: PlanarWalk) -> Array:
 
 
 def _require_draws(draws: Sequence[WalkDraw], t: Array) -> None:
+    """Raise `DomainError` unless there is a draw and times increase from zero or later."""
     if not draws:
         raise DomainError("an ensemble of no draws has no paths; expected at least one")
     if t.ndim != 1 or not len(t) or not (t[0] >= 0 and np.all(np.diff(t) > 0)):
@@ -139,17 +141,17 @@ def planar_walk(
     options: DynamicsOptions = DEFAULT_OPTIONS,
     tilt: bool = False,
 ) -> PlanarWalk:
-    """Walk one draw on flat ground and return its planar path.
+    """Compute the planar path of one draw on flat ground, sampled at every step.
 
     Args:
         draw: The draw to walk.
         duration: Time walked [s].
-        options: How it is computed.
+        options: Step length and contacts, before the draw's factors.
         tilt: Return roll and pitch too; ignored for periodic gaits, which are walked by strides.
 
     Raises:
-        DomainError: The duration is shorter than a step.
-        WalkError: A step diverged.
+        DomainError: The duration is not finite or rounds to no step.
+        WalkError: The robot cannot stand at the start, or a step diverged.
     """
     options = draw.options(options)
     if draw.reference.period is not None:

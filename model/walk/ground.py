@@ -21,7 +21,7 @@ class Ground(NamedTuple):
         y: Position of the grid's first column [m].
         step: Distance between neighbours [m].
         height: Heights, rows along x, columns along y, shape (m, n) [m].
-        highest: The largest of them [m].
+        highest: The largest of the heights [m].
     """
 
     x: float
@@ -41,16 +41,17 @@ def sample_ground(
     y: tuple[float, float],
     step: float = 0.005,
 ) -> Ground:
-    """Sample a height function; beyond the area the height of its edge continues.
+    """Sample a height function on a grid; beyond the area the height of its edge continues.
 
     Args:
-        height: Height at x and y, arrays of one shape [m].
+        height: Function from arrays x and y [m] of one shape to heights of that shape [m].
         x: First and last x; the last sample lies there, or less than a step beyond [m].
-        y: First and last y [m].
+        y: First and last y, likewise [m].
         step: Distance between samples, well below a leg's radius [m].
 
     Raises:
-        DomainError: The area is empty or a height is not finite.
+        DomainError: The area is no wider than a step, or the heights have another shape than the
+            positions or are not finite.
     """
     if not (x[1] - x[0] > step > 0 and y[1] - y[0] > step):
         raise DomainError(f"ground from x {x} to y {y} in steps of {step:g} m has no area")
@@ -71,6 +72,7 @@ def sample_ground(
 
 
 def _samples(ends: tuple[float, float], step: float) -> Array:
+    """Return positions from the first end in equal steps to the last end or just beyond [m]."""
     first, last = ends
     return first + step * np.arange(np.ceil((last - first) / step - 1e-9) + 1)
 
@@ -78,6 +80,8 @@ def _samples(ends: tuple[float, float], step: float) -> Array:
 @inlined
 def ground_at(ground, x, y):
     """Interpolate height and unit normal of the ground at a place, bilinearly.
+
+    Beyond the grid height is that of the edge, and slope across the edge zero.
 
     Args:
         ground: The ground.

@@ -7,7 +7,7 @@ from model.robot import GRAVITY
 
 @inlined
 def start_system(mass, inertia, gyro, state, dt, A, b):
-    """Begin a step's system with the body's inertia, momentum, weight and gyroscopic moment.
+    """Fill a step's linear system with the body's inertia, momentum, weight and gyroscopic moment.
 
     Args:
         mass: Mass [kg].

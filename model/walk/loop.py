@@ -60,8 +60,8 @@ def run_steps(
 ) -> int:
     """Integrate a walk through leg angles at equal steps.
 
-    A step in which a contact begins or ends is repeated with finer steps. The steps of the next few
-    milliseconds are finer too.
+    A step in which a contact begins or ends is repeated in steps of at most 0.5 ms. The steps of
+    the 5 ms after it, and of the walk's first 5 ms, are as fine.
 
     Args:
         body: The robot.
@@ -77,7 +77,7 @@ def run_steps(
             (0, 6, 6) not to keep them.
 
     Returns:
-        Steps walked: n, or fewer where the state stopped being finite.
+        Number of steps computed: n, or fewer where the state stopped being finite.
     """
     spare = Spare(new_work(), new_state(), np.empty(N_LEGS), np.empty(N_LEGS), np.zeros(N_CONTACTS))
     return _steps(body, table, ground, contacts, state, theta, dt, pose, legs, spare)
@@ -85,7 +85,7 @@ def run_steps(
 
 @borrowing
 def _steps(body, table, ground, contacts, state, theta, dt, pose, legs, spare):
-    """Integrate as `run_steps` does, with the arrays that it allocated."""
+    """Integrate a walk; arguments and result are those of `run_steps`, `spare` its work arrays."""
     work, before, speed, angles, loaded = spare
     parts = max(int(np.ceil(dt / FINE_STEP - 1e-9)), 1)
     fine_steps = int(np.ceil(FINE_TIME / dt))
@@ -117,12 +117,14 @@ def _steps(body, table, ground, contacts, state, theta, dt, pose, legs, spare):
 
 @inlined
 def _copy(values, to):
+    """Copy a vector into another of the same length."""
     for i in range(len(values)):
         to[i] = values[i]
 
 
 @inlined
 def _contacts_changed(load, loaded):
+    """Return whether any contact has load in only one of two arrays of loads, shape (14,)."""
     changed = False
     for i in range(N_CONTACTS):
         changed |= (load[i] > 0) != (loaded[i] > 0)
@@ -131,6 +133,7 @@ def _contacts_changed(load, loaded):
 
 @inlined
 def _keep_pose(out, state):
+    """Fill a row of shape (7,) with the state's position and quaternion."""
     for i in range(3):
         out[i] = state.p[i]
     for i in range(4):
@@ -139,7 +142,7 @@ def _keep_pose(out, state):
 
 @inlined
 def _keep_legs(out, contacts, state, work, speed):
-    """Fill a step's row of `legs`; see `run_steps`."""
+    """Fill a row, shape (6, 6), with each leg's forces and slip as in `run_steps`; 0 in the air."""
     R, point = work.R, work.point
     bristle = BRISTLE_STIFFNESS * contacts.stiffness
     for i in range(N_LEGS):

@@ -30,7 +30,13 @@ from model.walk.path import WalkPath
 
 
 class Skeleton(NamedTuple):
-    """The robot's geometry, for the compiled loop."""
+    """The robot's geometry, for the compiled loop.
+
+    Attributes:
+        hips: Hip positions in the body frame, shape (6, 3) [m].
+        radius: Radius of the legs' arcs [m].
+        toe_beyond: Angle of the arcs beyond a half circle [rad].
+    """
 
     hips: Array
     radius: float
@@ -38,14 +44,15 @@ class Skeleton(NamedTuple):
 
 
 class Motion(NamedTuple):
-    """The body's motion at every instant: heading frame, that is forward, left and up.
+    """Motion of the body at n instants, in the heading frame (forward, left, up).
 
     Attributes:
-        twist: Forward and leftward velocity [m/s] and yaw rate [rad/s], shape (n, 3).
-        pose: Height [m], roll and pitch [rad], shape (n, 3).
+        twist: Forward and leftward velocity of the body's centre [m/s] and yaw rate [rad/s],
+            shape (n, 3).
+        pose: Height of the body's centre [m], roll and pitch [rad], shape (n, 3).
         contact: Whether a leg is on the ground, 1 or 0, shape (n, 6).
-        slip: Velocity of each contact over the ground that least squares leaves, shape
-            (n, 6, 2) [m/s].
+        slip: Forward and leftward velocity of each contact over the ground that least squares
+            leaves, zero in the air, shape (n, 6, 2) [m/s].
     """
 
     twist: Array
@@ -57,20 +64,20 @@ class Motion(NamedTuple):
 def walk_no_slip(
     robot: Robot, reference: LegReference, *, duration: float, dt: float = 0.001
 ) -> WalkPath:
-    """Walk by exact leg kinematics, without slip.
+    """Compute a walk by leg kinematics without slip, contacts standing still by least squares.
 
     Args:
-        robot: The robot.
-        reference: Its leg angles over time; of any gait in which three legs hold the robot.
+        robot: The robot; its leg offsets are added to the angles.
+        reference: Leg angles over time; of any gait in which three legs hold the robot.
         duration: Time walked [s].
         dt: Length of a step [s].
 
     Returns:
-        The path. `slip_velocity` is the residual of the least squares; forces and slip
-        ratio are unknown to this model, NaN on the ground.
+        The path from the origin. `slip_velocity` is the residual of the least squares; forces are
+        NaN on the ground and zero in the air, slip ratios NaN.
 
     Raises:
-        DomainError: The duration is shorter than a step.
+        DomainError: The duration is not finite or rounds to no step.
         WalkError: At some instant no three legs hold the robot; the message says when.
     """
     return _walk(robot, reference, duration, dt, wheels=False)
@@ -79,21 +86,21 @@ def walk_no_slip(
 def walk_wheels(
     robot: Robot, reference: LegReference, *, duration: float, dt: float = 0.001
 ) -> WalkPath:
-    r"""Walk as on wheels of radius 2r, each leg on the ground moving its hip by 2 r theta_dot.
+    r"""Compute a walk on wheels of radius 2r: a leg on the ground moves its hip at 2 r theta_dot.
 
     Args:
-        robot: The robot.
-        reference: Its leg angles over time; of any gait in which three legs hold the robot.
+        robot: The robot; its leg offsets are added to the angles.
+        reference: Leg angles over time; of any gait in which three legs hold the robot.
         duration: Time walked [s].
         dt: Length of a step [s].
 
     Returns:
-        The path; the body stays level at 2r. `slip_velocity` is the sideways velocity of the hips,
-        which the wheels ignore, and what least squares leaves along the heading; forces and slip
-        ratio are unknown to this model, NaN on the ground.
+        The path from the origin, the body level at height 2r. `slip_velocity` is the sideways
+        velocity of the hips, which the wheels ignore, and the residual of least squares along the
+        heading; forces are NaN on the ground and zero in the air, slip ratios NaN.
 
     Raises:
-        DomainError: The duration is shorter than a step.
+        DomainError: The duration is not finite or rounds to no step.
         WalkError: At some instant no three legs hold the robot; the message says when.
     """
     return _walk(robot, reference, duration, dt, wheels=True)
@@ -102,6 +109,7 @@ def walk_wheels(
 def _walk(
     robot: Robot, reference: LegReference, duration: float, dt: float, *, wheels: bool
 ) -> WalkPath:
+    """Compute the path of `walk_no_slip`, or with `wheels` of `walk_wheels`, from the origin."""
     t = step_times(duration, dt)
     seen = _motion(robot, reference, t, wheels=wheels)
     # Steps take the velocity at their middle: second order, and never on a kink of the gait.
@@ -122,6 +130,7 @@ def _walk(
 
 
 def _motion(robot: Robot, reference: LegReference, t: Array, *, wheels: bool) -> Motion:
+    """Compute the body's motion at times t; raise `WalkError` if no three legs hold the robot."""
     n = len(t)
     motion = Motion(
         np.zeros((n, 3)), np.zeros((n, 3)), np.zeros((n, N_LEGS)), np.zeros((n, N_LEGS, 2))
@@ -139,7 +148,10 @@ def _motion(robot: Robot, reference: LegReference, t: Array, *, wheels: bool) ->
 
 
 def _integrate(twist: Array, dt: float) -> tuple[Array, Array]:
-    """Integrate steps of constant velocity and yaw rate; chords point along the mean heading."""
+    """Integrate rows of `Motion.twist` over steps dt to positions (n + 1, 2) [m] and yaw [rad].
+
+    Both start at zero; each step is a chord along the mean of its two headings.
+    """
     yaw = np.concatenate([[0.0], np.cumsum(twist[:, 2]) * dt])
     middle = 0.5 * (yaw[1:] + yaw[:-1])
     forward, left = twist[:, 0] * dt, twist[:, 1] * dt
@@ -151,13 +163,13 @@ def _integrate(twist: Array, dt: float) -> tuple[Array, Array]:
 
 @compiled
 def move(skeleton, theta, speed, wheels, motion):
-    """Compute the motion of the body at every instant from the leg angles.
+    """Compute the motion of the body at every instant from leg angles and speeds.
 
     Args:
         skeleton: The robot's geometry.
         theta: Leg angles, shape (n, 6) [rad].
         speed: Leg speeds, shape (n, 6) [rad/s].
-        wheels: Whether to take the legs for wheels, as `walk_wheels` does.
+        wheels: Whether to treat the legs as wheels, as `walk_wheels` does.
         motion: Filled: the motion.
 
     Returns:
@@ -206,7 +218,7 @@ def leg_velocities(hips, points, up, speed, own):
         points: Lowest points in the body frame, shape (6, 3) [m].
         up: Vertical direction in the body frame, shape (3,) [-].
         speed: Leg speeds, shape (6,) [rad/s].
-        own: Filled: velocities along forward, left and up, shape (6, 3) [m/s].
+        own: Filled: velocities forward, left and up in the heading frame, shape (6, 3) [m/s].
     """
     size = np.sqrt(1 - up[0] ** 2)
     for leg in range(6):
@@ -220,17 +232,17 @@ def leg_velocities(hips, points, up, speed, own):
 
 @compiled
 def stand_still(seen, below, own, up, legs, contact, twist, slip):
-    """Compute the twist that keeps contacts in place, by least squares, and the remaining slip.
+    """Compute the body's twist that keeps contacts in place, by least squares, and their slip.
 
     Args:
         seen: Contact points from the body's centre, forward and left, shape (6, 2) [m].
-        below: Distance of each below the centre, shape (6,) [m].
-        own: The legs' own velocities; see `leg_velocities`, shape (6, 3) [m/s].
+        below: Distance of each contact point below the centre, shape (6,) [m].
+        own: Velocities of the legs' points relative to the body, `leg_velocities`, (6, 3) [m/s].
         up: Vertical direction in the body frame, shape (3,) [-].
-        legs: The three legs that determine height, roll and pitch, shape (3,).
-        contact: Legs on the ground, 1 or 0, shape (6,).
-        twist: Filled: forward and left velocity [m/s] and yaw rate [rad/s], shape (3,).
-        slip: Filled: velocity over the ground, shape (6, 2) [m/s].
+        legs: Indices of the three legs that determine height, roll and pitch, shape (3,).
+        contact: Whether a leg is on the ground, 1 or 0, shape (6,).
+        twist: Filled: forward and leftward velocity [m/s] and yaw rate [rad/s], shape (3,).
+        slip: Filled for legs on the ground: velocity over it, forward and left, (6, 2) [m/s].
     """
     roll, pitch = vertical_rates(seen, own, legs)
     count, mean = 0.0, np.zeros(4)
@@ -282,7 +294,7 @@ def vertical_rates(seen, own, legs):
 
 @compiled
 def roll_wheels(hips, r, speed, contact, twist, slip):
-    """Compute the twist of wheels of radius 2r that do not steer, by least squares.
+    """Compute the body's twist on wheels of radius 2r that do not steer, by least squares.
 
     Args:
         hips: Hip positions in the body frame, shape (6, 3) [m].
@@ -290,7 +302,7 @@ def roll_wheels(hips, r, speed, contact, twist, slip):
         speed: Leg speeds, shape (6,) [rad/s].
         contact: Whether a leg is on the ground, 1 or 0, shape (6,).
         twist: Filled: forward and leftward velocity [m/s] and yaw rate [rad/s], shape (3,).
-        slip: Filled for legs on the ground: velocity over the ground, shape (6, 2) [m/s].
+        slip: Filled for legs on the ground: velocity over it, forward and left, (6, 2) [m/s].
     """
     count, mean_y, mean_v = 0.0, 0.0, 0.0
     for leg in range(6):

@@ -12,7 +12,7 @@ from model.slip.law import Array
 
 @dataclass(frozen=True)
 class WalkPath:
-    """Result of a walking model, sample by sample.
+    """Pose of the body and angle, slip and forces of each leg, at every sample of a walk.
 
     Attributes:
         t: Times, shape (n,) [s].
@@ -20,15 +20,16 @@ class WalkPath:
         orientation: Roll, pitch and yaw, R = Rz(yaw) Ry(pitch) Rx(roll); yaw unwrapped,
             shape (n, 3) [rad].
         theta: Leg angles, shape (n, 6) [rad].
-        contact: Which legs press on the ground, shape (n, 6).
+        contact: Whether each leg presses on the ground, shape (n, 6).
         slip_velocity: Velocity of each leg's material contact point over the ground, forward and
-            to the left of the heading; zero in the air, NaN where a model has none,
+            to the left of the heading; zero in the air, NaN on the ground where a model has none,
             shape (n, 6, 2) [m/s].
         slip_ratio: Longitudinal slip ratio in the model's own definition; NaN in the air and
             where a model has none, shape (n, 6) [-].
-        normal_force: Normal force of the ground on each leg, shape (n, 6) [N].
+        normal_force: Normal force of the ground on each leg; zero in the air, NaN on the ground
+            where a model has none, shape (n, 6) [N].
         traction_force: Traction force of the ground on each leg, forward and to the left of the
-            heading, shape (n, 6, 2) [N].
+            heading; zero and NaN as `normal_force`, shape (n, 6, 2) [N].
     """
 
     t: Array
@@ -43,7 +44,7 @@ class WalkPath:
 
     @property
     def poses(self) -> Poses:
-        """The body centre's path over the ground."""
+        """Position x, y of the body's centre and yaw at every sample."""
         return Poses(self.t, self.position[:, :2], self.yaw)
 
     @property
@@ -52,17 +53,17 @@ class WalkPath:
         return self.orientation[:, 2]
 
     def part(self, keep: slice | NDArray[np.bool_] | NDArray[np.intp]) -> "WalkPath":
-        """Return the path at some of the samples."""
+        """Return the path at the samples that a slice, a mask or indices select."""
         return WalkPath(**{f.name: getattr(self, f.name)[keep] for f in fields(self)})
 
     @property
     def length(self) -> float:
-        """Length of the walked line over the ground [m]."""
+        """Length of the body centre's path seen from above, summed over the samples [m]."""
         return float(np.linalg.norm(np.diff(self.position[:, :2], axis=0), axis=1).sum())
 
 
 def turning_radius(position_xy: Array, yaw: Array) -> float:
-    r"""Compute the radius of the circle that leads from the first pose to the last.
+    r"""Compute the turning radius from first and last pose: the circle's that joins them.
 
     .. math::
         R = \frac{|\Delta p|}{2 |\sin(\Delta\psi / 2)|} \operatorname{sign} \Delta\psi
@@ -75,7 +76,7 @@ def turning_radius(position_xy: Array, yaw: Array) -> float:
         yaw: Unwrapped heading, shape (n,) [rad].
 
     Returns:
-        Radius, positive for a left turn, infinite for a straight line [m].
+        Radius, positive for a left turn, infinite where first and last yaw are equal [m].
     """
     chord = float(np.linalg.norm(position_xy[-1] - position_xy[0]))
     turn = float(yaw[-1] - yaw[0])

@@ -23,7 +23,7 @@ def rotation_matrix(q, R):
 
 @inlined
 def rotate(q, w, dt):
-    """Integrate an orientation quaternion over one step at constant angular velocity.
+    """Rotate an orientation quaternion by one step at constant angular velocity; normalise it.
 
     Args:
         q: Unit quaternion (w, x, y, z), updated in place, shape (4,).
@@ -45,10 +45,10 @@ def rotate(q, w, dt):
 
 
 def turned_about_vertical(q: Array, yaw: float) -> Array:
-    """Rotate an orientation about the vertical.
+    """Return an orientation quaternion, shape (4,), rotated about the world's vertical.
 
     Args:
-        q: Unit quaternion, shape (4,).
+        q: Unit quaternion (w, x, y, z), body to world, shape (4,).
         yaw: Angle, counter-clockwise seen from above [rad].
     """
     c, s = np.cos(0.5 * yaw), np.sin(0.5 * yaw)
@@ -63,7 +63,7 @@ def roll_pitch_yaw(q: Array) -> Array:
         q: Quaternions, shape (n, 4).
 
     Returns:
-        Angles, yaw unwrapped, shape (n, 3) [rad].
+        Roll, pitch and unwrapped yaw, shape (n, 3) [rad].
     """
     w, x, y, z = q.T
     roll = np.arctan2(2 * (y * z + w * x), 1 - 2 * (x * x + y * y))
@@ -72,7 +72,7 @@ def roll_pitch_yaw(q: Array) -> Array:
 
 
 def unwrapped_yaw(q: Array) -> Array:
-    """Compute only the unwrapped yaw of unit quaternions (w, x, y, z), as `roll_pitch_yaw` does.
+    """Compute the yaw of successive unit quaternions (w, x, y, z), unwrapped along the rows.
 
     Args:
         q: Quaternions, shape (n, 4).

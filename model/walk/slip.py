@@ -20,7 +20,8 @@ class Slip:
     """A slip law for walking, with its source.
 
     Attributes:
-        law: A calibrated curve, or Coulomb friction by slip velocity.
+        law: A slip law with values from a calibration or the thesis, or Coulomb friction by slip
+            velocity.
         source: Origin of the law: "real", "sim:...", "assumed", "thesis", "unknown".
     """
 
@@ -28,24 +29,25 @@ class Slip:
     source: str
 
     def traction_table(self, *, weight: float, toe: ToeLaw = "saturated") -> TractionTable:
-        """Tabulate traction for a robot; slip ratios of any definition are converted.
+        """Tabulate traction over load for the compiled loop, by `curve_table` or Coulomb friction.
 
         Args:
             weight: Weight of the robot [N].
-            toe: Traction of a leg on its toe.
+            toe: Traction of a leg on its toe, see `law_table`.
         """
         if isinstance(self.law, VelocityCoulomb):
             return self.law.table(weight=weight, toe=toe)
         return curve_table(self.law, weight=weight, toe=toe)
 
     def thesis_traction(self, *, weight: float) -> "Traction":
-        """Prepare the law for the thesis's walking model.
+        """Convert the law to the form that the thesis's walking model takes, see `law_traction`.
 
         Args:
             weight: Weight of the robot [N].
 
         Raises:
-            DefinitionMismatch: The curve has another slip definition than the rig's.
+            DefinitionMismatch: The curve's slip definition is not `material`.
+            DomainError: The law loses its shape at these loads.
         """
         from model.walk.thesis import law_traction, table_traction
 
@@ -56,13 +58,13 @@ class Slip:
 
     @property
     def tested_loads(self) -> tuple[float, float] | None:
-        """Smallest and largest load tested; None for an assumed law [N]."""
+        """Smallest and largest load of the law's measurements [N]; None for Coulomb friction."""
         return None if isinstance(self.law, VelocityCoulomb) else self.law.load_range
 
     def loads_below_tested(self, path: WalkPath) -> float | None:
-        """Compute the share of leg contacts whose load lies below the tested range [-].
+        """Compute the share of a path's leg contacts with less load than the smallest tested [-].
 
-        It is None for an assumed law, which has no tested range.
+        A contact is one leg at one sample; 0 without contacts, None for Coulomb friction.
         """
         if self.tested_loads is None:
             return None

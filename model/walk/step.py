@@ -32,15 +32,15 @@ BRISTLE_STIFFNESS = 0.1  # of the normal stiffness: a foot yields some tenths of
 
 @inlined
 def one_step(body, table, ground, contacts, state, work, theta, speed, dt):
-    """Integrate one linearly implicit step.
+    """Advance the body's state by one linearly implicit step.
 
     Args:
         body: The robot.
         table: The slip law.
         ground: The ground.
         contacts: Stiffness and damping of contacts.
-        state: State at the start, overwritten with that at the end.
-        work: Filled with the contacts of the step.
+        state: State at the start, overwritten with the state at the end.
+        work: Filled with the contacts of the step; `load` must hold the loads of the step before.
         theta: Leg angles at the end, shape (6,) [rad].
         speed: Leg speeds in the step, shape (6,) [rad/s].
         dt: Length of the step [s].
@@ -85,7 +85,8 @@ def add_contact_forces(table, contacts, state, work, n, speed, dt):
         table: The slip law.
         contacts: Stiffness and damping of contacts.
         state: State at the step's start.
-        work: The contacts and the guess; load and secant of each contact are filled in.
+        work: The contacts and the guess of velocities; `A` and `b` are updated, `load` and
+            `secant` of each contact filled.
         n: Number of contacts.
         speed: Leg speeds in the step, shape (6,) [rad/s].
         dt: Length of the step [s].
@@ -125,7 +126,7 @@ def add_contact_forces(table, contacts, state, work, n, speed, dt):
 
 @inlined
 def bristle_pull(table, contacts, stretch, load, x, y, z):
-    """Compute a bristle's force over its stretch after a further slip of (x, y, z).
+    """Compute the force over stretch of a toe's bristle after a further slip of (x, y, z).
 
     It is the bristle's stiffness, or less where the force would exceed the largest traction: the
     bristle then slides at that limit.
@@ -133,7 +134,7 @@ def bristle_pull(table, contacts, stretch, load, x, y, z):
     Args:
         table: The slip law.
         contacts: Stiffness and damping of contacts.
-        stretch: Stretch of the bristle before, shape (3,) [m].
+        stretch: Stretch of the bristle before the slip, shape (3,) [m].
         load: Normal force of the contact [N].
         x: Further slip along x [m].
         y: Further slip along y [m].
@@ -150,11 +151,12 @@ def bristle_pull(table, contacts, stretch, load, x, y, z):
 
 @inlined
 def contacts_agree(contacts, work, n, dt):
-    """Compute the loads of the solved velocities; return whether the same contacts press as before.
+    """Compute contact loads at the solved velocities; return whether contacts press as assumed.
 
     Args:
         contacts: Stiffness and damping of contacts.
-        work: Arrays of the step with the solved velocities in `b`; loads are overwritten.
+        work: Arrays of the step with the solved velocities in `b`; `load` is compared, then
+            overwritten.
         n: Number of contacts.
         dt: Length of the step [s].
     """
@@ -185,14 +187,14 @@ def leg_turn(R, speed, w, i):
         i: Index of the leg.
 
     Returns:
-        Angular speed [rad/s].
+        Leg speed plus the body's angular velocity about its own y axis [rad/s].
     """
     return speed[i] + R[0, 1] * w[0] + R[1, 1] * w[1] + R[2, 1] * w[2]
 
 
 @inlined
 def _stretch_bristle(table, contacts, state, work, i, dt):
-    """Stretch a bristle by the step's slip; let it slide where the largest traction is reached."""
+    """Add the step's slip to contact i's bristle; shorten the stretch to that of full traction."""
     if work.load[i] == 0.0 or work.kind[i] == ROLLING:
         return
     point, m = work.point, work.normal[i]
@@ -211,6 +213,7 @@ def _stretch_bristle(table, contacts, state, work, i, dt):
 
 @inlined
 def _world_inertia(R, principal, out):
+    """Fill `out` with R diag(principal) R', the inertia in the world frame [kg m2]."""
     for i in range(3):
         for j in range(3):
             out[i, j] = 0.0
@@ -220,7 +223,7 @@ def _world_inertia(R, principal, out):
 
 @inlined
 def _gyroscopic(inertia, w, out):
-    """Compute the gyroscopic moment -w × (I w) [N m]."""
+    """Fill `out` with the gyroscopic moment -w × (I w), shape (3,) [N m]."""
     L0 = inertia[0, 0] * w[0] + inertia[0, 1] * w[1] + inertia[0, 2] * w[2]
     L1 = inertia[1, 0] * w[0] + inertia[1, 1] * w[1] + inertia[1, 2] * w[2]
     L2 = inertia[2, 0] * w[0] + inertia[2, 1] * w[1] + inertia[2, 2] * w[2]

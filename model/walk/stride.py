@@ -37,23 +37,23 @@ def walk_by_strides(
     duration: float,
     options: DynamicsOptions = DEFAULT_OPTIONS,
 ) -> Poses:
-    """Walk a gait that repeats itself: step by step until settled, then stride by stride.
+    """Compute the path of a periodic gait: step by step until settled, then stride by stride.
 
-    A gait that is not settled after `MAX_STRIDES` continues with the last of them.
+    After `MAX_STRIDES` strides the last is repeated, settled or not.
 
     Args:
-        robot: The robot.
+        robot: The robot; its leg offsets are added to the angles.
         reference: A gait with a period.
         table: The slip law.
         duration: Time walked [s].
-        options: How it is computed; steps are shortened to fit the period.
+        options: Step length, shortened to fit the period, and contacts.
 
     Returns:
-        The path, sampled at every step.
+        The path on flat ground from x, y and yaw zero, sampled at every step.
 
     Raises:
-        DomainError: The duration is shorter than a step.
-        WalkError: The gait has no period, or a step diverged.
+        DomainError: The duration is not finite or rounds to no step.
+        WalkError: The gait has no period, the robot cannot stand, or a step diverged.
     """
     period = reference.period
     if period is None:
@@ -74,11 +74,11 @@ def _settled_strides(
     n: int,
     most: int,
 ) -> list[Array]:
-    """Walk strides of n steps until one moves the body as the last did.
+    """Integrate strides of n steps until one moves the body as the stride before, or `most` are.
 
     Returns:
-        x, y and yaw at the times of each stride, its first pose that of the last one's end, shape
-        (n + 1, 3) each [m, m, rad].
+        x, y and yaw of each stride's n + 1 instants, shape (n + 1, 3) each [m, m, rad]; a stride's
+        first pose is the last pose of the stride before. At most `MAX_STRIDES` strides.
     """
     theta = reference.angles(options.dt * np.arange(n + 1)) + robot.leg_offset
     state = start_state(robot, theta[0], options)
@@ -101,7 +101,7 @@ def _settled_strides(
 
 
 def _repeat(path: Array, n: int, *, times: int) -> Array:
-    """Append the stride of the last n steps repeatedly."""
+    """Append the move of the last n steps to a path of rows x, y, yaw, `times` times in turn."""
     stride = relative(path[-n:], path[-n - 1])
     parts = [path]
     for _ in range(times):

@@ -32,12 +32,12 @@ class TractionTable(NamedTuple):
         scale: Slip x_0 below which the grid is linear in slip [-].
         step: Distance of columns in w [-].
         phi: Traction over load, shape (m, n) [-].
-        slope: Its derivative with respect to w, shape (m, n) [-].
-        toe: Largest traction over load of a leg on its toe, shape (m,) [-].
+        slope: Derivative of phi with respect to w, shape (m, n) [-].
+        toe: Largest traction over load of a leg on its toe, by load, shape (m,) [-].
         by_velocity: Whether x is slip velocity over `speed_scale` instead of a slip ratio.
         speed_scale: Slip velocity over which traction on a toe (or a velocity law) sets in, and
             least speed of the arc that a slip velocity is divided by [m/s].
-        bristle: Whether a toe sticks like a spring until its traction is used up.
+        bristle: Whether a toe sticks like a spring until its force reaches `toe` times load.
     """
 
     log_load: Array
@@ -60,10 +60,10 @@ class VelocityCoulomb:
 
     Attributes:
         friction: Friction coefficient mu [-].
-        speed_scale: Velocity v_0 over which it sets in [m/s].
+        speed_scale: Slip velocity v_0 at which traction is 71 % of mu N [m/s].
 
     Raises:
-        DomainError: One of them is not positive.
+        DomainError: Friction or velocity scale is not positive.
     """
 
     friction: float
@@ -78,12 +78,13 @@ class VelocityCoulomb:
             )
 
     def table(self, *, weight: float, toe: ToeLaw = "saturated") -> TractionTable:
-        """Tabulate the law for the compiled loop.
+        """Tabulate traction over load by slip velocity over v_0, for the compiled loop.
 
         Args:
             weight: Weight of the robot; the load of the table's only row, without effect on the
                 traction over load [N].
-            toe: Traction of a leg on its toe.
+            toe: "bristle" for a toe that sticks like a spring up to mu N; with "saturated" and
+                "peak" a toe follows the law.
         """
         _require_toe(toe)
         scale, w = _grid(1.0)
@@ -105,23 +106,26 @@ def law_table(
     toe: ToeLaw = "saturated",
     speed_scale: float = 0.001,
 ) -> TractionTable:
-    """Tabulate a slip law for a robot of some weight.
+    """Tabulate a slip law's traction over load by slip ratio and load, for the compiled loop.
 
-    Slip ratios of the walk are material ones, |slip velocity| over the speed at which the leg's
-    arc passes the contact; a law of another definition is evaluated at the converted slip.
+    Loads are from 0.02 to 2 times the weight, one alone if traction is proportional to load. Slip
+    ratios of the table are material ones from 0 to 10 000, |slip velocity| over the speed at which
+    the leg's arc passes the contact; a law of another definition is evaluated at converted slip.
 
     Args:
         law: The slip law.
-        values: Its parameter values, shape (k,).
+        values: Parameter values of the law, shape (k,).
         weight: Weight of the robot, which sets the range of loads [N].
-        definition: Definition that the values belong to.
-        toe: Traction of a leg on its toe, which does not roll and no rig has measured: the law's
-            at infinite slip ("saturated"), its peak, or a spring up to its peak ("bristle").
+        definition: Slip definition that the values were fitted in.
+        toe: Largest traction of a leg on its toe, which does not roll and no rig has measured: the
+            law's at infinite slip ("saturated"), its peak ("peak"), or its peak with a spring that
+            holds the toe up to it ("bristle").
         speed_scale: Slip velocity over which traction on a toe sets in, and least speed of the
             arc that a slip velocity is divided by [m/s].
 
     Raises:
-        DomainError: The law loses its shape at these loads, or there is no such toe law.
+        DomainError: The law loses its shape at one of these loads (`SlipLaw.valid`), or the toe law
+            is not one of `TOE_LAWS`.
     """
     _require_toe(toe)
     loads = weight * np.geomspace(*LOAD_RANGE, N_LOADS)
@@ -150,47 +154,53 @@ def law_table(
 
 
 def curve_table(curve: SlipCurve, *, weight: float, toe: ToeLaw = "saturated") -> TractionTable:
-    """Tabulate a calibrated slip curve at its posterior mean; see `law_table`.
+    """Tabulate traction over load of a calibrated slip curve at its posterior mean by `law_table`.
 
     Args:
         curve: The slip curve.
         weight: Weight of the robot, which sets the range of loads [N].
         toe: Traction of a leg on its toe.
+
+    Raises:
+        DomainError: As for `law_table`.
     """
     return law_table(curve.law, curve.values, weight=weight, definition=curve.definition, toe=toe)
 
 
 def _proportional_to_load(law: SlipLaw, values: Values, loads: Array) -> bool:
-    """Return whether traction over load is the same at every load, tested at a few slips."""
+    """Return whether traction over load is the same at all given loads, tested at six slips."""
     slips = np.array([0.001, 0.01, 0.03, 0.1, 0.3, 0.9])
     phi = np.asarray(law.force(slips, loads[:, None], values)) / loads[:, None]
     return np.allclose(phi, phi[0], rtol=1e-12, atol=0)
 
 
 def _grid(curve_scale: float) -> tuple[float, Array]:
-    """Return x_0 and the columns' w, for a law that bends at slips of about `curve_scale`."""
+    """Return x_0, a tenth of the slip at which the law bends, and the columns' w, shape (257,)."""
     scale = 0.1 * curve_scale
     return scale, np.linspace(0, np.arcsinh(LARGEST_SLIP / scale), N_SLIPS)
 
 
 def _converted(x: Array, definition: SlipDefinition) -> Array:
+    """Convert material slips x, which may exceed 1, to a definition; x above 1 is not reduced."""
     # A leg dragged sideways can slip faster than its arc passes: there the law is saturated.
     below_one = convert_slip(np.minimum(x, 1 - 1e-9), SlipDefinition.MATERIAL, definition)
     return np.where(x < 1, below_one, np.maximum(x, below_one))
 
 
 def _peak(law: SlipLaw, values: Values, loads: Array) -> Array:
+    """Return traction over load at each load's peak slip, at `FAR_OUT` without a peak [-]."""
     at = np.minimum(law.peak_slip(loads, values), FAR_OUT)
     return np.asarray(law.force(at, loads, values)) / loads
 
 
 def _column_slopes(phi: Array, w: Array) -> Array:
-    """Differentiate rows by a spline through them; the grid is far finer than the curve."""
+    """Differentiate each row of phi with respect to w by a cubic spline, shape as phi."""
     from scipy.interpolate import CubicSpline  # late: as slow to import as all the rest
 
     return np.asarray(CubicSpline(w, phi, axis=1)(w, 1))
 
 
 def _require_toe(toe: str) -> None:
+    """Raise `DomainError` unless a toe law is one of `TOE_LAWS`."""
     if toe not in TOE_LAWS:
         raise DomainError(f"'{toe}' is no toe law; there are {', '.join(TOE_LAWS)}")

@@ -9,7 +9,7 @@ from model.leg import ROLLING
 
 @inlined
 def table_value(table, load, x):
-    """Interpolate traction over load in a table; see `TractionTable`.
+    """Interpolate traction over load in a table; outside it the nearest load or slip is used.
 
     Args:
         table: The table.
@@ -33,14 +33,14 @@ def table_value(table, load, x):
 
 @inlined
 def load_row(table, load):
-    """Find the table's row below a load, and the load's interpolation weight.
+    """Find the table's row below a load, and the interpolation weight in the load's logarithm.
 
     Args:
         table: The table.
         load: Normal force, positive [N].
 
     Returns:
-        Index of the row, and weight of the next row, from 0 to 1 [-].
+        Index of the row, and weight of the next row, from 0 to 1 [-]; 0 and 0 for a single row.
     """
     m = len(table.log_load)
     if m == 1:
@@ -57,10 +57,10 @@ def hermite(phi, slope, j, a, step):
 
     Args:
         phi: Values of the columns, shape (n,).
-        slope: Their derivatives, shape (n,).
+        slope: Derivatives of the values with respect to w, shape (n,).
         j: Index of the column to the left.
         a: Position between the two columns, from 0 to 1 [-].
-        step: Distance of the columns.
+        step: Distance of neighbouring columns in w.
     """
     p0, p1, m0, m1 = phi[j], phi[j + 1], slope[j] * step, slope[j + 1] * step
     d = p1 - p0
@@ -73,7 +73,7 @@ def traction_secant(table, state, load, slip_speed, flow_speed):
 
     Args:
         table: The tabulated law.
-        state: ROLLING, or a point that does not roll.
+        state: ROLLING; or TOE or HIP, which have the traction of a toe.
         load: Normal force [N].
         slip_speed: Speed of the material contact point over the ground [m/s].
         flow_speed: Speed at which the leg's arc passes the contact [m/s].
@@ -88,7 +88,7 @@ def traction_secant(table, state, load, slip_speed, flow_speed):
 
 @inlined
 def toe_traction(table, load):
-    """Compute the largest traction over load of a leg on its toe [-].
+    """Interpolate the largest traction over load of a leg on its toe in a table [-].
 
     Args:
         table: The slip law.

@@ -21,7 +21,17 @@ from model.slip.law import Array
 
 
 class Legs(NamedTuple):
-    """Kinematics of the six legs at one instant, overwritten at every step."""
+    """Kinematics of the six legs at one instant, overwritten at every step.
+
+    Attributes:
+        phi: Angle of the lowest point of each leg's circle, shape (6,) [rad].
+        phi_rate: Rate of phi, shape (6,) [rad/s].
+        height: Height of each hip above its leg's lowest point, in the leg's plane, (6,) [m].
+        height_rate: Rate of that height at the stance speed of the leg, shape (6,) [m/s].
+        height_acceleration: Second derivative of that height, shape (6,) [m/s2].
+        point: Lowest point of each leg in the inertial frame, shape (6, 3) [m].
+        hip: Hip from the body's position one step ago, inertial frame, shape (6, 3) [m].
+    """
 
     phi: Array
     phi_rate: Array
@@ -50,7 +60,7 @@ def turn(q, vector, out):
 
 @compiled
 def place_legs(machine, q, v, theta, speed, stance_speed, centre_before, legs):
-    """Compute the kinematics of the legs at one instant.
+    """Compute lowest points, hip heights and their rates of all legs at one instant.
 
     Hips are placed from the body's position one step ago, as in the listing, where that variable
     is set after its use.
@@ -58,10 +68,10 @@ def place_legs(machine, q, v, theta, speed, stance_speed, centre_before, legs):
     Args:
         machine: The robot.
         q: Coordinates x, y, z [m], roll, pitch and yaw [rad], shape (6,).
-        v: Their rates, shape (6,) [m/s, rad/s].
+        v: Rates of the coordinates, shape (6,) [m/s, rad/s].
         theta: Leg angles, shape (6,) [rad].
         speed: Leg speeds, shape (6,) [rad/s].
-        stance_speed: Speeds that legs have, or would have, on the ground, shape (6,) [rad/s].
+        stance_speed: Speed of each leg when on the ground, shape (6,) [rad/s].
         centre_before: Position of the body one step ago, shape (3,) [m].
         legs: Filled: kinematics of the legs.
 
@@ -92,7 +102,7 @@ def place_legs(machine, q, v, theta, speed, stance_speed, centre_before, legs):
 
 @compiled
 def side_mean(values, contact, side):
-    """Average over the legs on the ground of one side.
+    """Compute the mean of a value over the legs of one side that are on the ground.
 
     Args:
         values: One value a leg, shape (6,).
@@ -112,7 +122,9 @@ def side_mean(values, contact, side):
 
 @compiled
 def roll_rate(machine, manner, legs, sides, roll):
-    """Compute the kinematic roll rate from the rates of the hip heights, Eq. (3-41).
+    """Compute the kinematic roll rate: inner minus outer rate of hip height, over the track.
+
+    Eq. (3-41), with means over the legs on the ground.
 
     Args:
         machine: The robot.
@@ -131,16 +143,19 @@ def roll_rate(machine, manner, legs, sides, roll):
 
 @compiled
 def reset(machine, manner, legs, sides, q, v):
-    """Set the state that kinematics determines, at a change of contacts: Eq. (3-40), (3-41).
+    """Set roll, pitch and the rates of height and roll from hip heights at a change of contacts.
+
+    Eq. (3-40), (3-41): roll from the difference of mean inner and outer hip height, pitch zero;
+    with `manner.reset_height` height too, to the mean of both sides.
 
     Args:
         machine: The robot.
         manner: Settings of the steps.
         legs: Kinematics of the legs.
         sides: Whether a leg is on the ground, shape (6,).
-        q: Coordinates; roll, pitch and, where asked for, height are overwritten, shape (6,)
-            [m, rad].
-        v: Their rates; those of height and roll are overwritten, shape (6,) [m/s, rad/s].
+        q: Coordinates; roll, pitch and, with `manner.reset_height`, height are overwritten, shape
+            (6,) [m, rad].
+        v: Rates of the coordinates; of height and roll overwritten, shape (6,) [m/s, rad/s].
     """
     inner = side_mean(legs.height, sides, manner.inner) * np.cos(q[3])
     outer = side_mean(legs.height, sides, 1 - manner.inner) * np.cos(q[3])

@@ -20,7 +20,7 @@ class LegMotion(NamedTuple):
     Attributes:
         theta: Angles at the beginning of each step, shape (n, 6) [rad].
         speed: Speeds during each step, shape (n, 6) [rad/s].
-        stance_speed: Speeds that legs have, or would have, on the ground, shape (n, 6) [rad/s].
+        stance_speed: Speed of each leg when on the ground, shape (n, 6) [rad/s].
     """
 
     theta: Array
@@ -37,13 +37,14 @@ class SwitchedLegs:
 
     Attributes:
         touchdown: Touchdown angles in [0, 2 pi), shape (6,) [rad].
-        liftoff: Lift-off angles, beyond touchdown, shape (6,) [rad].
+        liftoff: Lift-off angles, beyond touchdown and below 2 pi, shape (6,) [rad].
         ground_speed: Speeds from touchdown to lift-off, shape (6,) [rad/s].
         flight_speed: Speeds from lift-off to the next touchdown, shape (6,) [rad/s].
         start: Angles at the start, shape (6,) [rad].
 
     Raises:
-        DomainError: A lift-off angle is not beyond touchdown, or a leg does not turn forward.
+        DomainError: A field is not six finite numbers, angles are not 0 <= touchdown < lift-off
+            < 2 pi, or a speed is not positive.
     """
 
     touchdown: Array
@@ -53,7 +54,7 @@ class SwitchedLegs:
     start: Array
 
     def __post_init__(self) -> None:
-        """Check that touchdown, lift-off and speeds describe legs that turn forward."""
+        """Convert all fields to arrays; check shapes, order of the angles and signs of speeds."""
         for item in fields(self):
             values = np.array(getattr(self, item.name), dtype=float)
             if values.shape != (N_LEGS,) or not np.isfinite(values).all():
@@ -74,10 +75,10 @@ class SwitchedLegs:
 
     @classmethod
     def of(cls, gait: CyclicReference) -> "SwitchedLegs":
-        """Take angles and speeds from a gait, and its angles at time zero as the start.
+        """Create legs that switch speed by angle from a cyclic gait, and start as it does at zero.
 
         Raises:
-            DomainError: The gait has pauses or offsets, which angles alone do not tell.
+            DomainError: The gait has pauses or offsets, or angles that the class does not accept.
         """
         if np.any(gait.pause) or np.any(gait.offset):
             raise DomainError(
@@ -90,7 +91,7 @@ class SwitchedLegs:
         )  # fmt: skip
 
     def motion(self, dt: float, steps: int) -> LegMotion:
-        """Compute leg angles and speeds at every step.
+        """Integrate leg angles step by step, with the speed that the angle before a step selects.
 
         Args:
             dt: Length of a step [s].
@@ -105,10 +106,11 @@ class SwitchedLegs:
 
 
 def leg_motion(reference: LegReference | SwitchedLegs, *, dt: float, steps: int) -> LegMotion:
-    """Sample leg angles and speeds at every step.
+    """Compute leg angles and speeds at every step, from time zero on.
 
     Args:
-        reference: Legs that switch speed by angle, or leg angles over time.
+        reference: Legs that switch speed by angle, or leg angles over time, which are sampled; of
+            these the speed is the stance speed too.
         dt: Length of a step [s].
         steps: Number of steps.
     """
@@ -121,6 +123,7 @@ def leg_motion(reference: LegReference | SwitchedLegs, *, dt: float, steps: int)
 
 @compiled
 def _switch(start, touchdown, liftoff, ground_speed, flight_speed, dt, theta, speed):
+    """Fill angles and speeds of `LegMotion`, shape (n, 6), for legs that switch speed by angle."""
     angle = start.copy()
     for step in range(len(theta)):
         for leg in range(6):

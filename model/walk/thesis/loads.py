@@ -25,14 +25,14 @@ _CONVERGED = 1e-11  # N
 
 
 class Balance(NamedTuple):
-    """Contacts of three legs and the accelerations that their normal forces have to produce.
+    """Contacts of the three legs that carry load, and what their normal forces have to produce.
 
     Attributes:
         arms: Contact points from the body's centre, inertial frame, shape (3, 3) [m].
         axes: Forward, left and up of the contact frames, shape (3, 3) [-].
-        slip: Longitudinal and lateral slip of each leg, shape (3, 2).
+        slip: Longitudinal and lateral slip of each leg, shape (3, 2) [-].
         inertia: Moments of inertia about roll and pitch axes, shape (2,) [kg m2].
-        wanted: Roll and pitch accelerations to come from contact moments, shape (2,) [rad/s2].
+        wanted: Roll and pitch acceleration that contact moments have to produce, (2,) [rad/s2].
     """
 
     arms: Array
@@ -50,7 +50,7 @@ def static_loads(points, weight, loads):
         \hat f_k = m g\,\frac{d_{Bk}}{d_k}
 
     with the distances of the body's centre, the origin here, and of contact k from the line through
-    the other two contacts.
+    the other two contacts; a third of the weight each where the contacts lie on one line.
 
     Args:
         points: Contact points seen from above, shape (3, 2 or more) [m].
@@ -82,14 +82,14 @@ def leg_force(axes, forward, left, up, force):
 
 @compiled
 def accelerations(balance, traction, loads, excess, slopes):
-    """Compute the roll and pitch acceleration beyond those wanted, and their derivatives by load.
+    """Compute roll and pitch acceleration less `balance.wanted`, and their derivatives by load.
 
     Args:
         balance: The contacts; see `Balance`.
         traction: The slip law.
         loads: Normal forces, shape (3,) [N].
-        excess: Filled: accelerations, shape (2,) [rad/s2].
-        slopes: Filled with the derivatives with respect to loads, shape (2, 3) [rad/(s2 N)].
+        excess: Filled: roll and pitch acceleration less the wanted ones, shape (2,) [rad/s2].
+        slopes: Filled: derivatives of excess (rows) by loads (columns), (2, 3) [rad/(s2 N)].
     """
     force, slope = np.empty(3), np.empty(3)
     excess[0], excess[1] = -balance.wanted[0], -balance.wanted[1]
@@ -110,7 +110,7 @@ def accelerations(balance, traction, loads, excess, slopes):
 
 @compiled
 def solve_inside(c, slopes, total, loads):
-    """Solve c + slopes f = 0 with the sum of f given.
+    """Solve the linear system c + slopes f = 0 for three forces f of given sum.
 
     Args:
         c: Constant terms, shape (2,) [rad/s2].
@@ -129,7 +129,7 @@ def solve_inside(c, slopes, total, loads):
 
 @compiled
 def solve_on_edges(c, slopes, total, most, loads):
-    """Minimise |c + slopes f|^2 with the sum of f given and one of the three f at a bound.
+    """Minimise |c + slopes f|^2 over three forces f of given sum, one of them at a bound.
 
     Args:
         c: Constant terms, shape (2,) [rad/s2].
@@ -158,7 +158,7 @@ def solve_on_edges(c, slopes, total, most, loads):
 
 @compiled
 def normal_forces(balance, traction, total, most, loads):
-    """Solve Eq. (4-22) for the normal forces by Gauss-Newton, in place.
+    """Solve Eq. (4-22) for the normal forces of three legs by Gauss-Newton, in place.
 
     Args:
         balance: Contacts and wanted accelerations; see `Balance`.

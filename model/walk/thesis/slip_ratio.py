@@ -11,7 +11,7 @@ LARGEST_SLIP = 100.0  # where Listing A.19 cuts the slip ratio off [-]
 
 @compiled
 def along(axis, v, arm):
-    """Compute the component of the velocity v + w x arm along an axis.
+    """Compute the component along an axis of the velocity v + w x arm of a point on the body.
 
     Args:
         axis: Unit vector, shape (3,) [-].
@@ -29,13 +29,14 @@ def along(axis, v, arm):
 
 @compiled
 def walk_slip(leg_speed, ground_speed, signed):
-    r"""Compute the walk's slip ratio, Eq. (4-31) and (4-36), as Listing A.19 has it [-].
+    r"""Compute the thesis's slip ratio of a walk, Eq. (4-31) and (4-36), as in Listing A.19 [-].
 
     .. math::
         \kappa = \frac{v_R - v_C}{v_C} \text{ rolling}, \qquad
         \kappa = \frac{v_T - v_H}{v_H} \text{ on the toe}
 
-    with absolute values in the denominators, cut off at 100. Rolling, the listing takes
+    with absolute values in the denominators, cut off at ±100; zero where both speeds are. Rolling,
+    the listing takes
     sign(v_R) (v_R - |v_C|) for the numerator. This is the same while robot and legs go forward, but
     a leg that turns back very slowly gets full traction.
 
@@ -55,14 +56,14 @@ def walk_slip(leg_speed, ground_speed, signed):
 
 @compiled
 def lateral_walk_slip(axes, v, signed):
-    """Compute the lateral slip of Eq. (4-41), (4-42) from the body's velocity, Listing A.21 [-].
+    """Compute lateral slip, the slip angle over pi/2, of the body's velocity, Listing A.21 [-].
 
-    The listing has the wrong sign for a body that goes backward.
+    Eq. (4-41), (4-42). The listing has the wrong sign for a body that goes backward.
 
     Args:
         axes: Forward, left and up of the contact frames, in rows, shape (3, 3) [-].
         v: Rates of the six coordinates, shape (6,) [m/s, rad/s].
-        signed: Whether to take the right sign instead of the listing's.
+        signed: Whether to correct the sign for a body that goes backward.
     """
     forward = axes[0, 0] * v[0] + axes[0, 1] * v[1] + axes[0, 2] * v[2]
     left = axes[1, 0] * v[0] + axes[1, 1] * v[1] + axes[1, 2] * v[2]
@@ -77,7 +78,8 @@ def lateral_walk_slip(axes, v, signed):
 def find_slip(machine, manner, traction, legs, three, q, v, balance):
     """Compute the lever arms and slip ratios of the three legs that carry load.
 
-    v_R of Eq. (4-32) and v_T of Eq. (4-37) are the same, the rate of phi times the hip's height.
+    v_R of Eq. (4-32) and v_T of Eq. (4-37) are the same, minus the rate of phi times the hip's
+    height. For a law by slip velocity, slip is velocity over the table's `speed_scale`.
 
     Args:
         machine: The robot.
@@ -86,8 +88,8 @@ def find_slip(machine, manner, traction, legs, three, q, v, balance):
         legs: Kinematics of the legs.
         three: Indices of the legs that carry load, shape (3,).
         q: Coordinates, shape (6,) [m, rad].
-        v: Their rates, shape (6,) [m/s, rad/s].
-        balance: Its `axes` are used; its `arms` and `slip` are filled.
+        v: Rates of the coordinates, shape (6,) [m/s, rad/s].
+        balance: Contacts, of which `axes` are used, `arms` and `slip` filled.
     """
     arm = np.empty(3)
     for k in range(3):

@@ -24,7 +24,16 @@ RUNAWAY = 50.0  # faster than any walking robot [m/s, rad/s]
 
 
 class Machine(NamedTuple):
-    """The robot as arrays for the compiled loop: `model.robot.Robot`."""
+    """A robot as arrays for the compiled loop; see `model.robot.Robot`.
+
+    Attributes:
+        hips: Hip positions in the body frame, shape (6, 3) [m].
+        radius: Radius of the legs' arcs [m].
+        toe_beyond: Angle of the arcs beyond a half circle [rad].
+        mass: Mass [kg].
+        inertia: Principal moments of inertia, shape (3,) [kg m2].
+        track: Mean distance between left and right hips [m].
+    """
 
     hips: Array
     radius: float
@@ -35,7 +44,17 @@ class Machine(NamedTuple):
 
 
 class Manner(NamedTuple):
-    """Settings of the steps; see `ThesisOptions`."""
+    """Settings of the steps for the compiled loop; see `ThesisOptions`.
+
+    Attributes:
+        dt: Length of a step [s].
+        inner: Side of the inner legs: 0 left, 1 right.
+        by_table: Whether contacts change by Table 3-1 instead of the listing's rule.
+        reset_height: Whether a change of contacts sets the body's height.
+        roll_sign: 1, or -1 to roll a right turn to its own side [-].
+        mend_slip: Whether slip has the sign of the equations instead of the listing's.
+        every: Number of steps between two samples that are kept.
+    """
 
     dt: float
     inner: int
@@ -47,7 +66,16 @@ class Manner(NamedTuple):
 
 
 class Record(NamedTuple):
-    """Arrays of the samples that are kept: the state before a step, and the step's contacts."""
+    """Arrays of the n samples that are kept: the state before a step, and the step's contacts.
+
+    Attributes:
+        state: x, y, z [m], roll, pitch and yaw of Eq. (3-7) [rad], shape (n, 6).
+        contact: Whether a leg carries load, shape (n, 6).
+        kappa: Longitudinal slip of a leg that carries load, else NaN, shape (n, 6) [-].
+        normal: Normal force, zero without contact, shape (n, 6) [N].
+        forward: Traction force forward, zero without contact, shape (n, 6) [N].
+        left: Traction force to the left, zero without contact, shape (n, 6) [N].
+    """
 
     state: Array
     contact: NDArray[np.bool_]
@@ -59,10 +87,10 @@ class Record(NamedTuple):
 
 @compiled
 def three_legs(sides, legs, q, three):
-    """Choose the three legs that carry load, from the sides' contact states.
+    """Select the three legs that carry load from the legs on the ground.
 
-    With two legs down the listing keeps the three of the step before. Of four it keeps, by an
-    oversight in its sorting, the three furthest from the body's centre.
+    With fewer than three legs down the listing keeps the three of the step before. Of four it
+    keeps, by an oversight in its sorting, the three furthest from the body's centre.
 
     Args:
         sides: Whether a leg is on the ground, shape (6,).
@@ -89,7 +117,7 @@ def three_legs(sides, legs, q, three):
 
 @compiled
 def contact_axes(yaw, tilt, axes):
-    """Compute the axes of the contact frames in the inertial frame.
+    """Compute the axes of the contact frames in the inertial frame from yaw and tilt.
 
     All legs share them: R_y R_theta R_phi of Eq. (3-13) turns about y by theta + phi - pi/2, which
     is the arctangent of the tilt.
@@ -128,7 +156,7 @@ def accelerate(machine, manner, traction, balance, loads, spin, v, forces):
         manner: Settings of the steps.
         traction: The slip law.
         balance: Lever arms, axes and slip of the legs that carry load.
-        loads: Their normal forces, shape (3,) [N].
+        loads: Normal forces of these legs, shape (3,) [N].
         spin: Gyroscopic acceleration, shape (3,) [rad/s2].
         v: Rates of the six coordinates, updated, shape (6,) [m/s, rad/s].
         forces: Filled: forward and leftward force of each leg, shape (3, 2) [N].
@@ -151,7 +179,7 @@ def accelerate(machine, manner, traction, balance, loads, spin, v, forces):
 
 @compiled
 def demands(machine, manner, legs, sides, q, v, spin, balance):
-    """Compute the accelerations and the sum that normal forces have to produce, Eq. (4-22).
+    """Compute what normal forces have to produce: roll and pitch acceleration and sum, Eq. (4-22).
 
     The ground does not pull. Where the kinematic acceleration asks for a negative sum (a leg that
     meets the ground at flight speed), the sum is zero. The thesis's problem has no solution there.
@@ -162,12 +190,12 @@ def demands(machine, manner, legs, sides, q, v, spin, balance):
         legs: Kinematics of the legs.
         sides: Whether a leg is on the ground, shape (6,).
         q: Coordinates, shape (6,) [m, rad].
-        v: Their rates, shape (6,) [m/s, rad/s].
+        v: Rates of the coordinates, shape (6,) [m/s, rad/s].
         spin: Gyroscopic acceleration, shape (3,) [rad/s2].
-        balance: Its `wanted` is filled.
+        balance: Contacts, of which `wanted` is filled.
 
     Returns:
-        Sum of the normal forces, at most three times the weight [N].
+        Sum of the normal forces, from zero to three times the weight [N].
     """
     balance.wanted[0] = (roll_rate(machine, manner, legs, sides, q[3]) - v[3]) / manner.dt + spin[0]
     balance.wanted[1] = -v[4] / manner.dt + spin[1]
@@ -189,12 +217,12 @@ def run(machine, manner, traction, motion, q, v, sides, record):
         traction: The slip law.
         motion: Leg angles and speeds at every step.
         q: Coordinates at the start, overwritten, shape (6,) [m, rad].
-        v: Their rates, overwritten, shape (6,) [m/s, rad/s].
-        sides: Contact state at the start, overwritten, shape (6,).
-        record: Filled: the samples that are kept.
+        v: Rates of the coordinates, overwritten, shape (6,) [m/s, rad/s].
+        sides: Whether a leg is on the ground at the start, overwritten, shape (6,).
+        record: Filled: every `manner.every`-th sample.
 
     Returns:
-        Number of steps whose rates stayed below `RUNAWAY`.
+        Number of steps computed: all, or those before one in which a rate reached `RUNAWAY`.
     """
     legs = Legs(
         np.empty(6), np.empty(6), np.empty(6), np.empty(6), np.empty(6),

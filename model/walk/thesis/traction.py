@@ -13,10 +13,10 @@ from model.walk.traction_lookup import table_value
 
 
 class Traction(NamedTuple):
-    """A slip law for the compiled loop, as a named tuple, which numba accepts directly.
+    """A slip law for the thesis's compiled loop: Magic Formula coefficients, or a table.
 
     Attributes:
-        exact: Whether the Magic Formula with these four coefficients is meant, and not the table.
+        exact: Whether the Magic Formula with these four coefficients is used instead of the table.
         B: Stiffness factor [-].
         C: Shape factor [-].
         friction: Peak traction over load, D / Fn [-].
@@ -38,19 +38,19 @@ THESIS_TRACTION = Traction(True, 34.34, 1.564, 0.3798, 0.0066, _NO_TABLE)  # Lis
 
 
 def law_traction(law: SlipLaw, values: Values, *, weight: float) -> Traction:
-    """Prepare a slip law for the thesis's model.
+    """Convert a slip law and its values to the form of the thesis's model.
 
     The thesis hands its walk's slip ratio, Eq. (4-31), to a curve fitted to the rig's, Eq. (4-44),
     without conversion, and so does this model: see `docs/thesis-model.md`.
 
     Args:
-        law: The slip law. A Magic Formula as the thesis has it is evaluated exactly, others are
-            tabulated.
-        values: Its parameter values, shape (k,).
+        law: The slip law. A Magic Formula with curvature "peak" and without load sensitivity, as
+            the thesis has it, is evaluated exactly; other laws are tabulated by `law_table`.
+        values: Parameter values of the law, shape (k,).
         weight: Weight of the robot, which sets the range of tabulated loads [N].
 
     Raises:
-        DomainError: The law loses its shape at these loads.
+        DomainError: A law that is tabulated loses its shape at these loads.
     """
     if isinstance(law, MagicFormula) and law.curvature == "peak" and not law.load_sensitivity:
         K, C, friction, peak_slip = (float(np.asarray(value)) for value in values)
@@ -59,7 +59,7 @@ def law_traction(law: SlipLaw, values: Values, *, weight: float) -> Traction:
 
 
 def table_traction(table: TractionTable) -> Traction:
-    """Prepare a tabulated law; one by slip velocity takes v_R - v_C of Eq. (4-31) for it."""
+    """Wrap a tabulated law for the thesis's model; a law by slip velocity gets v_R - v_C."""
     return Traction(False, 0.0, 2.0, 0.0, 0.0, table)
 
 
@@ -88,7 +88,7 @@ def magic_force(traction, kappa, load):
 
 @compiled
 def traction_force(traction, kappa, load):
-    """Compute the traction force of a leg [N]; zero without load.
+    """Compute the traction force of a leg by Magic Formula or table [N]; zero without load.
 
     Args:
         traction: The slip law.
@@ -117,7 +117,7 @@ def load_derivative(traction, kappa, load, force):
 
 
 def paired_sum(traction_force: Array) -> Array:
-    """Sum samples in pairs, as for the net force of Fig. 5-19.
+    """Sum successive samples of traction in pairs, as for the net force of Fig. 5-19.
 
     The thesis's traction changes sign at every step; the sum of a pair is what it calls the net
     force. It is twice the mean. As in the listing, the first sample is left out and pairs start

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Walk by the thesis's model."""
+"""Walk by the thesis's model: options, initial state and the resulting path."""
 
 from dataclasses import dataclass
 
@@ -22,7 +22,7 @@ from model.walk.thesis.traction import THESIS_TRACTION, Traction
 
 TRIPODS = ((0, 3, 4), (1, 2, 5))
 SAME_SIDE = ((0, 4), (1, 5))  # legs of one tripod on one side, which turn alike
-APART = np.radians(45.0)  # where they are further apart, the gait is no tripod [rad]
+APART = np.radians(45.0)  # where these legs are further apart, the gait is not a tripod [rad]
 
 
 @dataclass(frozen=True)
@@ -31,17 +31,20 @@ class ThesisOptions:
 
     Attributes:
         dt: Length of a step [s].
-        direction: Side to which the gait turns; its legs are the inner ones.
-        automaton: What changes contacts: the listing's rule or Table 3-1.
+        direction: Side to which the gait turns; the legs of that side are the inner ones.
+        automaton: Rule by which contacts change: "listing" (A.32) or "table" (Table 3-1).
         reset_height: Set the body's height at every change of contacts, as the listing does; the
             text's figures were made without, and sink.
-        mend_roll: Roll to the right side in right turns; the thesis's height difference is inner
-            less outer for both, which leans a right turn the wrong way.
+        mend_roll: Reverse the roll in right turns; the thesis's height difference is inner less
+            outer for both directions, which leans a right turn the wrong way.
+        mend_slip: Give slip the sign of the equations where legs turn back or the body goes
+            backward, instead of the listing's; see `walk_slip` and `lateral_walk_slip`.
         heading: Yaw at the start; this model's walk depends on it [rad].
-        every: Keep every so many steps.
+        every: Number of steps between two samples of the path.
 
     Raises:
-        DomainError: An option is not valid.
+        DomainError: The step is not positive and finite, the direction or the automaton is
+            unknown, or `every` is less than 1.
     """
 
     dt: float = 0.001
@@ -65,7 +68,7 @@ class ThesisOptions:
 
     @property
     def manner(self) -> Manner:
-        """The options as a tuple for the compiled loop."""
+        """Settings of the compiled loop: `direction` as inner side, `mend_roll` as a sign."""
         right = self.direction == "right"
         sign = -1.0 if right and self.mend_roll else 1.0
         by_table = self.automaton == "table"
@@ -85,24 +88,25 @@ def walk_thesis(
     traction: Traction = THESIS_TRACTION,
     options: ThesisOptions = AS_PRINTED,
 ) -> WalkPath:
-    """Walk by the thesis's hybrid dynamic model, Listing A.4, for tripod gaits.
+    """Compute a tripod walk by the thesis's hybrid dynamic model, Listing A.4.
 
     Args:
-        robot: The robot; the thesis's has half-circle legs.
-        reference: Its legs. The thesis's switch speed by angle, `SwitchedLegs`; a gait or a
-            measured log is followed by the clock.
+        robot: The robot, whose leg offsets are added; the thesis's has half-circle legs.
+        reference: Legs that switch speed by angle, as the thesis's do, or leg angles over time,
+            which are followed by the clock.
         duration: Time walked [s].
         traction: The slip law; see `model.walk.thesis.traction`.
-        options: How the model walks.
+        options: Settings of the model.
 
     Returns:
         The path from t = 0 on; forces of a sample are those of the step that begins there.
         `slip_ratio` is the thesis's, Eq. (4-31), or slip velocity over its scale for a law by
-        velocity; the model has no velocity of the material contact point, so that is NaN on
-        the ground.
+        velocity; `slip_velocity` is NaN on the ground, as the model has no velocity of the
+        material contact point.
 
     Raises:
-        DomainError: The duration is shorter than a step, or the gait is no tripod.
+        DomainError: The duration is not finite or rounds to no step, or the gait is not a tripod:
+            two legs of a tripod's side are more than 45 degrees apart.
         WalkError: The walk diverged; the message says when and in what state.
     """
     t = step_times(duration, options.dt)
@@ -120,6 +124,7 @@ def walk_thesis(
 
 
 def _machine(robot: Robot) -> Machine:
+    """Convert a robot's geometry, mass and inertia to the arrays of the thesis's loop."""
     return Machine(
         robot.hips, robot.leg_radius, robot.toe_beyond, robot.mass, robot.principal_inertia,
         robot.track,
@@ -127,6 +132,7 @@ def _machine(robot: Robot) -> Machine:
 
 
 def _require_tripod(motion: LegMotion, dt: float) -> None:
+    """Raise `DomainError` where two legs of one tripod and side are more than `APART` apart."""
     for first, other in SAME_SIDE:
         apart = np.abs(wrap_angle(motion.theta[:, first] - motion.theta[:, other]))
         worst = int(np.argmax(apart))
@@ -139,10 +145,13 @@ def _require_tripod(motion: LegMotion, dt: float) -> None:
 
 
 def _start(robot: Robot, theta: Array, options: ThesisOptions) -> tuple[NDArray[np.bool_], Array]:
-    """Compute the initial state: level on one tripod, rolled by the height difference of its sides.
+    """Compute the initial stance legs and pose of a robot on one tripod, without pitch.
 
-    The heights after the first step decide which tripod, because at the start of a matched gait
-    they are equal.
+    Mean inner minus mean outer hip height, over the track, gives the roll. The tripod with the
+    higher inner hips after the first step stands: at the start of a matched gait they are equal.
+
+    Returns:
+        Mask of the stance legs, shape (6,); x, y, z [m], roll, pitch and yaw [rad], shape (6,).
     """
     inner = options.manner.inner
     heights = _side_heights(robot, theta[0])
@@ -155,7 +164,7 @@ def _start(robot: Robot, theta: Array, options: ThesisOptions) -> tuple[NDArray[
 
 
 def _side_heights(robot: Robot, theta: Array) -> Array:
-    """Return the mean hip height by tripod and side, left and right, of a level body [m]."""
+    """Compute mean hip heights [m] of a level body by tripod (row) and side (left, right)."""
     phi = wrap_angle(np.pi / 2 - theta)
     height = np.asarray(hip_height(phi, robot.leg_radius, robot.toe_beyond))
     return np.array(
@@ -167,6 +176,7 @@ def _side_heights(robot: Robot, theta: Array) -> Array:
 
 
 def _empty_record(rows: int) -> Record:
+    """Allocate a record of as many samples as rows, all legs without contact."""
     shape = (rows, N_LEGS)
     return Record(
         np.empty((rows, 6)), np.zeros(shape, dtype=bool), np.full(shape, np.nan),
@@ -175,6 +185,7 @@ def _empty_record(rows: int) -> Record:
 
 
 def _path(record: Record, motion: LegMotion, t: Array, options: ThesisOptions) -> WalkPath:
+    """Convert the record to a path, angles of Eq. (3-7) to roll, pitch and yaw of `attitude`."""
     angles = record.state[:, 3:]
     ours = roll_pitch_yaw(thesis_attitude(*angles.T))
     ours[:, 2] = angles[:, 2] + wrap_angle(ours[:, 2] - angles[:, 2])  # keeps count of full turns
@@ -193,6 +204,7 @@ def _path(record: Record, motion: LegMotion, t: Array, options: ThesisOptions) -
 
 
 def _diverged(t: float, q: Array, rates: Array) -> WalkError:
+    """Create the error of a walk that diverged at time t with coordinates q and their rates."""
     x, y, z = q[:3]
     roll, pitch, yaw = np.degrees(q[3:])
     return WalkError(

@@ -131,7 +131,7 @@ def times_from_table(table: Path, paths: Sequence[Path]) -> PhotoTimes:
 
     Raises:
         TimesError: When the file cannot be read or exceeds `MOST_TABLE`, a column or the row of a
-            photograph is missing, a row has too many cells, or a number is invalid or infinite.
+            photograph is missing, a row has too many cells, or a number is not a finite number.
     """
     if table.exists() and not table.is_file():  # a FIFO would block until there is a writer
         raise TimesError(f"{table} is no file; expected a table of times")

@@ -21,8 +21,7 @@ def rectify_floor(
         low: Lowest x and y shown, shape (2,) [m].
         high: Highest x and y shown, shape (2,) [m].
         pixels_per_metre: Scale [px/m].
-        height: Height over the floor of the plane that is drawn to scale; what is above or below
-            is displaced [m].
+        height: Height over the floor of the plane drawn to scale; other heights are displaced [m].
 
     Returns:
         BGR picture, shape (rows, columns, 3), highest y in the first row; black outside the

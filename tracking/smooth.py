@@ -287,11 +287,7 @@ def _derivative(a: Array, b: Array, dt: Array, side: int) -> Array:
 
 
 def _solve_blocks(diagonal: Array, upper: Array, gradient: Array) -> tuple[Array, Array, float]:
-    """Solve a symmetric block-tridiagonal system.
-
-    Returns:
-        Solution (n, 6), diagonal blocks of the inverse (n, 6, 6), log determinant of the matrix.
-    """
+    """Solve a block-tridiagonal system; return solution, diagonal blocks of inverse, log det."""
     n = len(diagonal)
     inverse, carried = np.empty_like(diagonal), gradient.copy()
     log_det = 0.0

@@ -1,13 +1,14 @@
 # SPDX-License-Identifier: MIT
-"""Bundle adjustment of camera poses and floor marks, with the tape measurements as a prior.
+"""Bundle adjustment of camera poses and floor marks, with measured positions as a prior.
 
 The unknowns are a camera pose for each stand (6) and x, y, yaw and side of every mark (x, y of a
 point). Minimised is
 
     sum over stands and marks  r' C^-1 r  +  sum over marks  ((m - m_tape) / sd_tape)²
 
-where r is the mark's pixels minus its projection. The tape fixes the frame: without it translation,
-rotation and scale of the floor are undetermined.
+where r is the mark's pixels minus its projection and m_tape are x, y, yaw and side as measured with
+a tape measure, which fix the frame: without them translation, rotation and scale of the floor are
+undetermined.
 """
 
 from collections.abc import Mapping, Sequence
@@ -176,11 +177,11 @@ class _Problem:
     def solve(
         self, starts: Sequence[CameraPose]
     ) -> tuple[FloorMap, list[CameraPose], list[Array], float, tuple[float, float]]:
-        """Fit map and poses; refit with the variances of pixels and tape scaled by residuals.
+        """Fit map and poses; refit with variances of pixels and measurements from residuals.
 
         Returns:
             Map, poses, their covariances (6, 6), misfit [px], and the factors on the standard
-            deviations of pixels and of tape [-].
+            deviations of pixels and of tape measurements [-].
         """
         factors = (1.0, 1.0)
         floor, poses = self._least_squares(self.floor, list(starts), factors)
@@ -211,12 +212,12 @@ class _Problem:
     def _factors(
         self, parts: Sequence["_Part"], factors: tuple[float, float]
     ) -> tuple[float, float]:
-        """Estimate the factors on the standard deviations of pixels and of tape, at least 1.
+        """Estimate factors, at least 1, on standard deviations of pixels and tape measurements.
 
         Variance components (Helmert 1907; Koch 1999, section 3.6): with N the normal equations of
         all and N_g those of one group, its n_g residuals have r_g = n_g - tr(N^-1 N_g) degrees of
         freedom, the expectation of their sum of squares. One factor for both would attribute the
-        error of a poor picture to the tape, and widen the covariance of every camera pose.
+        error of a poor picture to the tape measurements, and widen every camera pose's covariance.
         """
         inverse = np.linalg.inv(_weighed([part.normal for part in parts], factors))
         found = []

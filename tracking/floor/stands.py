@@ -16,12 +16,11 @@ def split_stands(views: Sequence[FloorView], *, jump_px: float = JUMP_PX) -> tup
     """Number the stands: stretches of photographs between which the camera moved.
 
     A rotation by 0.05 degrees moves the floor by 1 px in a usual picture and the path by 2 mm.
-    The shift is therefore compared with the noise of the marks themselves.
+    The median shift of the marks is therefore compared with their noise.
 
     Args:
         views: Pixels of the floor's marks in each photograph, in order of time.
-        jump_px: Least median shift of the marks, beyond 3 standard deviations of their noise, that
-            counts as movement [px].
+        jump_px: Least shift, beyond 3 standard deviations, that counts as movement [px].
 
     Returns:
         For every photograph the number of its stand, from 0. A photograph without marks, or

@@ -208,10 +208,7 @@ def _autocovariance(left: Array, used: Array, *, lags: int) -> Array:
 
 
 def _look(fit: _Fit, patch: _Patch, dictionary: str, marker_id: int) -> _Look | None:
-    """Render the marker for a fit; compute residual and Jacobian.
-
-    None for fewer than 40 pixels, less than a grey level of contrast or a singular system.
-    """
+    """Render the marker for a fit; compute residual and Jacobian, or None where undetermined."""
     H = square_homography(fit.corners)
     own = apply_homography(np.linalg.inv(H), patch.points)
     used = np.flatnonzero(_is_used(own, fit, _cells(dictionary)))

@@ -45,9 +45,9 @@ def track_exposures(
         The track; notes include a warning when a third of the exposures or more is rough.
 
     Raises:
-        NoUsablePhoto: The picture cannot be used or has no annotated top.
-        TrackingError: The floor's map does not fit, the body's size is unknown, no exposure is
-            found, or a correction is invalid.
+        NoUsablePhoto: The picture cannot be used, or the annotated top is in another picture.
+        TrackingError: There is neither marker nor annotated top, the floor's map does not fit, the
+            body's size is unknown, no exposure is found, or a correction is invalid.
         TrackStopped: A stop was requested.
     """
     seen = see_floor(scene, [photo], robot=None, workers=1, progress=progress)

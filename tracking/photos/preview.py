@@ -83,8 +83,7 @@ def preview_photo(scene: Scene, photo: Photo) -> Preview:
         photo: The photograph.
 
     Raises:
-        PhotoError: The photograph cannot be read, or shows none of the floor's markers or the
-            robot's marker twice.
+        PhotoError: The photograph cannot be read, shows no floor marker, or two robot markers.
         TrackingError: The floor's map does not fit, or too few of its points are visible.
     """
     look = look_at(photo, Wanted(scene.camera.size, scene.floor, scene.robot))

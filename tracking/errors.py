@@ -45,7 +45,7 @@ class MarkerError(TrackingError, ValueError):
 
 
 class BodyError(TrackingError, ValueError):
-    """The robot's top cannot be used as a template."""
+    """The robot's top is not annotated, has invalid sides, or cannot be used as a template."""
 
 
 class AmbiguousHeading(BodyError):

@@ -35,7 +35,7 @@ class RobotMarker:
 
     Attributes:
         marker_id: Number of the marker in its dictionary.
-        side: Side of the black square [m].
+        side: Side of the black square, above 0 [m].
         dictionary: Name of the dictionary.
         position: Centre of the marker in the body frame: forward, left, up [m].
         yaw: Turn of the print's left-to-right direction from the body's x, counter-clockwise
@@ -80,7 +80,7 @@ class BodyPose:
     """Pose of the robot in one photograph.
 
     Attributes:
-        state: x, y, z [m], roll, pitch, yaw [rad] of the body in the world, shape (6,);
+        state: x, y, z [m], roll, pitch, yaw [rad] of the body in the floor frame, shape (6,);
             R = Rz(yaw) Ry(pitch) Rx(roll).
         covariance: Covariance of `state` from errors of pixels, height and tilt, which are
             independent from photograph to photograph, shape (6, 6).
@@ -100,12 +100,12 @@ class BodyPose:
 
     @property
     def planar(self) -> Array:
-        """x, y [m] and yaw [rad], shape (3,)."""
+        """x, y [m] and yaw [rad] of the body in the floor frame, shape (3,)."""
         return self.state[PLANAR]
 
     @property
     def planar_covariance(self) -> Array:
-        """Covariance of x, y and yaw without the camera's share, shape (3, 3)."""
+        """Covariance of x, y and yaw without the error of the camera's pose, shape (3, 3)."""
         return self.covariance[np.ix_(PLANAR, PLANAR)]
 
 

@@ -192,7 +192,7 @@ class _Chain:
         return cls(times, unwrapped, spread)
 
     def head(self, n: int) -> "_Chain":
-        """Return a segment of the first n poses."""
+        """Return the segment's first n poses as a segment."""
         return _Chain(self.times[:n], self.measured[:n], self.spread[:n])
 
     def start(self) -> Array:

@@ -76,7 +76,7 @@ def _link(before: Alignment, after: Alignment, length: float, walks_ahead: bool)
 
 
 def _likeliest(scores: Sequence[Array], links: Sequence[Array]) -> tuple[list[int], float]:
-    """Find the option of each photograph with the greatest total score; return both."""
+    """Return the index of each photograph's option in the best chain, and its total score."""
     if not scores:
         return [], 0.0
     total, came = scores[0], []

@@ -42,7 +42,7 @@ class BodyCandidates:
 
     @property
     def best(self) -> Alignment:
-        """The likeliest alignment."""
+        """The alignment of greatest likelihood, first in `options`."""
         return self.options[0]
 
     @property

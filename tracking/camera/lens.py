@@ -56,6 +56,8 @@ class Camera:
 class CameraPose:
     """Pose of the camera: X_camera = R X_world + t, OpenCV's axes (x right, y down, z ahead).
 
+    World is the floor frame.
+
     Attributes:
         rotation_vector: R as axis times angle, shape (3,) [rad].
         translation: t, shape (3,) [m].
@@ -74,7 +76,7 @@ class CameraPose:
 
     @property
     def position(self) -> Array:
-        """Position of the camera in the world, shape (3,) [m]."""
+        """Position of the camera's centre in the floor frame, shape (3,) [m]."""
         return -self.rotation.T @ self.translation
 
     @classmethod

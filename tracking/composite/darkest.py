@@ -141,7 +141,7 @@ class DarkestReading(DarkestModel):
         return self.value(poses) - LEAST_GAIN * (len(poses) - 1)
 
     def first_steps(self, anchor: Array) -> list[Array]:
-        """Find up to ten candidate poses of the next exposure, from the known pose (3,)."""
+        """Find up to ten candidate poses (3,) of the exposure next to the known one at `anchor`."""
         look = self.look(anchor[None])
         tried = beside(anchor, self.length, spacing=self.length / 20)
         return self.best_of(tried, look, self.cover(anchor[None], look), most=_FIRST_STEPS)

@@ -108,7 +108,7 @@ class KnownExposure:
             raise CompositeError(str(error)) from error
 
     def share(self, pose: Array, visible: NDArray[np.bool_]) -> float:
-        """Compute the share of an exposure's top that is visible [-].
+        """Compute the share of the pixels of an exposure's top that are visible, 0 to 1 [-].
 
         Args:
             pose: x, y [m] and yaw [rad], shape (3,).

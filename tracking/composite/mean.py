@@ -46,8 +46,7 @@ BESIDE_SCORE = 0.5
 
 LEAST_SCORE, LEAST_OF_USUAL = 0.5, 0.75
 """Least correlation of an exposure with the robot's picture after all others are subtracted, and
-least share of the median of these correlations, which is lower where light changes or floors are
-stronger than the robot [-]."""
+least share of the median correlation, which is lower on uneven light or strong floors [-]."""
 
 LEAST_STRENGTH = 0.5
 """Least strength of an exposure relative to the robot's picture; 1 is expected in a mean [-]."""
@@ -136,11 +135,7 @@ class MeanReading(Reading):
         return float((self.detail**2).sum())
 
     def find(self) -> Array:
-        """Find the set of exposures that explains most of the picture at least cost.
-
-        Returns:
-            x, y [m] and yaw [rad], the known exposure first, shape (n, 3).
-        """
+        """Find the poses (n, 3), the known one first, that explain most of the picture."""
         best = self.fitted(self.first_matches(self.known.pose.planar), rounds=2)
         for _ in range(_ROUNDS):
             tried = [self.fitted(poses, rounds=1) for poses in self.varied(best)]
@@ -193,14 +188,7 @@ class MeanReading(Reading):
         return fit.poses[good]
 
     def first_matches(self, anchor: Array) -> Array:
-        """Find first exposures by matching the picture of the known one, floor included.
-
-        Args:
-            anchor: Pose of the known exposure, shape (3,) [m, m, rad].
-
-        Returns:
-            Poses, the known one first, shape (n, 3) [m, m, rad].
-        """
+        """Match the part of the picture at the known pose (3,); return poses (n, 3), it first."""
         robot = self.body.read(self.detail, anchor)
         poses = anchor[None]
         matches = [m for m in self.matches(self.detail, robot) if m.score >= BESIDE_SCORE]

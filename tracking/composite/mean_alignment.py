@@ -182,7 +182,7 @@ class MeanAlignment:
         return [replace(first, colours=mean.astype(np.float32)) for mean in means]
 
     def anchored(self, found: Sequence[Alignment | None]) -> list[Alignment | None]:
-        """Move all exposures by the step, in their own frames, from first found to known pose.
+        """Move all exposures, in their own frames, by the step of the first to its known pose.
 
         The first one's covariance is added to the others'; if its correlation is too small, all
         become None. The error of the known pose is not added.

@@ -20,7 +20,7 @@ def order_exposures(poses: ArrayLike) -> tuple[int, ...]:
         poses: x, y [m] and yaw [rad] of the exposures, shape (n, 3).
 
     Returns:
-        Row indices of `poses` in the order walked, first to last; empty for no exposures.
+        Row indices of `poses` in order of the walk, first to last; empty for no exposures.
     """
     places = np.asarray(poses, dtype=float).reshape(-1, 3)
     return tuple(_cheap_tour(_step_costs(places))) if len(places) else ()

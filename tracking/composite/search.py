@@ -195,7 +195,7 @@ class _Search:
         return found or list(whole)
 
     def occluded_by(self, clear: Sequence[Exposure]) -> Sequence[Exposure]:
-        """Find exposures, occluded ones too, by the body's appearance in a fully visible one.
+        """Find exposures, also occluded ones, by the body's appearance in a fully visible one.
 
         The first usable of `clear` is taken; empty if none is.
         """

@@ -40,7 +40,7 @@ class Progress(Protocol):
 
 
 class NoProgress:
-    """`Progress` that ignores reports and never requests a stop."""
+    """Implementation of `Progress` that ignores reports and never requests a stop."""
 
     def step(self, what: str, fraction: float | None) -> None:
         """Ignore the report.

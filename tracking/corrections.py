@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
 """Manual corrections of tracked poses, kept as data and replayed on the tracker's observations.
 
-Observations are not overwritten. The same corrections on the same observations give the same
-result, in the order in which they were made.
+Corrections are applied in the order in which they were made; the tracker's observations are not
+overwritten. The same corrections on the same observations give the same result.
 """
 
 import difflib
@@ -22,9 +22,9 @@ class Move:
 
     Attributes:
         photo: Name of the photograph.
-        x: Where it is [m].
-        y: Where it is [m].
-        yaw: Its heading [rad].
+        x: x of the body's origin on the floor [m].
+        y: y of the body's origin on the floor [m].
+        yaw: Heading of the robot [rad].
         position_sd: Standard deviation of x and of y [m].
         yaw_sd: Standard deviation of the heading [rad].
     """
@@ -39,7 +39,7 @@ class Move:
 
 @dataclass(frozen=True)
 class Flip:
-    """Exchange head and tail in a photograph.
+    """Exchange the robot's head and tail in a photograph: add pi to its yaw.
 
     Attributes:
         photo: Name of the photograph.
@@ -50,7 +50,7 @@ class Flip:
 
 @dataclass(frozen=True)
 class Delete:
-    """Remove the observation of a photograph, which shows something else than the robot.
+    """Remove the observation of a photograph, for instance one that is not of the robot.
 
     Attributes:
         photo: Name of the photograph.
@@ -61,10 +61,11 @@ class Delete:
 
 @dataclass(frozen=True)
 class Order:
-    """Set the order in time of photographs, or of the exposures of a composite one.
+    """Set the order in time of photographs, or of the exposures of a composite photograph.
 
     Attributes:
-        photos: Names of photographs in order; their times are sorted and reassigned.
+        photos: Names of photographs in order; the earliest of their times is given to the first
+            and so on. Photographs that are not named keep their times.
     """
 
     photos: tuple[str, ...]
@@ -83,17 +84,18 @@ def replay(
     """Apply corrections to observations.
 
     Args:
-        observations: What the tracker found.
+        observations: The tracker's observations.
         corrections: The corrections, in the order in which they were made.
-        times: By photograph, time and its standard deviation; needed to `Move` the robot into a
-            photograph in which the tracker found none [s].
-        z: Height given to such a robot [m].
+        times: By photograph, time and its standard deviation [s]; needed to `Move` the robot into
+            a photograph without an observation.
+        z: Height of the body's origin in an observation that a `Move` adds [m].
 
     Returns:
-        Corrected observations; unchanged ones are the same objects.
+        Corrected observations; unchanged observations are the same objects.
 
     Raises:
-        CorrectionError: When a correction names a photograph that does not exist.
+        CorrectionError: When a correction names a photograph without an observation (a `Move`:
+            also without a time), or an `Order` names a photograph twice.
     """
     found = {seen.photo: seen for seen in observations}
     for correction in corrections:
@@ -116,7 +118,7 @@ def correction_from(entry: Mapping[str, Any]) -> Correction:
         entry: `kind` ("move", "flip", "delete" or "order") and the attributes of that kind.
 
     Raises:
-        CorrectionError: When the kind or a key is unknown, or one is missing.
+        CorrectionError: When the kind or a key is unknown, or a required key is missing.
     """
     kind = str(entry.get("kind", ""))
     if kind not in _KINDS:
@@ -136,7 +138,7 @@ def correction_from(entry: Mapping[str, Any]) -> Correction:
 
 
 def plain(correction: Correction) -> dict[str, Any]:
-    """Convert a correction to plain values; inverse of `correction_from`.
+    """Convert a correction to a dictionary of plain values; inverse of `correction_from`.
 
     >>> plain(Flip("p3.jpg"))
     {'kind': 'flip', 'photo': 'p3.jpg'}

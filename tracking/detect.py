@@ -26,7 +26,7 @@ class MarkedRobot:
 
     Attributes:
         marker: The marker on its back.
-        prior: Height and tilt of its body.
+        prior: Prior of the body's height and tilt.
     """
 
     marker: RobotMarker
@@ -39,8 +39,8 @@ class Detection:
 
     Attributes:
         photo: Name of the photograph.
-        floor: The floor's marks.
-        robot: The robot's marker, or None where it is not seen.
+        floor: Corners of the floor's markers in the photograph.
+        robot: The robot's marker in the photograph, or None where it is not detected.
     """
 
     photo: str
@@ -52,22 +52,23 @@ def detect(
     photo: str, pixels: NDArray[np.uint8], *, floor: FloorMap, robot: MarkedRobot,
     hint: Detection | None = None, reach: float = 1.5,
 ) -> Detection:  # fmt: skip
-    """Find the floor's markers and the robot's in one photograph.
+    """Detect the floor's markers and the robot's marker in one photograph.
 
     Args:
-        photo: Its name.
+        photo: Name of the photograph.
         pixels: The photograph, grey or BGR.
-        floor: The floor's marks.
-        robot: The robot.
-        hint: Detection in a photograph taken shortly before or after. Its marks are searched
-            there first, the whole photograph only for what is not found.
-        reach: How far the robot may have moved since, in sides of its marker [-].
+        floor: The floor map; of its marks only markers are detected.
+        robot: The robot's marker and prior.
+        hint: Detection in a photograph taken shortly before or after. Markers are first searched
+            near their places there; the whole photograph only for markers not found that way.
+        reach: How far the robot may have moved from `hint`, in sides of its marker [-].
 
     Returns:
-        What was found.
+        The markers detected.
 
     Raises:
-        PhotoError: When two robots are seen, or no mark of the floor where there should be some.
+        PhotoError: When the robot's marker is detected more than once, or the map has markers and
+            none of them is detected.
     """
     found = [] if hint is None else _near(pixels, floor, robot, hint, reach)
     missing = _missing(floor, robot, found)
@@ -103,7 +104,7 @@ def _missing(
 def _near(
     pixels: NDArray[np.uint8], floor: FloorMap, robot: MarkedRobot, hint: Detection, reach: float
 ) -> list[Sighting]:
-    """Search around the marks of a neighbouring photograph."""
+    """Detect markers in windows around their places in a neighbouring photograph."""
     size = (pixels.shape[1], pixels.shape[0])
     places = [(floor.dictionary, key, corners, 0.4) for key, corners in hint.floor.pixels.items()]
     if hint.robot is not None:
@@ -134,14 +135,15 @@ def observe(
     """Compute the robot's pose in every photograph that shows its marker and the floor.
 
     Args:
-        camera: The lens.
+        camera: Camera intrinsics and distortion.
         fit: The floor and the camera's poses.
-        detections: What the photographs show.
-        robot: The robot.
+        detections: Markers detected in each photograph.
+        robot: The robot's marker and prior.
         times: By photograph, time and its standard deviation [s].
 
     Returns:
-        One observation for each photograph in which robot and floor were seen.
+        One observation for each photograph that shows the robot's marker and for which `fit` has
+        a camera pose, in the order of `detections`.
     """
     return tuple(
         _observation(camera, fit, detection.photo, detection.robot, robot, times)

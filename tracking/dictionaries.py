@@ -15,7 +15,7 @@ DICTIONARIES = {
     for name in dir(cv2.aruco)
     if name.startswith("DICT_")
 }
-"""OpenCV's dictionaries: "4x4_50", "apriltag_36h11" and so on, with OpenCV's number."""
+"""OpenCV's dictionaries: number of OpenCV's constant `DICT_...` by name, such as "4x4_50"."""
 
 _USUAL = ("4x4_50", "5x5_50", "6x6_250", "apriltag_36h11", "aruco_original", "7x7_50")
 
@@ -25,10 +25,10 @@ def dictionary_named(name: str) -> cv2.aruco.Dictionary:
 
     Args:
         name: A key of `DICTIONARIES`, where case and a leading "DICT_" do not matter, or the path
-            of a file (.yml, .json) with a dictionary of one's own as OpenCV writes it.
+            of a file (.yml, .yaml, .json, .xml) with a custom dictionary as OpenCV writes it.
 
     Raises:
-        MarkerError: When there is no such dictionary.
+        MarkerError: When the name is unknown, or the file is missing or holds no dictionary.
     """
     if Path(name).suffix in {".yml", ".yaml", ".json", ".xml"}:
         return _dictionary_of_file(name)
@@ -51,16 +51,16 @@ def _dictionary_of_file(path: str) -> cv2.aruco.Dictionary:
 
 
 def guess_dictionary(pixels: NDArray[np.uint8]) -> str | None:
-    """Guess which common dictionary a picture's markers are from.
+    """Guess the dictionary of a picture's markers by detecting with six common dictionaries.
 
-    It serves the error message when no marker of the given dictionary is found: a wrong dictionary
-    is the most frequent cause.
+    The guess serves the error message when no marker of the given dictionary is found: a wrong
+    dictionary is the most frequent cause.
 
     Args:
         pixels: The picture, grey or BGR.
 
     Returns:
-        Name of the dictionary with most markers in the picture, at least two of them, or None.
+        Name of the dictionary of which most markers are detected; None if fewer than two are.
     """
     counts = {}
     for name in _USUAL:

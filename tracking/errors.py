@@ -11,7 +11,7 @@ class TrackingError(Exception):
 
 
 class PhotoError(TrackingError, ValueError):
-    """One photograph cannot be used; the others can.
+    """One photograph cannot be used; other photographs are not affected.
 
     Attributes:
         photo: Name of the photograph.
@@ -25,7 +25,7 @@ class PhotoError(TrackingError, ValueError):
 
 
 class NoUsablePhoto(TrackingError, ValueError):
-    """No photograph can be used, or none shows the robot."""
+    """No photograph can be used, or the robot is found in none of the photographs."""
 
 
 class TrackStopped(TrackingError):
@@ -33,11 +33,11 @@ class TrackStopped(TrackingError):
 
 
 class CalibrationError(TrackingError, ValueError):
-    """The calibration boards found do not determine the lens."""
+    """The calibration boards found do not determine the camera's intrinsics and distortion."""
 
 
 class FloorError(TrackingError, ValueError):
-    """The camera's pose cannot be computed from the floor's marks."""
+    """The floor map is invalid, or the camera's pose cannot be computed from the floor's marks."""
 
 
 class MarkerError(TrackingError, ValueError):
@@ -45,14 +45,15 @@ class MarkerError(TrackingError, ValueError):
 
 
 class BodyError(TrackingError, ValueError):
-    """The robot's top cannot be used as a template."""
+    """The robot's top is not annotated, has invalid sides, or cannot be used as a template."""
 
 
 class AmbiguousHeading(BodyError):
-    """Head and tail of the robot cannot be told apart in any photograph.
+    """The robot's head and tail cannot be distinguished over a sequence of photographs.
 
     Attributes:
-        odds: Odds of the better to the worse reading of the whole sequence [-].
+        odds: Odds of the likeliest sequence of headings to the likeliest one with head and tail
+            exchanged in every photograph [-].
     """
 
     def __init__(self, message: str, odds: float) -> None:
@@ -61,11 +62,11 @@ class AmbiguousHeading(BodyError):
 
 
 class TimesError(TrackingError, ValueError):
-    """The photographs' times are missing or contradict each other."""
+    """Times of photographs are missing, cannot be parsed or contradict each other."""
 
 
 class CorrectionError(TrackingError, ValueError):
-    """A correction names an unknown photograph or is invalid."""
+    """A correction is invalid, or names a photograph for which no pose was found."""
 
 
 class CompositeError(TrackingError, ValueError):
@@ -73,4 +74,4 @@ class CompositeError(TrackingError, ValueError):
 
 
 class PathError(TrackingError, ValueError):
-    """The poses do not make a path."""
+    """There are no poses to smooth, or their times do not increase or their shapes disagree."""

@@ -16,7 +16,7 @@ TRACK_COLUMNS = (
     "t_s", "t_sigma", "x_m", "y_m", "yaw_rad", "cov_xx", "cov_xy", "cov_xyaw", "cov_yy",
     "cov_yyaw", "cov_yawyaw", "z_m", "source", "score", "photo",
 )  # fmt: skip
-"""Columns of `track.csv`, in order."""
+"""Columns of `track.csv`, in order; `_s` [s], `_m` [m], `_rad` [rad], `t_sigma` [s]."""
 
 
 @dataclass(frozen=True)
@@ -26,14 +26,14 @@ class PoseObservation:
     Attributes:
         photo: Name of the photograph, or of the exposure in a composite one.
         t: Time [s].
-        t_sd: Its standard deviation [s].
+        t_sd: Standard deviation of `t` [s].
         planar: x, y [m] and yaw [rad] of the body, shape (3,).
-        covariance: Of `planar`, from errors of this photograph alone, shape (3, 3).
-        camera_covariance: Of `planar`, from the camera's pose, which all photographs share; shape
-            (3, 3).
-        z: Height of the body's origin [m].
-        score: Correlation with the marker or template, 1 at best [-].
-        source: "marker", "body" or "hand".
+        covariance: Covariance of `planar` from errors of this photograph alone, shape (3, 3).
+        camera_covariance: Covariance of `planar` from the error of the camera's pose, which
+            photographs from one camera position share, shape (3, 3).
+        z: Height of the body's origin over the floor [m].
+        score: Correlation of the photograph with the marker or template, 1 at best [-].
+        source: How the pose was found: "marker", "body" (template) or "hand" (a correction).
     """
 
     photo: str
@@ -50,13 +50,13 @@ class PoseObservation:
     def of(
         cls, photo: str, pose: BodyPose, *, t: float, t_sd: float, score: float, source: str
     ) -> "PoseObservation":
-        """Make an observation of a fitted pose.
+        """Build an observation from a fitted pose: its x, y, yaw, their covariances, and its z.
 
         Args:
             photo: Name of the photograph.
             pose: The robot's pose with its covariances.
             t: Time [s].
-            t_sd: Its standard deviation [s].
+            t_sd: Standard deviation of `t` [s].
             score: Correlation with the marker or template, 1 at best [-].
             source: "marker", "body" or "hand".
         """
@@ -72,9 +72,10 @@ class Track:
     """The smoothed path of a walk with its covariance, one sample for each photograph.
 
     Attributes:
-        observations: What was seen, in order of time.
-        smoothed: The path through it.
-        covariance: Of the smoothed x, y and yaw with the camera's share, shape (n, 3, 3).
+        observations: The robot's observed poses, in order of time.
+        smoothed: The path smoothed from `observations`, at their times.
+        covariance: Covariance of the smoothed x, y [m] and yaw [rad], including the error of the
+            camera's pose, shape (n, 3, 3).
     """
 
     observations: tuple[PoseObservation, ...]
@@ -83,7 +84,7 @@ class Track:
 
     @property
     def t(self) -> Array:
-        """Times, shape (n,) [s]."""
+        """Times of the observations, shape (n,) [s]."""
         return np.array([seen.t for seen in self.observations])
 
     @property
@@ -93,19 +94,19 @@ class Track:
 
     @property
     def residuals(self) -> Array:
-        """Observed minus smoothed x, y [m] and yaw [rad], shape (n, 3)."""
+        """Observed minus smoothed x, y [m] and yaw [rad], yaw in -pi to pi, shape (n, 3)."""
         difference = np.array([seen.planar for seen in self.observations]) - self.poses
         difference[:, 2] = np.angle(np.exp(1j * difference[:, 2]))
         return difference
 
     @property
     def gap_before(self) -> NDArray[np.bool_]:
-        """Whether a gap precedes each sample, shape (n,)."""
+        """Whether a gap in time interrupts the path just before each sample, shape (n,)."""
         return self.smoothed.gap_before
 
     @property
     def columns(self) -> dict[str, list[float] | list[str]]:
-        """The table `track.csv`, by `TRACK_COLUMNS`."""
+        """The table `track.csv`: for each name in `TRACK_COLUMNS` a list of n values."""
         x, y, yaw = self.poses.T.tolist()
         upper = [
             self.covariance[:, i, j].tolist() for i, j in zip(*np.triu_indices(3), strict=True)
@@ -120,7 +121,7 @@ class Track:
 
     @property
     def tum(self) -> tuple[str, ...]:
-        """Lines of a TUM file: t x y z qx qy qz qw, the body level."""
+        """Lines of a TUM file, smoothed poses: t x y z qx qy qz qw [s, m, -], roll and pitch 0."""
         rows = zip(self.observations, self.poses, strict=True)
         return tuple(
             f"{seen.t:.6f} {x:.6f} {y:.6f} {seen.z:.6f} 0 0 {np.sin(yaw / 2):.9f} "
@@ -135,16 +136,16 @@ def assemble_track(
     gap: float | None = None,
     process: Process | None = None,
 ) -> Track:
-    """Sort observations by time and smooth them.
+    """Sort observations by time and smooth their poses with `tracking.smooth.smooth`.
 
     Args:
-        observations: What was seen, one a photograph.
-        gap: See `tracking.smooth.smooth` [s].
-        process: See `tracking.smooth.smooth`.
+        observations: Poses of the robot, one for each photograph, in any order.
+        gap: Interval longer than which the path is interrupted [s]; None for 3.5 times the median.
+        process: Noise densities of the motion model; None to estimate them.
 
     Returns:
-        The path; the camera's share of the error is added after smoothing, since more photographs
-        from the same place do not average it away.
+        The path; the covariance from the camera's pose is added after smoothing, since more
+        photographs from the same place do not average it away.
 
     Raises:
         PathError: When there is no observation or two photographs have the same time.

@@ -15,16 +15,17 @@ def rectify_floor(
     """Rectify a photograph: draw the floor as seen from straight above, x to the right and y up.
 
     Args:
-        pixels: A photograph, BGR.
-        camera: The lens.
+        pixels: A photograph, BGR, shape (height, width, 3).
+        camera: Camera intrinsics and distortion.
         view: Pose of the camera.
         low: Lowest x and y shown, shape (2,) [m].
         high: Highest x and y shown, shape (2,) [m].
         pixels_per_metre: Scale [px/m].
-        height: Height of the plane that is drawn to scale; what is above or below is displaced [m].
+        height: Height over the floor of the plane drawn to scale; other heights are displaced [m].
 
     Returns:
-        BGR picture; black where the photograph shows nothing.
+        BGR picture, shape (rows, columns, 3), highest y in the first row; black outside the
+        photograph.
     """
     (x0, y0), (x1, y1) = np.asarray(low, dtype=float), np.asarray(high, dtype=float)
     step = 1.0 / pixels_per_metre
@@ -35,13 +36,13 @@ def rectify_floor(
 
 
 def ellipse_90(covariance: Array) -> Array:
-    """Compute the outline of the region that holds 90 % of a planar normal density.
+    """Compute the ellipse that holds 90 % of a planar normal density of mean zero.
 
     Args:
-        covariance: Shape (2, 2).
+        covariance: Covariance of x and y, shape (2, 2) [m²].
 
     Returns:
-        Points around the origin, closed, shape (33, 2).
+        Points x, y on the ellipse, the last equal to the first, shape (33, 2) [m].
     """
     values, vectors = np.linalg.eigh(covariance)
     angle = np.linspace(0, 2 * np.pi, 33)

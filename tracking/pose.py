@@ -34,10 +34,10 @@ class RobotMarker:
     """The marker on the robot's back.
 
     Attributes:
-        marker_id: Number in its dictionary.
-        side: Side of the black square [m].
+        marker_id: Number of the marker in its dictionary.
+        side: Side of the black square, above 0 [m].
         dictionary: Name of the dictionary.
-        position: Centre in the body frame, shape (3,): forward, left, up [m].
+        position: Centre of the marker in the body frame: forward, left, up [m].
         yaw: Turn of the print's left-to-right direction from the body's x, counter-clockwise
             [rad]; -pi/2 when the print's top points ahead.
         side_sd: Standard deviation of `side` [m].
@@ -56,7 +56,7 @@ class RobotMarker:
 
     @property
     def points_body(self) -> Array:
-        """Corners in the body frame, OpenCV's order, shape (4, 3) [m]."""
+        """Corners of the marker in the body frame, OpenCV's order, shape (4, 3) [m]."""
         return marker_corners(self.side, self.position, self.yaw)
 
 
@@ -66,7 +66,7 @@ class BodyPrior:
 
     Attributes:
         height: Height of the body's origin over the floor [m].
-        height_sd: Standard deviation of it over a walk [m].
+        height_sd: Standard deviation of `height` over a walk [m].
         tilt_sd: Standard deviation of roll and of pitch over a walk [rad].
     """
 
@@ -80,14 +80,16 @@ class BodyPose:
     """Pose of the robot in one photograph.
 
     Attributes:
-        state: x, y, z [m], roll, pitch, yaw [rad] of the body in the world, shape (6,);
+        state: x, y, z [m], roll, pitch, yaw [rad] of the body in the floor frame, shape (6,);
             R = Rz(yaw) Ry(pitch) Rx(roll).
-        covariance: Of `state` from pixels, height and tilt, errors independent from photograph to
-            photograph, shape (6, 6).
-        camera_covariance: Of `state` from the camera's pose, an error that a stand's photographs
-            share, shape (6, 6).
-        misfit_px: Root mean square distance of points from their projection [px].
-        cost: The minimum of the sum above [-].
+        covariance: Covariance of `state` from errors of pixels, height and tilt, which are
+            independent from photograph to photograph, shape (6, 6).
+        camera_covariance: Covariance of `state` from the error of the camera's pose, which the
+            photographs of a stand share, shape (6, 6).
+        misfit_px: Root mean square distance of points from their projection [px]; 0 of a pose
+            from `tracking.body.align`.
+        cost: Minimum of the sum in the module's docstring; of a pose from `tracking.body.align`
+            the effective number of independent colour values instead [-].
     """
 
     state: Array
@@ -98,21 +100,21 @@ class BodyPose:
 
     @property
     def planar(self) -> Array:
-        """x, y [m] and yaw [rad], shape (3,)."""
+        """x, y [m] and yaw [rad] of the body in the floor frame, shape (3,)."""
         return self.state[PLANAR]
 
     @property
     def planar_covariance(self) -> Array:
-        """Covariance of x, y and yaw without the camera's share, shape (3, 3)."""
+        """Covariance of x, y and yaw without the error of the camera's pose, shape (3, 3)."""
         return self.covariance[np.ix_(PLANAR, PLANAR)]
 
 
 PLANAR = [0, 1, 5]
-"""Indices of x, y and yaw in a state."""
+"""Indices of x, y and yaw in `BodyPose.state`."""
 
 
 def rotation_with_derivatives(roll: float, pitch: float, yaw: float) -> tuple[Array, Array]:
-    """Compute R = Rz(yaw) Ry(pitch) Rx(roll) and its derivatives.
+    """Compute R = Rz(yaw) Ry(pitch) Rx(roll), body to world, and its derivatives.
 
     Args:
         roll: Positive with the left side up [rad].
@@ -120,8 +122,8 @@ def rotation_with_derivatives(roll: float, pitch: float, yaw: float) -> tuple[Ar
         yaw: Positive to the left [rad].
 
     Returns:
-        R, shape (3, 3), and its derivatives with respect to the three, shape (3, 3, 3), the angle
-        first [-, 1/rad].
+        R, shape (3, 3) [-], and its derivatives with respect to roll, pitch and yaw, stacked along
+        the first axis, shape (3, 3, 3) [1/rad].
     """
     cr, sr, cp, sp = np.cos(roll), np.sin(roll), np.cos(pitch), np.sin(pitch)
     cy, sy = np.cos(yaw), np.sin(yaw)
@@ -144,20 +146,20 @@ def fit_pose(
     prior: BodyPrior,
     scale_sd: float = 0.0,
 ) -> BodyPose:
-    """Fit the robot's pose to points of it by least squares with a prior on height and tilt.
+    """Fit the robot's pose to points on the robot by least squares, with prior of height and tilt.
 
     Args:
-        camera: The lens.
+        camera: Camera intrinsics and distortion.
         view: The camera's pose with covariance.
         points_body: Points in the body frame, shape (n, 3), n at least 2 [m].
         corners_px: The same points in the picture, shape (n, 2) [px].
-        covariance: Of the raveled pixels, shape (2n, 2n) [px²].
-        prior: Height and tilt.
+        covariance: Covariance of `corners_px.ravel()`, shape (2n, 2n) [px²].
+        prior: Prior of the body's height and tilt.
         scale_sd: Relative standard deviation of the points' common scale, `side_sd / side` of a
             marker. It limits how well the size in the picture determines the height [-].
 
     Returns:
-        The pose at the least cost.
+        The pose of least cost with its covariances.
     """
     pixels = np.asarray(corners_px, dtype=float)
     growth = scale_sd * (pixels - pixels.mean(axis=0)).ravel()
@@ -201,7 +203,7 @@ class _PoseProblem:
     whiten: Array
 
     def start(self) -> Array:
-        """Compute a start: x, y and yaw fitted on the level plane of the points' mean height."""
+        """Compute a starting state (6,): x, y, yaw fitted on the plane of the points' height."""
         height = self.prior.height + self.points_body[:, 2].mean()
         seen = to_floor(self.camera, self.view, self.corners_px, height)
         body = self.points_body[:, :2]
@@ -238,6 +240,6 @@ class _PoseProblem:
         return np.vstack((pixels, held))
 
     def by_camera(self, state: Array) -> Array:
-        """Compute the derivative of the residual with respect to the camera's pose, (m, 6)."""
+        """Compute the derivative of the residual by the camera's pose, shape (2n + 3, 6)."""
         _, _, by_pose = project_with_derivatives(self.camera, self.view, self.points_world(state))
         return np.vstack((self.whiten @ by_pose.reshape(-1, 6), np.zeros((3, 6))))

@@ -32,8 +32,8 @@ class Process(NamedTuple):
     """Noise densities of the process: white noise on the twist's derivative.
 
     Attributes:
-        travel: Of forward and sideways speed [m²/s³].
-        turn: Of the turning rate [rad²/s³].
+        travel: Noise density of the forward and of the sideways speed [m²/s³].
+        turn: Noise density of the turning rate [rad²/s³].
     """
 
     travel: float
@@ -46,12 +46,12 @@ class SmoothPath:
 
     Attributes:
         poses: x, y [m] and yaw [rad], yaw continuous within a segment, shape (n, 3).
-        covariance: Of the above, shape (n, 3, 3).
-        twist: Forward and sideways speed [m/s] and turning rate [rad/s], shape (n, 3).
-        segment: Number of the stretch without gap each sample belongs to, shape (n,).
-        suspect: Where a measured pose is farther from the path than its covariance allows
-            (squared distance over 25 with three degrees of freedom), shape (n,).
-        process: The noise densities used.
+        covariance: Covariance of `poses`, shape (n, 3, 3).
+        twist: Forward speed, speed to the left [m/s] and turning rate [rad/s], shape (n, 3).
+        segment: Number, from 0, of the stretch without gap that each sample is in, shape (n,).
+        suspect: True where the squared Mahalanobis distance of a measured pose from the path, by
+            the covariance of the measurement, exceeds 25 (3 degrees of freedom), shape (n,).
+        process: The noise densities used, given or estimated.
     """
 
     poses: Array
@@ -63,7 +63,7 @@ class SmoothPath:
 
     @property
     def gap_before(self) -> NDArray[np.bool_]:
-        """Whether a gap longer than the limit precedes each sample, shape (n,)."""
+        """True for the first sample of every segment but the first, shape (n,)."""
         return np.diff(self.segment, prepend=self.segment[:1]) > 0
 
 
@@ -81,18 +81,18 @@ def smooth(
     Args:
         t: Times, increasing, shape (n,) [s].
         poses: Measured x, y [m] and yaw [rad], shape (n, 3); yaw may wrap.
-        covariance: Of the measured poses, independent of each other, shape (n, 3, 3).
-        time_sd: Standard deviation of each time, shape () or (n,) [s]; it adds to the covariance
-            along the motion.
+        covariance: Covariance of each measured pose, independent of each other, shape (n, 3, 3).
+        time_sd: Standard deviation of each time, shape () or (n,) [s]; times the measured rate of
+            change of the pose, added to `covariance`.
         gap: Interval longer than which the path is interrupted [s]; None means 3.5 times the
             median interval.
-        process: Noise densities; None estimates them.
+        process: Noise densities of the motion model; None estimates them.
 
     Returns:
-        The path, at the times given only.
+        The path, at the times `t` only.
 
     Raises:
-        PathError: When times do not increase or shapes disagree.
+        PathError: When there is no pose, times do not increase or shapes disagree.
     """
     times, measured, spread = _checked(t, poses, covariance)
     stamp_sd = np.broadcast_to(np.asarray(time_sd, dtype=float), times.shape)
@@ -141,7 +141,10 @@ def _segments(times: Array, gap: float | None) -> NDArray[np.int64]:
 
 
 def _likeliest(parts: list["_Chain"]) -> Process:
-    """Maximise the marginal likelihood over the noise densities."""
+    """Estimate the noise densities by maximum marginal likelihood, with a wide prior.
+
+    Of each segment the first 200 poses are used. Defaults where no segment has three poses.
+    """
     used = [part.head(_LONGEST_SEARCH) for part in parts if len(part.times) > 2]
     if not used:
         return Process(1e-3, 1e-2)
@@ -162,7 +165,7 @@ def _likeliest(parts: list["_Chain"]) -> Process:
 
 @dataclass(frozen=True)
 class _Solution:
-    """State x, y, yaw, twist, shape (n, 6), its covariance, and the log marginal likelihood."""
+    """State x, y, yaw, twist, shape (n, 6); covariance (n, 6, 6); log marginal likelihood."""
 
     state: Array
     covariance: Array
@@ -171,7 +174,7 @@ class _Solution:
 
 @dataclass(frozen=True)
 class _Chain:
-    """Measured poses of one segment, yaw unwrapped."""
+    """Times (n,) [s], measured poses (n, 3), yaw unwrapped, and covariances of one segment."""
 
     times: Array
     measured: Array
@@ -179,7 +182,7 @@ class _Chain:
 
     @classmethod
     def of(cls, times: Array, measured: Array, spread: Array, stamp_sd: Array) -> "_Chain":
-        """Unwrap the yaw and convert errors of time to errors of pose along the motion."""
+        """Unwrap yaw; add (rate of the pose x standard deviation of time)² to the covariance."""
         unwrapped = measured.copy()
         unwrapped[:, 2] = np.unwrap(measured[:, 2])
         if len(times) > 1:
@@ -189,11 +192,11 @@ class _Chain:
         return cls(times, unwrapped, spread)
 
     def head(self, n: int) -> "_Chain":
-        """Return the first n poses."""
+        """Return the segment's first n poses as a segment."""
         return _Chain(self.times[:n], self.measured[:n], self.spread[:n])
 
     def start(self) -> Array:
-        """Compute the initial state from the poses and their differences."""
+        """Compute the initial state (n, 6): measured poses, twists from their differences."""
         state = np.concatenate((self.measured, np.zeros_like(self.measured)), axis=1)
         if len(self.times) > 1:
             dt = np.diff(self.times)[:, None]
@@ -202,7 +205,7 @@ class _Chain:
         return state
 
     def solve(self, process: Process) -> _Solution:
-        """Minimise by Gauss-Newton over block-tridiagonal normal equations."""
+        """Fit the states by Gauss-Newton (at most 8 steps), for given noise densities."""
         weights = np.linalg.inv(self.spread)
         links, log_links = _link_weights(np.diff(self.times), process)
         state, cost = self.start(), np.inf
@@ -222,7 +225,7 @@ _TWIST_SD = np.array([1.0, 1.0, 3.0])
 
 
 def _link_weights(dt: Array, process: Process) -> tuple[Array, float]:
-    """Invert the covariance of e for every interval; return it with its log-determinants' sum."""
+    """Return the inverse of cov e for every interval, (n-1, 6, 6), and their summed log det."""
     q = np.array([process.travel, process.travel, process.turn])
     time_part = np.linalg.inv(
         np.array([[dt**3 / 3, dt**2 / 2], [dt**2 / 2, dt]]).transpose(2, 0, 1)
@@ -274,7 +277,7 @@ def _normal_blocks(
 
 
 def _derivative(a: Array, b: Array, dt: Array, side: int) -> Array:
-    """Differentiate `_link_error` with respect to one of its ends, shape (n, 6, 6)."""
+    """Differentiate `_link_error` numerically by a (side 0) or b (side 1), shape (n, 6, 6)."""
     step, columns = 1e-6, []
     for axis in range(6):
         shift = step * np.eye(6)[axis]
@@ -284,7 +287,7 @@ def _derivative(a: Array, b: Array, dt: Array, side: int) -> Array:
 
 
 def _solve_blocks(diagonal: Array, upper: Array, gradient: Array) -> tuple[Array, Array, float]:
-    """Solve a block-tridiagonal system; return solution, diagonal of the inverse, log det."""
+    """Solve a block-tridiagonal system; return solution, diagonal blocks of inverse, log det."""
     n = len(diagonal)
     inverse, carried = np.empty_like(diagonal), gradient.copy()
     log_det = 0.0

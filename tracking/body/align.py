@@ -25,7 +25,7 @@ _HUBER = 1.5
 _FIRST_LOOKS = 5
 
 HOPELESS_SCORE = 0.25
-"""Default of the least correlation after five steps for which an alignment continues [-]."""
+"""Default of the least correlation after five steps of Gauss-Newton to continue them [-]."""
 
 LEAST_VISIBLE = 0.35
 """Default of the least visible share of the template for an alignment [-]."""
@@ -57,10 +57,12 @@ class Alignment:
     """The robot's pose by template alignment, with score and likelihood.
 
     Attributes:
-        pose: Pose of the robot; its misfit is 0, there being no corners.
-        score: Correlation of photograph and template, weighted mean over channels by contrast; if
-            others shine through, after the high-pass filter [-].
-        log_likelihood: Of the colours, up to a constant common to all poses in a photograph.
+        pose: Pose of the robot with covariances; `misfit_px` is 0 and `cost` the effective number
+            of independent colour values.
+        score: Correlation of the colours of photograph and template over all channels, each less
+            its mean; after the high-pass filter if things shine through; 0 of a rough pose [-].
+        log_likelihood: Log likelihood of the photograph's colours, up to a constant common to all
+            poses in a photograph; it compares headings [-].
     """
 
     pose: BodyPose
@@ -74,28 +76,28 @@ def align(
     visible: NDArray[np.bool_] | None = None, least_visible: float = LEAST_VISIBLE,
     least_hope: float = HOPELESS_SCORE, shines_through: bool = False, outlier_sd: float = np.inf,
 ) -> Alignment | None:  # fmt: skip
-    """Align the robot's template with a photograph.
+    """Fit the robot's pose by aligning its template with the colours of a photograph.
 
     Args:
         pixels: The photograph, BGR, shape (height, width, 3).
-        camera: The lens.
+        camera: Camera intrinsics and distortion.
         view: Pose of the camera.
         template: The robot's template.
-        prior: Height and tilt.
+        prior: Prior of the body's height and tilt.
         start: x, y [m] and yaw [rad] to start from, shape (3,).
-        blurs_px: Blurs of the photograph, coarse to fine, each aligned in turn [px].
-        visible: Pixels of the photograph that may show the robot, shape (height, width); the
-            others are left out.
+        blurs_px: Standard deviations of the photograph's blur, coarse to fine; the pose fitted at
+            one starts the fit at the next [px].
+        visible: True at pixels of the photograph to use, shape (height, width); None for all.
         least_visible: Least share of the template that must be visible [-].
         least_hope: Least correlation after five steps for which the iteration continues [-].
-        shines_through: Whether the floor or other exposures are seen through the robot: variation
+        shines_through: Whether floor or other exposures are visible through the robot: variation
             over more than `SLOW` of the template is then filtered out.
         outlier_sd: Points that differ by more standard deviations in any colour are outliers and
             left out of the fit, but not of the score [-].
 
     Returns:
-        The alignment, or None where the robot leaves the photograph, little of it is visible or
-        its correlation stays too small.
+        The alignment at the last blur; None where the robot leaves the photograph, less than
+        `least_visible` or 60 points are visible, or the correlation stays below `least_hope`.
     """
     state = np.array([start[0], start[1], prior.height, 0.0, 0.0, start[2]])
     solution = None
@@ -138,7 +140,7 @@ class _Job:
         prior: BodyPrior, state: Array, blur: float, visible: NDArray[np.bool_] | None,
         least_visible: float, shines_through: bool, outlier_sd: float,
     ) -> "_Job | None":  # fmt: skip
-        """Crop, blur and differentiate the photograph around the robot."""
+        """Crop, blur and differentiate the photograph around a pose; None if too little is left."""
         points = template.points_body.reshape(-1, 3)
         seen, _, _ = project_with_derivatives(camera, view, _world(points, state))
         reach = 6 + 4 * blur
@@ -177,7 +179,7 @@ class _Job:
         )
 
     def solve(self, state: Array, least_hope: float) -> Alignment | None:
-        """Iterate Gauss-Newton with Huber's weights."""
+        """Fit pose and template scale by Gauss-Newton with Huber's weights and the prior."""
         prior = self.prior
         sd = [np.inf, np.inf, prior.height_sd, prior.tilt_sd, prior.tilt_sd, np.inf, SCALE_SD]
         held = np.array(sd) ** -2.0
@@ -225,7 +227,7 @@ class _Job:
         return Alignment(pose, score, log_likelihood)
 
     def _used(self, seen: Array) -> NDArray[np.bool_]:
-        """Compute the mask of points in the window and not hidden, by pixels of shape (n, 2)."""
+        """Mask the points in the window and not hidden, from their pixels of shape (n, 2)."""
         inside = seen - self.origin
         height, width = self.picture.shape[:2]
         used = np.all((inside >= 0) & (inside <= [width - 1, height - 1]), axis=1)
@@ -234,12 +236,15 @@ class _Job:
         return used
 
     def _slopes_at(self, seen: Array) -> Array:
-        """Interpolate the gradients of the colours at pixels, shape (n, 3, 2)."""
+        """Interpolate the photograph's gradients at pixels (n, 2), shape (n, 3 colours, 2)."""
         along = sample(self.slopes, seen - self.origin)
         return np.stack((along[:, :3], along[:, 3:]), axis=2).astype(float)
 
     def _look(self, state: Array) -> tuple[Array, Array, Array, Array, float] | None:
-        """Compute residual (n, 3), Jacobian (n, 3, 7), weights, noise (3,) and score."""
+        """Compute residual (n, 3), Jacobian (n, 3, 7), weights (n, 3), noise (3,) and score.
+
+        None where fewer than 60 points or less than the least share are visible.
+        """
         seen, by_point, _ = project_with_derivatives(
             self.camera, self.view, _world(self.points, state)
         )
@@ -272,7 +277,7 @@ class _Job:
 
 
 def _without_slow(field: Array, used: NDArray[np.bool_], raster: tuple[int, int]) -> Array:
-    """High-pass filter a field on the raster; return values at its used points, shape (n, ...)."""
+    """High-pass filter values (n, ...) given at the used points of a raster; return the same."""
     width = SLOW * raster[0]
     layers = np.zeros((*raster, 1 + field[0].size))
     layers[used.reshape(raster)] = np.column_stack(
@@ -298,7 +303,7 @@ def _least_covariance(template: BodyTemplate, density: float) -> Array:
 
 
 def _world(points: Array, state: Array) -> Array:
-    """Transform points of the body by a pose, shape (6,), or a pose and a scale, shape (7,)."""
+    """Transform points body to world by a pose (6,), or a pose and relative scale error (7,)."""
     R, _ = rotation_with_derivatives(*state[3:6])
     growth = state[6] if len(state) > 6 else 0.0
     middle = points.mean(axis=0)
@@ -306,7 +311,7 @@ def _world(points: Array, state: Array) -> Array:
 
 
 def _relit(colours: Array, values: Array) -> Array:
-    """Fit gain and offset of the template's colours to the photograph."""
+    """Return the template's colours with the gain and offset that fit the photograph's, (n, 3)."""
     a, b = colours - colours.mean(axis=0), values - values.mean(axis=0)
     power, cross = (a * a).sum(axis=0), (a * b).sum(axis=0)
     gain = np.clip(cross / np.maximum(power, 1e-9), 0.0, 4.0)
@@ -314,6 +319,6 @@ def _relit(colours: Array, values: Array) -> Array:
 
 
 def _likeness(colours: Array, values: Array) -> float:
-    """Compute the correlation of template and photograph."""
+    """Compute the correlation of two sets of colours (n, 3), pooled over the channels [-]."""
     a, b = colours - colours.mean(axis=0), values - values.mean(axis=0)
     return float((a * b).sum() / np.sqrt(max((a * a).sum() * (b * b).sum(), 1e-9)))

@@ -18,7 +18,7 @@ from tracking.camera.lens import Array
 from tracking.errors import AmbiguousHeading
 
 LEAST_LOG_ODDS = 7.0
-"""Least log odds of the chosen chain to the reversed one: a thousand to one."""
+"""Least log odds of the chosen headings to the exchanged ones: a thousand to one [-]."""
 
 _TURN_SD = 0.5
 _MOST_EVIDENCE = 6.0
@@ -28,19 +28,19 @@ _TRAVEL_EVIDENCE = 6.0
 def resolve_headings(
     candidates: Sequence[BodyCandidates], *, length: float, walks_ahead: bool = True
 ) -> tuple[Alignment, ...]:
-    """Choose the heading in every photograph by the most likely sequence.
+    """Choose the robot's heading in every photograph by the most likely sequence (Viterbi).
 
     Args:
-        candidates: The robot in each photograph, in order of time.
-        length: Length of the robot; shorter moves than a quarter of it give no direction [m].
+        candidates: Alignments of the robot in each photograph, in order of time.
+        length: Length of the robot; moves shorter than a quarter of it give no direction [m].
         walks_ahead: Whether the robot is known to walk head first, on the whole.
 
     Returns:
-        One alignment for each photograph.
+        One alignment for each photograph; empty without candidates.
 
     Raises:
-        AmbiguousHeading: When the best sequence of headings is not a thousand times
-            likelier than the same sequence reversed.
+        AmbiguousHeading: When the best sequence of headings is less than about a thousand times
+            (`LEAST_LOG_ODDS`) likelier than the best with head and tail exchanged throughout.
     """
     options = [candidate.options for candidate in candidates]
     # Bounded: shadows and glare can make one photograph overconfident.
@@ -62,7 +62,7 @@ def resolve_headings(
 
 
 def _link(before: Alignment, after: Alignment, length: float, walks_ahead: bool) -> float:
-    """Compute the log score of one heading after another."""
+    """Compute the log score of two successive alignments from turn and direction of the move."""
     a, b = before.pose.planar, after.pose.planar
     turn = float(np.angle(np.exp(1j * (b[2] - a[2]))))
     score = -0.5 * min((turn / _TURN_SD) ** 2, 20.0)
@@ -76,7 +76,7 @@ def _link(before: Alignment, after: Alignment, length: float, walks_ahead: bool)
 
 
 def _likeliest(scores: Sequence[Array], links: Sequence[Array]) -> tuple[list[int], float]:
-    """Find the chain of options with the greatest sum of scores (Viterbi)."""
+    """Return the index of each photograph's option in the best chain, and its total score."""
     if not scores:
         return [], 0.0
     total, came = scores[0], []
@@ -94,7 +94,7 @@ def _score_reversed(
     options: Sequence[Sequence[Alignment]], choice: Sequence[int], scores: Sequence[Array],
     links: Sequence[Array],
 ) -> float:  # fmt: skip
-    """Compute the score of the best chain with head and tail exchanged in every photograph."""
+    """Compute the best total score with head and tail exchanged in every photograph."""
     against = []
     for ways, k, own in zip(options, choice, scores, strict=True):
         yaw = ways[k].pose.state[5]

@@ -13,13 +13,13 @@ from tracking.camera.lens import Array, Camera, CameraPose, project
 
 @dataclass(frozen=True)
 class Plane:
-    """A raster on a level plane, x to the right and y up, as seen from above.
+    """A raster on a level plane and its pixels in a photograph; row 0 at the highest y.
 
     Attributes:
         low: Lowest x and y, shape (2,) [m].
         high: Highest x and y, shape (2,) [m].
         cell: Distance between neighbouring points [m].
-        seen_px: Where the points are in the photograph, shape (rows, columns, 2) [px].
+        seen_px: Pixels of the points in the photograph, shape (rows, columns, 2) [px].
     """
 
     low: Array
@@ -32,10 +32,10 @@ class Plane:
         cls, camera: Camera, view: CameraPose, *, height: float, low: Array, high: Array,
         cell: float,
     ) -> "Plane":  # fmt: skip
-        """Make a raster over a level rectangle and project it into the photograph.
+        """Build a raster over a level rectangle and project it into the photograph.
 
         Args:
-            camera: The lens.
+            camera: Camera intrinsics and distortion.
             view: Pose of the camera.
             height: Height of the plane over the floor [m].
             low: Lowest x and y, shape (2,) [m].
@@ -48,11 +48,15 @@ class Plane:
         return cls(low, high, cell, seen)
 
     def read(self, pixels: NDArray) -> NDArray[np.float32]:
-        """Interpolate a photograph at the raster's points, 0 outside, (rows, columns, ...)."""
+        """Interpolate a photograph (height, width, ...) at the raster's points; 0 outside it.
+
+        Returns:
+            Values, shape (rows, columns, ...).
+        """
         return sample(pixels, self.seen_px)
 
     def read_smooth(self, pixels: NDArray[np.uint8]) -> NDArray[np.float32]:
-        """Interpolate a photograph after a blur of a cell's size, against aliasing."""
+        """Interpolate a photograph as `read` does, after a blur of 0.4 cells against aliasing."""
         spacing = float(np.median(np.linalg.norm(np.diff(self.seen_px, axis=1), axis=2)))
         # The blur loses nothing of the far floor, where pixels are larger than cells.
         return self.read(np.asarray(cv2.GaussianBlur(pixels, (0, 0), max(0.4 * spacing, 0.3))))
@@ -61,17 +65,17 @@ class Plane:
         """Compute x and y of a point of the raster, shape (2,) [m].
 
         Args:
-            row: Row of the point.
-            column: Column of the point.
+            row: Row of the point, may be fractional.
+            column: Column of the point, may be fractional.
         """
         return np.array([self.low[0] + column * self.cell, self.high[1] - row * self.cell])
 
     def part(self, rows: slice, columns: slice) -> "Plane":
-        """Crop the raster.
+        """Return the raster cropped to some rows and columns.
 
         Args:
-            rows: Rows to keep.
-            columns: Columns to keep.
+            rows: Rows to keep, with start and stop.
+            columns: Columns to keep, with start and stop.
         """
         low = (self.low[0] + columns.start * self.cell, self.high[1] - rows.stop * self.cell)
         high = (self.low[0] + columns.stop * self.cell, self.high[1] - rows.start * self.cell)

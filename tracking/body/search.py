@@ -42,12 +42,12 @@ class BodyCandidates:
 
     @property
     def best(self) -> Alignment:
-        """The likeliest alignment."""
+        """The alignment of greatest likelihood, first in `options`."""
         return self.options[0]
 
     @property
     def evidence(self) -> Array:
-        """Log likelihood of each option relative to the best, shape (options,), 0 and below."""
+        """Log likelihood of each option minus that of the best, shape (options,), at most 0."""
         likelihood = np.array([option.log_likelihood for option in self.options])
         return likelihood - likelihood[0]
 
@@ -61,16 +61,17 @@ def find_body(
 
     Args:
         pixels: The photograph, BGR, shape (height, width, 3).
-        camera: The lens.
+        camera: Camera intrinsics and distortion.
         view: Pose of the camera.
         template: Template of the robot.
-        prior: Height and tilt.
-        near: x and y near which to look [m]; the whole photograph when None.
-        reach: How far from there [m].
-        visible: Pixels that may show the robot, shape (height, width).
+        prior: Prior of the body's height and tilt.
+        near: x and y of the middle of the square to search [m]; None for the whole photograph.
+        reach: Half the side of that square [m].
+        visible: True at pixels that may show the robot, shape (height, width); None for all.
 
     Returns:
-        The best place with all accepted headings there, or None where no match is accepted.
+        Alignments at the place of highest score, with all headings that align there; None where
+        no alignment reaches `ACCEPTED_SCORE`.
     """
     height = prior.height + template.plate.height
     area = floor_in_view(camera, view, height, near, reach)
@@ -123,14 +124,15 @@ def floor_in_view(
     """Compute the bounding rectangle of the part of a level plane that the camera sees.
 
     Args:
-        camera: The lens.
+        camera: Camera intrinsics and distortion.
         view: Pose of the camera.
         height: Height of the plane over the floor [m].
         near: x and y of the middle of a square that limits the rectangle; None for no limit [m].
-        reach: How far from there [m].
+        reach: Half the side of that square [m].
 
     Returns:
-        Lowest and highest x, y, each of shape (2,) [m].
+        Lowest and highest x, y, each of shape (2,) [m], of the plane within three camera heights
+        of the camera.
     """
     width, rows = camera.size
     edge = np.array(
@@ -154,16 +156,17 @@ def match_turned(
     """Match the template at a set of headings on the rectified photograph.
 
     Args:
-        pixels: The photograph, BGR.
-        camera: The lens.
+        pixels: The photograph, BGR, shape (height, width, 3).
+        camera: Camera intrinsics and distortion.
         view: Pose of the camera.
         template: Template of the robot.
-        height: Height of its top over the floor [m].
-        area: Lowest and highest x, y to look at, each of shape (2,) [m].
-        most: How many places to return.
+        height: Height of the robot's top over the floor [m].
+        area: Lowest and highest x, y to search, each of shape (2,) [m].
+        most: Largest number of poses to return.
 
     Returns:
-        x, y, yaw of the robot at the best places, apart from each other, best first.
+        x, y [m] and yaw [rad] of the robot, shape (3,) each, at matches of at least `LEAST_MATCH`
+        that differ in place or heading, best first.
     """
     cell = template.plate.length / _CELLS
     rear, front, right, left = template.plate.extent
@@ -195,8 +198,8 @@ def correlations(
         turns: Number of headings.
 
     Yields:
-        Heading [rad] and correlations, shape (m, n) [-]; nothing where the picture is smaller than
-        the template.
+        Heading [rad] and correlations by row and column of the rotated template's corner, shape
+        (m, n), -1 where undefined [-]; nothing where the picture is smaller than the template.
     """
     for yaw in np.arange(turns) * 2 * np.pi / turns:
         turned, mask = (
@@ -210,13 +213,13 @@ def correlations(
 
 
 def pose_of_match(template: BodyTemplate, plane: Plane, row: int, column: int, yaw: float) -> Array:
-    """Compute the pose of the robot whose template matches at a heading.
+    """Compute the robot's pose from row and column of a template match at a heading.
 
     Args:
         template: Template of the robot.
         plane: Raster of the rectified photograph.
-        row: Row of the correlation.
-        column: Column of the correlation.
+        row: Row in the correlations.
+        column: Column in the correlations.
         yaw: Heading of the template [rad].
 
     Returns:
@@ -250,10 +253,11 @@ def turned_template(
     Args:
         template: Template of the robot, its front up.
         cell: Size of a pixel [m].
-        yaw: Heading, 0 to the right [rad].
+        yaw: Heading, 0 to the right, counter-clockwise [rad].
 
     Returns:
-        Colours, shape (n, n, 3), centred on the robot's middle, and a mask of the same shape.
+        Colours, shape (n, n, 3), centred on the template's middle, and a mask of the same shape, 1
+        on the template, else 0.
     """
     small = _shrunk(template, cell)
     rows, columns = small.shape[:2]

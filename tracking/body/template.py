@@ -13,7 +13,7 @@ from tracking.markers import marker_picture
 from tracking.pose import BodyPose, RobotMarker, rotation_with_derivatives
 
 MOST_POINTS = 2500
-"""Default of the largest number of points in a template, about."""
+"""Default of the approximate largest number of points in a template."""
 
 
 @dataclass(frozen=True)
@@ -24,9 +24,11 @@ class TopPlate:
         length: Extent along the body's x [m].
         width: Extent along the body's y [m].
         height: Height over the body's origin [m].
-        centre_x: Place of its middle in the body frame [m].
-        margin: Width around it that belongs to the template, so that its edges are inside [m].
-        front_margin: The same ahead of it, where a nose may distinguish head from tail [m].
+        centre_x: x of the plate's middle in the body frame; y is 0 [m].
+        margin: Width at the rear and sides of the plate that is added to the template, so that
+            the plate's edges are inside [m].
+        front_margin: Width ahead of the plate that is added to the template, where a nose may
+            distinguish head from tail [m].
     """
 
     length: float
@@ -44,14 +46,14 @@ class TopPlate:
 
     @property
     def corners_body(self) -> Array:
-        """Front left, front right, rear right, rear left in the body frame, shape (4, 3) [m]."""
+        """Corners front left, front right, rear right, rear left in the body frame, (4, 3) [m]."""
         x, y = self.length / 2, self.width / 2
         flat = np.add([[x, y], [x, -y], [-x, -y], [-x, y]], [self.centre_x, 0.0])
         return np.column_stack((flat, np.full(4, self.height)))
 
     @property
     def extent(self) -> tuple[float, float, float, float]:
-        """Rear, front, right and left end of the picture in the body frame [m]."""
+        """Rear and front x, right and left y of plate with margins in the body frame [m]."""
         rear = self.centre_x - self.length / 2 - self.margin
         front = self.centre_x + self.length / 2 + self.front_margin
         side = self.width / 2 + self.margin
@@ -63,12 +65,12 @@ class BodyTemplate:
     """Template of the robot's top, on a raster in the body frame.
 
     Attributes:
-        plate: Its top plate.
+        plate: The robot's top plate.
         step: Distance between neighbouring points [m].
-        points_body: Places in the body frame, rows from the front to the rear and in each from
-            left to right, as seen from above with the head up, shape (rows, columns, 3) [m].
-        colours: BGR at these places, shape (rows, columns, 3).
-        drawn: Whether it is computed, and not cut out of a photograph.
+        points_body: Points in the body frame, rows from front to rear and columns from left to
+            right, as seen from above with the head up, shape (rows, columns, 3) [m].
+        colours: BGR at these points, shape (rows, columns, 3) [grey levels].
+        drawn: Whether the colours are computed, not cut out of a photograph.
     """
 
     plate: TopPlate
@@ -79,19 +81,19 @@ class BodyTemplate:
 
     @property
     def contrast(self) -> float:
-        """Standard deviation of the colours, mean over channels [grey levels]."""
+        """Standard deviation of the colours over all points, mean of the channels [grey levels]."""
         return float(self.colours.std(axis=(0, 1)).mean())
 
 
 def sample(pixels: NDArray, corners_px: Array) -> NDArray[np.float32]:
-    """Interpolate a picture between its pixels, bilinearly.
+    """Interpolate a picture bilinearly at given pixel coordinates.
 
     Args:
-        pixels: Shape (height, width) or (height, width, channels).
-        corners_px: Places, shape (..., 2) [px].
+        pixels: The picture, shape (height, width) or (height, width, channels).
+        corners_px: Column and row of the places, shape (..., 2) [px].
 
     Returns:
-        Values, shape (...) or (..., channels); 0 outside.
+        Values, shape (...) or (..., channels); 0 outside the picture.
     """
     shape = corners_px.shape[:-1]
     flat = corners_px.reshape(-1, 1, 2).astype(np.float32)
@@ -105,10 +107,10 @@ def sample(pixels: NDArray, corners_px: Array) -> NDArray[np.float32]:
 
 
 def pixel_on_top(camera: Camera, view: CameraPose, *, pose: BodyPose, plate: TopPlate) -> float:
-    """Compute the size of a photograph's pixel on the robot's top, as a square's side [m].
+    """Compute the mean size of a photograph's pixel on the robot's top, as a square's side [m].
 
     Args:
-        camera: The lens.
+        camera: Camera intrinsics and distortion.
         view: Pose of the camera.
         pose: Pose of the robot.
         plate: The robot's top.
@@ -125,17 +127,18 @@ def make_template(
 
     Args:
         pixels: The photograph, BGR, shape (height, width, 3).
-        camera: The lens.
+        camera: Camera intrinsics and distortion.
         view: Pose of the camera.
-        pose: Where the robot is: `tracking.pose.fit_pose` to clicks on `plate.corners_body`.
+        pose: Pose of the robot: `tracking.pose.fit_pose` to clicks on `plate.corners_body`.
         plate: The robot's top.
-        most_points: Largest number of points, about; more pixels are sampled more coarsely.
+        most_points: Approximate largest number of points; a larger top is sampled more coarsely.
 
     Returns:
         The template, with one point for each pixel of the photograph, or fewer.
 
     Raises:
-        BodyError: When the robot is cut by the photograph's edge, too small or without contrast.
+        BodyError: When the plate is cut by the photograph's edge, is shorter than 16 points, or
+            the colours' standard deviation is below 4 grey levels.
     """
     R, _ = rotation_with_derivatives(*pose.state[3:])
     corners_px = _corners_px(camera, view, pose, plate)
@@ -160,14 +163,14 @@ def make_template(
 
 
 def marker_template(marker: RobotMarker, *, points: int = 36) -> BodyTemplate:
-    """Draw the template of the robot's marker; it needs no photograph.
+    """Draw the template of the robot's marker, without a photograph.
 
     Args:
         marker: The marker on the robot's back.
-        points: Points across the marker with its white margin.
+        points: Points along each side of the template: the marker with half its white margin.
 
     Returns:
-        Its picture, black and white, in the robot's body frame.
+        The marker's picture in the body frame, grey level 20 for black and 235 for white.
     """
     picture = marker_picture(marker.dictionary, marker.marker_id, 16)
     cells = picture.shape[0] // 16 - 2

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The camera: lens model, pose, and calibration of the lens."""
+"""Camera model with lens distortion, camera pose, and calibration from pictures of a board."""
 
 from tracking.camera.boards import Board, CharucoBoard, Checkerboard, SeenBoard, find_board
 from tracking.camera.calibration import CameraCalibration, calibrate

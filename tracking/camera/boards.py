@@ -17,8 +17,8 @@ class Checkerboard:
     """A plain checkerboard.
 
     Attributes:
-        columns: Inner corners along a row.
-        rows: Inner corners along a column.
+        columns: Number of inner corners along a row (squares minus 1).
+        rows: Number of inner corners along a column (squares minus 1).
         square: Side of a square [m].
     """
 
@@ -29,11 +29,11 @@ class Checkerboard:
 
 @dataclass(frozen=True)
 class CharucoBoard:
-    """A checkerboard with a marker in every white square; it may be seen in part.
+    """A checkerboard with a marker in every white square; part of it in a picture suffices.
 
     Attributes:
-        columns: Squares along a row.
-        rows: Squares along a column.
+        columns: Number of squares along a row.
+        rows: Number of squares along a column.
         square: Side of a square [m].
         marker: Side of a marker [m].
         dictionary: Name of the markers' dictionary, such as "4x4_50".
@@ -53,12 +53,12 @@ Board: TypeAlias = Checkerboard | CharucoBoard
 
 @dataclass(frozen=True)
 class SeenBoard:
-    """The corners of a board that one picture shows.
+    """Corners of a calibration board detected in one picture.
 
     Attributes:
         name: Name of the picture.
-        points: Corners on the board, shape (n, 3), z = 0 [m].
-        corners_px: The same corners in the picture, shape (n, 2) [px].
+        points: Positions of the inner corners on the board, shape (n, 3), z = 0 [m].
+        corners_px: Pixels of the same corners in the picture, shape (n, 2) [px].
     """
 
     name: str
@@ -67,7 +67,7 @@ class SeenBoard:
 
 
 def find_board(pixels: NDArray[np.uint8], board: Board, *, name: str = "") -> SeenBoard | None:
-    """Find a calibration board's corners with subpixel accuracy.
+    """Detect a calibration board's inner corners with subpixel accuracy.
 
     Args:
         pixels: The picture, grey or BGR, shape (height, width) or (height, width, 3).
@@ -75,7 +75,8 @@ def find_board(pixels: NDArray[np.uint8], board: Board, *, name: str = "") -> Se
         name: Name of the picture, for the report.
 
     Returns:
-        The corners seen, or None where the board is not found.
+        The corners detected; None where a checkerboard is not detected whole, or fewer than 6
+        corners of a ChArUco board are.
     """
     grey = cv2.cvtColor(pixels, cv2.COLOR_BGR2GRAY) if pixels.ndim == 3 else pixels
     if isinstance(board, Checkerboard):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Calibrate a lens from pictures of a board, with standard deviations of its parameters."""
+"""Calibrate a camera from pictures of a board, with standard deviations of its parameters."""
 
 import math
 from collections.abc import Sequence
@@ -19,7 +19,7 @@ LENS_MODELS = {
     "k1-k2": cv2.CALIB_FIX_K3 | cv2.CALIB_ZERO_TANGENT_DIST,
     "full": 0,
 }
-"""Lens distortions by name, in order of complexity, as OpenCV's flags."""
+"""Flags of OpenCV's calibration by name of the distortion model, simplest first."""
 
 _FREE_TERMS = {"none": 0, "k1": 1, "k1-k2": 2, "full": 5}
 _GRID = (8, 6)
@@ -27,18 +27,19 @@ _GRID = (8, 6)
 
 @dataclass(frozen=True)
 class CameraCalibration:
-    """A calibrated lens with standard deviations, residuals and coverage.
+    """A calibrated camera with standard deviations, residuals and coverage.
 
     Attributes:
-        camera: The lens.
-        lens_model: Which distortion was fitted, a key of `LENS_MODELS`.
+        camera: Camera intrinsics and distortion.
+        lens_model: Distortion model that was fitted, a key of `LENS_MODELS`.
         sd: Standard deviations of fx, fy, cx, cy [px], k1, k2, p1, p2, k3 [-], shape (9,); zero
             where a term was not fitted.
-        rms: Root mean square distance between corners seen and predicted [px].
+        rms: Root mean square distance between corners detected and predicted [px].
         view_names: Names of the pictures used.
-        view_rms: The same distance in each picture, shape (views,) [px].
-        coverage: Share of the cells of an 8 x 6 grid over the picture in which a corner was seen.
-        seen: That grid, number of corners in each cell, shape (6, 8), first row on top.
+        view_rms: Root mean square distance in each picture, shape (views,) [px].
+        coverage: Share of the cells of `seen` with at least one corner, 0 to 1 [-].
+        seen: Number of corners, of all pictures, in each cell of a grid over the picture, 8
+            columns and 6 rows, shape (6, 8), first row on top.
     """
 
     camera: Camera
@@ -52,14 +53,14 @@ class CameraCalibration:
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """Warnings for the user, one sentence each."""
+        """Warnings, one sentence each: low coverage, few pictures, pictures of large residual."""
         return tuple(_warnings(self))
 
 
 def calibrate(
     views: Sequence[SeenBoard], size: tuple[int, int], *, lens_model: str = "auto"
 ) -> CameraCalibration:
-    """Calibrate a lens by least squares on the corners of a board in several pictures.
+    """Calibrate a camera by least squares on the corners of a board in several pictures.
 
     Args:
         views: Corners of one board in several pictures, tilted differently.
@@ -68,10 +69,11 @@ def calibrate(
             criterion (BIC), against overfitting of the distortion.
 
     Returns:
-        The lens, its standard deviations, residuals and coverage.
+        Camera intrinsics and distortion, their standard deviations, residuals and coverage.
 
     Raises:
-        CalibrationError: When the views are too few or do not determine the lens.
+        CalibrationError: When there are fewer than 3 views, `lens_model` is unknown, OpenCV fails,
+            or the standard deviation of the focal length is 5 % of it or more.
     """
     if len(views) < 3:
         raise CalibrationError(

@@ -31,13 +31,13 @@ class Camera:
     distortion: Array
 
     def scaled(self, size: tuple[int, int]) -> "Camera":
-        """Return the same lens for pictures of another size, scaled as a whole.
+        """Return the camera for the same pictures scaled to another size.
 
         Args:
-            size: Width and height of the other pictures [px].
+            size: Width and height of the scaled pictures [px].
 
         Raises:
-            ValueError: When the other pictures have another aspect ratio, hence were cropped.
+            ValueError: When the aspect ratio differs (by more than 1 px), as of cropped pictures.
         """
         ratio = size[0] / self.size[0]
         if abs(size[1] / self.size[1] - ratio) * self.size[1] > 1.0:
@@ -56,10 +56,13 @@ class Camera:
 class CameraPose:
     """Pose of the camera: X_camera = R X_world + t, OpenCV's axes (x right, y down, z ahead).
 
+    World is the floor frame.
+
     Attributes:
         rotation_vector: R as axis times angle, shape (3,) [rad].
         translation: t, shape (3,) [m].
-        covariance: Of rotation vector and translation, shape (6, 6) [rad, m]; zeros when known.
+        covariance: Covariance of rotation vector [rad] and translation [m], shape (6, 6); zeros
+            for a pose taken as exact.
     """
 
     rotation_vector: Array
@@ -68,17 +71,17 @@ class CameraPose:
 
     @property
     def rotation(self) -> Array:
-        """R, world to camera, shape (3, 3) [-]."""
+        """Rotation matrix R, world to camera, shape (3, 3) [-]."""
         return np.asarray(cv2.Rodrigues(self.rotation_vector)[0], dtype=float)
 
     @property
     def position(self) -> Array:
-        """Position of the camera in the world, shape (3,) [m]."""
+        """Position of the camera's centre in the floor frame, shape (3,) [m]."""
         return -self.rotation.T @ self.translation
 
     @classmethod
     def from_matrix(cls, rotation: ArrayLike, translation: ArrayLike) -> "CameraPose":
-        """Make a camera pose without uncertainty from a rotation matrix.
+        """Build a camera pose of zero covariance from a rotation matrix and a translation.
 
         Args:
             rotation: R, world to camera, shape (3, 3) [-].
@@ -89,11 +92,11 @@ class CameraPose:
 
 
 def project(camera: Camera, pose: CameraPose, points_world: ArrayLike) -> Array:
-    """Project points of the world into the picture.
+    """Project points of the floor frame to pixels of the picture.
 
     Args:
-        camera: The lens.
-        pose: Where it stands.
+        camera: Camera intrinsics and distortion.
+        pose: Pose of the camera.
         points_world: Points, shape (n, 3) [m].
 
     Returns:
@@ -109,11 +112,11 @@ def project(camera: Camera, pose: CameraPose, points_world: ArrayLike) -> Array:
 def project_with_derivatives(
     camera: Camera, pose: CameraPose, points_world: ArrayLike
 ) -> tuple[Array, Array, Array]:
-    """Project points, with the Jacobians with respect to the points and the camera's pose.
+    """Project points to pixels; compute the Jacobians by the points and by the camera's pose.
 
     Args:
-        camera: The lens.
-        pose: Where it stands.
+        camera: Camera intrinsics and distortion.
+        pose: Pose of the camera.
         points_world: Points, shape (n, 3) [m].
 
     Returns:
@@ -132,10 +135,10 @@ def project_with_derivatives(
 
 
 def undistort(camera: Camera, corners_px: ArrayLike) -> Array:
-    """Compute the pixels that a lens without distortion would have given, shape (n, 2) [px].
+    """Remove lens distortion from pixel coordinates; return shape (n, 2) [px].
 
     Args:
-        camera: The lens.
+        camera: Camera intrinsics and distortion.
         corners_px: Pixels of the photograph, shape (n, 2) [px].
     """
     pixels = np.ascontiguousarray(corners_px, dtype=float).reshape(-1, 1, 2)
@@ -144,15 +147,15 @@ def undistort(camera: Camera, corners_px: ArrayLike) -> Array:
 
 
 def rays(camera: Camera, pose: CameraPose, corners_px: ArrayLike) -> Array:
-    """Compute the viewing directions of pixels in the world.
+    """Compute the viewing directions of pixels in the floor frame.
 
     Args:
-        camera: The lens.
-        pose: Where it stands.
+        camera: Camera intrinsics and distortion.
+        pose: Pose of the camera.
         corners_px: Pixels, shape (n, 2) [px].
 
     Returns:
-        Unit vectors in the world, shape (n, 3) [-].
+        Unit vectors from the camera in the floor frame, shape (n, 3) [-].
     """
     straight = undistort(camera, corners_px)
     ahead = np.column_stack((straight, np.ones(len(straight)))) @ np.linalg.inv(camera.matrix).T
@@ -164,13 +167,14 @@ def to_floor(camera: Camera, pose: CameraPose, corners_px: ArrayLike, height: fl
     """Intersect the rays of pixels with a horizontal plane.
 
     Args:
-        camera: The lens.
-        pose: Where it stands.
+        camera: Camera intrinsics and distortion.
+        pose: Pose of the camera.
         corners_px: Pixels, shape (n, 2) [px].
         height: Height of the plane over the floor [m].
 
     Returns:
-        x and y in the world, shape (n, 2) [m]; NaN for pixels that look above the horizon.
+        x and y in the floor frame, shape (n, 2) [m]; NaN where the ray does not reach the plane,
+        as above the horizon.
     """
     directions = rays(camera, pose, corners_px)
     eye = pose.position

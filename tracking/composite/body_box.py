@@ -14,14 +14,14 @@ from tracking.pose import rotation_with_derivatives
 
 @dataclass(frozen=True)
 class BodyBox:
-    """A box as long and wide as the robot, from its top to as far below its origin.
+    """A box as long and wide as the robot, from its top to as far below the body's origin.
 
     Attributes:
-        camera: The lens.
+        camera: Camera intrinsics and distortion.
         view: Pose of the camera.
-        size: Length and width [m].
-        top: Height of the robot's top over its origin [m].
-        height: Height of its origin over the floor where it stands level [m].
+        size: Length and width of the robot's body [m].
+        top: Height of the robot's top over the body's origin [m].
+        height: Height of the body's origin over the floor, of a level robot [m].
     """
 
     camera: Camera
@@ -36,33 +36,33 @@ class BodyBox:
         return abs(self.size[0] - self.size[1]) < 0.2 * max(self.size)
 
     def hidden(self, state: Array, *, left: float) -> NDArray[np.bool_]:
-        """Compute the mask of the pixels of a photograph that it occludes.
+        """Compute the mask of the pixels of a photograph that the box occludes.
 
         Args:
-            state: Pose, shape (6,).
-            left: Margin of background that a cut-out keeps around it, as a share of its length [-].
+            state: Pose of the robot as `BodyPose.state`, shape (6,).
+            left: Margin of background added around the box, in lengths of the robot [-].
 
         Returns:
-            True where it occludes, shape (height, width).
+            True where the box occludes, shape (height, width).
         """
         width, height = self.camera.size
         return _filled(self._outline(state, self._corners(left)), (height, width))
 
     def top_seen(self, state: Array) -> NDArray[np.bool_]:
-        """Compute the mask of the pixels of its top, shape (height, width)."""
+        """Compute the mask of the pixels of the box's top at a pose (6,), (height, width)."""
         width, height = self.camera.size
         return _filled(self._outline(state, self._corners(0.0)[1::2]), (height, width))
 
     def hidden_on(self, plane: Plane, pose: Array, *, left: float) -> NDArray[np.bool_]:
-        """Compute the mask of the points of a plane at its top that the level box occludes.
+        """Compute the mask of the points of the top's plane that the level box occludes.
 
         Args:
             plane: Raster on the plane of the robot's top.
             pose: x, y [m] and yaw [rad] of the robot, shape (3,).
-            left: Margin of background that a cut-out keeps around it, as a share of its length [-].
+            left: Margin of background added around the box, in lengths of the robot [-].
 
         Returns:
-            True where it occludes, shape (rows, columns).
+            True where the box occludes, shape (rows, columns).
         """
         state = np.array([pose[0], pose[1], self.height, 0.0, 0.0, pose[2]])
         seen = self._outline(state, self._corners(left))

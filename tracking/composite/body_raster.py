@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A raster on the robot's top, to sample a picture at a pose and to draw the robot there."""
+"""Raster on the robot's top, to interpolate a picture at a pose and to draw the robot there."""
 
 from dataclasses import dataclass
 
@@ -19,10 +19,10 @@ class BodyRaster:
 
     Attributes:
         plane: Raster of the plane on which the robot is drawn and sampled.
-        x: Ahead of the body's middle, shape (rows, columns) [m].
-        y: To its left, shape (rows, columns) [m].
+        x: Distance of each point ahead of the body's middle, shape (rows, columns) [m].
+        y: Distance of each point left of the body's middle, shape (rows, columns) [m].
         cell: Distance between neighbouring points [m].
-        margin: Rows and columns on each side that are around the body.
+        margin: Number of rows and columns on each side that lie around the body, not on it.
     """
 
     plane: Plane
@@ -33,12 +33,12 @@ class BodyRaster:
 
     @classmethod
     def over(cls, plane: Plane, size: tuple[float, float], margin: int = 0) -> "BodyRaster":
-        """Make a raster, as fine as that of a plane, that covers a body and a margin around it.
+        """Build a raster, as fine as that of a plane, that covers a body and a margin around it.
 
         Args:
-            plane: The plane.
+            plane: Raster of the plane, whose cell is taken.
             size: Length and width of the body [m].
-            margin: Rows and columns of cells to add on each side.
+            margin: Number of rows and columns to add on each side.
         """
         cell = plane.cell
         rows, columns = (round(side / cell) + 2 * margin for side in size)
@@ -49,16 +49,16 @@ class BodyRaster:
 
     @property
     def body(self) -> Window:
-        """Rows and columns on the body itself."""
+        """Slices of the rows and columns on the body, without the margin."""
         rows, columns = self.x.shape
         return slice(self.margin, rows - self.margin), slice(self.margin, columns - self.margin)
 
     def thinned(self) -> "BodyRaster":
-        """Return a raster of every second point in both directions."""
+        """Return a raster of every second point in both directions, without a margin."""
         return BodyRaster(self.plane, self.x[1::2, 1::2], self.y[1::2, 1::2], 2 * self.cell)
 
     def template(self, values: NDArray[np.float32], height: float) -> BodyTemplate:
-        """Make the template of a flat top from its colours.
+        """Build the template of a flat top, the size of the body, from its colours.
 
         Args:
             values: Colours on the whole raster, shape (rows, columns, 3); those around the body are
@@ -116,14 +116,15 @@ class BodyRaster:
         return slice(low[1], high[1]), slice(low[0], high[0])
 
     def laid(self, values: NDArray[np.float32], pose: Array) -> tuple[Window, NDArray[np.float32]]:
-        """Resample values of the raster on the plane.
+        """Interpolate values of the robot's raster at the plane's points around a pose.
 
         Args:
-            values: Shape (rows, columns, ...).
+            values: Values on the robot's raster, shape (rows, columns, ...).
             pose: x, y [m] and yaw [rad] of the robot, shape (3,).
 
         Returns:
-            The part of the plane, and the values there, 0 outside the raster.
+            Rows and columns of the plane (`window`), and the values there, 0 outside the robot's
+            raster.
         """
         window = self.window(pose)
         rows, columns = (np.arange(part.start, part.stop) for part in window)
@@ -137,15 +138,15 @@ class BodyRaster:
         return window, sample(values, place)
 
     def between(self, pose: Array, other: Array) -> Array:
-        """Compute the affine map from this raster at one pose to the same at another.
+        """Compute the affine map from raster coordinates at one pose to those at another.
 
         Args:
             pose: First pose: x, y [m] and yaw [rad], shape (3,).
             other: Second pose, shape (3,).
 
         Returns:
-            Matrix that takes (column, row, 1) at the first to (column, row) at the second, shape
-            (2, 3).
+            Matrix from (column, row, 1) at the first pose to (column, row) at the second of the
+            same point of the plane, shape (2, 3).
         """
         return (np.linalg.inv(self._to_world(other)) @ self._to_world(pose))[:2]
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Find every exposure of a robot without a marker from one exposure that is known."""
+"""Find every exposure of a robot without a marker, given the pose of one exposure."""
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -25,28 +25,28 @@ def find_exposures_like(
     plate: TopPlate, body_size: tuple[float, float], prior: BodyPrior, merged: Merged,
     hidden: NDArray[np.bool_] | None = None, near: ArrayLike | None = None, reach: float = np.inf,
 ) -> tuple[Exposure, ...]:  # fmt: skip
-    """Find all exposures of a composite picture from one whose pose is known.
+    """Find all exposures of a composite picture, given the robot's pose in one exposure.
 
     Args:
         pixels: The picture, BGR, shape (height, width, 3).
-        camera: The lens.
+        camera: Camera intrinsics and distortion.
         view: Pose of the camera.
-        known: Pose of one exposure; of those pasted on each other, of one that shows whole.
+        known: Pose of the robot in one exposure; in a pasted picture, one that no other hides.
         plate: The robot's flat top.
         body_size: Length and width of the robot's body [m].
-        prior: Height and tilt.
+        prior: Prior of the body's height and tilt.
         merged: How the exposures were merged.
-        hidden: Pixels that do not show the robot, as those of the floor's markers, shape
-            (height, width).
-        near: x and y near which to look [m]; the whole picture when None.
-        reach: How far from there [m].
+        hidden: True at pixels to ignore, as on the floor's markers, shape (height, width).
+        near: x and y of the middle of the square to search [m]; None for the whole picture.
+        reach: Half the side of that square [m].
 
     Returns:
-        The exposures, the known one first. Head and tail are those of the known one.
+        The exposures, the known one first, the others not in order of the walk. Which end is the
+        head follows from the known pose.
 
     Raises:
-        CompositeError: The known exposure is cut by the picture's edge or hardly differs from the
-            floor, or no other is found.
+        CompositeError: The known exposure is cut by the picture's edge, too small or of too little
+            contrast, or no other exposure is found.
     """
     hidden = np.zeros(pixels.shape[:2], dtype=bool) if hidden is None else hidden
     area = floor_in_view(camera, view, prior.height + plate.height, near, reach)

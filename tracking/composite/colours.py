@@ -22,10 +22,10 @@ _RARE = 0.1  # share of colours that may be any
 
 
 NOISE = 12.0
-"""Standard deviation of a colour of the robot from one exposure to another [grey levels]."""
+"""Standard deviation of the robot's colour, per channel, between exposures [grey levels]."""
 
 SCALE = 8.0
-"""Standard deviation of the floor's pattern after whitening [grey levels]."""
+"""Standard deviation to which whitening scales the floor's pattern [grey levels]."""
 
 
 @dataclass(frozen=True)
@@ -33,8 +33,8 @@ class FloorColours:
     """Colour model of a floor: light, which varies slowly, and covariance of the pattern about it.
 
     Attributes:
-        light: Its colour at every place but for its pattern, shape (rows, columns, 3).
-        covariance: Of the pattern, shape (3, 3).
+        light: Colour of the floor without its pattern, shape (rows, columns, 3) [grey levels].
+        covariance: Covariance of the floor's colours about `light`, shape (3, 3) [grey levels²].
     """
 
     light: NDArray[np.float32]
@@ -48,12 +48,12 @@ class FloorColours:
 
         Args:
             picture: Colours, shape (rows, columns, 3).
-            used: Where it shows the floor or the robot, shape (rows, columns).
-            width: Over how many points the light changes.
-            noise: Least standard deviation of a colour [grey levels].
+            used: True at points that show the floor or the robot, shape (rows, columns).
+            width: Standard deviation of the blur that gives `light` [points].
+            noise: Standard deviation of noise added to the covariance, per channel [grey levels].
 
         Returns:
-            What the floor looks like; the robot may hide up to three tenths of it.
+            The model; up to three tenths of the points used may show the robot.
         """
         light = smooth(picture, used, width)
         inner = chi2.cdf(chi2.ppf(_TRUSTED, 3), 5) / _TRUSTED
@@ -68,22 +68,25 @@ class FloorColours:
 
     @cached_property
     def whitening(self) -> Array:
-        """Whitening matrix of the pattern's colours, shape (3, 3)."""
+        """Whitening matrix W of the pattern, for colours as rows: (n, 3) @ W, shape (3, 3)."""
         return np.linalg.cholesky(np.linalg.inv(self.covariance))
 
     def floor_distance(self, picture: NDArray[np.float32]) -> NDArray[np.float32]:
-        """Compute the squared Mahalanobis distance of colours from the floor's."""
+        """Compute the squared Mahalanobis distance of colours from `light`, (rows, columns)."""
         return (((picture - self.light) @ self.whitening) ** 2).sum(axis=-1).astype(np.float32)
 
     def shows(self, picture: NDArray[np.float32]) -> NDArray[np.bool_]:
-        """Compute the mask of points whose colour is the floor's, in its light or in shadow."""
+        """Compute the mask of points whose colour is the floor's, lit or in shadow.
+
+        That is at a squared distance below 20 from 0.4 to 1 times `light`; (rows, columns).
+        """
         seen, light = picture @ self.whitening, self.light @ self.whitening
         share = (seen * light).sum(axis=-1) / np.maximum((light**2).sum(axis=-1), 1e-6)
         lit = np.clip(share, _SHADOW, 1.0)[..., None] * light
         return ((seen - lit) ** 2).sum(axis=-1) < _NO_FLOOR
 
     def density(self, picture: NDArray[np.float32]) -> Array:
-        """Compute the density of colours on the floor, per cubed grey level."""
+        """Compute the normal density of the floor at a picture's colours, per cubed grey level."""
         scale = np.sqrt((2 * np.pi) ** 3 * np.linalg.det(self.covariance))
         return np.exp(-0.5 * self.floor_distance(picture)) / scale
 
@@ -92,6 +95,8 @@ def colour_density(
     samples: NDArray[np.float32], colours: NDArray[np.float32], *, blur: float
 ) -> Array:
     """Estimate the density of colours, per cubed grey level, by a blurred histogram of samples.
+
+    A tenth of the density is uniform, so that it is never 0.
 
     Args:
         samples: BGR, shape (n, 3) [grey levels].
@@ -109,7 +114,11 @@ def colour_density(
 
 
 def robot_density(difference: Array) -> Array:
-    """Compute the density of differences from the robot's colour, per cubed grey level."""
+    """Compute the normal density, standard deviation `NOISE`, of colour differences (..., 3).
+
+    Returns:
+        Density per cubed grey level, shape (...).
+    """
     norm = (2 * np.pi) ** 1.5 * NOISE**3
     return np.exp(-0.5 * (difference**2).sum(axis=-1) / NOISE**2) / norm
 
@@ -120,12 +129,12 @@ def smooth(
     """Blur colours by a Gaussian over the points used (normalised convolution).
 
     Args:
-        picture: Shape (rows, columns, 3).
-        used: Points that count, shape (rows, columns).
+        picture: Colours, shape (rows, columns, 3).
+        used: True at points to average over, shape (rows, columns).
         width: Standard deviation of the blur [points].
 
     Returns:
-        Shape (rows, columns, 3); 0 where nothing near counts.
+        Blurred colours, shape (rows, columns, 3); towards 0 far from all points used.
     """
     weight = used.astype(np.float32)
     total = cv2.GaussianBlur(picture * weight[..., None], (0, 0), width)

@@ -36,16 +36,17 @@ from tracking.composite.steps import (
 )
 
 LEAST_ODDS = 0.25
-"""Least log odds of an exposure, mean over the points that it claims [-]."""
+"""Least log odds of an exposure, mean over the points where it is the darkest [-]."""
 
 LEAST_GAIN = 0.15
-"""Least gain of log odds for a further exposure in a chain, mean over its points [-]."""
+"""Cost of each further exposure in log odds, mean over the points of one exposure [-]."""
 
 UNSTEADY = 0.03
-"""Penalty for one unit of `unsteadiness` of a chain's steps [-]."""
+"""Cost of one unit of `unsteadiness` in log odds, mean over the points of one exposure [-]."""
 
 DARKEST_SD = 1 / 40
-"""Error of position, as `tracking.composite.pasted.PASTED_SD` [-]."""
+"""Standard deviation of position where other things are as strong as the robot, in lengths of the
+robot [-]."""
 
 _SHOWN = 0.7  # share of a pixel's surroundings that must show the exposure
 _FIRST_STEPS = 10
@@ -54,12 +55,13 @@ _POLISH = (0.006, 0.006, 0.05)
 
 @dataclass(frozen=True)
 class Chain:
-    """Exposures at equal steps from the known one.
+    """Exposures at steady steps before and after the known one.
 
     Attributes:
-        step: Forward, left, turn and by how much more it turns each time, shape (4,) [m, rad].
-        ahead: How many along it.
-        behind: How many against it.
+        step: Step forward and left [m], its turn, and the change of turn from each step to the
+            next [rad], shape (4,).
+        ahead: Number of exposures after the known one, along the step.
+        behind: Number of exposures before the known one, against the step.
     """
 
     step: Array
@@ -72,7 +74,7 @@ class Chain:
 
     @classmethod
     def through(cls, poses: Sequence[Array]) -> "Chain":
-        """Make a chain of the median step between poses, all ahead of the first."""
+        """Build a chain of the median step between poses in order, all ahead of the first."""
         steps = [step_between(a, b) for a, b in pairwise(poses)]
         return cls(np.append(np.median(steps, axis=0), 0.0), len(steps), 0)
 
@@ -94,7 +96,11 @@ class DarkestReading(DarkestModel):
     """Reading of a picture that holds, of each pixel, the darkest value of all exposures."""
 
     def find(self) -> Array:
-        """Find all exposures, the known one first, as the likeliest of many chains."""
+        """Find the likeliest of many chains of exposures, then refine each pose.
+
+        Returns:
+            x, y [m] and yaw [rad], the known exposure first, shape (n, 3).
+        """
         anchor = self.known.pose.planar
         sets = [anchor[None]]
         for first in self.first_steps(anchor):
@@ -106,12 +112,15 @@ class DarkestReading(DarkestModel):
         return self.polished(max(sets, key=self.worth))
 
     def align(self, poses: Array) -> tuple[Exposure, ...]:
-        """Align the part where each exposure is the darkest, twice; drop what does not align."""
+        """Align the part where each exposure is the darkest, twice; drop those that fail."""
         found = self.aligned_among(poses)
         return self.aligned_among(np.array([each.planar for each in found]))
 
     def aligned_among(self, poses: Array) -> tuple[Exposure, ...]:
-        """Align the part where each is the darkest, given the poses of the others."""
+        """Align the part where each exposure is the darkest, given all poses (n, 3).
+
+        Exposures that do not align are left out.
+        """
         known, found = self.known, []
         template = known.body_template(known.pixels)
         for k, pose in enumerate(poses):
@@ -123,22 +132,22 @@ class DarkestReading(DarkestModel):
         return tuple(found)
 
     def worth(self, poses: Array) -> float:
-        """Compute the score of a set of exposures with the penalty for their number.
+        """Compute `value` of a set of exposures (n, 3) less `LEAST_GAIN` for each but the first.
 
-        It is -inf where two exposures are in one place.
+        The result is -inf where two exposures are nearer than `LEAST_STEP`.
         """
         if not are_apart(poses, self.length):
             return -np.inf
         return self.value(poses) - LEAST_GAIN * (len(poses) - 1)
 
     def first_steps(self, anchor: Array) -> list[Array]:
-        """Find candidate poses for the exposure next to the known one."""
+        """Find up to ten candidate poses (3,) of the exposure next to the known one at `anchor`."""
         look = self.look(anchor[None])
         tried = beside(anchor, self.length, spacing=self.length / 20)
         return self.best_of(tried, look, self.cover(anchor[None], look), most=_FIRST_STEPS)
 
     def followed(self, poses: list[Array]) -> list[Array]:
-        """Extend a chain from its last pose by its last step until no exposure is found."""
+        """Extend poses, at least two in order, by their last step until no exposure is found."""
         while len(poses) < MOST_EXPOSURES:
             known = np.array(poses)
             look = self.look(known)
@@ -152,16 +161,16 @@ class DarkestReading(DarkestModel):
         return poses
 
     def best_of(self, tried: Array, look: TopColours, cover: Cover, *, most: int) -> list[Array]:
-        """Improve the likeliest of many candidate poses by local search.
+        """Refine the likeliest of many candidate poses by maximising the likelihood.
 
         Args:
             tried: Candidate poses, shape (n, 3) [m, m, rad].
             look: Colours of the robot's top.
-            cover: The exposures that are known already.
-            most: Most candidates to improve.
+            cover: Darkest colours of the exposures known already.
+            most: Largest number of candidates to refine.
 
         Returns:
-            Improved poses whose log odds are at least `LEAST_ODDS`, the likeliest first.
+            Refined poses whose log odds are at least `LEAST_ODDS`, the likeliest first.
         """
         odds = self.odds(tried, look.thinned(), cover, self.body.thinned())
         starts = apart(tried, odds, 0.19 * self.length, most=most)
@@ -177,7 +186,7 @@ class DarkestReading(DarkestModel):
         return [found[k] for k in order if held[k] >= LEAST_ODDS]
 
     def longest(self, anchor: Array, chain: Chain) -> Chain:
-        """Fit a chain and lengthen it at either end while the likelihood of the picture rises.
+        """Fit a chain and lengthen it at either end while `worth` rises.
 
         Args:
             anchor: Pose of the known exposure, shape (3,) [m, m, rad].
@@ -198,7 +207,7 @@ class DarkestReading(DarkestModel):
 
         Args:
             anchor: Pose of the known exposure, shape (3,) [m, m, rad].
-            chain: Chain to start from; the numbers of exposures are kept.
+            chain: Chain to start from; its numbers of exposures are kept.
         """
 
         def value(step: Array) -> float:
@@ -208,7 +217,7 @@ class DarkestReading(DarkestModel):
         return Chain(step, chain.ahead, chain.behind)
 
     def polished(self, poses: Array) -> Array:
-        """Refine every pose but the first by itself; drop those that are not likely enough."""
+        """Refine each pose but the first, one at a time; drop those below `LEAST_ODDS`."""
         step, order = usual_step(poses), list(order_exposures(poses))
         for k in range(1, len(poses)):
             poses = self.settled(poses, k, step, order)

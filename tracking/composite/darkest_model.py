@@ -24,7 +24,7 @@ from tracking.composite.colours import NOISE, FloorColours, colour_density, robo
 from tracking.composite.reading import Reading
 
 LEAST_CLAIM = 0.12
-"""Least share of its points that an exposure claims, by being the darkest there [-]."""
+"""Least share of an exposure's points at which it must be the darkest [-]."""
 
 _SEEN = 0.6  # share of the robot's own points that show it and not a darker thing
 _OWN_LOOK = 0.6  # weight of the known exposure's colours against the brightest seen
@@ -38,18 +38,29 @@ _CLAIM = 6.0  # a point darker than others by this is claimed [grey levels]
 
 
 class TopColours(NamedTuple):
-    """Colours of the robot's top: by the known exposure, and the brightest of all exposures."""
+    """Colours of the robot's top on its raster, shape (rows, columns, 3) each [grey levels].
+
+    Attributes:
+        own: Colours in the known exposure.
+        brightest: Brightest colours of all exposures; 1000 in either where unknown.
+    """
 
     own: NDArray[np.float32]
     brightest: NDArray[np.float32]
 
     def thinned(self) -> "TopColours":
-        """Return every second point in both directions, as `BodyRaster.thinned` does."""
+        """Return the colours at every second point in both directions (`BodyRaster.thinned`)."""
         return TopColours(self.own[1::2, 1::2], self.brightest[1::2, 1::2])
 
 
 class Cover(NamedTuple):
-    """Darkest colour of several exposures at every point, by both `TopColours`, and log density."""
+    """Darkest colours of several exposures on the picture's raster.
+
+    Attributes:
+        own: Darkest by `TopColours.own`, 1000 without exposure, shape (rows, columns, 3).
+        brightest: Darkest by `TopColours.brightest`, likewise.
+        log_density: Log density of the picture given the exposures, shape (rows, columns).
+    """
 
     own: NDArray[np.float32]
     brightest: NDArray[np.float32]
@@ -61,33 +72,33 @@ class DarkestModel(Reading):
 
     @cached_property
     def floor(self) -> FloorColours:
-        """Colour model of the floor."""
+        """Colour model of the floor, light varying over the robot's length."""
         return FloorColours.of(
             self.picture, self.used, width=self.length / self.plane.cell, noise=3.0
         )
 
     @cached_property
     def floor_distance(self) -> NDArray[np.float32]:
-        """Squared Mahalanobis distance of each colour from the floor's."""
+        """Squared Mahalanobis distance of each point's colour from the floor's light there."""
         return self.floor.floor_distance(self.picture)
 
     @cached_property
     def dark_things(self) -> Array:
-        """Density of the colours that are not the floor's, at every point."""
+        """Density of each point's colour among the colours that are not the floor's."""
         other = self.used & (self.floor_distance > _OUTLIER)
         return colour_density(self.picture[other], self.picture, blur=1.2)
 
     @cached_property
     def bare(self) -> NDArray[np.float32]:
-        """Log density of the picture where there is no exposure."""
+        """Log density of the picture's colours on bare floor, shape (rows, columns)."""
         known = _FLOOR_SHARE * self.floor.density(self.picture)
         return np.log(known + (1 - _FLOOR_SHARE) * self.dark_things).astype(np.float32)
 
     def look(self, poses: Array) -> TopColours:
-        """Estimate the robot's colours from all exposures, the known one first.
+        """Estimate the robot's colours from the picture at all poses (n, 3), the known one first.
 
-        Where the robot has the floor's colour it may be brighter than that; its colour is then
-        unknown.
+        Where the picture has the floor's colour the robot may be brighter than the floor; its
+        colour there is unknown.
         """
         seen = np.array([self.body.read(self.picture, pose) for pose in poses])
         odd = np.array([self.body.read(self.floor_distance, pose) for pose in poses])
@@ -96,7 +107,7 @@ class DarkestModel(Reading):
         return TopColours(own.astype(np.float32), brightest.astype(np.float32))
 
     def cover(self, poses: Array, look: TopColours) -> Cover:
-        """Compute the darkest of several exposures at every point of the raster.
+        """Compute the darkest colours of several exposures at every point of the raster.
 
         Args:
             poses: The exposures, shape (n, 3) [m, m, rad].
@@ -115,21 +126,25 @@ class DarkestModel(Reading):
         return Cover(own, brightest, log_density)
 
     def value(self, poses: Array) -> float:
-        """Compute the log likelihood ratio of exposures, in units of one exposure's points."""
+        """Compute the log likelihood ratio of exposures (n, 3) to bare floor, per robot point.
+
+        The sum over all points used is divided by the number of points on the robot's raster.
+        """
         gain = self.cover(poses, self.look(poses)).log_density - self.bare
         return float(gain[self.used].sum()) / self.body.x.size
 
     def odds(self, poses: Array, look: TopColours, cover: Cover, body: BodyRaster) -> Array:
-        """Compute the log odds of one more exposure, mean over the points that it claims.
+        """Compute the log odds of one more exposure, mean over points where it is the darkest.
 
         Args:
             poses: Candidate poses, shape (n, 3) [m, m, rad].
             look: Colours of the robot's top, on the points of `body`.
-            cover: The exposures that are known already.
+            cover: Darkest colours of the exposures known already.
             body: Points of the robot's top to compare.
 
         Returns:
-            Log odds, shape (n,) [-]; -inf where too little is claimed or inside the picture.
+            Log odds, shape (n,) [-]; -inf where the exposure is the darkest at fewer than
+            `LEAST_CLAIM` of its points, or less than 0.6 of it is inside the picture.
         """
         gain, claim, inside = self.gains(poses, look, cover, body)
         enough = (claim >= LEAST_CLAIM) & (inside >= _LEAST_SEEN)
@@ -143,12 +158,12 @@ class DarkestModel(Reading):
         Args:
             poses: Candidate poses, shape (n, 3) [m, m, rad].
             look: Colours of the robot's top, on the points of `body`.
-            cover: The exposures that are known already.
+            cover: Darkest colours of the exposures known already.
             body: Points of the robot's top to compare.
 
         Returns:
-            Gain of log density, mean over the exposure's points; shares of them that it claims,
-            and that are in the picture. Each of shape (n,) [-].
+            Gain of log density, mean over the exposure's points; share of its points where it is
+            the darkest; share inside the picture. Shape (n,) each [-].
         """
         place = body.on(poses)
         inside = sample(self.used.astype(np.float32), place) > 0.9
@@ -173,9 +188,9 @@ class DarkestModel(Reading):
 
         Args:
             seen: Colours of the picture, shape (..., 3) [grey levels].
-            own: Colours there by the known exposure, shape (..., 3).
-            brightest: Colours there by the brightest of all exposures, shape (..., 3).
-            dark_things: Density of the colours that are not the floor's, shape (...).
+            own: Colours expected from the known exposure, shape (..., 3).
+            brightest: Colours expected from the brightest of all exposures, shape (..., 3).
+            dark_things: Density of `seen` among colours that are not the floor's, shape (...).
 
         Returns:
             Log density, shape (...).
@@ -187,9 +202,10 @@ class DarkestModel(Reading):
         return np.log(_SEEN * shows + hidden * np.maximum(dark_things, 1e-12))
 
     def shown(self, poses: Array, k: int) -> NDArray[np.bool_]:
-        """Compute the mask of points at which an exposure is the darkest and has its colour.
+        """Compute the mask of points where an exposure is the darkest and has the robot's colour.
 
-        Points of the first exposure that others darken are left out: their colours are not its own.
+        Points of the robot that others darken in the first exposure are left out: their colours
+        there are not the robot's.
 
         Args:
             poses: All exposures, the first one known, shape (n, 3) [m, m, rad].
@@ -216,14 +232,14 @@ class DarkestModel(Reading):
             look: Colours of the robot's top.
 
         Returns:
-            1 where it is the darkest, else 0, on the robot's raster.
+            1 where the known exposure is the darkest, else 0, on the robot's raster.
         """
         others = self.cover(poses[1:], look).brightest
         around = self.body.read(others, poses[0])
         return np.asarray((look.own <= around + _CLAIM).all(axis=-1), dtype=np.float32)
 
     def own_odds(self, poses: Array) -> Array:
-        """Compute the log odds of each exposure given all others; infinite for the first."""
+        """Compute the log odds of each exposure (n, 3) given all others; inf for the first."""
         look = self.look(poses)
         odds = [np.inf]
         for k in range(1, len(poses)):

@@ -14,8 +14,9 @@ class Exposure:
     """One exposure of the robot in a composite picture.
 
     Attributes:
-        alignment: Where it is.
-        visible: Share of its top that no other hides [-].
+        alignment: Pose of the robot in the exposure, with covariances and score.
+        visible: Share of the robot's top that no other exposure hides, 0 to 1; always 1 of
+            exposures in a mean [-].
     """
 
     alignment: Alignment
@@ -23,17 +24,17 @@ class Exposure:
 
     @property
     def planar(self) -> Array:
-        """x, y [m] and yaw [rad], shape (3,)."""
+        """x, y [m] and yaw [rad] of the robot, shape (3,)."""
         return self.alignment.pose.planar
 
     @property
     def is_rough(self) -> bool:
-        """Whether it could not be aligned and is where a raster showed it."""
+        """Whether alignment failed, so that the pose is that found on the coarse raster."""
         return self.alignment.score == 0.0
 
 
 def disturbance(alignment: Alignment) -> float:
-    """Compute the power of other things over that of the robot, from the correlation [-]."""
+    """Compute the ratio of power of other things to the robot's, (1 - score²) / score² [-]."""
     return max(1 - alignment.score**2, 0.0) / alignment.score**2
 
 
@@ -42,8 +43,8 @@ def widened(alignment: Alignment, slip: float, *, lever: float) -> Alignment:
 
     Args:
         alignment: The alignment.
-        slip: Standard deviation of x and of y [m].
-        lever: Lever arm that converts it to heading [m].
+        slip: Standard deviation of the added error of x and of y [m].
+        lever: Lever arm; the added error of heading has standard deviation `slip / lever` [m].
     """
     turn = slip / lever
     added = np.diag([slip, slip, 0.0, 0.0, 0.0, turn]) ** 2

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 REACH_PX = 3
-"""Largest distance of a neighbour in the prediction filter [px]."""
+"""Largest offset, in rows and in columns, of a neighbour in the prediction filter [px]."""
 
 _MOST_POINTS = 60_000
 _RIDGE = 1e-3  # ridge penalty of the filter's coefficients, as a share of the neighbours' power
@@ -25,9 +25,9 @@ class FloorPattern:
     """Linear prediction filter of a floor's pattern.
 
     Attributes:
-        width: Variation over more than this is not part of the pattern [px].
-        filters: For each colour, the kernel of the prediction error, scaled to standard deviation
-            1, shape (3, side, side).
+        width: Standard deviation of the blur that is subtracted before filtering [px].
+        filters: For each colour, the kernel that gives the prediction error, scaled so that the
+            error on the floor has standard deviation 1, shape (3, side, side).
     """
 
     width: float
@@ -41,8 +41,8 @@ class FloorPattern:
 
         Args:
             picture: Colours, shape (height, width, 3).
-            floor: Pixels that show the floor alone, shape (height, width).
-            width: Variation over more than this is not part of the pattern [px].
+            floor: True at pixels that show only the floor, shape (height, width).
+            width: Standard deviation of the blur that is subtracted before filtering [px].
 
         Returns:
             The filters.
@@ -59,17 +59,17 @@ class FloorPattern:
         return cls(width, np.stack([_filter(flat[..., colour], *chosen) for colour in range(3)]))
 
     def flat(self, picture: NDArray[np.float32]) -> NDArray[np.float32]:
-        """Subtract what varies slowly (high-pass filter)."""
+        """Subtract the picture blurred by `width` (high-pass filter); same shape."""
         return _flat(picture, self.width)
 
     def prediction_error(self, picture: NDArray) -> NDArray[np.float32]:
-        """Compute the prediction error, in one picture or n at once.
+        """Filter one or n pictures: each pixel minus its prediction from pixels before it.
 
         Args:
-            picture: Flat, shape (rows, columns, 3) or (rows, columns, 3, n).
+            picture: High-pass filtered (`flat`), shape (rows, columns, 3) or (rows, columns, 3, n).
 
         Returns:
-            The same shape.
+            Prediction error over its standard deviation on the floor, shape of `picture` [-].
         """
         layers = picture.reshape(*picture.shape[:2], 3, -1)
         left = np.empty(layers.shape, np.float32)
@@ -86,7 +86,10 @@ def _flat(picture: NDArray[np.float32], width: float) -> NDArray[np.float32]:
 def _filter(
     layer: NDArray[np.float32], rows: NDArray[np.intp], columns: NDArray[np.intp]
 ) -> NDArray[np.float32]:
-    """Fit a prediction filter by least squares; its error is scaled to standard deviation 1."""
+    """Fit the kernel (side, side) that gives the prediction error of one colour at some pixels.
+
+    Least squares with a ridge; scaled to an error of standard deviation 1 (robust).
+    """
     side = 2 * REACH_PX + 1
     around = np.indices((side, side)).reshape(2, -1).T - REACH_PX
     before = around[: len(around) // 2]

@@ -24,13 +24,13 @@ from tracking.errors import BodyError, CompositeError
 from tracking.pose import BodyPose, BodyPrior
 
 LEAST_SCORE = 0.75
-"""Least correlation of the visible part of an exposure with the known one [-]."""
+"""Least correlation of an exposure's visible part with the template of the known exposure [-]."""
 
 LEVER = 0.7
 """Lever arm that converts an error of position to one of heading, in lengths of the robot [-]."""
 
 RASTER_SD = 0.02
-"""Standard deviation of a place on the raster, in lengths of the robot [-]."""
+"""Standard deviation of x and of y of a pose found on the raster, in lengths of the robot [-]."""
 
 _DIVERGED = 0.06  # of the length: an alignment that moves farther has diverged
 _DIVERGED_TURN = 0.15  # rad: the same
@@ -42,14 +42,14 @@ class KnownExposure:
 
     Attributes:
         pixels: The picture, BGR, shape (height, width, 3).
-        camera: The lens.
+        camera: Camera intrinsics and distortion.
         view: Pose of the camera.
-        prior: Height and tilt.
-        pose: Pose of the known exposure.
+        prior: Prior of the body's height and tilt.
+        pose: Pose of the robot in the known exposure.
         plate: The robot's flat top.
-        size: Length and width of its body [m].
-        hidden: Pixels that do not show the robot, shape (height, width).
-        area: Lowest and highest x, y of the body's middle, each of shape (2,) [m].
+        size: Length and width of the robot's body [m].
+        hidden: True at pixels to ignore, as on the floor's markers, shape (height, width).
+        area: Lowest and highest x, y at which the body's middle is searched, shape (2,) each [m].
     """
 
     pixels: NDArray[np.uint8]
@@ -64,22 +64,25 @@ class KnownExposure:
 
     @cached_property
     def box(self) -> BodyBox:
-        """The robot's body."""
+        """Box around the robot's body, to compute what it occludes."""
         return BodyBox(self.camera, self.view, self.size, self.plate.height, self.prior.height)
 
     @property
     def body_plate(self) -> TopPlate:
-        """The whole body as a flat top."""
+        """Plate of the body's length and width at the height of the top, without margins."""
         return TopPlate(*self.size, self.plate.height, 0.0, 0.0, 0.0)
 
     @property
     def length_px(self) -> float:
-        """The robot's length where it is known [px]."""
+        """Length of the robot in the known exposure [px]."""
         pixel = pixel_on_top(self.camera, self.view, pose=self.pose, plate=self.body_plate)
         return self.size[0] / pixel
 
     def body_template(self, pixels: NDArray) -> BodyTemplate:
-        """Cut the template of the body's outline from above out of the known exposure."""
+        """Cut the template of the whole body (`body_plate`) out of the known exposure.
+
+        See `template`, also for the error.
+        """
         return self.template(pixels, self.body_plate)
 
     def template(
@@ -90,10 +93,11 @@ class KnownExposure:
         Args:
             pixels: The picture, or one derived from it, shape (height, width, 3).
             plate: Part of the robot's top to cut out.
-            most_points: Most points of the template, about.
+            most_points: Approximate largest number of points of the template.
 
         Raises:
-            CompositeError: The part is cut by the picture's edge, too small or without contrast.
+            CompositeError: The part is cut by the picture's edge, too small or of too little
+                contrast (`make_template`).
         """
         try:
             return make_template(
@@ -104,17 +108,21 @@ class KnownExposure:
             raise CompositeError(str(error)) from error
 
     def share(self, pose: Array, visible: NDArray[np.bool_]) -> float:
-        """Compute the share of an exposure's top that is visible [-].
+        """Compute the share of the pixels of an exposure's top that are visible, 0 to 1 [-].
 
         Args:
             pose: x, y [m] and yaw [rad], shape (3,).
-            visible: Mask of the pixels that show it, shape (height, width).
+            visible: True at pixels that no other exposure hides, shape (height, width).
         """
         top = self.box.top_seen(self.level(pose))
         return float((top & visible).sum() / max(int(top.sum()), 1))
 
     def level(self, pose: Array) -> Array:
-        """Return the state of a level robot at x, y and yaw, shape (6,)."""
+        """Return x, y, z, roll, pitch, yaw (6,) of a level robot at the prior's height.
+
+        Args:
+            pose: x, y [m] and yaw [rad], shape (3,).
+        """
         return np.array([pose[0], pose[1], self.prior.height, 0.0, 0.0, pose[2]])
 
     def aligned(
@@ -127,7 +135,7 @@ class KnownExposure:
             pose: Pose to start from: x, y [m] and yaw [rad], shape (3,).
             pixels: The picture, or one derived from it, shape (height, width, 3).
             template: Template of the robot.
-            visible: Mask of the pixels to use, shape (height, width).
+            visible: True at pixels to use, shape (height, width).
             least: Least correlation to accept [-].
             shines_through: As for `tracking.body.align`.
             outlier_sd: As for `tracking.body.align`.
@@ -143,7 +151,9 @@ class KnownExposure:
         return None if found is None or self.has_diverged(found, pose, least) else found
 
     def has_diverged(self, found: Alignment, pose: Array, least: float) -> bool:
-        """Return whether an alignment correlates too little or ends too far from its start.
+        """Return whether an alignment has too small a score or ends too far from its start.
+
+        Too far is 0.06 lengths of the robot or 0.15 rad.
 
         Args:
             found: The alignment.
@@ -156,7 +166,7 @@ class KnownExposure:
         return found.score < least or away > _DIVERGED * self.size[0] or turned > _DIVERGED_TURN
 
     def rough(self, pose: Array) -> Alignment:
-        """Make an alignment of a pose on the raster, with the raster's error."""
+        """Build an alignment of score 0 from a pose (3,) on the raster, with the raster's error."""
         height, tilt = self.prior.height_sd, self.prior.tilt_sd
         covariance = np.diag([0.0, 0.0, height, tilt, tilt, 0.0]) ** 2
         level = BodyPose(self.level(pose), covariance, np.zeros((6, 6)), 0.0, 0.0)
@@ -167,9 +177,9 @@ class KnownExposure:
         """Add to the covariance the error that other exposures and the floor cause.
 
         Args:
-            alignment: The alignment.
-            slip: Standard deviation of position where they are as strong as the robot, in lengths
-                of the robot [-]; its variance is proportional to their power.
+            alignment: The alignment, of a score above 0.
+            slip: Standard deviation of x and of y where other things are as strong as the robot,
+                in lengths of the robot [-]; the variance is proportional to their power.
             lever: Lever arm that converts it to heading, in lengths of the robot [-].
         """
         length = self.size[0]
@@ -179,16 +189,16 @@ class KnownExposure:
     def on_photo(
         self, layer: NDArray, plane: Plane, pose: Array, *, reach: float = 0.75
     ) -> NDArray[np.float32]:
-        """Resample a layer of a plane at the pixels around an exposure.
+        """Interpolate values on a plane at the photograph's pixels around an exposure.
 
         Args:
             layer: Values on the plane's raster, shape (rows, columns, ...).
-            plane: The plane.
+            plane: Raster of the plane of the robot's top.
             pose: x, y [m] and yaw [rad] of the exposure, shape (3,).
-            reach: Half width of the region to fill, in diagonals of the robot [-].
+            reach: Half the side of the region to fill, in diagonals of the body [-].
 
         Returns:
-            Values, shape (height, width, ...); 0 beyond the region.
+            Values, shape (height, width, ...); 0 outside the region.
         """
         whole = np.zeros((*self.pixels.shape[:2], *layer.shape[2:]), np.float32)
         window, xy = self.around(pose, reach=reach)
@@ -198,14 +208,15 @@ class KnownExposure:
         return whole
 
     def around(self, pose: Array, *, reach: float) -> tuple[tuple[slice, slice], Array]:
-        """Compute the window of pixels around an exposure, and where they lie on the top's plane.
+        """Compute the window of pixels around an exposure, and their x, y on the top's plane.
 
         Args:
-            pose: Of the exposure.
-            reach: Half a side of the square that they show, in diagonals of the body.
+            pose: x, y [m] and yaw [rad] of the exposure, shape (3,).
+            reach: Half the side of the square that the window shows, in diagonals of the body [-].
 
         Returns:
-            Rows and columns; x and y of the plane of the robot's top, (rows, columns, 2) [m].
+            Slices of rows and columns, and x, y of each pixel on the plane at the height of the
+            robot's top, shape (rows, columns, 2) [m].
         """
         reach *= float(np.hypot(*self.size))
         height = self.prior.height + self.plate.height

@@ -22,17 +22,17 @@ TURNS = 48
 """Number of headings that are tried, 7.5 degrees apart."""
 
 CELLS = 22
-"""Points of the raster along the template's plate."""
+"""Number of raster points along the length of the template's plate."""
 
 _PEAK_CELLS = 3
 
 
 class Match(NamedTuple):
-    """A place where the photograph correlates with the robot's template.
+    """A pose at which the photograph correlates with the robot's template.
 
     Attributes:
-        score: Correlation with its picture [-].
-        planar: x, y [m] and yaw [rad], shape (3,).
+        score: Normalised cross-correlation of photograph and template [-].
+        planar: x, y [m] and yaw [rad] of the robot, shape (3,).
     """
 
     score: float
@@ -47,12 +47,13 @@ def match_whole(
     Args:
         picture: The photograph on `plane`, shape (rows, columns, 3); (rows, columns, 1) where the
             template is grey.
-        plane: The raster.
+        plane: Raster of the rectified photograph.
         template: Template of the robot.
-        least: Least correlation [-].
+        least: Least correlation of a match [-].
 
     Returns:
-        Local maxima over heading and position, best first.
+        Local maxima over position, each with its best heading, best first; none where the picture
+        is smaller than the template.
     """
     best = yaws = None
     for yaw, score in correlations(picture, template, plane.cell, turns=TURNS):

@@ -38,21 +38,21 @@ from tracking.composite.steps import (
 from tracking.composite.superposition import solve_robot, superposed
 
 LONELY_SCORE = 0.6
-"""Least correlation of an exposure without a neighbour, or with reversed heading, while only one is
-known [-]."""
+"""Least correlation of an exposure without a neighbour, or with reversed heading, among the
+candidates [-]."""
 
 BESIDE_SCORE = 0.5
-"""Least correlation, at that stage, of one beside another with nearly the same heading [-]."""
+"""Least correlation of an exposure with the known one for the first set of exposures [-]."""
 
 LEAST_SCORE, LEAST_OF_USUAL = 0.5, 0.75
-"""Least correlation of an exposure when all others are taken away, and as a share of the usual one,
-which is less where light changes or floors are stronger than the robot [-]."""
+"""Least correlation of an exposure with the robot's picture after all others are subtracted, and
+least share of the median correlation, which is lower on uneven light or strong floors [-]."""
 
 LEAST_STRENGTH = 0.5
-"""Least relative strength of an exposure; all are equally strong in a mean [-]."""
+"""Least strength of an exposure relative to the robot's picture; 1 is expected in a mean [-]."""
 
 WORTH = 0.4
-"""Cost of a further exposure, as a share of the power that one exposure explains [-]."""
+"""Cost of one more exposure, as a share of the power of the robot's picture alone [-]."""
 
 DETAIL = 1 / 4
 """Width of the high-pass filter for comparison, in lengths of the robot [-]."""
@@ -67,12 +67,13 @@ class Fit(NamedTuple):
     """Fitted poses and picture of the robot, with goodness of fit.
 
     Attributes:
-        poses: Shape (n, 3), the known one first.
-        robot: The robot's picture, in detail, shape (rows, columns, 3).
-        scores: Correlation of each with it, in detail, where the others are taken away, shape (n,).
-        strengths: How strong each is beside all, shape (n,).
-        explained: Share of the detail's power that they explain.
-        cost: `WORTH` of what the robot's picture by itself explains.
+        poses: x, y [m] and yaw [rad] of the exposures, the known one first, shape (n, 3).
+        robot: The robot's high-pass filtered picture on its raster, shape (rows, columns, 3).
+        scores: Correlation of each exposure with `robot` after the other exposures are subtracted,
+            1 for the known one, shape (n,) [-].
+        strengths: Regression coefficient of each exposure on `robot`, shape (n,) [-].
+        explained: Share of the picture's high-pass filtered power that the exposures explain [-].
+        cost: Cost of one exposure: `WORTH` times the power of `robot` over the picture's [-].
     """
 
     poses: Array
@@ -83,7 +84,7 @@ class Fit(NamedTuple):
     cost: float
 
     def gain(self, other: "Fit") -> float:
-        """Compute the gain of explained power over another set, less the cost of added exposures.
+        """Compute the gain of `explained` over another fit, less the cost of added exposures [-].
 
         The cost is the same for both sets: a picture of the robot solved at too few exposures is
         fainter, so that each of them would seem to cost less.
@@ -102,19 +103,19 @@ class MeanReading(Reading):
 
     @cached_property
     def floor(self) -> FloorColours:
-        """Colour model of the floor."""
+        """Colour model of the floor, light varying over the robot's length."""
         return FloorColours.of(
             self.picture, self.used, width=self.length / self.plane.cell, noise=0.5
         )
 
     @cached_property
     def weighing(self) -> Array:
-        """Whitening matrix of colours, shape (3, 3)."""
+        """Matrix (3, 3) that whitens the floor's colours to standard deviation `SCALE`."""
         return SCALE * self.floor.whitening
 
     @cached_property
     def change(self) -> NDArray[np.float32]:
-        """Whitened difference from the floor's light, shape (rows, columns, 3)."""
+        """Whitened difference from the floor's light, 0 where unused, (rows, columns, 3)."""
         change = (self.picture - self.floor.light) @ self.weighing
         return (change * self.used[..., None]).astype(np.float32)
 
@@ -130,11 +131,11 @@ class MeanReading(Reading):
 
     @cached_property
     def power(self) -> float:
-        """Sum of the squared detail."""
+        """Sum of `detail` squared over all points and colours."""
         return float((self.detail**2).sum())
 
     def find(self) -> Array:
-        """Find all exposures, the known one first, as a set that explains most of the picture."""
+        """Find the poses (n, 3), the known one first, that explain most of the picture."""
         best = self.fitted(self.first_matches(self.known.pose.planar), rounds=2)
         for _ in range(_ROUNDS):
             tried = [self.fitted(poses, rounds=1) for poses in self.varied(best)]
@@ -145,9 +146,10 @@ class MeanReading(Reading):
         return self.accepted(self.fitted(best.poses, rounds=3))
 
     def align(self, poses: Array) -> tuple[Exposure, ...]:
-        """Align each exposure with the residual that the others leave of the picture.
+        """Align each exposure with the residual of the picture after the others are subtracted.
 
-        Where exposures overlap, those that are unclear are dropped.
+        Where exposures overlap (median distance below the robot's length), those of too little
+        correlation are dropped; elsewhere they keep their pose on the raster.
         """
         known = self.known
         fine = fine_whitening(known)
@@ -162,12 +164,12 @@ class MeanReading(Reading):
     def residuals(
         self, poses: Array, weighed: NDArray[np.float32], weighed_again: Array
     ) -> list[NDArray[np.float32]]:
-        """Subtract the other exposures from the picture, around each exposure.
+        """Subtract from the picture, for each exposure, all other exposures around it.
 
         Args:
-            poses: The exposures, shape (n, 3).
+            poses: x, y and yaw of the exposures, shape (n, 3) [m, m, rad].
             weighed: The picture in whitened colours, shape (height, width, 3).
-            weighed_again: From the raster's whitened colours to those, shape (3, 3).
+            weighed_again: Matrix from the raster's whitened colours to those of `weighed`, (3, 3).
         """
         robot = solve_robot(self.body, poses, self.change)
         residuals = []
@@ -178,7 +180,7 @@ class MeanReading(Reading):
         return residuals
 
     def accepted(self, fit: Fit) -> Array:
-        """Drop exposures that are too weak or too unlike the others."""
+        """Return the poses of the known exposure and of those of enough score and strength."""
         usual = float(np.median(fit.scores[1:])) if len(fit.scores) > 1 else 0.0
         least = max(LEAST_SCORE, LEAST_OF_USUAL * usual)
         good = (fit.scores >= least) & (fit.strengths >= LEAST_STRENGTH)
@@ -186,7 +188,7 @@ class MeanReading(Reading):
         return fit.poses[good]
 
     def first_matches(self, anchor: Array) -> Array:
-        """Find first exposures by matching the known one, which still contains others and floor."""
+        """Match the part of the picture at the known pose (3,); return poses (n, 3), it first."""
         robot = self.body.read(self.detail, anchor)
         poses = anchor[None]
         matches = [m for m in self.matches(self.detail, robot) if m.score >= BESIDE_SCORE]
@@ -213,10 +215,11 @@ class MeanReading(Reading):
         return new[int(np.argmin(away))]
 
     def candidates(self, matches: Sequence[Match], poses: Array) -> list[Array]:
-        """List the matches that may be further exposures.
+        """List the poses of matches that may be further exposures.
 
-        They are a step from a known exposure with nearly its heading, or clear and farther than a
-        step from all. The heading of a clear match may be turned by a half; the walk corrects it.
+        Each is a step from a known exposure with nearly the same heading, or has at least
+        `LONELY_SCORE` and is farther than a step from all. The heading of such a match may be
+        turned by a half; it is corrected by the direction from the nearest exposure.
 
         Args:
             matches: Matches, best first.
@@ -243,23 +246,23 @@ class MeanReading(Reading):
             robot: The robot's picture, on the robot's raster.
 
         Returns:
-            Matches, best first.
+            Matches of a correlation of at least 0.4, best first.
         """
         template = self.body.template(robot, self.known.plate.height)
         return match_whole(change, self.plane, template=template, least=_LEAST_MATCH)
 
     def follows(self, pose: Array, poses: Array) -> bool:
-        """Return whether a pose is a step from another exposure, with nearly its heading.
+        """Return whether a pose is a step from some exposure, with nearly its heading.
 
         Args:
             pose: x, y [m] and yaw [rad], shape (3,).
-            poses: Known exposures, shape (n, 3).
+            poses: Known exposures, shape (n, 3); False if one is nearer than `LEAST_STEP`.
         """
         far = is_apart(pose, poses, LEAST_STEP * self.length)
         return far and is_beside(pose, list(poses), self.length)
 
     def varied(self, fit: Fit) -> list[Array]:
-        """List sets of exposures that differ from a set by one or two exposures."""
+        """List sets of poses that differ from a fit by one or two added or removed exposures."""
         left = self.detail - superposed(self.body, fit.poses, fit.robot)
         left *= self.used[..., None]
         new = self.candidates(self.matches(left, fit.robot), fit.poses)
@@ -274,8 +277,8 @@ class MeanReading(Reading):
         """Fit poses and the robot's picture by alternating least squares and local search.
 
         Args:
-            poses: Poses to start from, the known one first, shape (n, 3) [m, m, rad].
-            rounds: Number of alternations.
+            poses: Poses to start from, the known one first, shape (n, 3) [m, m, rad]; not changed.
+            rounds: Number of alternations, at least 1.
         """
         poses = poses.copy()
         robot = solve_robot(self.body, poses, self.detail)
@@ -289,7 +292,7 @@ class MeanReading(Reading):
         return Fit(poses, robot, scores, strengths, explained, WORTH * own / self.power)
 
     def improve(self, poses: Array, robot: NDArray[np.float32]) -> tuple[Array, Array]:
-        """Improve all poses but the first, in place, each on the residual of the others.
+        """Refine all poses but the first, in place, each on the residual of the others.
 
         Args:
             poses: Exposures, shape (n, 3) [m, m, rad]; changed.
@@ -313,7 +316,7 @@ class MeanReading(Reading):
     def refined(
         self, change: NDArray[np.float32], robot: NDArray[np.float32], pose: Array
     ) -> Array:
-        """Improve a pose by maximising the correlation with the robot's picture.
+        """Return the pose refined by maximising the correlation with the robot's picture.
 
         Args:
             change: Picture to compare with, shape (rows, columns, 3).
@@ -327,15 +330,15 @@ class MeanReading(Reading):
     def correlation(
         self, change: NDArray[np.float32], robot: NDArray[np.float32], pose: Array
     ) -> tuple[float, float]:
-        """Compute correlation and regression coefficient of the picture on the robot's picture.
+        """Compute correlation and regression coefficient of a picture on the robot's picture.
 
         Args:
             change: Picture to compare with, shape (rows, columns, 3).
             robot: The robot's picture, on the robot's raster.
-            pose: x, y [m] and yaw [rad], shape (3,).
+            pose: x, y [m] and yaw [rad] at which to compare, shape (3,).
 
         Returns:
-            Correlation and coefficient ("strength") [-].
+            Correlation and regression coefficient ("strength") [-].
         """
         seen = self.body.read(change, pose)[self.body.body]
         own = robot[self.body.body]

@@ -25,14 +25,15 @@ from tracking.composite.steps import step_between, stepped
 from tracking.pose import PLANAR, BodyPose, rotation_with_derivatives
 
 LEAST_CLEAR_SCORE, LEAST_FAINT_SCORE = 0.4, 0.2
-"""Least correlation of an exposure's edges to use an alignment, and not to reject it [-]."""
+"""Least correlation of edges to use an alignment of overlapping exposures, and, lower, for the
+alignment not to count as failed [-]."""
 
 LEAST_NEW_SCORE = 0.1
-"""Least correlation of an exposure's part that the floor's pattern does not predict [-]."""
+"""Least correlation of prewhitened pixels to use an alignment of exposures that are apart [-]."""
 
 MEAN_SD, MEAN_OVERLAP_SD = 1 / 1200, 1 / 220
-"""Error of position, as `tracking.composite.pasted.PASTED_SD`, of exposures that are
-apart and of those that overlap [-]."""
+"""Standard deviation of position of exposures that are apart and of exposures that overlap, where
+other things are as strong as the robot, in lengths of the robot [-]."""
 
 _ROUNDS = 2
 _FLOOR_LEFT = 0.15  # of the length: beyond it from all exposures is floor
@@ -50,7 +51,7 @@ def floor_pattern(
     Args:
         picture: The picture and the known exposure.
         weighed: The picture in whitened colours, shape (height, width, 3).
-        poses: The exposures, shape (n, 3) [m, m, rad].
+        poses: x, y and yaw of all exposures, shape (n, 3) [m, m, rad].
     """
     floor = ~picture.hidden
     for pose in poses:
@@ -59,7 +60,7 @@ def floor_pattern(
 
 
 def fine_whitening(picture: KnownExposure) -> Array:
-    """Compute the whitening matrix of the floor's fine pattern, shape (3, 3).
+    """Compute the matrix (3, 3) that whitens the floor's fine pattern to `SCALE` grey levels.
 
     Lenses and JPEG reduce fine detail of colour more than of brightness.
     """
@@ -74,11 +75,11 @@ class MeanAlignment:
 
     Attributes:
         known: The picture and the known exposure.
-        residuals: What the others leave of the picture around each, shape (height, width, 3);
-            without slow variation (`FloorPattern.flat`) where there is a pattern.
-        poses: Where they are on a raster, the known one first, shape (n, 3).
-        pattern: Of the floor, where exposures are apart: the prediction error of their tops is
-            aligned. None where they overlap: edges of bodies are aligned.
+        residuals: For each exposure the picture after all others are subtracted, whitened, shape
+            (height, width, 3); high-pass filtered (`FloorPattern.flat`) if `pattern` is given.
+        poses: x, y and yaw found on the raster, the known one first, shape (n, 3) [m, m, rad].
+        pattern: Prediction filter of the floor, for exposures that are apart: prediction errors of
+            the tops are aligned. None for exposures that overlap: edges of bodies are aligned.
     """
 
     known: KnownExposure
@@ -88,14 +89,14 @@ class MeanAlignment:
 
     @property
     def least_clear(self) -> float:
-        """Least correlation of an exposure to use its alignment."""
+        """Least correlation of an exposure to use its alignment, by whether there is a pattern."""
         return LEAST_CLEAR_SCORE if self.pattern is None else LEAST_NEW_SCORE
 
     def exposures(self) -> tuple[Exposure, ...]:
         """Align all exposures, the known one first.
 
-        Those that are unclear keep the raster's pose; where exposures overlap they are dropped, but
-        only if the known one is clear, since without it the others cannot be judged.
+        Exposures of a correlation below `least_clear` keep the raster's pose; where exposures
+        overlap they are dropped, unless the known one itself could not be aligned.
         """
         overlap, found, exposures = self.pattern is None, self.with_others(), []
         slip, lever = (MEAN_OVERLAP_SD, _HALF_LEVER) if overlap else (MEAN_SD, LEVER)
@@ -107,7 +108,7 @@ class MeanAlignment:
         return tuple(exposures)
 
     def with_others(self) -> list[Alignment | None]:
-        """Align each exposure with the mean of the others; None where one diverges."""
+        """Align each exposure with the mean of the others, twice; None where it diverges."""
         poses, found = self.poses, []
         share = (len(poses) - 1) / len(poses)
         for _ in range(_ROUNDS):
@@ -127,15 +128,15 @@ class MeanAlignment:
     def aligned(
         self, pose: Array, residual: NDArray[np.float32], template: BodyTemplate
     ) -> Alignment | None:
-        """Align one exposure by what the floor's pattern does not predict, or by its edges.
+        """Align one exposure by prewhitened pixels if there is a pattern, else by edges.
 
         Args:
             pose: Pose to start from, shape (3,) [m, m, rad].
-            residual: What the others leave of the picture, shape (height, width, 3).
+            residual: The picture after all others are subtracted, shape (height, width, 3).
             template: Template of the robot.
 
         Returns:
-            The alignment, or None where it diverges.
+            The alignment, or None where it fails, correlates too little or moves too far.
         """
         if self.pattern is None:
             return self.known.aligned(
@@ -147,12 +148,12 @@ class MeanAlignment:
         return None if diverged else found
 
     def others_templates(self, poses: Array) -> list[BodyTemplate]:
-        """Make a template for each exposure: the mean of all the others (leave-one-out).
+        """Build a template for each exposure: the mean picture of all others (leave-one-out).
 
         A mean over all would contain the exposure itself and bias its alignment to where it starts.
 
         Args:
-            poses: The exposures, shape (n, 3) [m, m, rad].
+            poses: x, y and yaw of all exposures, shape (n, 3) [m, m, rad].
         """
         picture, plate, most = self.known, self.known.body_plate, MOST_POINTS
         if self.pattern is not None:
@@ -181,10 +182,10 @@ class MeanAlignment:
         return [replace(first, colours=mean.astype(np.float32)) for mean in means]
 
     def anchored(self, found: Sequence[Alignment | None]) -> list[Alignment | None]:
-        """Move all exposures in their own frames so that the first is where it is known to be.
+        """Move all exposures, in their own frames, by the step of the first to its known pose.
 
-        Its error of alignment becomes that of the others; where it is unclear, all become None.
-        The error of the known pose is not in their covariance.
+        The first one's covariance is added to the others'; if its correlation is too small, all
+        become None. The error of the known pose is not added.
         """
         first = found[0]
         if first is None or first.score < self.least_clear:

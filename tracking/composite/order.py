@@ -11,7 +11,7 @@ from tracking.camera.lens import Array
 
 
 def order_exposures(poses: ArrayLike) -> tuple[int, ...]:
-    """Order exposures along the walk, by the cheapest tour through all (travelling salesman).
+    """Order exposures along the walk, by a cheap open tour through all (travelling salesman).
 
     A step from one exposure to the next costs its length, and more the less it follows the mean of
     both headings, as a chord follows an arc. Length alone fails where the path comes near itself.
@@ -20,21 +20,21 @@ def order_exposures(poses: ArrayLike) -> tuple[int, ...]:
         poses: x, y [m] and yaw [rad] of the exposures, shape (n, 3).
 
     Returns:
-        Numbers of the exposures, first to last.
+        Row indices of `poses` in order of the walk, first to last; empty for no exposures.
     """
     places = np.asarray(poses, dtype=float).reshape(-1, 3)
     return tuple(_cheap_tour(_step_costs(places))) if len(places) else ()
 
 
 def _step_costs(places: Array) -> Array:
-    """Compute the cost of a step from i to j, shape (n, n) [m]."""
+    """Compute the cost of a step from pose i (row) to pose j (column), shape (n, n) [m]."""
     move = places[None, :, :2] - places[:, None, :2]
     distance = np.hypot(move[..., 0], move[..., 1])
     turn = np.angle(np.exp(1j * (places[None, :, 2] - places[:, None, 2])))
     heading = places[:, None, 2] + turn / 2
     chord = np.arctan2(move[..., 1], move[..., 0])
     along = np.cos(chord - heading)
-    # A step sideways costs three times its length, one backwards seven times.
+    # A step sideways costs four times its length, one backwards seven times.
     cost = distance * (1 + 3 * (1 - along) + 2 * (1 - np.cos(turn)))
     np.fill_diagonal(cost, np.inf)
     return cost
@@ -66,7 +66,7 @@ def _nearest_neighbours(cost: Array, start: int) -> list[int]:
 
 
 def _changed(tour: list[int]) -> Iterator[list[int]]:
-    """Yield tours of which a segment is moved or reversed."""
+    """Yield tours in which a segment of up to four is reversed in place, or moved."""
     for i, length in product(range(len(tour)), range(1, 5)):
         segment, rest = tour[i : i + length], tour[:i] + tour[i + length :]
         yield tour[:i] + segment[::-1] + tour[i + length :]

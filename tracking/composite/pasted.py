@@ -43,15 +43,17 @@ from tracking.composite.steps import (
 from tracking.pose import BodyPose
 
 LEAST_GAIN = 0.05
-"""Least log odds of an exposure, mean over all points of its top, hidden or not [-]."""
+"""Least log odds of an exposure, sum over its visible points over the number of all points of its
+top [-]."""
 
 LEAST_ODDS = 0.9
-"""Least log odds of an exposure, mean over what is visible of it [-]."""
+"""Least log odds of an exposure, mean over the visible points of its top [-]."""
 
 MOST_EXPOSURES = 40
 
 LEFT, FLOOR_LEFT = 0.05, 0.25
-"""Margins of a cut-out around the robot: opaque, and of floor, as shares of its length [-]."""
+"""Margins of a cut-out around the robot, in lengths of the robot: what is hidden in any case, and
+where points of the floor's colour may be hidden [-]."""
 
 OUTLIER_SD = 2.5
 """Standard deviations beyond which a point of a pasted exposure is an outlier [-]."""
@@ -73,7 +75,13 @@ _LEAST_SHARE = 0.05
 
 
 class Pasted(NamedTuple):
-    """An exposure: pose, log odds (mean over all points of its top) and colours of its top."""
+    """An exposure in a pasted picture.
+
+    Attributes:
+        pose: x, y [m] and yaw [rad], shape (3,).
+        gain: Log odds, mean over all points of the robot's top, 0 where hidden [-].
+        look: Colours of the robot's top, on the robot's raster.
+    """
 
     pose: Array
     gain: float
@@ -85,7 +93,7 @@ class PastedReading(Reading):
     """Reading of a picture of exposures that were cut out and pasted on each other.
 
     Attributes:
-        with_floor: Whether floor and shadow were cut out with the robot.
+        with_floor: Whether floor and shadow around the robot were cut out with it.
     """
 
     cells = 40
@@ -94,7 +102,7 @@ class PastedReading(Reading):
 
     @cached_property
     def usual(self) -> NDArray[np.float32]:
-        """Density, in the whole picture, of the colour of every point."""
+        """Density of each point's colour among all points used, (rows, columns)."""
         density = colour_density(self.picture[self.used], self.picture, blur=1.0)
         return density.astype(np.float32)
 
@@ -106,16 +114,24 @@ class PastedReading(Reading):
 
     @cached_property
     def likelier(self) -> tuple["PastedReading", list[Pasted]]:
-        """The likelier reading, of robots cut out closely or with floor, and its exposures."""
+        """The reading with the greater sum of gains, without or with floor, and its exposures."""
         ways = [(way, way.search()) for way in (self, replace(self, with_floor=True))]
         return max(ways, key=lambda way: sum(each.gain for each in way[1]))
 
     def find(self) -> Array:
-        """Find all exposures, the known one first and those on top before those under them."""
+        """Find all exposures in the likelier of the readings without and with floor.
+
+        Returns:
+            x, y [m] and yaw [rad], the known exposure first and then each after those on top of
+            it, shape (n, 3).
+        """
         return np.array([each.pose for each in self.likelier[1]])
 
     def align(self, poses: Array) -> tuple[Exposure, ...]:
-        """Align the visible part of each, those on top first; keep the raster's pose on failure."""
+        """Align the visible part of each exposure, in order; keep the raster's pose on failure.
+
+        Each exposure hides pixels from those after it.
+        """
         known, found = self.known, []
         template, visible = known.body_template(known.pixels), ~known.hidden
         for pose in poses:
@@ -133,7 +149,7 @@ class PastedReading(Reading):
         return tuple(found)
 
     def hidden_pixels(self, pose: BodyPose) -> NDArray[np.bool_]:
-        """Compute the mask of pixels that an exposure hides, or may hide, (height, width)."""
+        """Compute the mask of pixels that an exposure hides or may hide, shape (height, width)."""
         hidden = self.known.box.hidden(pose.state, left=LEFT)
         if self.with_floor:
             floor = self.known.on_photo(self.floor, self.plane, pose.planar, reach=1.25) > 0.5
@@ -141,21 +157,21 @@ class PastedReading(Reading):
         return hidden
 
     def hidden_points(self, pose: Array) -> NDArray[np.bool_]:
-        """Compute the mask of points of the raster that an exposure hides, or may hide."""
+        """Compute the mask of raster points that an exposure at a pose (3,) hides or may hide."""
         hidden = self.known.box.hidden_on(self.plane, pose, left=LEFT)
         if self.with_floor:
             hidden |= self.known.box.hidden_on(self.plane, pose, left=FLOOR_LEFT) & self.floor
         return hidden
 
     def shown(self, found: Sequence[Pasted]) -> NDArray[np.float32]:
-        """Return 1 where no exposure hides the raster, else 0, shape (rows, columns)."""
+        """Return 1 at points used that no exposure hides, else 0, shape (rows, columns)."""
         visible = self.used.copy()
         for each in found:
             visible &= ~self.hidden_points(each.pose)
         return visible.astype(np.float32)
 
     def search(self) -> list[Pasted]:
-        """Find all exposures of robots cut out in one way, with their log odds."""
+        """Find all exposures for `with_floor` as it is, the known one first."""
         pose = self.known.pose.planar
         robot = self.body.read(self.picture, pose)
         gains, _ = self.gains(pose[None], robot, self.shown([]), self.body)
@@ -175,10 +191,10 @@ class PastedReading(Reading):
         return self.in_step(found)
 
     def stack_under(self, top: Pasted, found: Sequence[Pasted]) -> list[Pasted]:
-        """Add an exposure that shows whole and the chains of exposures below it, on both sides.
+        """Add an exposure that no other hides and the chains of exposures below it, both ways.
 
         Args:
-            top: The exposure that shows whole.
+            top: The exposure that no other hides.
             found: Known exposures.
 
         Returns:
@@ -194,7 +210,7 @@ class PastedReading(Reading):
     def chain_under(
         self, above: Pasted, found: Sequence[Pasted], *, opposite: Array | None = None
     ) -> list[Pasted]:
-        """Find the exposure that another partly hides, then the one that this hides, and so on.
+        """List the exposure that another partly hides, the one that this hides, and so on down.
 
         Args:
             above: Exposure to start from.
@@ -216,7 +232,7 @@ class PastedReading(Reading):
         return chain
 
     def in_step(self, found: Sequence[Pasted]) -> list[Pasted]:
-        """Drop exposures that are much nearer to a likelier one than the usual step.
+        """Drop exposures nearer to another than 0.6 of the usual step, those of least gain first.
 
         The first stays. Of three none is dropped: the middle one is half as far from the others.
         """
@@ -235,6 +251,9 @@ class PastedReading(Reading):
             above: The exposure beside which to search.
             found: Known exposures.
             places: Candidate poses, shape (n, 3) [m, m, rad].
+
+        Returns:
+            The exposure, or None where none is likely enough.
         """
         look = above.look[1::2, 1::2]
         gains, _ = self.gains(places, look, self.shown(found), self.body.thinned())
@@ -246,7 +265,7 @@ class PastedReading(Reading):
     def climbed(
         self, starts: Sequence[Array], found: Sequence[Pasted], look: NDArray[np.float32]
     ) -> Pasted | None:
-        """Improve candidate poses by local search.
+        """Refine candidate poses by maximising their log odds; return the likeliest exposure.
 
         Args:
             starts: Candidate poses, shape (3,) each [m, m, rad].
@@ -254,7 +273,8 @@ class PastedReading(Reading):
             look: Colours expected of the robot's top, on the robot's raster.
 
         Returns:
-            The likeliest that is likely enough and apart from all known exposures, or None.
+            The exposure of greatest gain that reaches `LEAST_GAIN` and `LEAST_ODDS` and is apart
+            from all known ones, or None.
         """
         shown, known, best = self.shown(found), [each.pose for each in found], None
         for start in starts:
@@ -279,7 +299,8 @@ class PastedReading(Reading):
             shown: 1 where no other exposure hides the picture, shape (rows, columns).
 
         Returns:
-            Colours seen where they agree with those expected, else those expected.
+            The picture's colours where visible and within 3 standard deviations of those expected,
+            else those expected, on the robot's raster.
         """
         place = self.body.on(pose[None])[0]
         seen, visible = sample(self.picture, place), sample(shown, place) > 0.9
@@ -298,8 +319,8 @@ class PastedReading(Reading):
             body: Points of the robot's top to compare.
 
         Returns:
-            Log odds, mean over all points of its top, and the share of these that is visible; each
-            of shape (n,) [-].
+            Log odds, mean over all points of the top with 0 at hidden ones, and share of points
+            that are visible; shape (n,) each [-].
         """
         place = body.on(poses)
         seen, usual = sample(self.picture, place), sample(self.usual, place)

@@ -34,14 +34,14 @@ _ALL, _CAMERA = list(range(12)), slice(6, 12)  # of a state, then of the camera'
 
 
 class PatternResidual(NamedTuple):
-    """Photograph and template at a pose, as n values, with the robust weights of their difference.
+    """Prewhitened photograph and template at a pose, with robust weights of their difference.
 
     Attributes:
-        seen: Of the photograph, shape (n,).
-        expected: Of the template, shape (n,).
-        slopes: Derivative of `expected` by some of the state and the camera's pose, shape (n, m).
-        noise: Standard deviation of the residual, by the median absolute deviation.
-        weight: Huber's weights, shape (n,).
+        seen: Prewhitened values of the photograph, pixels and colours raveled, shape (n,).
+        expected: Prewhitened values of the template drawn at the pose, shape (n,).
+        slopes: Derivative of `expected` by m of the state and the camera's pose, shape (n, m).
+        noise: Standard deviation of the residual, by the median absolute deviation [-].
+        weight: Huber's weights, 1 for small residuals, shape (n,) [-].
     """
 
     seen: Array
@@ -52,11 +52,11 @@ class PatternResidual(NamedTuple):
 
     @classmethod
     def of(cls, seen: Array, expected: Array, slopes: Array) -> "PatternResidual":
-        """Compute the residual's noise and weights, the template at its best gain.
+        """Compute noise and weights of `seen` minus `expected` at its best gain.
 
         Args:
-            seen: Of the photograph, shape (n,).
-            expected: Of the template, shape (n,).
+            seen: Prewhitened values of the photograph, shape (n,).
+            expected: Prewhitened values of the template, shape (n,).
             slopes: Derivative of `expected`, shape (n, m).
         """
         gain = expected @ seen / max(expected @ expected, 1e-9)
@@ -67,12 +67,15 @@ class PatternResidual(NamedTuple):
 
     @property
     def score(self) -> float:
-        """Correlation of photograph and template."""
+        """Correlation of `seen` and `expected`, without subtracting means [-]."""
         power = (self.expected @ self.expected) * (self.seen @ self.seen)
         return float(self.expected @ self.seen / np.sqrt(max(power, 1e-9)))
 
     def step(self) -> Array:
-        """Compute one Gauss-Newton step of x, y and yaw, clipped, shape (3,) [m, m, rad]."""
+        """Compute one Gauss-Newton step of x, y and yaw, clipped, shape (3,) [m, m, rad].
+
+        `slopes` must be those by x, y and yaw; the gain of the template is fitted, too.
+        """
         J = np.column_stack((self.slopes, self.expected))
         weighed = self.weight[:, None] * J
         change = np.linalg.lstsq(weighed.T @ J, weighed.T @ (self.seen - self.expected))[0]
@@ -81,13 +84,14 @@ class PatternResidual(NamedTuple):
 
 @dataclass(frozen=True)
 class PatternAlignment:
-    """Alignment of one exposure with a template.
+    """Alignment of one exposure with a template, in prewhitened pixels.
 
     Attributes:
         known: The picture and the known exposure.
-        residual: The photograph without the other exposures, flat, shape (height, width, 3).
-        template: The robot's top and `AROUND`, flat.
-        pattern: Of the floor.
+        residual: The picture after all other exposures are subtracted, whitened colours, high-pass
+            filtered (`FloorPattern.flat`), shape (height, width, 3).
+        template: Template of the robot's top and `AROUND` it, filtered likewise.
+        pattern: Prediction filter of the floor.
         start: x, y [m] and yaw [rad] to start from, shape (3,).
     """
 
@@ -101,8 +105,8 @@ class PatternAlignment:
         """Align by Gauss-Newton steps.
 
         Returns:
-            The alignment, or None where little of the top is visible. Height, roll and pitch are
-            those of `known.prior`, and what is unknown of them is in the covariance.
+            The alignment, or None where fewer than 200 pixels of the top are visible. Height is
+            that of `known.prior`, roll and pitch are 0; their uncertainty is in the covariance.
         """
         pose = self.start.copy()
         for _ in range(_ITERATIONS):
@@ -115,27 +119,27 @@ class PatternAlignment:
 
     @cached_property
     def window(self) -> tuple[tuple[slice, slice], Array]:
-        """Rows and columns around the exposure, and x and y of the top's plane there [m]."""
+        """Slices of rows and columns around `start`; x, y of pixels on the top's plane [m]."""
         return self.known.around(self.start, reach=_REACH)
 
     @cached_property
     def seen(self) -> NDArray[np.float32]:
-        """Prediction error of the photograph by the floor's pattern, in the window."""
+        """Prediction error of `residual` in the window, shape (rows, columns, 3)."""
         return self.pattern.prediction_error(self.residual[self.window[0]])
 
     @cached_property
     def shown(self) -> NDArray[np.bool_]:
-        """Mask of the window's pixels whose prediction uses no hidden pixel."""
+        """Mask of the window's pixels with no hidden pixel within the filter's reach."""
         hidden = self.known.hidden[self.window[0]].astype(np.uint8)
         side = 2 * REACH_PX + 1
         return cv2.dilate(hidden, np.ones((side, side), np.uint8)) == 0
 
     def residual_at(self, pose: Array, by: list[int]) -> PatternResidual | None:
-        """Compute residual and Jacobian at a pose; None where little is visible.
+        """Compute residual and Jacobian on the top at a pose; None below 200 visible pixels.
 
         Args:
-            pose: x, y [m] and yaw [rad].
-            by: Indices, in state and camera's pose, of the Jacobian's columns.
+            pose: x, y [m] and yaw [rad], shape (3,).
+            by: Columns of the Jacobian: 0 to 5 the robot's state, 6 to 11 the camera's pose.
         """
         body = self.body_at(pose)
         half = 0.5 * np.array([self.known.plate.length, self.known.plate.width])
@@ -153,7 +157,7 @@ class PatternAlignment:
         )
 
     def body_at(self, pose: Array) -> Array:
-        """Transform the window's pixels to the body frame, shape (rows, columns, 2) [m]."""
+        """Compute x, y of the window's pixels in the body frame, (rows, columns, 2) [m]."""
         c, s = np.cos(pose[2]), np.sin(pose[2])
         return (self.window[1] - pose[:2]) @ np.array([[c, -s], [s, c]])
 
@@ -163,7 +167,7 @@ class PatternAlignment:
         return sample(self.template.colours, (front_left - body)[..., ::-1] / self.template.step)
 
     def slopes(self, drawn: NDArray[np.float32], body: Array, pose: Array) -> Array:
-        """Compute the Jacobian of the drawn picture with respect to state and camera pose.
+        """Compute the Jacobian of the drawn picture by the robot's state and the camera's pose.
 
         Args:
             drawn: The drawn picture, shape (rows, columns, 3).
@@ -171,7 +175,8 @@ class PatternAlignment:
             pose: x, y [m] and yaw [rad], shape (3,).
 
         Returns:
-            Jacobian, shape (rows, columns, 3, 12).
+            Jacobian, shape (rows, columns, 3, 12): x, y, z, roll, pitch, yaw, then the camera's
+            rotation vector and translation.
         """
         state = self.known.level(pose)
         points = np.concatenate(
@@ -188,11 +193,11 @@ class PatternAlignment:
         return -slope @ moved.reshape(*body.shape[:2], 2, 12)
 
     def concluded(self, pose: Array, residual: PatternResidual) -> Alignment:
-        """Make the alignment: the pose with its covariance, from the residual's Jacobian.
+        """Build the alignment: the pose, its covariances from the Jacobian, and the score.
 
         Args:
             pose: x, y [m] and yaw [rad], shape (3,).
-            residual: Residual, Jacobian, weights and noise at the pose.
+            residual: Residual, weights, noise and Jacobian of all 12 columns at the pose.
         """
         J, prior = residual.slopes[:, PLANAR], self.known.prior
         weighed = residual.weight[:, None] * J / residual.noise**2

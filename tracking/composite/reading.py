@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Ways to merge exposures into one picture, and what their readings have in common."""
+"""Ways to merge exposures into one picture, and the interface of their readings."""
 
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
@@ -18,11 +18,11 @@ from tracking.composite.known import KnownExposure
 
 
 class Merged(StrEnum):
-    """How exposures were merged into one picture."""
+    """Method by which exposures were merged into one picture."""
 
     PASTED = "pasted"
-    """The robot was cut out of each photograph and pasted on the others: it shows whole, or is
-    hidden by another."""
+    """The robot was cut out of each photograph and pasted on the others: each exposure is visible
+    or, in part or whole, hidden by another."""
     DARKEST = "darkest"
     """Each pixel has the darkest value of all photographs."""
     MEAN = "mean"
@@ -31,14 +31,14 @@ class Merged(StrEnum):
 
 @dataclass(frozen=True)
 class Reading(ABC):
-    """Find and align the exposures of a picture from one that is known.
+    """Find and align the exposures of a composite picture, given the pose of one exposure.
 
     Attributes:
-        known: The photograph with the known exposure.
-        plane: The raster of a level plane at the robot's top.
-        picture: Colours on it, shape (rows, columns, 3).
-        used: Where it shows floor or robot, shape (rows, columns).
-        body: Points of the robot's top on that raster, and perhaps some around it.
+        known: The picture with the known exposure.
+        plane: Raster of the level plane at the height of the robot's top.
+        picture: The picture's colours on `plane`, shape (rows, columns, 3) [grey levels].
+        used: True at points inside the picture and not hidden, shape (rows, columns).
+        body: Raster of the robot's body, with the margin of the class around it.
     """
 
     cells: ClassVar[int] = 32  # points of the raster along the robot
@@ -52,11 +52,11 @@ class Reading(ABC):
 
     @classmethod
     def of(cls, known: KnownExposure, *, cells: int | None = None) -> Self:
-        """Resample the picture on the plane of the robot's top.
+        """Build a reading: resample the picture on the plane of the robot's top.
 
         Args:
-            known: The photograph with the known exposure.
-            cells: Points of the raster along the robot; those of the class when None.
+            known: The picture with the known exposure.
+            cells: Number of raster points along the robot; None for the class's `cells`.
         """
         cells = cells or cls.cells
         half, cell = 0.5 * float(np.hypot(*known.size)), known.size[0] / cells
@@ -81,7 +81,7 @@ class Reading(ABC):
         """Find all exposures on the raster.
 
         Returns:
-            x, y [m] and yaw [rad] of each, the known one first, shape (n, 3).
+            x, y [m] and yaw [rad] of each exposure, the known one first, shape (n, 3).
         """
 
     @abstractmethod
@@ -89,8 +89,8 @@ class Reading(ABC):
         """Align exposures with the photograph.
 
         Args:
-            poses: What `find` returned, shape (n, 3), n at least 2.
+            poses: Poses that `find` returned, shape (n, 3), n at least 2.
 
         Returns:
-            The exposures, the known one first; without those that are rejected.
+            The aligned exposures in the order of `poses`, without those that are rejected.
         """

@@ -33,10 +33,10 @@ BESIDE_SCORE = 0.5
 """Least correlation of an exposure beside a clearer one with nearly the same heading [-]."""
 
 CLEAR_SCORE = 0.85
-"""Least correlation of an exposure that occludes others [-]."""
+"""Least correlation of a fully visible exposure in a pasted picture [-]."""
 
 CLEAR_SPREAD = 0.03
-"""Largest difference of correlation from the clearest, for a fully visible exposure [-]."""
+"""Largest amount by which a fully visible exposure's correlation is below the greatest [-]."""
 
 SHOWS_WHOLE = 0.9
 """Visible share of a body from which its marker, if there is one, must have been found [-]."""
@@ -61,24 +61,24 @@ def find_exposures(
     prior: BodyPrior, merged: Merged, body_size: tuple[float, float] | None = None,
     hidden: NDArray[np.bool_] | None = None, near: ArrayLike | None = None, reach: float = np.inf,
 ) -> tuple[Exposure, ...]:  # fmt: skip
-    """Find all exposures of the robot in one picture.
+    """Find all exposures of a robot with a marker in one composite picture.
 
     Args:
         pixels: The picture, BGR, shape (height, width, 3).
-        camera: The lens.
+        camera: Camera intrinsics and distortion.
         view: Pose of the camera.
-        template: The picture of the robot's marker (`tracking.body.marker_template`).
-        prior: Height and tilt.
+        template: Template of the robot's marker (`tracking.body.marker_template`).
+        prior: Prior of the body's height and tilt.
         merged: How the exposures were merged.
-        body_size: Length and width of the robot's body, which hides others where it was cut out and
-            pasted, and is compared there; the template's plate when None [m].
-        hidden: Pixels that do not show the robot, as those of the floor's markers, shape
-            (height, width).
-        near: x and y near which to look [m]; the whole picture when None.
-        reach: How far from there [m].
+        body_size: Length and width of the robot's body, by which pasted exposures hide each other
+            and are compared; None for the template's plate [m].
+        hidden: True at pixels to ignore, as on the floor's markers, shape (height, width).
+        near: x and y of the middle of the square to search [m]; None for the whole picture.
+        reach: Half the side of that square [m].
 
     Returns:
-        The exposures, the clearest first.
+        The exposures, not in order of the walk: those found by the marker first, the greatest
+        correlation first.
 
     Raises:
         CompositeError: When none is found.
@@ -100,7 +100,7 @@ def find_exposures(
 
 
 def _without(pixels: NDArray[np.uint8], hidden: NDArray[np.bool_]) -> NDArray[np.uint8]:
-    """Fill the pixels that do not show the robot with the picture's median colour."""
+    """Return the picture with hidden pixels filled with the median colour of the others."""
     if not hidden.any():
         return pixels
     painted = pixels.copy()
@@ -120,7 +120,7 @@ class _Search:
     area: tuple[Array, Array]
 
     def superposed(self) -> list[Exposure]:
-        """Find exposures by the whole template, each superposed with others."""
+        """Find exposures by correlation with the whole marker; `visible` is 1 for all."""
         top = self.template.plate
         half = 0.5 * float(np.hypot(top.length, top.width))
         plane = Plane.over(
@@ -139,14 +139,17 @@ class _Search:
     def aligned(
         self, start: Array, *, least_hope: float, shines_through: bool = False
     ) -> Alignment | None:
-        """Align the marker with the photograph; None where the correlation stays too small."""
+        """Align the marker with the photograph from x, y, yaw (3,); None where `align` fails."""
         return align(
             self.pixels, self.camera, self.view, template=self.template, prior=self.prior,
             start=start, blurs_px=(1.0,), least_hope=least_hope, shines_through=shines_through,
         )  # fmt: skip
 
     def along_a_walk(self, good: Sequence[Alignment]) -> list[Alignment]:
-        """Keep clear exposures, those beside them, and so on (hysteresis threshold)."""
+        """Keep exposures of `LONELY_SCORE`, those beside kept ones, and so on (hysteresis).
+
+        Those nearer than 0.4 lengths of the marker to a kept one are dropped.
+        """
         kept: list[Alignment] = []
         left = list(good)
         while index := [k for k, each in enumerate(left) if self.follows(each, kept)][:1]:
@@ -156,14 +159,15 @@ class _Search:
         return kept
 
     def follows(self, alignment: Alignment, kept: Sequence[Alignment]) -> bool:
-        """Return whether an exposure is clear, or beside another with nearly its heading."""
+        """Return whether an exposure has `LONELY_SCORE` or is beside a kept one (`is_beside`)."""
         here, poses = alignment.pose.planar, [each.pose.planar for each in kept]
         return alignment.score >= LONELY_SCORE or is_beside(here, poses, self.body[0])
 
     def refined(self, alignment: Alignment) -> Alignment:
-        """Refine an alignment by edges alone, where others or the floor shine through.
+        """Refine an alignment by edges alone, as other exposures or the floor shine through.
 
-        The score stays. The error that superposed exposures cause is added to the covariance.
+        Where that diverges the alignment stays. The score is kept; the error that superposed
+        exposures cause is added to the covariance.
         """
         length, start = self.template.plate.length, alignment.pose.planar
         fine = self.aligned(start, least_hope=0.0, shines_through=True)
@@ -173,10 +177,11 @@ class _Search:
         return replace(widened(fine, slip, lever=_LEVER * length), score=alignment.score)
 
     def layers(self, whole: Sequence[Exposure]) -> list[Exposure]:
-        """Find exposures that occlude each other, beginning with those fully visible.
+        """Find exposures that occlude each other, from `whole`, those found by the marker.
 
-        Where none is clear, as in a blurred picture, the list is returned unchanged. Of those that
-        show whole, the marker's alignment is taken; those without a marker are dropped.
+        Kept are those of high correlation, and exposures found by the body's appearance: less than
+        0.9 visible as found, others only with a marker there, by the marker's alignment. Where
+        none is kept, as in a blurred picture, `whole` is returned.
         """
         best = max((each.alignment.score for each in whole), default=0.0)
         least = max(CLEAR_SCORE, best - CLEAR_SPREAD)
@@ -190,7 +195,10 @@ class _Search:
         return found or list(whole)
 
     def occluded_by(self, clear: Sequence[Exposure]) -> Sequence[Exposure]:
-        """Find exposures, those that others occlude too, by the appearance of one that is clear."""
+        """Find exposures, also occluded ones, by the body's appearance in a fully visible one.
+
+        The first usable of `clear` is taken; empty if none is.
+        """
         top = TopPlate(*self.body, self.template.plate.height, 0.0, 0.0, 0.0)
         for exposure in clear:
             picture = KnownExposure(

@@ -20,13 +20,13 @@ REACH = 1.25
 """Largest distance between exposures that count as neighbours, in lengths of the robot [-]."""
 
 LEAST_STEP = 0.25
-"""Least distance between two exposures, in lengths of the robot; nearer ones are the same [-]."""
+"""Least distance between two exposures, in lengths of the robot; nearer poses count as one [-]."""
 
 MOST_EXPOSURES = 24
-"""Largest number of exposures in a picture whose exposures are judged as a set."""
+"""Largest number of exposures that are searched in a mean or a picture of darkest values."""
 
 CLIMB = (0.01, 0.01, 0.1)
-"""Initial steps of the local search for a pose [m, m, rad]."""
+"""Size of the initial simplex in x, y and yaw of the local search for a pose [m, m, rad]."""
 
 _TURN = np.radians(32.0)  # largest turn of a step
 _TURNS = np.radians(np.arange(-30.0, 31.0, 7.5))
@@ -42,8 +42,8 @@ def step_between(before: Array, after: Array) -> Array:
     """Compute the step between two poses, in the frame of their mean heading.
 
     Args:
-        before: x, y [m] and yaw [rad], shape (3,).
-        after: The same after the step, shape (3,).
+        before: x, y [m] and yaw [rad] before the step, shape (3,).
+        after: x, y [m] and yaw [rad] after the step, shape (3,).
 
     Returns:
         Forward, left [m] and turn [rad], shape (3,).
@@ -69,11 +69,11 @@ def stepped(pose: Array, step: Array) -> Array:
 
 
 def continued(before: Array, after: Array) -> Array:
-    """Extrapolate the pose after two others by the same step.
+    """Extrapolate a third pose by repeating the step between two poses.
 
     Args:
-        before: x, y [m] and yaw [rad], shape (3,).
-        after: The next pose, shape (3,).
+        before: First pose: x, y [m] and yaw [rad], shape (3,).
+        after: Second pose, shape (3,).
     """
     return stepped(after, step_between(before, after))
 
@@ -82,14 +82,15 @@ def steady_chain(anchor: Array, step: Array, more_turn: float, ahead: int, behin
     """Compute poses by repeating one step, whose turn may grow, forward and backward from a pose.
 
     Args:
-        anchor: Pose of the one, shape (3,).
-        step: The step after it, shape (3,).
-        more_turn: By how much each step turns more than the one before [rad].
-        ahead: How many poses along the step.
-        behind: How many against it.
+        anchor: Pose to start from: x, y [m] and yaw [rad], shape (3,).
+        step: Step from the anchor to the next pose, shape (3,).
+        more_turn: Turn of each step minus turn of the step before it [rad].
+        ahead: Number of poses after the anchor.
+        behind: Number of poses before the anchor.
 
     Returns:
-        The anchor, those ahead of it and those behind it, each away from it, shape (n, 3).
+        The anchor, the poses after it, then the poses before it, the nearest first in both, shape
+        (1 + ahead + behind, 3).
     """
     poses, more = [anchor], np.array([0.0, 0.0, more_turn])
     for sign, count in ((1, ahead), (-1, behind)):
@@ -104,10 +105,11 @@ def unsteadiness(poses: Array) -> float:
     """Compute the sum of squared changes from step to step, divided by their usual variance.
 
     Args:
-        poses: In order, shape (n, 3).
+        poses: x, y [m] and yaw [rad] in order of the walk, shape (n, 3).
 
     Returns:
-        1 a step where steps change by a tenth of their length or by 4 degrees of turn.
+        The sum [-]: 1 for each change by a tenth of the median step's length, or by 4 degrees of
+        turn; 0 for fewer than three poses.
     """
     steps = np.array([step_between(a, b) for a, b in pairwise(poses)])
     if len(steps) < 2:
@@ -118,17 +120,17 @@ def unsteadiness(poses: Array) -> float:
 
 
 def distances(poses: Array, pose: Array) -> Array:
-    """Compute the Euclidean distances of poses from one, shape (n,) [m].
+    """Compute the distances in x, y of several poses from one pose, shape (n,) [m].
 
     Args:
         poses: x, y [m] and yaw [rad], shape (n, 3).
-        pose: The other pose, shape (3,).
+        pose: The pose from which distances are measured, shape (3,).
     """
     return np.hypot(*(np.asarray(poses)[:, :2] - pose[:2]).T)
 
 
 def usual_step(poses: Array) -> float:
-    """Compute the median distance of poses, shape (n, 3), from their nearest neighbour [m]."""
+    """Compute the median distance of poses (n, 3) from their nearest neighbour [m]; 0 of one."""
     if len(poses) < 2:
         return 0.0
     nearest = [distances(np.delete(poses, k, axis=0), pose).min() for k, pose in enumerate(poses)]
@@ -136,11 +138,13 @@ def usual_step(poses: Array) -> float:
 
 
 def shifted_sets(poses: Array) -> list[Array]:
-    """List sets of exposures with one more or one less at either end of the walk.
+    """List sets of exposures with one more or one fewer at either or both ends of the walk.
 
     Args:
-        poses: x, y [m] and yaw [rad] of at least two exposures, of which the first is kept, shape
-            (n, 3).
+        poses: x, y [m] and yaw [rad] of at least two exposures, shape (n, 3).
+
+    Returns:
+        Sets other than `poses` itself that keep its first pose, in first place, shape (m, 3) each.
     """
     chain = [poses[k] for k in order_exposures(poses)]
     before, after = continued(chain[1], chain[0]), continued(chain[-2], chain[-1])
@@ -161,13 +165,13 @@ def improved(
     """Maximise a function by the simplex method (Nelder and Mead 1965); it need not be smooth.
 
     Args:
-        value: What to raise, of an array like `start`.
-        start: Where to begin, shape (n,).
-        reach: First changes, shape (n,).
-        tries: Most evaluations.
+        value: Function to maximise, of an array of shape (n,).
+        start: Argument to start from, shape (n,).
+        reach: Size of the initial simplex along each argument, shape (n,).
+        tries: Largest number of evaluations.
 
     Returns:
-        The best place and its value.
+        The best argument found, shape (n,), and its value.
     """
     scale = np.asarray(reach, dtype=float)
     corners = np.vstack((np.zeros(len(scale)), np.eye(len(scale))))
@@ -181,15 +185,15 @@ def improved(
 
 
 def beside(pose: Array, length: float, *, spacing: float) -> Array:
-    """Make a grid of candidate poses one step ahead of a pose and behind it.
+    """Compute a grid of candidate poses one step ahead of and behind a pose.
 
     Args:
         pose: x, y [m] and yaw [rad], shape (3,).
-        length: Length of the robot [m].
-        spacing: Distance between candidates [m].
+        length: Length of the robot; steps are `LEAST_STEP` to `REACH` of it [m].
+        spacing: Distance between candidates in x and in y [m].
 
     Returns:
-        Poses, shape (n, 3).
+        x, y [m] and yaw [rad], turned by up to 30 degrees, shape (n, 3).
     """
     side = np.arange(-REACH * length, REACH * length + 1e-9, spacing)
     dx, dy = (part.ravel() for part in np.meshgrid(side, side))
@@ -204,14 +208,14 @@ def beside(pose: Array, length: float, *, spacing: float) -> Array:
 
 
 def nearby(pose: Array, length: float) -> Array:
-    """Make a grid of candidate poses around an expected one.
+    """Compute a grid of candidate poses around an expected pose.
 
     Args:
         pose: Expected x, y [m] and yaw [rad], shape (3,).
-        length: Length of the robot [m]; the grid spans a fixed share of it.
+        length: Length whose 0.16-fold the grid reaches in x and y, as the robot's length [m].
 
     Returns:
-        Poses, shape (n, 3).
+        x, y [m] and yaw [rad], turned by -8, 0 and 8 degrees, shape (147, 3).
     """
     side = np.linspace(-_NEARBY, _NEARBY, 7) * length
     dx, dy = (part.ravel() for part in np.meshgrid(side, side))
@@ -222,7 +226,7 @@ def nearby(pose: Array, length: float) -> Array:
 
 
 def headed(pose: Array, poses: Array, *, square: bool) -> Array:
-    """Choose the heading of a pose so that an arc leads to it from the nearest exposure.
+    """Turn a pose by a half or quarter to the heading of an arc from the nearest exposure.
 
     The appearance of a symmetric robot does not determine its heading: it is found turned by a half
     (or a quarter, if it is square) about as often as not. The direction of the walk decides it, as
@@ -234,7 +238,7 @@ def headed(pose: Array, poses: Array, *, square: bool) -> Array:
         square: Whether the robot is about as wide as long.
 
     Returns:
-        The pose with its heading, or that turned by a half, or of a square robot a quarter.
+        The pose turned by 0 or pi, or of a square robot by 0, pi/2, pi or 3 pi/2, shape (3,).
     """
     nearest = poses[int(np.argmin(distances(poses, pose)))]
     dx, dy = pose[:2] - nearest[:2]
@@ -263,29 +267,30 @@ def is_near(pose: Array, expected: Array, length: float) -> bool:
     Args:
         pose: x, y [m] and yaw [rad], shape (3,).
         expected: Expected pose, shape (3,).
-        length: Length of the robot [m]; the tolerance of position is a share of it.
+        length: Length whose 0.3-fold is the tolerance of position [m]; that of heading is 16
+            degrees.
     """
     turned = abs(float(np.angle(np.exp(1j * (pose[2] - expected[2])))))
     return bool(distances(pose[None], expected)[0] < _NEAR * length and turned < _NEAR_TURN)
 
 
 def is_apart(pose: Array, others: Iterable[Array], distance: float) -> bool:
-    """Return whether a pose is far from all others.
+    """Return whether a pose is farther than a distance from all of several other poses.
 
     Args:
         pose: x, y [m] and yaw [rad], shape (3,).
-        others: The others, shape (3,) each.
-        distance: Least distance [m].
+        others: The other poses, shape (3,) each; True if there are none.
+        distance: Distance in x, y to exceed [m].
     """
     return all(np.hypot(*(pose - other)[:2]) > distance for other in others)
 
 
 def is_beside(pose: Array, poses: Sequence[Array], length: float) -> bool:
-    """Return whether a pose is a step from one of others, with nearly its heading.
+    """Return whether a pose is within `REACH` and 32 degrees of heading of some other pose.
 
     Args:
         pose: x, y [m] and yaw [rad], shape (3,).
-        poses: The others, shape (3,) each.
+        poses: The other poses, shape (3,) each.
         length: Length of the robot [m].
     """
     return any(
@@ -301,13 +306,13 @@ def apart(
     """Select the best of many poses that are apart from each other (non-maximum suppression).
 
     Args:
-        poses: Shape (n, 3).
-        values: How good they are, -inf where not at all, shape (n,).
-        distance: How far apart [m].
-        most: How many; no limit when None.
+        poses: x, y [m] and yaw [rad], shape (n, 3).
+        values: Scores of the poses, greater is better, -inf to exclude a pose, shape (n,).
+        distance: Distance in x, y that selected poses must exceed from each other [m].
+        most: Largest number of poses, selected from the 200 best; None for no limit.
 
     Returns:
-        The best first.
+        The selected poses, best first.
     """
     kept: list[Array] = []
     scores = np.asarray(values)

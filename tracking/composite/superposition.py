@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A picture that is a sum of one robot's picture at several poses, and the robot solved from it."""
+"""Sum of one robot's picture at several poses, and least-squares solution for that picture."""
 
 import cv2
 import numpy as np
@@ -13,12 +13,12 @@ _DAMPING = 0.02
 
 
 def superposed(body: BodyRaster, poses: Array, robot: NDArray[np.float32]) -> NDArray[np.float32]:
-    """Compute the sum of the robot's picture at all poses.
+    """Compute the sum of the robot's picture drawn at each of several poses.
 
     Args:
         body: The robot's raster.
-        poses: Exposures, shape (n, 3) [m, m, rad].
-        robot: The robot's picture, on its raster, shape (m, k, 3).
+        poses: x, y and yaw of the exposures, shape (n, 3) [m, m, rad].
+        robot: The robot's picture on the raster of `body`, shape (m, k, 3).
 
     Returns:
         Sum on the plane's raster, shape (rows, columns, 3).
@@ -41,11 +41,12 @@ def solve_robot(
 
     Args:
         body: The robot's raster.
-        poses: Exposures, shape (n, 3) [m, m, rad].
-        picture: Difference from the floor, or its detail, shape (rows, columns, 3).
+        poses: x, y and yaw of the exposures, shape (n, 3) [m, m, rad].
+        picture: Difference of the photograph from the floor, on the plane's raster, or its
+            high-pass filtered detail, shape (rows, columns, 3).
 
     Returns:
-        The robot's picture, on its raster, shape (m, k, 3).
+        The robot's picture on the raster of `body`, shape (m, k, 3).
     """
     seen = np.mean([body.read(picture, pose) for pose in poses], axis=0)
     shape, columns_rows = seen.shape, seen.shape[1::-1]
@@ -56,7 +57,7 @@ def solve_robot(
     ]
 
     def normal(values: Array) -> Array:
-        """Apply the normal equations' matrix: sum the robot shifted by all pairs of poses."""
+        """Multiply by the normal equations' matrix: sum the picture moved by all pairs of poses."""
         robot = values.reshape(shape).astype(np.float32)
         total = (1 + _DAMPING) * robot
         for shift in shifts:

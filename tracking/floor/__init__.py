@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The floor's marks, and the camera's pose over them."""
+"""Marks on the floor with measured positions, and camera poses fitted to them."""
 
 from tracking.floor.locate import FloorView, locate_camera
 from tracking.floor.marks import FloorMap, FloorMarker, FloorPoint

@@ -18,12 +18,13 @@ _MISFIT_PX = 8.0
 
 @dataclass(frozen=True)
 class FloorView:
-    """The floor's marks seen in one photograph, with pixel covariance.
+    """Pixels of the floor's marks in one photograph, with covariance.
 
     Attributes:
         photo: Name of the photograph.
-        pixels: By key of `FloorMap.marks`, where the mark's points are, each of shape (n, 2) [px].
-        covariances: Under the same keys, their covariance, each of shape (2n, 2n) [px²].
+        pixels: By key of `FloorMap.marks`, pixels of the mark's points, shape (n, 2): 4 corners
+            of a marker, 1 clicked point [px].
+        covariances: By the same keys, covariance of the raveled pixels, shape (2n, 2n) [px²].
     """
 
     photo: str
@@ -32,12 +33,12 @@ class FloorView:
 
     @classmethod
     def of(cls, photo: str, sightings: Sequence[Sighting] = ()) -> "FloorView":
-        """Collect markers found in a photograph.
+        """Build a view from the markers detected in a photograph.
 
         Args:
             photo: Name of the photograph.
-            sightings: Markers found in it. Those of a number seen twice are left out, since one
-                of them is a false detection.
+            sightings: Markers detected in it. Markers whose number occurs more than once are left
+                out, since at most one of them is the right one.
         """
         numbers = [sighting.marker_id for sighting in sightings]
         single = [s for s in sightings if numbers.count(s.marker_id) == 1]
@@ -50,11 +51,11 @@ class FloorView:
     def with_clicked(
         self, clicked: Mapping[str, tuple[float, float]], *, click_sd: float = 0.7
     ) -> "FloorView":
-        """Add points of the floor that a person clicked on.
+        """Return the view with added floor points that a person clicked on.
 
         Args:
-            clicked: Points by name, where they were clicked on [px].
-            click_sd: Standard deviation of a click [px].
+            clicked: Pixel u, v of the click, by name of the floor point [px].
+            click_sd: Standard deviation of u and of v of a click [px].
         """
         pixels = {name: np.array([pixel], dtype=float) for name, pixel in clicked.items()}
         covariances = {name: click_sd**2 * np.eye(2) for name in clicked}
@@ -65,16 +66,16 @@ def locate_camera(camera: Camera, floor: FloorMap, view: FloorView) -> CameraPos
     """Compute the camera's pose from one photograph, taking the floor's map as exact.
 
     Args:
-        camera: The lens.
+        camera: Camera intrinsics and distortion.
         floor: The floor's marks.
-        view: Where the photograph shows them.
+        view: Pixels of the marks in the photograph.
 
     Returns:
-        The camera's pose with the covariance that the pixels alone give it.
+        The camera's pose of least misfit, with a covariance from the pixel residuals alone.
 
     Raises:
-        FloorError: When no mark is seen, too few points are, the map is mirrored, or the marks
-            do not fit the picture.
+        FloorError: When the photograph shows no mark or fewer than 4 points, no solution exists,
+            the map is mirrored, or the misfit exceeds 8 px (root mean square).
     """
     pose, misfit = _best_pose(camera, floor, view)
     if misfit > _MISFIT_PX or pose.position[2] <= 0:
@@ -87,10 +88,10 @@ def seen_keys(floor: FloorMap, view: FloorView) -> list[int | str]:
 
     Args:
         floor: The floor's marks.
-        view: The marks that the photograph shows.
+        view: Pixels of the marks in the photograph.
 
     Returns:
-        Numbers of markers and names of points.
+        Keys of `floor.marks`: numbers of markers and names of points.
     """
     return [key for key in floor.marks if key in view.pixels]
 
@@ -150,7 +151,7 @@ def _solutions(
 def _polish(
     camera: Camera, start: CameraPose, points: Array, pixels: Array
 ) -> tuple[CameraPose, float]:
-    """Improve a pose by least squares; return it and its root mean square misfit [px]."""
+    """Refine a camera pose by robust least squares; return pose and RMS misfit [px]."""
 
     def pose_of(x: Array) -> CameraPose:
         return CameraPose(x[:3], x[3:], start.covariance)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Marks on the floor at places measured with a tape: markers, and points to click on."""
+"""Marks on the floor at positions measured with a tape measure: markers and clicked points."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -16,13 +16,13 @@ class FloorMarker:
     """A marker that lies on the floor.
 
     Attributes:
-        marker_id: Number in the floor's dictionary.
+        marker_id: Number of the marker in the dictionary of the floor map.
         side: Side of the black square [m].
-        x: Position of its centre [m].
-        y: Position of its centre, to the left of x [m].
+        x: x of the marker's centre [m].
+        y: y of the marker's centre; y is to the left of x seen from above [m].
         yaw: Turn of the print's left-to-right direction from x, counter-clockwise [rad].
         z: Height of the print over the floor [m].
-        position_sd: Standard deviation of the tape, in x and in y [m].
+        position_sd: Standard deviation of x and of y as measured with a tape measure [m].
         yaw_sd: Standard deviation of `yaw` [rad].
         side_sd: Standard deviation of `side`: printers scale by a few tenths of a percent [m].
     """
@@ -39,12 +39,12 @@ class FloorMarker:
 
     @property
     def points(self) -> Array:
-        """Corners in the world, OpenCV's order, shape (4, 3) [m]."""
+        """Corners of the marker in the floor frame, OpenCV's order, shape (4, 3) [m]."""
         return marker_corners(self.side, (self.x, self.y, self.z), self.yaw)
 
     @property
     def derivative(self) -> Array:
-        """Derivative of `points` with respect to x, y, yaw and side, shape (4, 3, 4)."""
+        """Derivative of `points` by x, y, yaw, side (last axis), shape (4, 3, 4) [-, m/rad]."""
         arm = self.points - (self.x, self.y, self.z)
         along = [np.tile(axis, (4, 1)) for axis in np.eye(3)[:2]]
         turn = np.column_stack((-arm[:, 1], arm[:, 0], np.zeros(4)))
@@ -56,12 +56,12 @@ class FloorMarker:
         return np.array([self.position_sd, self.position_sd, self.yaw_sd, self.side_sd])
 
     def moved(self, step: Array) -> "FloorMarker":
-        """Return the marker changed by a step in x, y, yaw and side, shape (4,)."""
+        """Return the marker with a step added to x, y, yaw, side, shape (4,) [m, m, rad, m]."""
         x, y, yaw, side = (float(part) for part in step)
         return replace(self, x=self.x + x, y=self.y + y, yaw=self.yaw + yaw, side=self.side + side)
 
     def mirrored(self) -> "FloorMarker":
-        """Return the marker mirrored, for a map that was drawn with y to the right."""
+        """Return the marker with y and yaw negated, as of a map drawn with y to the right."""
         return replace(self, y=-self.y, yaw=-self.yaw)
 
 
@@ -70,11 +70,11 @@ class FloorPoint:
     """A point of the floor that can be clicked on in a photograph.
 
     Attributes:
-        name: Its name.
-        x: Position [m].
-        y: Position, to the left of x [m].
-        z: Height over the floor [m].
-        position_sd: Standard deviation of the tape, in x and in y [m].
+        name: Name of the point, the key of its clicks.
+        x: x of the point [m].
+        y: y of the point; y is to the left of x seen from above [m].
+        z: Height of the point over the floor [m].
+        position_sd: Standard deviation of x and of y as measured with a tape measure [m].
     """
 
     name: str
@@ -85,7 +85,7 @@ class FloorPoint:
 
     @property
     def points(self) -> Array:
-        """The point in the world, shape (1, 3) [m]."""
+        """x, y, z of the point in the floor frame, shape (1, 3) [m]."""
         return np.array([[self.x, self.y, self.z]])
 
     @property
@@ -99,11 +99,11 @@ class FloorPoint:
         return np.array([self.position_sd, self.position_sd])
 
     def moved(self, step: Array) -> "FloorPoint":
-        """Return the point moved by x, y of shape (2,)."""
+        """Return the point with a step added to x and y, shape (2,) [m]."""
         return replace(self, x=self.x + float(step[0]), y=self.y + float(step[1]))
 
     def mirrored(self) -> "FloorPoint":
-        """Return the point mirrored, for a map that was drawn with y to the right."""
+        """Return the point with y negated, as of a map drawn with y to the right."""
         return replace(self, y=-self.y)
 
 
@@ -112,12 +112,14 @@ Mark = FloorMarker | FloorPoint
 
 @dataclass(frozen=True)
 class FloorMap:
-    """The floor's marks.
+    """The floor's marks: markers and clicked points with their measured positions.
+
+    Raises FloorError where two markers have one number or two points one name.
 
     Attributes:
-        dictionary: Name of the markers' dictionary.
-        markers: The markers.
-        points: Points to click on.
+        dictionary: Name of the dictionary of all markers.
+        markers: The markers that lie on the floor.
+        points: Points of the floor to be clicked on in photographs.
     """
 
     dictionary: str
@@ -130,21 +132,21 @@ class FloorMap:
 
     @property
     def marks(self) -> dict[int | str, Mark]:
-        """Markers by number and points by name."""
+        """All marks: markers by number, then points by name."""
         by_number: dict[int | str, Mark] = {marker.marker_id: marker for marker in self.markers}
         return by_number | {point.name: point for point in self.points}
 
     @property
     def marker_ids(self) -> tuple[int, ...]:
-        """Numbers of the markers."""
+        """Numbers of the markers, in the map's order."""
         return tuple(marker.marker_id for marker in self.markers)
 
     def mirrored(self) -> "FloorMap":
-        """Return the map mirrored, for one that was drawn with y to the right."""
+        """Return the map with y and yaw of all marks negated, to detect a mirrored map."""
         return self.with_marks({key: mark.mirrored() for key, mark in self.marks.items()})
 
     def with_marks(self, marks: dict[int | str, Mark]) -> "FloorMap":
-        """Return the map with its marks replaced by those under the same key."""
+        """Return the map with each mark replaced by `marks[key]` where `marks` has its key."""
         found = [marks.get(key, mark) for key, mark in self.marks.items()]
         markers = tuple(mark for mark in found if isinstance(mark, FloorMarker))
         points = tuple(mark for mark in found if isinstance(mark, FloorPoint))

@@ -1,13 +1,14 @@
 # SPDX-License-Identifier: MIT
-"""Bundle adjustment of camera poses and floor marks, with the tape measurements as a prior.
+"""Bundle adjustment of camera poses and floor marks, with measured positions as a prior.
 
 The unknowns are a camera pose for each stand (6) and x, y, yaw and side of every mark (x, y of a
 point). Minimised is
 
     sum over stands and marks  r' C^-1 r  +  sum over marks  ((m - m_tape) / sd_tape)²
 
-where r is the mark's pixels minus its projection. The tape fixes the frame: without it translation,
-rotation and scale of the floor are undetermined.
+where r is the mark's pixels minus its projection and m_tape are x, y, yaw and side as measured with
+a tape measure, which fix the frame: without them translation, rotation and scale of the floor are
+undetermined.
 """
 
 from collections.abc import Mapping, Sequence
@@ -23,7 +24,7 @@ from tracking.floor.marks import FloorMap
 from tracking.floor.stands import split_stands
 
 _CHANCE = 0.95
-"""Confidence level: residuals below this quantile of chi-squared are put down to chance."""
+"""Quantile of chi-squared below which a sum of squared residuals counts as chance [-]."""
 
 _REWEIGHINGS = 5
 
@@ -33,8 +34,8 @@ class Stand:
     """Consecutive photographs during which the camera did not move.
 
     Attributes:
-        pose: The camera, with a covariance that includes the tape's.
-        photos: Names of the photographs.
+        pose: Pose of the camera; its covariance includes the tape measure's errors.
+        photos: Names of the photographs, in order of time.
     """
 
     pose: CameraPose
@@ -46,15 +47,16 @@ class FloorFit:
     """The floor and the camera, fitted to all photographs, with residual statistics.
 
     Attributes:
-        floor: The map with refined positions.
+        floor: The map with refined x, y, yaw and side of the marks.
         stands: One entry for each stretch of photographs with the camera at rest.
-        shifts: By mark, how far it is from where the tape had it, shape (2,) [m].
-        misfit_px: Root mean square distance of marks from their projection [px].
-        noise_factor: Ratio of the pixel residuals to what the marks' covariances predict, 1
-            where not significant; it is part of the poses' covariances [-].
-        tape_factor: Ratio of the marks' distances from their taped places to the tape's error;
-            likewise [-].
-        unused: Photographs that show no mark of the floor, with the reason.
+        shifts: By key of the mark, x and y of its refined minus its measured centre, shape (2,)
+            [m].
+        misfit_px: Root mean square distance of the marks' points from their projection [px].
+        noise_factor: Pixel residuals over their standard deviations by the marks' covariances, 1
+            where the excess is not significant; the poses' covariances include the factor [-].
+        tape_factor: The same ratio of the marks' shifts to the tape measure's standard
+            deviations [-].
+        unused: By name of photograph, why it has no camera pose: it shows no mark of the floor.
     """
 
     floor: FloorMap
@@ -67,7 +69,7 @@ class FloorFit:
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """Warnings for the user, one sentence each."""
+        """Warnings, one sentence each: camera moved; marks shifted by more than 4 sd."""
         messages = [
             f"the camera moved between {a.photos[-1]} and {b.photos[0]}; each side has its own "
             f"camera pose"
@@ -83,10 +85,10 @@ class FloorFit:
         return tuple(messages)
 
     def pose_of(self, photo: str) -> CameraPose:
-        """Return the camera's pose for a photograph.
+        """Return the camera's pose in the stand of a photograph, by the photograph's name.
 
         Raises:
-            FloorError: When the photograph has none.
+            FloorError: When the photograph shows no mark or was not among those fitted.
         """
         for stand in self.stands:
             if photo in stand.photos:
@@ -98,12 +100,12 @@ def refine_floor(camera: Camera, floor: FloorMap, views: Sequence[FloorView]) ->
     """Fit camera poses and mark positions to all photographs at once (bundle adjustment).
 
     Args:
-        camera: The lens.
-        floor: The map as measured with a tape.
-        views: The floor's marks in each photograph, in order of time.
+        camera: Camera intrinsics and distortion.
+        floor: The map as measured with a tape measure.
+        views: Pixels of the floor's marks in each photograph, in order of time.
 
     Returns:
-        Refined map, camera poses with covariance, and what did not fit.
+        Refined map, a camera pose with covariance for each stand, residuals, unused photographs.
 
     Raises:
         FloorError: When no photograph shows a mark, or the map does not fit (see `locate_camera`).
@@ -139,7 +141,7 @@ def refine_floor(camera: Camera, floor: FloorMap, views: Sequence[FloorView]) ->
 
 
 def _mean_view(views: Sequence[FloorView]) -> FloorView:
-    """Average the marks over photographs with the camera at rest."""
+    """Compute the median pixels and mean covariance of each mark over a stand's photographs."""
     pixels: dict[int | str, Array] = {}
     covariances: dict[int | str, Array] = {}
     for key in {key: None for view in views for key in view.pixels}:
@@ -153,7 +155,7 @@ def _mean_view(views: Sequence[FloorView]) -> FloorView:
 
 @dataclass(frozen=True)
 class _Part:
-    """Normal equations of one group of observations, its weighted sum of squares and its size."""
+    """Normal equations of one group of residuals: J'WJ, J'Wr, cost r'Wr and count of residuals."""
 
     normal: Array
     gradient: Array
@@ -162,7 +164,7 @@ class _Part:
 
 
 def _weighed(parts: Sequence[Array], factors: Sequence[float]) -> Array:
-    """Sum the normal equations of groups, each with its variance multiplied by factor²."""
+    """Sum the normal equations of groups, each divided by its factor²."""
     return np.sum([part / factor**2 for part, factor in zip(parts, factors, strict=True)], axis=0)
 
 
@@ -175,11 +177,11 @@ class _Problem:
     def solve(
         self, starts: Sequence[CameraPose]
     ) -> tuple[FloorMap, list[CameraPose], list[Array], float, tuple[float, float]]:
-        """Fit, and refit with the variances of pixels and tape scaled by their residuals.
+        """Fit map and poses; refit with variances of pixels and measurements from residuals.
 
         Returns:
-            Map, poses, their covariances, misfit [px], and by how much pixels and tape exceed
-            their standard deviations.
+            Map, poses, their covariances (6, 6), misfit [px], and the factors on the standard
+            deviations of pixels and of tape measurements [-].
         """
         factors = (1.0, 1.0)
         floor, poses = self._least_squares(self.floor, list(starts), factors)
@@ -197,7 +199,7 @@ class _Problem:
     def _least_squares(
         self, floor: FloorMap, poses: list[CameraPose], factors: tuple[float, float]
     ) -> tuple[FloorMap, list[CameraPose]]:
-        """Iterate Gauss-Newton."""
+        """Refine map and poses by Gauss-Newton, at most 20 steps, with fixed factors."""
         for _ in range(20):
             parts = self._system(floor, poses)
             gradient = _weighed([part.gradient for part in parts], factors)
@@ -210,12 +212,12 @@ class _Problem:
     def _factors(
         self, parts: Sequence["_Part"], factors: tuple[float, float]
     ) -> tuple[float, float]:
-        """Estimate the variance components of pixels and tape.
+        """Estimate factors, at least 1, on standard deviations of pixels and tape measurements.
 
         Variance components (Helmert 1907; Koch 1999, section 3.6): with N the normal equations of
         all and N_g those of one group, its n_g residuals have r_g = n_g - tr(N^-1 N_g) degrees of
         freedom, the expectation of their sum of squares. One factor for both would attribute the
-        error of a poor picture to the tape, and widen the covariance of every camera pose.
+        error of a poor picture to the tape measurements, and widen every camera pose's covariance.
         """
         inverse = np.linalg.inv(_weighed([part.normal for part in parts], factors))
         found = []
@@ -233,7 +235,7 @@ class _Problem:
         return slots
 
     def _system(self, floor: FloorMap, poses: Sequence[CameraPose]) -> tuple["_Part", "_Part"]:
-        """Compute the normal equations of the pixels and those of the tape."""
+        """Compute the normal equations of the pixel residuals and of the tape measurements."""
         return self._by_pixels(floor, poses), self._by_tape(floor)
 
     def _by_pixels(self, floor: FloorMap, poses: Sequence[CameraPose]) -> "_Part":
@@ -267,7 +269,7 @@ class _Problem:
         return _Part(normal, gradient, cost, count)
 
     def _squares(self, floor: FloorMap, poses: Sequence[CameraPose]) -> float:
-        """Compute the mean squared residual of one coordinate [px²]."""
+        """Compute the mean squared residual per pixel coordinate over all marks [px²]."""
         residuals = [
             view.pixels[key] - project(self.camera, pose, floor.marks[key].points)
             for pose, view in zip(poses, self.views, strict=True)

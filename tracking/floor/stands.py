@@ -9,22 +9,22 @@ from tracking.camera.lens import Array
 from tracking.floor.locate import FloorView
 
 JUMP_PX = 0.2
-"""Least shift of the floor's marks that counts as a movement, beyond their noise [px]."""
+"""Least shift of the floor's marks, beyond 3 standard deviations, that counts as movement [px]."""
 
 
 def split_stands(views: Sequence[FloorView], *, jump_px: float = JUMP_PX) -> tuple[int, ...]:
-    """Number the stretches of photographs between which the camera moved.
+    """Number the stands: stretches of photographs between which the camera moved.
 
     A rotation by 0.05 degrees moves the floor by 1 px in a usual picture and the path by 2 mm.
-    The shift is therefore compared with the noise of the marks themselves.
+    The median shift of the marks is therefore compared with their noise.
 
     Args:
-        views: The floor's marks in each photograph, in order of time.
-        jump_px: Least shift that counts [px].
+        views: Pixels of the floor's marks in each photograph, in order of time.
+        jump_px: Least shift, beyond 3 standard deviations, that counts as movement [px].
 
     Returns:
-        For every photograph the number of its stand, from 0. A photograph without marks belongs
-        to the stand before it.
+        For every photograph the number of its stand, from 0. A photograph without marks, or
+        without a mark in common with the stand before it, belongs to that stand.
     """
     stands: list[int] = []
     current: list[FloorView] = []

@@ -17,11 +17,12 @@ _PREFIX = "zebro-clock:"
 
 @dataclass(frozen=True)
 class CameraClockOffset:
-    """Offset of the camera's clock from the computer's, positive when it is ahead.
+    """Offset of the camera's clock from the computer's clock.
 
     Attributes:
-        seconds: Camera minus computer [s].
-        sd: Standard deviation: the stamp's step and how often the code is renewed [s].
+        seconds: Camera's time minus computer's time; positive when the camera is ahead [s].
+        sd: Standard deviation of `seconds`, from the step of the EXIF time and the renewal
+            interval of the QR code [s].
     """
 
     seconds: float
@@ -29,7 +30,7 @@ class CameraClockOffset:
 
 
 def clock_text(t: float) -> str:
-    """Format the text that the QR code of a moment encodes.
+    """Format a time as the text of the QR clock, with milliseconds.
 
     Args:
         t: Seconds since 1970, UTC [s].
@@ -41,14 +42,14 @@ def clock_text(t: float) -> str:
 
 
 def clock_picture(t: float, *, module_px: int = 12) -> NDArray[np.uint8]:
-    """Draw the QR code of a moment, with its white margin.
+    """Draw the QR code of `clock_text(t)` with a white margin of four squares.
 
     Args:
         t: Seconds since 1970, UTC [s].
         module_px: Side of one square of the code [px].
 
     Returns:
-        Grey, shape (n, n).
+        Grey picture, shape (n, n).
     """
     code = np.asarray(cv2.QRCodeEncoder.create().encode(clock_text(t)), dtype=np.uint8)
     n = module_px * code.shape[0]
@@ -57,7 +58,14 @@ def clock_picture(t: float, *, module_px: int = 12) -> NDArray[np.uint8]:
 
 
 def read_clock(pixels: NDArray[np.uint8]) -> float | None:
-    """Decode the time that a photographed QR code shows [s], or None where there is none."""
+    """Decode the time in a photographed QR clock.
+
+    Args:
+        pixels: The photograph, grey or BGR.
+
+    Returns:
+        Seconds since 1970, UTC [s]; None where no QR code is decoded or its text is not a time.
+    """
     text, _, _ = cv2.QRCodeDetector().detectAndDecode(pixels)
     if not text.startswith(_PREFIX):
         return None
@@ -68,14 +76,14 @@ def read_clock(pixels: NDArray[np.uint8]) -> float | None:
 
 
 def clock_offset(path: Path, *, renewal: float = 0.1) -> CameraClockOffset:
-    """Compute the clock offset from the code in a photograph and the photograph's EXIF time.
+    """Compute the camera's clock offset from a photograph of the QR clock and its EXIF time.
 
     Args:
-        path: Photograph of the code.
-        renewal: How often the code on the screen is renewed [s].
+        path: Photograph of the QR clock.
+        renewal: Interval at which the code on the screen is renewed [s].
 
     Raises:
-        PhotoError: When the photograph has no code or no EXIF time.
+        PhotoError: When the photograph cannot be read, shows no QR clock or has no EXIF time.
     """
     shown = read_clock(read_pixels(path))
     if shown is None:

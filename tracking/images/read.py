@@ -16,11 +16,12 @@ from numpy.typing import NDArray
 from tracking.errors import PhotoError, TrackingError
 
 MOST_PIXELS = 80_000_000
-"""Largest number of pixels that is read: decoding and turning them takes less than a gigabyte."""
+"""Largest number of pixels read: decoding and rotating them takes less than a gigabyte [px]."""
 MOST_FILE = 256 << 20
-"""Largest size of a picture file [bytes]: that of an uncompressed picture of `MOST_PIXELS`."""
+"""Largest size of a picture file that is read, that of `MOST_PIXELS` uncompressed [bytes]."""
 MOST_SCANS = 200
-"""Largest number of scans in a JPEG, each as slow as a whole picture; cameras write 1 to 12."""
+"""Largest number of scans of a JPEG that is read; cameras write 1 to 12. Decoding a scan takes as
+long as a whole picture."""
 
 _READABLE = {".jpg", ".jpeg", ".png", ".tif", ".tiff", ".bmp", ".webp"}
 _FORMATS = ("JPEG", "PNG", "TIFF", "BMP", "WEBP")  # not those that start programs
@@ -30,13 +31,13 @@ _HEIF_BRANDS = {b"heic", b"heix", b"hevc", b"mif1", b"msf1", b"heim", b"heis"}
 
 @dataclass(frozen=True)
 class Image:
-    """A picture and when it was taken.
+    """A picture with its name and time.
 
     Attributes:
         name: Name of the photograph or frame.
         pixels: BGR, shape (height, width, 3).
-        t: Time [s].
-        t_sd: Its standard deviation [s].
+        t: Time the picture was taken [s]; of a video frame from the start of the video.
+        t_sd: Standard deviation of `t` [s].
     """
 
     name: str
@@ -46,17 +47,17 @@ class Image:
 
 
 def find_photos(folder: Path) -> tuple[Path, ...]:
-    """List the photographs of a folder in natural order of their names.
+    """List the photographs of a folder, by suffix, in natural order of their names.
 
     Args:
         folder: The folder; subfolders are not searched.
 
     Returns:
-        Paths, "p2.jpg" before "p10.jpg". Files of kinds that cannot be read (HEIC) are among them,
-        so that reading reports them instead of skipping them silently.
+        Paths, "p2.jpg" before "p10.jpg". Files of formats that cannot be read (HEIC, AVIF) are
+        included, so that reading reports them instead of skipping them silently.
 
     Raises:
-        TrackingError: When there is no folder or no photograph in it.
+        TrackingError: When `folder` is not a folder or has no photograph in it.
     """
     if not folder.is_dir():
         raise TrackingError(f"{folder} is not a folder; expected a folder of photographs")
@@ -76,17 +77,18 @@ def _counting(name: str) -> list[tuple[int, int, str]]:
 
 @contextmanager
 def open_picture(path: Path) -> Iterator[PIL.Image.Image]:
-    """Open a picture; its size and EXIF data are known, its pixels not yet decoded.
+    """Open a picture file with Pillow; size and EXIF data are read, pixels not yet decoded.
 
     Args:
         path: The file.
 
     Yields:
-        Pillow's picture.
+        Pillow's picture; the file is closed on exit.
 
     Raises:
-        PhotoError: When it is missing, no regular file, of an unknown kind, damaged, or has too
-            many pixels.
+        PhotoError: When the file is missing, not a regular file, empty, HEIC or of an unknown
+            format, damaged, or larger than `MOST_FILE` or `MOST_PIXELS`; also for any exception
+            raised inside the `with` block.
     """
     _refuse_unreadable(path)
     try:
@@ -116,14 +118,14 @@ def read_pixels(path: Path, *, size: tuple[int, int] | None = None) -> NDArray[n
 
     Args:
         path: The file.
-        size: Width and height it must have, usually the calibrated camera's [px].
+        size: Width and height the rotated photograph must have; None for any [px].
 
     Returns:
         BGR, shape (height, width, 3).
 
     Raises:
-        PhotoError: When the file is missing, empty, cut short, of an unknown kind, too large or
-            not of the size asked for.
+        PhotoError: When the file is missing, empty, damaged, of an unknown format, too large (see
+            `open_picture`), has more than `MOST_SCANS` scans, or is not of the given size.
     """
     upright = _upright(path)
     if size is not None and upright.size != size:
@@ -136,7 +138,10 @@ def read_pixels(path: Path, *, size: tuple[int, int] | None = None) -> NDArray[n
 
 
 def _upright(path: Path) -> PIL.Image.Image:
-    """Decode a picture and rotate it; the memory of the original is freed on return."""
+    """Decode a picture, rotate it by its EXIF orientation and convert it to RGB.
+
+    The memory of the original is freed on return.
+    """
     with open_picture(path) as picture:
         _refuse_many_scans(path)
         PIL.ImageOps.exif_transpose(picture, in_place=True)

@@ -21,15 +21,16 @@ _JITTERS = (0.0, 0.01, 0.02, 0.05, 0.1, 0.2)
 
 @dataclass(frozen=True)
 class IntervalFit:
-    """Times on a regular interval that are consistent with all stamps.
+    """Times of a regular interval timer fitted to whole-second stamps.
 
     Attributes:
-        t: Times, shape (n,), each within two thirds of the stamps' resolution of the truth where
-            the timer is regular [s].
-        sd: Standard deviation of each, shape (n,) [s].
+        t: Time of each stamp's photograph, shape (n,); where the timer is regular, within two
+            thirds of the stamps' resolution of the true time [s].
+        sd: Standard deviation of each time, shape (n,) [s].
         interval: The timer's interval [s].
-        missing: Numbers of the exposures between first and last that have no photograph.
-        jitter: Least deviation from regularity for which the stamps are consistent [s].
+        missing: Exposures of the timer without a photograph, counted from 0 for the first stamp.
+        jitter: Smallest of 0, 0.01, 0.02, 0.05, 0.1, 0.2 s of deviation from a regular timer
+            with which all stamps agree [s].
     """
 
     t: Array
@@ -40,14 +41,15 @@ class IntervalFit:
 
 
 def fit_interval(stamps: ArrayLike, *, resolution: float = 1.0) -> IntervalFit | None:
-    """Fit start and interval of a timer to stamps rounded down.
+    """Fit start and interval of a regular timer to time stamps that were rounded down.
 
     Args:
-        stamps: Stamps in order, shape (n,), n at least 3 [s].
-        resolution: What they are rounded down to [s].
+        stamps: Time stamps in order of the photographs, shape (n,) [s].
+        resolution: Step to which the stamps are rounded down [s].
 
     Returns:
-        The fit, or None where no regular interval agrees with the stamps, or several might.
+        The fit; None for fewer than 3 stamps, equal stamps, or where no regular interval agrees
+        with the stamps or a skipped exposure cannot be distinguished from a slower timer.
     """
     s = np.asarray(stamps, dtype=float)
     span = s[-1] - s[0]
@@ -71,7 +73,7 @@ def fit_interval(stamps: ArrayLike, *, resolution: float = 1.0) -> IntervalFit |
 def _common_polygon(
     s: Array, numbers: NDArray[np.int64], resolution: float, jitter: float
 ) -> Array | None:
-    """Intersect the stamps' strips; return the vertices (t_0, T), shape (m, 2), or None."""
+    """Intersect the stamps' strips; return vertices (t_0, T) [s], shape (m, 2); None if empty."""
     ones = np.ones(len(s))
     # -t_0 - n T + s - jitter <= 0   and   t_0 + n T - s - resolution - jitter <= 0
     above = np.column_stack((-ones, -numbers, s - jitter))
@@ -100,7 +102,7 @@ def _times(start: float, numbers: NDArray[np.int64], polygon: Array, jitter: flo
 
 
 def _centroid(polygon: Array) -> tuple[Array, Array]:
-    """Compute mean and covariance of the uniform distribution on a convex polygon."""
+    """Compute mean (2,) and covariance (2, 2) of the uniform density on a convex polygon."""
     middle = polygon.mean(axis=0)
     order = np.argsort(
         np.arctan2(*(polygon - middle).T[::-1] / np.ptp(polygon, axis=0)[::-1, None])

@@ -16,7 +16,7 @@ from tracking.images.read import open_picture
 from tracking.images.stamps import fit_interval
 
 MOST_TABLE = 16 << 20
-"""Largest size of a table of times [bytes]: that of some hundred thousand photographs."""
+"""Largest size of a table of times that is read: some hundred thousand photographs [bytes]."""
 _MOST_DIGITS = 9  # of a fraction of a second
 _EXIF_FOLDER, _TAKEN, _FRACTION, _CHANGED = 0x8769, 0x9003, 0x9291, 0x0132
 
@@ -26,9 +26,10 @@ class PhotoTimes:
     """Times of photographs.
 
     Attributes:
-        t: Times by the camera's clock, shape (n,) [s].
-        sd: Standard deviation of each, shape (n,) [s].
-        source: Their source, in words.
+        t: Times, shape (n,) [s]: from EXIF by the camera's clock since 1970, from an interval
+            since the first photograph, from a table as written there.
+        sd: Standard deviation of each time, shape (n,) [s].
+        source: Where the times come from, in words, for the report.
     """
 
     t: Array
@@ -37,14 +38,15 @@ class PhotoTimes:
 
 
 def exif_time(path: Path) -> tuple[float, float] | None:
-    """Read the time of a photograph from EXIF, by the camera's clock.
+    """Read the time of a photograph from EXIF: time taken, else time of last change.
 
     Args:
         path: The file.
 
     Returns:
-        Seconds since 1970 as if the clock ran on UTC [s], and the step of the stamp: 1 s, or less
-        where EXIF has fractions of a second. None without EXIF.
+        Seconds since 1970 by the camera's clock, taken as UTC [s], and the step of the stamp: 1 s,
+        or less where EXIF has fractions of a second [s]. None where the picture cannot be read or
+        EXIF has no valid time.
     """
     try:
         with open_picture(path) as picture:
@@ -69,11 +71,13 @@ def exif_time(path: Path) -> tuple[float, float] | None:
 def times_from_exif(paths: Sequence[Path]) -> PhotoTimes:
     """Read the times of photographs from EXIF; fit a regular interval to stamps in whole seconds.
 
+    Where no interval fits, 0.5 s is added to each stamp, with a standard deviation of 0.29 s.
+
     Args:
-        paths: The photographs, in order.
+        paths: The photographs, in order of time.
 
     Raises:
-        TimesError: When one has no EXIF time.
+        TimesError: When a photograph has no EXIF time or cannot be read.
     """
     stamps = [exif_time(path) for path in paths]
     without = [path.name for path, stamp in zip(paths, stamps, strict=True) if stamp is None]
@@ -100,12 +104,12 @@ def times_from_exif(paths: Sequence[Path]) -> PhotoTimes:
 
 
 def times_from_interval(count: int, interval: float, *, jitter: float = 0.0) -> PhotoTimes:
-    """Compute times of a regular timer; the first photograph is at 0.
+    """Compute the times 0, `interval`, 2 `interval`, ... of photographs by a regular timer.
 
     Args:
         count: Number of photographs.
         interval: Interval of the timer [s].
-        jitter: Standard deviation of each time [s].
+        jitter: Standard deviation given to each time [s].
 
     Raises:
         TimesError: When the interval is not positive.
@@ -118,14 +122,16 @@ def times_from_interval(count: int, interval: float, *, jitter: float = 0.0) -> 
 
 
 def times_from_table(table: Path, paths: Sequence[Path]) -> PhotoTimes:
-    """Read times from a CSV file with columns `photo`, `t_s` and, if known, `t_sigma`.
+    """Read times of photographs from a CSV file.
 
     Args:
-        table: The file.
-        paths: The photographs whose times are wanted.
+        table: The file, with columns `photo` (file name), `t_s` [s] and optionally `t_sigma`, the
+            standard deviation [s]; an empty number is 0.
+        paths: The photographs whose times are returned, in this order; other rows are ignored.
 
     Raises:
-        TimesError: When the file, a column or a photograph is missing, or a number is none.
+        TimesError: When the file cannot be read or exceeds `MOST_TABLE`, a column or the row of a
+            photograph is missing, a row has too many cells, or a number is not a finite number.
     """
     if table.exists() and not table.is_file():  # a FIFO would block until there is a writer
         raise TimesError(f"{table} is no file; expected a table of times")

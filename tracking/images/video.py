@@ -12,7 +12,7 @@ from tracking.errors import PhotoError
 from tracking.images.read import MOST_PIXELS, Image
 
 FRAME_TIME_SD = 2e-3
-"""Standard deviation of a frame's time stamp: phones store milliseconds [s]."""
+"""Standard deviation given to a frame's time stamp: phones store milliseconds [s]."""
 
 
 _EXPECTED = "expected a whole MP4, MOV, AVI, MKV or WebM"
@@ -27,13 +27,15 @@ def video_frames(path: Path, *, every: float = 0.0) -> Iterator[Image]:
 
     Args:
         path: The video.
-        every: Least time between two frames; 0 gives all [s].
+        every: Least time between two frames that are yielded, to 2 ms; 0 for all frames [s].
 
     Yields:
-        Frames, named by the file and their number.
+        Frames named `FILE#NUMBER`, numbers from 0, with seconds since the start of the video.
+        Frames that cannot be decoded are skipped.
 
     Raises:
-        PhotoError: When the file is no video, is empty or has no frame.
+        PhotoError: When the file is missing, empty, not a video, has no frame or frames of more
+            than `MOST_PIXELS`.
     """
     if not path.is_file() or path.stat().st_size == 0:
         raise PhotoError(path.name, "no such file, or an empty one; expected a video")
@@ -52,7 +54,10 @@ def video_frames(path: Path, *, every: float = 0.0) -> Iterator[Image]:
 
 
 def _refuse_playlist(path: Path) -> None:
-    """Raise unless the file is a video container; FFmpeg also plays lists of files and servers."""
+    """Raise PhotoError unless the first bytes are those of a video container.
+
+    FFmpeg would also open playlists, which name other files and servers.
+    """
     with path.open("rb") as file:
         head = file.read(12)
     if not (head[4:8] in _ATOMS or head.startswith(_MARKS)):

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: MIT
-"""AprilTag detector of pupil-apriltags, where it is installed.
+"""Detect AprilTags with the optional package pupil-apriltags.
 
-It finds tags that OpenCV's ArUco detector misses. Its pixels have their corners at whole numbers,
-OpenCV's their centres: the difference of half a pixel is 2 mm on the floor. Its corners begin at
-the upper right one and run counter-clockwise, for a tag as OpenCV prints it.
+The package finds tags that OpenCV's ArUco detector misses. Whole-numbered coordinates are corners
+of pixels in pupil-apriltags and centres of pixels in OpenCV: the difference of half a pixel is
+2 mm on the floor. The package lists a tag's corners counter-clockwise from the upper right one,
+for a tag as OpenCV prints it.
 """
 
 from collections.abc import Sequence
@@ -16,7 +17,7 @@ from numpy.typing import NDArray
 from tracking.camera.lens import Array
 
 FAMILIES = {"apriltag_16h5": "tag16h5", "apriltag_25h9": "tag25h9", "apriltag_36h11": "tag36h11"}
-"""The detector's name of each tag family, by OpenCV's name."""
+"""Name of each tag family in pupil-apriltags, by the name of the dictionary in OpenCV."""
 
 MOST_WRONG_BITS = 1
 
@@ -30,12 +31,12 @@ def apriltag_quads(
 
     Args:
         grey: The picture, shape (height, width).
-        dictionary: Name of the dictionary, as `dictionary_named` takes it.
-        numbers: Numbers of the tags that are wanted.
+        dictionary: Name of the dictionary, as for `dictionary_named`.
+        numbers: Numbers of the tags that are wanted; others are ignored.
 
     Returns:
-        Corners in OpenCV's order and pixels, shape (4, 2) [px], and number of each tag; none where
-        the package is not installed or does not know the family.
+        Of each tag its corners in OpenCV's order and pixel coordinates, shape (4, 2) [px], and its
+        number; empty where the package is not installed or the family is not in `FAMILIES`.
     """
     family = FAMILIES.get(dictionary.lower().removeprefix("dict_"))
     detector = None if family is None else _detector(family)

@@ -40,15 +40,15 @@ class Region(NamedTuple):
 
 
 def neighbourhood(corners_px: ArrayLike, size: tuple[int, int], *, reach: float) -> Region:
-    """Compute the search window around a marker or a robot seen before.
+    """Compute the search window around the previous place of a marker or robot.
 
     Args:
-        corners_px: Points of it, shape (n, 2) [px].
+        corners_px: Points of the marker or robot at its previous place, shape (n, 2) [px].
         size: Width and height of the picture [px].
-        reach: How far it may have moved [px].
+        reach: Distance added on each side, by which the marker or robot may have moved [px].
 
     Returns:
-        The window, cut at the picture's edges.
+        The window, clipped to the picture.
     """
     corners = np.asarray(corners_px, dtype=float)
     low = np.clip(np.floor(corners.min(axis=0) - reach), 0, size).astype(int)
@@ -69,15 +69,16 @@ def find_markers(
     Args:
         pixels: The picture, grey or BGR, shape (height, width) or (height, width, 3).
         dictionary: Name of the markers' dictionary.
-        wanted: Numbers of the markers that may be there; others are ignored.
-        region: Where to look; the whole picture when None.
-        effort: 0 OpenCV's detector alone, corners in whole pixels of the black border; 1 corners
-            fitted, and quadrilaterals that OpenCV rejected compared; 2 also in a picture that is
-            brightened, and one that is enlarged and levelled, when something wanted is still
-            missing.
+        wanted: Numbers of the markers to detect; others are ignored.
+        region: Window to search; None for the whole picture.
+        effort: 0: OpenCV's detector alone, corners to about a pixel, score 1. 1: corners refined;
+            missing markers also by pupil-apriltags and among quadrilaterals that OpenCV rejected.
+            2: markers still missing also in a brightened picture (if it is dark) and in an
+            enlarged picture with equalised contrast.
 
     Returns:
-        Markers found, ordered by number. A number that occurs twice was seen twice.
+        Markers detected, ordered by number, in pixels of the whole picture. A number occurs twice
+        if the marker is detected twice. Empty where the window is narrower than 16 px.
     """
     area = Region(0, 0, pixels.shape[1], pixels.shape[0]) if region is None else region
     grey = _grey(pixels[area.top : area.bottom, area.left : area.right])
@@ -158,7 +159,10 @@ def _decoded(
 
 
 def _brightened(grey: NDArray[np.uint8], dictionary: str, numbers: Sequence[int]) -> list[Sighting]:
-    """Scale a dark picture and detect again: OpenCV's threshold is 7 counts at any brightness."""
+    """Detect in a dark picture stretched to full contrast; empty where it is not dark.
+
+    OpenCV's threshold is 7 counts at any brightness.
+    """
     darkest, brightest = np.percentile(grey, (0.1, 99.9))
     if not 0 < brightest - darkest < _DARK_COUNTS:
         return []
@@ -185,12 +189,13 @@ def recognise(
 
     Args:
         grey: The picture, shape (height, width).
-        quads: Corners of quadrilaterals, each of 8 numbers, in any rotation [px].
+        quads: Corners of quadrilaterals, 8 numbers each, starting from any corner [px].
         dictionary: Name of the markers' dictionary.
         numbers: Numbers of the markers wanted.
 
     Returns:
-        The markers recognised; of several in one place the best.
+        Markers of at least `ACCEPTED_SCORE`, corners refined; of several in one place the one of
+        highest score.
     """
     candidates = []
     for quad in quads:
@@ -218,7 +223,7 @@ def _is_marker_like(corners: Array) -> bool:
 def _best_turn(
     grey: NDArray[np.uint8], corners: Array, dictionary: str, number: int
 ) -> Array | None:
-    """Rotate a quadrilateral's corners to the marker's best orientation, or return None."""
+    """Rotate a quadrilateral's corners for best correlation with a marker; None below 0.5."""
     target = marker_picture(dictionary, number, 4)
     inner = np.ascontiguousarray(target[4:-4, 4:-4])
     best, best_score = None, 0.5
@@ -232,14 +237,14 @@ def _best_turn(
 
 
 def _flattened(grey: NDArray[np.uint8], corners: Array, n: int) -> NDArray[np.float32]:
-    """Rectify the inside of a quadrilateral to a square of n pixels."""
+    """Rectify the inside of a quadrilateral to a square of n x n pixels."""
     square = np.array([[0, 0], [n, 0], [n, n], [0, n]], dtype=np.float32) - np.float32(0.5)
     H = cv2.getPerspectiveTransform(corners.astype(np.float32), square)
     return cv2.warpPerspective(grey, H, (n, n), flags=cv2.INTER_AREA).astype(np.float32)
 
 
 def _number_at(grey: NDArray[np.uint8], corners: Array, dictionary: str) -> int:
-    """Return the marker of the dictionary, in any rotation, with the greatest correlation.
+    """Return the number of the dictionary's marker that correlates best, in any rotation.
 
     Markers of one dictionary share their border and half of their cells. Where one lies, another
     that is wanted correlates by up to 0.8, and would be taken for a second robot.
@@ -254,7 +259,7 @@ def _number_at(grey: NDArray[np.uint8], corners: Array, dictionary: str) -> int:
 
 @cache
 def _cells_of_all(dictionary: str) -> Array:
-    """Return the normalised cells of all markers in four rotations, shape (4 markers, cells)."""
+    """Return the cells of all markers in 4 rotations, mean 0 and norm 1, (4 markers, cells)."""
     count = dictionary_named(dictionary).bytesList.shape[0]
     inner = [marker_picture(dictionary, number, 1)[1:-1, 1:-1] for number in range(count)]
     turned = np.array([np.rot90(cells, turn).ravel() for cells in inner for turn in range(4)])
@@ -263,7 +268,7 @@ def _cells_of_all(dictionary: str) -> Array:
 
 
 def _apart(candidates: list[Sighting]) -> list[Sighting]:
-    """Keep the best of overlapping sightings (non-maximum suppression)."""
+    """Keep of overlapping sightings the one of highest score (non-maximum suppression)."""
     kept: list[Sighting] = []
     for sighting in sorted(candidates, key=lambda candidate: -candidate.score):
         centre = sighting.corners_px.mean(axis=0)

@@ -27,7 +27,7 @@ from tracking.markers.square import (
 )
 
 CORNER_FLOOR_PX = 0.003
-"""Standard deviation of model errors, independent at each corner, in a sharp picture [px]."""
+"""Standard deviation of model errors added to each corner coordinate, in a sharp picture [px]."""
 
 _LAGS_PX = 8
 """Largest lag of the residual's autocovariance: a block of JPEG [px]."""
@@ -48,10 +48,10 @@ class Sighting:
     Attributes:
         marker_id: Number of the marker in its dictionary.
         corners_px: Corners in OpenCV's order, shape (4, 2) [px]; pixel centres are integers.
-        covariance: Of the corners, raveled, shape (8, 8) [px²].
-        score: Correlation of the picture inside the black border with the marker's own, 1 for a
-            perfect picture, 0.5 for the most similar other marker of a good dictionary [-].
-        blur: Standard deviation of the blur that fits [px].
+        covariance: Covariance of `corners_px.ravel()`, shape (8, 8) [px²].
+        score: Correlation of the picture inside the black border with the marker's pattern, 1 for
+            a perfect picture, 0.5 for the most similar other marker of a good dictionary [-].
+        blur: Standard deviation of the Gaussian blur fitted [px]; 0 where none was fitted.
     """
 
     marker_id: int
@@ -71,11 +71,12 @@ def refine_corners(
         grey: The picture, shape (height, width).
         corners_px: First guess of the corners, shape (4, 2) [px].
         dictionary: Name of the marker's dictionary.
-        marker_id: Its number there.
-        iterations: Most steps of Gauss-Newton.
+        marker_id: Number of the marker in the dictionary.
+        iterations: Largest number of Gauss-Newton steps.
 
     Returns:
-        The marker as fitted, or None where the fit leaves the picture or collapses.
+        The marker with refined corners, whatever its score; None where fewer than 40 pixels are
+        left, contrast is lost, or a corner moves by more than a quarter of the shortest side.
     """
     shrink = max(1, round(_longest_side(corners_px) / _USUAL_SIDE))
     patch = _Patch.around(grey, corners_px, shrink)
@@ -114,7 +115,7 @@ class _Patch:
 
     @classmethod
     def around(cls, grey: NDArray[np.uint8], corners_px: Array, shrink: int) -> "_Patch | None":
-        """Crop the marker with its white margin and room for the fit to move."""
+        """Crop a marker with a quarter of its size around; None if under 8 pixels are left."""
         reach = 0.25 * np.ptp(corners_px, axis=0).max() + 3
         low = np.maximum(np.floor(corners_px.min(axis=0) - reach).astype(int), 0)
         high = np.minimum(np.ceil(corners_px.max(axis=0) + reach).astype(int) + 1, grey.shape[::-1])
@@ -130,11 +131,11 @@ class _Patch:
         return cls(low.astype(float), np.asarray(values, dtype=float), shrink, points)
 
     def own(self, corners_px: Array) -> Array:
-        """Convert pixels of the picture to pixels of the patch, centres at integers in both."""
+        """Convert coordinates in the picture to coordinates in the patch [px]."""
         return (corners_px - self.origin + 0.5) / self.shrink - 0.5
 
     def whole(self, corners: Array) -> Array:
-        """Convert pixels of the patch to pixels of the picture."""
+        """Convert coordinates in the patch to coordinates in the picture [px]."""
         return (corners + 0.5) * self.shrink - 0.5 + self.origin
 
 
@@ -151,12 +152,12 @@ class _Look:
     """Residual and Jacobian of a fit.
 
     Attributes:
-        points: Pixels compared, across and down, shape (n, 2).
-        design: Derivative of their values with respect to the 14 unknowns, shape (n, 14).
-        inverse: Of the normal equations, shape (14, 14).
-        residual: Values minus the fit, shape (n,) [grey levels].
+        points: Column and row of the pixels compared in the patch, shape (n, 2) [px].
+        design: Derivative of their modelled values by the 14 unknowns, shape (n, 14).
+        inverse: Inverse of the normal equations' matrix, shape (14, 14).
+        residual: Pixel values minus the fitted model, shape (n,) [grey levels].
         contrast: White minus black [grey levels].
-        score: Correlation with the marker [-].
+        score: Correlation with the marker inside its black border [-].
     """
 
     points: Array
@@ -191,7 +192,11 @@ class _Look:
 
 
 def _autocovariance(left: Array, used: Array, *, lags: int) -> Array:
-    """Compute the residual's tapered autocovariance by lag, shape (2 lags + 1, 2 lags + 1)."""
+    """Compute the autocovariance of `left`, 0 where `used` is 0, with Bartlett's taper.
+
+    Returns:
+        By lag of rows and columns, lag 0 in the middle, shape (2 lags + 1, 2 lags + 1).
+    """
     shape = (left.shape[0] + lags, left.shape[1] + lags)
     power = [np.abs(np.fft.rfft2(part, shape)) ** 2 for part in (left, used)]
     product, pairs = (np.fft.irfft2(part, shape) for part in power)
@@ -203,7 +208,7 @@ def _autocovariance(left: Array, used: Array, *, lags: int) -> Array:
 
 
 def _look(fit: _Fit, patch: _Patch, dictionary: str, marker_id: int) -> _Look | None:
-    """Render the marker for a fit and compute residual and Jacobian."""
+    """Render the marker for a fit; compute residual and Jacobian, or None where undetermined."""
     H = square_homography(fit.corners)
     own = apply_homography(np.linalg.inv(H), patch.points)
     used = np.flatnonzero(_is_used(own, fit, _cells(dictionary)))
@@ -230,7 +235,7 @@ def _look(fit: _Fit, patch: _Patch, dictionary: str, marker_id: int) -> _Look | 
 
 
 def _improved(fit: _Fit, look: _Look) -> tuple[_Fit, float]:
-    """Take one Gauss-Newton step; return the fit and the largest move of its corners [px]."""
+    """Take one clipped Gauss-Newton step; return the fit and its largest corner change [px]."""
     step = look.inverse[:9] @ (look.design.T @ look.residual)
     longest = float(np.abs(step[:8]).max())
     step[:8] *= min(1.0, 0.1 * _shortest_side(fit.corners) / max(longest, 1e-12))
@@ -264,7 +269,7 @@ def _geometry_design(
 
 
 def _slopes_of_homography(corners: Array, H: Array) -> Array:
-    """Compute the derivative of the homography with respect to its corners, shape (3, 3, 8)."""
+    """Compute the numerical derivative of the homography by its corners, shape (3, 3, 8)."""
     step = 1e-4 * _shortest_side(corners)
     moved = square_homography(corners + step * _UNITS)
     return (np.moveaxis(moved, 0, -1) - H[:, :, None]) / step
@@ -289,7 +294,7 @@ def _likeness(own: Array, values: Array, drawn: Array, dictionary: str) -> float
 
 
 def _is_used(own: Array, fit: _Fit, cells: int) -> NDArray[np.bool_]:
-    """Select the marker's pixels and those of its white margin without blur from beyond it.
+    """Mask the pixels on the marker and on the part of its margin not blurred from outside.
 
     Every print has a margin one cell wide; what lies beyond it is not known.
     """

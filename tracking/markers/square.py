@@ -22,10 +22,10 @@ def marker_corners(side: float, position: ArrayLike = (0.0, 0.0, 0.0), yaw: floa
     """Compute the corners of a marker that lies flat, face up.
 
     Args:
-        side: Side of its black square [m].
-        position: Its centre, shape (3,) [m].
-        yaw: Direction of its printed *right* edge's outward normal (from its left to its right),
-            counter-clockwise from x [rad]. A marker whose top points along x has yaw = -pi/2.
+        side: Side of the black square [m].
+        position: Centre of the marker, shape (3,) [m].
+        yaw: Direction from the left to the right edge of the print, counter-clockwise from x
+            [rad]. A marker whose top points along x has yaw = -pi/2.
 
     Returns:
         Corners in OpenCV's order, shape (4, 3) [m].
@@ -42,11 +42,12 @@ def marker_picture(dictionary: str, marker_id: int, cell_px: int) -> Array:
 
     Args:
         dictionary: Name of the dictionary.
-        marker_id: Number of the marker in it.
+        marker_id: Number of the marker in the dictionary.
         cell_px: Side of a cell [px].
 
     Returns:
-        Reflectance, 0 black and 1 white, shape (n, n). Cached: do not write into it.
+        Brightness, 0 black and 1 white, shape (n, n), n = `cell_px` times cells with border and
+        margin. Cached and read-only.
     """
     family = dictionary_named(dictionary)
     cells = family.markerSize + 2
@@ -59,10 +60,10 @@ def marker_picture(dictionary: str, marker_id: int, cell_px: int) -> Array:
 def square_homography(corners: ArrayLike) -> Array:
     """Compute the homography from the unit square to four corners.
 
-    It is written out rather than taken from OpenCV, whose version accepts single precision only.
+    The formula is written out because OpenCV's function accepts single precision only.
 
     Args:
-        corners: Where the corners of `UNIT_SQUARE` go, shape (..., 4, 2).
+        corners: Images of the corners of `UNIT_SQUARE`, in its order, shape (..., 4, 2).
 
     Returns:
         H with (x, y, 1) ~ H (u, v, 1), shape (..., 3, 3), H[2, 2] = 1.

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Track a robot in the photographs of a walk."""
+"""Track a robot in the photographs of a walk: poses with covariance, smoothed to a path."""
 
 from tracking.photos.result import Tracked
 from tracking.photos.scene import MarkedTop, Photo, Scene

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Track a robot without a marker, by a template of its top."""
+"""Track a robot without a marker, by aligning a template of its top with each photograph."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -24,7 +24,7 @@ from tracking.photos.workers import Progress, batches_of, run_batches
 from tracking.pose import BodyPose, BodyPrior, fit_pose
 
 CLICK_SD = 1.0
-"""Standard deviation of a click on a corner of the robot's top [px]."""
+"""Standard deviation of u and of v of a click on a corner of the robot's top [px]."""
 
 _REACH = 0.6  # radius around the last position that is searched first [m]
 _WORTH_WORKERS = 6  # photographs; each takes a second to match
@@ -32,7 +32,7 @@ _WORTH_WORKERS = 6  # photographs; each takes a second to match
 
 @dataclass(frozen=True)
 class _Search:
-    """A batch of consecutive photographs in which to find the robot."""
+    """Job of a worker: find the template in consecutive photographs with known camera poses."""
 
     camera: Camera
     template: BodyTemplate
@@ -50,17 +50,18 @@ def track_by_look(
         scene: Camera, floor and robot, with the annotated top.
         photos: The photographs, in order of time.
         times: By photograph, time and its standard deviation [s].
-        gap: As of `finish` [s].
-        workers: Processes to use.
-        progress: Where progress is reported.
+        gap: Interval longer than which the path is interrupted [s]; None for 3.5 times the median.
+        workers: Number of processes; one is used for fewer than 6 photographs.
+        progress: Receiver of progress and of requests to stop.
 
     Returns:
-        The track.
+        The track with fitted floor, photographs without a pose, and notes.
 
     Raises:
-        NoUsablePhoto: No photograph can be used, or not that in which the top is marked.
-        TrackingError: The floor's map does not fit, head and tail cannot be told apart, or a
-            correction cannot be replayed.
+        NoUsablePhoto: No photograph, or not the one with the annotated top, can be used.
+        TrackingError: No top is annotated or it cannot serve as template, the floor's map does not
+            fit, the robot is found in no photograph, its head and tail cannot be distinguished, or
+            a correction is invalid.
         TrackStopped: A stop was requested.
     """
     seen = see_floor(scene, photos, robot=None, workers=workers, progress=progress)
@@ -85,7 +86,7 @@ def _found(
     scene: Scene, seen: FloorSeen, template: BodyTemplate, photos: Sequence[Photo], *,
     workers: int, progress: Progress,
 ) -> list[BodyCandidates | None]:  # fmt: skip
-    """Find the robot in each photograph, in a process pool."""
+    """Find the template in each photograph, in a process pool; None where it is not found."""
     workers = workers if len(photos) >= _WORTH_WORKERS else 1
     jobs = [
         _Search(scene.camera, template, scene.prior,
@@ -97,16 +98,16 @@ def _found(
 
 
 def marked_top(scene: Scene, seen: FloorSeen, photos: Sequence[Photo]) -> MarkedTop:
-    """Return the annotated top of the robot, if its photograph can be used.
+    """Return the scene's annotated top of the robot; raise if its photograph cannot be used.
 
     Args:
         scene: Camera, floor and robot.
-        seen: The floor in the photographs, and the photographs lost to it.
+        seen: The floor in the photographs, and the photographs that cannot be used.
         photos: The photographs.
 
     Raises:
         BodyError: No top is annotated.
-        NoUsablePhoto: Its photograph is not among them, or cannot be used.
+        NoUsablePhoto: The annotated photograph is not among `photos`, or cannot be used.
     """
     top = scene.top
     if top is None:
@@ -119,7 +120,7 @@ def marked_top(scene: Scene, seen: FloorSeen, photos: Sequence[Photo]) -> Marked
 
 
 def _template(scene: Scene, seen: FloorSeen, photos: Sequence[Photo]) -> BodyTemplate:
-    """Cut the template out of the photograph in which the robot's top is annotated."""
+    """Cut the robot's template out of the photograph in which its top is annotated."""
     top = marked_top(scene, seen, photos)
     view = seen.fit.pose_of(top.photo)
     files = {photo.name: photo.path for photo in photos}
@@ -133,8 +134,8 @@ def pose_of_top(top: MarkedTop, scene: Scene, view: CameraPose) -> BodyPose:
 
     Args:
         top: The top, with the clicked corners.
-        scene: Camera and robot.
-        view: Pose of the camera in that photograph.
+        scene: Scene, of which the camera and the prior of height and tilt are used.
+        view: Pose of the camera in the annotated photograph.
     """
     return fit_pose(
         scene.camera, view, points_body=top.plate.corners_body, corners_px=top.corners_px,

@@ -24,20 +24,21 @@ def track_by_marker(
     """Track a robot by the marker on its back.
 
     Args:
-        scene: Camera, floor and prior knowledge of the robot.
-        robot: The robot.
+        scene: Camera, floor, prior and corrections.
+        robot: The robot's marker and prior.
         photos: The photographs, in order of time.
         times: By photograph, time and its standard deviation [s].
-        gap: As of `finish` [s].
-        workers: Processes to use.
-        progress: Where progress is reported.
+        gap: Interval longer than which the path is interrupted [s]; None for 3.5 times the median.
+        workers: Number of processes; one is used for few photographs.
+        progress: Receiver of progress and of requests to stop.
 
     Returns:
-        The track.
+        The track with fitted floor, photographs without a pose, and notes.
 
     Raises:
-        NoUsablePhoto: No photograph can be used, or none shows the marker.
-        TrackingError: The floor's map does not fit, or a correction cannot be replayed.
+        NoUsablePhoto: No photograph can be used, or the marker is detected in none and there are
+            no corrections.
+        TrackingError: The floor's map does not fit, or a correction is invalid.
         TrackStopped: A stop was requested.
     """
     seen = see_floor(scene, photos, robot=robot, workers=workers, progress=progress)
@@ -68,18 +69,19 @@ def _robot_unseen(
 
 
 def other_markers(pixels: NDArray[np.uint8], robot: MarkedRobot, floor: FloorMap) -> str | None:
-    """List the markers in a photograph that are not the floor's.
+    """Format the numbers of the markers in a photograph that are not on the floor map.
 
-    It serves the error message when the robot's marker is found nowhere: a wrong number or
-    dictionary is the most frequent cause.
+    The list serves the error message when the robot's marker is not detected: a wrong number or
+    dictionary is the most frequent cause. Tried are the robot's, the floor's and a guessed
+    dictionary, in this order.
 
     Args:
         pixels: The photograph, grey or BGR.
-        robot: The robot.
+        robot: The robot, of which the marker's dictionary is used.
         floor: The floor's marks.
 
     Returns:
-        Such as "3, 7 of '4x4_50'"; None where there is none.
+        Text such as "3, 7 of '4x4_50'" for the first dictionary with such markers, or None.
     """
     names = (robot.marker.dictionary, floor.dictionary, guess_dictionary(pixels))
     for dictionary in dict.fromkeys(name for name in names if name is not None):

@@ -31,22 +31,23 @@ def track_exposures(
 ) -> Tracked:  # fmt: skip
     """Track a robot through the exposures of one composite picture.
 
-    Exposures are named after the picture: `walk.jpg#1` is the first.
+    Exposures are named after the picture in order along the walk: `walk.jpg#1` is the first.
 
     Args:
-        scene: Camera, floor and robot; its marker or annotated top is searched.
+        scene: Camera, floor and robot, which is found by its marker, or else its annotated top.
         photo: The picture.
         merged: How the exposures were merged.
-        times_of: Gives the times of the exposures, by their names in order.
-        gap: As of `finish` [s].
-        progress: Where progress is reported.
+        times_of: Function from the names of the exposures, in order, to their times.
+        gap: Interval longer than which the path is interrupted [s]; None for 3.5 times the median.
+        progress: Receiver of progress and of requests to stop.
 
     Returns:
-        The track.
+        The track; notes include a warning when a third of the exposures or more is rough.
 
     Raises:
-        NoUsablePhoto: The picture cannot be used.
-        TrackingError: The floor's map does not fit, or no exposure is found.
+        NoUsablePhoto: The picture cannot be used, or the annotated top is in another picture.
+        TrackingError: There is neither marker nor annotated top, the floor's map does not fit, the
+            body's size is unknown, no exposure is found, or a correction is invalid.
         TrackStopped: A stop was requested.
     """
     seen = see_floor(scene, [photo], robot=None, workers=1, progress=progress)
@@ -65,7 +66,7 @@ def track_exposures(
 
 
 def _exposures(scene: Scene, seen: FloorSeen, photo: Photo, merged: Merged) -> tuple[Exposure, ...]:
-    """Find exposures by the robot's marker, or by the one whose top is annotated."""
+    """Find exposures by the robot's marker, or without one by the exposure of annotated top."""
     size = scene.body_size
     if size is None:
         raise CompositeError("the length and width of the robot's body are not known")

@@ -24,9 +24,9 @@ class FloorSeen:
     """Fitted floor and camera, with the detections of each photograph.
 
     Attributes:
-        fit: Floor and camera.
-        detections: What the photographs show, in order of time.
-        lost: Photographs that cannot be used, with the reason.
+        fit: Fitted floor map and camera poses.
+        detections: Markers detected in each readable photograph, in order of time.
+        lost: By name of each photograph that cannot be used, the reason.
     """
 
     fit: FloorFit
@@ -34,14 +34,14 @@ class FloorSeen:
     lost: Mapping[str, str]
 
     def marks_in(self, photo: str, shape: tuple[int, ...]) -> NDArray[np.bool_]:
-        """Compute the mask of the pixels of the floor's markers with their white margin.
+        """Compute the mask of the floor's detected markers with their white margin.
 
         Args:
             photo: Name of the photograph.
-            shape: Its height and width [px].
+            shape: Height and width of the photograph [px].
 
         Returns:
-            True on markers, shape (height, width).
+            True on markers and 0.25 of their side around them, shape (height, width).
         """
         hidden = np.zeros(shape, dtype=np.uint8)
         for detection in self.detections:
@@ -61,16 +61,16 @@ def see_floor(
     Args:
         scene: Camera, floor and clicked points.
         photos: The photographs, in order of time.
-        robot: The robot whose marker is detected, too; None for none.
-        workers: Processes to use.
-        progress: Where progress is reported.
+        robot: The robot whose marker is also detected; None to detect only the floor's markers.
+        workers: Number of processes; one is used for few photographs.
+        progress: Receiver of progress and of requests to stop.
 
     Returns:
-        Floor and camera, and what each photograph shows.
+        Fitted floor and camera, and the markers detected in each photograph.
 
     Raises:
         NoUsablePhoto: No photograph can be used.
-        TrackingError: The floor's map does not fit.
+        TrackingError: No photograph shows a mark of the floor, or the floor's map does not fit.
         TrackStopped: A stop was requested.
     """
     wanted = Wanted(scene.camera.size, scene.floor, robot)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Preview of a track: detections in one photograph, its scale, and a check of the tape."""
+"""Preview of a track: detections in one photograph, its scale, and check of measured distances."""
 
 from dataclasses import dataclass
 from itertools import combinations
@@ -19,12 +19,12 @@ _FAR = 4e-3  # disagreement of tape and picture worth a warning [m]
 
 @dataclass(frozen=True)
 class TapeCheck:
-    """Distance between two marks of the floor, by tape and by photograph.
+    """Distance between two marks of the floor, by tape measure and by photograph.
 
     Attributes:
-        marks: Their names.
-        tape: Between their places in the map [m].
-        seen: Between where the photograph shows them [m].
+        marks: Marker numbers or point names of the two marks, as text.
+        tape: Distance between their centres in the floor map, measured with a tape measure [m].
+        seen: Distance between their centres computed from the photograph [m].
     """
 
     marks: tuple[str, str]
@@ -33,7 +33,7 @@ class TapeCheck:
 
     @property
     def is_off(self) -> bool:
-        """Return whether tape and photograph disagree."""
+        """Return whether the distances by tape measure and by photograph differ by over 4 mm."""
         return abs(self.seen - self.tape) > _FAR
 
 
@@ -42,15 +42,16 @@ class Preview:
     """Detections, scale and tape checks of a photograph.
 
     Attributes:
-        detection: What is detected in it.
+        detection: Markers detected in the photograph.
         pose: Pose of the camera.
-        marks: Marks of the floor that are seen.
-        unseen: Marks of the floor that are not.
-        misfit_px: Distance of marks from where the map has them, root mean square [px].
-        scale: Size of a pixel on the floor in the middle of the marks [m/px].
-        robot: x, y [m] and yaw [rad] of the robot, shape (3,); None where its marker is not seen.
-        robot_side_px: Side of its marker in the photograph [px].
-        tape: Tape checks of all pairs.
+        marks: Numbers or names of the floor's marks that are detected or clicked.
+        unseen: Numbers or names of the floor's marks that are not.
+        misfit_px: Root mean square distance of the marks' points from their projection after the
+            fit of floor and camera [px].
+        scale: Size of a pixel on the floor at the middle of the marks [m/px].
+        robot: x, y [m] and yaw [rad] of the robot; None where its marker is not detected.
+        robot_side_px: Mean side of the robot's marker in the photograph [px]; None likewise.
+        tape: Distance checks of all pairs of detected marks.
     """
 
     detection: Detection
@@ -75,15 +76,15 @@ class Preview:
 
 
 def preview_photo(scene: Scene, photo: Photo) -> Preview:
-    """Detect the marks of floor and robot in one photograph, and compare distances with the tape.
+    """Detect the marks of floor and robot in one photograph and check distances between marks.
 
     Args:
-        scene: Camera, floor and robot.
+        scene: Camera, floor, clicked points and robot.
         photo: The photograph.
 
     Raises:
-        PhotoError: It cannot be read, or shows no mark of the floor.
-        TrackingError: The floor's map does not fit.
+        PhotoError: The photograph cannot be read, shows no floor marker, or two robot markers.
+        TrackingError: The floor's map does not fit, or too few of its points are visible.
     """
     look = look_at(photo, Wanted(scene.camera.size, scene.floor, scene.robot))
     if look.seen is None:
@@ -102,7 +103,7 @@ def preview_photo(scene: Scene, photo: Photo) -> Preview:
 
 
 def _scale(scene: Scene, view: FloorView, pose: CameraPose) -> float:
-    """Compute the size of a pixel on the floor in the middle of the marks [m/px]."""
+    """Compute the width on the floor of a pixel at the mean position of the marks [m/px]."""
     seen = [view.pixels[key] for key in scene.floor.marks if key in view.pixels]
     middle = np.mean([pixels.mean(axis=0) for pixels in seen], axis=0)
     ends = to_floor(scene.camera, pose, np.add(middle, [[-0.5, 0.0], [0.5, 0.0]]))

@@ -15,20 +15,20 @@ from tracking.photos.scene import Scene
 from tracking.pose import BodyPrior
 
 Times = Mapping[str, tuple[float, float]]
-"""By photograph, its time and the standard deviation of the time [s]."""
+"""By name of photograph or exposure, its time and the standard deviation of the time [s]."""
 
 _HIGH = 3.0  # standard deviations of height above robot.toml's that are put down to chance
 
 
 @dataclass(frozen=True)
 class Tracked:
-    """A finished track.
+    """A finished track with the fitted floor and the photographs without a pose.
 
     Attributes:
-        track: The path.
-        floor: Floor, camera and photographs behind it.
-        lost: Photographs that gave no pose, with the reason.
-        notes: Notes for the user, one line each.
+        track: The smoothed path with covariance.
+        floor: Fitted floor and camera, and the detections in each photograph.
+        lost: By name of each photograph without a pose in the track, the reason.
+        notes: Notes and warnings for the user, one line each.
     """
 
     track: Track
@@ -38,11 +38,11 @@ class Tracked:
 
 
 def times_by_name(names: Sequence[str], times: PhotoTimes) -> Times:
-    """Return times and their standard deviations by name of photograph.
+    """Convert times to a dictionary of (time, standard deviation) by name of photograph.
 
     Args:
         names: Names of the photographs.
-        times: Their times [s], in the same order.
+        times: Times of the photographs [s], in the same order and number.
     """
     return dict(zip(names, zip(times.t.tolist(), times.sd.tolist(), strict=True), strict=True))
 
@@ -50,13 +50,13 @@ def times_by_name(names: Sequence[str], times: PhotoTimes) -> Times:
 def observation_of(
     photo: str, alignment: Alignment, time: tuple[float, float], *, source: str
 ) -> PoseObservation:
-    """Make an observation of the pose from a template alignment.
+    """Convert a template alignment to an observation of the pose.
 
     Args:
         photo: Name of the photograph or exposure.
-        alignment: Where the robot is.
-        time: Time and its standard deviation [s].
-        source: "marker" or "body".
+        alignment: The robot's pose with covariances and score.
+        time: Time of the photograph and its standard deviation [s].
+        source: "marker" or "body": what the template shows.
     """
     t, t_sd = time
     return PoseObservation.of(
@@ -71,18 +71,19 @@ def finish(
     """Apply corrections, smooth the poses, and collect notes for the user.
 
     Args:
-        scene: Camera, floor, robot and corrections.
-        seen: Floor and camera.
-        observations: Observed poses.
-        unseen: Photographs in which the robot was not found, with the reason.
+        scene: Scene, of which prior and corrections are used.
+        seen: Fitted floor and camera, and photographs that cannot be used.
+        observations: Poses observed by the tracker.
+        unseen: By name of each photograph in which the robot was not found, the reason.
         times: By photograph, time and its standard deviation [s].
-        gap: Interval longer than which the path is interrupted; None for 3.5 usual ones [s].
+        gap: Interval longer than which the path is interrupted [s]; None for 3.5 times the median.
 
     Returns:
-        The track.
+        The track, with the warnings of the floor fit and notes on gaps, outliers, height and
+        corrections.
 
     Raises:
-        TrackingError: The robot is seen in no photograph, or a correction cannot be replayed.
+        TrackingError: No observation is left, two have the same time, or a correction is invalid.
     """
     kept = replay(observations, scene.corrections, times=times, z=scene.prior.height)
     track = assemble_track(kept, gap=gap)

@@ -22,8 +22,8 @@ class Photo:
     """A photograph, by name and file.
 
     Attributes:
-        name: What the results call it.
-        path: Its file.
+        name: Name of the photograph in messages and results.
+        path: Path of the picture file.
     """
 
     name: str
@@ -36,8 +36,9 @@ class MarkedTop:
 
     Attributes:
         photo: Name of the photograph.
-        corners_px: Front left, front right, rear right and rear left corner, four pairs [px].
-        plate: The top.
+        corners_px: Clicks u, v on the front left, front right, rear right and rear left corner of
+            the plate [px].
+        plate: Dimensions of the robot's top.
     """
 
     photo: str
@@ -50,14 +51,15 @@ class Scene:
     """Camera, floor, robot and annotations.
 
     Attributes:
-        camera: The lens, at the size of the photographs.
-        floor: The floor as measured.
-        prior: Height and tilt of the body.
-        robot: The robot with its marker; None where it is tracked by a template.
+        camera: Camera intrinsics and distortion, at the size of the photographs.
+        floor: The floor's marks as measured.
+        prior: Prior of the body's height and tilt.
+        robot: The robot with its marker; None to track it by a template.
         top: Annotation of the robot's top in one photograph, to track it by a template.
-        clicks: By photograph, points of the floor by name, where they were clicked on [px].
+        clicks: By name of photograph and name of floor point, the pixel u, v clicked on [px].
         corrections: Manual corrections of the poses found, in the order in which they were made.
-        merged: How the exposures of one composite picture were merged; None of photographs.
+        merged: How the exposures of one composite picture were merged; None for separate
+            photographs.
         body_size: Length and width of the robot's body, needed for a composite picture [m].
     """
 
@@ -72,14 +74,15 @@ class Scene:
     body_size: tuple[float, float] | None = None
 
     def with_clicks(self, view: FloorView) -> FloorView:
-        """Add the clicked points of the floor to the marks that a photograph shows."""
+        """Return the view of a photograph with the scene's clicked floor points for it added."""
         clicks = self._clicks_for(view.photo)
         return view if not clicks else view.with_clicked(clicks)
 
     def _clicks_for(self, photo: str) -> Mapping[str, Click]:
-        """Return a photograph's clicks; on a tripod those of one photograph hold for all.
+        """Return the clicks of a photograph, by name of the floor point.
 
-        Where the floor has markers, these give the camera's pose in the other photographs.
+        On a floor without markers, a photograph without clicks has those of the first photograph
+        with clicks: the camera is on a tripod. Elsewhere it has none; markers give the pose.
         """
         if photo in self.clicks or self.floor.markers or not self.clicks:
             return self.clicks.get(photo, {})

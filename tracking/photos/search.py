@@ -23,12 +23,12 @@ from tracking.photos.workers import WORTH_WORKERS, Progress, batches_of, run_bat
 
 @dataclass(frozen=True)
 class Wanted:
-    """What to detect in photographs: marks of the floor and the robot's marker.
+    """Settings of detection: size of photographs, the floor's marks and the robot's marker.
 
     Attributes:
-        size: Width and height photographs must have [px].
+        size: Width and height that photographs must have [px].
         floor: The floor's marks.
-        robot: The robot; None where its marker is not to be detected.
+        robot: The robot; None not to detect its marker.
     """
 
     size: tuple[int, int]
@@ -38,12 +38,12 @@ class Wanted:
 
 @dataclass(frozen=True)
 class PhotoResult:
-    """Detection in one photograph, or why it cannot be used.
+    """Detection in one photograph, or the reason why the photograph cannot be used.
 
     Attributes:
-        photo: Its name.
-        seen: What it shows; None where it cannot be used.
-        problem: Why not; None where it can.
+        photo: Name of the photograph.
+        seen: Markers detected; None where the photograph cannot be used.
+        problem: Reason why the photograph cannot be used; None where it can.
     """
 
     photo: str
@@ -58,12 +58,12 @@ def search_photos(
 
     Args:
         photos: The photographs, in order of time.
-        wanted: What to look for.
-        workers: Processes to use.
-        progress: Where progress is reported.
+        wanted: Settings of detection.
+        workers: Number of processes; one is used below `WORTH_WORKERS` pixels in all.
+        progress: Receiver of progress and of requests to stop.
 
     Returns:
-        What each shows, in the same order.
+        Detection in each photograph, or why it cannot be used, in the same order.
 
     Raises:
         TrackStopped: A stop was requested.
@@ -88,15 +88,15 @@ def _search_batch(job: tuple[Wanted, Sequence[Photo]]) -> list[PhotoResult]:
 
 
 def look_at(photo: Photo, wanted: Wanted, hint: Detection | None = None) -> PhotoResult:
-    """Detect markers in one photograph.
+    """Detect markers in one photograph; report a `PhotoError` instead of raising it.
 
     Args:
         photo: The photograph.
-        wanted: What to look for.
-        hint: What one taken shortly before shows.
+        wanted: Settings of detection.
+        hint: Detection in a photograph taken shortly before, near which to search first.
 
     Returns:
-        What it shows, or why it cannot be used.
+        The detection, or why the photograph cannot be used.
     """
     try:
         pixels = read_pixels(photo.path, size=wanted.size)
@@ -126,6 +126,6 @@ def _detected(
 
 
 def _floor_alone(name: str, pixels: NDArray[np.uint8], floor: FloorMap) -> Detection:
-    """Detect the floor's marks where the robot has no marker."""
+    """Detect the floor's markers only; none detected is not an error."""
     found = find_markers(pixels, floor.dictionary, wanted=floor.marker_ids) if floor.markers else ()
     return Detection(name, FloorView.of(name, found), None)

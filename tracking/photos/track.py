@@ -19,22 +19,22 @@ def track_photos(
     """Track a robot in photographs: by its marker, by a template, or in a composite picture.
 
     Args:
-        scene: Camera, floor, robot, and annotations of a person.
-            `scene.merged` says that there is one picture, with many exposures.
+        scene: Camera, floor, robot and annotations; tracked is a composite picture if
+            `scene.merged` is given, else by the marker if `scene.robot` is, else by the template.
         photos: The photographs in order of time, or the one composite picture.
-        times_of: Gives the times of photographs by their names in order; of a composite picture,
-            of its exposures `walk.jpg#1`, `walk.jpg#2` and so on, once it is known how many.
-        gap: Interval longer than which the path is interrupted; None for 3.5 usual ones [s].
-        workers: Processes to use.
-        progress: Where progress is reported; None for nowhere.
+        times_of: Function from names of photographs, in order, to their times; of a composite
+            picture, from names of its exposures found, `walk.jpg#1`, `walk.jpg#2` and so on.
+        gap: Interval longer than which the path is interrupted [s]; None for 3.5 times the median.
+        workers: Largest number of processes.
+        progress: Receiver of progress and of requests to stop; None for none.
 
     Returns:
-        The path with covariance, the fitted floor and camera, and what was left out and why.
+        The path with covariance, the fitted floor and camera, and photographs left out and why.
 
     Raises:
-        NoUsablePhoto: No photograph can be used, or none shows the robot.
-        TrackingError: The floor's map does not fit, head and tail cannot be told apart, no
-            exposure is found, or a correction cannot be replayed.
+        NoUsablePhoto: No photograph can be used, or the robot's marker is detected in none.
+        TrackingError: The floor's map does not fit, the robot's head and tail cannot be
+            distinguished, no pose or exposure is found, or a correction is invalid.
         TrackStopped: A stop was requested.
     """
     progress = NoProgress() if progress is None else progress

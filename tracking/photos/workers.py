@@ -12,7 +12,8 @@ import numpy as np
 from tracking.errors import TrackStopped
 
 WORTH_WORKERS = 60e6
-"""Least number of pixels for which worker processes, which take a second each to start, pay."""
+"""Least number of pixels of all photographs for which worker processes are used: each takes a
+second to start [px]."""
 
 LONGEST_BATCH = 12
 
@@ -22,14 +23,14 @@ Result = TypeVar("Result")
 
 
 class Progress(Protocol):
-    """Interface to report progress and to ask whether to stop."""
+    """Protocol of a receiver of progress reports that can request a stop."""
 
     def step(self, what: str, fraction: float | None) -> None:
         """Report the current step and its progress.
 
         Args:
             what: Name of the step, a word or two.
-            fraction: Share that is done, 0 to 1; None if unknown.
+            fraction: Share of the step that is done, 0 to 1; None if unknown.
         """
         ...
 
@@ -39,10 +40,10 @@ class Progress(Protocol):
 
 
 class NoProgress:
-    """Progress that is not displayed and never stops the work."""
+    """Implementation of `Progress` that ignores reports and never requests a stop."""
 
     def step(self, what: str, fraction: float | None) -> None:
-        """Do nothing.
+        """Ignore the report.
 
         Args:
             what: Name of the step.
@@ -62,7 +63,7 @@ def batches_of(items: Sequence[Item], workers: int) -> list[Sequence[Item]]:
         workers: Number of worker processes.
 
     Returns:
-        Batches of at most `LONGEST_BATCH` items, in order.
+        Batches of equal length (the last may be shorter), at most `LONGEST_BATCH`, in order.
     """
     length = int(np.clip(np.ceil(len(items) / (2 * workers)), 1, LONGEST_BATCH))
     return [items[start : start + length] for start in range(0, len(items), length)]
@@ -79,17 +80,17 @@ def run_batches(
     """Map a function over jobs in a process pool, or in this process with one worker.
 
     Args:
-        work: Function to apply; on module level, since it is pickled.
-        jobs: Its arguments.
-        workers: Processes to use.
-        progress: Where progress is reported.
-        what: Name of the step, a word or two.
+        work: Function of one job; on module level, since it is pickled.
+        jobs: Arguments, one for each call of `work`.
+        workers: Largest number of processes.
+        progress: Receiver of progress after each job, and of requests to stop.
+        what: Name of the step in progress reports, a word or two.
 
     Returns:
         Results in the order of the jobs.
 
     Raises:
-        TrackStopped: A stop was requested.
+        TrackStopped: A stop was requested. Exceptions of `work` are raised unchanged.
     """
     progress.step(what, 0.0)
     if min(workers, len(jobs)) < 2:
@@ -118,8 +119,8 @@ def report_step(progress: Progress, what: str, fraction: float | None) -> None:
     """Report progress, and raise if a stop was requested.
 
     Args:
-        progress: Where to report it.
-        what: Name of the step.
+        progress: Receiver of the report.
+        what: Name of the step, a word or two.
         fraction: Share that is done, 0 to 1; None if unknown.
 
     Raises:

@@ -17,7 +17,7 @@ def report(request: ReportRequest, *, made: datetime) -> Sources:
 
     Args:
         request: Folders to report on, and the page to write.
-        made: Date shown on the page.
+        made: Date and time shown on the page.
 
     Returns:
         The results shown on the page.

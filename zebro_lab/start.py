@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Entry points of the commands; they first check that packages are zebro-lab's own."""
+"""Entry points of the commands; they first check where zebro-lab's packages are imported from."""
 
 import sys
 from importlib.util import find_spec
@@ -32,7 +32,7 @@ def require_own_packages() -> None:
 
 
 def zebro_lab() -> None:
-    """Check the packages, then run the command line `zebro-lab`; exit 1 if one is shadowed."""
+    """Check the packages, then run the command line `zebro-lab`; exit 1 if the check fails."""
     _check_or_exit()
     from zebro_lab.main import main
 
@@ -40,7 +40,7 @@ def zebro_lab() -> None:
 
 
 def calibrate_slip() -> None:
-    """Check the packages, then run the command line `calibrate-slip`; exit 1 if one is shadowed."""
+    """Check the packages, then run the command line `calibrate-slip`; exit 1 if it fails."""
     _check_or_exit()
     from zebro_lab.main import calibrate_slip
 

@@ -15,7 +15,7 @@ from zebro_lab.files.errors import DataError
 
 POSTERIOR = "posterior.nc"
 _ADVICE = f"calibrate again, or name a slip.toml without a {POSTERIOR} beside it"
-MOST_TABLES = 200  # a table costs as much as walking a second, and paths hardly differ between them
+MOST_TABLES = 200  # a table costs as much as 1 s of simulated walk, and paths hardly differ by it
 
 
 def slip_tables(

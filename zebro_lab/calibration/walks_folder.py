@@ -138,7 +138,7 @@ def read_stored_walks(slip_toml: Path) -> StoredWalks | None:
 
     Raises:
         NotFound: `draws.npz` is missing.
-        DataError: It is damaged, of another schema, or the `slip.toml` has changed since the fit.
+        DataError: A file is damaged, of another schema, or `slip.toml` has changed since the fit.
     """
     folder = settle(slip_toml.parent / FOLDER)
     file = folder / WALKS_TOML

@@ -75,7 +75,7 @@ def require_own(out: Path, kind: OwnFile, *, inputs: Sequence[Path] = ()) -> Pat
         The path to write, with symbolic links resolved.
 
     Raises:
-        AlreadyExists: It is a folder, an input, in the manifest beside it, or not of this command.
+        AlreadyExists: `out` is a folder, an input, part of a result, or of another command.
         NotFound: The folder to write it into does not exist.
     """
     file = Path(os.path.realpath(out))

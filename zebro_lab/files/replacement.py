@@ -202,7 +202,7 @@ def _is_folder(path: Path) -> bool:
 def _link(file: Path, target: Path) -> None:
     try:
         os.link(file, target, follow_symlinks=False)
-    except OSError:  # no hard links here, or not to files of others: `_sweep` moves it
+    except OSError:  # the file system or the file's owner forbids hard links: `_sweep` moves it
         return
 
 

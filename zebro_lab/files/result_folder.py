@@ -60,8 +60,8 @@ def require_replaceable(out: Path, kind: ResultKind, *, inputs: Sequence[Path] =
         inputs: Files and folders that are read.
 
     Raises:
-        AlreadyExists: It is a file or below one, a broken link, the working folder or above it, an
-            input, the result of another command, or has a user's or changed file of a name needed.
+        AlreadyExists: `out` is a file or below one, a broken link, an input, the working folder or
+            above it, of another command, has changed results, or a user's file is in the way.
         NotWritten: The nearest existing parent folder cannot be written to.
     """
     folder = real_place(out)
@@ -245,7 +245,7 @@ def _require_free(
 
 
 def _require_kept(out: Path, folder: Path, path: Path, replaced: Collection[str]) -> None:
-    """Raise `AlreadyExists` if an input is the folder, or in it and `replaced` has its name."""
+    """Raise `AlreadyExists` if an input is the folder, or lies in it under a `replaced` name."""
     place = real_place(path)
     inside = place.is_relative_to(folder) and place.relative_to(folder).parts[:1]
     if place == folder or (inside and inside[0] in replaced):

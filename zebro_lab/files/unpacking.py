@@ -25,7 +25,7 @@ LONGEST_LINE: Final = 1 << 20
 
 @contextmanager
 def open_unpacked(path: Path, *, width: int = 1) -> Iterator[IO[bytes]]:
-    """Open a file for reading, decompressing it if its name ends in .gz.
+    """Open a file for reading with size limits, decompressing it if its name ends in .gz.
 
     Args:
         path: The file.

@@ -97,7 +97,7 @@ def orientation(path: WalkPath, *, title: str) -> Figure:
 def _over_time(
     t: Array, values: Array, names: Sequence[str], units: Sequence[str], title: str
 ) -> Figure:
-    """Draw three quantities with their first and second derivatives."""
+    """Draw three quantities (n, 3) over time, below them first and second derivatives."""
     figure = new_figure(title, True, width=8.5, height=6.0)
     panels = figure.subplots(3, 3, sharex=True)
     rows = [values]

@@ -57,7 +57,7 @@ def make_gait(request: GaitRequest, *, leg_arc: float) -> NamedGait:
         leg_arc: Angle of the legs' arc [rad].
 
     Raises:
-        SettingsError: There is no such gait, it has no such option, or an angle cannot be parsed.
+        SettingsError: The gait is unknown or lacks a given option, or an angle cannot be parsed.
         DomainError: The gait is impossible with these parameters.
 
     >>> gait = make_gait(GaitRequest(steering=1.1, touchdown_deg="50"), leg_arc=np.pi)

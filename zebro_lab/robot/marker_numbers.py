@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Check marker numbers: they exist in their dictionary and are unique."""
+"""Check that marker numbers exist in a dictionary, and differ between robot and floor."""
 
 from collections.abc import Iterable
 

@@ -50,7 +50,7 @@ def in_time(act: Callable[[], object]) -> bool:
     thread = threading.Thread(target=run, daemon=True, name="last words")
     try:
         thread.start()
-    except RuntimeError:  # no thread can be started: say it without one
+    except RuntimeError:  # no thread can be started: print without one
         run()
     else:
         thread.join(PATIENCE)

@@ -30,7 +30,7 @@ def shifted(track: TrackFile, offset: float) -> TrackFile:
 def estimated_clock(
     track: TrackFile, path: Poses, *, otherwise: str = "Give --time-offset SECONDS"
 ) -> tuple[TrackFile, float]:
-    r"""Estimate the clock offset of a track from the motion, and add it with its uncertainty.
+    r"""Estimate a track's clock offset from the motion; add it to its times, its variance to poses.
 
     A clock error shifts every pose along the path by the same time, so the covariance grows by
     :math:`\sigma_\tau^2 v v^T` with v the path's velocity.

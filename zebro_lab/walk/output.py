@@ -16,7 +16,7 @@ from zebro_lab.walk.walking import Walked
 
 
 class WalkStopped(ZebroLabError):
-    """A walk was stopped on request while it was drawn; nothing was written."""
+    """A walk was stopped on request before it was written completely; nothing is left of it."""
 
 
 def write_walk(

@@ -45,7 +45,7 @@ def predict(request: PredictRequest, watcher: Watcher) -> Walked:
 
     Raises:
         ZebroLabError: A file is missing or has invalid content, or the folder cannot be replaced.
-        WalkStopped: The watcher requested a stop while pictures were drawn.
+        WalkStopped: The watcher requested a stop; nothing was written.
         ModelError: The walk cannot be computed.
     """
     settle(request.log)

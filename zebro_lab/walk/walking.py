@@ -61,7 +61,7 @@ class Walked:
 
 
 def robot_of(request: ModelRequest) -> RobotFile:
-    """Return the robot of a request: from its file or the thesis's, with the requested arc.
+    """Return the robot of `--robot`, else the thesis's robot, with the arc `--arc-deg` if given.
 
     Raises:
         NotFound: The `robot.toml` of the request does not exist.

@@ -49,7 +49,7 @@ def fit_walks_on_file(
         progress: Called with the fraction done, 0 to 1 [-].
 
     Raises:
-        ModelError: There is no walk, or one diverged.
+        ModelError: `walks` is empty, or a walk diverged.
     """
     if not walks:
         raise InsufficientData("no walk to fit; name one or more with a track")

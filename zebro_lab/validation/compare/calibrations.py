@@ -93,7 +93,7 @@ def _common_loads(curves: tuple[SlipCurve, ...], second: Path) -> Array:
 
 
 def _features(curve: SlipCurve, values: Array, load: float, limit: float) -> tuple[Array, Array]:
-    """Return the largest traction up to a slip limit, and the slope at zero slip [N], (n,)."""
+    """Compute largest traction up to slip `limit`, and slope at zero slip [N], each (n,)."""
     columns, n = values.T, len(values)
     peak = np.minimum(curve.law.peak_slip(load, columns), limit)
     largest = curve.law.force(peak, load, columns)

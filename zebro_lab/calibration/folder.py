@@ -229,7 +229,10 @@ def summary_csv(calibration: "Calibration") -> str:
 
 
 def inference_data(calibration: "Calibration") -> "az.InferenceData":
-    """Return a fit's posterior draws and block means as ArviZ data; a chain is an ensemble."""
+    """Convert a fit to ArviZ InferenceData, with one chain for each ensemble of walkers.
+
+    Groups: draws of the free parameters, log density, measured traction and the other block means.
+    """
     import arviz as az
 
     posterior, draws = calibration.posterior, calibration.draws

@@ -133,7 +133,10 @@ def _known(
     maps: Mapping[DataSource, Columns],
     labels: Mapping[DataSource, str],
 ) -> dict[str, str]:
-    """Return labels of readable excluded runs by key (hash of forces), to recognise copies."""
+    """Return labels of excluded runs by key (hash of the forces), by which copies are recognised.
+
+    Excluded runs that cannot be read are omitted.
+    """
     known: dict[str, str] = {}
     for source in excluded:
         try:
@@ -147,7 +150,10 @@ def _known(
 def _without_duplicates(
     parts: Sequence[RigPart], known: Mapping[str, str]
 ) -> tuple[list[RigPart], list[tuple[str, str]]]:
-    """Return the parts without copies of earlier or `known` runs, and pairs (copy, original)."""
+    """Drop runs whose key is that of an earlier run or of a `known` one.
+
+    Returns the parts that have runs left, and the names of each copy and its original.
+    """
     seen, repeated, kept = dict(known), [], []
     for part in parts:
         keys = part.keys

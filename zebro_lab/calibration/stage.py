@@ -127,7 +127,7 @@ def _sampler(request: CalibrationRequest) -> SamplerSettings:
 
 
 def _candidates(request: CalibrationRequest, samples: SlipSamples) -> dict[str, SlipLaw]:
-    """Return the laws to compare by reported name, simplest first; two for `--curvature auto`."""
+    """Return the laws to compare, by reported name, simplest first; two for `--curvature auto`."""
     if request.law != MagicFormula.name:
         if request.curvature != "auto" or request.load_sensitivity:
             raise SettingsError(

@@ -84,7 +84,10 @@ class WalksToWrite:
 
 
 def describe_legs(described: RobotFile) -> dict[str, Any]:
-    """Return hips, leg offsets, radius, arc, mass, inertia and leg signs for `walks.toml`, SI."""
+    """Return the parameters by which robots are compared, JSON-serialisable, SI.
+
+    They are hips, leg offsets, leg radius and arc, mass, principal inertia and leg signs.
+    """
     robot = described.robot
     return {
         "hips": robot.hips.tolist(),

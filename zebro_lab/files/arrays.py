@@ -62,7 +62,7 @@ def _member(archive: zipfile.ZipFile, name: str, path: Path) -> zipfile.ZipInfo:
 
 
 def _array(archive: zipfile.ZipFile, member: zipfile.ZipInfo, path: Path) -> NDArray:
-    """Read one array; raise if its header does not fit its bytes, which zipfile limits."""
+    """Read one array; raise if its header does not match the number of bytes in the archive."""
     with archive.open(member) as file:
         shape, fortran, dtype = _header(file, member, path)
         data = file.read()

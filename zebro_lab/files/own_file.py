@@ -117,7 +117,7 @@ def _listed_beside(file: Path) -> Sequence[str]:
 
 
 def _png_texts(head: bytes) -> Iterator[tuple[str, str]]:
-    """Yield keyword and text of each tEXt chunk in the first bytes of a PNG; none of others."""
+    """Yield keyword and text of each tEXt chunk in a PNG's first bytes; nothing for other files."""
     if not head.startswith(_PNG):
         return
     at = len(_PNG)

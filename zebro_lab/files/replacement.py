@@ -140,7 +140,10 @@ def _settle(folder: Path, *, writing: bool) -> None:
 
 
 def _settle_locked(folder: Path, note: _Note | None) -> None:
-    """Finish the replacement in a note, or undo it if NAME is missing; nothing without a note."""
+    """Finish the replacement that a note records, or undo it if NAME is missing.
+
+    Without a note, or if NAME.previous is another folder than in the note, nothing is done.
+    """
     if note is None or not _is_left(folder, note):
         return
     if not folder.exists():
@@ -207,7 +210,7 @@ def _link(file: Path, target: Path) -> None:
 
 
 def _drop_emptied(folder: Path, name: str, owned: Collection[str]) -> None:
-    """Remove a folder of the new result if it is empty and `owned` has files of this folder."""
+    """Remove a folder if it is empty and `owned` lists a file below `name`, its relative path."""
     if any(each.startswith(f"{name}/") for each in owned) and not any(folder.iterdir()):
         folder.rmdir()
 
@@ -264,7 +267,7 @@ def _open_locked(folder: Path) -> IO[bytes]:
 
 
 def _is_at(note: IO[bytes], path: Path) -> bool:
-    """Return whether `path` is still the open note: another process may have removed it."""
+    """Return whether an open note is still the file at `path`: another process may remove it."""
     try:
         return os.fstat(note.fileno()).st_ino == path.stat().st_ino
     except FileNotFoundError:

@@ -127,7 +127,7 @@ def result_folder(out: Path, kind: ResultKind, *, content: Mapping[str, object])
 
 
 def real_place(path: Path) -> Path:
-    """Return the absolute path with links resolved, so that no link is replaced by a folder."""
+    """Return the absolute path with links resolved, so that a link's target is replaced."""
     return Path(os.path.realpath(path))
 
 
@@ -256,7 +256,10 @@ def _require_kept(out: Path, folder: Path, path: Path, replaced: Collection[str]
 
 @contextmanager
 def _draft_of(folder: Path) -> Iterator[Path]:
-    """Create and lock a hidden draft for a folder, removed at the end; remove unlocked ones."""
+    """Create and lock a hidden draft for a folder during the body; remove it at the end.
+
+    Unlocked drafts of killed processes are removed first.
+    """
     ground = nearest_folder(folder)
     for stale in ground.glob(f".{glob.escape(folder.name)}.????????.part"):
         with _lock_of(stale) as is_stale:

@@ -48,7 +48,7 @@ def _fill(table: MutableMapping[str, Any], values: Mapping[str, Any]) -> None:
 
 
 def _plain(value: Any) -> Any:
-    """Convert arrays and tuples to lists, and floats to twelve digits; inline tables are kept."""
+    """Convert arrays and tuples to lists, and round floats to twelve digits, in nested values."""
     if isinstance(value, str | bool | numbers.Integral):
         return value
     if isinstance(value, Mapping):

@@ -43,7 +43,7 @@ class CalibrationResult:
 
     @property
     def summary(self) -> "pd.DataFrame":
-        """Posterior of each parameter with its diagnostics, one row each, SI units."""
+        """Posterior, prior and diagnostics, SI; a row per parameter, columns of `summary.csv`."""
         import pandas as pd
 
         table = calibration_folder.summary_csv(self.calibration)

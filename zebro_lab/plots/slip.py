@@ -80,7 +80,7 @@ def slip_curves(
 
 @dataclass(frozen=True)
 class _LoadCurve:
-    """Quantiles of the posterior slip curve at one load [N]; `rows` are the blocks nearest."""
+    """Posterior slip curve at one load [N], and which blocks (`rows`) are nearest to this load."""
 
     load: float
     rows: NDArray[np.bool_]

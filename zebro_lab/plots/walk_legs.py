@@ -149,7 +149,7 @@ def _leg_panels(
     t: Array, contact: NDArray[np.bool_], lines: Mapping[str, Array],
     limits: tuple[float, float], *, label: str, title: str,
 ) -> Figure:  # fmt: skip
-    """Draw lines over time, arrays (n, 6) by legend label, in a panel per leg as from above."""
+    """Draw `lines`, arrays (n, 6) by label, over time; a panel per leg, arranged as from above."""
     figure = new_figure(title, True, width=8.0, height=6.2)
     for leg, axes in enumerate(figure.subplots(3, 2, sharex=True, sharey=True).ravel()):
         axes.set_title(f"leg {leg + 1}, {_NAMES[leg]}", loc="left")

@@ -56,7 +56,10 @@ def leg_arcs(robot: Robot, theta: Array) -> Array:
 
 
 def outline(robot: Robot) -> Array:
-    """Compute the body's outline with a tip at the head, closed, body frame, z 0, (6, 3) [m]."""
+    """Compute the closed outline of the body from above, with a tip at the head.
+
+    Returns points in the body frame with z = 0, the last equal to the first, shape (6, 3) [m].
+    """
     length, width, _ = robot.body_size
     tip = 0.15 * length
     x = np.array([-0.5, -0.5, 0.5, 0.5, 0.5, -0.5]) * length

@@ -192,7 +192,7 @@ def _part(name: str, folder: Path, data: Path) -> Part:
 
 
 def _rows(file: Path) -> dict[str, dict[str, Any]]:
-    """Read a CSV as rows (dicts by header) by the cell in the first column; numbers as floats."""
+    """Read a CSV as dicts by header, by the cell in the first column; numeric cells as floats."""
     text = read_text(file, most=_MOST_TABLE)
     with parsing(file, "cannot be read as CSV", advice="make it again"):
         rows = [row for row in csv.DictReader(text.splitlines()) if None not in row]

@@ -193,7 +193,10 @@ def _angle(text: str | None, option: str, default: float) -> float:
 def _angles(
     text: str | None, option: str, *, default: float | None = None
 ) -> tuple[float | None, float | None]:
-    """Parse INNER[,OUTER] in degrees to radians, None if not given; `default` [deg] is INNER."""
+    """Parse INNER[,OUTER] in degrees to radians, None for an angle that is not given.
+
+    Without `text`, INNER is `default` [deg].
+    """
     if text is None:
         return (None if default is None else float(np.radians(default))), None
     try:

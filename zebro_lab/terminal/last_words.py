@@ -58,5 +58,5 @@ def in_time(act: Callable[[], object]) -> bool:
 
 
 def leave_at_once(code: int) -> NoReturn:
-    """End the process with an exit code at once, without flushing, which a terminal may block."""
+    """End the process at once, without flushing output, as a blocked terminal would delay it."""
     os._exit(code)

@@ -43,7 +43,10 @@ class Summary:
 
 
 def metrics(judged: Judged) -> dict[str, float]:
-    """Return errors and scores of a prediction or baseline by column, in the unit it names."""
+    """Return errors and scores of a prediction or baseline, by column of `metrics.csv`.
+
+    Each value is in the unit that ends the column's name.
+    """
     errors, scores = judged.errors, judged.scores
     row = {
         "poses": float(errors.poses),

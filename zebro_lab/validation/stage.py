@@ -79,7 +79,7 @@ def validate(request: ValidateRequest, watcher: Watcher) -> Validated:
 
 
 def _judge(walk: PredictedWalk, request: ValidateRequest, rng: np.random.Generator) -> ShownRun:
-    """Compute errors of a walk's path, and of roll and pitch if there is an IMU; shift clocks."""
+    """Shift a track's clock; compute errors of path, and of roll and pitch if there is an IMU."""
     offset, tilt, prediction = request.time_offset, None, walk.prediction
     if request.estimate_offset:
         track, offset = estimated_clock(walk.track, prediction.prediction.path)

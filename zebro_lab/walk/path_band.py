@@ -84,7 +84,7 @@ def predict_band(
 
 
 def _every(steps: int, watcher: Watcher) -> Callable[[float], None]:
-    """Return a function of the fraction done that calls `watcher` at most `steps` times."""
+    """Return a function that passes the fraction done on to `watcher` at most `steps` times."""
     shown = 0
 
     def show(fraction: float) -> None:

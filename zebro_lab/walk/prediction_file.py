@@ -91,7 +91,10 @@ def robot_of_walk(manifest: Mapping[str, Any]) -> Robot:
 def _baselines(
     walked: WalkedPath, manifest: Mapping[str, Any]
 ) -> tuple[dict[str, Poses], tuple[str, ...]]:
-    """Compute baseline paths by name, from leg angles minus the fitted leg offsets; and notes."""
+    """Compute the baseline paths of a walk, by name; also return notes.
+
+    Fitted leg offsets in the manifest are subtracted: baselines have the robot's described legs.
+    """
     walk = walked.path
     found = (manifest["settings"].get("walks") or {}).get("leg_offset", 0.0)
     reference = SampledReference(walk.t - walk.t[0], walk.theta - np.asarray(found))

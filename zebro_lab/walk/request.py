@@ -16,7 +16,7 @@ ToeName: TypeAlias = Literal["saturated", "peak", "bristle"]
 
 @dataclass(frozen=True)
 class BandRequest:
-    """Options of the band of a path: number of draws, and the spread of what is drawn."""
+    """Options of the band of a path: draws, seed, threads, spread of leg offsets and start."""
 
     draws: Annotated[
         int,

@@ -139,7 +139,7 @@ def _slip_for(model: WalkModel, text: str | None) -> tuple[NamedSlip | None, tup
 def _time_step(
     request: ModelRequest, model: WalkModel, duration: float, informed: InformedLegs | None
 ) -> float:
-    """Return `--dt`, else the model's time step [s], with fitted legs at most `FINE.dt`."""
+    """Return `--dt` if given, else the model's time step [s]; at most `FINE.dt` for fitted legs."""
     dt = model.dt if request.dt is None else request.dt
     if informed is not None and request.dt is None:
         dt = min(dt, FINE.dt)

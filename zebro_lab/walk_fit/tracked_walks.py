@@ -147,7 +147,10 @@ def read_walk_on_file(
 def _tilt(
     folder: Path, start: float, end: float
 ) -> tuple[MeasuredTilt | None, tuple[Path, ...], tuple[str, ...]]:
-    """Read roll and pitch from a run's IMU from `start` to `end` [s]; also files and notes."""
+    """Read roll and pitch of a run's IMU from `start` to `end` [s], with time zero at `start`.
+
+    Returns None without an IMU or with too few data; and the files read, and notes.
+    """
     measured = read_recorded_tilt(folder) if is_recorded(folder) else None
     if measured is None:
         return None, (), ()
@@ -174,7 +177,10 @@ def _legs_of(folder: Path) -> Path:
 
 
 def _inside(end: float, track: TrackFile) -> tuple[TrackFile, tuple[str, ...]]:
-    """Drop the poses outside the leg log's time range, zero to `end` [s]; also return notes."""
+    """Drop the poses outside the leg log's time range, zero to `end` [s]; also return notes.
+
+    Raises `DataError` if fewer than `FEWEST_POSES` are left.
+    """
     t = track.poses.t
     keep = (t >= 0) & (t <= end)
     if keep.sum() < FEWEST_POSES:

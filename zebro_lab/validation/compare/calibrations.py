@@ -119,7 +119,10 @@ def _band(curves: tuple[SlipCurve, ...], drawn: list[Array], load: float, limit:
 def _walk_quantities(
     slips: tuple[NamedSlip, ...], rng: np.random.Generator
 ) -> tuple[list[Quantity], list[str]]:
-    """Return quantities of legs and floor that walks constrain in either posterior; and notes."""
+    """Return the parameters of legs and floor that walks constrain in either calibration.
+
+    Without a fit of walks in both, the list is empty; there is a note if only one has a fit.
+    """
     one, other = (slip.walks for slip in slips)
     if one is None or other is None:
         return [], [

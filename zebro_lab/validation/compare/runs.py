@@ -90,7 +90,10 @@ class _Run:
             raise NotFound(f"{folder} holds neither {TRACK}/{TRACK_CSV} nor {PREDICTION}/{DRAWS}")
 
     def tracks(self, rng: np.random.Generator) -> Array | None:
-        """Draw 1000 tracks with the track's covariance; return `_summaries`, None without yaw."""
+        """Draw `TRACKS` tracks with the track's covariance, and compute speed, yaw rate, curvature.
+
+        Returns an array of shape (TRACKS, 3), see `_summaries`; None without track or headings.
+        """
         if self.track is None or not self.track.poses.has_yaw:
             return None
         poses, covariance = self.track.poses, self.track.covariance
@@ -101,7 +104,10 @@ class _Run:
         return _summaries(poses.t, poses.states + noise)
 
     def predicted(self) -> Array | None:
-        """Return `_summaries` of the drawn paths at the track's times, or each s; None if none."""
+        """Compute speed, yaw rate and curvature of each drawn path, shape (n, 3), see `_summaries`.
+
+        Poses are interpolated at the track's times, else every second; None without draws.
+        """
         if self.band is None:
             return None
         t = np.arange(self.band.t[0], self.band.t[-1], EVERY)
@@ -113,7 +119,7 @@ class _Run:
 
     @property
     def paths(self) -> RunPaths:
-        """Track and band, both started at the origin along x."""
+        """Track, moved to start at the origin along x, and drawn paths, unchanged."""
         track = None if self.track is None else _from_origin(self.track.poses)
         return RunPaths(track, self.band)
 

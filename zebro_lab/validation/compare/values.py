@@ -31,7 +31,7 @@ class Quantity:
         return float(median), float(low), float(high)
 
     def difference(self, rng: np.random.Generator) -> Difference:
-        """Compute median, interval and probability of the second minus the first from draws."""
+        """Compute median, 90 % interval and sign probability of the second minus the first."""
         return difference(*self.draws, rng=rng)
 
 

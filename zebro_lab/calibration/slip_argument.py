@@ -46,7 +46,7 @@ class NamedSlip(Slip):
 
 
 def parse_slip(text: str, *, with_walks: bool = True) -> NamedSlip:
-    """Parse the value of `--slip`.
+    """Parse the value of `--slip`, and read the slip law if it is in a file.
 
     Args:
         text: A `slip.toml`, its folder, `coulomb:MU[:V]` with the velocity V [m/s] over which

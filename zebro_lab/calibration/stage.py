@@ -58,7 +58,7 @@ def calibrate(request: CalibrationRequest, watcher: Watcher) -> tuple[Calibratio
         watcher: Receives progress and may request a stop.
 
     Returns:
-        The finished fit and the rig data.
+        The finished fit and the rig data that were fitted.
 
     Raises:
         ZebroLabError: Data, options or output folder are invalid; nothing was written.

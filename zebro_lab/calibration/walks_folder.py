@@ -37,7 +37,7 @@ WALKS = ResultKind(
 
 @dataclass(frozen=True)
 class StoredWalks:
-    """A stored posterior after walks.
+    """Posterior of legs and floor after tracked walks, as read from a folder `walks/`.
 
     Attributes:
         posterior: Posterior of leg offsets and floor, with its draws and their weights.

@@ -6,7 +6,7 @@ from pathlib import Path
 
 
 def joined_source(sources: Sequence[str]) -> str:
-    """Join the sources of a run's streams: KIND:A+B if all are of one kind, else mixed:A,B.
+    """Join different sources of a run's streams: KIND:A+B if all are of one kind, else mixed:A,B.
 
     >>> joined_source(["sim:zebro", "sim:imu"]), joined_source(["real", "sim:imu"])
     ('sim:zebro+imu', 'mixed:real,sim:imu')

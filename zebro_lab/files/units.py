@@ -23,9 +23,9 @@ _SHOWN = {"rad": (180 / math.pi, "deg"), "rad/m": (180 / math.pi, "deg/m"), "-":
 
 
 def shown_unit(unit: str) -> tuple[float, str]:
-    """Return factor and unit to show a parameter of legs and floor: rad in deg, "-" in percent.
+    """Return the factor to multiply by, and the unit, to show a parameter of legs and floor.
 
-    Any other unit is shown as the logarithm of a factor.
+    Shown are rad and rad/m in degrees and "-" in percent; any other unit is a log of a factor.
 
     >>> shown_unit("-"), shown_unit("log")
     ((100.0, '%'), (1.0, 'log of factor'))

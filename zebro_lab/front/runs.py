@@ -100,7 +100,7 @@ def write_report(
 
     Args:
         data: A run folder, or a folder of them.
-        out: File to write.
+        out: HTML file to write.
         calibration: The calibration folder; None for `calibration` beside the data.
         title: Title of the page; None for "Report on" and the name of the folder `data`.
 

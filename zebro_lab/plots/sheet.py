@@ -89,7 +89,7 @@ def save(
 
 
 def legend_below(figure: Figure, *, columns: int) -> None:
-    """Add one legend below all panels, with each label once.
+    """Add one legend below all panels, with each label of any panel once.
 
     Args:
         figure: Figure to add the legend to.

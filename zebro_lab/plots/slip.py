@@ -49,7 +49,7 @@ def slip_curves(
     shows that part.
 
     Args:
-        blocks: Block means.
+        blocks: Block means of slip ratio and forces.
         law: Slip law of the draws.
         draws: Posterior draws of the law's parameters, shape (n_draws, k).
         load_levels: Nominal loads, shape (n_levels,) [N].

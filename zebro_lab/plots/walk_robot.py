@@ -30,7 +30,7 @@ def body_corners(robot: Robot) -> Array:
 
 
 def leg_arcs(robot: Robot, theta: Array) -> Array:
-    r"""Compute points along each leg from hip to toe in the body frame, shape (6, m, 3) [m].
+    r"""Compute 25 points along each leg, hip to toe, in the body frame, shape (6, 25, 3) [m].
 
     The arc's centre lies a radius from the hip in the direction theta; from the hip the arc goes
     over the rear to the toe.

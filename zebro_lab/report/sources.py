@@ -38,7 +38,7 @@ MAKERS: Mapping[str, str] = {
 
 @dataclass(frozen=True)
 class Part:
-    """Result of a stage, or the command that writes it.
+    """Result folder of a stage as read for a report; if missing, the command that writes it.
 
     Attributes:
         name: Name of the result: calibration, walks, track, prediction or validation.
@@ -128,7 +128,7 @@ class Sources:
 
 
 def find_sources(data: Path, *, calibration: Path) -> Sources:
-    """Find the results to report on.
+    """Read the results to report on: calibration; track, prediction and validation of each run.
 
     Args:
         data: A run folder, a folder with track, prediction or validation, or a folder of run

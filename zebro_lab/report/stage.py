@@ -13,7 +13,7 @@ REPORT = html_page("report")
 
 
 def report(request: ReportRequest, *, made: datetime) -> Sources:
-    """Write the report page atomically.
+    """Find the results of runs and write them as one HTML page, atomically.
 
     Args:
         request: Folders to report on, and the page to write.

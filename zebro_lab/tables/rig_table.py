@@ -148,7 +148,7 @@ def kept_rows(raw: RawTable, columns: Columns) -> NDArray[np.intp]:
         Row indices, counted from 0, increasing.
 
     Raises:
-        DataError: A condition names a missing column, or no row is left.
+        DataError: A condition names a missing or non-numeric column, or no row is left.
     """
     keep = np.ones(len(raw), dtype=bool)
     for condition in columns.keep:

@@ -143,7 +143,7 @@ def write_validation(
     Args:
         out: Folder to create or replace.
         shown: Errors of each walk, with the content of the pictures.
-        summary: Means over runs.
+        summary: Means of metrics over runs, for the manifest.
         settings: Settings of the validation, JSON-serialisable.
         inputs: SHA-256 of each file that was read.
         source: Where prediction and track come from.

@@ -28,7 +28,7 @@ MOST_STEPS: Final = 500_000
 
 @dataclass(frozen=True)
 class Walked:
-    """A finished walk.
+    """A computed walk with what it was computed from.
 
     Attributes:
         path: Poses, leg angles, slip and forces over time.

@@ -75,7 +75,7 @@ def read_walks(
     Args:
         folders: Folder of each walk, as for `read_walk_on_file`.
         robot: A `robot.toml` to use instead of those in the folders.
-        clock: Shifts each track to its leg log's clock; None to keep the track's times.
+        clock: Shifts each track to the clock of its leg log; None to keep the track's times.
 
     Raises:
         ZebroLabError: As in `read_walk_on_file`; or the walks are of two robots.

@@ -41,7 +41,7 @@ class Curve:
 
     Attributes:
         slip: Slip ratios, shape (n,) [-].
-        load: Normal force [N].
+        load: Normal force of both curves [N].
         bands: Traction [N], shape (2, 3, n): first and second; 5, 50 and 95 % quantile.
     """
 

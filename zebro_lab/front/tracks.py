@@ -47,7 +47,8 @@ def track_photos(
         camera: The `camera.toml`.
         floor: The `floor.toml`.
         robot: The `robot.toml`; None for the thesis's robot.
-        times: CSV with columns `photo` and `t_s`; None to take the photographs' own times.
+        times: CSV with columns `photo`, `t_s` and optionally `t_sigma` [s]; None for the times in
+            the photographs.
         start: Moment from which time is counted, with its time zone; None for the first
             photograph.
         annotations: File of annotations that a person made in the photographs.

@@ -29,8 +29,8 @@ Clock: TypeAlias = Callable[[TrackFile, Legs, Robot], TrackFile]
 def checked_clock(slip: Slip) -> Clock:
     """Return a function that returns a track unchanged, or raises `DataError` if its clock differs.
 
-    The offset against a path predicted from the leg angles may be 0.5 s or three standard
-    deviations; a walk of constant speed does not determine it and is accepted.
+    The offset to a path predicted from the leg angles may be up to 0.5 s, or three standard
+    deviations if that is more. A walk of constant speed does not determine it and is accepted.
 
     Args:
         slip: Slip law with which the path is predicted.

@@ -44,7 +44,7 @@ __all__ = [
 
 
 def __getattr__(name: str) -> Any:
-    """Load the functions when they are first asked for: commands start without them."""
+    """Import a name of `__all__` when it is first used, so that commands start without it."""
     if name == "__version__":
         from importlib.metadata import version
 
@@ -57,5 +57,5 @@ def __getattr__(name: str) -> Any:
 
 
 def __dir__() -> list[str]:
-    """List what the package offers."""
+    """Return the public names, `__all__`, sorted."""
     return sorted(__all__)

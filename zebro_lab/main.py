@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The command line `zebro-lab COMMAND`: collects all commands."""
+"""Typer applications of `zebro-lab COMMAND`, with all commands, and of `calibrate-slip`."""
 
 from typing import Annotated
 
@@ -74,10 +74,10 @@ def zebro_lab(
 
 
 def main() -> None:
-    """Run `zebro-lab`."""
+    """Run the command line `zebro-lab` on the arguments of the process, and exit."""
     run(app)
 
 
 def calibrate_slip() -> None:
-    """Run `calibrate-slip`."""
+    """Run the command line `calibrate-slip` on the arguments of the process, and exit."""
     run(slip_app)

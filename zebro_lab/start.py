@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Entry points of the commands; they first check that packages are zebro-lab's own."""
+"""Entry points of the commands; they first check where zebro-lab's packages are imported from."""
 
 import sys
 from importlib.util import find_spec
@@ -10,13 +10,13 @@ PACKAGES: Final = ("model", "rig", "tracking")
 
 
 def require_own_packages() -> None:
-    """Check that `model`, `rig` and `tracking` are those that were installed with `zebro_lab`.
+    """Check that `model`, `rig` and `tracking` are imported from the folder that has `zebro_lab`.
 
     Their names are common words: a `model.py` in the working folder, or in PYTHONPATH, is found
     before them.
 
     Raises:
-        ImportError: Another file or folder is found in place of one; the message names both.
+        ImportError: A package is missing, or another file or folder of its name is found first.
     """
     home = Path(__file__).parents[1]
     for package in PACKAGES:
@@ -32,7 +32,7 @@ def require_own_packages() -> None:
 
 
 def zebro_lab() -> None:
-    """Run `zebro-lab`."""
+    """Check the packages, then run the command line `zebro-lab`; exit 1 if the check fails."""
     _check_or_exit()
     from zebro_lab.main import main
 
@@ -40,7 +40,7 @@ def zebro_lab() -> None:
 
 
 def calibrate_slip() -> None:
-    """Run `calibrate-slip`."""
+    """Check the packages, then run the command line `calibrate-slip`; exit 1 if it fails."""
     _check_or_exit()
     from zebro_lab.main import calibrate_slip
 

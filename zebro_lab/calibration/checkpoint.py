@@ -25,9 +25,12 @@ def save_checkpoint(folder: Path, chains: Chains, *, fingerprint: str) -> Path:
     """Write the sampler's chains so that a fit can be resumed; replaces a checkpoint atomically.
 
     Args:
-        folder: Folder of the calibration; made when missing.
-        chains: State of the sampler.
+        folder: Calibration folder to write `checkpoint.npz` into; created if missing.
+        chains: Chains of all ensembles, with the state of their random number generators.
         fingerprint: Hash of the data and settings that the chains belong to.
+
+    Returns:
+        The checkpoint file.
 
     Raises:
         NotWritten: The file cannot be written.
@@ -51,14 +54,14 @@ def save_checkpoint(folder: Path, chains: Chains, *, fingerprint: str) -> Path:
 
 
 def load_checkpoint(folder: Path, *, fingerprint: str) -> Chains:
-    """Read the chains of a stopped fit.
+    """Read the sampler's chains of a stopped fit from `checkpoint.npz`.
 
     Args:
-        folder: Folder of the calibration.
-        fingerprint: Hash of the present data and settings.
+        folder: Calibration folder that holds the checkpoint.
+        fingerprint: Hash of the present data and settings, which must equal the stored one.
 
     Raises:
-        DataError: There is no checkpoint, it is damaged, or it belongs to other data or settings.
+        DataError: The checkpoint is missing, damaged, or belongs to other data or settings.
     """
     path = folder / FILE
     if not path.is_file():

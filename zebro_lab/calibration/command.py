@@ -10,10 +10,10 @@ INTERRUPTED = 130
 
 
 def fit_and_report(request: CalibrationRequest) -> bool:
-    """Fit a slip law to rig data and print the results; return whether the fit converged.
+    """Fit a slip law, write the calibration folder, print results; return whether it converged.
 
     Raises:
-        Exit: The fit was stopped.
+        Exit: The fit was stopped (exit code 130).
     """
     from zebro_lab.calibration.screen import print_calibration
     from zebro_lab.calibration.stage import Stopped, calibrate

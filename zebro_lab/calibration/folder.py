@@ -52,10 +52,10 @@ class SlipFile:
     """Content of a `slip.toml`.
 
     Attributes:
-        curve: The slip curve.
-        file: The file.
-        source: Where the data come from.
-        doubt: Headline of the verdict if the fit cannot be trusted, else None.
+        curve: Slip law with posterior means and covariance, and the tested loads and slip ratios.
+        file: The `slip.toml` itself, also if its folder was named.
+        source: Where the data come from; "unknown" if the file does not state it.
+        doubt: Headline of the verdict if the fit cannot be trusted; None if it can.
     """
 
     curve: SlipCurve
@@ -65,12 +65,12 @@ class SlipFile:
 
 
 def write_tables(folder: Path, calibration: "Calibration", *, inputs: Mapping[str, str]) -> None:
-    """Write all files of a calibration folder except pictures and manifest.
+    """Write `slip.toml`, `summary.csv` and `posterior.nc` of a fit into a folder.
 
     Args:
-        folder: Folder to write into.
+        folder: Existing folder to write into.
         calibration: The finished fit.
-        inputs: SHA-256 of each file that was read.
+        inputs: SHA-256 of each file that was read, by path.
     """
     (folder / SLIP_TOML).write_text(_slip_toml(calibration, inputs))
     (folder / "summary.csv").write_text(summary_csv(calibration))
@@ -84,13 +84,13 @@ def read_slip(path: Path) -> SlipCurve:
         path: A `slip.toml`, or the folder that holds it.
 
     Raises:
-        DataError: It is missing, damaged, or of a later schema.
+        DataError: The file is missing, damaged, or of another schema.
     """
     return read_slip_file(path).curve
 
 
 def read_slip_file(path: Path) -> SlipFile:
-    """Read a `slip.toml` with its curve, source and verdict; see `read_slip`."""
+    """Read curve, source and verdict of a `slip.toml`; arguments and errors as in `read_slip`."""
     settle(path)
     file = path / SLIP_TOML if path.is_dir() else path
     try:
@@ -208,7 +208,7 @@ def _tested_content(calibration: "Calibration") -> dict[str, Any]:
 
 
 def summary_csv(calibration: "Calibration") -> str:
-    """Return the table of parameters, one line each, with the columns `SUMMARY_COLUMNS`."""
+    """Format the parameters as CSV: a header `SUMMARY_COLUMNS`, then one line per parameter."""
     convergence = calibration.convergence
     free = {p.name: i for i, p in enumerate(calibration.posterior.free)}
     text = io.StringIO()
@@ -229,7 +229,10 @@ def summary_csv(calibration: "Calibration") -> str:
 
 
 def inference_data(calibration: "Calibration") -> "az.InferenceData":
-    """Return draws and data as ArviZ InferenceData; a chain is an ensemble of walkers."""
+    """Convert a fit to ArviZ InferenceData, with one chain for each ensemble of walkers.
+
+    Groups: draws of the free parameters, log density, measured traction and the other block means.
+    """
     import arviz as az
 
     posterior, draws = calibration.posterior, calibration.draws

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The pictures of a calibration folder."""
+"""Draw the PNG pictures of a calibration folder."""
 
 from pathlib import Path
 
@@ -9,10 +9,10 @@ CURVE_DRAWS = 400
 
 
 def draw_calibration(folder: Path, calibration: Calibration) -> None:
-    """Draw curves, surface, corner plot, traces and residuals of a finished fit.
+    """Draw `curves`, `surface`, `corner`, `traces` and `residuals` of a finished fit as PNG files.
 
     Args:
-        folder: Folder to write the PNG files into.
+        folder: Existing folder to write the PNG files into.
         calibration: The finished fit.
     """
     from zebro_lab import plots  # matplotlib takes most of a second to import

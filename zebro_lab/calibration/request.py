@@ -61,17 +61,17 @@ class CalibrationRequest:
 
     @property
     def load_cell(self) -> dict[str, float]:
-        """Properties of the load cell that replace those of `columns.toml`, by name."""
+        """Given `zero_stability` [N] and `gain_sd` [-], which override those of `columns.toml`."""
         given = {"zero_stability": self.zero_stability, "gain_sd": self.gain_sd}
         return {name: value for name, value in given.items() if value is not None}
 
     @property
     def inputs(self) -> tuple[Path, ...]:
-        """Files and folders that are read, as named."""
+        """Paths given as data, and the given `columns.toml` if there is one, as written."""
         return (*self.data, *((self.columns,) if self.columns is not None else ()))
 
     def decisive(self) -> dict[str, object]:
-        """Return the settings that affect the results, JSON-serialisable."""
+        """Return the options that affect the results, JSON-serialisable; `max_steps` is not one."""
         return {
             "slip_definition": self.slip_definition,
             "law": self.law,

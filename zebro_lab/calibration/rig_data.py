@@ -31,14 +31,16 @@ class RigData:
     """Samples of a rig experiment with their provenance.
 
     Attributes:
-        samples: The samples.
-        files: Every file read, in order: data, column maps, manifests.
+        samples: Samples of all runs, joined in the order of the paths.
+        files: Every file read, each once: for each table or run folder its files, then its column
+            map.
         source: "real", "sim:what", "replay:what"; "unknown" if not stated; "mixed:a,b" for
             several.
         notes: Notes, one line each: how slip was obtained, rows dropped and why, how runs were
             separated, units converted.
-        load_cell: Standard deviations from [load_cell] by name, SI; only those given.
-        repeated: Those of the notes that are on duplicate data.
+        load_cell: Standard deviations from `[load_cell]` of `columns.toml` by name, SI; only those
+            given.
+        repeated: The notes on duplicate data, which `notes` has too.
     """
 
     samples: SlipSamples
@@ -52,16 +54,16 @@ class RigData:
 def read_rig_data(
     paths: Sequence[Path], *, columns: Path | None = None, slip_definition: str | None = None
 ) -> RigData:
-    """Read rig data: tables in CSV or Parquet and run folders.
+    """Read rig data from CSV or Parquet tables and run folders; leave out excluded runs and copies.
 
     Args:
         paths: Files, folders of files, run folders, folders of run folders; several.
-        columns: A `columns.toml` for all of them, in place of those beside the data.
-        slip_definition: Definition to convert all slip ratios to; None keeps theirs.
+        columns: A `columns.toml` for all data, instead of those beside the data.
+        slip_definition: Definition to convert all slip ratios to; None keeps that of the data.
 
     Raises:
-        ZebroLabError: A path, a column map or the data is at fault; the one-line message names
-            file, column and row.
+        ZebroLabError: A path, a column map or the data is invalid, slip definitions differ, every
+            run is left out, or slip ratios do not vary; the message names file, column and row.
     """
     named = find_sources(paths)
     excluded = {source: why for source in named if (why := _exclusion(source)) is not None}
@@ -101,7 +103,7 @@ def _column_maps(sources: Sequence[DataSource], override: Path | None) -> dict[D
 
 
 def _labels(sources: Sequence[DataSource]) -> list[str]:
-    """Return the shortest labels of tables that are distinct."""
+    """Return a label for each source: file stems if distinct, else with folder, else paths."""
     folders = [source.path.relative_to(source.root).parent for source in sources]
     stems = [table_stem(source.path) for source in sources]
     schemes = (
@@ -113,7 +115,7 @@ def _labels(sources: Sequence[DataSource]) -> list[str]:
 
 
 def _exclusion(source: DataSource) -> str | None:
-    """Return why a run is excluded; None if it is not."""
+    """Return the reason why a run folder is excluded; None for a table or a run that counts."""
     if not source.is_run_folder:
         return None
     excluded = read_manifest(source.path).excluded
@@ -121,7 +123,7 @@ def _exclusion(source: DataSource) -> str | None:
 
 
 def _bytes_of(source: DataSource) -> str:
-    """Return the content hash of a table or log, by which copies are recognised."""
+    """Return the hash of a table or of a run's log; the path as text if that file is missing."""
     file = source.path / LOG_FILE if source.is_run_folder else source.path
     return content_hash(file) if file.is_file() else str(source.path)
 
@@ -131,7 +133,10 @@ def _known(
     maps: Mapping[DataSource, Columns],
     labels: Mapping[DataSource, str],
 ) -> dict[str, str]:
-    """Return the labels of excluded runs by their keys, by which copies are recognised."""
+    """Return labels of excluded runs by key (hash of the forces), by which copies are recognised.
+
+    Excluded runs that cannot be read are omitted.
+    """
     known: dict[str, str] = {}
     for source in excluded:
         try:
@@ -145,7 +150,10 @@ def _known(
 def _without_duplicates(
     parts: Sequence[RigPart], known: Mapping[str, str]
 ) -> tuple[list[RigPart], list[tuple[str, str]]]:
-    """Drop duplicate runs and copies of excluded runs; return them in pairs with the other."""
+    """Drop runs whose key is that of an earlier run or of a `known` one.
+
+    Returns the parts that have runs left, and the names of each copy and its original.
+    """
     seen, repeated, kept = dict(known), [], []
     for part in parts:
         keys = part.keys

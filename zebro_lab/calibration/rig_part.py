@@ -28,16 +28,16 @@ class RigPart:
 
     Attributes:
         path: The table or run folder.
-        columns: Its column map.
-        sources: Sources stated for it.
-        rows_read: Number of rows before `[rows] keep`.
-        slip: Slip ratios with their definition.
+        columns: Column map that was applied to it.
+        sources: Sources that the column map and the table or run state; empty if neither does.
+        rows_read: Number of rows before `[rows] keep` is applied.
+        slip: Slip ratios, shape (n,) [-], with their definition.
         normal_force: Normal force, shape (n,) [N].
         traction_force: Traction force, shape (n,) [N].
-        runs: Run of each sample.
-        time: Time, shape (n,) [s]; None without one.
-        notes: Notes, one line each.
-        files: Every file read.
+        runs: Run of each sample, and the names of the runs.
+        time: Time, shape (n,) [s]; None if the table has none or every row is a trial.
+        notes: Notes on reading and unit conversion, one line each.
+        files: Every file read, the column map last.
     """
 
     path: Path
@@ -54,12 +54,12 @@ class RigPart:
 
     @property
     def keys(self) -> tuple[str, ...]:
-        """Key of each run, by which copies are recognised."""
+        """Key of each run, a hash of its forces, by which copies are recognised."""
         forces = (self.normal_force, self.traction_force)
         return run_keys(forces, self.runs.index, len(self.runs.names))
 
     def with_runs(self, chosen: NDArray[np.bool_]) -> "RigPart":
-        """Return a part with only the chosen runs.
+        """Return a copy with the samples of the chosen runs only; runs are numbered anew.
 
         Args:
             chosen: Whether to keep each run, shape (n_runs,).
@@ -81,16 +81,16 @@ class RigPart:
 def read_part(
     source: DataSource, columns: Columns, label: str, wanted: SlipDefinition | None
 ) -> RigPart:
-    """Read one table or run folder.
+    """Read one table or run folder as samples in SI, separated into runs.
 
     Args:
         source: The table or run folder.
-        columns: Its column map.
-        label: Prefix of its runs' names.
-        wanted: Definition to convert slip ratios to; None keeps theirs.
+        columns: Column map; for a run folder only its row conditions and load cell apply.
+        label: Prefix of the names of the runs.
+        wanted: Definition to convert slip ratios to; None keeps that of the data.
 
     Raises:
-        ZebroLabError: The file, its column map or its data are at fault.
+        ZebroLabError: The file, its column map or its data are invalid.
     """
     if source.is_run_folder:
         raw, columns, files = _run_folder_table(source.path, columns)
@@ -117,10 +117,10 @@ def read_part(
 
 
 def _run_folder_table(folder: Path, columns: Columns) -> tuple[RawTable, Columns, tuple[Path, ...]]:
-    """Read a run folder as a table.
+    """Read a run folder as a table; return it with its column map and the files read.
 
-    Its columns are canonical, and it is one run or one run per sweep. Only the row conditions and
-    the load cell of a `columns.toml` apply to it.
+    The table has canonical columns in SI and is one run, or one run per sweep if raw samples of
+    several sweeps were recorded. Of a `columns.toml` only row conditions and load cell apply.
     """
     import pandas as pd
 

@@ -15,13 +15,13 @@ from zebro_lab.terminal.tables import plain_table
 
 
 def print_calibration(console: Console, calibration: Calibration, data: RigData, out: Path) -> None:
-    """Print a finished fit.
+    """Print data, parameters, curve at each load, quality and verdict of a fit, and files written.
 
     Args:
         console: Console to print to.
         calibration: The finished fit.
         data: Rig data that were fitted.
-        out: The calibration folder.
+        out: The calibration folder, whose files are listed.
     """
     _print_data(console, calibration, data)
     console.print(_parameter_table(calibration))

@@ -25,10 +25,11 @@ class NamedSlip(Slip):
     """A slip law as named on a command line.
 
     Attributes:
-        text: The value of `--slip`.
-        files: Files that were read.
-        notes: Notes, one line each.
-        walks: Posterior of legs and floor after tracked walks; None if no walks were fitted.
+        text: The value of `--slip`, as given.
+        files: Files that were read, the `slip.toml` first; empty for a law without a file.
+        notes: Notes, one line each: an untrustworthy fit, a slip definition to convert.
+        walks: Posterior of legs and floor after tracked walks; None if no walks were fitted, or
+            they were not read.
     """
 
     text: str
@@ -38,14 +39,14 @@ class NamedSlip(Slip):
 
     @property
     def title(self) -> str:
-        """Short name: for a calibration the name of its folder, without its parents."""
+        """Name of the calibration folder without its parents; else the value of `--slip`."""
         if not self.files:
             return self.text
         return self.files[0].absolute().parent.name or self.text
 
 
 def parse_slip(text: str, *, with_walks: bool = True) -> NamedSlip:
-    """Parse the value of `--slip`.
+    """Parse the value of `--slip`, and read the slip law if it is in a file.
 
     Args:
         text: A `slip.toml`, its folder, `coulomb:MU[:V]` with the velocity V [m/s] over which
@@ -53,9 +54,9 @@ def parse_slip(text: str, *, with_walks: bool = True) -> NamedSlip:
         with_walks: Whether to read the posterior of `walks/` too.
 
     Raises:
-        NotFound: It is not the name of a file, folder or law.
-        SettingsError: A number cannot be parsed or is not positive.
-        DataError: The calibration cannot be read.
+        NotFound: `text` is neither a file, a folder nor a law.
+        SettingsError: Numbers of `coulomb` are missing, too many, unreadable or not positive.
+        DataError: The calibration, or its `walks/` if wanted, cannot be read.
 
     >>> parse_slip("coulomb:0.38").law
     VelocityCoulomb(friction=0.38, speed_scale=0.001)

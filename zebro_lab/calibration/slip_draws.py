@@ -15,19 +15,21 @@ from zebro_lab.files.errors import DataError
 
 POSTERIOR = "posterior.nc"
 _ADVICE = f"calibrate again, or name a slip.toml without a {POSTERIOR} beside it"
-MOST_TABLES = 200  # a table costs as much as walking a second, and paths hardly differ between them
+MOST_TABLES = 200  # a table costs as much as 1 s of simulated walk, and paths hardly differ by it
 
 
 def slip_tables(
     slip: NamedSlip, n: int, *, weight: float, toe: ToeLaw = "saturated", rng: np.random.Generator
 ) -> list[TractionTable]:
-    """Compute interpolation tables of traction for draws of the law, up to `MOST_TABLES`.
+    """Compute interpolation tables of traction, one for each draw of a slip law.
+
+    Draws that are invalid at the robot's loads are skipped; if all are, the law itself is used.
 
     Args:
         slip: Slip law named by `--slip`.
-        n: Number of draws; an assumed law has one.
+        n: Number of draws; at most `MOST_TABLES` are made, one for an assumed law.
         weight: Weight of the robot [N].
-        toe: Traction of a leg on its toe.
+        toe: Traction law of a leg that stands on its toe: "saturated", "peak" or "bristle".
         rng: Random number generator.
 
     Raises:
@@ -48,16 +50,16 @@ def slip_tables(
 
 
 def law_draws(slip: NamedSlip, curve: SlipCurve, n: int, *, rng: np.random.Generator) -> Array:
-    """Draw a law's parameters: from the posterior's draws, or from their Gaussian.
+    """Draw a law's parameters from `posterior.nc` beside the slip.toml, else from the Gaussian.
 
     Args:
         slip: Slip law named by `--slip`.
-        curve: Its slip curve.
-        n: Number of draws; an assumed law has one.
+        curve: Slip curve of this law, with the mean and covariance of the Gaussian.
+        n: Number of draws.
         rng: Random number generator.
 
     Returns:
-        Values, shape (n, k).
+        Values, one draw per row, shape (n, k); shape (1, k), the mean, if the covariance is zero.
 
     Raises:
         DataError: The posterior beside the slip.toml is damaged or of another law.
@@ -72,7 +74,7 @@ def law_draws(slip: NamedSlip, curve: SlipCurve, n: int, *, rng: np.random.Gener
 
 
 def _posterior(file: Path, curve: SlipCurve) -> Array:
-    """Read the draws of all parameters, shape (m, k); fixed parameters have constant columns."""
+    """Read the posterior draws of a law, shape (m, k); a fixed parameter has the curve's value."""
     names = [parameter.name for parameter in curve.law.parameters]
     columns, others = read_draws_of(file, "posterior", names, advice=_ADVICE)
     drawn = list(columns)

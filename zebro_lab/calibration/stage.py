@@ -54,14 +54,14 @@ def calibrate(request: CalibrationRequest, watcher: Watcher) -> tuple[Calibratio
     """Fit a slip law to rig data and write the calibration folder.
 
     Args:
-        request: Data, settings and output folder.
+        request: Options: data, settings and output folder.
         watcher: Receives progress and may request a stop.
 
     Returns:
-        The finished fit and the rig data.
+        The finished fit and the rig data that were fitted.
 
     Raises:
-        ZebroLabError: The data or the request cannot be used; nothing was written.
+        ZebroLabError: Data, options or output folder are invalid; nothing was written.
         ModelError: The fit failed; nothing was written.
         Stopped: The watcher requested a stop; a checkpoint was written if sampling had begun.
     """
@@ -98,18 +98,18 @@ def calibrate(request: CalibrationRequest, watcher: Watcher) -> tuple[Calibratio
 
 
 class _Checkpoint:
-    """Writes the checkpoint of a fit at intervals of some seconds."""
+    """Writes the checkpoint of a fit at intervals of `CHECKPOINT_SECONDS`."""
 
     def __init__(self, folder: Path, mark: str) -> None:
         self._folder, self._mark, self._saved = folder, mark, time.monotonic()
 
     def keep(self, chains: Chains) -> None:
-        """Write the chains if the interval since the last checkpoint has passed."""
+        """Write the chains if the last write, or the start, is `CHECKPOINT_SECONDS` ago."""
         if time.monotonic() - self._saved > CHECKPOINT_SECONDS:
             self.save(chains)
 
     def save(self, chains: Chains | None) -> Path | None:
-        """Write the chains, if there are any, and return the file."""
+        """Write the chains and return the checkpoint file; None if there are no chains."""
         if chains is None:
             return None
         self._saved = time.monotonic()
@@ -127,7 +127,7 @@ def _sampler(request: CalibrationRequest) -> SamplerSettings:
 
 
 def _candidates(request: CalibrationRequest, samples: SlipSamples) -> dict[str, SlipLaw]:
-    """Return the laws to compare, simplest first, by the name they are reported under."""
+    """Return the laws to compare, by reported name, simplest first; two for `--curvature auto`."""
     if request.law != MagicFormula.name:
         if request.curvature != "auto" or request.load_sensitivity:
             raise SettingsError(

@@ -37,13 +37,13 @@ WALKS = ResultKind(
 
 @dataclass(frozen=True)
 class StoredWalks:
-    """A stored posterior after walks.
+    """Posterior of legs and floor after tracked walks, as read from a folder `walks/`.
 
     Attributes:
-        posterior: The posterior.
-        legs: Description of the legs that were fitted; see `describe_legs`.
-        logs: SHA-256 of the leg log of each walk, in the posterior's order.
-        folder: Its folder.
+        posterior: Posterior of leg offsets and floor, with its draws and their weights.
+        legs: Parameters of the robot whose legs were fitted, as `describe_legs` returns them.
+        logs: SHA-256 of the leg log of each walk, in the order of `posterior.walks`.
+        folder: The folder `walks/` that it was read from.
     """
 
     posterior: WalkPosterior
@@ -53,23 +53,23 @@ class StoredWalks:
 
     @property
     def files(self) -> tuple[Path, ...]:
-        """Files that it was read from."""
+        """The two files that were read: `walks.toml` and `draws.npz`."""
         return self.folder / WALKS_TOML, self.folder / DRAWS
 
 
 @dataclass(frozen=True)
 class WalksToWrite:
-    """A finished fit of walks.
+    """A finished fit of legs and floor to tracked walks, to be written into `walks/`.
 
     Attributes:
-        posterior: The posterior.
-        left_out: Metrics of each walk, by walk and model, predicted by a fit of the others;
-            empty for one walk.
-        robot: The robot that walked.
-        logs: The leg log of each walk.
-        inputs: Every file read, those of the calibration first.
+        posterior: Posterior of leg offsets and floor.
+        left_out: Metrics of each walk as predicted by a fit of the other walks, by walk and then by
+            model; empty for one walk.
+        robot: Parameters of the robot that walked.
+        logs: Leg log of each walk, in the order of `posterior.walks`.
+        inputs: Every file read, the `slip.toml` first.
         settings: Settings of the fit, JSON-serialisable.
-        source: Where the walks come from.
+        source: Where the data of the walks come from.
         notes: Notes, one line each.
     """
 
@@ -84,7 +84,10 @@ class WalksToWrite:
 
 
 def describe_legs(described: RobotFile) -> dict[str, Any]:
-    """Return the parameters that identify a robot's legs; its marker is not one of them."""
+    """Return the parameters by which robots are compared, JSON-serialisable, SI.
+
+    They are hips, leg offsets, leg radius and arc, mass, principal inertia and leg signs.
+    """
     robot = described.robot
     return {
         "hips": robot.hips.tolist(),
@@ -102,11 +105,11 @@ def write_walks(calibration: Path, fitted: WalksToWrite, *, draw: Callable[[Path
 
     Args:
         calibration: The calibration folder.
-        fitted: The finished fit.
-        draw: Function that draws the pictures into a folder.
+        fitted: The finished fit of the walks.
+        draw: Function that draws the pictures into the folder that it is given.
 
     Returns:
-        The folder written.
+        The folder written, `walks/` of the calibration folder.
     """
     folder = calibration / FOLDER
     inputs = file_hashes(dict.fromkeys(fitted.inputs))
@@ -131,13 +134,14 @@ def write_walks(calibration: Path, fitted: WalksToWrite, *, draw: Callable[[Path
 
 
 def read_stored_walks(slip_toml: Path) -> StoredWalks | None:
-    """Read the posterior after walks of a calibration; None if no walks were fitted.
+    """Read the posterior of legs and floor from `walks/` beside a slip.toml; None if not fitted.
 
     Args:
         slip_toml: The `slip.toml` of the calibration.
 
     Raises:
-        DataError: It is damaged, of a later schema, or was fitted with another slip law.
+        NotFound: `draws.npz` is missing.
+        DataError: A file is damaged, of another schema, or `slip.toml` has changed since the fit.
     """
     folder = settle(slip_toml.parent / FOLDER)
     file = folder / WALKS_TOML

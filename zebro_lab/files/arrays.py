@@ -23,7 +23,7 @@ _NUMBERS: Final = "biufU"  # booleans, integers, floats and fixed-length strings
 def read_arrays(
     path: Path, names: Iterable[str], *, advice: str, most: int = MOST_BYTES
 ) -> Mapping[str, NDArray]:
-    """Read arrays of an .npz archive.
+    """Read named arrays of an .npz archive.
 
     Args:
         path: The archive.
@@ -36,8 +36,8 @@ def read_arrays(
 
     Raises:
         NotFound: There is no such file.
-        DataError: It is not an archive, lacks an array, has an array of another type, or unpacks
-            to more than `most`.
+        DataError: The file is not an archive, lacks an array, has one that does not hold numbers,
+            booleans or strings, or the arrays unpack to more than `most`.
     """
     with (
         open_file(path, advice=advice) as file,
@@ -62,7 +62,7 @@ def _member(archive: zipfile.ZipFile, name: str, path: Path) -> zipfile.ZipInfo:
 
 
 def _array(archive: zipfile.ZipFile, member: zipfile.ZipInfo, path: Path) -> NDArray:
-    """Read one array; zipfile reads at most the size stated in the archive."""
+    """Read one array; raise if its header does not match the number of bytes in the archive."""
     with archive.open(member) as file:
         shape, fortran, dtype = _header(file, member, path)
         data = file.read()

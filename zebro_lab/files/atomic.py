@@ -16,7 +16,7 @@ def atomic_write_bytes(path: str | os.PathLike[str], data: bytes) -> Path:
 
     Args:
         path: File to write; its folder must exist.
-        data: Its content.
+        data: The complete content of the file.
 
     Returns:
         The path written.
@@ -40,7 +40,7 @@ def atomic_write_text(path: str | os.PathLike[str], text: str) -> Path:
 
     Args:
         path: File to write; its folder must exist.
-        text: Its content; line endings are not translated.
+        text: The complete content of the file; line endings are not translated.
 
     Returns:
         The path written.
@@ -52,18 +52,18 @@ def atomic_write_text(path: str | os.PathLike[str], text: str) -> Path:
 def atomic_folder(target: str | os.PathLike[str]) -> Iterator[Path]:
     """Create a folder atomically: it appears complete or, after any exception, not at all.
 
-    The body writes into a hidden draft folder beside the target, which is renamed at the end.
-    Folders that may replace an earlier result are written with
+    The body writes into a hidden draft folder in the nearest existing parent, which is renamed at
+    the end. Folders that may replace an earlier result are written with
     `zebro_lab.files.result_folder.result_folder`.
 
     Args:
-        target: Folder to make, or an empty one; missing parents are made.
+        target: Folder to create; an empty one may exist; missing parents are created.
 
     Yields:
-        Folder to write into, empty.
+        The empty draft folder to write into.
 
     Raises:
-        AlreadyExists: The target is a file, or a folder that holds something.
+        AlreadyExists: The target is a file, or a folder that is not empty.
     """
     folder = Path(target).absolute()
     _require_empty(folder, target)
@@ -83,19 +83,19 @@ def atomic_folder(target: str | os.PathLike[str]) -> Iterator[Path]:
 def nearest_folder(path: Path) -> Path:
     """Return the nearest existing parent folder of a path, where drafts are created.
 
-    It is on the same file system, so that a draft can be renamed to its target, and no parent
-    folder has to be created first.
+    A draft there is on the same file system as the path, so that it can be renamed to it, and no
+    parent folder has to be created first.
     """
     return next(parent for parent in path.parents if parent.is_dir())
 
 
 def draft_name(path: Path) -> str:
-    """Return a unique hidden file name for a draft of a path."""
+    """Return a random hidden file name for a draft of a path, `.NAME.XXXXXXXX.part`."""
     return f".{path.name}.{secrets.token_hex(4)}.part"
 
 
 def sync_files(folder: Path) -> None:
-    """Flush every file below a folder to disk (fsync)."""
+    """Flush every file in a folder and its subfolders to disk (fsync)."""
     for path in folder.rglob("*"):
         if path.is_file():
             with path.open("rb") as file:
@@ -103,7 +103,7 @@ def sync_files(folder: Path) -> None:
 
 
 def sync_folder(folder: Path) -> None:
-    """Flush the entries of a folder to disk (fsync), if the file system supports it."""
+    """Flush a folder's list of entries to disk (fsync); errors of the file system are ignored."""
     try:
         handle = os.open(folder, os.O_RDONLY)
     except OSError:  # a folder that may be written to but not listed

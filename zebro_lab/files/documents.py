@@ -21,12 +21,12 @@ def read_toml_document(
     Args:
         path: The file.
         advice: What to do if the file does not exist; part of the error message.
-        remedy: What to do if it cannot be read; part of the error message.
-        fault: Type of error to raise if it cannot be read.
+        remedy: What to do if the file is not TOML; part of the error message.
+        fault: Type of error to raise if the file exists but cannot be read.
 
     Raises:
         NotFound: There is no such file.
-        SettingsError: It is not a regular file, too large, not TOML, or nested too deeply
+        SettingsError: The file is not regular, too large, not TOML, or nested too deeply
             (`DataError` if `fault` is that type).
     """
     data = read_bytes(path, most=MOST_BYTES, advice=advice, fault=fault)
@@ -42,11 +42,11 @@ def read_json_document(path: Path, *, advice: str = "") -> Any:
         advice: What to do if the file does not exist; part of the error message.
 
     Returns:
-        The parsed content.
+        The parsed content: a dict, list, string, number, bool or None.
 
     Raises:
         NotFound: There is no such file.
-        DataError: It is not a regular file, too large, not JSON, or nested too deeply.
+        DataError: The file is not regular, larger than `MOST_JSON`, not JSON, or nested too deeply.
     """
     text = read_text(path, most=MOST_JSON, advice=advice)
     with parsing(path, "cannot be read as JSON", advice="make it again"):
@@ -56,14 +56,14 @@ def read_json_document(path: Path, *, advice: str = "") -> Any:
 
 
 def require_object(content: object, path: Path) -> dict[str, Any]:
-    """Return the content of a JSON file if it is an object.
+    """Check that the content of a JSON file is an object (a dict), and return it.
 
     Args:
         content: Parsed content.
         path: The file, for the error message.
 
     Raises:
-        DataError: The content is a list, a number or a string.
+        DataError: The content is not an object but a list, number, string, bool or null.
     """
     if not isinstance(content, dict):
         raise DataError("is not a JSON object", file=path)

@@ -21,23 +21,23 @@ MOST_DRAWS: Final = 4_000_000
 def read_draws_of(
     path: Path, group: str, names: Iterable[str], *, advice: str
 ) -> tuple[Mapping[str, NDArray[np.float64]], tuple[str, ...]]:
-    """Read draws of parameters.
+    """Read posterior draws of parameters from one group of a netCDF (HDF5) file.
 
     External links and external storage of HDF5, which refer to other files, are rejected.
 
     Args:
         path: The file.
-        group: Group that has the draws.
-        names: Parameters; those that the file lacks are omitted.
-        advice: What to do if it cannot be read; part of the error message.
+        group: Name of the group that holds the draws, e.g. "posterior".
+        names: Parameters to read; those that the group lacks are omitted.
+        advice: What to do if the file cannot be read; part of the error message.
 
     Returns:
-        The draws by parameter, equally many of each, and the names of all members of the group.
+        Draws by parameter, chains joined, each of shape (n,); and names of all group members.
 
     Raises:
         NotFound: There is no such file.
-        DataError: It is not such a file, or a parameter's draws are not numbers, too many, or
-            stored in another file.
+        DataError: The file is not HDF5 or lacks the group, or draws of a parameter are not numbers,
+            not 1 to `MOST_DRAWS`, not as many as of another parameter, or stored elsewhere.
     """
     import h5py
 
@@ -57,12 +57,12 @@ def read_draws_of(
 
 
 def _text(name: object) -> str:
-    """Return a name as a string; h5py returns names that are not UTF-8 as bytes."""
+    """Convert a name to a string; h5py returns names that are not UTF-8 as bytes."""
     return name.decode("utf-8", "backslashreplace") if isinstance(name, bytes) else str(name)
 
 
 def _own(group: "h5py.Group", name: str, path: Path) -> object:
-    """Return a member that is stored in the group itself, not behind an external link."""
+    """Return a member of a group; raise if it is missing or a soft or external link."""
     import h5py
 
     if not isinstance(group.get(name, getlink=True), h5py.HardLink):

@@ -5,12 +5,13 @@ from collections.abc import Mapping
 
 
 def encodable(value: object) -> object:
-    r"""Escape lone surrogates in every string of a JSON document.
+    r"""Replace lone surrogates by escapes such as `\udce9` in every string of a JSON document.
 
-    Python represents bytes that are not UTF-8 as lone surrogates.
+    Python represents bytes of file names that are not UTF-8 as lone surrogates.
 
     Args:
-        value: A string, or mappings and sequences of strings; other values are kept.
+        value: A string, mapping (keys too), list or tuple (returned as list), nested; values of
+            other types are kept.
 
     >>> encodable({"label": "caf\udce9", "n": 1})
     {'label': 'caf\\udce9', 'n': 1}

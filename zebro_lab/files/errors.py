@@ -13,16 +13,17 @@ class ZebroLabError(Exception):
 class DataError(ZebroLabError, ValueError):
     """A table or a recording has missing or invalid content.
 
-    The message begins with the known part of the location: file, column, row.
+    The message begins with the known part of the location: file, column, row. Attributes are None
+    where they are unknown or do not apply.
 
     Attributes:
         problem: What was found, what was expected, what to try.
-        file: File that is at fault.
-        column: Column, by its name in that file.
+        file: File that has the invalid content.
+        column: Header of the column in this file.
         row: Data row, 1 for the first row below the header.
-        line: Line of the text file, 1 for its first.
+        line: Line of the text file, counted from 1; shown only with a row.
         value: Value that was found.
-        unit: Unit of `value`, as the file has it.
+        unit: Unit of `value`, as in the file.
 
     >>> str(DataError("is not a number", file="rig.csv", column="FZ", row=3, line=4))
     "rig.csv, column 'FZ', row 3 (line 4): is not a number"
@@ -59,8 +60,8 @@ class SettingsError(ZebroLabError, ValueError):
 
     Attributes:
         problem: What was found, what was expected, what to try.
-        file: Settings file; None for an option.
-        key: Dotted key inside the file, or the option.
+        file: Settings file; None for a command-line option.
+        key: Dotted key inside the file, or the option; None if it is not about a single one.
 
     >>> str(SettingsError("expected a number", file="columns.toml", key="runs.gap"))
     'columns.toml, runs.gap: expected a number'
@@ -77,10 +78,10 @@ class SettingsError(ZebroLabError, ValueError):
 
 
 class UnitError(ZebroLabError, ValueError):
-    """A unit is unknown, or measures another quantity.
+    """A unit is unknown or measures another quantity, or a quantity is not a finite number.
 
     Attributes:
-        unit: The unit, as written.
+        unit: The unit as written; "" for text without a number; the SI unit for an infinite number.
     """
 
     def __init__(self, problem: str, *, unit: str) -> None:

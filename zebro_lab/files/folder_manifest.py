@@ -10,15 +10,15 @@ from zebro_lab.files.errors import DataError, NotFound
 
 
 def read_json_object(file: Path, *, of: str) -> dict[str, Any]:
-    """Read a folder's JSON file.
+    """Read a JSON file of a folder that must hold an object.
 
     Args:
         file: The file.
-        of: Kind of folder that is expected, e.g. "walk folder".
+        of: Kind of folder that is expected, e.g. "walk folder"; part of the error message.
 
     Raises:
         NotFound: There is no such file.
-        DataError: It is damaged, or not a JSON object.
+        DataError: The file is damaged, or not a JSON object.
     """
     try:
         return require_object(read_json_document(file), file)
@@ -29,17 +29,17 @@ def read_json_object(file: Path, *, of: str) -> dict[str, Any]:
 def read_folder_manifest(
     file: Path, *, of: str, kinds: Collection[str], schema: int
 ) -> Mapping[str, Any]:
-    """Read the manifest of a folder that a command wrote.
+    """Read the manifest of a result folder, and check its kind and schema.
 
     Args:
         file: The manifest.
-        of: Content of the folder, e.g. "walk".
-        kinds: Accepted values of its `kind`.
-        schema: Accepted version of the schema.
+        of: Content of the folder, e.g. "walk"; part of the error message.
+        kinds: Accepted values of the key `kind`.
+        schema: Accepted value of the key `schema`.
 
     Raises:
         NotFound: There is no such file.
-        DataError: It is damaged, of another schema, or of another command.
+        DataError: The file is damaged, or its kind or schema is another.
     """
     content = read_json_object(file, of=f"{of} folder")
     if content.get("kind") not in tuple(kinds):

@@ -6,13 +6,13 @@ from pathlib import Path
 from typing import Final
 
 PATH_CSV: Final = "path.csv"
-"""The path of a walk folder, one row per time step."""
+"""Table of the path in a walk folder, one row per time step."""
 TRACK: Final = "track"
-"""Folder of a run that holds its track."""
+"""Subfolder of a run folder that holds the track of the run."""
 
 
 def numbered(names: Sequence[str]) -> list[str]:
-    """Append a number to every name that occurs more than once.
+    """Append `-1`, `-2`, … to every name that occurs more than once, in order of occurrence.
 
     >>> numbered(["a", "b", "a"])
     ['a-1', 'b', 'a-2']
@@ -24,7 +24,9 @@ def numbered(names: Sequence[str]) -> list[str]:
 
 
 def shortest_distinct(paths: Sequence[Path]) -> list[str]:
-    """Shorten paths to their last parts, as few as keep them distinct; equal paths stay whole.
+    """Shorten all paths to the same number of last parts, the fewest that keep them distinct.
+
+    If two of the paths are equal, all paths are returned whole.
 
     >>> shortest_distinct([Path("a/one/log.mcap"), Path("a/two/log.mcap")])
     ['one/log.mcap', 'two/log.mcap']

@@ -38,15 +38,15 @@ def open_file(
         path: The file.
         most: Largest size that is accepted [bytes]; None if the caller limits what it reads.
         advice: What to do if the file does not exist; part of the error message.
-        fault: Type of error to raise if the file cannot be opened.
+        fault: Type of error to raise if the file exists but cannot be opened.
 
     Yields:
-        The open file.
+        The file, open for reading in binary mode.
 
     Raises:
         NotFound: There is no such file.
-        DataError: It is not a regular file, too large, or cannot be opened (`SettingsError` if
-            `fault` is that type).
+        DataError: The file is not regular, larger than `most`, or cannot be opened
+            (`SettingsError` if `fault` is that type).
     """
     with os.fdopen(_descriptor(path, advice, fault), "rb") as file:
         size = os.fstat(file.fileno()).st_size
@@ -64,14 +64,14 @@ def read_bytes(path: Path, *, most: int, advice: str = "", fault: Fault = DataEr
 
     Args:
         path: The file.
-        most: Largest size that is read [bytes].
+        most: Largest size that is accepted [bytes].
         advice: What to do if the file does not exist; part of the error message.
-        fault: Type of error to raise if the file cannot be read.
+        fault: Type of error to raise if the file exists but cannot be read.
 
     Raises:
         NotFound: There is no such file.
-        DataError: It is not a regular file, too large, or cannot be read (`SettingsError` if
-            `fault` is that type).
+        DataError: The file is not regular, larger than `most`, or cannot be read (`SettingsError`
+            if `fault` is that type).
     """
     with (
         open_file(path, most=most, advice=advice, fault=fault) as file,
@@ -87,13 +87,13 @@ def read_text(
 
     Args:
         path: The file.
-        most: Largest size that is read [bytes].
+        most: Largest size that is accepted [bytes].
         advice: What to do if the file does not exist; part of the error message.
-        fault: Type of error to raise if the file cannot be read.
+        fault: Type of error to raise if the file exists but cannot be read.
 
     Raises:
         NotFound: There is no such file.
-        DataError: It is not a regular file, too large, cannot be read, or is not UTF-8
+        DataError: The file is not regular, larger than `most`, cannot be read, or is not UTF-8
             (`SettingsError` if `fault` is that type).
     """
     data = read_bytes(path, most=most, advice=advice, fault=fault)
@@ -111,18 +111,18 @@ def read_text(
 def parsing(
     path: Path, problem: str, *, advice: str = "", fault: Fault = DataError
 ) -> Iterator[None]:
-    """Convert any exception of a parser into a one-line error that names the file.
+    """Convert any exception of the body into a one-line error that names the file.
 
-    Third-party parsers may raise any exception on malformed input, so every exception is caught.
+    Every `Exception` that a third-party parser may raise; a `ZebroLabError` passes unchanged.
 
     Args:
         path: The file.
-        problem: What is wrong with it, e.g. "cannot be read as TOML".
+        problem: What is wrong with the file, e.g. "cannot be read as TOML".
         advice: What to try; part of the error message.
         fault: Type of error to raise.
 
     Raises:
-        DataError: The body raised an error of another project; of type `fault`.
+        DataError: The body raised any other exception (`SettingsError` if `fault` is that type).
     """
     try:
         yield

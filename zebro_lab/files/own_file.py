@@ -21,11 +21,11 @@ COMMENT: Final = "Comment"
 
 @dataclass(frozen=True)
 class OwnFile:
-    """A kind of file that one command writes.
+    """A kind of single file that one command writes, and how such a file is recognised.
 
     Attributes:
         command: The command, as shown in messages.
-        is_ours: Returns whether the command wrote a file, given the file's first bytes.
+        is_ours: Returns whether the command wrote a file, given the first 64 KiB of the file.
     """
 
     command: str
@@ -33,14 +33,15 @@ class OwnFile:
 
 
 def html_page(command: str) -> OwnFile:
-    """Return the file kind of an HTML page, recognised by its generator tag."""
+    """Return the kind of an HTML page by `command`, recognised by zebro-lab's generator tag."""
     return OwnFile(command, lambda head: b'<meta name="generator" content="zebro-lab ' in head)
 
 
 def picture(command: str) -> OwnFile:
-    """Return the file kind of a PNG picture, recognised by its software and comment metadata.
+    """Return the kind of a PNG picture, recognised by its texts `Software` and `Comment`.
 
-    Pictures of an earlier version have only the software field; the comment names the command.
+    `Comment` names the command that drew it; pictures without one, of an earlier version, count as
+    drawn by any command.
     """
 
     def is_ours(head: bytes) -> bool:
@@ -51,7 +52,7 @@ def picture(command: str) -> OwnFile:
 
 
 def text_file(command: str, heading: str) -> OwnFile:
-    """Return the file kind of a text file, recognised by its first line.
+    """Return the kind of a text file, recognised by the text that it begins with.
 
     Args:
         command: The command that writes the file.
@@ -61,7 +62,7 @@ def text_file(command: str, heading: str) -> OwnFile:
 
 
 def require_own(out: Path, kind: OwnFile, *, inputs: Sequence[Path] = ()) -> Path:
-    """Raise if an output file exists that the command did not write.
+    """Check that an output file is new, empty or was written by the same command.
 
     Called before anything is computed.
 
@@ -71,11 +72,11 @@ def require_own(out: Path, kind: OwnFile, *, inputs: Sequence[Path] = ()) -> Pat
         inputs: Files and folders that are read.
 
     Returns:
-        The file itself if `out` is a link to it.
+        The path to write, with symbolic links resolved.
 
     Raises:
-        AlreadyExists: It is a folder, an input, part of a result, or of another command.
-        NotFound: Its folder does not exist.
+        AlreadyExists: `out` is a folder, an input, part of a result, or of another command.
+        NotFound: The folder to write it into does not exist.
     """
     file = Path(os.path.realpath(out))
     if file.is_dir():
@@ -106,7 +107,7 @@ def _require_ours(out: Path, file: Path, kind: OwnFile) -> None:
 
 
 def _listed_beside(file: Path) -> Sequence[str]:
-    """List the files of the result folder that contains a file, if there is one."""
+    """List the outputs in `manifest.json` beside a file; empty if none can be read."""
     try:
         manifest = read_json_object(file.parent / MANIFEST, of="result folder")
     except ZebroLabError:
@@ -116,7 +117,7 @@ def _listed_beside(file: Path) -> Sequence[str]:
 
 
 def _png_texts(head: bytes) -> Iterator[tuple[str, str]]:
-    """Yield keyword and text of the tEXt chunks at the beginning of a PNG."""
+    """Yield keyword and text of each tEXt chunk in a PNG's first bytes; nothing for other files."""
     if not head.startswith(_PNG):
         return
     at = len(_PNG)

@@ -12,29 +12,29 @@ RECORDED = ("zebro-lab", "numpy", "scipy", "emcee", "arviz", "numba")
 
 
 def file_hash(path: Path) -> str:
-    """Compute the SHA-256 of a file, in hexadecimal."""
+    """Compute the SHA-256 of a file's content, in hexadecimal."""
     with path.open("rb") as file:
         return hashlib.file_digest(file, "sha256").hexdigest()
 
 
 def file_hashes(paths: Iterable[Path]) -> dict[str, str]:
-    """Compute the SHA-256 of files, by their path as given."""
+    """Compute the SHA-256 of each file in hexadecimal, by its path as given."""
     return {str(path): file_hash(path) for path in paths}
 
 
 def fingerprint(hashes: Mapping[str, str], settings: Mapping[str, object]) -> str:
-    """Compute a hash of data and settings; it depends on file contents, not on names or paths.
+    """Compute the SHA-256 of data and settings, independent of names and order of the files.
 
     Args:
-        hashes: SHA-256 of each data file.
-        settings: All other settings that affect the results, JSON-serialisable.
+        hashes: SHA-256 of each data file; only the hashes count, not the keys.
+        settings: All settings that affect the results, JSON-serialisable.
     """
     content = {"data": sorted(hashes.values()), "settings": dict(settings)}
     return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
 
 
 def software() -> dict[str, str]:
-    """Return the versions of the software that affects the results."""
+    """Return the installed versions of Python and of the packages in `RECORDED`, by name."""
     return {
         "python": platform.python_version(),
         **{name: version(name) for name in RECORDED},

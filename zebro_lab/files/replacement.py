@@ -3,13 +3,14 @@
 
 | step | on disk | killed after it |
 |---|---|---|
-| files of others are linked into the draft | NAME old | NAME is old |
+| the user's files are linked into the draft | NAME old | NAME is old |
 | `.NAME.replacing` lists what will be removed | NAME old | NAME is old |
 | NAME becomes `NAME.previous` | only the old one | the next reader or writer restores it |
 | the draft becomes NAME | both | NAME is new; the next one removes the old |
-| what could not be linked is moved, the old one and the note are removed | NAME new | NAME is new |
+| files that were not linked are moved; old one and note are removed | NAME new | NAME is new |
 
-The note is locked while its writer runs, so that no other process restores during a replacement.
+NAME is the folder; *owned* files are those that the command wrote earlier, all other files are the
+user's. The note is locked while its writer runs, so that no other process restores meanwhile.
 """
 
 import json
@@ -39,7 +40,7 @@ class _Note:
 
     Attributes:
         inode: Inode of the old folder, by which NAME.previous is recognised.
-        owned: Files of the old folder that are replaced: paths relative to it, with `/`.
+        owned: Files of the old folder to remove: paths relative to the folder, with `/`.
     """
 
     inode: int
@@ -52,16 +53,16 @@ def previous_of(folder: Path) -> Path:
 
 
 def replace_folder(folder: Path, draft: Path, *, owned: Callable[[], Collection[str]]) -> None:
-    """Replace a folder by a draft, keeping the files that are not owned.
+    """Replace a folder by a draft atomically, keeping the user's files: those not in `owned`.
 
     Args:
         folder: Folder to create or to replace; not a symbolic link.
-        draft: The new folder, on the same file system.
+        draft: The new folder, on the same file system, which is renamed to `folder`.
         owned: Returns the files of the old folder to remove, as paths relative to it, or raises.
             It is called while the lock is held, so that the list is still valid when it is used.
 
     Raises:
-        AlreadyExists: Another process is replacing it, or NAME.previous is a user's folder.
+        AlreadyExists: Another process still replaces it after `PATIENCE`, or NAME.previous exists.
         OSError: The folder cannot be moved or written; the old one is unchanged.
     """
     folder.parent.mkdir(parents=True, exist_ok=True)
@@ -83,8 +84,8 @@ def replace_folder(folder: Path, draft: Path, *, owned: Callable[[], Collection[
 def settle(path: Path, *, writing: bool = False) -> Path:
     """Restore a result folder after an interrupted replacement that left only NAME.previous.
 
-    Every reader and writer of a result calls it first. If the result is complete, the leftovers of
-    the interrupted replacement are removed.
+    Every reader and writer of a result calls this function first. If NAME exists, NAME.previous and
+    the note that an interrupted replacement left are removed.
 
     Args:
         path: Folder of a result, or a file in it.
@@ -92,11 +93,11 @@ def settle(path: Path, *, writing: bool = False) -> Path:
             says that a replacement made it; otherwise it may be a user's copy and is kept.
 
     Returns:
-        The path.
+        The path, as given.
 
     Raises:
         DataError: Only NAME.previous exists and it cannot be renamed.
-        AlreadyExists: Another process is still replacing it after `PATIENCE`.
+        AlreadyExists: Another process still replaces the folder after `PATIENCE`.
     """
     absolute = Path(os.path.realpath(path))
     for folder in (absolute, absolute.parent):
@@ -108,10 +109,10 @@ def settle(path: Path, *, writing: bool = False) -> Path:
 
 
 def require_free_previous(folder: Path) -> None:
-    """Check that NAME.previous is not a user's folder.
+    """Check that NAME.previous does not exist; interrupted replacements are settled before.
 
     Raises:
-        AlreadyExists: It exists; interrupted replacements are settled before this check.
+        AlreadyExists: A file or folder, then a user's, has the name NAME.previous.
     """
     if os.path.lexists(previous_of(folder)):
         raise AlreadyExists(
@@ -139,7 +140,10 @@ def _settle(folder: Path, *, writing: bool) -> None:
 
 
 def _settle_locked(folder: Path, note: _Note | None) -> None:
-    """Finish or undo the replacement of a killed process; other folders are not touched."""
+    """Finish the replacement that a note records, or undo it if NAME is missing.
+
+    Without a note, or if NAME.previous is another folder than in the note, nothing is done.
+    """
     if note is None or not _is_left(folder, note):
         return
     if not folder.exists():
@@ -150,7 +154,7 @@ def _settle_locked(folder: Path, note: _Note | None) -> None:
 
 
 def _is_left(folder: Path, note: _Note | None) -> bool:
-    """Return whether NAME.previous is the folder recorded in a note."""
+    """Return whether NAME.previous exists and has the inode in a note; False without a note."""
     previous = previous_of(folder)
     return note is not None and previous.is_dir() and previous.stat().st_ino == note.inode
 
@@ -177,7 +181,10 @@ def _swap(folder: Path, draft: Path) -> None:
 
 
 def _carry(old: Path, new: Path, owned: Collection[str], prefix: str = "") -> None:
-    """Hard-link files that are not owned into the draft; others are moved after the swap."""
+    """Hard-link the user's files, names not in `owned`, from the old folder into the new one.
+
+    Files that cannot be linked are moved by `_sweep` after the swap; owned files are left behind.
+    """
     for path in sorted(old.iterdir()):
         name, target = prefix + path.name, new / path.name
         if name in owned:
@@ -198,18 +205,18 @@ def _is_folder(path: Path) -> bool:
 def _link(file: Path, target: Path) -> None:
     try:
         os.link(file, target, follow_symlinks=False)
-    except OSError:  # no hard links here, or not to files of others: `_sweep` moves it
+    except OSError:  # the file system or the file's owner forbids hard links: `_sweep` moves it
         return
 
 
 def _drop_emptied(folder: Path, name: str, owned: Collection[str]) -> None:
-    """Remove a folder whose files were all owned."""
+    """Remove a folder if it is empty and `owned` lists a file below `name`, its relative path."""
     if any(each.startswith(f"{name}/") for each in owned) and not any(folder.iterdir()):
         folder.rmdir()
 
 
 def _sweep(old: Path, new: Path, owned: Collection[str], prefix: str = "") -> None:
-    """Move files that are not owned and were not linked into the new folder."""
+    """Move the user's files that `new` lacks, or has in an older version, from `old` to `new`."""
     for path in sorted(old.iterdir()):
         name, target = prefix + path.name, new / path.name
         if name in owned:
@@ -223,7 +230,7 @@ def _sweep(old: Path, new: Path, owned: Collection[str], prefix: str = "") -> No
 
 
 def _is_newer(file: Path, target: Path) -> bool:
-    """Return whether a file was replaced after its link was made, or could not be linked."""
+    """Return whether `target` is missing, or is another file (inode) modified before `file`."""
     if not os.path.lexists(target):
         return True
     one, other = file.lstat(), target.lstat()
@@ -236,7 +243,7 @@ def _note_of(folder: Path) -> Path:
 
 @contextmanager
 def _locked(folder: Path) -> Iterator[IO[bytes]]:
-    """Lock the note of a folder's replacement; it is removed at the end unless still needed."""
+    """Open and lock a folder's note; remove it at the end unless it records NAME.previous."""
     with _open_locked(folder) as note:
         try:
             yield note
@@ -260,7 +267,7 @@ def _open_locked(folder: Path) -> IO[bytes]:
 
 
 def _is_at(note: IO[bytes], path: Path) -> bool:
-    """Return whether an open note still exists at its path after waiting for its lock."""
+    """Return whether an open note is still the file at `path`: another process may remove it."""
     try:
         return os.fstat(note.fileno()).st_ino == path.stat().st_ino
     except FileNotFoundError:
@@ -275,7 +282,7 @@ def _write_note(note: IO[bytes], content: _Note) -> None:
 
 
 def _read_note(note: IO[bytes]) -> _Note | None:
-    """Read a note; None if it is empty or incomplete."""
+    """Parse the content of an open note; None if it is empty or incomplete."""
     note.seek(0)
     try:
         content = json.loads(note.read())
@@ -285,7 +292,7 @@ def _read_note(note: IO[bytes]) -> _Note | None:
 
 
 def _sync(folder: Path) -> None:
-    """Flush every file and folder of a draft to disk (fsync)."""
+    """Flush the entries of a draft and of its subfolders to disk (fsync), not the files."""
     for path in folder.rglob("*"):
         if _is_folder(path):
             sync_folder(path)

@@ -35,12 +35,13 @@ class ResultKind:
     """Kind of result folder that a command writes.
 
     Attributes:
-        kind: Its name in the manifest.
-        command: Command that writes it, as shown in messages.
-        names: Patterns of the files that it may have, besides the manifest.
-        schema: Version of its format.
-        inside: Kinds of results in folders below it that a new result invalidates, by the name of
-            the folder.
+        kind: Name of the kind, in the manifest under `kind`.
+        command: Command that writes the folder, as shown in messages.
+        names: Names, or patterns with `*`, of the files that the command may write, besides the
+            manifest.
+        schema: Version of the format, in the manifest under `schema`.
+        inside: Results in subfolders that a new result invalidates, so that they are removed with
+            the old one: kind by name of the subfolder.
     """
 
     kind: str
@@ -59,9 +60,9 @@ def require_replaceable(out: Path, kind: ResultKind, *, inputs: Sequence[Path] =
         inputs: Files and folders that are read.
 
     Raises:
-        AlreadyExists: It is a file or below one, a broken link, an input, the result of another
-            command, or a file to be written exists that belongs to the user or was changed.
-        NotWritten: Its parent folder cannot be written to.
+        AlreadyExists: `out` is a file or below one, a broken link, an input, the working folder or
+            above it, of another command, has changed results, or a user's file is in the way.
+        NotWritten: The nearest existing parent folder cannot be written to.
     """
     folder = real_place(out)
     settle(folder, writing=True)
@@ -91,8 +92,8 @@ def result_folder(out: Path, kind: ResultKind, *, content: Mapping[str, object])
 
     Args:
         out: Folder to create or to replace; missing parents are created.
-        kind: Kind of result.
-        content: Further content of the manifest; read when the body has ended.
+        kind: Kind of result to write.
+        content: Further keys of the manifest; read when the body has ended.
 
     Yields:
         The draft folder to write into.
@@ -126,13 +127,13 @@ def result_folder(out: Path, kind: ResultKind, *, content: Mapping[str, object])
 
 
 def real_place(path: Path) -> Path:
-    """Resolve a link to its target, so that the target is replaced and not the link."""
+    """Return the absolute path with links resolved, so that a link's target is replaced."""
     return Path(os.path.realpath(path))
 
 
 @contextmanager
 def writing(out: Path) -> Iterator[None]:
-    """Convert an `OSError` raised while a folder is written into a one-line error.
+    """Convert an `OSError` of the body, which writes `out`, into a one-line error.
 
     Raises:
         NotWritten: The body raised an `OSError` that is not a `ZebroLabError`.
@@ -148,7 +149,7 @@ def writing(out: Path) -> Iterator[None]:
 
 
 def plain_json(value: object) -> object:
-    """Replace numbers that JSON cannot represent: NaN and infinity."""
+    """Replace NaN and infinity by None in nested mappings, lists and tuples (as lists)."""
     if isinstance(value, Mapping):
         return {key: plain_json(each) for key, each in value.items()}
     if isinstance(value, list | tuple):
@@ -157,7 +158,7 @@ def plain_json(value: object) -> object:
 
 
 def _require_ground(out: Path) -> None:
-    """Check that a folder can be created: not below a file or behind a broken link."""
+    """Raise `AlreadyExists` if a folder would be below a file or behind a broken link."""
     for place in (out, *out.parents):
         if place.is_symlink() and not place.exists():
             raise AlreadyExists(f"{place} is a link to what is not there; name another --out")
@@ -166,7 +167,7 @@ def _require_ground(out: Path) -> None:
 
 
 def _require_not_inside(out: Path, folder: Path) -> None:
-    """Check that the folder to replace is not the working directory or above it."""
+    """Raise `AlreadyExists` if the folder to replace is the working directory or above it."""
     try:
         here = Path.cwd()
     except OSError:  # it was removed
@@ -179,10 +180,10 @@ def _require_not_inside(out: Path, folder: Path) -> None:
 
 
 def _owned(folder: Path, kind: ResultKind) -> frozenset[str]:
-    """List the files that an earlier run of the same command wrote, relative to the folder.
+    """List the files that the same command wrote earlier, relative to the folder, if any.
 
     Raises:
-        AlreadyExists: It is the result of another command, or was changed since.
+        AlreadyExists: The folder is of another command, or a listed file or the manifest changed.
     """
     if not os.path.lexists(folder / MANIFEST):
         return frozenset()
@@ -207,7 +208,7 @@ def _owned(folder: Path, kind: ResultKind) -> frozenset[str]:
 
 
 def _void(folder: Path, kind: str) -> frozenset[str]:
-    """List the files of an invalidated result below another; changed files are kept."""
+    """List the files of an invalidated result in a subfolder; none if one of them was changed."""
     try:
         return _owned(folder, ResultKind(kind, kind, ()))
     except AlreadyExists:
@@ -225,7 +226,7 @@ def _manifest_of(folder: Path) -> Mapping[str, Any]:
 
 
 def _outputs(manifest: Mapping[str, Any]) -> Mapping[str, object]:
-    """Return the files that a manifest lists, only those inside its folder."""
+    """Return the hashes in a manifest by file name; names with a folder are left out."""
     listed = manifest.get("outputs")
     if not isinstance(listed, Mapping):
         return {}
@@ -244,7 +245,7 @@ def _require_free(
 
 
 def _require_kept(out: Path, folder: Path, path: Path, replaced: Collection[str]) -> None:
-    """Check that replacing a folder does not remove an input."""
+    """Raise `AlreadyExists` if an input is the folder, or lies in it under a `replaced` name."""
     place = real_place(path)
     inside = place.is_relative_to(folder) and place.relative_to(folder).parts[:1]
     if place == folder or (inside and inside[0] in replaced):
@@ -255,7 +256,10 @@ def _require_kept(out: Path, folder: Path, path: Path, replaced: Collection[str]
 
 @contextmanager
 def _draft_of(folder: Path) -> Iterator[Path]:
-    """Create a hidden draft beside a folder, and remove drafts of killed processes."""
+    """Create and lock a hidden draft for a folder during the body; remove it at the end.
+
+    Unlocked drafts of killed processes are removed first.
+    """
     ground = nearest_folder(folder)
     for stale in ground.glob(f".{glob.escape(folder.name)}.????????.part"):
         with _lock_of(stale) as is_stale:
@@ -272,7 +276,7 @@ def _draft_of(folder: Path) -> Iterator[Path]:
 
 @contextmanager
 def _lock_of(draft: Path) -> Iterator[bool]:
-    """Lock a draft while it is written; yield whether the lock was acquired."""
+    """Lock a draft during the body; yield whether the lock was free, False on any OSError."""
     handle = -1
     is_free = False
     with suppress(OSError):

@@ -20,7 +20,7 @@ class SettingsTable(TomlTable):
     """
 
     def fault(self, problem: str, key: str | None = None) -> SettingsError:
-        """Return an error that names the file and the key.
+        """Return, without raising, an error that names the file and the key.
 
         Args:
             problem: What is wrong.
@@ -104,10 +104,10 @@ def _with_unit(number: float, unit: str) -> str:
 
 
 def read_settings(file: Path, *, advice: str) -> SettingsTable:
-    """Read a settings file.
+    """Read a TOML settings file as a table with unit conversion.
 
     Args:
-        file: TOML.
+        file: The TOML file.
         advice: What to do if the file does not exist; part of the error message.
 
     Returns:
@@ -115,6 +115,6 @@ def read_settings(file: Path, *, advice: str) -> SettingsTable:
 
     Raises:
         NotFound: There is no such file.
-        SettingsError: It cannot be read as TOML.
+        SettingsError: The file cannot be read as TOML.
     """
     return SettingsTable(read_toml_document(file, advice=advice), file=file)

@@ -12,7 +12,7 @@ def fill_in(template: str, values: Mapping[str, Any]) -> str:
     r"""Fill values into a TOML template whose comments and order are kept.
 
     Args:
-        template: TOML, with any value at the keys that get one; keys it lacks are added.
+        template: TOML with a placeholder value at each key; keys that it lacks are added.
         values: Values to write, tables as mappings; numbers are rounded to twelve digits, which
             removes rounding errors of unit conversion.
 
@@ -30,7 +30,7 @@ def fill_in(template: str, values: Mapping[str, Any]) -> str:
 
 
 def inline_table(values: Mapping[str, Any]) -> Mapping[str, Any]:
-    """Create an inline table (on one line) for `fill_in`."""
+    """Create a TOML inline table (on one line) of `values`, to use as a value in `fill_in`."""
     import tomlkit
 
     table = tomlkit.inline_table()
@@ -48,7 +48,7 @@ def _fill(table: MutableMapping[str, Any], values: Mapping[str, Any]) -> None:
 
 
 def _plain(value: Any) -> Any:
-    """Convert a value to plain lists, strings and numbers rounded to twelve digits."""
+    """Convert arrays and tuples to lists, and round floats to twelve digits, in nested values."""
     if isinstance(value, str | bool | numbers.Integral):
         return value
     if isinstance(value, Mapping):

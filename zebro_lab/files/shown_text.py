@@ -21,7 +21,7 @@ _HARMFUL = re.compile(
 
 
 def shown(text: str) -> str:
-    r"""Escape control and invisible characters.
+    r"""Replace control, direction and invisible characters by Python escapes such as `\x1b`.
 
     >>> shown("completed\nall well \x1b[31m")
     'completed\\nall well \\x1b[31m'
@@ -34,7 +34,7 @@ def shortened(text: str, longest: int = LONGEST) -> str:
 
     Args:
         text: String to truncate.
-        longest: Largest number of characters kept.
+        longest: Largest number of characters kept; the ellipsis with its spaces comes on top.
 
     >>> shortened("abcdefghij", 5)
     'ab … ij'

@@ -6,7 +6,7 @@ from pathlib import Path
 
 
 def joined_source(sources: Sequence[str]) -> str:
-    """Join the sources of a run's streams; the result begins with `sim:` if all are simulated.
+    """Join different sources of a run's streams: KIND:A+B if all are of one kind, else mixed:A,B.
 
     >>> joined_source(["sim:zebro", "sim:imu"]), joined_source(["real", "sim:imu"])
     ('sim:zebro+imu', 'mixed:real,sim:imu')
@@ -19,10 +19,10 @@ def joined_source(sources: Sequence[str]) -> str:
 
 
 def stated_source(stated: str | None, file: Path) -> str:
-    """Return the stated source, or a source name made from the file's name.
+    """Return the stated source, or `import:FILE` if none is stated.
 
     Args:
-        stated: Source as stated in a file; None or "unknown" if there is none.
+        stated: Source as stated in a file; None or "unknown" if none is stated.
         file: File that the data were read from.
 
     >>> stated_source("unknown", Path("x/legs.csv"))

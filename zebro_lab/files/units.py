@@ -23,7 +23,9 @@ _SHOWN = {"rad": (180 / math.pi, "deg"), "rad/m": (180 / math.pi, "deg/m"), "-":
 
 
 def shown_unit(unit: str) -> tuple[float, str]:
-    """Return the scale and the unit in which a person reads a parameter of legs and floor.
+    """Return the factor to multiply by, and the unit, to show a parameter of legs and floor.
+
+    Shown are rad and rad/m in degrees and "-" in percent; any other unit is a log of a factor.
 
     >>> shown_unit("-"), shown_unit("log")
     ((100.0, '%'), (1.0, 'log of factor'))
@@ -32,17 +34,17 @@ def shown_unit(unit: str) -> tuple[float, str]:
 
 
 def factor_to_si(unit: str, si_unit: str) -> float:
-    """Compute the conversion factor from a unit to an SI unit.
+    """Compute the factor that converts numbers in a unit to numbers in an SI unit.
 
     Angles count as a dimension here, although they are dimensionless in SI: otherwise "Hz" and
     "1/min" would be accepted for an angular speed, which is wrong by a factor of 2 pi.
 
     Args:
-        unit: Unit as pint spells it; "", "-" and "1" mean none.
-        si_unit: Unit wanted.
+        unit: Unit as pint spells it; "", "-" and "1" mean dimensionless.
+        si_unit: SI unit to convert to.
 
     Raises:
-        UnitError: The unit is unknown or measures something else.
+        UnitError: The unit is unknown or measures another quantity.
 
     >>> factor_to_si("mm", "m"), factor_to_si("%", "dimensionless")
     (0.001, 0.01)
@@ -84,10 +86,10 @@ def quantity_to_si(quantity: str | float, si_unit: str) -> float:
 
 
 def is_unit_of(unit: str, si_unit: str) -> bool:
-    """Return whether a unit can be converted to an SI unit.
+    """Return whether a unit can be converted to an SI unit; False for an unknown unit.
 
     Args:
-        unit: Unit as pint spells it; "", "-" and "1" mean none.
+        unit: Unit as pint spells it; "", "-" and "1" mean dimensionless.
         si_unit: SI unit to convert to.
     """
     try:

@@ -14,28 +14,30 @@ from zebro_lab.files.errors import DataError
 from zebro_lab.files.opening import open_file
 
 FREELY: Final = 64 << 20
+"""Unpacked size that is allowed whatever the packed size [bytes]."""
 MOST_RATIO: Final = 100
 """Largest ratio of unpacked to packed size, beyond `FREELY`; logs of sensors reach 20 [-]."""
 MOST_CELLS: Final = 32_000_000
 """Largest number of table cells; each takes some 25 bytes while numbers are parsed."""
 LONGEST_LINE: Final = 1 << 20
+"""Largest length of a line [bytes]."""
 
 
 @contextmanager
 def open_unpacked(path: Path, *, width: int = 1) -> Iterator[IO[bytes]]:
-    """Open a file for reading, decompressing it if its name ends in .gz.
+    """Open a file for reading with size limits, decompressing it if its name ends in .gz.
 
     Args:
         path: The file.
-        width: Number of cells per line that its reader keeps.
+        width: Number of cells per line that the reader of the file keeps.
 
     Yields:
-        The decompressed file; reading beyond a limit raises.
+        The decompressed file in binary mode; reading beyond a limit raises.
 
     Raises:
         NotFound: There is no such file.
-        DataError: It is not a regular file, not a complete gzip file, its unpacked size exceeds the
-            limit, or it has too many cells.
+        DataError: The file is not regular or not complete gzip; unpacked it exceeds `FREELY` plus
+            `MOST_RATIO` times its size, `MOST_CELLS`, or `LONGEST_LINE` in a line.
     """
     with open_file(path) as file:
         most = FREELY + MOST_RATIO * os.fstat(file.fileno()).st_size

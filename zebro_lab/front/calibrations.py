@@ -27,9 +27,9 @@ class CalibrationResult:
     """A finished calibration.
 
     Attributes:
-        calibration: Everything that the fit concluded.
-        data: The rig data that it was made from.
-        curve: The slip curve, as `slip.toml` keeps it.
+        calibration: The finished fit: posterior, draws, diagnostics, residuals and verdict.
+        data: The rig data that were fitted.
+        curve: The slip curve, as in `slip.toml`: law, posterior means, covariance, tested ranges.
     """
 
     calibration: Calibration
@@ -43,7 +43,7 @@ class CalibrationResult:
 
     @property
     def summary(self) -> "pd.DataFrame":
-        """Posterior of each parameter with its diagnostics, one row each, SI units."""
+        """Posterior, prior and diagnostics, SI; a row per parameter, columns of `summary.csv`."""
         import pandas as pd
 
         table = calibration_folder.summary_csv(self.calibration)
@@ -61,9 +61,9 @@ def read_rig_data(
     """Read rig experiments from tables, run folders or folders of either.
 
     Args:
-        data: Files and folders.
-        columns: A `columns.toml` for tables that have none beside them.
-        slip_definition: Definition to convert slip ratios to; that of the data when None.
+        data: Files and folders of rig data.
+        columns: A `columns.toml` for all data, instead of those beside the tables.
+        slip_definition: Definition to convert slip ratios to; None keeps that of the data.
 
     Returns:
         Samples in SI with their source, the files read, and notes.
@@ -92,16 +92,17 @@ def calibrate(
     Args:
         data: Files and folders of rig data.
         out: Calibration folder to write; None to keep no files.
-        columns: A `columns.toml` for tables that have none beside them.
-        slip_definition: Definition of the slip ratio to fit in; that of the data when None.
+        columns: A `columns.toml` for all data, instead of those beside the tables.
+        slip_definition: Definition of the slip ratio to fit in; None for that of the data.
         law: "magic-formula", "brush" or "coulomb-stribeck".
-        ensembles: Independent ensembles of walkers.
-        max_steps: Sampler moves after which a fit that has not converged ends as such.
+        ensembles: Number of independent ensembles of walkers.
+        max_steps: Largest number of sampler moves; a fit that has not converged ends then.
         seed: Seed of all random numbers.
-        watcher: Follows the progress and may ask to stop.
+        watcher: Receives progress and may request a stop; None for neither.
 
     Raises:
-        ZebroLabError: The data cannot be used.
+        ZebroLabError: The data cannot be used, the folder cannot be replaced, or a stop was
+            requested.
         ModelError: The fit failed.
     """
     with kept_or_temporary(out) as folder:
@@ -126,6 +127,6 @@ def read_slip_curve(path: PathLike) -> SlipCurve:
         path: A `slip.toml`, or the folder that holds it.
 
     Raises:
-        DataError: It is missing, damaged, or of a later schema.
+        DataError: The file is missing, damaged, or of another schema.
     """
     return calibration_folder.read_slip(Path(path))

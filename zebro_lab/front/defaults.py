@@ -12,7 +12,7 @@ PathLike: TypeAlias = str | os.PathLike[str]
 
 
 class Silent:
-    """A watcher that shows no progress and never asks to stop."""
+    """A watcher that shows no progress and never requests a stop."""
 
     def step(self, what: str, fraction: float | None) -> None:
         """Ignore a progress report.
@@ -28,13 +28,13 @@ class Silent:
 
 
 def optional(path: PathLike | None) -> Path | None:
-    """Return a path that may be None."""
+    """Convert a path or string to a `Path`; None stays None."""
     return None if path is None else Path(path)
 
 
 @contextmanager
 def kept_or_temporary(out: PathLike | None) -> Iterator[Path]:
-    """Yield the folder to write, or one that is removed afterwards if it is None."""
+    """Yield `out` as a path; if it is None, a path in a temporary folder, removed at the end."""
     if out is not None:
         yield Path(out)
         return

@@ -25,7 +25,7 @@ class Run:
     """A recorded or imported run.
 
     Attributes:
-        folder: Its folder.
+        folder: The run folder.
         manifest: Content of `run.json`.
     """
 
@@ -36,7 +36,7 @@ class Run:
         """Read the leg angles over time.
 
         Raises:
-            ZebroLabError: The run has none, or they cannot be read.
+            ZebroLabError: The run has no leg angles, or they cannot be read.
         """
         return read_leg_log(self.folder)
 
@@ -49,10 +49,10 @@ class Run:
         return read_rig_data([self.folder])
 
     def track(self) -> TrackFile:
-        """Read the tracked poses.
+        """Read the tracked poses from the folder `track` of the run.
 
         Raises:
-            ZebroLabError: The run has no track, or it cannot be read.
+            ZebroLabError: The run has no track, or the track cannot be read.
         """
         return read_track(self.folder / TRACK)
 
@@ -64,7 +64,7 @@ def open_run(folder: PathLike) -> Run:
         folder: The run folder.
 
     Raises:
-        ZebroLabError: It is no run, or its manifest is damaged.
+        ZebroLabError: The folder is not a run, or its manifest is damaged.
     """
     return Run(Path(folder), read_manifest(Path(folder)))
 
@@ -76,9 +76,9 @@ def open_devices(
     """Open devices, real or simulated; leaving the context de-energises what they drive.
 
     Args:
-        zebro: The robot: "PROFILE@PORT", "PROFILE@sim" or "sim".
-        imus: Inertial measurement units, each in the same way.
-        rig: The slip rig, in the same way.
+        zebro: Robot as "PROFILE@PORT", "PROFILE@sim" or "sim"; None for no robot.
+        imus: Inertial measurement units, each in the same form.
+        rig: Slip rig in the same form; None for no rig.
         seed: Seed of the random numbers of simulated devices.
 
     Yields:
@@ -86,7 +86,7 @@ def open_devices(
 
     Raises:
         SettingsError: No device is named.
-        RigError: An address, a profile or a port is not right.
+        RigError: An address, a profile or a port is invalid, or cannot be opened.
     """
     request = DevicesRequest(zebro=zebro, imus=tuple(imus), rig=rig, seed=seed)
     with open_devices_of(request) as devices:
@@ -100,15 +100,16 @@ def write_report(
 
     Args:
         data: A run folder, or a folder of them.
-        out: File to write.
-        calibration: The calibration folder; `calibration` beside the data when None.
-        title: Title of the page; the folder's name when None.
+        out: HTML file to write.
+        calibration: The calibration folder; None for `calibration` beside the data.
+        title: Title of the page; None for "Report on" and the name of the folder `data`.
 
     Returns:
-        The file.
+        The file written.
 
     Raises:
-        ZebroLabError: There is nothing to report on, or a manifest is damaged.
+        ZebroLabError: There is nothing to report on, a manifest is damaged, or `out` was not
+            written by this function or command.
     """
     folder = Path(data).absolute().parent / "calibration" if calibration is None else calibration
     report(ReportRequest(Path(data), Path(folder), Path(out), title), made=datetime.now(UTC))

@@ -46,8 +46,9 @@ def track_photos(
         out: Track folder to write.
         camera: The `camera.toml`.
         floor: The `floor.toml`.
-        robot: The `robot.toml`; the thesis's robot when None.
-        times: CSV with columns `photo` and `t_s`; None to take the photographs' own times.
+        robot: The `robot.toml`; None for the thesis's robot.
+        times: CSV with columns `photo`, `t_s` and optionally `t_sigma` [s]; None for the times in
+            the photographs.
         start: Moment from which time is counted, with its time zone; None for the first
             photograph.
         annotations: File of annotations that a person made in the photographs.
@@ -77,15 +78,15 @@ def validate_walks(
     """Compute errors of predictions against tracks, as `zebro-lab validate` does.
 
     Args:
-        walks: Run folders with a prediction and a track, or pairs of the two.
-        out: Validation folder to write; None to keep nothing.
+        walks: Run folders with a prediction and a track, or pairs (prediction, track).
+        out: Validation folder to write; None to keep no files.
         anchor: Whether each path starts from the first tracked pose, which is then not scored.
         time_offset: Clock offset added to the tracks' times; None to estimate it [s].
         seed: Seed of all random numbers.
 
     Raises:
-        ZebroLabError: A file is missing, or prediction and track share no time.
-        ModelError: A path cannot be judged.
+        ZebroLabError: A file is missing or invalid, or prediction and track do not overlap in time.
+        ModelError: Errors of a path cannot be computed.
     """
     pairs = tuple(
         (Path(each[0]), Path(each[1])) if isinstance(each, tuple) else pairs_of_run(Path(each))

@@ -30,7 +30,7 @@ class WalkResult:
 
     Attributes:
         walk: Body, legs, slip and forces over time.
-        draws: Paths with the unknowns drawn; None unless draws were asked for.
+        draws: Paths with slip law, legs, floor and start drawn; None if draws were not requested.
         notes: Notes, one line each.
     """
 
@@ -40,7 +40,7 @@ class WalkResult:
 
     @property
     def path(self) -> Poses:
-        """The body's path over the ground."""
+        """Poses of the body over time: x, y [m] and yaw [rad]."""
         return self.walk.poses
 
 
@@ -48,8 +48,8 @@ def read_legs(path: PathLike, *, columns: PathLike | None = None) -> LegLog:
     """Read leg angles over time from a table, a recorded run or a walk folder.
 
     Args:
-        path: What to read.
-        columns: A `columns.toml` in place of the one beside the table.
+        path: Table, run folder or walk folder to read.
+        columns: A `columns.toml` to use instead of the one beside the table.
 
     Raises:
         ZebroLabError: A file is missing or cannot be used; names file, row and column.
@@ -70,20 +70,20 @@ def walk_gait(
     seed: int = 1,
     out: PathLike | None = None,
 ) -> WalkResult:
-    """Compute the path of a gait, as `zebro-lab walk` does.
+    """Simulate a gait and compute the robot's path, as `zebro-lab walk` does.
 
     Args:
         gait: Name of the gait.
         slip: A calibration folder or `slip.toml`, "coulomb:MU[:V]" or "thesis"; None for a model
             without slip.
-        duration: Time to walk [s].
+        duration: Duration of the walk [s].
         model: "dynamics", "thesis", "no-slip" or "no-slip-simple".
         steering: Ratio of the outer to the inner legs' stance angle; 1 walks straight [-].
-        direction: Side to turn to.
-        robot: A `robot.toml`; the thesis's robot when None.
-        draws: Paths to draw for a band, at least two; 0 for the single path.
-        seed: Seed of all random numbers.
-        out: Walk folder to write; None to keep nothing.
+        direction: Side to turn to, "left" or "right"; None for left.
+        robot: A `robot.toml`; None for the thesis's robot.
+        draws: Number of draws for a band, at least two; 0 for the single path only.
+        seed: Seed of the band's draws.
+        out: Walk folder to write; None to keep no files.
 
     Raises:
         ZebroLabError: A file or an option cannot be used.
@@ -116,11 +116,11 @@ def predict_walk(
         legs: A table of leg angles, a recorded run, or a walk folder.
         slip: As in `walk_gait`.
         model: As in `walk_gait`.
-        robot: A `robot.toml`; the run's own, else the thesis's robot, when None.
-        columns: A `columns.toml` in place of the one beside the table.
-        draws: Paths to draw for a band, at least two; 0 for the single path.
-        seed: Seed of all random numbers.
-        out: Walk folder to write; None to keep nothing.
+        robot: A `robot.toml`; None for that of the run, else the thesis's robot.
+        columns: A `columns.toml` to use instead of the one beside the table.
+        draws: Number of draws for a band, at least two; 0 for the single path only.
+        seed: Seed of the band's draws.
+        out: Walk folder to write; None to keep no files.
 
     Raises:
         ZebroLabError: A file or an option cannot be used.

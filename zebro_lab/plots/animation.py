@@ -38,8 +38,8 @@ def animate(
     """Write an animation of the walking robot; the camera follows the body over a fixed grid.
 
     Args:
-        path: The walk.
-        robot: The robot.
+        path: The walk: poses, leg angles and contacts over time.
+        robot: The robot, for the size of body and legs.
         folder: Folder to write `animation.mp4` (with ffmpeg on the search path) or
             `animation.gif` into.
         title: Title of the animation; name the model.
@@ -64,13 +64,13 @@ def animate(
 
 
 def frame_times(t: Array) -> tuple[Array, float]:
-    """Compute the times of the frames.
+    """Compute the times of the frames, 20 per second of the animation and at most 400.
 
     Args:
         t: Times of the walk, shape (n,) [s].
 
     Returns:
-        Times, evenly spaced [s], and the speed-up factor of the animation [-].
+        Times of the frames, evenly spaced [s], and walk time over animation time, 1 or more [-].
 
     >>> frames, speed_up = frame_times(np.linspace(0, 40, 1000))
     >>> len(frames), speed_up
@@ -121,7 +121,7 @@ class _Scene:
         self._clock = figure.text(0.03, 0.04, "")
 
     def show(self, sample: int) -> None:
-        """Update all artists to a sample of the path."""
+        """Update body, legs, trace, ground and clock to the path's sample of this index."""
         path = self._path
         position, orientation = path.position[sample], path.orientation[sample]
         corners = to_world(body_corners(self._robot), position, orientation)

@@ -24,11 +24,11 @@ def residuals(blocks: SlipBlocks, *, whitened: Array, run_score: Array, simulate
     """Draw the residuals of a fit, as four checks of the noise model.
 
     Args:
-        blocks: Block means.
-        whitened: Residuals after the noise model, in standard deviations; independent standard
-            normal when the model holds, in the blocks' order, shape (n,) [-].
-        run_score: Mean of each run in standard deviations of its posterior predictive, shape
-            (n_runs,) [-].
+        blocks: Block means of slip ratio and forces.
+        whitened: Whitened residuals in standard deviations, in the blocks' order, shape (n,) [-];
+            independent standard normal if the noise model holds.
+        run_score: Deviation of each run's mean over the standard deviation of the posterior
+            predictive, shape (n_runs,) [-].
         simulated: Whether to append "(simulated)" to the title.
 
     Returns:
@@ -69,10 +69,11 @@ def _autocorrelation(
 ) -> tuple[NDArray[np.intp], Array, NDArray[np.intp]]:
     """Compute the autocorrelation of whitened residuals within runs.
 
-    The mean is known to be zero, so it is not subtracted.
+    The mean of the residuals is known to be zero, so it is not subtracted.
 
     Returns:
-        Lags that occur within runs [blocks], autocorrelation at each lag [-], and number of pairs.
+        Lags up to 20 that occur within runs [blocks], autocorrelation at each lag [-], and number
+        of pairs at each lag.
     """
     rows = []
     for lag in range(1, min(_MAX_LAG, len(whitened) - 1) + 1):

@@ -13,10 +13,10 @@ _LEVELS = (0.05, 0.25, 0.5, 0.75, 0.95)
 
 @styled
 def path_band(paths: Poses, *, title: str) -> Figure:
-    """Draw the draws of a path from above, and quantiles of x, y and yaw over time.
+    """Draw the draws of a predicted path from above, and quantiles of x, y and yaw over time.
 
     Args:
-        paths: The draws.
+        paths: Draws of the predicted path.
         title: Title of the figure.
 
     Returns:

@@ -22,17 +22,17 @@ def path_validation(
     title: str,
     simulated: bool,
 ) -> Figure:
-    """Draw paths and track from above, and errors along, across and of yaw over time.
+    """Draw paths and track from above, and errors ahead, to the left and of yaw over time.
 
     Args:
-        paths: The prediction and the baselines, by name, all in the track's frame.
-        track: The tracked poses.
-        band: The prediction's draws, in the same frame; None without draws.
+        paths: Prediction and baselines by name, in the track's frame; one of length 0 is not drawn.
+        track: Tracked poses.
+        band: Draws of the prediction, in the same frame; None without draws.
         title: Name of the walk.
         simulated: Whether to append "(simulated)" to the title.
 
     Returns:
-        The figure.
+        The figure; errors are predicted minus tracked [mm, mm, deg].
     """
     figure, above, panels = map_and_panels(
         f"Prediction and track: {title}", simulated=simulated, height=5.8, names=_PANELS

@@ -24,14 +24,14 @@ class Shot:
     """A photograph and the predicted robot at one instant.
 
     Attributes:
-        t: The instant [s].
-        picture: The photograph from above, BGR.
-        extent: Lowest x, highest x, lowest y, highest y of it [m].
+        t: Time of the photograph, in the prediction's time base [s].
+        picture: The photograph rectified to straight above, BGR, shape (height, width, 3).
+        extent: Lowest x, highest x, lowest y, highest y of the picture on the floor [m].
         tracked: Tracked x, y [m] and yaw [rad], shape (3,).
-        position: Predicted position of the body's centre, shape (3,) [m].
+        position: Predicted position of the body's centre in the floor frame, shape (3,) [m].
         orientation: Predicted roll, pitch and yaw, shape (3,) [rad].
         theta: Leg angles, shape (6,) [rad].
-        contact: Legs on the ground, shape (6,).
+        contact: Whether each leg is on the ground, shape (6,).
     """
 
     t: float
@@ -48,16 +48,17 @@ class Shot:
 def photos_beside_poses(
     shots: Sequence[Shot], robot: Robot, *, title: str, simulated_photos: bool
 ) -> Figure:
-    """Draw each photograph over the robot as predicted at the same instant, same place and scale.
+    """Draw photographs in a row, and below each the robot as predicted, at the same scale.
 
     Args:
         shots: Photographs and predicted poses.
-        robot: The robot.
+        robot: The robot, for the size of body and legs.
         title: Name of the walk.
         simulated_photos: Whether the photographs are simulated too; predictions always are.
 
     Returns:
-        The figure: photographs above, predicted robots below, with the tracked outline.
+        The figure: photographs above; predicted robots below, with the tracked outline and the
+        deviation of predicted from tracked pose [mm, deg].
     """
     figure = new_figure(
         f"Photographs and predicted poses: {title}", False,
@@ -111,10 +112,10 @@ def band_over_floor(
     """Draw the predicted path with its draws, and the track, over a photograph from above.
 
     Args:
-        floor: The floor from straight above, BGR.
-        extent: Lowest x, highest x, lowest y, highest y of it [m].
-        path: The predicted path, in the floor's frame.
-        band: Its draws; None without draws.
+        floor: The floor from straight above, BGR, shape (height, width, 3).
+        extent: Lowest x, highest x, lowest y, highest y of the picture on the floor [m].
+        path: The predicted path, in the floor frame.
+        band: Draws of the predicted path; None without draws.
         track: The tracked poses.
         title: Name of the walk.
         simulated_photos: Whether the photograph is simulated too; predictions always are.

@@ -16,13 +16,14 @@ def pixel_grid(
     pixels: NDArray[np.uint8], *, title: str, around: tuple[float, float] | None = None,
     reach: int = 100,
 ) -> Figure:  # fmt: skip
-    """Draw a photograph with a grid; the centre of its first pixel is (0, 0).
+    """Draw a photograph with a pixel grid; the centre of the top left pixel is (0, 0).
 
     Args:
         pixels: The photograph, BGR, shape (height, width, 3).
         title: Title of the figure.
-        around: Centre of an enlarged region [px]; None for the whole photograph.
-        reach: Half the side of the region [px].
+        around: Column u and row v of the centre of an enlarged region [px]; None for the whole
+            photograph.
+        reach: Half the side of the enlarged region [px]; it is cut at the photograph's edges.
 
     Returns:
         The figure.

@@ -19,7 +19,7 @@ _REGIONS = ("#CCE3F0", "#66AAD1")  # blue, mixed with white: 90 % and 50 % of th
 
 @styled
 def corner(draws: Array, *, labels: Sequence[str], simulated: bool) -> Figure:
-    """Draw every marginal and every pair of parameters of a posterior.
+    """Draw the density of every parameter and the joint region of every pair, from draws.
 
     Args:
         draws: Posterior draws, shape (n_draws, k).
@@ -105,7 +105,7 @@ def _density(values: Array, edges: Array) -> Array:
 
 
 def _bandwidth(values: Array, edges: Array, *, power: float) -> float:
-    """Return Scott's kernel width in bins: sd times n to minus `power`, 1/(4 + dimensions)."""
+    """Compute Scott's kernel width [bins]: sd n^-power; `power` is 1 / (4 + dimensions)."""
     return float(np.std(values)) * len(values) ** -power / float(edges[1] - edges[0])
 
 
@@ -158,5 +158,5 @@ def _label_corner(axes: Axes, labels: Sequence[str], row: int, column: int) -> N
 
 
 def _wrapped(label: str) -> str:
-    """Wrap the words of a label to the width of a panel; the line with symbol and unit is kept."""
+    """Wrap each line of a label at 18 characters, between words, to the width of a panel."""
     return "\n".join(textwrap.fill(line, 18, break_long_words=False) for line in label.split("\n"))

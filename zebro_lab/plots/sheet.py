@@ -43,7 +43,7 @@ styled = style.context(
 
 
 def parameter_labels(parameters: Sequence[Parameter]) -> tuple[str, ...]:
-    r"""Format each parameter's name, symbol and unit as a two-line axis label.
+    r"""Format an axis label of two lines for each parameter: name, then symbol and unit.
 
     >>> from model.slip import MagicFormula
     >>> parameter_labels(MagicFormula().parameters)[3]
@@ -56,7 +56,7 @@ def parameter_labels(parameters: Sequence[Parameter]) -> tuple[str, ...]:
 
 
 def new_figure(title: str, simulated: bool, *, width: float, height: float) -> Figure:
-    """Create an empty figure with a white background.
+    """Create an empty figure with a title and a white background, at 150 dpi.
 
     Args:
         title: Title of the figure.
@@ -81,15 +81,15 @@ def save(
     Args:
         figure: Figure to write.
         path: File to write, in an existing folder, or an open file.
-        command: Command that draws it, stored as metadata, by which the command recognises its own
-            picture; None for a picture in a result folder.
+        command: Command that draws the picture, stored as metadata, by which the command recognises
+            a picture of its own; None for a picture in a result folder.
     """
     metadata = {"Software": SOFTWARE, **({} if command is None else {COMMENT: command})}
     figure.savefig(path, format="png", dpi="figure", metadata=metadata)
 
 
 def legend_below(figure: Figure, *, columns: int) -> None:
-    """Add one legend below all panels, with each label once.
+    """Add one legend below all panels, with each label of any panel once.
 
     Args:
         figure: Figure to add the legend to.
@@ -104,7 +104,7 @@ def legend_below(figure: Figure, *, columns: int) -> None:
 
 
 def map_axes(axes: Axes) -> None:
-    """Set up axes as a map: x to the right and y up, both to one scale, with a grid."""
+    """Set labels, grid and equal scale of axes for a map: x to the right, y up [m]."""
     axes.set(xlabel="x [m]", ylabel="y [m]", aspect="equal")
     axes.set_adjustable("datalim")
     axes.grid(color="0.92", lw=0.6)
@@ -122,7 +122,7 @@ def map_and_panels(
         names: Label of each panel's vertical axis, from top to bottom.
 
     Returns:
-        The figure, the map and the panels.
+        The figure, the axes of the map, and those of the panels from top to bottom.
     """
     figure = new_figure(title, simulated, width=9.0, height=height)
     grid = figure.add_gridspec(len(names), 2, width_ratios=(1.2, 1.0))
@@ -136,13 +136,13 @@ def map_and_panels(
 
 
 def draw_band(axes: Axes, band: Poses | None, *, label: str | None = None, **style: Any) -> None:
-    """Draw some draws of a path on a map, without any if the path has none.
+    """Draw the first 60 draws of a path as lines on a map; nothing if there are no draws.
 
     Args:
-        axes: The map.
-        band: The draws; None without draws.
-        label: Label of all lines together in a legend.
-        style: Style of the lines.
+        axes: Axes of the map.
+        band: Draws of the path; None without draws.
+        label: Label of all lines together in a legend; None for no label.
+        style: Line style, as keyword arguments of `Axes.plot`.
     """
     for i, position in enumerate(() if band is None else band.position[:_SHOWN_DRAWS]):
         axes.plot(*position.T, label=None if i else label, **style)
@@ -152,17 +152,17 @@ TRACTION_LABEL = "traction force [N]"
 
 
 def slip_label(definition: str) -> str:
-    """Return the label of the slip axis, with the slip definition."""
+    """Return the label of an axis of slip ratios, with the name of the slip definition."""
     return f"slip ratio, {definition} definition [-]"
 
 
 def point_alpha(count: int) -> float:
-    """Compute the opacity of scatter points from their number, so that density is visible."""
+    """Compute the opacity of n scatter points, 12 / sqrt(n) limited to 0.15 to 0.8 [-]."""
     return float(np.clip(12 / math.sqrt(max(count, 1)), 0.15, 0.8))
 
 
 def plain(value: float) -> str:
-    """Format a number with three significant digits, without exponent up to a million.
+    """Format a number with three significant digits, without exponent below a million.
 
     >>> plain(1148.3), plain(0.01442)
     ('1150', '0.0144')
@@ -173,14 +173,15 @@ def plain(value: float) -> str:
 def slip_grid(slip: Array, count: int) -> Array:
     """Compute a grid of slip ratios over the tested range, denser around zero.
 
-    Slip curves have narrow peaks near zero slip, where the grid gets additional points.
+    Slip curves have narrow peaks near zero slip, where the grid gets additional points: within 15 %
+    of the largest tested slip.
 
     Args:
-        slip: Tested slip ratios [-].
+        slip: Tested slip ratios, any shape [-].
         count: Number of points over the full range; as many are added around zero.
 
     Returns:
-        Increasing slip ratios [-].
+        Increasing slip ratios, shape (m,), m up to twice `count` [-].
     """
     low, high = float(slip.min()), float(slip.max())
     reach = NARROW * max(-low, high)

@@ -49,7 +49,7 @@ def slip_curves(
     shows that part.
 
     Args:
-        blocks: Block means.
+        blocks: Block means of slip ratio and forces.
         law: Slip law of the draws.
         draws: Posterior draws of the law's parameters, shape (n_draws, k).
         load_levels: Nominal loads, shape (n_levels,) [N].
@@ -80,7 +80,7 @@ def slip_curves(
 
 @dataclass(frozen=True)
 class _LoadCurve:
-    """The posterior curve at one nominal load, with the blocks nearest to it."""
+    """Posterior slip curve at one load [N], and which blocks (`rows`) are nearest to this load."""
 
     load: float
     rows: NDArray[np.bool_]
@@ -88,13 +88,13 @@ class _LoadCurve:
     bands: Array  # shape (5, m): `_QUANTILES` of the traction force [N]
 
     def peaks(self) -> list[int]:
-        """Return the indices of extrema of the median curve inside the tested range."""
+        """Return indices of maximum and minimum of the median curve, if not at its ends."""
         median = self.bands[2]
         tops = (int(np.argmax(median)), int(np.argmin(median)))
         return [top for top in tops if 0 < top < len(median) - 1]
 
     def main_peak(self) -> tuple[float, float] | None:
-        """Return slip and force of the driving peak, else of the braking one, else None."""
+        """Return slip [-] and force [N] of the driving peak, else the braking one, else None."""
         if not (peaks := self.peaks()):
             return None
         return float(self.slip[peaks[0]]), float(self.bands[2, peaks[0]])
@@ -104,7 +104,7 @@ def _draw_load(
     figure: Figure, cells: Sequence[SubplotSpec], blocks: SlipBlocks, curve: _LoadCurve,
     reach: tuple[float, float] | None,
 ) -> list[Axes]:  # fmt: skip
-    """Draw the curve at one load, in a second panel its part within `reach`."""
+    """Draw data and curve at one load, in a second cell the part within `reach`; return panels."""
     whole = figure.add_subplot(cells[0])
     _draw_load_curve(whole, blocks, curve)
     load, peak = _load_text(blocks, curve), _peak_text(curve)
@@ -135,7 +135,7 @@ def _load_curves(blocks: SlipBlocks, law: SlipLaw, draws: Array, levels: Array) 
 
 
 def _narrow_reach(blocks: SlipBlocks, curves: Sequence[_LoadCurve]) -> tuple[float, float] | None:
-    """Return the slip range of the additional panel; None if no peak is narrow."""
+    """Return the slip range of the additional panel; None if no peak is in the first 15 %."""
     reach = NARROW * float(np.abs(blocks.slip).max())
     peaks = [peak for curve in curves if (peak := curve.main_peak())]
     if not any(abs(slip) < reach for slip, _ in peaks):

@@ -26,8 +26,8 @@ def slip_surface(blocks: SlipBlocks, law: SlipLaw, *, values: ArrayLike, simulat
     """Draw traction over slip and load as a surface, with the block means (compare Fig. 4-15).
 
     Args:
-        blocks: Block means.
-        law: Slip law.
+        blocks: Block means of slip ratio and forces.
+        law: Slip law to evaluate.
         values: Parameter values of the law, shape (k,).
         simulated: Whether to append "(simulated)" to the title.
 

@@ -12,7 +12,7 @@ _SHOWN = 6.0  # s: longer, and the strides run into each other
 
 @styled
 def tilt(t: Array, predicted: Array, measured: Array, *, title: str, simulated: bool) -> Figure:
-    """Draw roll and pitch over a few strides in the middle of the walk.
+    """Draw predicted and measured roll and pitch over the middle 6 s of the walk.
 
     Args:
         t: Times, shape (n,) [s].

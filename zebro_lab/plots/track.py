@@ -20,12 +20,13 @@ _GREEN = CYCLE[2]
 
 @dataclass(frozen=True)
 class SeenMarks:
-    """Marks to outline in a photograph.
+    """Outlines to draw in a photograph, of one colour.
 
     Attributes:
-        outlines_px: Corners of each, shape (m, 2), closed by the drawing [px].
-        labels: Label of each.
-        colour: Their colour.
+        outlines_px: Corners u, v of each outline, shape (m, 2) [px]; the last is joined to the
+            first when drawn.
+        labels: Label of each outline; empty for none.
+        colour: Colour of outlines and labels, as matplotlib takes it.
     """
 
     outlines_px: Sequence[Array]
@@ -44,9 +45,10 @@ def over_photo(
         pixels: The photograph, BGR, shape (height, width, 3).
         title: Title of the figure.
         simulated: Whether to append "(simulated)" to the title.
-        path_px: The body's origin in each photograph, shape (n, 2); NaN interrupts it [px].
-        headings_px: A point ahead of each, shape (n, 2) [px].
-        marks: Markers and outlines.
+        path_px: Tracked origin of the body over time, shape (n, 2) [px]; NaN interrupts the line.
+        headings_px: Point ahead of the body at each origin, the tip of an arrow, shape (n, 2) [px];
+            without it no path is drawn.
+        marks: Groups of outlines.
 
     Returns:
         The figure.
@@ -96,9 +98,9 @@ def over_floor(
 
     Args:
         floor: The rectified floor, BGR, shape (height, width, 3).
-        extent: Lowest x, highest x, lowest y, highest y of it [m].
+        extent: Lowest x, highest x, lowest y, highest y of the picture on the floor [m].
         poses: x, y [m] and yaw [rad], shape (n, 3); NaN interrupts the path.
-        ellipses: Outline of a region around each pose in which the robot is, shape (m, 2) [m].
+        ellipses: Outline x, y of the confidence region around each pose, shape (m, 2) [m].
         labels: Label of each pose; empty for none. Every n-th is written, so that none overlap.
         title: Title of the figure.
         simulated: Whether to append "(simulated)" to the title.
@@ -152,15 +154,15 @@ def residual_page(
     t: Array, residuals: Array, *, sd: Array, score: Array, height: Array, source: Sequence[str],
     title: str, simulated: bool,
 ) -> Figure:  # fmt: skip
-    """Draw the residuals of the observations against the smoothed path.
+    """Draw the residuals of observed poses against the smoothed path, body height and score.
 
     Args:
         t: Times, shape (n,) [s].
         residuals: Observed minus smoothed x, y [m] and yaw [rad], shape (n, 3).
-        sd: Standard deviation of each observation, shape (n, 3).
+        sd: Standard deviation of each observation of x, y [m] and yaw [rad], shape (n, 3).
         score: Similarity score of each detection, shape (n,) [-].
-        height: Height of the body's origin, shape (n,) [m].
-        source: How each was found: "marker", "body" or "hand".
+        height: Height of the body's origin above the floor, shape (n,) [m].
+        source: How each pose was found, n of them: "marker", "body" or "hand".
         title: Title of the figure.
         simulated: Whether to append "(simulated)" to the title.
 

@@ -24,7 +24,7 @@ def slip_ratios(path: WalkPath, *, title: str) -> Figure:
     """Draw the longitudinal slip ratio of each leg over time (Fig. 5-16).
 
     Args:
-        path: The stretch of walk to draw.
+        path: Part of a walk to draw.
         title: Title of the figure; name the model.
 
     Returns:
@@ -44,7 +44,7 @@ def normal_forces(path: WalkPath, *, title: str) -> Figure:
     """Draw the normal force on each leg over time (Fig. 5-17).
 
     Args:
-        path: The stretch of walk to draw.
+        path: Part of a walk to draw.
         title: Title of the figure; name the model.
 
     Returns:
@@ -60,24 +60,25 @@ def traction_forces(path: WalkPath, *, title: str) -> Figure:
     """Draw the traction force of the ground on each leg over time (Fig. 5-18).
 
     Args:
-        path: The stretch of walk to draw.
+        path: Part of a walk to draw.
         title: Title of the figure; name the model.
 
     Returns:
-        The figure: a panel for each leg, arranged as on the robot, forward and to the left of the
-        heading; contact is shaded.
+        The figure: a panel for each leg, arranged as on the robot, with the components forward and
+        to the left of the heading; contact is shaded.
     """
     return _draw_traction(path.t, path.traction_force, path.contact, title)
 
 
 @styled
 def paired_traction(path: WalkPath, *, title: str) -> Figure:
-    """Draw the sums of consecutive pairs of traction forces of each leg over time (Fig. 5-19).
+    """Draw the sum of traction force over pairs of time steps, of each leg over time (Fig. 5-19).
 
-    The thesis's traction changes sign from step to step; this is what it calls the net force.
+    In the thesis's model the traction changes sign from time step to time step; the thesis calls
+    this sum the net force.
 
     Args:
-        path: The stretch of walk to draw.
+        path: Part of a walk to draw.
         title: Title of the figure; name the model.
 
     Returns:
@@ -90,10 +91,10 @@ def paired_traction(path: WalkPath, *, title: str) -> Figure:
 
 @styled
 def gantt(path: WalkPath, *, title: str) -> Figure:
-    """Draw when each leg was in contact (Fig. 2-1).
+    """Draw when each leg was in contact as a bar chart over time (Fig. 2-1).
 
     Args:
-        path: The stretch of walk to draw.
+        path: Part of a walk to draw.
         title: Title of the figure; name the model.
 
     Returns:
@@ -124,8 +125,8 @@ def stances(t: Array, contact: NDArray[np.bool_]) -> list[tuple[float, float]]:
         contact: Whether the leg pressed on the ground, shape (n,).
 
     Returns:
-        First and last time of each stretch of contact; a stretch ends with the sample that is
-        without, or the last one [s].
+        Start and end of each interval [s]: time of the first sample in contact, and of the next
+        sample without contact or, if there is none, of the last sample.
 
     >>> stances(np.arange(5.0), np.array([True, True, False, False, True]))
     [(0.0, 2.0), (4.0, 4.0)]
@@ -148,7 +149,7 @@ def _leg_panels(
     t: Array, contact: NDArray[np.bool_], lines: Mapping[str, Array],
     limits: tuple[float, float], *, label: str, title: str,
 ) -> Figure:  # fmt: skip
-    """Draw lines over time for each leg, laid out as the legs are seen from above."""
+    """Draw `lines`, arrays (n, 6) by label, over time; a panel per leg, arranged as from above."""
     figure = new_figure(title, True, width=8.0, height=6.2)
     for leg, axes in enumerate(figure.subplots(3, 2, sharex=True, sharey=True).ravel()):
         axes.set_title(f"leg {leg + 1}, {_NAMES[leg]}", loc="left")
@@ -171,9 +172,9 @@ def _shade(axes: Axes, t: Array, contact: NDArray[np.bool_]) -> None:
 
 
 def _limits(values: Array, *, least: float, cut: float = 0.01) -> tuple[float, float]:
-    """Return limits that hold zero and all values but a share `cut` at either end.
+    """Compute axis limits that hold zero and all finite values but a share `cut` at either end.
 
-    Impacts of a few samples would flatten all else. Limits are not closer than `least`.
+    Impacts of a few samples would flatten all else. A margin is a tenth of the range or of `least`.
     """
     finite = values[np.isfinite(values)]
     low, high = np.quantile(finite, (cut, 1 - cut)) if len(finite) else (0.0, 0.0)
@@ -183,7 +184,7 @@ def _limits(values: Array, *, least: float, cut: float = 0.01) -> tuple[float, f
 
 
 def _label(figure: Figure, what: str, *, computed: bool) -> None:
-    """Label the axes; add a note if the model does not compute the quantity."""
+    """Label the axes; write a note in each panel if the model does not compute the quantity."""
     figure.supylabel(what, fontsize=9.0)
     for axes in figure.axes[-2:]:
         axes.set_xlabel("time [s]")

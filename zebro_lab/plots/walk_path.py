@@ -31,7 +31,7 @@ def path_with_snapshots(path: WalkPath, robot: Robot, *, title: str) -> Figure:
 
     Returns:
         The figure, x to the right and y up, both to one scale. Dots along the path are a second
-        apart in walks of up to a minute.
+        apart, in walks of 2 s to a minute.
     """
     t = path.t
     shots = np.abs(t[:, None] - np.linspace(t[0], t[-1], _SNAPSHOTS)).argmin(axis=0)
@@ -97,7 +97,7 @@ def orientation(path: WalkPath, *, title: str) -> Figure:
 def _over_time(
     t: Array, values: Array, names: Sequence[str], units: Sequence[str], title: str
 ) -> Figure:
-    """Draw three quantities with their first and second derivatives."""
+    """Draw three quantities (n, 3) over time, below them first and second derivatives."""
     figure = new_figure(title, True, width=8.5, height=6.0)
     panels = figure.subplots(3, 3, sharex=True)
     rows = [values]
@@ -123,7 +123,7 @@ def _over_time(
 
 
 def _mostly(values: Array) -> tuple[float, float]:
-    """Return limits that hold all but the rarest impacts, which would flatten all else."""
+    """Compute limits: 1 and 99 % quantile with 30 % of their range as margin on both sides."""
     low, high = np.quantile(values, (0.01, 0.99))
     margin = 0.3 * (high - low) or 1e-6
     return float(low - margin), float(high + margin)
@@ -140,7 +140,7 @@ def _extent(path: WalkPath, bodies: Sequence[Array], robot: Robot) -> tuple[Arra
 
 
 def _sides(extent: Array) -> tuple[float, float]:
-    """Return sides of a figure whose axes have the shape of the path, in inches."""
+    """Compute width and height [inch] of a figure with axes of the shape of `extent` [m]."""
     scale = (_LONGEST_SIDE - 1.0) / float(max(extent[0], extent[1]))
     width, height = (float(np.clip(scale * side, 2.0, 7.5)) for side in extent)
     return max(width + 1.0, _NARROWEST), max(height + 1.3, _LOWEST)

@@ -10,27 +10,27 @@ from model.slip.law import Array
 _ARC_POINTS = 25
 _CORNERS = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)]) / 2
 FACES = ((0, 1, 3, 2), (4, 5, 7, 6), (0, 1, 5, 4), (2, 3, 7, 6), (0, 2, 6, 4), (1, 3, 7, 5))
-"""Corners of each side of the body, in the order of `body_corners`."""
+"""Four corners of each side of the body, as row indices of `body_corners`."""
 
 
 def to_world(points: Array, position: Array, orientation: Array) -> Array:
-    """Turn points of the body frame, shape (..., 3), into the inertial frame [m].
+    """Transform points from the body frame to the inertial frame, shape (..., 3) [m].
 
     Args:
         points: Points in the body frame, shape (..., 3) [m].
-        position: The body's centre, shape (3,) [m].
-        orientation: Roll, pitch and yaw, shape (3,) [rad].
+        position: Body's centre in the inertial frame, shape (3,) [m].
+        orientation: Roll, pitch and yaw of the body, shape (3,) [rad].
     """
     return points @ attitude(*orientation).T + position
 
 
 def body_corners(robot: Robot) -> Array:
-    """Compute the corners of the body in its own frame, shape (8, 3) [m]."""
+    """Compute the corners of the body in the body frame; z varies fastest, shape (8, 3) [m]."""
     return _CORNERS * np.asarray(robot.body_size)
 
 
 def leg_arcs(robot: Robot, theta: Array) -> Array:
-    r"""Compute points along each leg from hip to toe in the body frame, shape (6, m, 3) [m].
+    r"""Compute 25 points along each leg, hip to toe, in the body frame, shape (6, 25, 3) [m].
 
     The arc's centre lies a radius from the hip in the direction theta; from the hip the arc goes
     over the rear to the toe.
@@ -56,7 +56,10 @@ def leg_arcs(robot: Robot, theta: Array) -> Array:
 
 
 def outline(robot: Robot) -> Array:
-    """Compute the body's outline from above with a tip at its head, closed, shape (m, 3) [m]."""
+    """Compute the closed outline of the body from above, with a tip at the head.
+
+    Returns points in the body frame with z = 0, the last equal to the first, shape (6, 3) [m].
+    """
     length, width, _ = robot.body_size
     tip = 0.15 * length
     x = np.array([-0.5, -0.5, 0.5, 0.5, 0.5, -0.5]) * length

@@ -15,14 +15,14 @@ _COLUMNS = 4
 
 @styled
 def walk_parameters(posterior: WalkPosterior, *, simulated: bool) -> Figure:
-    """Draw prior and posterior of every parameter; titles name parameters that are not informed.
+    """Draw prior and posterior density of every parameter of legs and floor.
 
     Args:
-        posterior: The posterior after walks.
+        posterior: The posterior of legs and floor.
         simulated: Whether to append "(simulated)" to the title.
 
     Returns:
-        The figure.
+        The figure, a panel for each parameter; titles name those that the walks do not constrain.
     """
     parameters = posterior.contractions()
     rows = -(-len(parameters) // _COLUMNS)

@@ -11,7 +11,7 @@ ABSENT = Markup("–")
 
 
 def look_up(document: Mapping[str, Any], keys: tuple[str | int, ...]) -> Any:
-    """Return the value at a key path of a nested document, or None if there is none.
+    """Return the value at a key path of a nested document, or None if a key is missing.
 
     Args:
         document: Nested mappings and lists.
@@ -36,13 +36,13 @@ def number(
 
     Args:
         document: Content of the file.
-        keys: Key path of the number in it.
-        file: Name of the file, as shown.
-        scale: Factor from the file's unit to the shown one.
-        digits: Significant digits shown; integers are not rounded.
+        keys: Key path of the number in the document.
+        file: Name of the file, for `data-file`.
+        scale: Factor from the file's unit to the shown unit.
+        digits: Number of significant digits shown; integers are not rounded.
 
     Returns:
-        The HTML element; a dash if there is no number.
+        The HTML element; a dash if the value is missing, not a number, or not finite.
     """
     value = look_up(document, keys)
     if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):

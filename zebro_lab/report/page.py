@@ -27,7 +27,7 @@ TEMPLATE, STYLE = "report.html.jinja", "report.css"
 
 @dataclass(frozen=True)
 class Column:
-    """A column of the table of errors: heading, key in the manifest, factor to the shown unit."""
+    """A column of the table of errors: heading, metric in the manifest, factor to shown unit."""
 
     title: str
     key: str
@@ -54,15 +54,18 @@ ERROR_COLUMNS = (
 
 
 def render_report(sources: Sources, *, title: str, made: datetime) -> str:
-    """Render the report as HTML.
+    """Render the report as HTML, with control characters escaped.
 
     Args:
         sources: Results to show.
         title: Title of the report.
-        made: Date of the report.
+        made: Date and time shown in the report.
 
     Returns:
-        Self-contained HTML.
+        Self-contained HTML, with pictures and style embedded.
+
+    Raises:
+        DataError: A manifest or slip.toml lacks a value that is shown, or a picture is invalid.
     """
     style = (files("zebro_lab.report") / PAGES / STYLE).read_text(encoding="utf-8")
     template = _template()
@@ -101,7 +104,7 @@ def _template() -> Template:
 
 
 def _policy(style: str) -> str:
-    """Return the content security policy: the page's own style and embedded pictures only."""
+    """Return the content security policy: only this style (by hash) and `data:` pictures."""
     digest = base64.b64encode(hashlib.sha256(style.encode()).digest()).decode("ascii")
     return (
         f"default-src 'none'; img-src data:; style-src 'sha256-{digest}'; base-uri 'none'; "
@@ -123,7 +126,7 @@ def _pictures(part: Part) -> list[Picture]:
 
 
 def _judged(sources: Sources) -> Iterator[tuple[ReportedRun, Part, str]]:
-    """Yield every walk that has been validated, with its name in the validation."""
+    """Yield run, validation part, and name in this validation of every validated walk."""
     for run in sources.runs:
         part = run.parts.get("validation")
         if part is not None and not part.missing:

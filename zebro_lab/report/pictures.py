@@ -36,16 +36,16 @@ CAPTIONS: Mapping[str, str] = {
     ".imu": "Roll and pitch, predicted and measured by the IMU",
     ".errors": "Predicted paths and the track, and errors over time",
 }
-"""Captions by file name; in a validation by the end of the name, which begins with the run's."""
+"""Captions by file name without suffix; with a leading dot by the end of the name (validation)."""
 
 
 @dataclass(frozen=True)
 class Picture:
-    """A picture in a page.
+    """A picture embedded in a page.
 
     Attributes:
-        data: The file as a `data:` URL.
-        caption: Its caption.
+        data: Content of the file as a `data:` URL.
+        caption: Caption of the picture.
         name: Name of the file.
     """
 
@@ -59,11 +59,12 @@ def embed(file: Path, *, stage: str, simulated: bool) -> Picture:
 
     Args:
         file: A PNG file.
-        stage: Stage that drew it.
-        simulated: Whether to mark it as simulated in the caption.
+        stage: Name of the stage that drew the picture.
+        simulated: Whether to append "(simulated)" to the caption.
 
     Raises:
-        DataError: It is not a PNG, or larger than `MOST_PICTURE`.
+        NotFound: There is no such file.
+        DataError: The file is not a PNG, or larger than `MOST_PICTURE`.
     """
     data = read_bytes(file, most=MOST_PICTURE)
     if not data.startswith(_PNG):
@@ -78,7 +79,7 @@ def embed(file: Path, *, stage: str, simulated: bool) -> Picture:
 
 
 def lies_in(folder: Path, name: str) -> bool:
-    """Return whether a file named in a manifest lies in the manifest's folder.
+    """Return whether a file named in a manifest lies directly in the manifest's folder.
 
     Links are resolved first. A manifest is untrusted input: `../secret.png`, an absolute path or a
     link could refer to any file.
@@ -93,7 +94,7 @@ def lies_in(folder: Path, name: str) -> bool:
 
 
 def place_of(name: str) -> tuple[int, str]:
-    """Return the sort key of a picture: the order of `CAPTIONS`, others last.
+    """Return the sort key of a picture's file name: index in `CAPTIONS` (else last), then name.
 
     >>> sorted(["corner.png", "curves.png", "b.imu.png", "b.png"], key=place_of)
     ['curves.png', 'corner.png', 'b.imu.png', 'b.png']
@@ -107,9 +108,11 @@ def place_of(name: str) -> tuple[int, str]:
 def caption_of(stem: str, *, stage: str) -> str:
     """Return the caption of a picture, from its file name and the stage that drew it.
 
+    Without an entry in `CAPTIONS` it is that of errors in a validation, else the name with spaces.
+
     Args:
-        stem: File name of the picture without its suffix.
-        stage: Stage that drew the picture.
+        stem: File name of the picture without suffix.
+        stage: Name of the stage that drew the picture.
 
     >>> caption_of("walk-3.photos", stage="validation")
     'Photographs from above, and the robot drawn at its predicted pose'

@@ -23,7 +23,7 @@ from zebro_lab.walk.folder import PREDICTION
 MANIFEST, SUMMARY = "manifest.json", "summary.csv"
 CALIBRATION = "calibration"
 BESIDE: Mapping[str, tuple[str, ...]] = {CALIBRATION: (SLIP_TOML, SUMMARY), WALKS: (WALKS_TOML,)}
-"""Files of a stage's result that are read in addition to its manifest."""
+"""Files of a stage's result that are read in addition to the manifest, by name of the part."""
 _MOST_TABLE = 4 << 20  # bytes of summary.csv, one line per parameter
 WALK_PARTS = (TRACK, PREDICTION, VALIDATION)
 MAKERS: Mapping[str, str] = {
@@ -33,20 +33,20 @@ MAKERS: Mapping[str, str] = {
     PREDICTION: "zebro-lab predict {run} --slip calibration --draws 500 --out {folder}",
     VALIDATION: "zebro-lab validate {run} --out {folder}",
 }
-"""Command that writes each part."""
+"""Template of the command that writes each part, by name of the part."""
 
 
 @dataclass(frozen=True)
 class Part:
-    """Result of a stage, or the command that writes it.
+    """Result folder of a stage as read for a report; if missing, the command that writes it.
 
     Attributes:
-        name: Name of the stage's result.
-        folder: Its folder, which may not exist.
-        documents: Content of its JSON, TOML and CSV files, by file name; empty if it is missing.
-        pictures: Its pictures, in the order shown.
-        maker: Command that writes it.
-        not_shown: Pictures that its manifest lists but that are not in its folder.
+        name: Name of the result: calibration, walks, track, prediction or validation.
+        folder: Folder of the result, which may not exist.
+        documents: Content of the manifest and other files read, by file name; empty if missing.
+        pictures: PNG files of the folder that its manifest lists, in the order shown.
+        maker: Command that writes the result.
+        not_shown: Pictures that the manifest lists with a path outside the folder.
     """
 
     name: str
@@ -58,17 +58,17 @@ class Part:
 
     @property
     def missing(self) -> bool:
-        """Whether the result is missing."""
+        """Whether the folder has no manifest."""
         return not self.documents
 
     @property
     def manifest(self) -> Mapping[str, Any]:
-        """The stage's manifest; empty if it is missing."""
+        """Content of the result's manifest; empty if the result is missing."""
         return self.documents.get(MANIFEST, {})
 
     @property
     def source(self) -> str:
-        """Where its data come from."""
+        """Where the data come from, as in the manifest; "unknown" if not stated."""
         return str(self.manifest.get("source", "unknown"))
 
 
@@ -77,9 +77,10 @@ class ReportedRun:
     """One run with its results.
 
     Attributes:
-        folder: Its folder.
-        recorded: Content of its `run.json`; empty if it is not a recorded run.
-        parts: Track, prediction and validation, by name; none for a run of the slip rig.
+        folder: The run folder.
+        recorded: Content of `run.json`; empty if the folder is not a recorded run.
+        parts: Track, prediction and validation, present or missing, by name; none for a run of the
+            slip rig.
     """
 
     folder: Path
@@ -88,7 +89,7 @@ class ReportedRun:
 
     @property
     def name(self) -> str:
-        """Name of the folder."""
+        """Name of the run folder."""
         return self.folder.absolute().name
 
 
@@ -97,11 +98,12 @@ class Sources:
     """All results that a report shows.
 
     Attributes:
-        data: The folder that was named.
-        runs: Its runs, sorted by name.
-        calibration: The calibration.
-        together: A validation of several runs together; None for a report of one run.
-        walks: Posterior after walks of the calibration; None if no walks were fitted.
+        data: The folder to report on, as named.
+        runs: Runs found in the folder, or the folder itself.
+        calibration: The calibration, present or missing.
+        together: A validation of several runs together, present or missing; None for a report of
+            one run.
+        walks: Posterior of legs and floor after walks; None if no walks were fitted.
     """
 
     data: Path
@@ -112,21 +114,21 @@ class Sources:
 
     @property
     def parts(self) -> Sequence[Part]:
-        """All parts, present or missing."""
+        """All parts, present or missing: calibration, those of the runs, walks, together."""
         walks = [part for run in self.runs for part in run.parts.values()]
         more = [part for part in (self.walks, self.together) if part is not None]
         return [self.calibration, *walks, *more]
 
     @property
     def simulated(self) -> Sequence[str]:
-        """Sources that are simulated."""
+        """Sources of parts and runs that contain `sim:`, sorted, each once."""
         named = [part.source for part in self.parts if not part.missing]
         named += [str(run.recorded.get("source", "")) for run in self.runs]
         return sorted({each.strip() for one in named for each in one.split(",") if "sim:" in each})
 
 
 def find_sources(data: Path, *, calibration: Path) -> Sources:
-    """Find the results to report on.
+    """Read the results to report on: calibration; track, prediction and validation of each run.
 
     Args:
         data: A run folder, a folder with track, prediction or validation, or a folder of run
@@ -134,8 +136,8 @@ def find_sources(data: Path, *, calibration: Path) -> Sources:
         calibration: The calibration folder; it need not exist.
 
     Raises:
-        NotFound: There is no such folder, or nothing in it to report on.
-        DataError: A manifest is damaged.
+        NotFound: There is no such folder, or no run and no result in it.
+        DataError: A manifest is damaged or of another command, or a file beside it is missing.
     """
     for name in WALK_PARTS:
         settle(data / name)
@@ -190,7 +192,7 @@ def _part(name: str, folder: Path, data: Path) -> Part:
 
 
 def _rows(file: Path) -> dict[str, dict[str, Any]]:
-    """Read a table as rows by the name in the first column; numeric cells become numbers."""
+    """Read a CSV as dicts by header, by the cell in the first column; numeric cells as floats."""
     text = read_text(file, most=_MOST_TABLE)
     with parsing(file, "cannot be read as CSV", advice="make it again"):
         rows = [row for row in csv.DictReader(text.splitlines()) if None not in row]

@@ -13,11 +13,11 @@ REPORT = html_page("report")
 
 
 def report(request: ReportRequest, *, made: datetime) -> Sources:
-    """Write the report page atomically.
+    """Find the results of runs and write them as one HTML page, atomically.
 
     Args:
         request: Folders to report on, and the page to write.
-        made: Date shown on the page.
+        made: Date and time shown on the page.
 
     Returns:
         The results shown on the page.

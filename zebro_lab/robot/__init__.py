@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: MIT
-"""The robot: its file, its legs' and IMU's tables, the gaits that a command line asks for."""
+"""Read robot.toml, leg logs and IMU logs; parse markers and gaits of a command line."""

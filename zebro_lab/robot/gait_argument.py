@@ -32,8 +32,8 @@ class NamedGait:
 
     Attributes:
         reference: Leg angles over time.
-        what: Its name with its main parameters, for titles.
-        direction: Side it turns to.
+        what: Name of the gait with its main parameters, for titles.
+        direction: Side that the gait turns to; "left" for a gait that does not turn.
     """
 
     reference: CyclicReference
@@ -43,7 +43,7 @@ class NamedGait:
 
 @dataclass(frozen=True)
 class _Kind:
-    """Constructor of a gait, and the options it accepts."""
+    """Names of the options that a gait accepts, and its constructor, given the legs' arc [rad]."""
 
     options: tuple[str, ...]
     make: Callable[[GaitRequest, float], NamedGait]
@@ -57,7 +57,7 @@ def make_gait(request: GaitRequest, *, leg_arc: float) -> NamedGait:
         leg_arc: Angle of the legs' arc [rad].
 
     Raises:
-        SettingsError: There is no such gait, it has no such option, or an angle cannot be parsed.
+        SettingsError: The gait is unknown or lacks a given option, or an angle cannot be parsed.
         DomainError: The gait is impossible with these parameters.
 
     >>> gait = make_gait(GaitRequest(steering=1.1, touchdown_deg="50"), leg_arc=np.pi)
@@ -163,7 +163,7 @@ GAITS: Mapping[str, _Kind] = MappingProxyType({
     "tetrapod": _Kind((*_ANGLES, "cycle"), _tetrapod),
     "buehler": _Kind((*_ANGLES, "cycle", "tau_ground"), _buehler),
 })  # fmt: skip
-"""The gaits by name."""
+"""Options and constructor of each gait, by its name on a command line."""
 
 
 def _or(value: float | None, default: float) -> float:
@@ -171,7 +171,7 @@ def _or(value: float | None, default: float) -> float:
 
 
 def _stance(request: GaitRequest, touchdown: float, liftoff: float) -> tuple[float, float]:
-    """Read touchdown and lift-off angle that are the same for all legs; defaults in degrees."""
+    """Parse touchdown and lift-off angle of all legs [rad]; the defaults are in degrees."""
     return (
         _angle(request.touchdown_deg, "touchdown_deg", touchdown),
         _angle(request.liftoff_deg, "liftoff_deg", liftoff),
@@ -179,7 +179,7 @@ def _stance(request: GaitRequest, touchdown: float, liftoff: float) -> tuple[flo
 
 
 def _angle(text: str | None, option: str, default: float) -> float:
-    """Read an angle that is the same for all legs [rad]."""
+    """Parse an angle in degrees, the same for all legs, to radians; `default` is in degrees."""
     first, second = _angles(text, option, default=default)
     if first is None:
         raise _no_angle(option, text)
@@ -193,7 +193,10 @@ def _angle(text: str | None, option: str, default: float) -> float:
 def _angles(
     text: str | None, option: str, *, default: float | None = None
 ) -> tuple[float | None, float | None]:
-    """Read INNER[,OUTER] in degrees; None for what is not given [rad]."""
+    """Parse INNER[,OUTER] in degrees to radians, None for an angle that is not given.
+
+    Without `text`, INNER is `default` [deg].
+    """
     if text is None:
         return (None if default is None else float(np.radians(default))), None
     try:

@@ -21,9 +21,9 @@ class GaitPlayer:
     would make the legs jump, and beyond half a turn rotate in the wrong direction.
 
     Args:
-        legs: The robot.
+        legs: Driver that sends set-points to the robot.
         gait: Leg angles over time.
-        profile: Profile of the robot.
+        profile: Profile of the robot, with its report rate.
     """
 
     def __init__(self, legs: LegCommands, gait: LegReference, profile: LegProfile) -> None:
@@ -36,7 +36,7 @@ class GaitPlayer:
         self._interval = max(HORIZON / 2, 1 / profile.rate)
 
     def __call__(self, now: float) -> None:
-        """Send the next set-point if it is due."""
+        """Send the next set-points if they are due at host time `now` [s]."""
         if self._start is None:
             self._start = self._due = now + LEAD_IN
             follow(self._legs, self._gait, start=self._start, now=now, horizon=LEAD_IN)

@@ -48,10 +48,10 @@ class GaitRequest:
     ] = None
 
     def given(self) -> dict[str, object]:
-        """Return the options that were given, by name, without the name of the gait."""
+        """Return the options that are not None by name, except the name of the gait."""
         return {k: v for k, v in asdict(self).items() if v is not None and k != "name"}
 
     @property
     def side(self) -> Side:
-        """Side to turn to."""
+        """Side to turn to, "left" by default."""
         return self.direction or "left"

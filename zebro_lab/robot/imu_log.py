@@ -31,14 +31,14 @@ _ADVICE: Final = "delete such rows, or fill them"
 
 @dataclass(frozen=True)
 class ImuLog:
-    """Orientation over time.
+    """Orientation, angular rate and specific force of the body over time.
 
     Attributes:
         t: Time, shape (n,) [s].
-        values: Quaternion w, x, y, z, angular rate x, y, z [rad/s], specific force x, y, z [m/s2],
-            NaN if the table has none, shape (n, 10).
-        source: "real", "sim:what", "replay:what"; None if not stated.
-        files: Every file read.
+        values: Columns quaternion w, x, y, z [-], angular rate x, y, z [rad/s], specific force x,
+            y, z [m/s2], shape (n, 10); NaN for a rate or force that the table lacks.
+        source: Source stated by the column map or the table; None if not stated.
+        files: Table and column map that were read.
         notes: Notes, one line each.
     """
 
@@ -50,15 +50,15 @@ class ImuLog:
 
 
 def imu_of_table(table: RawTable, mapping: MappedColumns) -> ImuLog:
-    """Read orientation from a table: quaternions, or roll and pitch with optional yaw.
+    """Convert an IMU table to quaternions, rates and forces; orientation may be roll and pitch.
 
     Args:
-        table: The table.
+        table: Table with quaternions, or roll and pitch with yaw (0 if missing).
         mapping: Column map with the canonical names of `IMU_UNITS`.
 
     Raises:
-        DataError: Time or orientation is missing, a cell holds no finite number, time does not
-            increase, or a quaternion has not length 1; names the cell.
+        DataError: Time or orientation is missing, a cell does not hold a finite number, time does
+            not increase, or a quaternion's length is not 1 within 0.05; names the cell.
     """
     t = mapping.numbers(table, "t", what="time", advice=_ADVICE)
     table.require_increasing(mapping.mapped["t"].name, t)

@@ -25,9 +25,9 @@ class LegLog:
     """Measured leg angles.
 
     Attributes:
-        reference: Angles over time, unwrapped, with the canonical sign.
+        reference: Angles of the six legs over time [rad], unwrapped, with the canonical sign.
         source: "real", "sim:what", "replay:what"; "unknown" if not stated.
-        files: Every file read.
+        files: Every file read, the column map last.
         notes: Notes, one line each.
     """
 
@@ -47,14 +47,14 @@ def legs_of_table(
     """Check and unwrap the leg angles of a table.
 
     Args:
-        table: The table.
+        table: Table with a time and six leg angles.
         mapping: Column map with the canonical names of `LEG_UNITS`.
         files: Files that the table was read from.
-        leg_sign: 1 or -1 for each leg, shape (6,).
+        leg_sign: Factor 1 or -1 for the angle of each leg, shape (6,).
 
     Raises:
-        DataError: A value is missing, time does not increase or leaves a gap, or a leg turns too
-            far between samples; names file, row and column.
+        DataError: A value is missing, there is one row, time does not increase or has a gap over 5
+            median intervals, or a leg turns by more than 2.5 rad between samples; names the cell.
     """
     t, *angles = (_numbers(table, name, mapping) for name in LEG_UNITS)
     time_column = mapping.mapped["t"].name

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Check marker numbers: they exist in their dictionary and are unique."""
+"""Check that marker numbers exist in a dictionary, and differ between robot and floor."""
 
 from collections.abc import Iterable
 
@@ -13,11 +13,11 @@ def require_in_dictionary(dictionary: str, numbers: Iterable[int]) -> None:
     """Check that a marker dictionary contains marker numbers.
 
     Args:
-        dictionary: Name of the dictionary.
-        numbers: Numbers of markers.
+        dictionary: Name of the marker dictionary, e.g. "4x4_50".
+        numbers: Marker numbers, counted from 0.
 
     Raises:
-        MarkerError: There is no such dictionary, or it has fewer markers.
+        MarkerError: There is no such dictionary, or a number is not below its count of markers.
     """
     count = len(dictionary_named(dictionary).bytesList)
     for number in numbers:
@@ -28,11 +28,11 @@ def require_in_dictionary(dictionary: str, numbers: Iterable[int]) -> None:
 
 
 def require_apart(robot: MarkedRobot, floor: FloorMap) -> None:
-    """Check that robot marker and floor markers have different numbers.
+    """Check that no floor marker has the number of the robot marker.
 
     Args:
         robot: Robot with its marker.
-        floor: Floor markers.
+        floor: Map of the floor markers.
 
     Raises:
         MarkerError: A floor marker has the robot marker's number; detections are identified by

@@ -12,9 +12,9 @@ class MarkerPrint:
     """A printed marker; the defaults are those of the printed kit.
 
     Attributes:
-        dictionary: Name of its dictionary.
-        number: Its number in the dictionary.
-        side: Side of its black square [m].
+        dictionary: Name of the marker dictionary.
+        number: Number of the marker in the dictionary, counted from 0.
+        side: Side of the marker's black square [m].
     """
 
     dictionary: str = "4x4_50"
@@ -23,7 +23,7 @@ class MarkerPrint:
 
     @property
     def text(self) -> str:
-        """The marker as a string that `parse_marker` reads.
+        """The marker as "DICTIONARY:NUMBER:SIDE" with the side in mm, as `parse_marker` reads.
 
         >>> MarkerPrint().text
         '4x4_50:0:120mm'
@@ -32,14 +32,14 @@ class MarkerPrint:
 
 
 KIT_PRINT = MarkerPrint()
-"""The robot's marker that the kit prints."""
+"""The robot marker of the printed kit."""
 
 
 def parse_marker(text: str) -> MarkerPrint:
-    """Parse a marker written as "DICTIONARY:NUMBER:SIDE".
+    """Parse a marker written as "DICTIONARY:NUMBER:SIDE"; a side without a unit is in m.
 
     Raises:
-        SettingsError: The string has another form.
+        SettingsError: The string has another form, or NUMBER is not a whole number.
         UnitError: The side is not a length.
 
     >>> parse_marker("apriltag_36h11:4:10cm")

@@ -23,11 +23,11 @@ class Marker:
     """Pose of the marker on the robot, and its printed pattern.
 
     Attributes:
-        position: Its centre in the body frame, shape (3,) [m].
-        roll_pitch_yaw: Its orientation in the body frame, R = Rz Ry Rx, shape (3,) [rad].
-        height: Height of its centre above the ground while the robot stands; None if it was not
-            measured [m].
-        printed: Printed pattern; that of the kit by default.
+        position: Centre of the marker in the body frame, shape (3,) [m].
+        roll_pitch_yaw: Orientation of the marker in the body frame, R = Rz Ry Rx, shape (3,) [rad].
+        height: Height of the marker's centre above the ground while the robot stands [m]; None if
+            it was not measured.
+        printed: Dictionary, number and size of the printed marker; that of the kit by default.
     """
 
     position: tuple[float, float, float]
@@ -41,11 +41,11 @@ class RobotFile:
     """Content of a `robot.toml`.
 
     Attributes:
-        robot: The robot.
-        leg_sign: For each leg 1 if its reported angle grows as it walks forward, else -1,
+        robot: Mass, body and leg parameters of the robot.
+        leg_sign: For each leg 1 if its reported angle grows as the robot walks forward, else -1,
             shape (6,).
-        marker: Its marker; None if it has none.
-        file: The file; None for the thesis's robot.
+        marker: The robot marker; None if the file has no section for it.
+        file: The `robot.toml`; None for the thesis's robot.
     """
 
     robot: Robot = field(default_factory=Robot)
@@ -59,7 +59,7 @@ def read_robot_file(file: Path) -> RobotFile:
 
     Raises:
         NotFound: There is no such file.
-        SettingsError: It is not TOML, or has an unknown key, an invalid value or a wrong unit.
+        SettingsError: The file is not TOML, or has an unknown key, an invalid value or unit.
     """
     advice = f"expected a {ROBOT_FILE} (walk --write-robot {file} starts one)"
     top = read_settings(file, advice=advice)
@@ -75,7 +75,9 @@ def read_robot_file(file: Path) -> RobotFile:
 
 
 def render_robot_file(described: RobotFile) -> str:
-    """Serialise a robot as commented TOML that `read_robot_file` reads back.
+    """Serialise a robot as commented TOML that `read_robot_file` reads.
+
+    Default inertia, a missing marker and an unmeasured marker height are commented out.
 
     >>> print(render_robot_file(RobotFile()).splitlines()[3])
     mass = 2.17  # [kg]
@@ -143,7 +145,7 @@ def _marker_section(marker: Marker | None) -> str:
 
 
 def _robot(top: SettingsTable, legs: SettingsTable) -> Robot:
-    """Read the robot's parameters; missing ones are those of the thesis's robot."""
+    """Construct the robot from the given keys; for missing keys it is the thesis's robot."""
     given: dict[str, Any] = {}
     if "mass" in top:
         given["mass"] = top.quantity("mass", "kg")

@@ -24,8 +24,8 @@ class CanonicalColumn:
     """A column that a calibration uses.
 
     Attributes:
-        name: Its canonical name.
-        unit: Its SI unit; None if it is not numeric.
+        name: Canonical name of the column.
+        unit: SI unit of the column; None if its cells are text.
         meaning: Description in one line, with the sign convention.
     """
 
@@ -64,10 +64,10 @@ class MappedColumn:
     """The column of a file that a canonical column is read from.
 
     Attributes:
-        name: Its header in the file.
-        unit: Its unit in the file.
-        factor: Factor from the file's numbers to SI with the canonical sign.
-        definition: Slip definition, for `slip_ratio` only.
+        name: Header of the column in the file.
+        unit: Unit of the column in the file; "" for text.
+        factor: Multiplies the file's numbers to give SI with the canonical sign.
+        definition: Slip definition, for `slip_ratio` only; None if not stated.
     """
 
     name: str
@@ -78,14 +78,14 @@ class MappedColumn:
 
 @dataclass(frozen=True)
 class RunRule:
-    """Rule that separates the rows of one file into runs.
+    """Rule that separates the rows of one file into runs; at most one attribute is given.
 
-    Without a rule, runs are separated by the `run` column; without that, the file is one run.
+    Without a rule, a change in the `run` column starts a run; without that, the file is one run.
 
     Attributes:
-        by: Columns, by their headers in the file; a change of value starts a run.
-        gap: A longer interval between samples starts a run [s]; None for no such rule.
-        each_row: Every row is the average of a trial and therefore a run.
+        by: Columns, by their headers in the file; a change of value in one starts a new run.
+        gap: Interval between samples beyond which a new run starts [s]; None if not given.
+        each_row: Whether every row is the mean of one trial, and therefore a run.
     """
 
     by: tuple[str, ...] = ()
@@ -98,13 +98,13 @@ class Columns:
     """Content of a `columns.toml`.
 
     Attributes:
-        file: The file itself; None for the canonical names in SI, without a file.
-        source: "real", "sim:what" or "replay:what"; None if not stated.
-        columns: Mapped columns by canonical name.
-        constants: Canonical columns that are constant for the whole rig, in SI.
-        runs: Rule that separates runs.
-        keep: Conditions that every row must meet.
-        load_cell: Standard deviations from the load cell's certificate, SI.
+        file: The `columns.toml` itself; None without one: headers are canonical names, in SI.
+        source: "real", "sim:what", "replay:what" or "unknown"; None if not stated.
+        columns: Mapped columns by canonical name; only those with an entry.
+        constants: Given radii of the discs, `radius_leg` and `radius_ground` [m], by name.
+        runs: Rule that separates rows into runs.
+        keep: Conditions that every kept row must meet, all of them.
+        load_cell: Given standard deviations from the load cell's certificate by name, SI.
     """
 
     file: Path | None = None
@@ -121,7 +121,7 @@ def read_columns(file: Path) -> Columns:
 
     Raises:
         NotFound: There is no such file.
-        SettingsError: It is not TOML, or has an unknown key, unit or value.
+        SettingsError: The file is not TOML, or has an unknown key, unit or value.
     """
     return parse_columns(read_settings(file, advice=f"expected a {COLUMNS_FILE}"))
 
@@ -130,10 +130,10 @@ def parse_columns(table: SettingsTable) -> Columns:
     """Parse and check the content of a `columns.toml`.
 
     Args:
-        table: Its content, or a section of one; no other keys are allowed.
+        table: Content of the file, or a section of it; no other keys are allowed.
 
     Raises:
-        SettingsError: It has an unknown key, unit or value.
+        SettingsError: It has an unknown key, unit or value, or more than one run rule.
     """
     columns = table.table("columns")
     columns_file = Columns(
@@ -157,12 +157,12 @@ def parse_mapped_column(columns: SettingsTable, name: str, si_unit: str | None) 
     """Parse header, unit and sign of one mapped column.
 
     Args:
-        columns: Section that has an entry for the column: a table, or only its header.
-        name: Its canonical name.
-        si_unit: Its SI unit; None if it is not numeric.
+        columns: Section with an entry for the column: a table, or only the header as a string.
+        name: Canonical name of the column.
+        si_unit: SI unit of the column; None if its cells are text.
 
     Raises:
-        SettingsError: Header, unit or sign is invalid.
+        SettingsError: Header, unit, sign or slip definition is invalid.
     """
     found = columns.value(name)
     if isinstance(found, str):  # t = "ET": only a header, in SI
@@ -181,7 +181,7 @@ def parse_definition(text: object, *, file: Path | None, key: str) -> SlipDefini
     """Parse the name of a slip definition.
 
     Args:
-        text: Name of the definition.
+        text: Name of the definition: material, travel or larger.
         file: File that it was read from, for the error message.
         key: Key or column that it was read from, for the error message.
 

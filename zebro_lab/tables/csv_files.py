@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Read CSV files; separator and decimal sign are detected."""
+"""Read CSV files; the separator is detected, and whether decimal commas are possible."""
 
 import codecs
 import csv
@@ -41,8 +41,12 @@ class _CsvLayout:
 def read_csv_file(path: Path) -> RawTable:
     """Read a CSV file, also gzipped: UTF-8, separated by commas, semicolons or tabs.
 
+    Empty and comment lines (#) before the header are skipped; repeated headers are numbered.
+
     Raises:
-        DataError: It is not text, not a regular table, empty, or truncated.
+        NotFound: There is no such file.
+        DataError: The file is not UTF-8 text, has no header or rows, rows do not fit the header,
+            the separator is ambiguous, or a size limit is exceeded.
     """
     import pandas as pd
 
@@ -145,7 +149,7 @@ def _count_comments(lines: list[tuple[int, str]]) -> int:
 
 
 def _separator(path: Path, lines: list[tuple[int, str]]) -> str:
-    """Detect the separator: the only one that gives the first lines equal numbers of cells."""
+    """Detect the one separator that gives all rows equally many cells, else most in the header."""
     texts = [text for _, text in lines[:_HEAD_LINES]]
     counts = {s: [len(cells) for cells in csv.reader(texts, delimiter=s)] for s in _SEPARATORS}
     regular = [s for s, cells in counts.items() if cells[0] > 1 and len(set(cells)) == 1]

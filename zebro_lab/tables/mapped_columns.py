@@ -14,13 +14,13 @@ from zebro_lab.tables.raw_table import RawTable
 
 @dataclass(frozen=True)
 class MappedColumns:
-    """Column map of a time series.
+    """Column map of a time series: header, unit and sign of each canonical column.
 
     Attributes:
-        mapped: Mapped columns, by canonical name.
-        source: "real", "sim:what", "replay:what"; None if not stated.
+        mapped: Mapped columns, by canonical name; every canonical column has one.
+        source: Source as stated in the file; None if not stated.
         file: The `columns.toml`; None without one.
-        where: Dotted section in it, with a final dot; "" for the whole file.
+        where: Dotted section in the file, with a final dot; "" for the whole file.
     """
 
     mapped: Mapping[str, MappedColumn]
@@ -39,7 +39,7 @@ class MappedColumns:
         return header in table.columns or header in table.repeated
 
     def called(self, name: str, header: str) -> "MappedColumns":
-        """Return a copy of the map with another header for a column; its unit is kept.
+        """Return a copy of the map with another header for a column; unit and sign are kept.
 
         Args:
             name: Canonical name of the column.
@@ -71,7 +71,7 @@ class MappedColumns:
 
 
 def canonical_columns(units: Mapping[str, str]) -> MappedColumns:
-    """Return the column map of a table with canonical names and units.
+    """Return the column map of a table whose headers are the canonical names, in SI units.
 
     Args:
         units: SI unit of each column, by canonical name.
@@ -83,11 +83,11 @@ def parse_mapped_columns(table: SettingsTable, units: Mapping[str, str]) -> Mapp
     """Parse a column map; columns without an entry keep their canonical name and unit.
 
     Args:
-        table: Table with the keys `source` and `columns`; no other keys are allowed.
+        table: Table with the keys `source` and `columns`, both optional; no others are allowed.
         units: SI unit of each column, by canonical name.
 
     Raises:
-        SettingsError: A key, a unit or a sign is invalid.
+        SettingsError: A key, a header, a unit or a sign is invalid.
     """
     columns = table.table("columns")
     mapped = {

@@ -20,11 +20,11 @@ _MOST_THRIFT = 1 << 26  # memory that a footer may ask for [bytes or entries]
 
 
 def read_parquet_file(path: Path) -> RawTable:
-    """Read a Parquet file.
+    """Read a Parquet file; its source is the metadata key `source`, if there is one.
 
     Raises:
         NotFound: There is no such file.
-        DataError: It is not a complete Parquet file, or its unpacked size exceeds the limit.
+        DataError: The file is not complete Parquet, or exceeds the limits of size or cells.
     """
     with open_file(path) as file, parsing(path, "is not a whole Parquet file", advice=_ADVICE):
         table = _read(file, path)

@@ -28,12 +28,12 @@ class RawTable:
     Attributes:
         path: The file, or the run folder.
         columns: Columns by header, numbers or strings, each of shape (n,).
-        repeated: Headers of more than one column, which are therefore ambiguous.
+        repeated: Headers that more than one column has, which are therefore ambiguous.
         source: Source stated in the file; None if not stated.
         decimal_comma: Whether numbers may be written with a decimal comma, e.g. 0,5.
         notes: Notes on how the file was read, one line each.
-        header_line: Line of the header in a text file, from 1; None for others.
-        unreadable: Cell type of columns that are neither numbers nor strings, by header.
+        header_line: Line of the header in a text file, counted from 1; None for other files.
+        unreadable: Cell type of each column that has neither numbers nor strings, by header.
     """
 
     path: Path
@@ -46,11 +46,11 @@ class RawTable:
     unreadable: Mapping[str, str] = field(default_factory=dict)
 
     def __len__(self) -> int:
-        """Count the data rows."""
+        """Return the number of data rows; 0 for a table without columns."""
         return len(next(iter(self.columns.values()), ()))
 
     def fault(self, problem: str, column: str, index: int | None = None, **found: Any) -> DataError:
-        """Return an error that names a column or one of its cells.
+        """Return, without raising, an error that names a column or one of its cells.
 
         Args:
             problem: What was found, what was expected, what to try.
@@ -63,10 +63,10 @@ class RawTable:
         return DataError(problem, file=self.path, column=column, row=row, line=line, **found)
 
     def column(self, name: str) -> "pd.Series":
-        """Return a column.
+        """Return the column of a header as read, numbers or strings.
 
         Raises:
-            DataError: The file has no column, or more than one, with this header.
+            DataError: No or several columns have this header, or cells are of another type.
         """
         if name in self.repeated:
             raise self.fault("heads more than one column; give each a name of its own", name)
@@ -78,10 +78,10 @@ class RawTable:
         return self.columns[name]
 
     def numbers(self, name: str) -> NDArray[np.float64]:
-        """Return a column as numbers, NaN for empty cells, shape (n,).
+        """Return a column as numbers in the file's unit, NaN for empty cells, shape (n,).
 
         Raises:
-            DataError: The column is missing, or a cell is not a number.
+            DataError: The column is missing or has dates, or a cell is not a number.
         """
         import pandas as pd
 
@@ -102,7 +102,7 @@ class RawTable:
     def finite(
         self, name: str, expected: str = "a finite number", *, may_be_empty: bool = False
     ) -> NDArray[np.float64]:
-        """Return a column as finite numbers, shape (n,).
+        """Return a column as finite numbers in the file's unit, shape (n,).
 
         Args:
             name: Header of the column.
@@ -110,7 +110,8 @@ class RawTable:
             may_be_empty: Whether empty cells are allowed; they become NaN.
 
         Raises:
-            DataError: The column is missing, or a cell is empty, infinite or not a number.
+            DataError: The column is missing, or a cell is infinite, not a number, or empty unless
+                that is allowed.
         """
         values = self.numbers(name)
         bad = np.isinf(values) if may_be_empty else ~np.isfinite(values)
@@ -168,9 +169,10 @@ class RawTable:
 
 
 def _as_numbers(cells: "pd.Series") -> NDArray[np.float64]:
-    """Convert cells to numbers; NaN for empty cells, for other text, and after a block with text.
+    """Convert cells to numbers, shape (n,); NaN for empty cells and for text that is not a number.
 
-    Converting text takes pandas some microseconds per cell: a column of names would take minutes.
+    After a block of 65,536 cells with such text the rest is NaN too: converting text takes pandas
+    some microseconds per cell, so that a column of names would take minutes.
     """
     import pandas as pd
 

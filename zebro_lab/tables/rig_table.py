@@ -19,9 +19,9 @@ class RigTable:
     """A raw table with its column map, restricted to the kept rows.
 
     Attributes:
-        raw: The table as read.
+        raw: The table as read from the file.
         columns: The column map.
-        rows: Indices of the kept rows, shape (n,).
+        rows: Indices into the rows of `raw` of the n kept rows, increasing, shape (n,).
     """
 
     raw: RawTable
@@ -29,7 +29,7 @@ class RigTable:
     rows: NDArray[np.intp]
 
     def source_of(self, name: str) -> MappedColumn | None:
-        """Return the mapped column of a canonical column, or None if the table has none."""
+        """Return the mapping of a canonical column; None if neither mapped nor a header."""
         if name in self.columns.columns:
             return self.columns.columns[name]
         if name in self.raw.columns or name in self.raw.repeated:
@@ -37,10 +37,10 @@ class RigTable:
         return None
 
     def required(self, name: str) -> MappedColumn:
-        """Return the mapped column of a canonical column that the table must have.
+        """Return the mapping of a canonical column, header, unit and factor, or raise.
 
         Raises:
-            DataError: The table has none.
+            DataError: The column is neither mapped nor a header of the table.
         """
         source = self.source_of(name)
         if source is None:
@@ -52,10 +52,10 @@ class RigTable:
         return source
 
     def si(self, name: str) -> Array:
-        """Return a canonical column in SI with the canonical sign, shape (n,).
+        """Return the kept rows of a canonical column in SI, with canonical sign, shape (n,).
 
         Raises:
-            DataError: The column is missing, or a cell is no finite number.
+            DataError: The column is missing, or a cell is not a finite number.
         """
         source = self.required(name)
         values = self.raw.numbers(source.name)[self.rows]
@@ -63,14 +63,14 @@ class RigTable:
         return values * source.factor
 
     def texts(self, name: str) -> NDArray[np.object_]:
-        """Return a canonical column of strings, as in the file, shape (n,)."""
+        """Return the kept rows of a canonical column as in the file, not converted, shape (n,)."""
         return self.raw.column(self.required(name).name).to_numpy(dtype=object)[self.rows]
 
     def constant_or_column(self, name: str) -> float | Array:
-        """Return a radius, one number or shape (n,), positive [m].
+        """Return a radius [m]: one number from `[constants]`, or a column of shape (n,).
 
         Raises:
-            DataError: It is missing, given twice, or not positive.
+            DataError: The radius is missing, given as both, or not positive.
         """
         constant, source = self.columns.constants.get(name), self.source_of(name)
         if constant is not None and source is not None:
@@ -96,7 +96,7 @@ class RigTable:
         return constant
 
     def require(self, name: str, good: NDArray[np.bool_], problem: Callable[[str], str]) -> None:
-        """Raise an error at the first invalid row of a column.
+        """Check a condition on a column; raise an error at the first row that fails it.
 
         Args:
             name: Canonical name of the column.
@@ -110,7 +110,7 @@ class RigTable:
             raise self.error_at(name, int(np.argmin(good)), problem)
 
     def error_at(self, name: str, index: int, problem: Callable[[str], str]) -> DataError:
-        """Return an error that names a cell.
+        """Return, without raising, an error that names a cell.
 
         Args:
             name: Canonical name of the column.
@@ -148,7 +148,7 @@ def kept_rows(raw: RawTable, columns: Columns) -> NDArray[np.intp]:
         Row indices, counted from 0, increasing.
 
     Raises:
-        DataError: A condition names a missing column, or no row is left.
+        DataError: A condition names a missing or non-numeric column, or no row is left.
     """
     keep = np.ones(len(raw), dtype=bool)
     for condition in columns.keep:
@@ -166,7 +166,8 @@ def normal_force(table: RigTable) -> Array:
     """Return the normal force, positive everywhere, shape (n,) [N].
 
     Raises:
-        DataError: A row's load is not positive; proposes a sign when nearly all are.
+        DataError: The column is missing, or a row's normal force is not positive; the message
+            proposes the other sign if more than 90 % are negative.
     """
     force = table.si("normal_force")
     mostly_negative = np.mean(force < 0) > 0.9

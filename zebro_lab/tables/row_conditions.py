@@ -58,7 +58,7 @@ def parse_row_condition(text: str) -> RowCondition:
     The text is matched, never evaluated, so that a settings file cannot run code.
 
     Raises:
-        ValueError: The text is not such a comparison.
+        ValueError: The text is not of this form.
 
     >>> parse_row_condition("slip > 0.05")
     RowCondition(column='slip', operator='>', number=0.05)

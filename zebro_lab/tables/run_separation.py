@@ -17,9 +17,9 @@ class Runs:
     """The runs of one table.
 
     Attributes:
-        index: Index into `names` of every kept row, non-decreasing, shape (n,).
+        index: Index into `names` for every kept row, non-decreasing, shape (n,).
         names: Name of each run.
-        rule: Description of the rule that separated them.
+        rule: Description of the rule that separated the runs, for a note.
     """
 
     index: NDArray[np.intp]
@@ -28,17 +28,17 @@ class Runs:
 
 
 def separate_runs(table: RigTable, label: str) -> Runs:
-    """Assign every kept row to a run.
+    """Assign every kept row to a run by `[runs]`, else by the `run` column, else to a single run.
 
     Runs are found on all rows, before [rows] keep is applied: filtering rows must not split a
     recording in two.
 
     Args:
-        table: The table.
+        table: The table, with the rule in its column map.
         label: Name of the table; prefix of every run's name.
 
     Raises:
-        DataError: A column of the rule, or the time column that it needs, is missing.
+        DataError: A column of the rule `by`, or the time column for the rule `gap`, is missing.
     """
     rule, mapped_run = table.columns.runs, table.source_of("run")
     if rule.each_row:
@@ -59,13 +59,13 @@ def run_times(table: RigTable, runs: Runs) -> Array | None:
 
     Args:
         table: Rig table.
-        runs: Run of each row.
+        runs: Run of each kept row.
 
     Returns:
         Times, shape (n,) [s]; None if the table has no time column or every row is a trial.
 
     Raises:
-        DataError: Time repeats or decreases within a run.
+        DataError: Time repeats or decreases within a run, or is not a finite number.
     """
     if table.columns.runs.each_row or table.source_of("t") is None:
         return None
@@ -136,7 +136,7 @@ def _shown(cell: object) -> str:
 
 
 def _unique(names: list[str]) -> tuple[str, ...]:
-    """Make names unique by numbering set-points that were measured again."""
+    """Append " (2)", " (3)", … to the second and later occurrences of a name."""
     seen: Counter[str] = Counter()
     unique = []
     for name in names:

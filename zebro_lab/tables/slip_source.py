@@ -22,9 +22,9 @@ class SlipColumn:
 
     Attributes:
         ratio: Slip ratio in `definition`, shape (n,) [-].
-        definition: Slip definition.
-        column: Canonical column to name in error messages.
-        origin: Description of how it was obtained.
+        definition: Slip definition of `ratio`.
+        column: Canonical column to name in error messages: `slip_ratio` or `omega_leg`.
+        origin: Description of how the slip ratio was obtained, for a note.
     """
 
     ratio: Array
@@ -36,12 +36,12 @@ class SlipColumn:
 def slip(table: RigTable) -> SlipColumn:
     """Return the slip ratio: the given one if its definition is known, else from disc speeds.
 
-    A given slip ratio is used only if it is mapped or its definition is stated; otherwise the disc
-    speeds are used if the table has them, as their definition is known.
+    A given slip ratio is used only if it is mapped or its definition is stated; otherwise the
+    `material` slip ratio is computed from disc speeds and radii if the table has the speeds.
 
     Raises:
-        DataError: The table has neither, the definition of a given slip ratio is not stated, or a
-            value is out of range.
+        DataError: The table has neither, the definition of a given slip ratio is not stated, a
+            value is out of range or not finite, a radius is missing, or the leg disc stands still.
     """
     given = table.source_of("slip_ratio")
     speeds = all(table.source_of(name) for name in _SPEEDS)
@@ -66,12 +66,12 @@ def converted(table: RigTable, slip_column: SlipColumn, target: SlipDefinition) 
     """Convert slip ratios to another definition.
 
     Args:
-        table: Table that they were read from, for error messages.
+        table: Table that the slip ratios were read from, for error messages.
         slip_column: Slip ratios with their definition.
         target: Definition to convert to.
 
     Raises:
-        DataError: A slip ratio is outside the range of its definition, or infinite in the other.
+        DataError: A slip ratio is outside the range of its definition, or infinite in the target.
     """
     ratio, source, column = slip_column.ratio, slip_column.definition, slip_column.column
     if source is target:
@@ -177,7 +177,7 @@ def _slip_from_speeds(table: RigTable, *, unused: MappedColumn | None) -> SlipCo
 
 
 def _first_rejected(values: Array, source: SlipDefinition, target: SlipDefinition) -> int:
-    """Return the index of the first value that `convert_slip` rejects, by bisection."""
+    """Return the index of the first slip ratio that `convert_slip` rejects, by bisection."""
     accepted, refused = 0, len(values)
     while refused - accepted > 1:
         middle = (accepted + refused) // 2

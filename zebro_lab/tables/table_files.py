@@ -20,7 +20,7 @@ TABLE_SUFFIXES = tuple(READERS)
 
 
 def is_table_file(path: Path) -> bool:
-    """Return whether a file has the suffix of a supported table format."""
+    """Return whether a file's name ends in .csv, .csv.gz or .parquet, in either case."""
     return bool(_suffix(path))
 
 
@@ -29,7 +29,7 @@ def read_table_file(path: Path) -> RawTable:
 
     Raises:
         NotFound: There is no such file.
-        DataError: It is of another kind, empty, damaged, or not a table.
+        DataError: The file has another suffix, no rows, is damaged, or not a table.
     """
     if not path.exists():
         raise NotFound(f"{path}: no such file")
@@ -53,5 +53,5 @@ def table_stem(path: Path) -> str:
 
 
 def _suffix(path: Path) -> str:
-    """Return the suffix of a table file, in lower case; empty for any other file."""
+    """Return the matching suffix of `TABLE_SUFFIXES`, in lower case; "" for any other file."""
     return next((s for s in TABLE_SUFFIXES if path.name.lower().endswith(s)), "")

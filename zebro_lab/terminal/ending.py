@@ -12,7 +12,8 @@ import typer
 def run(app: typer.Typer) -> None:
     """Run a Typer app; known errors become one line on stderr and exit code 1.
 
-    Known errors are those of the project, and operating system errors that name a file.
+    Known errors are those of the project, and operating system errors that name a file. Other
+    exceptions pass unchanged, with a traceback.
     """
     # ArviZ warns developers about its next version once a day; this does not concern users.
     warnings.filterwarnings("ignore", message=r"\s*ArviZ is undergoing", category=FutureWarning)
@@ -35,7 +36,7 @@ def _guard(command: Callable[[], object]) -> None:
 
 
 def _of_a_file(error: Exception) -> str | None:
-    """Return the message of an operating system error on a file; None for other errors."""
+    """Format an `OSError` that names a file as "FILE: reason"; return None for other errors."""
     if not isinstance(error, OSError) or error.filename is None:
         return None
     name = error.filename if isinstance(error.filename, int) else os.fsdecode(error.filename)

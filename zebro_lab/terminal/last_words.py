@@ -19,8 +19,8 @@ def say_in_time(text: str, *, err: bool = False) -> bool:
         err: Whether to print to stderr.
 
     Returns:
-        Whether the line was written within `PATIENCE`. If not, a thread may still be blocked in
-        the write: end the process with `leave_at_once`.
+        Whether the line was written within `PATIENCE`, True also if the stream is None. If not, a
+        thread may still be blocked in the write: end the process with `leave_at_once`.
     """
 
     def write() -> None:
@@ -34,7 +34,10 @@ def say_in_time(text: str, *, err: bool = False) -> bool:
 
 
 def in_time(act: Callable[[], object]) -> bool:
-    """Call a function in a thread; return whether it succeeded within the timeout `PATIENCE`."""
+    """Call a function in a thread; return whether it ended within `PATIENCE` [s] without error.
+
+    `OSError` and `ValueError` of the function are suppressed; it may still run after a timeout.
+    """
     done: list[bool] = []
 
     def run() -> None:
@@ -47,7 +50,7 @@ def in_time(act: Callable[[], object]) -> bool:
     thread = threading.Thread(target=run, daemon=True, name="last words")
     try:
         thread.start()
-    except RuntimeError:  # no thread can be started: say it without one
+    except RuntimeError:  # no thread can be started: print without one
         run()
     else:
         thread.join(PATIENCE)
@@ -55,5 +58,5 @@ def in_time(act: Callable[[], object]) -> bool:
 
 
 def leave_at_once(code: int) -> NoReturn:
-    """Exit without flushing: at a normal exit the interpreter would wait for a blocked terminal."""
+    """End the process at once, without flushing output, as a blocked terminal would delay it."""
     os._exit(code)

@@ -16,21 +16,21 @@ def say(line: str, *, err: bool = False) -> None:
     """Write one line to the terminal; newlines and control characters in it are escaped.
 
     Args:
-        line: The line.
-        err: Whether to write to standard error.
+        line: Text to write, without the newline.
+        err: Whether to write to standard error instead of standard output.
     """
     typer.echo(shown(line), err=err)
 
 
 def plain(line: str) -> "Text":
-    """Return one line for a Rich console, without markup and escaped as by `say`."""
+    """Convert a line to Rich text without markup; newlines and control characters are escaped."""
     from rich.text import Text
 
     return Text(shown(line))
 
 
 def wide_console() -> "Console":
-    """Return a console; 120 columns wide if the output is not a terminal."""
+    """Create a Rich console on standard output, 120 columns wide if that is not a terminal."""
     from rich.console import Console
 
     console = Console(highlight=False)

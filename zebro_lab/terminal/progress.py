@@ -12,7 +12,7 @@ from rich.progress import TimeRemainingColumn as TimeLeftColumn
 
 
 class ProgressBar:
-    """A watcher that draws a progress bar and turns SIGINT and SIGTERM into a stop request."""
+    """A watcher that draws a progress bar; its `request_stop` handles SIGINT and SIGTERM."""
 
     def __init__(self, progress: Progress) -> None:
         self._progress = progress
@@ -24,8 +24,8 @@ class ProgressBar:
         """Update the progress bar.
 
         Args:
-            what: Name of the task; a new name starts a new bar.
-            fraction: Share of the task that is done, 0 to 1 [-]; None when unknown.
+            what: Name of the task; a new name completes the present bar and starts a new one.
+            fraction: Share of the task that is done, 0 to 1 [-]; None if unknown.
         """
         if what != self._what:
             if self._task is not None:
@@ -58,14 +58,14 @@ class ProgressBar:
 
 @contextmanager
 def progress_bar(console: Console | None = None) -> Iterator[ProgressBar]:
-    """Show progress on a console while the body runs.
+    """Show a progress bar, and turn SIGINT and SIGTERM into a stop request, during the body.
 
     Args:
-        console: Where to draw, standard error by default; nothing is drawn unless it is a
+        console: Console to draw on, standard error by default; nothing is drawn unless it is a
             terminal.
 
     Yields:
-        The watcher to hand to a stage.
+        The watcher to pass to a stage.
     """
     console = console or Console(stderr=True)
     columns = (

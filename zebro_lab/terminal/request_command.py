@@ -42,7 +42,7 @@ def request_command(*, first: tuple[str, ...] = ()) -> Callable[[Command], Comma
 
 
 def _options(name: str, hint: Any, default: Any) -> Iterator[Parameter]:
-    """Yield the parameters that stand for one of a function, or for one field of a dataclass."""
+    """Yield the Typer parameters for one parameter of a function: of a dataclass one per field."""
     if is_dataclass(hint):
         for field, inner in _fields(hint):
             missing = field.default is MISSING
@@ -56,7 +56,7 @@ def _options(name: str, hint: Any, default: Any) -> Iterator[Parameter]:
 
 
 def _value(name: str, hint: Any, given: Mapping[str, Any]) -> Any:
-    """Return the value of a parameter or field, its dataclass filled with what was given."""
+    """Return the value given for a parameter or field; construct its dataclass from values."""
     if is_dataclass(hint):
         values = {field.name: _value(field.name, inner, given) for field, inner in _fields(hint)}
         request: Any = hint
@@ -65,7 +65,7 @@ def _value(name: str, hint: Any, given: Mapping[str, Any]) -> Any:
 
 
 def _fields(request: Any) -> list[tuple[Field[Any], Any]]:
-    """Return the fields of a dataclass with their annotations."""
+    """Return the fields of a dataclass with their resolved type hints, `Annotated` included."""
     hints = get_type_hints(request, include_extras=True)
     return [(field, hints[field.name]) for field in fields(request)]
 

@@ -18,7 +18,7 @@ def plain_table(
     fold: bool = False,
     no_wrap: bool = False,
 ) -> Table:
-    """Create a table without rows.
+    """Create a Rich table with headings but without rows.
 
     Rich takes a unit such as `[mm]` in a plain string for markup and hides it.
 

@@ -32,9 +32,9 @@ class Summary:
     """A metric over several runs.
 
     Attributes:
-        model: The prediction or a baseline.
-        metric: A column of `metrics.csv`.
-        interval: Mean with its 90 % interval over runs.
+        model: Name of the prediction or of a baseline.
+        metric: Name of a column of `metrics.csv`.
+        interval: Mean over runs with its 90 % bootstrap interval, in the metric's unit.
     """
 
     model: str
@@ -43,7 +43,10 @@ class Summary:
 
 
 def metrics(judged: Judged) -> dict[str, float]:
-    """Return the metrics of one path or ensemble, by column; units are in the names."""
+    """Return errors and scores of a prediction or baseline, by column of `metrics.csv`.
+
+    Each value is in the unit that ends the column's name.
+    """
     errors, scores = judged.errors, judged.scores
     row = {
         "poses": float(errors.poses),
@@ -78,7 +81,7 @@ def metrics(judged: Judged) -> dict[str, float]:
 
 
 def _band_metrics(judged: Judged) -> dict[str, float]:
-    """Return coverage, width and consistency; a single path has none."""
+    """Return a band's coverage, width and consistency by column; empty for a single path."""
     scores, row = judged.scores, {}
     if not np.any(scores.width > 0):
         return row
@@ -96,7 +99,7 @@ def _band_metrics(judged: Judged) -> dict[str, float]:
 
 
 def tilt_metrics(tilt: TiltJudged) -> dict[str, float]:
-    """Return errors of roll and pitch by name, in degrees."""
+    """Return bias, rms, unbiased rms and swing of roll and pitch [deg], and samples, by name."""
     errors, row = tilt.errors, {"samples": float(tilt.errors.samples)}
     for i, angle in enumerate(("roll", "pitch")):
         for name in ("bias", "rms", "rms_unbiased", "swing"):
@@ -105,12 +108,12 @@ def tilt_metrics(tilt: TiltJudged) -> dict[str, float]:
 
 
 def summarise_runs(runs: Sequence[JudgedRun], *, rng: np.random.Generator) -> list[Summary]:
-    """Compute the mean of each metric over runs, with bootstrap intervals.
+    """Compute the mean of each metric in `MEANS` over runs, by model, with bootstrap intervals.
 
     Whole runs are resampled. A metric with too few finite values gets no summary.
 
     Args:
-        runs: Judged runs with the same models.
+        runs: Errors of runs with the same models; the models are those of the first.
         rng: Random number generator of the bootstrap.
     """
     summaries = []
@@ -139,8 +142,8 @@ def write_validation(
 
     Args:
         out: Folder to create or replace.
-        shown: Judged walks with the content of their pictures.
-        summary: Means over runs.
+        shown: Errors of each walk, with the content of the pictures.
+        summary: Means of metrics over runs, for the manifest.
         settings: Settings of the validation, JSON-serialisable.
         inputs: SHA-256 of each file that was read.
         source: Where prediction and track come from.

@@ -14,7 +14,7 @@ from zebro_lab.walk.prediction_file import PredictionFile
 
 @dataclass(frozen=True)
 class JudgedRun(Judgement):
-    """The judgement of a named walk.
+    """Errors of a walk's prediction and baselines against its track.
 
     Attributes:
         name: Name of the walk.
@@ -45,7 +45,7 @@ def judge_run(
         rng: Random number generator.
 
     Raises:
-        DataError: Track and prediction overlap too little in time.
+        DataError: Fewer than two tracked poses to score lie within the time of the prediction.
         SettingsError: Anchoring is requested with a track without headings.
     """
     inside = shared_time(track.poses, predicted.prediction.path, file=track.file)

@@ -26,13 +26,13 @@ _MOST_FLOOR_PIXELS = 1.5e6
 
 @dataclass(frozen=True)
 class ShownRun:
-    """A judged walk with the content of its pictures.
+    """Errors of a walk, with the content of the pictures that show them.
 
     Attributes:
         run: Errors of the walk.
-        prediction: The prediction.
-        photos: The photographs of its track; None if there are none to show.
-        time_offset: Added to the track's times to bring them to the prediction's clock [s].
+        prediction: The prediction, with band and single path.
+        photos: Photographs of the track; None if there are none to show.
+        time_offset: Time added to the track's times to bring them to the prediction's clock [s].
     """
 
     run: JudgedRun
@@ -45,8 +45,8 @@ def draw_validation(folder: Path, shown: ShownRun, *, simulated: bool) -> tuple[
     """Draw `RUN.png`, and `RUN.imu.png`, `RUN.photos.png` and `RUN.floor.png` if there are data.
 
     Args:
-        folder: Folder to write into.
-        shown: The walk.
+        folder: Folder to write the PNG files into.
+        shown: Errors, prediction and photographs of the walk.
         simulated: Whether to append "(simulated)" to the titles.
 
     Returns:
@@ -93,7 +93,7 @@ def _draw_photos(folder: Path, shown: ShownRun, photos: TrackedPhotos) -> None:
 
 
 def _instants(run: JudgedRun, photos: TrackedPhotos, time_offset: float) -> NDArray[np.intp]:
-    """Return rows of the track, evenly spread over the poses that were scored."""
+    """Return indices of at most 4 photographs, evenly spread over the scored poses."""
     at = photos.t + time_offset
     scored = np.flatnonzero((at >= run.track.t[0] - 1e-6) & (at <= run.track.t[-1] + 1e-6))
     return np.unique(scored[np.linspace(0, len(scored) - 1, SHOTS).round().astype(int)])

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Read what a validation compares: predictions, tracks, and IMU and photographs of the walks."""
+"""Read predictions, tracks, IMU data and photographs of the walks that a validation compares."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -24,13 +24,13 @@ class PredictedWalk:
     """A walk with its prediction and its track, as read from files.
 
     Attributes:
-        name: Its name.
-        prediction: The prediction.
+        name: Name of the walk's folder, with a number if other walks have the same.
+        prediction: The prediction with draws and baselines.
         track: The track, in its own time base.
-        tilt: Roll and pitch by the run's IMU; None without one.
-        photos: The photographs of its track; None if they cannot be shown.
-        duplicates: Note on walks that were named twice, on the first walk only.
-        not_shown: Note on why photographs cannot be shown.
+        tilt: Roll and pitch measured by the run's IMU; None without an IMU or run folder.
+        photos: Photographs of the track; None if they cannot be shown.
+        duplicates: Note on walks that were given twice, on the first walk only; else empty.
+        not_shown: Note on why photographs cannot be shown; empty if they can.
     """
 
     name: str
@@ -43,20 +43,20 @@ class PredictedWalk:
 
     @property
     def sources(self) -> tuple[str, str]:
-        """Where prediction and track come from."""
+        """Sources of the prediction and of the track."""
         return self.prediction.source, self.track.source
 
     def files_of(self, judged: JudgedRun) -> tuple[Path, ...]:
-        """Return the files that a judgement of the walk is based on."""
+        """Return the files of prediction and track, and of the IMU if `judged` has tilt errors."""
         tilt = () if self.tilt is None or judged.tilt is None else self.tilt.files
         return (*self.prediction.files, self.track.file, *tilt)
 
 
 def pairs_of_run(run: Path) -> tuple[Path, Path]:
-    """Return the prediction and the track of a run folder.
+    """Return the folders `prediction` and `track` of a run folder.
 
     Raises:
-        NotFound: One of them is missing.
+        NotFound: `prediction/path.csv` or `track/track.csv` is missing.
     """
     prediction, track = settle(run / PREDICTION), settle(run / TRACK)
     if not (prediction / PATH_CSV).is_file():
@@ -73,13 +73,13 @@ def pairs_of_run(run: Path) -> tuple[Path, Path]:
 
 
 def read_predicted_walks(pairs: Sequence[tuple[Path, Path]]) -> list[PredictedWalk]:
-    """Read predictions and tracks; a pair that was named twice is read once.
+    """Read predictions and tracks of walks; pairs with equal content are read once.
 
     Args:
-        pairs: Prediction and track of each walk.
+        pairs: Paths of prediction and track of each walk.
 
     Raises:
-        ZebroLabError: A file is missing or damaged.
+        ZebroLabError: A file is missing or damaged; of photographs that is only a note.
     """
     pairs, repeated = first_of_each(pairs, key=_content)
     duplicates = duplicates_note("walks", [(one[0], other[0]) for one, other in repeated])
@@ -103,7 +103,7 @@ def _read(name: str, predicted: Path, tracked: Path, duplicates: tuple[str, ...]
 
 
 def _content(pair: tuple[Path, Path]) -> tuple[str, ...]:
-    """Return hashes of a walk's predicted and tracked path, by which copies are recognised."""
+    """Return hashes of `path.csv` and `track.csv` of a walk; for a missing file its path."""
     return tuple(
         content_hash(file) if file.is_file() else str(file)
         for path, name in zip(pair, (PATH_CSV, TRACK_CSV), strict=True)
@@ -112,6 +112,6 @@ def _content(pair: tuple[Path, Path]) -> tuple[str, ...]:
 
 
 def _name(predicted: Path) -> str:
-    """Return the name of a walk's folder."""
+    """Return the name of the run whose `prediction` this is, else of the folder or table."""
     place = (predicted if predicted.is_dir() else predicted.with_suffix("")).absolute()
     return place.parent.name if place.name == PREDICTION else place.name

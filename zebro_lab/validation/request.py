@@ -50,7 +50,7 @@ class ValidateRequest:
 
     @property
     def folder(self) -> Path:
-        """Folder to write: `out`, else `validation`, in the run if one run is validated."""
+        """`--out` if given, else RUN/validation for a single run, else `validation`."""
         if self.out is not None:
             return self.out
         alone = len(self.runs) == 1 and not self.predicted

@@ -65,7 +65,7 @@ def _table(run: JudgedRun) -> Table:
 
 
 def _tilt(run: JudgedRun) -> list[str]:
-    """Format lines on the errors of roll and pitch against the IMU."""
+    """Format the errors of roll and pitch against the IMU [deg]; empty without an IMU."""
     if run.tilt is None:
         return []
     errors = run.tilt.errors
@@ -80,7 +80,7 @@ def _tilt(run: JudgedRun) -> list[str]:
 
 
 def _verdict(run: JudgedRun) -> list[str]:
-    """Format lines on coverage and consistency (NEES) of the band."""
+    """Format the coverage of the band at each level, and its consistency; empty without a band."""
     row = run.rows[0]
     if run.band is None:
         return []

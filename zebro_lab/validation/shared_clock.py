@@ -18,7 +18,7 @@ _STEP = 0.05  # s to either side, for the finite difference of the path's veloci
 
 
 def shifted(track: TrackFile, offset: float) -> TrackFile:
-    """Add a clock offset to a track's times.
+    """Return a copy of a track with a clock offset added to its times.
 
     Args:
         track: Tracked poses.
@@ -30,14 +30,14 @@ def shifted(track: TrackFile, offset: float) -> TrackFile:
 def estimated_clock(
     track: TrackFile, path: Poses, *, otherwise: str = "Give --time-offset SECONDS"
 ) -> tuple[TrackFile, float]:
-    r"""Estimate the clock offset of a track from the motion, and add it with its uncertainty.
+    r"""Estimate a track's clock offset from the motion; add it to its times, its variance to poses.
 
     A clock error shifts every pose along the path by the same time, so the covariance grows by
     :math:`\sigma_\tau^2 v v^T` with v the path's velocity.
 
     Args:
         track: The track.
-        path: The prediction.
+        path: The predicted path, whose clock counts.
         otherwise: What to do if the offset is not determined; part of the error message.
 
     Returns:
@@ -74,7 +74,7 @@ def shared_time(track: Poses, path: Poses, *, file: Path) -> NDArray[np.bool_]:
         file: The track's file, for the error message.
 
     Raises:
-        DataError: Fewer than two poses do.
+        DataError: Fewer than two tracked poses lie within the path's time range.
     """
     try:
         return overlap(track, path)
@@ -87,7 +87,7 @@ def shared_time(track: Poses, path: Poses, *, file: Path) -> NDArray[np.bool_]:
 
 
 def _velocity(path: Poses, t: Array) -> Array:
-    """Return the rates of x, y [m/s] and yaw [rad/s] at times, shape (n, 3)."""
+    """Compute rates of x, y [m/s] and yaw [rad/s] at times t by differences, shape (n, 3)."""
     before, after = (np.clip(t + step, path.t[0], path.t[-1]) for step in (-_STEP, _STEP))
     span = np.maximum(after - before, _STEP)[:, None]
     a, b = path.at(before), path.at(after)

@@ -25,8 +25,8 @@ class Validated:
 
     Attributes:
         runs: Errors of each walk.
-        summary: Means over walks; empty for one.
-        source: Where predictions and tracks come from.
+        summary: Means of metrics over walks; empty for a single walk.
+        source: Sources of predictions and tracks, joined by commas.
     """
 
     runs: tuple[JudgedRun, ...]
@@ -42,7 +42,7 @@ def validate(request: ValidateRequest, watcher: Watcher) -> Validated:
         watcher: Receives progress.
 
     Returns:
-        Results of each run, means over runs, and the source of the data.
+        Errors of each run, means over runs, and the source of the data.
 
     Raises:
         ZebroLabError: A file is missing, or prediction and track do not overlap in time.
@@ -79,7 +79,7 @@ def validate(request: ValidateRequest, watcher: Watcher) -> Validated:
 
 
 def _judge(walk: PredictedWalk, request: ValidateRequest, rng: np.random.Generator) -> ShownRun:
-    """Compute the errors of a walk's path, and of its roll and pitch if there was an IMU."""
+    """Shift a track's clock; compute errors of path, and of roll and pitch if there is an IMU."""
     offset, tilt, prediction = request.time_offset, None, walk.prediction
     if request.estimate_offset:
         track, offset = estimated_clock(walk.track, prediction.prediction.path)

@@ -47,10 +47,10 @@ class _Block:
     """Consecutive CSV columns that hold one attribute of a path.
 
     Attributes:
-        columns: Their names.
-        values: Function that returns the attribute, shape (n, len(columns)).
+        columns: Names of the columns.
+        values: Function that returns the attribute of a path, shape (n, len(columns)), SI.
         may_be_empty: Whether cells may be empty, if the model does not compute the attribute.
-        form: Format of a number.
+        form: printf-style format of a number.
     """
 
     columns: tuple[str, ...]
@@ -84,8 +84,8 @@ def write_path(file: Path, path: WalkPath) -> None:
     """Write a path as CSV in SI with the columns `COLUMNS`.
 
     Args:
-        file: File to write.
-        path: The path; quantities that its model does not compute become empty cells.
+        file: File to write; an existing one is overwritten.
+        path: The path; NaN, for what its model does not compute, becomes an empty cell.
     """
     values = np.column_stack([block.values(path) for block in _BLOCKS])
     line = ",".join(block.form for block in _BLOCKS for _ in block.columns) + "\n"
@@ -106,23 +106,23 @@ def walk_folder(
     settings: Mapping[str, object],
     inputs: Mapping[str, str],
 ) -> Iterator[Path]:
-    """Write a walk folder atomically.
-
-    The body adds pictures to the draft; the manifest, which lists them, is written last.
+    """Write a walk folder atomically: `path.csv`, what the body adds, and last the manifest.
 
     Args:
         out: Folder to create or replace.
-        path: The path.
-        kind: One of `KINDS`.
+        path: The path to write.
+        kind: Command that writes the folder, one of `KINDS`.
         source: "sim:" and the name of the model.
         settings: Settings of the walk, JSON-serialisable.
         inputs: SHA-256 of each file that was read.
 
     Yields:
-        The draft folder, for pictures.
+        The draft folder, with `path.csv`, to add pictures and the band to.
 
     Raises:
-        AlreadyExists: `out` is a file, or the result of another command.
+        AlreadyExists: `out` is a file, the result of another command, or has files of the user or
+            changed files of a name to be written.
+        NotWritten: The folder cannot be created or moved.
     """
     content = {"source": source, "settings": settings, "inputs": inputs}
     with result_folder(out, WALKED[kind], content=content) as draft:
@@ -131,15 +131,15 @@ def walk_folder(
 
 
 def read_walk(path: Path) -> WalkPath:
-    """Read the path of a walk folder.
+    """Read the path of a walk folder from `path.csv`.
 
     Args:
         path: A walk folder, or its `path.csv`.
 
     Raises:
         NotFound: There is no such file.
-        DataError: A column is missing or unknown, a cell holds no number, or time does not
-            increase; the message names file, row and column.
+        DataError: A column is missing, a cell does not hold a number, or time does not increase;
+            the message names file, row and column.
     """
     settle(path)
     file = path / PATH_CSV if path.is_dir() else path
@@ -156,11 +156,11 @@ def read_walk(path: Path) -> WalkPath:
 
 
 def read_walk_manifest(folder: Path) -> Mapping[str, Any]:
-    """Read the manifest of a walk folder.
+    """Read the manifest of a walk folder, written by `walk` or `predict`.
 
     Raises:
         NotFound: There is no manifest.
-        DataError: It is damaged, of a later schema, or of another command.
+        DataError: The manifest is damaged, of another schema, or of another command.
     """
     settle(folder)
     return read_folder_manifest(folder / MANIFEST, of="walk", kinds=KINDS, schema=SCHEMA)

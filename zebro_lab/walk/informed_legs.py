@@ -21,9 +21,10 @@ class InformedLegs:
     """Posterior of legs and floor, as it applies to one walk.
 
     Attributes:
-        posterior: Posterior after walks.
+        posterior: Posterior of leg offsets and floor; for another robot's legs that of the floor
+            alone, with legs drawn from the prior.
         index: Index of this walk among the fitted walks; None for a new walk.
-        folder: Folder that it was read from.
+        folder: The folder `walks/` that the posterior was read from.
         notes: Notes, one line each.
     """
 
@@ -34,11 +35,11 @@ class InformedLegs:
 
     @property
     def middle(self) -> LegState:
-        """The most probable leg state."""
+        """The most probable state of legs and floor for this walk, a single draw."""
         return self.posterior.most_likely(walk=self.index)
 
     def draw(self, n: int, *, rng: np.random.Generator) -> LegState:
-        """Draw leg states from the posterior.
+        """Draw n states of legs and floor for this walk from the posterior.
 
         Args:
             n: Number of draws.
@@ -47,7 +48,7 @@ class InformedLegs:
         return self.posterior.draw(n, rng=rng, walk=self.index)
 
     def settings(self) -> dict[str, object]:
-        """Return the settings that affect the results, JSON-serialisable."""
+        """Return folder, fitted walks and the most probable leg state, JSON-serialisable, SI."""
         legs = self.middle
         return {
             "folder": str(self.folder),
@@ -70,14 +71,14 @@ def informed_legs(
     logs: Sequence[Path] = (),
     same_legs: bool | None = None,
 ) -> InformedLegs:
-    """Select the part of a posterior that applies to a walk.
+    """Select the part of a posterior that applies to a walk: legs and floor, or the floor alone.
 
     Args:
-        walks: The stored posterior after walks.
-        described: The robot that walks.
-        logs: Files of its leg log, by which a fitted walk is recognised.
-        same_legs: Whether the legs are those that were fitted; None to compare the robots'
-            descriptions.
+        walks: The stored posterior of legs and floor.
+        described: Parameters of the robot that walks.
+        logs: Files of the walk's leg log, by whose hash a fitted walk is recognised.
+        same_legs: Whether the legs are those that were fitted, else only the floor applies; None
+            to compare the parameters of the two robots.
     """
     same = walks.legs == describe_legs(described) if same_legs is None else same_legs
     names = ", ".join(walks.posterior.walks)

@@ -11,14 +11,14 @@ from zebro_lab.robot.leg_log import LegLog
 def angles_from(
     log: LegLog, start: float
 ) -> tuple[SampledReference | QuantisedLog, tuple[str, ...]]:
-    """Return leg angles from time zero on, with their resolution if they are encoder counts.
+    """Shift a leg log to start at time zero, and find the step of its angles if they are counts.
 
     Args:
         log: The leg log.
         start: Time of the log that becomes zero [s].
 
     Returns:
-        The angles, and notes, one line each.
+        The angles, a `QuantisedLog` with their step if they are encoder counts; and notes.
     """
     t, theta = log.reference.t - start, log.reference.theta
     step = find_step(theta)

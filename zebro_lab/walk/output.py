@@ -16,7 +16,7 @@ from zebro_lab.walk.walking import Walked
 
 
 class WalkStopped(ZebroLabError):
-    """A walk was stopped on request; nothing was written."""
+    """A walk was stopped on request before it was written completely; nothing is left of it."""
 
 
 def write_walk(
@@ -29,20 +29,20 @@ def write_walk(
     settings: Mapping[str, object],
     files: tuple[Path, ...] = (),
 ) -> None:
-    """Write the walk folder with the requested pictures.
+    """Write the walk folder: path, manifest, band, and the requested pictures and animation.
 
     Args:
         out: Folder to write.
         request: Settings of the band, and which pictures to draw.
         walked: The finished walk.
-        watcher: Receives progress.
-        kind: "walk" or "predict".
+        watcher: Receives progress, and may request a stop.
+        kind: Command that writes the folder: "walk" or "predict".
         settings: Settings other than model, robot, slip and band, JSON-serialisable.
         files: Files read other than those of robot and slip.
 
     Raises:
         AlreadyExists: The folder is a file, or holds the result of another command.
-        WalkStopped: The watcher asked to stop.
+        WalkStopped: The watcher requested a stop; nothing was written.
     """
     described, slip = walked.described, walked.slip
     read = [*files, *((described.file,) if described.file else ()), *(slip.files if slip else ())]

@@ -31,7 +31,7 @@ _STEPS_SHOWN = 50  # progress reports
 
 
 def band_settings(request: BandRequest) -> dict[str, object]:
-    """Return the settings of a band, JSON-serialisable."""
+    """Return the options of a band and the model's spread for the manifest, JSON-serialisable."""
     return {**asdict(request), "spread": asdict(ModelSpread())}
 
 
@@ -44,19 +44,22 @@ def predict_band(
     toe: ToeLaw,
     watcher: Watcher,
 ) -> Poses:
-    """Compute paths of a walk with its unknown parameters drawn, from time zero on.
+    """Compute paths of a walk with slip law, leg offsets, floor and start pose drawn at random.
 
     Args:
         request: Settings of the band.
-        walked: The finished single walk.
-        legs: Its leg angles.
+        walked: The finished single walk, with robot, slip law and posterior of legs and floor.
+        legs: Leg angles of the walk from time zero on.
         duration: Duration of the walk [s].
-        toe: Traction of a leg on its toe.
+        toe: Traction law of a leg on its toe: "saturated", "peak" or "bristle".
         watcher: Receives progress.
 
+    Returns:
+        `request.draws` paths from time zero on, sampled every 0.1 s.
+
     Raises:
-        SettingsError: The model has no band, or a standard deviation of offsets is given although
-            fitted walks have them.
+        SettingsError: The model is not "dynamics", or a standard deviation of leg offsets is given
+            although fitted walks determine them.
     """
     if walked.model != INFORMED_MODEL or walked.slip is None:
         raise SettingsError(
@@ -81,7 +84,7 @@ def predict_band(
 
 
 def _every(steps: int, watcher: Watcher) -> Callable[[float], None]:
-    """Return a progress function that reports each of so many equal steps once."""
+    """Return a function that passes the fraction done on to `watcher` at most `steps` times."""
     shown = 0
 
     def show(fraction: float) -> None:
@@ -112,7 +115,7 @@ def _leg_state(
 
 
 def _offset_sd_deg(request: BandRequest, legs: LegReference | QuantisedLog) -> float:
-    """Return the standard deviation of leg offsets; that of a count is step / sqrt(12) [deg]."""
+    """Return the leg offsets' sd [deg]: as requested, else encoder step / sqrt(12), else 0.3."""
     if request.offset_sd_deg is not None:
         return request.offset_sd_deg
     if isinstance(legs, QuantisedLog):
@@ -121,12 +124,12 @@ def _offset_sd_deg(request: BandRequest, legs: LegReference | QuantisedLog) -> f
 
 
 def write_band(folder: Path, paths: Poses, *, title: str) -> None:
-    """Write the draws, the quantiles and their picture into a walk folder.
+    """Write `draws.npz`, the quantiles `band.csv` and the picture `band.png` into a walk folder.
 
     Args:
         folder: Folder to write into.
         paths: The paths, in the time base of the walk folder.
-        title: Title of the picture.
+        title: Gait and model, for the title of the picture.
     """
     import pandas as pd
 
@@ -146,11 +149,11 @@ def write_band(folder: Path, paths: Poses, *, title: str) -> None:
 
 
 def read_draws(folder: Path) -> Poses:
-    """Read the draws of a walk folder.
+    """Read the paths of a walk folder's band from `draws.npz`.
 
     Raises:
-        NotFound: The folder has no draws.
-        DataError: They are damaged.
+        NotFound: The folder has no `draws.npz`.
+        DataError: The file is damaged, shapes do not match, or times do not increase.
     """
     file = folder / DRAWS
     arrays = read_arrays(file, ("t", "poses"), advice="predict with --draws 500 writes it")

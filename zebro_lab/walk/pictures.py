@@ -17,16 +17,17 @@ _SHOWN_TIME = 4.0  # s, for a walk without a known cycle
 def draw_walk(
     folder: Path, path: WalkPath, robot: Robot, *, title: str, period: float | None
 ) -> None:
-    """Draw path, motion, orientation, slip ratios, forces and contacts of a walk.
+    """Draw path, motion, orientation, slip ratios, forces and contacts of a walk as PNG files.
 
-    Slip, forces and contacts are drawn for the last two cycles, when the walk is steady.
+    Slip, forces and contacts are drawn for the last two cycles, when the walk is steady; for the
+    last 4 s if the period is unknown.
 
     Args:
         folder: Folder to write the PNG files into.
         path: The walk.
-        robot: The robot.
-        title: Gait and model; every title begins with the picture's own name.
-        period: Duration of a gait cycle; None if unknown [s].
+        robot: The robot, whose outline is drawn on the path.
+        title: Gait and model; appended to the name of each picture.
+        period: Duration of a gait cycle [s]; None if unknown.
     """
     from zebro_lab.plots import save, walk_legs, walk_path  # matplotlib takes most of a second
 
@@ -49,7 +50,7 @@ def draw_walk(
 
 
 def last_cycles(path: WalkPath, period: float | None) -> WalkPath:
-    """Return the last two cycles of a walk, or its last 4 s if the period is unknown.
+    """Return the last two cycles of a walk, or the last 4 s if the period is unknown.
 
     Args:
         path: The walk.

@@ -24,7 +24,7 @@ from zebro_lab.walk.walking import Walked, robot_of, walk_with
 
 
 def prediction_folder(request: PredictRequest) -> Path:
-    """Return the walk folder to write: `prediction`, in the run if a run is read, by default."""
+    """Return `--out` if given, else RUN/prediction if a run is read, else `prediction`."""
     if request.out is not None:
         return request.out
     return request.log / PREDICTION if is_recorded(request.log) else Path(PREDICTION)
@@ -38,13 +38,14 @@ def predict(request: PredictRequest, watcher: Watcher) -> Walked:
 
     Args:
         request: Leg log, model, band and output folder.
-        watcher: Receives progress.
+        watcher: Receives progress, and may request a stop.
 
     Returns:
         The predicted walk with its notes.
 
     Raises:
-        ZebroLabError: A file is missing or has invalid content.
+        ZebroLabError: A file is missing or has invalid content, or the folder cannot be replaced.
+        WalkStopped: The watcher requested a stop; nothing was written.
         ModelError: The walk cannot be computed.
     """
     settle(request.log)
@@ -91,11 +92,11 @@ def _with_own_robot(request: PredictRequest) -> PredictRequest:
 
 
 def _is_walk(log: Path) -> bool:
-    """Return whether leg angles are those of a walk folder."""
+    """Return whether leg angles are read from a walk folder: a folder or `path.csv`, no run."""
     return (log.is_dir() or log.name == PATH_CSV) and not is_recorded(log)
 
 
 def _without_offsets(described: RobotFile) -> RobotFile:
-    """Return the robot without leg signs and offsets: angles of a walked path are exact."""
+    """Return the robot with leg signs 1 and leg offsets 0: angles in a walk folder are exact."""
     robot = replace(described.robot, leg_offset=np.zeros(N_LEGS))
     return replace(described, robot=robot, leg_sign=(1,) * N_LEGS)

@@ -23,7 +23,7 @@ from zebro_lab.walk.path_band import read_draws
 
 @dataclass(frozen=True)
 class WalkedPath:
-    """The single path of a walk folder with all its columns, and its robot."""
+    """The single path of a walk folder with all its columns, and the robot that walked it."""
 
     path: WalkPath
     robot: Robot
@@ -35,7 +35,7 @@ class PredictionFile:
 
     Attributes:
         prediction: The predicted path with its draws and baselines.
-        source: Where it comes from.
+        source: Where the path comes from, as in its manifest; "unknown" if not stated.
         files: Files that were read.
         notes: Notes, one line each.
         walk: The single path with roll, pitch, legs and robot; None for a table of poses.
@@ -49,7 +49,7 @@ class PredictionFile:
 
 
 def read_prediction(path: Path) -> PredictionFile:
-    """Read a walk folder with its draws, or a table of poses, and compute the baselines.
+    """Read a walk folder (or its path.csv) with draws, and compute baselines; or read poses alone.
 
     Raises:
         ZebroLabError: The file is missing, or is not a path.
@@ -76,7 +76,7 @@ def read_prediction(path: Path) -> PredictionFile:
 
 
 def robot_of_walk(manifest: Mapping[str, Any]) -> Robot:
-    """Read the robot of a walk, without leg offsets: angles of a walked path are exact."""
+    """Construct the robot in a walk's manifest, with leg offsets 0: a walk's angles are exact."""
     described = manifest["settings"]["robot"]
     return Robot(
         hips=np.array(described["hips"]),
@@ -91,7 +91,10 @@ def robot_of_walk(manifest: Mapping[str, Any]) -> Robot:
 def _baselines(
     walked: WalkedPath, manifest: Mapping[str, Any]
 ) -> tuple[dict[str, Poses], tuple[str, ...]]:
-    """Compute the baselines for a walk's leg angles, with the described, not the fitted, legs."""
+    """Compute the baseline paths of a walk, by name; also return notes.
+
+    Fitted leg offsets in the manifest are subtracted: baselines have the robot's described legs.
+    """
     walk = walked.path
     found = (manifest["settings"].get("walks") or {}).get("leg_offset", 0.0)
     reference = SampledReference(walk.t - walk.t[0], walk.theta - np.asarray(found))

@@ -16,7 +16,7 @@ ToeName: TypeAlias = Literal["saturated", "peak", "bristle"]
 
 @dataclass(frozen=True)
 class BandRequest:
-    """Draws of a path, and what is unknown in each."""
+    """Options of the band of a path: draws, seed, threads, spread of leg offsets and start."""
 
     draws: Annotated[
         int,
@@ -40,7 +40,7 @@ class BandRequest:
     threads: Annotated[int, Option(min=1, help="Draws computed in parallel.")] = 2
 
     def __post_init__(self) -> None:
-        """Check the number of draws and the standard deviations."""
+        """Raise `SettingsError` for a single draw or a negative standard deviation."""
         if self.draws < 2 and self.draws != 0:
             raise SettingsError(f"{self.draws} draws make no band; ask for 200", key="--draws")
         if self.draws and any(sd < 0 for sd in (*self.start_sd, self.offset_sd_deg or 0.0)):
@@ -49,7 +49,7 @@ class BandRequest:
 
 @dataclass(frozen=True)
 class ModelRequest:
-    """Model, slip law and robot of a walk, and what is to be computed and drawn of it."""
+    """Options of model, slip law, robot, band and pictures, shared by `walk` and `predict`."""
 
     slip: Annotated[
         str | None,
@@ -86,7 +86,7 @@ class ModelRequest:
 
     @property
     def inputs(self) -> tuple[Path, ...]:
-        """Files and folders that are read, as named."""
+        """Paths given as `--slip` (if not `thesis`) and `--robot`, as written."""
         slip = () if self.slip in (None, "thesis") else (Path(self.slip),)
         return (*slip, *((self.robot,) if self.robot is not None else ()))
 
@@ -139,6 +139,6 @@ class PredictRequest:
 
     @property
     def inputs(self) -> tuple[Path, ...]:
-        """Files and folders that are read, as named."""
+        """Paths of the leg log, `--columns`, `--slip` and `--robot`, those given, as written."""
         columns = () if self.columns is None else (self.columns,)
         return (self.log, *columns, *self.model.inputs)

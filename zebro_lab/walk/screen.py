@@ -29,11 +29,11 @@ def run_and_report(run: Callable[[Watcher], Walked], folder: Path) -> None:
     """Run a stage with a progress bar and print the results.
 
     Args:
-        run: The stage.
-        folder: Walk folder that it writes.
+        run: The stage; given a watcher, it writes the folder and returns the walk.
+        folder: Walk folder that the stage writes.
 
     Raises:
-        Exit: The walk was stopped.
+        Exit: The walk was stopped (exit code 130).
     """
     try:
         with progress_bar() as watcher:
@@ -45,12 +45,12 @@ def run_and_report(run: Callable[[Watcher], Walked], folder: Path) -> None:
 
 
 def print_walk(console: Console, walked: Walked, out: Path) -> None:
-    """Print a finished walk.
+    """Print gait table, summary, slip and notes of a finished walk, and the files written.
 
     Args:
         console: Console to print to.
         walked: The finished walk.
-        out: The walk folder.
+        out: The walk folder, whose files are listed.
     """
     console.print(plain(f"SIMULATED walk: {walked.title}, dt {walked.dt:g} s"))
     if isinstance(walked.reference, CyclicReference):
@@ -65,7 +65,7 @@ def print_walk(console: Console, walked: Walked, out: Path) -> None:
 
 
 def summary_lines(summary: WalkSummary) -> list[str]:
-    """Format lines on end pose, speed, curvature, roll and pitch of a walk."""
+    """Format three lines: end pose; length, speed and radius; largest roll and pitch."""
     x, y, yaw = summary.end
     over = f"over {summary.strides} strides" if summary.strides else "over the whole walk"
     rate = f"yaw rate {np.degrees(summary.yaw_rate):.3f} deg/s"
@@ -83,10 +83,10 @@ def summary_lines(summary: WalkSummary) -> list[str]:
 
 
 def slip_lines(walked: Walked, summary: WalkSummary) -> list[str]:
-    """Format lines on the mean slip of the legs, and on contacts outside the tested loads.
+    """Format the mean slip speed, and a warning if over 1 % of contacts are below tested loads.
 
     Args:
-        walked: The walk with its slip law.
+        walked: The walk with its slip law; a law without tested loads is noted as assumed.
         summary: Summary of the walk.
     """
     lines = []
@@ -106,7 +106,7 @@ def slip_lines(walked: Walked, summary: WalkSummary) -> list[str]:
 
 
 def gait_table(reference: CyclicReference) -> Table:
-    """Return a table of a gait's parameters, one row per leg."""
+    """Return a table of a gait, a row per leg: angles [deg], times [s] and speeds [deg/s]."""
     title = f"the gait, with a cycle of {reference.period:.4g} s"
     numbers = (
         "touchdown\n[deg]", "lift-off\n[deg]", "ground\n[s]", "flight\n[s]", "ground\n[deg/s]",

@@ -22,13 +22,14 @@ def walk(request: WalkRequest, watcher: Watcher) -> Walked:
 
     Args:
         request: Gait, model, duration, band and output folder.
-        watcher: Receives progress.
+        watcher: Receives progress, and may request a stop.
 
     Returns:
         The walk with its notes.
 
     Raises:
-        ZebroLabError: A file or an option has an invalid value.
+        ZebroLabError: An option or file is invalid, the folder cannot be replaced, or a stop was
+            requested.
         ModelError: The gait is impossible, or the walk cannot be computed.
     """
     if request.duration is None:
@@ -61,15 +62,16 @@ def write_robot(file: Path, request: ModelRequest) -> Path:
     """Write the robot of a request as a commented `robot.toml`, as a template for editing.
 
     Args:
-        file: File to write.
-        request: Request that names the robot.
+        file: File to write; it must not exist.
+        request: Options `--robot` and `--arc-deg`; without them the thesis's robot is written.
 
     Returns:
         The file written.
 
     Raises:
-        AlreadyExists: The file exists.
-        SettingsError: The robot is described with invalid values.
+        AlreadyExists: The file to write exists.
+        NotFound: The file of `--robot` does not exist.
+        SettingsError: The robot file or the arc has an invalid value.
     """
     if file.exists():
         raise AlreadyExists(f"{file} exists already; edit it, or name another")

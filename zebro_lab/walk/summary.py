@@ -17,16 +17,16 @@ class WalkSummary:
 
     Attributes:
         duration: Duration of the walk [s].
-        end: x, y and yaw at the end [m, m, rad].
+        end: x, y and yaw of the last pose in the inertial frame [m, m, rad].
         length: Length of the path over the ground [m].
         strides: Number of whole strides that speed, yaw rate and radius are means over; 0 if there
             is none, and they are means over the whole walk.
-        speed: Speed along the curve [m/s].
+        speed: Mean speed along the circle through the poses between strides [m/s].
         yaw_rate: Mean yaw rate, positive to the left [rad/s].
-        radius: Radius of the curve, positive to the left; infinite for a straight walk [m].
-        largest_roll: Largest roll to either side [rad].
-        largest_pitch: Largest pitch to either side [rad].
-        mean_slip: Mean slip speed of legs in contact; NaN if the model has no slip [m/s].
+        radius: Mean radius of the circle [m], positive to the left; infinite for a straight walk.
+        largest_roll: Largest absolute roll [rad].
+        largest_pitch: Largest absolute pitch [rad].
+        mean_slip: Mean slip speed of legs in contact [m/s]; NaN without slip or contacts.
     """
 
     duration: float
@@ -42,7 +42,7 @@ class WalkSummary:
 
     @property
     def straight(self) -> bool:
-        """Whether the curvature is below `_STRAIGHT`."""
+        """Whether the absolute radius is at least 20 m."""
         return not abs(self.radius) < 1 / _STRAIGHT
 
 
@@ -81,16 +81,16 @@ def summarise(path: WalkPath) -> WalkSummary:
 
 
 def stride_poses(path: WalkPath) -> tuple[Array, int]:
-    """Find the poses between strides, at which the legs have completed a turn on average.
+    """Interpolate the poses between strides, where the mean leg angle completes a whole turn.
 
-    The first stride is the transient from standstill and is left out if there are others.
+    The first stride is the transient from standstill and is left out if there are several.
 
     Args:
         path: The walk.
 
     Returns:
-        Times and poses t, x, y, yaw, shape (m, 4), m >= 2, and the number of strides between
-        them; the first and last sample and 0 if the legs complete too few turns.
+        Columns t, x, y, yaw [s, m, m, rad], shape (m, 4), m >= 2, and the number of strides
+        m - 1; the first and last sample and 0 if the legs do not complete a turn.
     """
     turned = path.theta.mean(axis=1)
     turns = (np.maximum.accumulate(turned) - turned[0]) / (2 * np.pi)

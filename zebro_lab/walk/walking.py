@@ -28,19 +28,19 @@ MOST_STEPS: Final = 500_000
 
 @dataclass(frozen=True)
 class Walked:
-    """A finished walk.
+    """A computed walk with what it was computed from.
 
     Attributes:
-        path: The path.
-        reference: Leg angles that it was computed from.
-        described: The robot, as requested.
-        slip: Slip law of its legs; None for a model without slip.
+        path: Poses, leg angles, slip and forces over time.
+        reference: Leg angles that the path was computed from.
+        described: Parameters of the robot, as requested.
+        slip: Slip law of the legs; None for a model without slip.
         model: Name of the model.
-        dt: Time step [s].
-        title: Gait and model.
+        dt: Time step of the computation [s].
+        title: Gait or log, model and slip law, for titles.
         notes: Notes, one line each.
-        informed: Posterior of its legs and floor; None without fitted walks.
-        band: Paths with its unknown parameters drawn; None unless requested.
+        informed: Posterior of legs and floor that was used; None without fitted walks.
+        band: Paths with slip law, legs, floor and start drawn; None unless requested.
     """
 
     path: WalkPath
@@ -55,16 +55,16 @@ class Walked:
     band: Poses | None = None
 
     def delayed(self, delay: float) -> "Walked":
-        """Return the walk with a delay added to all times [s]."""
+        """Return a copy with `delay` [s] added to the times of path and band."""
         path = replace(self.path, t=self.path.t + delay)
         return replace(self, path=path, band=self.band and self.band.delayed(delay))
 
 
 def robot_of(request: ModelRequest) -> RobotFile:
-    """Return the robot of a request: from its file or the thesis's, with the requested arc.
+    """Return the robot of `--robot`, else the thesis's robot, with the arc `--arc-deg` if given.
 
     Raises:
-        NotFound: There is no such file.
+        NotFound: The `robot.toml` of the request does not exist.
         SettingsError: The file or the arc has an invalid value.
     """
     described = RobotFile() if request.robot is None else read_robot_file(request.robot)
@@ -92,15 +92,16 @@ def walk_with(
     """Compute the path of a robot from its leg angles, from time zero on.
 
     Args:
-        request: Model, slip law and options.
-        described: The robot.
-        reference: Leg angles over time.
+        request: Model, slip law, toe law and time step.
+        described: Parameters of the robot.
+        reference: Leg angles over time, from time zero on.
         duration: Duration of the walk [s].
         what: Name of the gait or log, for titles.
         direction: Side the gait turns to.
-        logs: Files of the leg log, by which a walk that was fitted is recognised.
-        angles_are_true: Whether the angles are exact, as those of a walked path, without offsets.
-        notes: Notes to add to, one line each.
+        logs: Files of the leg log, by whose hash a walk that was fitted is recognised.
+        angles_are_true: Whether the angles are exact, as in a walk folder: then only the floor of
+            fitted walks applies, not their leg offsets.
+        notes: Notes to begin with, one line each.
 
     Raises:
         SettingsError: The model needs a slip law and has none, or an option has an invalid value.
@@ -138,7 +139,7 @@ def _slip_for(model: WalkModel, text: str | None) -> tuple[NamedSlip | None, tup
 def _time_step(
     request: ModelRequest, model: WalkModel, duration: float, informed: InformedLegs | None
 ) -> float:
-    """Return the time step [s]; that with which its legs were fitted, if it is shorter."""
+    """Return `--dt` if given, else the model's time step [s]; at most `FINE.dt` for fitted legs."""
     dt = model.dt if request.dt is None else request.dt
     if informed is not None and request.dt is None:
         dt = min(dt, FINE.dt)
@@ -159,7 +160,7 @@ def _run(run: ModelRun, model: WalkModel, slip: NamedSlip | None) -> WalkPath:
 
 
 def _require_steps(duration: float, dt: float) -> None:
-    """Check that the duration is positive and the number of steps fits into memory."""
+    """Raise `SettingsError` unless the walk has more than 1 and at most `MOST_STEPS` steps."""
     if not (dt > 0 and duration > dt and np.isfinite(duration)):
         raise SettingsError(
             f"found {duration:g} s in steps of {dt:g} s; expected a step above 0 and a finite "

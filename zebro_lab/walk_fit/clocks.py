@@ -27,12 +27,13 @@ Clock: TypeAlias = Callable[[TrackFile, Legs, Robot], TrackFile]
 
 
 def checked_clock(slip: Slip) -> Clock:
-    """Return a clock function that raises if the motion shows that the clocks differ.
+    """Return a function that returns a track unchanged, or raises `DataError` if its clock differs.
 
-    A walk of constant speed does not determine the offset and is accepted.
+    The offset to a path predicted from the leg angles may be up to 0.5 s, or three standard
+    deviations if that is more. A walk of constant speed does not determine it and is accepted.
 
     Args:
-        slip: The rig's calibration, with which the walk is predicted.
+        slip: Slip law with which the path is predicted.
     """
 
     def check(track: TrackFile, legs: Legs, robot: Robot) -> TrackFile:
@@ -53,10 +54,12 @@ def checked_clock(slip: Slip) -> Clock:
 
 
 def estimated_clock_of(slip: Slip) -> Clock:
-    """Return a clock function that estimates a track's clock offset from the motion and adds it.
+    """Return a clock function that estimates a track's clock offset and adds it to its times.
+
+    The offset is estimated from the track and a path predicted from the leg angles.
 
     Args:
-        slip: The rig's calibration, with which the walk is predicted.
+        slip: Slip law with which the path is predicted.
     """
 
     def estimate(track: TrackFile, legs: Legs, robot: Robot) -> TrackFile:

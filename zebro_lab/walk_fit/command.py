@@ -47,7 +47,7 @@ def calibrate(request: CalibrationRequest, tracked: WalksRequest) -> None:
 
 
 def _fit_walks(tracked: WalksRequest, calibration: CalibrationRequest) -> None:
-    """Fit leg offsets and floor parameters to tracked walks, and print the results."""
+    """Fit leg offsets and floor parameters to tracked walks, write `walks/`, print the results."""
     from zebro_lab.terminal.progress import progress_bar
     from zebro_lab.walk_fit.screen import print_walks
     from zebro_lab.walk_fit.stage import calibrate_walks

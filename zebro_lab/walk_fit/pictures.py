@@ -16,9 +16,9 @@ def draw_walks(
     """Draw prior and posterior, and the errors of each left-out walk, as PNG files.
 
     Args:
-        folder: Folder to write into.
-        posterior: The posterior after walks.
-        left_out: Each walk predicted from a fit of the others, with its errors.
+        folder: Folder to write `walk_parameters.png` and `left_out.NAME.png` into.
+        posterior: The posterior of legs and floor.
+        left_out: Each walk predicted from a fit of the other walks, with the errors.
         simulated: Whether to append "(simulated)" to the titles.
     """
     from zebro_lab.plots import save

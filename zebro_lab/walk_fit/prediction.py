@@ -41,15 +41,15 @@ def fit_walks_on_file(
     """Fit legs and floor to walks of one robot, with the slip law at its posterior mean.
 
     Args:
-        walks: The walks.
-        slip: The rig's calibration.
+        walks: Tracked walks; the robot is that of the first.
+        slip: Slip law named by `--slip`.
         prior: Prior of legs and floor.
         rng: Random number generator.
         threads: Number of walks computed in parallel.
         progress: Called with the fraction done, 0 to 1 [-].
 
     Raises:
-        ModelError: There is no walk, or one diverged.
+        ModelError: `walks` is empty, or a walk diverged.
     """
     if not walks:
         raise InsufficientData("no walk to fit; name one or more with a track")
@@ -74,15 +74,18 @@ def judge_left_out(
     threads: int = 2,
     progress: Progress = lambda _: None,
 ) -> tuple[JudgedRun, ...]:
-    """Predict each walk from a fit of the others, and compute its errors and the baselines'.
+    """Predict each walk from a fit of the others, and compute errors of prediction and baselines.
 
     Args:
         fit: Fit of all walks.
-        walks: The walks; a single one is not predicted.
-        slip: The rig's calibration.
+        walks: The fitted walks, in the order of the fit; a single one is not predicted.
+        slip: Slip law of the fit.
         rng: Random number generator.
         threads: Number of walks computed in parallel.
         progress: Called with the fraction done, 0 to 1 [-].
+
+    Returns:
+        Errors of each walk, anchored at the first tracked pose; empty for a single walk.
 
     Raises:
         ModelError: A walk diverged.
@@ -96,7 +99,7 @@ def judge_left_out(
 
 
 def metrics_by_model(left_out: Sequence[JudgedRun]) -> dict[str, dict[str, dict[str, float]]]:
-    """Return the metrics of left-out walks, by walk, model and column."""
+    """Return metrics of left-out walks by walk, then model, then column of `left_out.csv`."""
     return {run.name: {row.name: metrics(row) for row in run.rows} for run in left_out}
 
 
@@ -109,15 +112,15 @@ def predict_from(
     index: int | None = None,
     threads: int = 2,
 ) -> PredictionFile:
-    """Predict a walk from a posterior, and by the baselines, without using its track.
+    """Predict path, band and baselines of a walk from its leg angles, without using its track.
 
     Args:
-        posterior: Posterior after other walks.
-        walk: The walk.
-        slip: The rig's calibration.
+        posterior: Posterior of legs and floor.
+        walk: The walk to predict.
+        slip: Slip law.
         rng: Random number generator.
-        index: The walk's index in the posterior if it was fitted, else None.
-        threads: Number of walks computed in parallel.
+        index: Index of the walk in the posterior if it was fitted, else None.
+        threads: Number of draws computed in parallel.
     """
     t = np.linspace(0.0, walk.duration, max(round(walk.duration / SAMPLING), 2) + 1)
     robot, angles = walk.robot.robot, middle(walk.legs)

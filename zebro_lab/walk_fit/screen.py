@@ -18,11 +18,11 @@ _LIKELY = 0.01  # probability from which on a case is printed
 
 
 def print_walks(console: Console, done: WalksCalibrated) -> None:
-    """Print a finished fit of walks.
+    """Print notes, parameters, wrongly mounted legs, quality and left-out walks of a fit.
 
     Args:
         console: Console to print to.
-        done: The finished fit.
+        done: The finished fit of the walks.
     """
     posterior = done.posterior
     if "sim:" in done.source:

@@ -33,8 +33,8 @@ class WalksCalibrated:
         posterior: The posterior of legs and floor.
         left_out: Each walk predicted from a fit of the others, with its errors; empty for a single
             walk.
-        folder: Folder that was written.
-        source: Where rig data and walks come from.
+        folder: The folder `walks/` that was written.
+        source: Sources of rig data and walks, joined by commas.
         notes: Notes, one line each.
     """
 
@@ -51,9 +51,9 @@ def calibrate_walks(
     """Fit legs and floor to walks, predict each from the others, and write `walks/`.
 
     Args:
-        request: Walks and settings.
-        calibration: Folder of the finished calibration, into which `walks/` is written, seed and
-            number of threads.
+        request: Run folders of the walks, robot, and whether to estimate clock offsets.
+        calibration: Options with the folder of the finished calibration, into which `walks/` is
+            written, seed and number of threads.
         watcher: Receives progress.
 
     Raises:
@@ -90,7 +90,7 @@ def calibrate_walks(
 def _fit(
     request: CalibrationRequest, slip: NamedSlip, walks: Sequence[WalkOnFile], watcher: Watcher
 ) -> tuple[WalkPosterior, tuple[JudgedRun, ...]]:
-    """Fit all walks, then predict each from a fit of the others."""
+    """Fit all walks; return the posterior, and each walk predicted from a fit of the others."""
     rng = np.random.default_rng(request.seed)
     fit = fit_walks_on_file(
         walks, slip, prior=WalkPrior(), rng=rng, threads=request.threads,

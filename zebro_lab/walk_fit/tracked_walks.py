@@ -35,11 +35,11 @@ class WalkOnFile:
     """A tracked walk as read from files.
 
     Attributes:
-        name: Name of its folder.
-        robot: The robot that walked.
-        legs: Its leg angles from time zero on.
+        name: Name of the folder of the walk, with a number if other walks have the same.
+        robot: Parameters of the robot that walked.
+        legs: Leg angles from time zero on.
         track: The track, in the same time base; poses outside the log's time range are dropped.
-        source: "real", "sim:what", "unknown"; both if log and track differ.
+        source: Source of leg log and track; both, joined by a comma, if they differ.
         files: Every file read, those of the leg log first.
         notes: Notes, one line each.
         tilt: Roll and pitch from the run's IMU, in the same time base; None without an IMU.
@@ -56,26 +56,26 @@ class WalkOnFile:
 
     @property
     def tracked(self) -> TrackedWalk:
-        """The walk as input of `model.bayes.walks`."""
+        """The walk as input of a fit: leg angles, tracked poses with covariance, roll and pitch."""
         poses = self.track.poses
         states = np.column_stack([poses.position, poses.yaw])
         return TrackedWalk(self.name, self.legs, poses.t, states, self.track.covariance, self.tilt)
 
     @property
     def duration(self) -> float:
-        """Duration of its leg log [s]."""
+        """Duration of the leg log [s]."""
         return float(self.legs.t[-1])
 
 
 def read_walks(
     folders: Sequence[Path], *, robot: Path | None = None, clock: Clock | None = None
 ) -> list[WalkOnFile]:
-    """Read tracked walks of one robot; walks with equal folder names get a number.
+    """Read tracked walks of one robot, copies only once; equal folder names get a number.
 
     Args:
         folders: Folder of each walk, as for `read_walk_on_file`.
-        robot: A `robot.toml` in place of those in the folders.
-        clock: Shifts each track to its leg log's clock; None to keep the track's times.
+        robot: A `robot.toml` to use instead of those in the folders.
+        clock: Shifts each track to the clock of its leg log; None to keep the track's times.
 
     Raises:
         ZebroLabError: As in `read_walk_on_file`; or the walks are of two robots.
@@ -104,18 +104,18 @@ def _content(walk: WalkOnFile) -> str:
 def read_walk_on_file(
     folder: Path, *, robot: Path | None = None, clock: Clock | None = None
 ) -> WalkOnFile:
-    """Read a tracked walk.
+    """Read leg angles, track, robot and IMU tilt of a tracked walk.
 
     Args:
-        folder: A run folder, or a folder with a leg log `legs.csv`; with `track/track.csv` and
-            optionally a `robot.toml` in it.
-        robot: A `robot.toml` in place of the folder's.
+        folder: A run folder, or one with a leg log such as `legs.csv`; with `track/track.csv` and
+            optionally a `robot.toml` (else the thesis's robot) in it.
+        robot: A `robot.toml` to use instead of the folder's.
         clock: Shifts the track to the leg log's clock; None to keep the track's times.
 
     Raises:
         NotFound: There is no leg log or no track.
-        DataError: One of them cannot be read, the track has no headings or covariance, or too
-            few of its poses lie within the log's time range.
+        DataError: A file cannot be read, the track has no headings or covariance, too few of its
+            poses lie within the log's time range, or `clock` rejects it.
     """
     log_file = _legs_of(folder)
     track_file = settle(folder / TRACK) / TRACK_CSV
@@ -147,7 +147,10 @@ def read_walk_on_file(
 def _tilt(
     folder: Path, start: float, end: float
 ) -> tuple[MeasuredTilt | None, tuple[Path, ...], tuple[str, ...]]:
-    """Read roll and pitch from a run's IMU from `start` to `end` [s]; also files and notes."""
+    """Read roll and pitch of a run's IMU from `start` to `end` [s], with time zero at `start`.
+
+    Returns None without an IMU or with too few data; and the files read, and notes.
+    """
     measured = read_recorded_tilt(folder) if is_recorded(folder) else None
     if measured is None:
         return None, (), ()
@@ -174,7 +177,10 @@ def _legs_of(folder: Path) -> Path:
 
 
 def _inside(end: float, track: TrackFile) -> tuple[TrackFile, tuple[str, ...]]:
-    """Drop the poses outside the leg log's time range, zero to `end` [s]; also return notes."""
+    """Drop the poses outside the leg log's time range, zero to `end` [s]; also return notes.
+
+    Raises `DataError` if fewer than `FEWEST_POSES` are left.
+    """
     t = track.poses.t
     keep = (t >= 0) & (t <= end)
     if keep.sum() < FEWEST_POSES:
@@ -191,7 +197,7 @@ def _inside(end: float, track: TrackFile) -> tuple[TrackFile, tuple[str, ...]]:
 
 
 def _require_states(track: TrackFile) -> None:
-    """Check that a track has headings and a covariance."""
+    """Raise `DataError` unless a track has headings and positive definite covariances."""
     if not track.poses.has_yaw:
         raise DataError("has no headings, which a fit of walks needs", file=track.file)
     if not np.all(np.linalg.eigvalsh(track.covariance) > 0):

@@ -22,17 +22,17 @@ SLIPS = 200  # points of a drawn curve
 def compare_calibrations(
     first: Path, second: Path, *, names: tuple[str, str], rng: np.random.Generator
 ) -> Comparison:
-    """Compare two calibrations.
+    """Compare two calibrations: peak traction and slope at up to 3 loads; legs and floor if fitted.
 
     Args:
         first: A calibration folder.
         second: Another calibration folder.
-        names: Names to show for them.
+        names: Names to show for the first and the second.
         rng: Random number generator.
 
     Raises:
-        ZebroLabError: One cannot be read, they have different slip definitions, or their tested
-            loads do not overlap.
+        ZebroLabError: A calibration cannot be read, slip definitions differ, or the tested loads
+            do not overlap.
     """
     slips = (parse_slip(str(first)), parse_slip(str(second)))
     curves = tuple(_curve_of(slip) for slip in slips)
@@ -79,7 +79,7 @@ def _require_one_definition(curves: tuple[SlipCurve, ...], second: Path) -> None
 
 
 def _common_loads(curves: tuple[SlipCurve, ...], second: Path) -> Array:
-    """Return the lowest, the middle and the highest load that both were tested at [N]."""
+    """Return lowest, middle and highest load [N] of the range that both were tested in."""
     low = max(curve.load_range[0] for curve in curves)
     high = min(curve.load_range[1] for curve in curves)
     if low > high:
@@ -93,7 +93,7 @@ def _common_loads(curves: tuple[SlipCurve, ...], second: Path) -> Array:
 
 
 def _features(curve: SlipCurve, values: Array, load: float, limit: float) -> tuple[Array, Array]:
-    """Return the largest traction up to a slip limit, and the slope at zero, per draw [N]."""
+    """Compute largest traction up to slip `limit`, and slope at zero slip [N], each (n,)."""
     columns, n = values.T, len(values)
     peak = np.minimum(curve.law.peak_slip(load, columns), limit)
     largest = curve.law.force(peak, load, columns)
@@ -119,7 +119,10 @@ def _band(curves: tuple[SlipCurve, ...], drawn: list[Array], load: float, limit:
 def _walk_quantities(
     slips: tuple[NamedSlip, ...], rng: np.random.Generator
 ) -> tuple[list[Quantity], list[str]]:
-    """Compare the posteriors after walks if both calibrations have one; also return notes."""
+    """Return the parameters of legs and floor that walks constrain in either calibration.
+
+    Without a fit of walks in both, the list is empty; there is a note if only one has a fit.
+    """
     one, other = (slip.walks for slip in slips)
     if one is None or other is None:
         return [], [

@@ -26,11 +26,11 @@ _SHOWN_DRAWS = 40
 
 @styled
 def overlay(compared: Comparison, differences: Sequence[Difference], *, simulated: bool) -> Figure:
-    """Draw both overlaid, and below the difference of each quantity relative to its interval.
+    """Draw both curves or paths overlaid, and below the differences relative to their intervals.
 
     Args:
         compared: The comparison.
-        differences: The difference of each of its quantities.
+        differences: Difference of each quantity of the comparison, in the same order.
         simulated: Whether to append "(simulated)" to the title.
 
     Returns:
@@ -78,7 +78,7 @@ def _draw_paths(axes: Axes, runs: Sequence[RunPaths], names: Sequence[str]) -> N
 
 
 def _draw_differences(axes: Axes, compared: Comparison, differences: Sequence[Difference]) -> None:
-    """Draw each difference in units of the half width of its 90 % interval."""
+    """Draw each difference, a row per quantity, over half the width of its 90 % interval."""
     for i, each in enumerate(differences):
         half = 0.5 * (each.high - each.low) or 1.0
         ends = np.array([each.low, each.high]) / half

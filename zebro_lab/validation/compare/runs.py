@@ -24,7 +24,7 @@ _SUMMARY = (("speed", "mm/s", 1e3), ("yaw rate", "deg/s", 180 / np.pi), ("curvat
 
 
 def is_walked(folder: Path) -> bool:
-    """Return whether a folder has a track or a prediction with draws."""
+    """Return whether a folder has `track/track.csv` or `prediction/draws.npz`."""
     track, prediction = settle(folder / TRACK), settle(folder / PREDICTION)
     return (track / TRACK_CSV).is_file() or (prediction / DRAWS).is_file()
 
@@ -32,16 +32,17 @@ def is_walked(folder: Path) -> bool:
 def compare_runs(
     first: Path, second: Path, *, names: tuple[str, str], rng: np.random.Generator
 ) -> Comparison:
-    """Compare two runs by their tracks, by their predictions, or both.
+    """Compare speed, yaw rate and curvature of two runs, by tracks, predictions, or both.
 
     Args:
         first: A run folder with `track/`, or with `prediction/` that has draws.
         second: Another run folder.
-        names: Names to show for them.
+        names: Names to show for the first and the second.
         rng: Random number generator.
 
     Raises:
-        ZebroLabError: A file cannot be read, or one has only a track and the other has none.
+        ZebroLabError: A file cannot be read, or the runs have neither tracks with headings nor
+            draws in common.
     """
     runs = (_Run(first), _Run(second))
     quantities = [
@@ -66,7 +67,7 @@ def compare_runs(
 
 
 class _Run:
-    """Track and prediction of a run; None for what it does not have."""
+    """Track and prediction draws of a run; None for the one that the run does not have."""
 
     def __init__(self, folder: Path) -> None:
         settle(folder / TRACK)
@@ -89,7 +90,10 @@ class _Run:
             raise NotFound(f"{folder} holds neither {TRACK}/{TRACK_CSV} nor {PREDICTION}/{DRAWS}")
 
     def tracks(self, rng: np.random.Generator) -> Array | None:
-        """Draw tracks with the track's noise and summarise each, shape (n, 3)."""
+        """Draw `TRACKS` tracks with the track's covariance, and compute speed, yaw rate, curvature.
+
+        Returns an array of shape (TRACKS, 3), see `_summaries`; None without track or headings.
+        """
         if self.track is None or not self.track.poses.has_yaw:
             return None
         poses, covariance = self.track.poses, self.track.covariance
@@ -100,7 +104,10 @@ class _Run:
         return _summaries(poses.t, poses.states + noise)
 
     def predicted(self) -> Array | None:
-        """Summarise each predicted path, at the track's times if there is one, shape (n, 3)."""
+        """Compute speed, yaw rate and curvature of each drawn path, shape (n, 3), see `_summaries`.
+
+        Poses are interpolated at the track's times, else every second; None without draws.
+        """
         if self.band is None:
             return None
         t = np.arange(self.band.t[0], self.band.t[-1], EVERY)
@@ -112,17 +119,17 @@ class _Run:
 
     @property
     def paths(self) -> RunPaths:
-        """Track and band, both started at the origin along x."""
+        """Track, moved to start at the origin along x, and drawn paths, unchanged."""
         track = None if self.track is None else _from_origin(self.track.poses)
         return RunPaths(track, self.band)
 
 
 def _summaries(t: Array, states: Array) -> Array:
-    """Return speed [m/s], yaw rate [rad/s] and curvature [1/m] of each path, shape (n, 3).
+    """Compute mean speed [m/s], yaw rate [rad/s] and curvature [1/m] of paths, shape (n, 3).
 
     Args:
         t: Times, shape (k,) [s].
-        states: x, y, yaw, shape (n, k, 3).
+        states: x, y, yaw of n paths, shape (n, k, 3) [m, m, rad].
     """
     rows = []
     for state in states:

@@ -28,7 +28,7 @@ class Compared:
     """A finished comparison.
 
     Attributes:
-        comparison: The quantities of both.
+        comparison: Quantities of the first and the second, with draws.
         differences: Difference of each quantity, the second minus the first.
     """
 
@@ -40,8 +40,8 @@ def compare(request: CompareRequest) -> Compared:
     """Compare two calibrations or two runs and write the comparison folder.
 
     Raises:
-        ZebroLabError: The two are of different kinds, cannot be read, or have no quantity in
-            common.
+        ZebroLabError: The two are of different kinds, the same, cannot be read, have no quantity
+            in common, or the folder cannot be replaced.
     """
     require_replaceable(request.out, COMPARISON, inputs=(request.first, request.second))
     rng = np.random.default_rng(request.seed)
@@ -71,7 +71,7 @@ def _kind(path: Path) -> str:
 
 
 def _names(first: Path, second: Path) -> tuple[str, str]:
-    """Return the shortest distinct names: the last parts of their paths."""
+    """Return the shortest distinct last parts of two paths; raise if the paths are equal."""
     one, other = shortest_distinct([first.absolute(), second.absolute()])
     if one == other:
         raise SettingsError(f"{first} is compared with itself; name another")

@@ -13,12 +13,12 @@ from model.slip.law import Array
 
 @dataclass(frozen=True)
 class Quantity:
-    """A quantity that both have.
+    """A quantity of two calibrations or runs, with its uncertainty as draws.
 
     Attributes:
         name: Name of the quantity.
-        unit: Its unit as shown; empty for none.
-        draws: Draws of the first's and of the second's, each of shape (n,).
+        unit: Unit of the draws, as shown; empty for a pure number.
+        draws: Draws for the first and for the second, each of shape (n,).
     """
 
     name: str
@@ -26,12 +26,12 @@ class Quantity:
     draws: tuple[Array, Array]
 
     def quantiles(self, which: int) -> tuple[float, float, float]:
-        """Return median, 5 % and 95 % quantile of the first (0) or of the second (1)."""
+        """Return median, 5 % and 95 % quantile of the draws for the first (0) or second (1)."""
         low, median, high = np.quantile(self.draws[which], [0.05, 0.5, 0.95])
         return float(median), float(low), float(high)
 
     def difference(self, rng: np.random.Generator) -> Difference:
-        """Return the difference, the second minus the first."""
+        """Compute median, 90 % interval and sign probability of the second minus the first."""
         return difference(*self.draws, rng=rng)
 
 
@@ -41,8 +41,8 @@ class Curve:
 
     Attributes:
         slip: Slip ratios, shape (n,) [-].
-        load: Normal force [N].
-        bands: 5, 50 and 95 % quantile of traction, of the first and of the second, (2, 3, n) [N].
+        load: Normal force of both curves [N].
+        bands: Traction [N], shape (2, 3, n): first and second; 5, 50 and 95 % quantile.
     """
 
     slip: Array
@@ -55,8 +55,8 @@ class RunPaths:
     """Track and prediction of one run for the picture, started at the origin along x.
 
     Attributes:
-        track: Its track; None if it has none.
-        band: Its predicted paths; None if it has none.
+        track: Tracked poses of the run; None without a track.
+        band: Predicted paths of the run; None without draws.
     """
 
     track: Poses | None
@@ -65,16 +65,16 @@ class RunPaths:
 
 @dataclass(frozen=True)
 class Comparison:
-    """Two calibrations or two runs, compared.
+    """Comparison of two calibrations or two runs.
 
     Attributes:
         kind: "calibrations" or "runs".
-        names: Names to show for them.
-        quantities: Quantities that both have.
-        curves: Their slip curves, one per load; empty for runs.
-        paths: Their paths; empty for calibrations.
-        definition: Slip definition; empty for runs.
-        source: Where the data come from.
+        names: Names to show for the first and the second.
+        quantities: Quantities that both have, with draws.
+        curves: Bands of both slip curves, one item per load; empty for runs.
+        paths: Paths of the first and of the second run; empty for calibrations.
+        definition: Slip definition of the curves; empty for runs.
+        source: Sources of both, joined by commas.
         files: Files that were read.
         notes: Notes, one line each.
     """

@@ -9,23 +9,24 @@ from model.robot import N_LEGS, Robot
 from model.slip.law import Array
 from model.walk.traction import TractionTable
 
-ARCS = (np.pi / 2, np.radians(359.0))  # a robot's legs are arcs of these angles
+ARCS = (np.pi / 2, np.radians(359.0))  # least and largest angle of a leg's arc [rad]
 
 
 @dataclass(frozen=True)
 class LegState:
-    """Draws of what differs from the description of the robot and the slip law.
+    """m draws of what differs from the description of the robot and the calibrated slip law.
 
-    They come from a prior or a posterior.
+    The draws come from a prior or a posterior.
 
     Attributes:
-        offset: Further offset of each leg, shape (m, 6) [rad].
-        grip: Factor on traction, shape (m,) [-].
+        offset: Offset added to each leg's `Robot.leg_offset`, shape (m, 6) [rad].
+        grip: Factor on traction at large slip, shape (m,) [-].
         stiffness: Factor on slip stiffness, shape (m,) [-].
-        fall: Factor on the post-peak drop, shape (m,) [-].
-        arc: Further angle of the legs' arc, shape (m,) [rad].
-        steering: Constant curvature added to the path, whatever the legs do, shape (m,) [rad/m].
-        stride: Relative error of distance: legs that are longer or shorter, shape (m,) [-].
+        fall: Factor on the post-peak drop; 0 for none, shape (m,) [-].
+        arc: Angle added to `Robot.leg_arc`, shape (m,) [rad].
+        steering: Constant curvature added to the path, whatever the legs do; positive to the left,
+            shape (m,) [rad/m].
+        stride: Relative error of distance: positive lengthens the path, shape (m,) [-].
     """
 
     offset: Array
@@ -42,7 +43,7 @@ class LegState:
 
     @staticmethod
     def of_prior(n: int, *, offset_sd: float, rng: np.random.Generator) -> "LegState":
-        """Draw leg offsets from a uniform prior, with every other unknown at its described value.
+        """Draw leg offsets from a uniform prior about zero; every other unknown changes nothing.
 
         An encoder's zero known to one count is uniform over it: standard deviation count/sqrt(12).
 
@@ -58,12 +59,12 @@ class LegState:
 
 
 def robot_in(robot: Robot, state: LegState, i: int) -> Robot:
-    """Return the robot with the leg offsets and arc of one draw.
+    """Return the robot with one draw's leg offsets and arc angle added to its own.
 
     Args:
         robot: The robot as described.
         state: Draws of the legs' state.
-        i: Index of the draw.
+        i: Index of the draw; its arc is clipped to `ARCS`.
     """
     return replace(
         robot,
@@ -91,7 +92,7 @@ def law_in(table: TractionTable, state: LegState, i: int) -> TractionTable:
 def scaled_table(
     table: TractionTable, *, grip: float, stiffness: float, fall: float = 1.0
 ) -> TractionTable:
-    """Scale a law's traction and, independently, its slip stiffness and its post-peak drop.
+    """Scale a law's traction and, independently, its slip stiffness and post-peak drop.
 
     A rig measures the post-peak drop under legs that slide for seconds. A walking leg lifts off
     earlier, and its slip is a velocity as much as a ratio. The post-peak drop is therefore the part
@@ -100,8 +101,8 @@ def scaled_table(
     Args:
         table: The law.
         grip: Factor on traction at large slip [-].
-        stiffness: Factor on traction per slip at zero slip [-].
-        fall: Factor on the post-peak drop; there is none at zero [-].
+        stiffness: Factor on traction per slip at zero slip, whatever `grip` is [-].
+        fall: Factor on the post-peak drop, before `grip`; 0 for none [-].
     """
     table = _with_fall(table, fall)
     shrink = stiffness / grip
@@ -115,6 +116,7 @@ def scaled_table(
 
 
 def _with_fall(table: TractionTable, fall: float) -> TractionTable:
+    """Multiply the drop of traction below its peak, at slips beyond the peak's, by `fall`."""
     top = table.phi.max(axis=1)
     beyond = np.arange(table.phi.shape[1]) >= table.phi.argmax(axis=1)[:, None]
     phi = np.where(beyond, top[:, None] - fall * (top[:, None] - table.phi), table.phi)

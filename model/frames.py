@@ -12,25 +12,28 @@ from model.slip.law import Array
 
 
 def rotation_x(angle: ArrayLike) -> Array:
-    """Return the rotation about x, R_r of Eq. (3-7), shape (..., 3, 3)."""
+    """Return matrices (..., 3, 3) of rotation by angles (...) [rad] about x, R_r of Eq. (3-7)."""
     c, s, one, zero = _entries(angle)
     return _matrix([[one, zero, zero], [zero, c, -s], [zero, s, c]])
 
 
 def rotation_y(angle: ArrayLike) -> Array:
-    """Return the rotation about y, R_p of Eq. (3-7) and R_theta of Eq. (3-10)."""
+    """Return matrices (..., 3, 3) of rotation by angles (...) [rad] about y.
+
+    R_p of Eq. (3-7) and R_theta of Eq. (3-10).
+    """
     c, s, one, zero = _entries(angle)
     return _matrix([[c, zero, s], [zero, one, zero], [-s, zero, c]])
 
 
 def rotation_z(angle: ArrayLike) -> Array:
-    """Return the rotation about z, R_y of Eq. (3-7)."""
+    """Return matrices (..., 3, 3) of rotation by angles (...) [rad] about z, R_y of Eq. (3-7)."""
     c, s, one, zero = _entries(angle)
     return _matrix([[c, -s, zero], [s, c, zero], [zero, zero, one]])
 
 
 def attitude(roll: ArrayLike, pitch: ArrayLike, yaw: ArrayLike) -> Array:
-    """Return the body's rotation in the inertial frame, Rz(yaw) Ry(pitch) Rx(roll).
+    """Return the rotation from body to inertial frame, Rz(yaw) Ry(pitch) Rx(roll), (..., 3, 3).
 
     Args:
         roll: Roll [rad].
@@ -41,11 +44,11 @@ def attitude(roll: ArrayLike, pitch: ArrayLike, yaw: ArrayLike) -> Array:
 
 
 def thesis_attitude(roll: ArrayLike, pitch: ArrayLike, yaw: ArrayLike) -> Array:
-    """Return the thesis's rotation, Rx(roll) Ry(pitch) Rz(yaw), Eq. (3-7).
+    """Return the Thesis's rotation, Rx(roll) Ry(pitch) Rz(yaw), Eq. (3-7), shape (..., 3, 3).
 
-    Its roll turns the robot about an axis fixed to the ground: for a robot that heads along y it is
-    a pitch. The angles agree with those of `attitude`, to first order, only for a robot that heads
-    along x.
+    The Thesis's roll turns the robot about an axis fixed to the ground: for a robot that heads
+    along y it is a pitch. The angles agree with those of `attitude`, to first order, only for a
+    robot that heads along x.
 
     Args:
         roll: Roll [rad].
@@ -114,9 +117,11 @@ def hip_from_contact(phi: float, contact: float, *, roll: float, radius: float) 
 
 
 def _entries(angle: ArrayLike) -> tuple[Array, Array, Array, Array]:
+    """Return cosine, sine, ones and zeros of the shape of the angles [rad]."""
     a = np.asarray(angle, dtype=float)
     return np.cos(a), np.sin(a), np.ones_like(a), np.zeros_like(a)
 
 
 def _matrix(rows: list[list[Array]]) -> Array:
+    """Stack three rows of three arrays (...) to matrices (..., 3, 3)."""
     return np.stack([np.stack(row, axis=-1) for row in rows], axis=-2)

@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 Numbers = float | NDArray[np.floating]
 
-HIP, ROLLING, TOE = 0, 1, 2  # leg states
+HIP, ROLLING, TOE = 0, 1, 2  # part of a leg that is lowest: its hip, its arc or its toe
 
 
 def wrap_angle(angle: Numbers) -> Numbers:
@@ -29,7 +29,7 @@ def wrap_angle(angle: Numbers) -> Numbers:
 
 
 def thesis_tilt(roll: Numbers, pitch: Numbers, yaw: Numbers) -> Numbers:
-    r"""Compute the slope of the legs' planes along the heading, as the thesis has it [-].
+    r"""Compute the slope of the legs' planes along the heading by the Thesis's angles [-].
 
     .. math::
         X = \frac{\tan\theta_r \sin\theta_y}{\cos\theta_p} - \tan\theta_p \cos\theta_y
@@ -54,7 +54,7 @@ def thesis_tilt_rate(
     pitch_rate: Numbers,
     yaw_rate: Numbers,
 ) -> Numbers:
-    r"""Compute the rate of `thesis_tilt`, the numerator of Eq. (3-24) [1/s].
+    r"""Compute the time derivative of `thesis_tilt`, the numerator of Eq. (3-24) [1/s].
 
     .. math::
         \dot X = \dot\theta_r \frac{\sin\theta_y}{\cos\theta_p} (1 + \tan^2\theta_r)
@@ -98,7 +98,7 @@ def thesis_lowest_angle(theta: Numbers, tilt: Numbers) -> Numbers:
         tilt: X of `thesis_tilt` [-].
 
     Returns:
-        phi_min in (-pi, pi].
+        phi_min in (-pi, pi] [rad].
     """
     return wrap_angle(np.pi / 2 - theta + np.arctan(tilt))
 
@@ -112,7 +112,7 @@ def thesis_lowest_angle_rate(leg_speed: Numbers, tilt: Numbers, tilt_rate: Numbe
     Args:
         leg_speed: Rate of the leg angle [rad/s].
         tilt: Tilt X, `thesis_tilt` [-].
-        tilt_rate: Its rate, `thesis_tilt_rate` [1/s].
+        tilt_rate: Rate of the tilt, `thesis_tilt_rate` [1/s].
     """
     return tilt_rate / (1 + tilt**2) - leg_speed
 
@@ -123,8 +123,8 @@ def lowest_angle(theta: Numbers, roll: Numbers, pitch: Numbers) -> Numbers:
     .. math::
         \varphi = \frac{\pi}{2} - \theta - \arctan\frac{\tan\theta_p}{\cos\theta_r}
 
-    It does not depend on the heading, as the thesis's does (`thesis_lowest_angle`): there the roll
-    angle turns about an axis fixed to the ground. Written with the arctangent of two arguments, it
+    phi does not depend on the heading, but `thesis_lowest_angle` does: there the roll angle turns
+    about an axis fixed to the ground. Written with the arctangent of two arguments, the equation
     holds upside down too; with the leg's plane level no point is lowest.
 
     Args:
@@ -158,8 +158,8 @@ def plane_cosine(roll: Numbers, pitch: Numbers) -> Numbers:
 def leg_state(phi: Numbers, toe_beyond: float = 0.0) -> NDArray[np.int_] | int:
     """Classify the part of a leg that would touch the ground, section 3-4-1: HIP, ROLLING or TOE.
 
-    Beyond the arc's ends the nearer one is the lower one; for the thesis's half circle that is the
-    toe for phi from -pi/2 to 0.
+    Beyond the arc's ends the nearer end is the lower one; for the Thesis's half circle that is the
+    toe for phi from -pi/2 to 0, and the hip below -pi/2.
 
     Args:
         phi: Angle of the circle's lowest point, in (-pi, pi] [rad].
@@ -175,11 +175,13 @@ def leg_state(phi: Numbers, toe_beyond: float = 0.0) -> NDArray[np.int_] | int:
 
 
 def contact_angle(phi: Numbers, toe_beyond: float = 0.0) -> Numbers:
-    """Compute phi of the leg's lowest point: on its arc, its toe or its hip [rad].
+    """Compute phi of a leg's lowest point: `phi` itself on the arc, -toe_beyond or pi [rad].
+
+    -toe_beyond is the toe and pi the hip; which of them is lowest is decided as in `leg_state`.
 
     Args:
         phi: Angle of the circle's lowest point, in (-pi, pi] [rad].
-        toe_beyond: Angle of the arc beyond a half circle [rad].
+        toe_beyond: Angle of the arc beyond a half circle; negative for a shorter arc [rad].
     """
     between = -(np.pi + toe_beyond) / 2
     toe = (phi < -toe_beyond) & (phi >= between)
@@ -187,7 +189,7 @@ def contact_angle(phi: Numbers, toe_beyond: float = 0.0) -> Numbers:
 
 
 def contact_in_body(theta: Numbers, contact: Numbers, radius: float) -> tuple[Numbers, Numbers]:
-    r"""Compute a leg's point from its hip in the body frame, Eq. (3-12) and (3-15) turned by theta.
+    r"""Compute the vector from a hip to a point of its leg in body axes, Eq. (3-12) and (3-15).
 
     .. math::
         x = r\,(\cos\theta + \cos(\theta + \varphi_c)), \qquad
@@ -231,14 +233,14 @@ def hip_height(phi: Numbers, radius: float, toe_beyond: float = 0.0) -> Numbers:
 def hip_height_rate(
     phi: Numbers, phi_rate: Numbers, radius: float, toe_beyond: float = 0.0
 ) -> Numbers:
-    r"""Compute the rate of `hip_height`, Eq. (3-38) without its factor cos(roll) [m/s].
+    r"""Compute the time derivative of `hip_height`, Eq. (3-38) without its factor cos(roll) [m/s].
 
     .. math::
         \dot z_h = -r \dot\varphi\,(\sin\varphi + \sin(\varphi - \varphi_c))
 
     Args:
         phi: Angle of the lowest point of the leg's full circle [rad].
-        phi_rate: Its rate [rad/s].
+        phi_rate: Rate of phi [rad/s].
         radius: Radius of the leg's arc [m].
         toe_beyond: Angle of the arc beyond a half circle [rad].
     """
@@ -248,7 +250,7 @@ def hip_height_rate(
 def hip_height_acceleration(
     phi: Numbers, phi_rate: Numbers, radius: float, toe_beyond: float = 0.0
 ) -> Numbers:
-    r"""Compute the second rate of `hip_height` at constant speed of phi, Eq. (3-39) [m/s2].
+    r"""Compute the second derivative of `hip_height` at constant rate of phi, Eq. (3-39) [m/s2].
 
     .. math::
         \ddot z_h = -r \dot\varphi^2\,(\cos\varphi + [\text{not rolling}]\cos(\varphi - \varphi_c))
@@ -257,7 +259,7 @@ def hip_height_acceleration(
 
     Args:
         phi: Angle of the lowest point of the leg's full circle [rad].
-        phi_rate: Its rate [rad/s].
+        phi_rate: Rate of phi [rad/s].
         radius: Radius of the leg's arc [m].
         toe_beyond: Angle of the arc beyond a half circle [rad].
     """

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""How a long computation reports progress and is asked to stop."""
+"""Protocol by which a long computation reports progress and is asked to stop."""
 
 from typing import Protocol
 

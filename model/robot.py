@@ -11,7 +11,7 @@ from model.slip.law import Array
 N_LEGS = 6
 LEFT = (0, 2, 4)  # indices of legs 1, 3, 5
 RIGHT = (1, 3, 5)  # indices of legs 2, 4, 6
-GRAVITY = 9.81  # the listing's [m/s2]
+GRAVITY = 9.81  # as in the Thesis's listings [m/s2]
 
 HIP_X, HIP_Y = 0.097, 0.1156  # Listing A.1; the text's w/2 puts hip_y at 0.1256 m
 
@@ -25,21 +25,21 @@ def _source_hips() -> Array:
 class Robot:
     """A rigid body on six massless legs, each an arc of a circle from its hip to its toe.
 
-    The defaults are the thesis's robot, Listing A.1.
+    The defaults are the Thesis's robot, Listing A.1.
 
     Attributes:
-        hips: Hip positions in the body frame by leg, shape (6, 3) [m].
-        leg_radius: Radius of the arc [m].
-        leg_arc: Angle of the arc; pi in the thesis's model, about 200 degrees on its robot [rad].
+        hips: Hip positions in the body frame, rows legs 1 to 6, shape (6, 3) [m].
+        leg_radius: Radius of the legs' arcs [m].
+        leg_arc: Angle of the arcs; pi in the Thesis's model, about 200 degrees on its robot [rad].
         mass: Mass of the body [kg].
         body_size: Length, width and height of the body, shape (3,) [m].
-        inertia: Principal moments of inertia about x, y and z; those of a uniform cuboid of
-            `body_size` when None, Eq. (4-9) [kg m2].
-        leg_offset: Angle of each leg beyond the one it reports, shape (6,) [rad].
+        inertia: Principal moments of inertia about x, y and z; when None, the moments of a uniform
+            cuboid of `body_size`, Eq. (4-9) [kg m2].
+        leg_offset: True minus reported angle of each leg, shape (6,) [rad].
 
     Raises:
-        DomainError: A length, mass or inertia is not positive, the arc is out of range, or an array
-            has another shape or is not finite.
+        DomainError: A length, mass or inertia is not positive, the arc is below 90 or not below
+            360 degrees, or an array has another shape or is not finite.
     """
 
     hips: Array = field(default_factory=_source_hips)
@@ -51,7 +51,7 @@ class Robot:
     leg_offset: Array = field(default_factory=lambda: np.zeros(N_LEGS))
 
     def __post_init__(self) -> None:
-        """Check that masses and lengths are positive and that arrays have the expected shapes."""
+        """Check sizes, mass, inertia, arc and shapes; convert hips and offsets to float arrays."""
         for name, shape in (("hips", (N_LEGS, 3)), ("leg_offset", (N_LEGS,))):
             values = np.ascontiguousarray(getattr(self, name), dtype=float)
             _require_shape(name, values, shape)
@@ -73,7 +73,7 @@ class Robot:
 
     @property
     def principal_inertia(self) -> Array:
-        """Moments of inertia about the body's axes, shape (3,) [kg m2]."""
+        """Moments of inertia about x, y and z: `inertia`, or a cuboid's if None, (3,) [kg m2]."""
         return (
             cuboid_inertia(self.mass, self.body_size)
             if self.inertia is None
@@ -87,7 +87,7 @@ class Robot:
 
     @property
     def track(self) -> float:
-        """Distance between the left and right hips, averaged over the legs [m]."""
+        """Mean y of the left hips minus mean y of the right hips [m]."""
         y = self.hips[:, 1]
         return float(y[list(LEFT)].mean() - y[list(RIGHT)].mean())
 

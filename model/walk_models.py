@@ -31,14 +31,14 @@ class ModelRun:
 
     Attributes:
         robot: The robot.
-        reference: Its leg angles over time, from time zero on.
+        reference: Leg angles over time, from time zero on.
         slip: The slip law; None for a model without slip.
         duration: Time walked [s].
-        dt: Length of a step [s].
-        toe: Traction of a leg on its toe.
-        direction: Side to which the gait turns; only the thesis's model uses it.
-        legs: One draw of leg and floor parameters that differ from the description; only the
-            model "dynamics" uses it.
+        dt: Time step [s].
+        toe: Law of the traction of a leg on its toe; only the model "dynamics" uses it.
+        direction: Side to which the gait turns; only the Thesis's model uses it.
+        legs: Leg and floor parameters that differ from the description, of which the first draw is
+            used; None for no difference; only the model "dynamics" uses it.
     """
 
     robot: Robot
@@ -57,9 +57,9 @@ class WalkModel:
 
     Attributes:
         name: Name under which it is chosen.
-        slips: Whether it needs a slip law.
-        dt: Default length of its step [s].
-        run: Function that computes the walk.
+        slips: Whether the model needs a slip law.
+        dt: Default time step [s].
+        run: Function that computes the walk from its inputs.
     """
 
     name: str
@@ -71,16 +71,17 @@ class WalkModel:
 def baseline_paths(
     robot: Robot, reference: SampledReference, *, direction: Direction = "left", start: float = 0.0
 ) -> tuple[dict[str, Poses], tuple[str, ...]]:
-    """Compute the paths of leg angles by every baseline model.
+    """Compute the path of given leg angles by every baseline model.
 
     Args:
         robot: The robot.
-        reference: True leg angles from time zero on; all of them are walked.
-        direction: Side the gait turns to; only the thesis's model uses it.
-        start: Added to the paths' times [s].
+        reference: True leg angles from time zero on, walked to the last time.
+        direction: Side to which the gait turns; only the Thesis's model uses it.
+        start: Time added to the paths' times [s].
 
     Returns:
-        Paths by the models' names, and one line for each model that cannot walk these angles.
+        Paths by the models' names, and one line of text for each model that failed, which then has
+        no path.
     """
     duration = float(reference.t[-1])
     paths, notes = {}, []
@@ -98,6 +99,7 @@ def baseline_paths(
 
 
 def _dynamics(run: ModelRun) -> WalkPath:
+    """Walk by the project's model, with the first draw of `run.legs` if given."""
     from model.walk.dynamics import DynamicsOptions, walk
 
     table = _slip_of(run).traction_table(weight=run.robot.mass * GRAVITY, toe=run.toe)
@@ -123,9 +125,9 @@ def _thesis(run: ModelRun) -> WalkPath:
 
 
 def _legs_of_the_thesis(reference: LegReference) -> "LegReference | SwitchedLegs":
-    """Convert a gait's legs to ones that switch speed by angle, as the thesis's do.
+    """Convert a cyclic gait to legs that switch speed at leg angles, as the Thesis's do.
 
-    Legs of a log, and gaits that pause or whose angles leave a turn, are followed by the clock.
+    Legs of a log, and gaits that pause or whose angles leave a turn, are returned unchanged.
     """
     from model.walk.thesis import SwitchedLegs
 
@@ -164,4 +166,4 @@ MODELS: Mapping[str, WalkModel] = MappingProxyType({
         WalkModel("no-slip-simple", slips=False, dt=0.002, run=_wheels),
     )
 })  # fmt: skip
-"""The project's own model, the thesis's, and the two baselines without slip."""
+"""Walking models by name: the project's own, the Thesis's, and two baselines without slip."""

@@ -64,7 +64,7 @@ class Judgement:
         track: The tracked poses that were scored: those within the predicted path's time, without
             the first of them if paths are anchored at it.
         rows: The prediction first, then the baselines, last a robot that stands still.
-        band: The draws that were scored, anchored if asked for; None without draws.
+        band: The draws that were scored, as anchored; None without draws.
     """
 
     track: Poses
@@ -177,7 +177,7 @@ def _judge_band(
 
 
 def _standing(seen: Poses) -> Poses:
-    """Return one draw of the path of a robot that stays at the first of the poses `seen`."""
+    """Return a path, as one draw, that stays at the first tracked pose at the times of `seen`."""
     n = len(seen)
     position = np.broadcast_to(seen.position[0], (1, n, 2))
     return Poses(seen.t, position, np.full((1, n), seen.yaw[0]))

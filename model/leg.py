@@ -6,7 +6,7 @@ Points of the leg's full circle, Eq. (3-17), are named by an angle phi, in the h
 .. math::
     L(\varphi) = (r + r\cos\varphi,\ 0,\ -r\sin\varphi) .
 
-The hip is at phi = pi; the arc ends in its toe at phi = -(arc - pi), which is 0 for the thesis's
+The hip is at phi = pi; the arc ends in its toe at phi = -(arc - pi), which is 0 for the Thesis's
 half circle. The lowest point of the full circle is at `phi`; the lowest point of the leg, its
 potential contact, at `contact_angle(phi)`, which differs where phi lies beyond the toe or the hip.
 
@@ -90,8 +90,8 @@ def thesis_lowest_angle(theta: Numbers, tilt: Numbers) -> Numbers:
         \frac{d^2 z}{d\varphi^2} > 0
         \quad\Longleftrightarrow\quad \varphi = \frac{\pi}{2} - \theta + \arctan X
 
-    The tangent is that of a difference, so its arctangent and the choice of the quadrant by the
-    second derivative come to one sum, as long as the body is not upside down.
+    By the tangent of a difference, the arctangent and the choice of the quadrant by the second
+    derivative reduce to one sum, as long as the body is not upside down.
 
     Args:
         theta: Leg angle [rad].
@@ -145,8 +145,8 @@ def plane_cosine(roll: Numbers, pitch: Numbers) -> Numbers:
     .. math::
         \sqrt{\sin^2\theta_p + \cos^2\theta_p \cos^2\theta_r}
 
-    Heights measured in a leg's plane are to be multiplied by it. The thesis takes
-    :math:`\cos\theta_r`, which is the same without pitch.
+    The factor from heights in a leg's plane to heights above the ground. The Thesis uses
+    :math:`\cos\theta_r`, which is equal without pitch.
 
     Args:
         roll: Roll [rad].

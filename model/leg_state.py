@@ -43,13 +43,13 @@ class LegState:
 
     @staticmethod
     def of_prior(n: int, *, offset_sd: float, rng: np.random.Generator) -> "LegState":
-        """Draw leg offsets from a uniform prior about zero; every other unknown changes nothing.
+        """Draw leg offsets from a uniform prior about zero; all other factors are 1, terms 0.
 
         An encoder's zero known to one count is uniform over it: standard deviation count/sqrt(12).
 
         Args:
             n: Number of draws.
-            offset_sd: Standard deviation of an offset [rad].
+            offset_sd: Standard deviation of an offset; the range is sqrt(3) times that [rad].
             rng: Source of randomness.
         """
         reach = np.sqrt(3.0) * offset_sd

@@ -36,7 +36,7 @@ class ModelSpread:
     """Error of the walking model, constant along a walk.
 
     Stiffness and damping of the contacts matter for gaits that stand on more legs than statics can
-    load, or whose legs take over at unequal heights, and hardly for others. They are therefore
+    load, or whose legs take over at unequal heights, and hardly for other gaits. Both are therefore
     drawn. `distance` and `curvature`, the same for every gait, are root mean squares of the
     differences from an independent engine's walks.
 

@@ -17,6 +17,7 @@ HIP_X, HIP_Y = 0.097, 0.1156  # Listing A.1; the text's w/2 puts hip_y at 0.1256
 
 
 def _source_hips() -> Array:
+    """Return the hip positions of Listing A.1 in the body frame, shape (6, 3) [m]."""
     x, y = (HIP_X, HIP_X, 0.0, 0.0, -HIP_X, -HIP_X), (HIP_Y, -HIP_Y) * 3
     return np.column_stack([x, y, np.zeros(N_LEGS)])
 
@@ -105,11 +106,12 @@ def cuboid_inertia(mass: float, size: tuple[float, float, float]) -> Array:
     >>> cuboid_inertia(2.17, (0.194, 0.2512, 0.069)).round(5).tolist()
     [0.01227, 0.00767, 0.01822]
     """
-    l, w, h = size  # noqa: E741 the thesis's symbol
+    l, w, h = size  # noqa: E741 the Thesis's symbol
     return mass / 12 * np.array([w**2 + h**2, l**2 + h**2, w**2 + l**2])
 
 
 def _require_shape(name: str, values: Array, shape: tuple[int, ...]) -> None:
+    """Raise `DomainError` if an array has another shape or a value is not finite."""
     if values.shape != shape:
         raise DomainError(f"{name} has shape {values.shape}; expected {shape}")
     if not np.isfinite(values).all():
@@ -117,5 +119,6 @@ def _require_shape(name: str, values: Array, shape: tuple[int, ...]) -> None:
 
 
 def _require_positive(name: str, value: float, unit: str) -> None:
+    """Raise `DomainError` if a value is not positive or not finite."""
     if not (value > 0 and np.isfinite(value)):
         raise DomainError(f"{name} is {value:g} {unit}; expected more than zero")

@@ -113,6 +113,7 @@ def _dynamics(run: ModelRun) -> WalkPath:
 
 
 def _thesis(run: ModelRun) -> WalkPath:
+    """Walk by the Thesis's model, cyclic gaits with legs that switch speed at leg angles."""
     from model.walk.thesis import ThesisOptions, walk_thesis
 
     traction = _slip_of(run).thesis_traction(weight=run.robot.mass * GRAVITY)
@@ -140,18 +141,21 @@ def _legs_of_the_thesis(reference: LegReference) -> "LegReference | SwitchedLegs
 
 
 def _no_slip(run: ModelRun) -> WalkPath:
+    """Walk by the model "no-slip"."""
     from model.walk.no_slip import walk_no_slip
 
     return walk_no_slip(run.robot, run.reference, duration=run.duration, dt=run.dt)
 
 
 def _wheels(run: ModelRun) -> WalkPath:
+    """Walk by the model "no-slip-simple", as on wheels of twice the legs' radius."""
     from model.walk.no_slip import walk_wheels
 
     return walk_wheels(run.robot, run.reference, duration=run.duration, dt=run.dt)
 
 
 def _slip_of(run: ModelRun) -> Slip:
+    """Return the slip law of the inputs; raise `DomainError` if there is none."""
     if run.slip is None:
         raise DomainError("this walking model needs a slip law; none was given")
     return run.slip

@@ -117,12 +117,14 @@ def assess(chains: Chains) -> Convergence:
 
 
 def _dataset(chains: Array) -> "Dataset":
+    """Wrap chains (chains, draws, d) as the variable "x" of a Dataset for ArviZ."""
     from xarray import Dataset
 
     return Dataset({"x": (("chain", "draw", "coordinate"), chains)})
 
 
 def _array(dataset: Any) -> Array:
+    """Return the variable "x" of ArviZ's result as an array, shape (d,)."""
     return np.asarray(dataset["x"])
 
 

@@ -50,9 +50,9 @@ class PreparedFit:
 def scaled_load_cell(samples: SlipSamples, known: Mapping[str, float]) -> LoadCell:
     """Build the prior knowledge of a load cell from known fields and defaults scaled to the forces.
 
-    The defaults are those of a small cell, but at least a share of the forces, since a tyre bench
-    has a larger cell: zero stability 0.15 N or 0.5 % of the largest traction, and standard
-    deviation of the bias 0.05 N or 0.2 % of the largest load. All else is as in `LoadCell`.
+    Zero stability is 0.15 N, but at least 0.5 % of the largest traction; the standard deviation of
+    the bias is 0.05 N, but at least 0.2 % of the largest load: a tyre bench has a larger cell. All
+    other defaults are those of `LoadCell`.
 
     Args:
         samples: The samples.
@@ -135,6 +135,7 @@ def _prepared(
     validate: bool,
     threads: int,
 ) -> PreparedFit:
+    """Compute the prepared fit; arguments are those of `prepare_fit`."""
     everything = block_means(samples, 1 if len(samples) < 1000 else len(samples) // 1000)
     priors = default_priors(law, everything, load_cell)
     choice = block_choice or choose_block_length(samples, law, priors=priors, rng=rng)
@@ -152,6 +153,7 @@ def _prepared(
 
 
 def _require_enough(samples: SlipSamples, law: SlipLaw) -> None:
+    """Raise `InsufficientData` for fewer samples than the law's parameters plus two."""
     needed = len(law.parameters) + 2
     if len(samples) < needed:
         raise InsufficientData(

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-r"""The likelihood of block means: one slip law seen through a load cell and two speed sensors.
+r"""Likelihood of block means: one slip law measured by a load cell and two speed sensors.
 
 For block j of run i
 

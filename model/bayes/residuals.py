@@ -84,10 +84,10 @@ def _covariance_factors(
 ) -> list[Array]:
     """Return the lower Cholesky factor of each run's covariance, shape (blocks, blocks) [N].
 
-    The covariance is that of noise, run offset and slip errors at the parameters' posterior mean.
+    It is the covariance of noise, run offset and slip errors at the parameters' posterior mean.
 
-    The covariance is built densely from its definition and not by the likelihood's filter, so that
-    each checks the other.
+    The matrix is built densely from its definition and not by the likelihood's filter, as a check
+    of the filter.
     """
     rho, tau = values[:, -2].mean(), values[:, -1].mean()
     noise, slope = predicted.noise.mean(axis=0), predicted.slope.mean(axis=0)

@@ -45,9 +45,8 @@ def estimate_offset(track: Poses, path: Poses) -> ClockOffset:
 
     over the tracked poses :math:`y_i` whose shifted times lie within the path. The scale s absorbs
     a wrong speed, which would otherwise appear as a clock offset. The standard deviation is the
-    larger of two: that of least squares with as many independent errors as there are blocks, since
-    errors of a predicted path are correlated in time, and the jackknife's, which leaves out each
-    block.
+    larger of two: by least squares with two independent errors a block, since errors of a predicted
+    path are correlated in time, and by the jackknife, which leaves out each of `BLOCKS` blocks.
 
     Args:
         track: The track, six poses or more.

@@ -52,7 +52,7 @@ def consistency(
     *,
     rng: np.random.Generator,
 ) -> tuple[Consistency, ...]:
-    r"""Compare statistics of a track with those of the ensemble's draws with tracker noise.
+    r"""Compare statistics of a track with the same statistics of draws with tracker noise.
 
     Statistics: the mean over time of the normalised error squared
     :math:`e_i^T P_i^{-1} e_i / k`, which is about 1, larger where the ensemble is too narrow and
@@ -126,6 +126,7 @@ def _statistics(points: Array, draws: Array) -> Array:
 
 
 def _compared(name: str, value: float, own: Array) -> Consistency:
+    """Compute interval and p-value of a track's statistic from the draws' statistics `own`."""
     low, high = np.quantile(own, [(1 - LEVEL) / 2, (1 + LEVEL) / 2])
     below = (1 + np.sum(own <= value)) / (len(own) + 1)
     above = (1 + np.sum(own >= value)) / (len(own) + 1)

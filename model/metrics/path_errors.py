@@ -206,4 +206,5 @@ def pairs_by_distance(travelled: Array, distance: float) -> tuple[Indices, Indic
 
 
 def _rms(values: Array) -> float:
+    """Compute the root mean square of all elements."""
     return float(np.sqrt(np.mean(values**2)))

@@ -197,9 +197,10 @@ class WalkFit:
     ) -> tuple[Array, tuple[float, ...]]:
         """Maximise a case's posterior from several starts; return the mode and all walks' misfits.
 
-        The mean is not used. On a kink of the posterior it lies on the side on which the walk does
-        not change, and its walk differs from those of the draws. On a kink an optimisation may also
-        end early, so the best of several is taken.
+        The mean is not used. On a kink of the posterior the mean lies on the side on which the walk
+        does not change, and its walk differs from the draws' walks. On a kink an optimisation may
+        also end early, so the best of several is refined at the finer step. The mode is in the
+        prior's units; a misfit is the mean squared whitened residual [-].
         """
         density, which = self._density, self._density.cases[case]
         misfits = [density.misfits[w] for w in keep]

@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: MIT
 """Decorators that compile numeric loops: cached on disk, without the GIL, dividing as numpy does.
 
-numba stores a compiled function beside its source and compiles it again when that file changes, but
-not when a file that it calls changes. What is stored names the modules of the functions that it
-calls and of the named tuples that it takes: it cannot be loaded when one of these has been renamed
-or moved. After such an edit, remove the `__pycache__` folders of `model`.
+numba stores a compiled function in `__pycache__` and compiles the function again when its file
+changes, but not when the file of a function that it calls changes. The stored code names the
+modules of called functions and of named tuples in the arguments, and cannot be loaded when one of
+these modules has been renamed or moved. After either edit, remove the `__pycache__` folders of
+`model`.
 """
 
 import numba
@@ -14,8 +15,8 @@ compiled = numba.njit(cache=True, nogil=True, error_model="numpy")
 borrowing = numba.njit(cache=True, nogil=True, error_model="numpy", _nrt=False)  # pyright: ignore[reportCallIssue]
 """Decorator for hot loops that allocate no arrays: without reference counting.
 
-With it, every row taken of an array increments and decrements a reference count. That takes half of
-a walk's time, and threads that share a table contend for its count.
+With reference counting, every row of an array that is accessed increments and decrements a count,
+which takes half of a walk's time; threads that share a table contend for its count.
 """
 inlined = numba.njit(  # pyright: ignore[reportCallIssue]
     cache=True, nogil=True, error_model="numpy", forceinline=True, _nrt=False

@@ -7,14 +7,14 @@ class ModelError(Exception):
 
 
 class DomainError(ModelError, ValueError):
-    """A number lies outside the domain of the equation that received it."""
+    """A value, shape or name lies outside the domain of the function that received it."""
 
 
 class DefinitionMismatch(ModelError, ValueError):
     """Slip ratios of two definitions were used in one computation.
 
     Attributes:
-        found: Definition of the slip ratio that was handed in.
+        found: Definition of the slip ratio that was given.
         expected: Definition that the receiver's parameters were fitted with.
     """
 

@@ -74,7 +74,7 @@ def robot_in(robot: Robot, state: LegState, i: int) -> Robot:
 
 
 def law_in(table: TractionTable, state: LegState, i: int) -> TractionTable:
-    """Return the slip law scaled by the grip, slip stiffness and post-peak drop of one draw.
+    """Return the slip law scaled by one draw's factors on grip, slip stiffness and post-peak drop.
 
     Args:
         table: The slip law as calibrated.

@@ -24,7 +24,7 @@ from model.walk.ensemble import WalkDraw, walk_ensemble
 from model.walk.traction import TractionTable
 
 STEPS = (0.005, 0.0025, 0.00125)  # s; an ensemble uses the largest one that has converged
-SAME_PATH = 0.005  # of the path's length: mean distance of ends at one step and at half of it
+SAME_PATH = 0.005  # share of the mean length by which halving the step may move the mean end
 COMPARED, COMPARED_TIMES = 8, 101  # draws, and poses of each, that are walked to choose the step
 # Of the single path; with a wrongly mounted leg the error of its turn is within 1 %.
 FINE = DynamicsOptions(dt=0.001)

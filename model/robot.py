@@ -83,7 +83,7 @@ class Robot:
 
     @property
     def toe_beyond(self) -> float:
-        """Angle of the arc beyond a half circle; negative for a shorter one [rad]."""
+        """Angle of the arc minus pi: beyond a half circle, negative for a shorter arc [rad]."""
         return self.leg_arc - np.pi
 
     @property

@@ -16,8 +16,8 @@ from model.bayes.posterior import SlipPosterior
 from model.bayes.samples import SlipSamples
 from model.slip.law import Array, SlipLaw
 
-MAX_SINGLE_FOLDS = 20
-N_GROUPED_FOLDS = 10
+MAX_SINGLE_FOLDS = 20  # runs up to which each is left out alone
+N_GROUPED_FOLDS = 10  # groups in which more runs are left out
 
 
 @dataclass(frozen=True)

@@ -77,7 +77,7 @@ class Estimate:
 
 
 def estimate(parameter: Parameter, draws: Array) -> Estimate:
-    """Summarise draws of one quantity by mean, standard deviation and quantiles.
+    """Compute mean, standard deviation and 5, 50 and 95 % quantiles of draws of one quantity.
 
     Draws may be infinite, for example the peak slip of a curve without a peak. The mean is then
     infinite too, and the standard deviation is NaN.

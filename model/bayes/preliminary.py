@@ -12,9 +12,9 @@ from model.bayes.samples import SlipSamples
 from model.errors import FitError
 from model.slip.law import Array, SlipLaw
 
-N_TRIALS = 400
-N_CLIMBS = 5
-MAX_BLOCKS = 3000
+N_TRIALS = 400  # prior draws that are tried as starts
+N_CLIMBS = 5  # best of them that are optimised
+MAX_BLOCKS = 3000  # largest number of blocks
 MAX_SLIP_SPREAD = 0.3  # of the curve's slip scale within a block: the quadrature is good to 1e-3
 MIN_BLOCKS_PER_RUN = 5
 

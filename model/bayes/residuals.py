@@ -124,7 +124,7 @@ def _run_scores(
 
 
 def lag_one_correlation(values: Array, blocks: SlipBlocks) -> float:
-    """Compute the correlation of successive values within runs; 0 where no run has two blocks.
+    """Compute the correlation of successive values within runs; 0 if no run has two blocks [-].
 
     Args:
         values: One value a block, of mean zero, shape (n,).

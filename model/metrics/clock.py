@@ -15,12 +15,12 @@ from model.poses import Poses
 from model.slip.law import Array
 
 STEP = 0.05  # s between offsets that are tried; refined by a parabola
-FEWEST = 6  # poses of a track
+FEWEST = 6  # least number of poses of a track
 BLOCKS = 5  # blocks of consecutive poses of the track that are left out in turn
 SHARE = 0.5  # of the track's poses and of its length that must lie within the path
 LARGEST_SD = 0.25  # s; a less certain estimate is refused
 AS_GOOD = 5.0  # times the least misfit: F of as many errors as there are blocks, two each, at 99 %
-NEAR = 7.0  # standard deviations within which a misfit of that size is the same minimum's
+NEAR = 7.0  # standard deviations within which such a misfit belongs to the same minimum
 
 
 @dataclass(frozen=True)

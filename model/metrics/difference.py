@@ -8,7 +8,7 @@ import numpy as np
 from model.errors import InsufficientData
 from model.slip.law import Array
 
-DRAWS = 4000  # of the difference
+DRAWS = 4000  # number of pairs from which quantiles of the difference are computed
 
 
 @dataclass(frozen=True)

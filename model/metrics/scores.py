@@ -36,14 +36,14 @@ class EnsembleScores:
 
 
 def centred(draws: Array, observed: Array) -> Array:
-    """Unwrap observed headings next to the ensemble's, so that turns do not count as errors.
+    """Shift observed headings by whole turns to within half a turn of the ensemble's mean heading.
 
     Args:
         draws: x, y, yaw of every draw at every time, shape (m, n, 3) [m, m, rad].
-        observed: Tracked x, y, yaw, shape (n, 3).
+        observed: Tracked x, y, yaw, shape (n, 3) [m, m, rad].
 
     Returns:
-        The observed values, yaw within half a turn of the ensemble's mean, shape (n, 3).
+        The observed values with shifted yaw, shape (n, 3) [m, m, rad].
     """
     mean = draws[..., 2].mean(axis=0)
     return np.column_stack([observed[:, :2], mean + wrap(observed[:, 2] - mean)])
@@ -53,7 +53,7 @@ def with_tracker_noise(draws: Array, covariance: Array, *, rng: np.random.Genera
     """Add random tracker noise to predicted poses.
 
     Args:
-        draws: x, y, yaw of every draw at every time, shape (m, n, 3).
+        draws: x, y, yaw of every draw at every time, shape (m, n, 3) [m, m, rad].
         covariance: The tracker's covariance at each time, shape (n, 3, 3).
         rng: Source of randomness.
 

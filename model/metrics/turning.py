@@ -20,7 +20,7 @@ def mean_yaw_rate(poses: Poses) -> float:
 
 
 def fitted_radius(poses: Poses) -> float:
-    r"""Fit the circle of a robot whose heading keeps one angle to its path.
+    r"""Compute the turning radius by a fitted circle, with a constant angle from heading to path.
 
     .. math::
         p_i = c + a (\sin\psi_i, -\cos\psi_i) + b (\cos\psi_i, \sin\psi_i)

@@ -21,16 +21,16 @@ from scipy.linalg import solve_triangular
 from model.bayes.walks.prior import Case
 from model.slip.law import Array
 
-DRAWS = 200  # in a round
+DRAWS = 200  # draws in a round
 MOST_ROUNDS = 10
-WANTED = 150.0  # effective draws
+WANTED = 150.0  # effective draws at which sampling ends
 TAIL = 5  # degrees of freedom of the proposals
 ENOUGH = 60.0  # effective draws from which a round's Gaussians are estimated
 BEFORE = 2.0  # draws a dimension that a case's former covariance counts as in its new one
 PATIENCE = 3  # rounds of proposals around modes alone, more efficient where they suffice
 CENTRES = 50  # draws that are centres of a round's narrower proposals
 WIDTHS = (0.6, 0.3)  # of the narrower proposals, in turn, in standard deviations of their case
-_LEAST = 1e-3  # least probability with which each case is drawn
+_LEAST = 1e-3  # added to each case's probability of being drawn
 
 
 @dataclass(frozen=True)

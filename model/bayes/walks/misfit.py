@@ -31,10 +31,10 @@ from model.walk.dynamics import DynamicsOptions
 from model.walk.ensemble import PlanarWalk, WalkDraw, walk_ensemble
 from model.walk.traction import TractionTable
 
-RECONSTRUCTIONS = 16  # draws of counted angles, for their spread; or walks at half the step
+RECONSTRUCTIONS = 16  # motions drawn from counted angles; or walks that show the step's error
 # s; with a wrongly mounted leg 5 ms turns by 3 % more and saves a third of the time
 LARGEST_STEP = 0.0025
-OFFSETS_SD = np.radians(0.2)  # standard deviation of the leg offsets in those walks [rad]
+OFFSETS_SD = np.radians(0.2)  # sd of leg offsets in walks that show the step's error [rad]
 FEWEST_POSES = 3  # one to start from and two to compare
 SAMPLING = 0.05  # s between the poses kept of a path
 FINE_SAMPLING = 0.02  # s, where roll and pitch are compared

@@ -37,16 +37,16 @@ class ClockOffset:
 
 
 def estimate_offset(track: Poses, path: Poses) -> ClockOffset:
-    r"""Estimate the clock offset at which the track, moved, turned and scaled, fits the path best.
+    r"""Estimate the clock offset at which the path, moved, turned and scaled, fits the track best.
 
     .. math::
         \hat\tau = \arg\min_\tau \min_{s, R, p}
             \frac{1}{2 n_\tau - 4} \sum_i |s R\,x(t_i + \tau) + p - y_i|^2
 
-    over the tracked poses :math:`y_i` whose shifted times lie within the path. The scale s absorbs
-    a wrong speed, which would otherwise appear as a clock offset. The standard deviation is the
-    larger of two: by least squares with two independent errors a block, since errors of a predicted
-    path are correlated in time, and by the jackknife, which leaves out each of `BLOCKS` blocks.
+    over the tracked poses :math:`y_i` whose shifted times lie within the path x. The scale s
+    absorbs a wrong speed, which would otherwise appear as a clock offset. The standard deviation is
+    the larger of two: by least squares with two independent errors a block, since errors of a
+    predicted path are correlated in time, and by the jackknife over `BLOCKS` blocks.
 
     Args:
         track: The track, six poses or more.

@@ -226,7 +226,7 @@ class WalkMisfit:
         return difference.reshape(len(states), -1)
 
     def _covariance(self, spread: ModelSpread, rng: np.random.Generator, threads: int) -> Array:
-        """Compute the covariance of predicted minus tracked poses, shape (k, k), as above."""
+        """Compute the covariance (k, k) of predicted minus tracked poses: the module's equation."""
         several = motions(self.walk.legs, RECONSTRUCTIONS, rng)
         draws = [WalkDraw(self.robot, each, self.table) for each in several]
         paths = self._walked(draws, threads).poses

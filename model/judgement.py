@@ -21,12 +21,12 @@ PREDICTION, STAND_STILL = "prediction", "stand still"
 
 @dataclass(frozen=True)
 class Prediction:
-    """A predicted path.
+    """A predicted path, with its draws and baselines.
 
     Attributes:
         path: The single path, with every unknown at its central value. The mean of an ensemble is
             not used: it is shorter and less curved than any draw.
-        draws: Draws of the path; None for a path alone.
+        draws: Draws of the path; None for a path without draws.
         baselines: Paths of the same leg angles by simpler models, by the models' names.
     """
 
@@ -41,10 +41,12 @@ class Judged:
 
     Attributes:
         name: `PREDICTION`, `STAND_STILL` or a baseline's name.
-        path: The path, started from the first tracked pose.
-        errors: Its errors.
-        scores: Its scores; those of a single path are absolute errors.
-        consistency: The track against the ensemble's own draws; empty for a single path.
+        path: The single path; moved to the first tracked pose if paths are anchored.
+        errors: Errors of the single path.
+        scores: Scores of the ensemble with tracker noise; without draws, of the single path, whose
+            energy score is its distance and whose CRPS is its absolute error.
+        consistency: Consistency of the track with the ensemble; empty for a single path and for
+            fewer than `FEWEST_DRAWS` draws.
     """
 
     name: str
@@ -59,9 +61,10 @@ class Judgement:
     """Errors and scores of a prediction and its baselines against a track.
 
     Attributes:
-        track: The tracked poses that were scored; the first is left out when paths start from it.
-        rows: The prediction first, then the baselines.
-        band: The draws that were scored; None for a path alone.
+        track: The tracked poses that were scored: those within the predicted path's time, without
+            the first of them if paths are anchored at it.
+        rows: The prediction first, then the baselines, last a robot that stands still.
+        band: The draws that were scored, as anchored; None without draws.
     """
 
     track: Poses
@@ -71,13 +74,13 @@ class Judgement:
 
 @dataclass(frozen=True)
 class TiltJudged:
-    """Comparison of predicted roll and pitch with an IMU's.
+    """Comparison of predicted roll and pitch with those that an IMU measured.
 
     Attributes:
-        errors: Summary of the differences.
-        t: Times compared, shape (n,) [s].
-        predicted: Roll and pitch of the prediction, shape (n, 2) [rad].
-        measured: The IMU's, shape (n, 2) [rad].
+        errors: Bias and root mean squares of predicted minus measured.
+        t: Times of the IMU within the walk, shape (n,) [s].
+        predicted: Predicted roll and pitch, interpolated at `t`, shape (n, 2) [rad].
+        measured: Roll and pitch by the IMU, shape (n, 2) [rad].
     """
 
     errors: TiltErrors
@@ -89,17 +92,18 @@ class TiltJudged:
 def judge(
     prediction: Prediction, track: Poses, *, anchor: bool, rng: np.random.Generator
 ) -> Judgement:
-    """Compute errors and scores of a prediction and its baselines against a track.
+    """Compute errors and scores of a prediction, its baselines and standing still against a track.
 
     Args:
         prediction: The prediction.
         track: The track, by the prediction's clock; without a covariance it is taken as exact.
         anchor: Start every path from the first tracked pose, which is then not scored.
-        rng: Source of randomness.
+        rng: Source of randomness of tracker noise.
 
     Raises:
-        InsufficientData: Track and prediction share too little time, or the track that paths
-            should start from has no headings.
+        InsufficientData: Fewer than two tracked poses to score lie within a path's time, or
+            `anchor` is set and the first tracked pose has no heading.
+        DomainError: `anchor` is set and a path does not reach the first tracked pose's time.
     """
     seen = track.part(overlap(track, prediction.path))
     target = seen.part(slice(1, None) if anchor else slice(None))
@@ -128,15 +132,15 @@ def judge(
 
 
 def judge_tilt(walk: WalkPath, t: Array, angles: Array) -> TiltJudged:
-    """Compare roll and pitch of a walk with an IMU's by the same clock.
+    """Compute errors of a walk's roll and pitch against an IMU's, at the IMU's times in the walk.
 
     Args:
-        walk: The walk.
-        t: Times of the IMU, shape (n,) [s].
-        angles: Its roll and pitch, shape (n, 2) [rad].
+        walk: The predicted walk.
+        t: Times of the IMU by the walk's clock, shape (n,) [s].
+        angles: Roll and pitch by the IMU, shape (n, 2) [rad].
 
     Raises:
-        InsufficientData: They share too little time.
+        InsufficientData: Fewer than ten of the IMU's times lie within the walk.
     """
     errors, inside = tilt_errors(walk.t, walk.orientation[:, :2], t, angles)
     t = t[inside]
@@ -145,6 +149,7 @@ def judge_tilt(walk: WalkPath, t: Array, angles: Array) -> TiltJudged:
 
 
 def _judge_path(name: str, path: Poses, target: Poses) -> Judged:
+    """Compute errors and scores of the only draw in `path` at the tracked poses `target`."""
     single = path.draws(0)
     scores = ensemble_scores(states_at(path, target.t), target.states)
     return Judged(name, single, path_errors(single, target), scores)
@@ -153,6 +158,17 @@ def _judge_path(name: str, path: Poses, target: Poses) -> Judged:
 def _judge_band(
     single: Judged, band: Poses, target: Poses, noise: Array, rng: np.random.Generator
 ) -> Judged:
+    """Replace the scores of a single path by those of an ensemble with tracker noise.
+
+    Consistency is added if there are enough draws.
+
+    Args:
+        single: Errors and scores of the single path.
+        band: Draws of the path.
+        target: The tracked poses that are scored, n of them.
+        noise: The tracker's covariance of x, y and yaw at each of them, shape (n, 3, 3).
+        rng: Source of randomness of tracker noise.
+    """
     draws = states_at(band, target.t)
     seen = with_tracker_noise(draws, noise, rng=rng)
     enough = len(draws) >= FEWEST_DRAWS
@@ -164,7 +180,7 @@ def _judge_band(
 
 
 def _standing(seen: Poses) -> Poses:
-    """Return the path of a robot that stays at its first pose."""
+    """Return a path, as one draw, that stays at the first tracked pose at the times of `seen`."""
     n = len(seen)
     position = np.broadcast_to(seen.position[0], (1, n, 2))
     return Poses(seen.t, position, np.full((1, n), seen.yaw[0]))

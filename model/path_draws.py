@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Draws of a planar path: bent, anchored at a pose, interpolated and summarised by quantiles."""
+"""Draws of a planar path: bend, anchor at a pose, interpolate, compute quantiles and mean."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -18,10 +18,12 @@ STATES = ("x", "y", "yaw")
 def bent(paths: Poses, *, distance: Array, curvature: Array) -> Poses:
     r"""Stretch and bend paths: :math:`d s' = (1 + \epsilon) ds, \; d\psi' = d\psi + \kappa\, ds`.
 
+    The first pose of each path stays where it is.
+
     Args:
         paths: Paths of m draws.
-        distance: Relative error of distance of each, shape (m,) [-].
-        curvature: Curvature added to each, shape (m,) [rad/m].
+        distance: Relative error of distance of each path, shape (m,) [-].
+        curvature: Curvature added to each path, positive to the left, shape (m,) [rad/m].
     """
     step = np.diff(paths.position, axis=1)
     forward = step[..., 0] + 1j * step[..., 1]
@@ -35,12 +37,12 @@ def bent(paths: Poses, *, distance: Array, curvature: Array) -> Poses:
 
 
 def bent_walk(path: WalkPath, *, distance: float, curvature: float) -> WalkPath:
-    """Stretch and bend one walked path as `bent` does; slip and forces in its heading frame stay.
+    """Stretch and bend x, y and yaw of one walk as `bent` does; all else of the walk stays.
 
     Args:
-        path: The path.
+        path: The walk.
         distance: Relative error of distance [-].
-        curvature: Curvature added [rad/m].
+        curvature: Curvature added, positive to the left [rad/m].
     """
     one = path.poses.draws()
     moved = bent(one, distance=np.array([distance]), curvature=np.array([curvature]))
@@ -62,14 +64,15 @@ def anchored(
     """Move every path rigidly so that it passes a known pose, or a draw of an uncertain one.
 
     Args:
-        paths: Paths.
-        pose: x, y [m] and yaw [rad] at that time, shape (3,).
-        at: The time, within the paths' [s].
-        covariance: Covariance of the pose, shape (3, 3); None when it is exact.
-        rng: Source of randomness.
+        paths: Draws of a path.
+        pose: x, y [m] and yaw [rad] at the time `at`, shape (3,).
+        at: Time of the pose, within the paths' times [s].
+        covariance: Covariance of the pose, of which one is drawn for each path, shape (3, 3); None
+            when the pose is exact.
+        rng: Source of randomness of the drawn poses.
 
     Raises:
-        DomainError: The time lies outside the paths'.
+        DomainError: The time of the pose lies outside the paths' times.
     """
     if not paths.t[0] <= at <= paths.t[-1]:
         raise DomainError(
@@ -86,8 +89,8 @@ def states_at(paths: Poses, t: Array) -> Array:
     """Interpolate x, y and yaw of every draw linearly at given times.
 
     Args:
-        paths: The draws.
-        t: Times, shape (k,) [s]; outside the paths the ends are extrapolated.
+        paths: The draws, at two times or more.
+        t: Times, shape (k,) [s]; outside the paths' times the end steps are extrapolated.
 
     Returns:
         States, shape (draws, k, 3) [m, m, rad].
@@ -112,7 +115,7 @@ def quantiles(paths: Poses, levels: Sequence[float] = LEVELS) -> Array:
 
 
 def mean_path(paths: Poses) -> Poses:
-    """Return the mean position and heading at every time."""
+    """Return the mean over the draws of position and unwrapped heading at every time, as a path."""
     return Poses(paths.t, paths.position.mean(axis=0), paths.yaw.mean(axis=0))
 
 

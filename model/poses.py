@@ -22,11 +22,12 @@ class Poses:
         position: Positions x, y, shape (n, 2), or (draws, n, 2) for several draws [m].
         yaw: Unwrapped headings, shape (n,) or (draws, n) [rad]; NaN throughout where not
             measured.
-        covariance: Covariance of x, y and yaw of each pose of one path, shape (n, 3, 3)
-            [m, m, rad]; None where it is not known.
+        covariance: Covariance of x, y and yaw of each pose of one path, shape (n, 3, 3), in
+            products of [m, m, rad]; None where it is not known.
 
     Raises:
-        DomainError: Shapes do not match, times do not increase or a position is not finite.
+        DomainError: Shapes do not match, times do not increase strictly, or a time or a position is
+            not finite.
     """
 
     t: Array
@@ -35,7 +36,7 @@ class Poses:
     covariance: Array | None = None
 
     def __post_init__(self) -> None:
-        """Check that shapes match, that times increase and that positions are finite."""
+        """Check that shapes match, that times increase and that times and positions are finite."""
         n = len(self.t)
         batch = self.yaw.shape[:-1]
         if (
@@ -60,7 +61,7 @@ class Poses:
 
     @classmethod
     def of_states(cls, t: Array, states: Array) -> Self:
-        """Build poses from states.
+        """Build poses without covariance from an array of x, y and yaw.
 
         Args:
             t: Times, shape (n,) [s].
@@ -78,10 +79,13 @@ class Poses:
         return np.concatenate([self.position, self.yaw[..., None]], axis=-1)
 
     def draws(self, keep: int | slice = slice(None)) -> "Poses":
-        """Return one draw as a single path, or some draws; a single path has one draw.
+        """Select one draw as a single path, or several draws; a single path counts as one draw.
 
         Args:
-            keep: Index of a draw, or a slice of them.
+            keep: Index of a draw for a path (n,), or a slice of draws for (draws, n).
+
+        Returns:
+            The poses, without covariance.
         """
         one = self.yaw.ndim == 1
         position, yaw = (self.position[None], self.yaw[None]) if one else (self.position, self.yaw)
@@ -89,7 +93,7 @@ class Poses:
 
     @property
     def has_yaw(self) -> bool:
-        """Whether every heading is known."""
+        """Whether every heading is finite."""
         return bool(np.isfinite(self.yaw).all())
 
     @property
@@ -104,14 +108,18 @@ class Poses:
         return float(self.travelled[-1]) if len(self) else 0.0
 
     def part(self, keep: slice | NDArray[np.bool_] | NDArray[np.intp]) -> "Poses":
-        """Return the poses of some of the times."""
+        """Select poses by time, with their covariance.
+
+        Args:
+            keep: Slice, boolean mask (n,) or indices of the times.
+        """
         covariance = None if self.covariance is None else self.covariance[keep]
         return Poses(
             self.t[keep], self.position[..., keep, :], self.yaw[..., keep], covariance=covariance
         )
 
     def delayed(self, offset: float) -> "Poses":
-        """Add an offset to all times [s]."""
+        """Return the same poses with an offset [s] added to all times."""
         return replace(self, t=self.t + offset)
 
     def at(self, t: ArrayLike) -> "Poses":
@@ -120,8 +128,11 @@ class Poses:
         Args:
             t: Times, shape (m,) [s].
 
+        Returns:
+            The poses at those times, without covariance.
+
         Raises:
-            DomainError: A time lies outside the path: nothing is extrapolated.
+            DomainError: A time lies outside the path's times: nothing is extrapolated.
         """
         at = np.asarray(t, dtype=float)
         if len(at) and (at.min() < self.t[0] or at.max() > self.t[-1]):
@@ -133,10 +144,10 @@ class Poses:
         return Poses(at, np.column_stack([x, y]), yaw)
 
     def moved(self, *, rotation: float, translation: ArrayLike) -> "Poses":
-        """Rotate one path about the origin, then translate it.
+        """Rotate one path about the origin, then translate it; covariance is dropped.
 
         Args:
-            rotation: Angle, counter-clockwise [rad].
+            rotation: Angle, counter-clockwise, also added to yaw [rad].
             translation: Shift, shape (2,) [m].
         """
         c, s = np.cos(rotation), np.sin(rotation)
@@ -145,17 +156,17 @@ class Poses:
 
 
 def overlap(first: Poses, second: Poses) -> NDArray[np.bool_]:
-    """Find the poses of `first` that lie within the time range of `second`.
+    """Find the poses of `first` that lie within the time range of `second`, ends included.
 
     Args:
         first: Poses to choose from.
         second: Poses whose time range is used, by the same clock.
 
     Returns:
-        Whether each pose lies inside, shape (len(first),).
+        Whether each pose of `first` lies inside, shape (len(first),).
 
     Raises:
-        InsufficientData: Fewer than two do, so that there is no path to compare.
+        InsufficientData: Fewer than two poses lie inside, so that there is no path to compare.
     """
     inside = (first.t >= second.t[0]) & (first.t <= second.t[-1])
     if inside.sum() < 2:
@@ -168,10 +179,10 @@ def overlap(first: Poses, second: Poses) -> NDArray[np.bool_]:
 
 
 def travel_direction(poses: Poses) -> Array:
-    """Compute the direction of travel at each pose from its neighbours, shape (n,) [rad].
+    """Compute the direction of travel at each pose of one path, shape (n,) [rad].
 
-    Where a robot stands, the direction is that of the last move before, or of the first after;
-    zero for one that never moves.
+    It is the direction from the pose before to the pose after. Where these are within `STANDING`,
+    the last direction before is repeated, or the first after; zero if the robot never moves.
     """
     before = np.maximum(np.arange(len(poses)) - 1, 0)
     after = np.minimum(np.arange(len(poses)) + 1, len(poses) - 1)
@@ -184,7 +195,7 @@ def travel_direction(poses: Poses) -> Array:
 
 
 def compose(pose: Array, moves: Array) -> Array:
-    """Move from a pose by displacements in its frame: composition in SE(2).
+    """Move from a pose by displacements in the pose's frame: composition in SE(2).
 
     Args:
         pose: x, y and yaw, shape (3,) [m, m, rad].
@@ -203,10 +214,10 @@ def relative(states: Array, first: Array) -> Array:
 
     Args:
         states: x, y and yaw, shape (..., 3) [m, m, rad].
-        first: x, y and yaw of the other pose, or of one for each, shape (3,) or (..., 3).
+        first: x, y and yaw of the other pose, shape (3,), or one for each of `states`, (..., 3).
 
     Returns:
-        Displacements forward and to the left, and turns, shape (..., 3) [m, m, rad].
+        Displacements forward and to the left, and turns (not wrapped), shape (..., 3) [m, m, rad].
     """
     c, s = np.cos(first[..., 2]), np.sin(first[..., 2])
     x, y, yaw = np.moveaxis(states - first, -1, 0)
@@ -214,12 +225,15 @@ def relative(states: Array, first: Array) -> Array:
 
 
 def moved_onto(states: Array, own: Array, wanted: Array) -> Array:
-    """Move paths rigidly, each such that a pose of its own becomes a wanted one.
+    """Move paths rigidly, each such that one given pose of the path becomes a wanted pose.
 
     Args:
         states: x, y and yaw of m paths at n times, shape (m, n, 3) [m, m, rad].
-        own: Pose of each path, shape (m, 3).
-        wanted: Pose that it becomes, shape (3,), or (m, 3) for one of each path.
+        own: Pose of each path before the move, shape (m, 3).
+        wanted: That pose after the move, shape (3,), or (m, 3) for one of each path.
+
+    Returns:
+        x, y and yaw of the moved paths, shape (m, n, 3) [m, m, rad].
     """
     to = np.broadcast_to(wanted, own.shape)[:, None]
     turn = to[..., 2] - own[:, None, 2]
@@ -230,7 +244,7 @@ def moved_onto(states: Array, own: Array, wanted: Array) -> Array:
 
 
 def wrap(angle: ArrayLike) -> Array:
-    """Return angles in [-pi, pi), the way errors of headings are compared [rad].
+    """Wrap angles into [-pi, pi), the range of heading errors [rad].
 
     >>> float(wrap(3 * np.pi / 2).round(4))
     -1.5708

@@ -23,10 +23,11 @@ from model.walk.dynamics import DynamicsOptions
 from model.walk.ensemble import WalkDraw, walk_ensemble
 from model.walk.traction import TractionTable
 
-STEPS = (0.005, 0.0025, 0.00125)  # s; an ensemble uses the largest that has converged
-SAME_PATH = 0.005  # of the path's length: mean distance of ends at one step and at half of it
-COMPARED, COMPARED_TIMES = 8, 101  # draws, and their poses, that are compared to choose the step
-FINE = DynamicsOptions(dt=0.001)  # of the single path; with a wrong leg its turn is within 1 %
+STEPS = (0.005, 0.0025, 0.00125)  # s; an ensemble uses the largest one that has converged
+SAME_PATH = 0.005  # share of the mean length by which halving the step may move the mean end
+COMPARED, COMPARED_TIMES = 8, 101  # draws, and poses of each, that are walked to choose the step
+# Of the single path; with a wrongly mounted leg the error of its turn is within 1 %.
+FINE = DynamicsOptions(dt=0.001)
 MOST_MOTIONS = 300  # a motion costs as much as its walk, and contributes least to the spread
 
 
@@ -35,14 +36,17 @@ class ModelSpread:
     """Error of the walking model, constant along a walk.
 
     Stiffness and damping of the contacts matter for gaits that stand on more legs than statics can
-    load, or whose legs take over at unequal heights, and hardly for others. They are therefore
+    load, or whose legs take over at unequal heights, and hardly for other gaits. Both are therefore
     drawn. `distance` and `curvature`, the same for every gait, are root mean squares of the
     differences from an independent engine's walks.
 
     Attributes:
-        distance: Relative error of distance, standard deviation [-].
-        curvature: Error of curvature, standard deviation [rad/m].
+        distance: Standard deviation of the relative error of distance [-].
+        curvature: Standard deviation of the error of curvature [rad/m].
         contacts: Standard deviation of the logarithms of the contacts' stiffness and damping [-].
+
+    Raises:
+        DomainError: A standard deviation is negative or not finite.
     """
 
     distance: float = 0.003
@@ -64,15 +68,15 @@ def walk_draws(
     *,
     rng: np.random.Generator,
 ) -> list[WalkDraw]:
-    """Combine draws of the law, of the legs' state and of their motion, one path each.
+    """Combine each draw of the legs' state with a slip law and a leg motion to one walk's inputs.
 
     Args:
         robot: The robot as described.
-        legs: Its leg angles from time zero on; a quantised log is reconstructed anew for each of
-            the first `MOST_MOTIONS` draws, and they are taken in turn.
-        tables: Draws of the slip law, taken in turn.
-        state: Draws of the legs' state; their number is the ensemble's.
-        rng: Source of randomness.
+        legs: Leg angles from time zero on; of a quantised log `MOST_MOTIONS` motions at most are
+            drawn, and repeated in turn beyond.
+        tables: Draws of the slip law, repeated in turn when fewer than those of the state.
+        state: Draws of the legs' state; grip, slip stiffness and post-peak drop scale the law.
+        rng: Source of randomness of the motions.
     """
     drawn = motions(legs, min(len(state), MOST_MOTIONS), rng)
     return [
@@ -88,11 +92,11 @@ def walk_draws(
 def motions(
     legs: LegReference | QuantisedLog, n: int, rng: np.random.Generator
 ) -> Sequence[LegReference]:
-    """Draw n motions that counted leg angles allow; angles that are not counted are one motion.
+    """Draw n leg motions that agree with a quantised log; other leg angles are one motion.
 
     Args:
-        legs: Leg angles.
-        n: Number of motions.
+        legs: Leg angles; without quantisation the result has `legs` as its only element.
+        n: Number of motions of a quantised log.
         rng: Source of randomness.
     """
     return [legs.smooth(rng) for _ in range(n)] if isinstance(legs, QuantisedLog) else [legs]
@@ -101,16 +105,16 @@ def motions(
 def ensemble_step(
     draws: Sequence[WalkDraw], *, duration: float, threads: int = 2
 ) -> DynamicsOptions:
-    """Choose the largest time step at which the mean of the walks' ends has converged.
+    """Choose the largest step of `STEPS` at which the ensemble's mean end point has converged.
 
-    The error of a step differs from path to path, 0.3 % of its length at 5 ms, which is small
-    against the spread of the draws. An error that all paths share is not, so the means of some ends
-    are compared with those at half the step. At 5 ms a tripod's is within 0.2 % of the path. Where
-    four legs are on the ground and loads oscillate between them, 5 ms shifts it by 7 %.
+    Converged: halving the step moves it by at most `SAME_PATH` of the mean path length. If no step
+    has, the smallest is returned. A single path errs by 0.3 % of its length at 5 ms, which is small
+    against the spread of the draws; an error that all paths share is not. 5 ms shifts the mean of a
+    tripod's ends by 0.2 % of the path, and by 7 % if loads oscillate between four legs.
 
     Args:
-        draws: The ensemble, of which the first `COMPARED` are walked.
-        duration: Time walked [s].
+        draws: The ensemble; only its first `COMPARED` draws are walked.
+        duration: Time walked; 5 ms if shorter [s].
         threads: Number of draws walked at once.
 
     Raises:
@@ -140,17 +144,17 @@ def predict_paths(
     options: DynamicsOptions | None = None,
     progress: Callable[[float], None] | None = None,
 ) -> Poses:
-    """Walk every draw and add its steering, its stride and a draw of the model's error.
+    """Compute the path of every draw, bent by its steering, its stride and a drawn model error.
 
     Args:
-        draws: The draws to walk.
-        t: Times of the poses, increasing from zero, shape (n,) [s].
-        state: The legs' state of each draw.
-        error: Error of the walking model.
+        draws: Inputs of m walks; stiffness and damping of the contacts are drawn anew.
+        t: Times of the poses, increasing, none before zero, shape (n,) [s].
+        state: The legs' state of each draw, of which steering and stride are used here.
+        error: Standard deviations of the walking model's error.
         rng: Source of randomness.
         threads: Number of draws walked at once.
         options: How walks are computed; when None the step is chosen by `ensemble_step`.
-        progress: Called with the fraction done.
+        progress: Called with the fraction done, 0 to 1.
 
     Raises:
         WalkError: A walk diverged.
@@ -170,12 +174,11 @@ def predict_paths(
 def with_contacts(
     draws: Sequence[WalkDraw], error: ModelSpread, *, rng: np.random.Generator
 ) -> list[WalkDraw]:
-    """Draw the stiffness and damping of the contacts of each draw, log-normal.
+    """Replace each draw's factors on contact stiffness and damping by log-normal ones, median 1.
 
     Args:
-        draws: The draws.
-        error: Error of the walking model; without spread of contacts the draws are returned as
-            they are.
+        draws: Inputs of the walks.
+        error: Error of the walking model; if `error.contacts` is zero the draws are not changed.
         rng: Source of randomness.
     """
     if error.contacts == 0:

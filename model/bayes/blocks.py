@@ -29,16 +29,17 @@ class SlipBlocks:
         slip: Best estimate of the block's mean true slip ratio, shape (n,) [-].
         normal_force: Mean measured normal force, shape (n,) [N].
         traction_force: Mean measured traction force, shape (n,) [N].
-        count: Samples in the block, shape (n,).
-        run: Index of the run, non-decreasing, shape (n,).
+        count: Number of samples in the block, shape (n,).
+        run: Index into `run_names`, non-decreasing, shape (n,).
         run_names: Name of each run.
-        definition: What the slip ratios are divided by.
+        definition: Definition of the slip ratios: the speed that they are divided by.
         slip_wander: Variance of the true slip within the block, shape (n,) [-].
         slip_error: Variance of the error of `slip`, independent between blocks, shape (n,) [-].
         load_variance: Variance of the load within the block, shape (n,) [N^2].
         load_skewness: Skewness of the load within the block, shape (n,) [-].
         slip_load_covariance: Covariance of slip and load within the block, shape (n,) [N].
-        run_slip_error: Variance of the error of `slip` that a run shares, shape (n_runs,) [-].
+        run_slip_error: Variance of the error of `slip` that all blocks of a run share, shape
+            (n_runs,) [-].
     """
 
     slip: Array
@@ -65,26 +66,27 @@ class SlipBlocks:
         return len(self.run_names)
 
     def slip_variance(self) -> Array:
-        """Return the variance of the true slip of a sample around `slip`, shape (n,) [-].
+        """Return the variance of the true slip of a block's samples around `slip`, shape (n,) [-].
 
-        It is the sum of the wander and both errors, over which a curved law has to be averaged.
+        It is the sum of `slip_wander`, `slip_error` and `run_slip_error`; a curved law has to be
+        averaged over it.
         """
         return self.slip_wander + self.slip_error + self.run_slip_error[self.run]
 
     def run_starts(self) -> NDArray[np.intp]:
-        """Return the index of each run's first block and, last, the number of blocks."""
+        """Return the index of each run's first block, then the number of blocks, (n_runs + 1,)."""
         return np.searchsorted(self.run, np.arange(self.n_runs + 1))
 
     def run_mean(self, block_values: Array) -> Array:
-        """Average a quantity over each run's blocks, shape (..., n) to (..., n_runs)."""
+        """Average values (..., n) over each run's blocks, equally weighted, to (..., n_runs)."""
         starts = self.run_starts()
         return np.add.reduceat(block_values, starts[:-1], axis=-1) / np.diff(starts)
 
     def select_runs(self, keep: NDArray[np.bool_]) -> "SlipBlocks":
-        """Return the blocks of some runs.
+        """Return the blocks of some runs, the runs numbered anew from 0.
 
         Args:
-            keep: Which runs to keep, shape (n_runs,).
+            keep: Whether to keep each run, shape (n_runs,).
         """
         rows = keep[self.run]
         per_block = {name: getattr(self, name)[rows] for name in _PER_BLOCK}
@@ -108,9 +110,9 @@ def slip_noise_variance(samples: SlipSamples) -> Array:
 
     The estimate is the nugget of the variogram: half the variance of the differences at lag 1 and
     2, extrapolated to lag 0, :math:`2\gamma_1 - \gamma_2`. Slow wander and steady sweeps cancel in
-    it. Its sampling variance for white noise is :math:`7\sigma^4/n`; runs that differ by no more
-    share one value. Runs of fewer than 8 samples take the shared value. Where all runs are that
-    short, the noise variance is zero.
+    it. Its sampling variance for white noise is :math:`7\sigma^4/n`; estimates that scatter by no
+    more between runs are replaced by one typical value. Runs of fewer than 8 samples have the
+    typical value. If all runs are that short, the noise variance is zero.
 
     Args:
         samples: The samples.
@@ -130,6 +132,7 @@ def slip_noise_variance(samples: SlipSamples) -> Array:
 
 
 def _nugget(slip: Array) -> float:
+    """Estimate one run's nugget, at least 0; 0 for fewer than 8 samples, shape (n,) [-]."""
     if len(slip) < 8:
         return 0.0
     gamma_1 = 0.5 * np.var(slip[1:] - slip[:-1])
@@ -138,7 +141,12 @@ def _nugget(slip: Array) -> float:
 
 
 def _median_variance(estimates: Array, freedom: Array) -> float:
-    """Return the median of variance estimates, corrected for the skewness of their chi-square."""
+    """Compute the median of variance estimates, corrected for the skewness of their chi-square.
+
+    Args:
+        estimates: Variance estimates, shape (n,); the median of none is 0.
+        freedom: Degrees of freedom of each estimate, shape (n,).
+    """
     if len(estimates) == 0:
         return 0.0
     return float(np.median(estimates * freedom / chi2.median(freedom)))
@@ -147,12 +155,13 @@ def _median_variance(estimates: Array, freedom: Array) -> float:
 def _shrink(estimates: Array, sampling_variance: Array, typical: float) -> Array:
     """Shrink estimates towards a typical value in proportion to their sampling error.
 
-    Empirical Bayes: estimates of runs under the same conditions are pooled; estimates of runs that
-    differ significantly are kept. The scatter is the robust one of the median absolute deviation.
+    Empirical Bayes: if the estimates scatter by no more than their sampling error, the typical
+    value replaces them; the further they scatter beyond it, the less they are changed. The scatter
+    is the robust one of the median absolute deviation.
 
     Args:
         estimates: One estimate a run, shape (n_runs,).
-        sampling_variance: Variance each would have if all runs were alike, shape (n_runs,).
+        sampling_variance: Variance each estimate would have if all runs were alike, (n_runs,).
         typical: Value to shrink towards.
     """
     scatter = (1.4826 * np.median(np.abs(estimates - typical))) ** 2
@@ -169,7 +178,7 @@ def block_means(samples: SlipSamples, length: int) -> SlipBlocks:
 
     Args:
         samples: The samples.
-        length: Wanted samples in a block, at least 1.
+        length: Wanted number of samples in a block, at least 1.
     """
     starts, run = _block_starts(samples, length)
     count = np.diff(starts)
@@ -201,7 +210,7 @@ def block_means(samples: SlipSamples, length: int) -> SlipBlocks:
 
 
 def _block_starts(samples: SlipSamples, length: int) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
-    """Return where each block starts (and the end) and the run each block belongs to."""
+    """Cut runs into blocks; return each block's first sample, with the end last, and its run."""
     starts, run = [], []
     for index, part in enumerate(samples.slices()):
         n_blocks = max(1, round((part.stop - part.start) / length))
@@ -212,11 +221,12 @@ def _block_starts(samples: SlipSamples, length: int) -> tuple[NDArray[np.intp], 
 
 
 def _mean(values: Array, starts: NDArray[np.intp]) -> Array:
+    """Average sample values (n_samples,) over blocks from `starts`, which ends with n_samples."""
     return np.add.reduceat(values, starts[:-1]) / np.diff(starts)
 
 
 def _skewness(third_moment: Array, variance: Array) -> Array:
-    """Return the skewness, 0 where nothing varies."""
+    """Compute skewness from third moment and variance of each block; 0 where nothing varies."""
     varies = variance > 1e-12 * variance.max(initial=1e-300)
     return np.where(varies, third_moment / np.where(varies, variance, 1.0) ** 1.5, 0.0)
 
@@ -224,7 +234,7 @@ def _skewness(third_moment: Array, variance: Array) -> Array:
 def _calibrate_slip(
     slip: Array, count: NDArray[np.intp], run: NDArray[np.intp], noise: Array
 ) -> tuple[Array, Array, Array]:
-    r"""Replace each block's measured slip by its expectation given the whole run's.
+    r"""Replace each block's measured slip by its expectation given the slips of the whole run.
 
     Regression calibration: within a run the true block slips spread with variance
     :math:`\omega^2` around the run's mean :math:`m`, the measured ones with
@@ -234,7 +244,7 @@ def _calibrate_slip(
     block, variance :math:`\lambda\sigma^2/n`, and one the run shares,
     :math:`(1-\lambda)\sigma^2/N`, so that the variance of the run's mean is :math:`\sigma^2/N`. A
     likelihood that ignored the error of the measured slip, or gave the true slip a flat prior,
-    would flatten the curve.
+    would flatten the curve. Returns the slips (n,), their own (n,) and shared (n_runs,) variances.
     """
     n_blocks, n_samples = np.bincount(run), np.bincount(run, count)
     middle = np.bincount(run, slip * count) / n_samples
@@ -250,7 +260,7 @@ def _calibrate_slip(
 
 
 def _wander(spread: Array, count: NDArray[np.intp], run: NDArray[np.intp], noise: Array) -> Array:
-    r"""Estimate the variance of the true slip around its mean in each block.
+    r"""Estimate the variance of the true slip around its mean in each block, shape (n,) [-].
 
     Each block's own estimate, the spread s² less the noise :math:`\sigma^2`, is shrunk towards the
     mean :math:`\bar w` of its run. The weights are its sampling variance

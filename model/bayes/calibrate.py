@@ -26,7 +26,7 @@ from model.slip.law import SlipLaw
 
 THIN = 5  # sampler moves a kept step
 CHUNK = 20  # kept steps between checks for a request to stop
-FIRST_LOOK = 100  # kept steps before convergence is judged for the first time
+FIRST_LOOK = 100  # kept steps before convergence is computed for the first time
 FEW_BLOCKS = 500  # below, numpy's calls are too short for threads to help
 
 
@@ -34,7 +34,7 @@ class FitStopped(FitError):
     """The fit was stopped on request of the watcher.
 
     Attributes:
-        chains: The chains so far; None when sampling had not begun.
+        chains: The sampler's chains so far; None when sampling had not begun.
     """
 
     def __init__(self, chains: Chains | None) -> None:
@@ -47,10 +47,10 @@ class SamplerSettings:
     """Settings of the sampler.
 
     Attributes:
-        ensembles: Independent ensembles of walkers.
-        max_steps: Largest number of sampler moves; a fit that has not converged by then ends
-            unconverged.
-        block_length: Samples in a block; chosen from the residuals when None.
+        ensembles: Number of independent ensembles of walkers.
+        max_steps: Number of sampler moves after which a fit ends without convergence; at least
+            `THIN * FIRST_LOOK` moves are made.
+        block_length: Samples in a block; chosen by `choose_block_length` when None.
         threads: Number of ensembles that are sampled at once.
         seed: Seed of the random generators.
     """
@@ -74,25 +74,25 @@ def calibrate(
     earlier: Chains | None = None,
     keep: Callable[[Chains], object] = lambda _: None,
 ) -> tuple[Calibration, Chains]:
-    """Fit a slip law to rig samples by Bayesian inference.
+    """Choose a slip law for rig samples, sample its posterior and check the result.
 
     Args:
         samples: The samples.
         laws: The laws to choose from, simplest first, by the name they are reported under.
         load_cell: Prior knowledge of the load cell.
         settings: Settings of the sampler.
-        source: Where the samples come from, for the result.
-        watcher: Follows the progress and may ask to stop.
-        clock: Returns the time, to measure how long sampling takes [s].
+        source: Source of the samples, stored in the result.
+        watcher: Receives progress, and can stop the fit.
+        clock: Function that returns the time, to measure how long sampling takes [s].
         earlier: Chains of a stopped fit of the same samples and settings, to resume from.
-        keep: Called with the chains as they grow, to save a checkpoint.
+        keep: Called with all chains so far after every `CHUNK` kept steps, to save a checkpoint.
 
     Returns:
-        The calibration, and the chains it was made from.
+        The calibration, converged or not (see its verdict), and the chains it was computed from.
 
     Raises:
         ModelError: The samples cannot determine the law, or the fit failed.
-        FitStopped: The watcher asked to stop.
+        FitStopped: The watcher requested a stop.
     """
     rng = np.random.default_rng(settings.seed)
     require_forces(samples, load_cell)
@@ -118,7 +118,7 @@ def _choose_law(
     rng: np.random.Generator,
     watcher: Watcher,
 ) -> tuple[PreparedFit, LawComparison | None]:
-    """Prepare the fit of every law and choose the one with the best cross-validation."""
+    """Prepare the fit of each law; return the one `compare` chooses and, of several, its result."""
     fits: list[PreparedFit] = []
     asked = settings.block_length
     choice = None if asked is None else BlockChoice(asked, None, "as asked for")
@@ -146,7 +146,7 @@ def _sample(
     watcher: Watcher,
     keep: Callable[[Chains], object],
 ) -> tuple[Chains, Convergence]:
-    """Sample until the chains have converged or the steps are used up."""
+    """Sample, from `earlier` if given, until convergence or the largest number of steps."""
     density = fit.posterior.log_density
     chains = earlier or start_chains(
         density, fit.approximation, ensembles=settings.ensembles, thin=THIN, rng=rng
@@ -172,13 +172,13 @@ def _sample(
 
 
 def next_look(n_steps: int) -> int:
-    """Return the next step at which convergence is checked; each is a fifth beyond the last.
+    """Return the first step from `n_steps` on at which convergence is computed.
 
-    The steps are fixed, so that a fit that is stopped and resumed ends at the same step as one that
-    is not.
+    These steps are 100 and, from each to the next, a fifth more. They are fixed, so that a fit that
+    is stopped and resumed ends at the same step as a fit that is not.
 
     Args:
-        n_steps: Kept steps; the result is this number or later.
+        n_steps: Number of kept steps; the result is this number or larger.
 
     >>> [next_look(n) for n in (1, 101, 121)]
     [100, 120, 144]

@@ -28,29 +28,29 @@ from model.bayes.verdict import Verdict, judge
 
 DRAWS_PER_ENSEMBLE = 1000
 IMPORTANCE_DRAWS = 10_000
-_CHECKED = 400  # draws by which residuals and verdict are computed
+_CHECKED = 400  # about this many draws are used for residuals and verdict
 
 
 @dataclass(frozen=True)
 class Calibration:
-    """A finished fit.
+    """The finished fit of a slip law, with its checks.
 
     Attributes:
-        fit: Posterior, mode, cross-validation and block length.
-        comparison: The laws that were compared; None where one was asked for.
+        fit: Posterior density, Laplace approximations, cross-validation and block length.
+        comparison: Comparison of several laws; None if there was only one.
         draws: Posterior draws.
-        parameters: Posterior of every parameter.
+        parameters: Posterior of every parameter: the law's, then the measurement's.
         levels: Loads that were set, shape (m,) [N].
-        curves: Posterior of the curve's features at each load level.
+        curves: Posterior of the curve's features, as by `curve_estimates`, at each load level.
         convergence: Convergence diagnostics of the sampler.
         residuals: Analysis of the residuals.
         agreement: Comparison with importance sampling.
         verdict: Whether the fit converged and can be trusted.
-        contraction: 1 - posterior over prior variance of each sampled parameter, by name.
-        r_squared: Fraction of the variance of left-out samples explained; None for a single run
-            [-].
+        contraction: 1 - posterior over prior variance of each sampled parameter, by name [-].
+        r_squared: Fraction of the variance of measured traction explained by predictions of
+            left-out runs; None without cross-validation [-].
         source: Where the data come from: "real", "sim:...", "unknown".
-        seconds: Time the sampler took [s].
+        seconds: Time that sampling took [s].
     """
 
     fit: PreparedFit
@@ -75,7 +75,7 @@ class Calibration:
 
     @property
     def simulated(self) -> bool:
-        """Whether any of the data is simulated."""
+        """Whether any of the data are simulated: `source` contains "sim:"."""
         return "sim:" in self.source
 
 
@@ -90,16 +90,16 @@ def conclude(
     seconds: float,
     rng: np.random.Generator,
 ) -> Calibration:
-    """Summarise and check a sampled posterior.
+    """Compute estimates, residuals, checks and verdict from the chains of a fit.
 
     Args:
         fit: The fit that was sampled.
-        comparison: The laws that were compared; None where one was asked for.
+        comparison: Comparison of several laws; None if there was only one.
         chains: The sampler's chains.
         convergence: Convergence diagnostics of the chains.
         samples: The samples that were fitted.
-        source: Where the samples come from.
-        seconds: Time the sampler took [s].
+        source: Source of the samples.
+        seconds: Time that sampling took [s].
         rng: Source of randomness of the importance draws.
     """
     posterior = fit.posterior
@@ -144,7 +144,7 @@ def conclude(
 
 
 def _curves(posterior: SlipPosterior, draws: Draws, levels: np.ndarray) -> list[Sequence[Estimate]]:
-    """Estimate the features of the slip curve at each load."""
+    """Estimate the features of the slip curve at each load level [N], up to its largest slip."""
     k = len(posterior.law.parameters)
     return [
         curve_estimates(posterior.law, draws.flat[:, :k], load=load, slip_limit=float(limit))

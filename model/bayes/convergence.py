@@ -14,14 +14,14 @@ if TYPE_CHECKING:
 
 MAX_R_HAT = 1.01
 MIN_ESS = 400.0
-MIN_LENGTH = 50.0  # autocorrelation times
-MAX_MCSE = 0.05  # of the posterior standard deviation
-BURN_IN = 5.0  # autocorrelation times; the starts are nearly posterior draws
+MIN_LENGTH = 50.0  # least length of the chains, in autocorrelation times
+MAX_MCSE = 0.05  # largest Monte Carlo error, over the posterior standard deviation
+BURN_IN = 5.0  # length in autocorrelation times; the starts are nearly posterior draws
 
 
 @dataclass(frozen=True)
 class Convergence:
-    """Convergence diagnostics, each array of shape (d,).
+    """Convergence diagnostics; arrays hold one value a sampled coordinate, shape (d,).
 
     Attributes:
         burn_in: Kept steps left out at the start.
@@ -43,7 +43,7 @@ class Convergence:
     mcse: Array
 
     def failures(self) -> list[str]:
-        """List every criterion that is not met, with its value; empty when converged."""
+        """List the unmet criteria as text, each with its worst value; empty when converged."""
         length = float((self.length / self.autocorrelation_time).min())
         at_most = [
             ("R-hat between ensembles", float(self.r_hat.max()), MAX_R_HAT),
@@ -64,7 +64,7 @@ class Convergence:
         ]
 
     def summary(self) -> str:
-        """Format the diagnostics in one line."""
+        """Format the worst value of each diagnostic as one line of text."""
         length = float((self.length / self.autocorrelation_time).min())
         return (
             f"R-hat {self.r_hat.max():.3f}, bulk ESS {self.ess_bulk.min():.0f}, tail ESS "
@@ -74,11 +74,11 @@ class Convergence:
 
     @property
     def converged(self) -> bool:
-        """Whether every criterion is met."""
+        """Whether all five criteria of `failures` are met."""
         return not self.failures()
 
     def fraction_done(self) -> float:
-        """Estimate the progress towards the required length and effective sizes, 0 to 1 [-]."""
+        """Compute the smallest ratio of chain length or ESS to its requirement, at most 1 [-]."""
         lengths = self.length / self.autocorrelation_time
         return float(
             min(
@@ -91,7 +91,9 @@ class Convergence:
 
 
 def assess(chains: Chains) -> Convergence:
-    """Compute the convergence diagnostics of the chains.
+    """Compute the convergence diagnostics of the chains after a burn-in.
+
+    The burn-in is `BURN_IN` autocorrelation times, but at most half of the chains.
 
     Args:
         chains: Chains of at least 8 steps.
@@ -115,15 +117,17 @@ def assess(chains: Chains) -> Convergence:
 
 
 def _dataset(chains: Array) -> "Dataset":
+    """Wrap chains (chains, draws, d) as the variable "x" of a Dataset for ArviZ."""
     from xarray import Dataset
 
     return Dataset({"x": (("chain", "draw", "coordinate"), chains)})
 
 
 def _array(dataset: Any) -> Array:
+    """Return the variable "x" of ArviZ's result as an array, shape (d,)."""
     return np.asarray(dataset["x"])
 
 
 def _as_chains(z: Array) -> Array:
-    """Reorder (ensembles, steps, walkers, d) to ArviZ's (chains, draws, d), a walker a chain."""
+    """Reshape (ensembles, steps, walkers, d) to ArviZ's (chains, draws, d), a walker a chain."""
     return np.moveaxis(z, 2, 1).reshape(-1, z.shape[1], z.shape[3])

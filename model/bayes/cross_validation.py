@@ -16,18 +16,19 @@ from model.bayes.posterior import SlipPosterior
 from model.bayes.samples import SlipSamples
 from model.slip.law import Array, SlipLaw
 
-MAX_SINGLE_FOLDS = 20
-N_GROUPED_FOLDS = 10
+MAX_SINGLE_FOLDS = 20  # runs up to which each is left out alone
+N_GROUPED_FOLDS = 10  # groups in which more runs are left out
 
 
 @dataclass(frozen=True)
 class CrossValidation:
-    """Predictions of left-out runs by one law.
+    """Fits of one law without each fold of runs, and how they predict the left-out runs.
 
     Attributes:
-        fold: Fold in which each run was left out, shape (n_runs,).
-        values: Posterior mode without each fold's runs, shape (n_folds, k + 8).
-        log_density: Log predictive density of each run's blocks at that mode, shape (n_runs,).
+        fold: Index of the fold in which each run was left out, shape (n_runs,).
+        values: Law and measurement parameters at the posterior mode without each fold's runs,
+            shape (n_folds, k + 8).
+        log_density: Log density of each run's blocks at the mode without the run, (n_runs,) [-].
     """
 
     fold: NDArray[np.intp]
@@ -36,17 +37,17 @@ class CrossValidation:
 
     @property
     def scheme(self) -> str:
-        """Describe how runs were left out."""
+        """Format as text how runs were left out, with the numbers of folds and runs."""
         n_folds = len(self.values)
         if n_folds == len(self.fold):
             return f"leave one run out, {n_folds} runs"
         return f"leave out runs in {n_folds} interleaved groups of {len(self.fold)} runs"
 
     def predict(self, samples: SlipSamples, law: SlipLaw) -> Array:
-        """Predict every sample's traction from the fit without its run, shape (n,) [N].
+        """Predict every sample's measured traction by the fit without its run, shape (n,) [N].
 
         Args:
-            samples: The samples, of the same runs.
+            samples: The samples, n of them, of the same runs.
             law: The slip law.
         """
         predicted = np.empty(len(samples))
@@ -63,7 +64,7 @@ def measured_force(law: SlipLaw, values: Array, slip: Array, normal_force: Array
 
     Args:
         law: The slip law, of k parameters.
-        values: Law and measurement parameters, shape (k + 8,).
+        values: Law and measurement parameters, of which gains and load bias are used, (k + 8,).
         slip: Slip ratio, shape (n,) [-].
         normal_force: Measured normal force, shape (n,) [N].
     """
@@ -74,11 +75,11 @@ def measured_force(law: SlipLaw, values: Array, slip: Array, normal_force: Array
 
 
 def r_squared(measured: Array, predicted: Array) -> float:
-    """Compute the fraction of the variance of `measured` that `predicted` explains [-].
+    """Compute 1 minus the squared errors over the squared deviations from the mean, R² [-].
 
     Args:
         measured: Measured values, shape (n,).
-        predicted: Predictions of them, in the same unit, shape (n,).
+        predicted: Predictions of the measured values, in the same unit, shape (n,).
     """
     return float(
         1 - np.sum((measured - predicted) ** 2) / np.sum((measured - measured.mean()) ** 2)
@@ -86,13 +87,13 @@ def r_squared(measured: Array, predicted: Array) -> float:
 
 
 def cross_validate(posterior: SlipPosterior, mode: Array, *, threads: int = 2) -> CrossValidation:
-    """Fit the posterior's mode without each fold of runs.
+    """Find the posterior's mode without each fold of runs, and predict the runs left out.
 
     Up to 20 runs are left out one by one, more in 10 interleaved groups.
 
     Args:
         posterior: The posterior of all runs, at least two.
-        mode: Coordinates of its mode, where each fit starts, shape (d,).
+        mode: Coordinates of the mode of all runs, where each search starts, shape (d,).
         threads: Number of folds that are fitted at once.
     """
     n_runs = posterior.blocks.n_runs

@@ -12,7 +12,7 @@ from model.bayes.sampler import Chains
 from model.slip.law import Array, Parameter, SlipLaw
 from model.slip.magic_formula import MagicFormula
 
-MAX_PARETO_K = 0.7
+MAX_PARETO_K = 0.7  # tail index from which importance weights are not reliable
 
 
 @dataclass(frozen=True)
@@ -20,9 +20,9 @@ class Draws:
     """Draws of a posterior.
 
     Attributes:
-        z: Coordinates of the free parameters, shape (ensembles, n, d).
-        values: Values of all parameters, shape (ensembles, n, k + 8).
-        log_density: Log posterior density, shape (ensembles, n).
+        z: Standard normal coordinates of the free parameters, shape (ensembles, n, d).
+        values: Values of the law's k and the measurement's 8 parameters, (ensembles, n, k + 8).
+        log_density: Log posterior density up to a constant, shape (ensembles, n).
     """
 
     z: Array
@@ -31,20 +31,20 @@ class Draws:
 
     @property
     def flat(self) -> Array:
-        """All values with the ensembles joined, shape (ensembles · n, k + 8)."""
+        """`values` with the ensembles joined, shape (ensembles · n, k + 8)."""
         return self.values.reshape(-1, self.values.shape[-1])
 
 
 def thin_draws(
     posterior: SlipPosterior, chains: Chains, convergence: Convergence, *, n: int
 ) -> Draws:
-    """Thin the chains: take evenly spaced draws after the burn-in.
+    """Select evenly spaced draws of the chains after the burn-in.
 
     Args:
         posterior: The posterior that was sampled.
         chains: The chains.
         convergence: Diagnostics with the length of the burn-in.
-        n: Largest number of draws of each ensemble.
+        n: Largest number of draws of each ensemble, of all its walkers together.
     """
     kept = chains.z[:, convergence.burn_in :]
     ensembles, steps, walkers, d = kept.shape
@@ -57,15 +57,15 @@ def thin_draws(
 
 @dataclass(frozen=True)
 class Estimate:
-    """One quantity's posterior.
+    """Posterior of one quantity, in the unit of `parameter`.
 
     Attributes:
-        parameter: What it is.
+        parameter: Name, symbol, unit, bounds and meaning of the quantity.
         mean: Posterior mean.
         sd: Posterior standard deviation.
-        low: 5 % quantile.
-        median: Median.
-        high: 95 % quantile.
+        low: Posterior 5 % quantile.
+        median: Posterior median.
+        high: Posterior 95 % quantile.
     """
 
     parameter: Parameter
@@ -77,14 +77,14 @@ class Estimate:
 
 
 def estimate(parameter: Parameter, draws: Array) -> Estimate:
-    """Summarise draws of one quantity by mean, standard deviation and quantiles.
+    """Compute mean, standard deviation and 5, 50 and 95 % quantiles of draws of one quantity.
 
     Draws may be infinite, for example the peak slip of a curve without a peak. The mean is then
     infinite too, and the standard deviation is NaN.
 
     Args:
         parameter: The quantity: name, unit and meaning.
-        draws: Its posterior draws, shape (n,).
+        draws: Posterior draws of the quantity, shape (n,).
     """
     # Order statistics without interpolation, which infinite draws do not allow.
     low, median, high = np.quantile(draws, [0.05, 0.5, 0.95], method="inverted_cdf")
@@ -110,10 +110,10 @@ def contraction(posterior: SlipPosterior, draws: Draws) -> dict[str, float]:
 def curve_estimates(
     law: SlipLaw, values: Array, *, load: float, slip_limit: float
 ) -> list[Estimate]:
-    """Summarise the curve at one load: B, C, D, E of a Magic Formula, peak and slope.
+    """Estimate features of the curve at one load from posterior draws.
 
-    The largest force is taken within the tested slip. It therefore stays known where the data end
-    before the peak and D does not.
+    In order: B, C, D, E (of a Magic Formula only), peak slip, largest traction within the tested
+    slip (it stays known where data end before the peak, D does not), slope at zero slip.
 
     Args:
         law: The slip law, of k parameters.
@@ -136,12 +136,12 @@ def curve_estimates(
 
 @dataclass(frozen=True)
 class Agreement:
-    """Difference between sampler and importance sampling, over the free parameters.
+    """Difference between sampler and importance sampling, the largest over the free parameters.
 
     Attributes:
-        mean: Largest difference of means over the posterior standard deviation [-].
-        spread: Largest relative difference of standard deviations [-].
-        pareto_k: Tail index of the importance weights; above 0.7 they cannot be compared [-].
+        mean: Largest absolute difference of means over the sampler's standard deviation [-].
+        spread: Largest absolute difference of standard deviations over the sampler's [-].
+        pareto_k: Tail index of the importance weights; from 0.7 on they are not reliable [-].
     """
 
     mean: float
@@ -150,12 +150,12 @@ class Agreement:
 
     @property
     def comparable(self) -> bool:
-        """Whether the importance weights are reliable enough to compare."""
+        """Whether the importance weights are reliable: `pareto_k` is below `MAX_PARETO_K`."""
         return self.pareto_k < MAX_PARETO_K
 
 
 def agreement(draws: Draws, weighted: WeightedDraws) -> Agreement:
-    """Compare the sampler's draws with weighted draws of the Laplace approximation.
+    """Compute differences between the sampler's and importance-weighted means and spreads of z.
 
     Args:
         draws: Draws of the sampler.

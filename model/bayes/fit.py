@@ -16,21 +16,21 @@ from model.bayes.samples import SlipSamples
 from model.errors import DomainError, FitError, InsufficientData
 from model.slip.law import SlipLaw
 
-FEW_BLOCKS = 500
+FEW_BLOCKS = 500  # up to this number of blocks prior draws are further starts
 MOST_FORCE = 1e9  # above any rig, and far below the overflow of squared forces [N]
 PRIOR_DRAWS = 400
 PRIOR_STARTS = 12  # further starts of the optimisation, from the best of the draws to the worst
-CLEAR_WIN = 2.0  # standard errors by which a law must predict better to be preferred
+CLEAR_WIN = 2.0  # standard errors by which a later law must predict better to be preferred
 
 
 @dataclass(frozen=True)
 class PreparedFit:
-    """One law, ready to sample.
+    """Posterior of one law, ready to sample.
 
     Attributes:
-        posterior: Blocks, law and priors.
+        posterior: Posterior density, with blocks, law and priors.
         approximation: Laplace approximations at the modes, the highest first.
-        cross_validation: Prediction of left-out runs; None for a single run or where not asked for.
+        cross_validation: Prediction of left-out runs; None for one run or without validation.
         block_choice: The block length and the reason for it.
         load_cell: Prior knowledge of the load cell.
     """
@@ -48,14 +48,15 @@ class PreparedFit:
 
 
 def scaled_load_cell(samples: SlipSamples, known: Mapping[str, float]) -> LoadCell:
-    """Complete what is known of a load cell by defaults in proportion to the forces measured.
+    """Build the prior knowledge of a load cell from known fields and defaults scaled to the forces.
 
-    The defaults are those of a small cell (0.15 N zero stability, 0.05 N bias), but no less than
-    0.5 % of the largest traction and 0.2 % of the largest load: a tyre bench has a larger one.
+    Zero stability is 0.15 N, but at least 0.5 % of the largest traction; the standard deviation of
+    the bias is 0.05 N, but at least 0.2 % of the largest load: a tyre bench has a larger cell. All
+    other defaults are those of `LoadCell`.
 
     Args:
         samples: The samples.
-        known: Fields of `LoadCell` that are known, by name.
+        known: Fields of `LoadCell` that are known, by name; they replace the defaults.
     """
     defaults = {
         "zero_stability": max(0.15, 0.005 * float(np.abs(samples.traction_force).max())),
@@ -82,14 +83,14 @@ def prepare_fit(
         load_cell: Prior knowledge of the load cell.
         rng: Source of randomness of the starting points.
         block_choice: The block length; chosen from the residuals when None.
-        validate: Whether to cross-validate; studies over many data sets do without.
+        validate: Whether to cross-validate, which a single run never is.
         threads: Folds of the cross-validation fitted at once.
 
     Raises:
-        InsufficientData: There are no more samples than parameters of the law, or the forces hold
-            no information.
-        DomainError: A force is larger than any rig can measure.
-        FitError: No mode was found.
+        InsufficientData: There are fewer samples than the law's parameters plus two, traction is
+            constant, or no load exceeds the load cell's zero stability.
+        DomainError: A force exceeds `MOST_FORCE`.
+        FitError: The priors allow no valid curve, no mode was found, or a matrix was singular.
     """
     _require_enough(samples, law)
     require_forces(samples, load_cell)
@@ -99,14 +100,14 @@ def prepare_fit(
 
 @contextmanager
 def explain_numerical_errors(samples: SlipSamples, law: SlipLaw) -> Iterator[None]:
-    """Convert a failure of the linear algebra into an error that describes the data.
+    """Convert numerical failures within the context into a `FitError` that describes the data.
 
     Args:
         samples: The samples that are fitted.
         law: The slip law.
 
     Raises:
-        FitError: A matrix was singular, or a number overflowed.
+        FitError: A linear algebra routine failed, a number overflowed or was divided by zero.
     """
     try:
         yield
@@ -134,6 +135,7 @@ def _prepared(
     validate: bool,
     threads: int,
 ) -> PreparedFit:
+    """Compute the prepared fit; arguments are those of `prepare_fit`."""
     everything = block_means(samples, 1 if len(samples) < 1000 else len(samples) // 1000)
     priors = default_priors(law, everything, load_cell)
     choice = block_choice or choose_block_length(samples, law, priors=priors, rng=rng)
@@ -151,6 +153,7 @@ def _prepared(
 
 
 def _require_enough(samples: SlipSamples, law: SlipLaw) -> None:
+    """Raise `InsufficientData` for fewer samples than the law's parameters plus two."""
     needed = len(law.parameters) + 2
     if len(samples) < needed:
         raise InsufficientData(
@@ -160,15 +163,15 @@ def _require_enough(samples: SlipSamples, law: SlipLaw) -> None:
 
 
 def require_forces(samples: SlipSamples, cell: LoadCell) -> None:
-    """Check that the forces can determine a curve, whatever the law.
+    """Check that forces are in range, that traction varies and that loads exceed the zero error.
 
     Args:
         samples: The samples.
         cell: Prior knowledge of the load cell.
 
     Raises:
-        InsufficientData: Traction is constant, or no load is above the cell's own zero error.
-        DomainError: A force is larger than any rig can measure.
+        InsufficientData: Traction is constant, or no load exceeds the cell's zero stability.
+        DomainError: The absolute value of a force exceeds `MOST_FORCE`.
     """
     loads, traction = samples.normal_force, samples.traction_force
     for name, force in (("normal", loads), ("traction", traction)):
@@ -192,7 +195,10 @@ def require_forces(samples: SlipSamples, cell: LoadCell) -> None:
 
 
 def _implausible(load: float, traction: float) -> str:
-    """Return which value is implausible when the largest load [N] is below the zero's error."""
+    """Return advice when the largest load is below the zero stability, by the largest forces [N].
+
+    The advice is about the unit, the columns, or the zero stability.
+    """
     if max(load, traction) < 1:
         return "are the forces in kN? Name their unit in columns.toml, or give the zero stability"
     if traction > 10 * load:
@@ -204,16 +210,20 @@ def _implausible(load: float, traction: float) -> str:
 
 
 def _not_identified(blocks: SlipBlocks) -> dict[str, float]:
-    """Fix parameters that single-block runs cannot identify: run offsets and noise correlation."""
+    """Return fixed values by name: run offset and noise correlation zero if no run has two blocks.
+
+    Empty otherwise.
+    """
     if len(blocks) > blocks.n_runs:
         return {}
     return {"noise_correlation": 0.0, "offset_spread": 0.0}
 
 
 def _starting_points(posterior: SlipPosterior, rng: np.random.Generator) -> np.ndarray:
-    """Choose starting points: least squares and, where optimisation is cheap, prior draws too.
+    """Choose starting points of the optimisation in coordinates z, shape (m, d).
 
-    Few data allow several shapes. Each is a mode of the posterior, and one start would find one.
+    Two are at the least-squares curve, with a low and a high noise. Up to `FEW_BLOCKS` blocks a
+    dozen or two prior draws follow: few data allow several shapes, and one start finds one mode.
     """
     blocks, law = posterior.blocks, posterior.law
     values = least_squares_values(blocks, law, priors=dict(posterior.priors), rng=rng)
@@ -240,8 +250,8 @@ class LawComparison:
     Attributes:
         names: Name of each law.
         log_density: Log predictive density of all left-out runs under each law [-].
-        difference: Its excess over the chosen law's [-].
-        standard_error: Standard error of that excess, from the scatter between runs [-].
+        difference: Log predictive density of each law minus the chosen law's [-].
+        standard_error: Standard error of that difference, from the scatter between runs [-].
         chosen: Index of the chosen law.
     """
 
@@ -253,16 +263,17 @@ class LawComparison:
 
 
 def compare(names: Sequence[str], fits: Sequence[PreparedFit]) -> LawComparison:
-    """Choose the law with the best cross-validation; the first unless another is clearly better.
+    """Compare laws by the log predictive density of left-out runs, and choose one.
 
-    All fits must have the same blocks. A single run cannot be left out: the first law is kept.
+    Starting with the first, a later law replaces the chosen one if its density is larger by more
+    than `CLEAR_WIN` standard errors. Without cross-validation the first law is chosen.
 
     Args:
         names: Name of each law, simplest first.
-        fits: A fit for each.
+        fits: A fit for each law, all on the same blocks.
 
     Raises:
-        DomainError: The fits were made on different blocks, so their densities cannot be compared.
+        DomainError: The fits have different numbers of blocks.
     """
     lengths = sorted({len(fit.posterior.blocks) for fit in fits})
     if len(lengths) > 1:
@@ -289,4 +300,5 @@ def compare(names: Sequence[str], fits: Sequence[PreparedFit]) -> LawComparison:
 
 
 def _standard_error(differences: np.ndarray) -> float:
+    """Compute the standard error of the sum of one difference a run, from their scatter."""
     return float(np.sqrt(len(differences)) * np.std(differences))

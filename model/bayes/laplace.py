@@ -15,18 +15,19 @@ from model.errors import FitError
 from model.slip.law import Array
 
 LogDensity = Callable[[Array], Array]
-SAME_TOP = 0.05  # coordinates closer than this are the same mode
+SAME_TOP = 0.05  # maxima closer than this in coordinates are the same mode
 NEGLIGIBLE = 10.0  # nats of evidence below the best mode's, beyond which a mode is left out
 STEP = 1e-4  # coordinates are of unit scale a priori; central differences err by about its square
 
 
 @dataclass(frozen=True)
 class Laplace:
-    """A Gaussian at the posterior's mode.
+    """Laplace approximation: a Gaussian at a mode of the posterior.
 
     Attributes:
         mode: Coordinates of the mode, shape (d,).
-        covariance: Inverse of the negative Hessian of the log density, shape (d, d).
+        covariance: Inverse of the negative Hessian of the log density at the mode, with
+            eigenvalues of at most 1, shape (d, d).
         log_density: Log density at the mode.
     """
 
@@ -35,31 +36,31 @@ class Laplace:
     log_density: float
 
     def log_evidence(self) -> float:
-        """Compute the log of the integral of the density, in the Gaussian approximation."""
+        """Compute the log of the density's integral over all coordinates, by the Gaussian."""
         d = len(self.mode)
         return self.log_density + 0.5 * (
             d * np.log(2 * np.pi) + np.linalg.slogdet(self.covariance)[1]
         )
 
     def distance(self, z: Array) -> float:
-        """Compute the Mahalanobis distance of coordinates z from the mode [-]."""
+        """Compute the Mahalanobis distance of coordinates z, shape (d,), from the mode [-]."""
         away = z - self.mode
         return float(np.sqrt(away @ np.linalg.solve(self.covariance, away)))
 
 
 @dataclass(frozen=True)
 class LaplaceMixture:
-    """A mixture of heavy-tailed Laplace approximations, one a mode of the posterior.
+    """A mixture of Student-t distributions with 8 degrees of freedom, one at each mode.
 
     Attributes:
-        modes: The approximations, each widened to a Student-t with 8 degrees of freedom.
+        modes: Laplace approximations, whose modes and covariances (as scale matrices) are used.
     """
 
     modes: tuple[Laplace, ...]
 
     @cached_property
     def weights(self) -> Array:
-        """Weight of each mode by evidence, no less than a tenth of an equal share, shape (m,)."""
+        """Weights of the modes by evidence, at least about a tenth of an equal share, (m,) [-]."""
         evidence = np.array([laplace.log_evidence() for laplace in self.modes])
         share = np.exp(evidence - evidence.max())
         share = np.maximum(share / share.sum(), 0.1 / len(share))
@@ -89,25 +90,26 @@ class LaplaceMixture:
         return rng.permutation(np.concatenate(parts))
 
     def log_pdf(self, z: Array) -> Array:
-        """Compute the log density of coordinates z of shape (w, d), shape (w,)."""
+        """Compute the mixture's log density at coordinates z of shape (w, d), shape (w,)."""
         parts = np.stack([np.reshape(part.logpdf(z), len(z)) for part in self._parts], axis=1)
         return np.asarray(logsumexp(parts + np.log(self.weights), axis=1))
 
 
 def gradient(log_density: LogDensity, z: Array) -> Array:
-    """Compute the gradient by central differences, in one batched call.
+    """Compute the gradient of a log density by central differences, in one batched call.
 
     Args:
         log_density: Log density of points, shape (m, d) to (m,).
         z: Coordinates of the point, shape (d,).
 
     Returns:
-        Gradient, shape (d,).
+        Gradient, shape (d,); not finite where a step leaves the support.
     """
     return _value_and_gradient(log_density, z)[1]
 
 
 def _value_and_gradient(log_density: LogDensity, z: Array) -> tuple[float, Array]:
+    """Compute a log density and its gradient by central differences at one point (d,)."""
     steps = STEP * np.eye(len(z))
     value, *both = log_density(np.concatenate([z[None], z + steps, z - steps]))
     ahead, behind = np.reshape(both, (2, len(z)))
@@ -116,7 +118,7 @@ def _value_and_gradient(log_density: LogDensity, z: Array) -> tuple[float, Array
 
 
 def hessian(log_density: LogDensity, z: Array, *, step: float = 1e-3) -> Array:
-    """Compute the Hessian by central differences, in one batched call.
+    """Compute the Hessian of a log density by central differences, in one batched call.
 
     Args:
         log_density: Log density of points, shape (m, d) to (m,).
@@ -161,7 +163,8 @@ def find_modes(log_density: LogDensity, starts: Array) -> tuple[Laplace, ...]:
         starts: Starting points, shape (m, d).
 
     Returns:
-        The distinct modes with a share of the posterior that is not negligible, the highest first.
+        The distinct modes whose log evidence is within `NEGLIGIBLE` of the largest, in the order of
+        their log densities, the highest first.
 
     Raises:
         FitError: No start lies inside the support.
@@ -180,6 +183,7 @@ def find_modes(log_density: LogDensity, starts: Array) -> tuple[Laplace, ...]:
 
 
 def _laplace(log_density: LogDensity, top: Array) -> Laplace:
+    """Refine a maximum `top` by Newton steps and approximate the density there by a Gaussian."""
     mode, covariance = _newton(log_density, top)
     return Laplace(mode, covariance, float(log_density(mode[None])[0]))
 
@@ -201,7 +205,10 @@ def climb(log_density: LogDensity, starts: Array) -> Array:
 
 
 def _tops(log_density: LogDensity, starts: Array) -> list[Array]:
-    """Maximise from every starting point inside the support; return the maxima, best first."""
+    """Maximise from every start inside the support; return the maxima, highest first.
+
+    Raises `FitError` if no start is inside.
+    """
     inside = starts[np.isfinite(log_density(starts))]
     if len(inside) == 0:
         raise FitError(
@@ -213,6 +220,8 @@ def _tops(log_density: LogDensity, starts: Array) -> list[Array]:
 
 
 def _climb(log_density: LogDensity, start: Array) -> Array:
+    """Maximise the log density from one start (d,) by L-BFGS-B; return where the search ended."""
+
     def negative(z: Array) -> tuple[float, Array]:
         value, slope = _value_and_gradient(log_density, z)
         if not np.isfinite(value):
@@ -223,7 +232,7 @@ def _climb(log_density: LogDensity, start: Array) -> Array:
 
 
 def _newton(log_density: LogDensity, z: Array, *, steps: int = 4) -> tuple[Array, Array]:
-    """Refine a mode by damped Newton steps; return it with the covariance there."""
+    """Refine a mode by at most `steps` damped Newton steps; return it and the covariance there."""
     covariance = _covariance(log_density, z)
     for _ in range(steps):
         slope = gradient(log_density, z)
@@ -238,7 +247,7 @@ def _newton(log_density: LogDensity, z: Array, *, steps: int = 4) -> tuple[Array
 
 
 def _covariance(log_density: LogDensity, z: Array) -> Array:
-    """Invert the negative Hessian, with every variance within (0, 1].
+    """Invert the negative Hessian at z, with the covariance's eigenvalues within (0, 1].
 
     Coordinates are standard normal a priori and data only narrow them. An eigenvalue of the
     precision below 1 is therefore a non-convexity of the density or a difference across the edge of
@@ -256,8 +265,8 @@ class WeightedDraws:
 
     Attributes:
         z: Coordinates, shape (n, d).
-        weights: Normalised weights, shape (n,).
-        pareto_k: Tail index of the raw weights; above 0.7 the weights are not to be trusted.
+        weights: Pareto-smoothed weights, with sum one, shape (n,).
+        pareto_k: Tail index of the raw weights; above 0.7 the weights are not reliable [-].
     """
 
     z: Array
@@ -265,7 +274,7 @@ class WeightedDraws:
     pareto_k: float
 
     def resample(self, n: int, *, rng: np.random.Generator) -> Array:
-        """Resample equally weighted draws, with replacement, by the importance weights.
+        """Resample draws by their importance weights, with replacement, to equally weighted ones.
 
         Args:
             n: Number of draws.

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-r"""The likelihood of block means: one slip law seen through a load cell and two speed sensors.
+r"""Likelihood of block means: one slip law measured by a load cell and two speed sensors.
 
 For block j of run i
 
@@ -38,15 +38,15 @@ NUISANCE = (
     Parameter("offset_spread", "tau", "newton", 0.0, np.inf,
               "standard deviation of the force offset between runs"),
 )  # fmt: skip
-"""Parameters of the measurement, behind the law's own in every parameter vector."""
+"""The 8 parameters of the measurement, in their order behind the law's in parameter vectors."""
 
 
 @dataclass(frozen=True)
 class PredictedForces:
-    """Predicted block means for parameter vectors, each of shape (w, n).
+    """Predictions for n blocks by w parameter vectors, arrays of shape (w, n).
 
     Attributes:
-        force: Expected measured traction, without run offset [N].
+        force: Expected measured block mean of traction, without run offset [N].
         slope: Derivative of `force` with respect to slip [N].
         noise: Marginal standard deviation of the correlated noise [N].
     """
@@ -57,7 +57,7 @@ class PredictedForces:
 
 
 def predict_blocks(blocks: SlipBlocks, law: SlipLaw, values: Array) -> PredictedForces:
-    r"""Compute expected force, its slope in slip and the noise size of every block.
+    r"""Compute expected traction, its slope in slip and the standard deviation of noise by block.
 
     The mean of the law over a block is that over its loads, slip following load by regression, plus
     what the spread of slip at one load adds to it, :math:`(f_+ - 2 f_0 + f_-)/6` at
@@ -100,7 +100,7 @@ def predict_blocks(blocks: SlipBlocks, law: SlipLaw, values: Array) -> Predicted
 
 @dataclass(frozen=True)
 class LoadRule:
-    """Two loads for each block, with its mean, variance and skewness; each of shape (n,).
+    """Two weighted loads with the mean, variance and skewness of each block's; shape (n,) each.
 
     Attributes:
         light: The lighter load, as measured [N].
@@ -109,7 +109,7 @@ class LoadRule:
         slip_light: Slip ratio at the lighter load [-].
         slip_heavy: Slip ratio at the heavier load [-].
         slip_per_load: Slope of slip over load within the block [1/N].
-        slip_variance: Variance of slip that follows load [-].
+        slip_variance: Variance of the slip that follows load by that slope [-].
     """
 
     light: Array
@@ -122,7 +122,10 @@ class LoadRule:
 
 
 def load_rule(blocks: SlipBlocks) -> LoadRule:
-    """Build the two-point rule of each block's loads, slip following load by regression."""
+    """Compute two loads, with shares, of each block's mean, variance and skewness of load.
+
+    Slip at the two loads follows load by the block's regression of slip on load.
+    """
     # A block at a single load gets a small spread, so that the slope in load is defined.
     spread = np.maximum(np.sqrt(blocks.load_variance), 1e-3 * blocks.normal_force)
     half = 0.5 * blocks.load_skewness
@@ -141,7 +144,7 @@ def load_rule(blocks: SlipBlocks) -> LoadRule:
 
 
 def run_log_likelihood(blocks: SlipBlocks, law: SlipLaw, values: Array) -> Array:
-    """Compute the log density of each run's block means.
+    """Compute the log density of each run's measured block means of traction.
 
     Args:
         blocks: The block means.
@@ -175,12 +178,15 @@ def log_likelihood(blocks: SlipBlocks, law: SlipLaw, values: Array) -> Array:
 
 @numba.njit(cache=True, nogil=True, error_model="numpy")
 def _filter_runs(residual, noise, slope, slip_error, run_slip_error, starts, rho, tau):
-    """Filter each run and integrate out its offset and shared slip error.
+    """Compute each run's log density by a Kalman filter, offset and shared slip error integrated.
 
     State: the standardised noise z, AR(1) with unit variance; observation noise: the block's own
     slip error times the squared slope. The filter is linear, so it whitens the residual and the
     two shared directions (1 and slope) together; their Gram matrix then gives the quadratic form
     and determinant of the run's covariance by the Woodbury identity.
+
+    `residual`, `noise` and `slope` are (w, n), `slip_error` (n,), `run_slip_error` (n_runs,),
+    `starts` (n_runs + 1,), `rho` and `tau` (w,); the result is (w, n_runs).
     """
     n_walkers, n_runs = residual.shape[0], len(starts) - 1
     result = np.empty((n_walkers, n_runs))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Posterior of a slip law, from block means, law and priors."""
+"""Posterior density of a slip law's and the measurement's parameters, given block means."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -22,7 +22,8 @@ class LoadCell:
         zero_stability: Scale of the force offset between runs (half-normal) [N].
         gain_sd: Standard deviation of each channel's relative gain error [-].
         bias_sd: Standard deviation of the normal channel's zero error [N].
-        crosstalk_sd: Standard deviation of the traction seen by the normal channel [-].
+        crosstalk_sd: Standard deviation of the crosstalk: normal force that the normal channel
+            misses for each newton of traction [-].
     """
 
     zero_stability: float = 0.15
@@ -32,10 +33,11 @@ class LoadCell:
 
 
 def default_priors(law: SlipLaw, blocks: SlipBlocks, load_cell: LoadCell) -> dict[str, Prior]:
-    """Choose a weakly informative prior for every parameter of a law and of the measurement.
+    """Choose the prior of every parameter of a law and of the measurement, by name.
 
-    Only scales come from the data: the median load (for the peak slip) and the largest force (for
-    the noise). Priors of the load cell's errors are as informative as its certificate.
+    Priors of the law are broad. Only scales come from the data: the median load (for the peak slip)
+    and the largest traction (for the noise). Priors of the load cell's errors are as narrow as
+    `load_cell` says. An unknown parameter of a law has a broad prior over its support.
 
     Args:
         law: The slip law.
@@ -66,7 +68,10 @@ def default_priors(law: SlipLaw, blocks: SlipBlocks, load_cell: LoadCell) -> dic
 
 
 def _vague(parameter: Parameter) -> Prior:
-    """Return a broad prior over a parameter's support, for laws this module does not know."""
+    """Choose a broad prior by a parameter's bounds: uniform between two finite bounds.
+
+    Log-normal (median 1, spread 1.5) if the lower bound is 0, else standard normal.
+    """
     if np.isfinite([parameter.lower, parameter.upper]).all():
         return Uniform(parameter.lower, parameter.upper)
     if parameter.lower == 0:
@@ -77,6 +82,8 @@ def _vague(parameter: Parameter) -> Prior:
 @dataclass(frozen=True)
 class SlipPosterior:
     """Posterior density in the standard normal coordinates z of the free parameters.
+
+    Shapes: w points, d free parameters, k parameters of the law.
 
     Attributes:
         blocks: The block means.
@@ -102,10 +109,11 @@ class SlipPosterior:
 
     @cached_property
     def _check_loads(self) -> Array:
+        """Minimum, quartiles and maximum of the measured loads, shape (5,) [N]."""
         return np.quantile(self.blocks.normal_force, [0.0, 0.25, 0.5, 0.75, 1.0])
 
     def values(self, z: Array) -> Array:
-        """Map coordinates of shape (w, d) to all parameter values, shape (w, k + 8)."""
+        """Map coordinates z (w, d) to values of all parameters, fixed ones included, (w, k + 8)."""
         columns = iter(np.moveaxis(z, -1, 0))
         return np.stack(
             [
@@ -118,7 +126,10 @@ class SlipPosterior:
         )
 
     def coordinates(self, values: Mapping[str, float]) -> Array:
-        """Map free parameters' values by name to coordinates; the prior median where absent."""
+        """Map values by name to coordinates (d,); 0, the prior median, for names that are absent.
+
+        Values of fixed parameters are ignored.
+        """
         return np.array(
             [
                 self.priors[p.name].coordinate(values[p.name]) if p.name in values else 0.0
@@ -128,7 +139,10 @@ class SlipPosterior:
         )
 
     def log_prior(self, z: Array) -> Array:
-        """Compute the log prior density of z, shape (w,); -inf where the law is not valid."""
+        """Compute the log prior density at z (w, d), shape (w,).
+
+        -inf where the law is not valid at one of the loads of `_check_loads`.
+        """
         k = len(self.law.parameters)
         with np.errstate(all="ignore"):  # an optimiser may try coordinates beyond any number
             law_values = self.values(z)[:, :k].T[:, :, None]
@@ -137,7 +151,7 @@ class SlipPosterior:
         return np.where(valid, log_density, -np.inf)
 
     def log_density(self, z: Array) -> Array:
-        """Compute the log posterior density of z up to a constant.
+        """Compute the log posterior density at z, up to a constant.
 
         Args:
             z: Coordinates, shape (w, d).
@@ -153,14 +167,14 @@ class SlipPosterior:
         return np.where(np.isfinite(log_density), log_density, -np.inf)
 
     def run_log_likelihood(self, z: Array) -> Array:
-        """Compute the log density of each run's blocks, shape (w, n_runs)."""
+        """Compute the log density of each run's blocks given z (w, d), shape (w, n_runs)."""
         return run_log_likelihood(self.blocks, self.law, self.values(z))
 
     def without_runs(self, left_out: NDArray[np.bool_]) -> "SlipPosterior":
-        """Return the same posterior without the data of some runs.
+        """Return the posterior with the same priors, without the data of some runs.
 
         Args:
-            left_out: Which runs to leave out, shape (n_runs,).
+            left_out: Whether to leave out each run, shape (n_runs,).
         """
         kept = self.blocks.select_runs(~left_out)
         return SlipPosterior(kept, self.law, self.priors, self.fixed)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Preliminary least-squares fit: starting points, and the correlation time of the residuals."""
+"""Preliminary least-squares fit: starting points, and choice of the block length."""
 
 from dataclasses import dataclass
 
@@ -12,9 +12,9 @@ from model.bayes.samples import SlipSamples
 from model.errors import FitError
 from model.slip.law import Array, SlipLaw
 
-N_TRIALS = 400
-N_CLIMBS = 5
-MAX_BLOCKS = 3000
+N_TRIALS = 400  # prior draws that are tried as starts
+N_CLIMBS = 5  # best of them that are optimised
+MAX_BLOCKS = 3000  # largest number of blocks
 MAX_SLIP_SPREAD = 0.3  # of the curve's slip scale within a block: the quadrature is good to 1e-3
 MIN_BLOCKS_PER_RUN = 5
 
@@ -28,13 +28,13 @@ def least_squares_values(
         blocks: The block means.
         law: The slip law.
         priors: Priors of the law's parameters by name; they regularise weakly.
-        rng: Draws the starting points from the priors.
+        rng: Source of randomness of the starting points, which are prior draws.
 
     Returns:
-        Values of the law's parameters, inside its support, shape (k,).
+        Values of the law's k parameters, valid at the measured loads, shape (k,).
 
     Raises:
-        FitError: The priors allow no valid shape at these loads.
+        FitError: No prior draw is valid at the measured loads, or a residual overflowed.
     """
     chosen = [priors[p.name] for p in law.parameters]
     scale = float(np.std(blocks.traction_force)) / 20
@@ -77,11 +77,11 @@ def correlation_time(residual: Array, slices: list[slice]) -> float:
     """Estimate the integrated autocorrelation time of residuals, run means removed [samples].
 
     One plus twice the sum of the autocorrelation pooled over runs, up to Sokal's window (the first
-    lag beyond five times the sum so far). 1 for white noise.
+    lag of at least five times the sum so far). At least 1, the value of white noise.
 
     Args:
         residual: Residual of each sample, shape (n,).
-        slices: One slice a run.
+        slices: Range of each run's samples.
     """
     centred = [residual[part] - residual[part].mean() for part in slices]
     longest = max(len(part) for part in centred)
@@ -102,10 +102,10 @@ class BlockChoice:
     """The block length and the reason for it.
 
     Attributes:
-        length: Samples in a block.
-        correlation: Integrated autocorrelation time of the residuals; None where the length was
-            not chosen from it [samples].
-        reason: What determined the length, in a few words.
+        length: Wanted number of samples in a block.
+        correlation: Integrated autocorrelation time of the residuals; None if the length was
+            given [samples].
+        reason: Text of a few words: the criterion that determined the length.
     """
 
     length: int
@@ -116,15 +116,16 @@ class BlockChoice:
 def choose_block_length(
     samples: SlipSamples, law: SlipLaw, *, priors: dict[str, Prior], rng: np.random.Generator
 ) -> BlockChoice:
-    """Choose how many samples to average, from the autocorrelation of the residuals.
+    """Choose how many samples to average in a block, from residuals of a preliminary fit.
 
-    Long enough that noise of successive blocks is nearly independent, that the slip sensors' noise
-    averages to a tenth of the curve's slip scale, and that there are at most 3,000 blocks; but
-    short enough that slip stays within 0.3 slip scales in a block and a run keeps 5 blocks.
+    A block is at least one autocorrelation time of the residuals long, long enough that the slip
+    sensors' noise averages to a tenth of the curve's slip scale, and that there are at most 3,000
+    blocks; but a run of median length keeps 5 blocks, and the standard deviation of slip in a block
+    stays within 0.3 slip scales. The last two limits come first.
 
     Args:
         samples: The samples.
-        law: The slip law the residuals are taken from.
+        law: The slip law of the preliminary fit.
         priors: Priors of the law's parameters by name.
         rng: Source of randomness of the preliminary fit.
     """
@@ -151,14 +152,26 @@ def choose_block_length(
 
 
 def _slip_scale(law: SlipLaw, values: Array, load: float) -> float:
-    """Return the slip at which a line of the initial slope would reach the largest force."""
+    """Compute the slip at which a line of the initial slope reaches the largest force [-].
+
+    Args:
+        law: The slip law.
+        values: Parameters of the law, shape (k,).
+        load: Normal force [N].
+    """
     slip = np.geomspace(1e-4, 1.0, 200)
     largest = float(np.max(law.force(slip, load, values)))
     return largest / float(law.slip_derivative(0.0, load, values))
 
 
 def _steady_length(samples: SlipSamples, length: int, largest_spread: float) -> int:
-    """Shorten a block until the spread of slip within nine blocks of ten is below a limit."""
+    """Halve a block length until slip wanders little in nine of ten blocks, or it is 1.
+
+    Args:
+        samples: The samples.
+        length: Longest number of samples in a block.
+        largest_spread: Limit of the slip's standard deviation within a block [-].
+    """
     while length > 1:
         wander = np.sqrt(block_means(samples, length).slip_wander)
         if np.quantile(wander, 0.9) <= largest_spread:

@@ -18,24 +18,24 @@ from model.slip.law import Array
 
 
 class Prior(Protocol):
-    """A distribution of one parameter."""
+    """Prior distribution of one parameter; methods map arrays of any shape elementwise."""
 
     def value(self, z: ArrayLike) -> Array:
-        """Map a standard normal coordinate to the parameter's value; increasing in z."""
+        """Map standard normal coordinates z to values, the prior's quantiles at Phi(z)."""
         ...
 
     def coordinate(self, value: ArrayLike) -> Array:
-        """Map a value to its coordinate, the inverse of `value`."""
+        """Map values to standard normal coordinates z, the inverse of `value`."""
         ...
 
     def describe(self) -> str:
-        """Format the distribution as text, for tables and files."""
+        """Format the distribution's family and parameters as text, for tables and files."""
         ...
 
 
 @dataclass(frozen=True)
 class Normal:
-    """Gaussian.
+    """Gaussian prior.
 
     Attributes:
         mean: Mean, in the parameter's unit.
@@ -46,98 +46,98 @@ class Normal:
     sd: float
 
     def value(self, z: ArrayLike) -> Array:
-        """Map a standard normal coordinate to the value."""
+        """Map standard normal coordinates z to values, mean + sd z."""
         return self.mean + self.sd * np.asarray(z)
 
     def coordinate(self, value: ArrayLike) -> Array:
-        """Map a value to its coordinate."""
+        """Map values to standard normal coordinates z, the inverse of `value`."""
         return (np.asarray(value) - self.mean) / self.sd
 
     def describe(self) -> str:
-        """Spell the distribution out."""
+        """Format the distribution's family and parameters as text."""
         return f"normal(mean {self.mean:g}, sd {self.sd:g})"
 
 
 @dataclass(frozen=True)
 class LogNormal:
-    """Positive, with a Gaussian logarithm.
+    """Log-normal prior: positive, with a Gaussian logarithm.
 
     Attributes:
         median: Median, in the parameter's unit.
-        spread: Standard deviation of the natural logarithm.
+        spread: Standard deviation of the natural logarithm [-].
     """
 
     median: float
     spread: float
 
     def value(self, z: ArrayLike) -> Array:
-        """Map a standard normal coordinate to the value."""
+        """Map standard normal coordinates z to values, median exp(spread z)."""
         return self.median * np.exp(self.spread * np.asarray(z))
 
     def coordinate(self, value: ArrayLike) -> Array:
-        """Map a value to its coordinate."""
+        """Map values to standard normal coordinates z, the inverse of `value`."""
         return np.log(np.asarray(value) / self.median) / self.spread
 
     def describe(self) -> str:
-        """Spell the distribution out."""
+        """Format the distribution's family and parameters as text."""
         return f"lognormal(median {self.median:g}, spread {self.spread:g})"
 
 
 @dataclass(frozen=True)
 class BelowOne:
-    """Below 1 by a log-normal gap: for the curvature factor E, which must not exceed 1.
+    """Prior below 1 by a log-normal gap: for the curvature factor E, which must not exceed 1.
 
     Attributes:
-        gap: Median of 1 - value.
-        spread: Standard deviation of log(1 - value).
+        gap: Median of 1 - value [-].
+        spread: Standard deviation of the natural logarithm of 1 - value [-].
     """
 
     gap: float
     spread: float
 
     def value(self, z: ArrayLike) -> Array:
-        """Map a standard normal coordinate to the value."""
+        """Map standard normal coordinates z to values, 1 - gap exp(-spread z)."""
         return 1.0 - self.gap * np.exp(-self.spread * np.asarray(z))
 
     def coordinate(self, value: ArrayLike) -> Array:
-        """Map a value to its coordinate."""
+        """Map values to standard normal coordinates z, the inverse of `value`."""
         return -np.log((1.0 - np.asarray(value)) / self.gap) / self.spread
 
     def describe(self) -> str:
-        """Spell the distribution out."""
+        """Format the distribution's family and parameters as text."""
         return f"1 - lognormal(median {self.gap:g}, spread {self.spread:g})"
 
 
 @dataclass(frozen=True)
 class HalfNormal:
-    """Non-negative, the upper half of a Gaussian: for the spread of offsets.
+    """Half-normal prior, the distribution of a centred Gaussian's absolute value.
 
     Attributes:
-        scale: Standard deviation of the whole Gaussian, in the parameter's unit.
+        scale: Standard deviation of that Gaussian, in the parameter's unit.
     """
 
     scale: float
 
     def value(self, z: ArrayLike) -> Array:
-        """Map a standard normal coordinate to the value."""
+        """Map standard normal coordinates z to values, the half-normal's quantiles at Phi(z)."""
         # |N| has lower tail Phi(z) and upper tail Phi(-z); each keeps its digits where it is small.
         z = np.asarray(z, dtype=float)
         small = math.sqrt(2) * erfinv(ndtr(z))
         return self.scale * np.where(z < 0, small, -ndtri_exp(log_ndtr(-z) - math.log(2)))
 
     def coordinate(self, value: ArrayLike) -> Array:
-        """Map a value to its coordinate."""
+        """Map values to standard normal coordinates z, the inverse of `value`."""
         x = np.asarray(value, dtype=float) / self.scale
         return np.where(x < 0.67, ndtri(erf(x / math.sqrt(2))), -ndtri(2 * ndtr(-x)))
 
     def describe(self) -> str:
-        """Spell the distribution out."""
+        """Format the distribution's family and parameters as text."""
         return f"half-normal(scale {self.scale:g})"
 
 
 @dataclass(frozen=True)
 class Uniform:
-    """Flat between two bounds.
+    """Uniform prior between two bounds.
 
     Attributes:
         lower: Lower bound, in the parameter's unit.
@@ -148,13 +148,13 @@ class Uniform:
     upper: float
 
     def value(self, z: ArrayLike) -> Array:
-        """Map a standard normal coordinate to the value."""
+        """Map standard normal coordinates z to values, lower + (upper - lower) Phi(z)."""
         return self.lower + (self.upper - self.lower) * ndtr(np.asarray(z, dtype=float))
 
     def coordinate(self, value: ArrayLike) -> Array:
-        """Map a value to its coordinate."""
+        """Map values to standard normal coordinates z, the inverse of `value`."""
         return ndtri((np.asarray(value, dtype=float) - self.lower) / (self.upper - self.lower))
 
     def describe(self) -> str:
-        """Spell the distribution out."""
+        """Format the distribution's family and parameters as text."""
         return f"uniform({self.lower:g}, {self.upper:g})"

@@ -12,8 +12,8 @@ from model.bayes.likelihood import PredictedForces, predict_blocks
 from model.slip.law import Array, SlipLaw
 
 SLIP_BINS = 8
-LOAD_GAP = 1.1
-RARE_LEVEL = 0.05
+LOAD_GAP = 1.1  # ratio of successive loads above which they are two levels
+RARE_LEVEL = 0.05  # least share of the runs at a level
 MAX_LOAD_LEVELS = 8
 
 
@@ -25,16 +25,16 @@ class Residuals:
         whitened: Residual of each block divided by its predictive standard deviation given the
             blocks before it in its run; white N(0, 1) if the model holds, shape (n,).
         lag_one: Correlation of successive whitened residuals within runs [-].
-        run_score: Deviation of each run's mean over its predictive standard deviation,
-            shape (n_runs,).
+        run_score: Each run's mean residual over its predictive standard deviation, shape
+            (n_runs,) [-].
         inside: Fraction of run means within their predictive 90 % interval [-].
-        inside_p: Two-sided binomial p-value of that fraction against 90 %.
-        misfit: Root-mean-square residual that is a function of slip and load, over the peak
-            force; repeated measurements do not average it away [-].
-        misfit_p: p-value of that structure against the scatter between runs.
-        r_squared: Fraction of the variance of the block means explained, in sample [-].
+        inside_p: Two-sided binomial p-value of that fraction against 90 % [-].
+        misfit: Root-mean-square residual that is a function of slip and load, over the largest
+            predicted traction; repeated measurements do not average it away [-].
+        misfit_p: p-value of the F test of `misfit` against the scatter between runs [-].
+        r_squared: Fraction of the variance of the fitted block means that is explained [-].
         rmse: Root-mean-square residual of block means [N].
-        rmse_over_load: The same of traction over load [-].
+        rmse_over_load: Root-mean-square of each block's residual over its load [-].
     """
 
     whitened: Array
@@ -50,7 +50,7 @@ class Residuals:
 
 
 def analyse_residuals(blocks: SlipBlocks, law: SlipLaw, values: Array) -> Residuals:
-    """Compute residuals and the tests on them from posterior draws.
+    """Compute residuals, measured minus posterior mean prediction, and the tests on them.
 
     Args:
         blocks: The block means.
@@ -82,10 +82,12 @@ def analyse_residuals(blocks: SlipBlocks, law: SlipLaw, values: Array) -> Residu
 def _covariance_factors(
     blocks: SlipBlocks, predicted: PredictedForces, values: Array
 ) -> list[Array]:
-    """Return the Cholesky factor of each run's covariance at the posterior mean, offset included.
+    """Return the lower Cholesky factor of each run's covariance, shape (blocks, blocks) [N].
 
-    The covariance is built densely from its definition and not by the likelihood's filter, so that
-    each checks the other.
+    It is the covariance of noise, run offset and slip errors at the parameters' posterior mean.
+
+    The matrix is built densely from its definition and not by the likelihood's filter, as a check
+    of the filter.
     """
     rho, tau = values[:, -2].mean(), values[:, -1].mean()
     noise, slope = predicted.noise.mean(axis=0), predicted.slope.mean(axis=0)
@@ -102,6 +104,7 @@ def _covariance_factors(
 
 
 def _whiten(blocks: SlipBlocks, residual: Array, factors: list[Array]) -> Array:
+    """Divide each run's residuals by its lower Cholesky factor, shape (n,) [-]."""
     parts = np.split(residual, blocks.run_starts()[1:-1])
     return np.concatenate(
         [solve_triangular(L, r, lower=True) for L, r in zip(factors, parts, strict=True)]
@@ -111,13 +114,17 @@ def _whiten(blocks: SlipBlocks, residual: Array, factors: list[Array]) -> Array:
 def _run_scores(
     blocks: SlipBlocks, residual: Array, factors: list[Array], run_spread: Array
 ) -> Array:
+    """Divide each run's mean residual by its predictive standard deviation, (n_runs,) [-].
+
+    `run_spread` is the standard deviation of its predicted mean over the draws (n_runs,) [N].
+    """
     sizes = np.diff(blocks.run_starts())
     scatter = np.array([np.linalg.norm(L.sum(axis=0)) for L in factors]) / sizes
     return blocks.run_mean(residual) / np.hypot(scatter, run_spread)
 
 
 def lag_one_correlation(values: Array, blocks: SlipBlocks) -> float:
-    """Compute the correlation of successive values within runs; 0 where no run has two blocks.
+    """Compute the correlation of successive values within runs; 0 if no run has two blocks [-].
 
     Args:
         values: One value a block, of mean zero, shape (n,).
@@ -130,12 +137,13 @@ def lag_one_correlation(values: Array, blocks: SlipBlocks) -> float:
 
 
 def load_levels(blocks: SlipBlocks) -> Array:
-    """Find the loads that were set, shape (n_levels,) [N].
+    """Find the loads that were set, in increasing order, shape (n_levels,) [N].
 
-    A run's load is the lower quartile of its blocks' (a bump on a disc only adds to it). Runs whose
-    loads differ by less than 10 % form one level. A level with fewer than one run in twenty is
-    dropped (a disc that stood still on its bump). With more than 8 levels left the load was swept,
-    and 8 quantiles replace them.
+    A run's load is the lower quartile of its blocks' loads (a bump on a disc only adds to it).
+    Sorted loads of runs form one level, their median, until one is more than 10 % above the last. A
+    level with fewer than one run in twenty is dropped (a disc that stood still on its bump). With
+    no level left, or more than 8 (the load was swept), 8 quantiles of the blocks' loads replace
+    them.
     """
     parts = np.split(blocks.normal_force, blocks.run_starts()[1:-1])
     ordered = np.sort([np.quantile(part, 0.25) for part in parts])
@@ -160,7 +168,10 @@ def nearest_level(load: Array, levels: Array) -> Array:
 
 
 def largest_slips(blocks: SlipBlocks) -> Array:
-    """Return the largest absolute slip ratio tested at each of `load_levels`, shape (n_levels,)."""
+    """Compute the largest absolute slip ratio of the blocks nearest to each of `load_levels`.
+
+    Shape (n_levels,) [-]; 0 for a level without blocks.
+    """
     levels = load_levels(blocks)
     nearest = nearest_level(np.maximum(blocks.normal_force, 1e-9), levels)
     return np.array(
@@ -173,7 +184,7 @@ def _structure(blocks: SlipBlocks, residual: Array) -> tuple[float, float]:
 
     One-way analysis of variance: the groups are bins of slip at each load, a group's replicates
     the means of the runs in it. Returns the standard deviation of the repeating part [N] and the
-    p-value of the F test.
+    p-value of the F test; 0 and 1 if no group has two runs.
     """
     level = nearest_level(np.maximum(blocks.normal_force, 1e-9), load_levels(blocks))
     edges = np.unique(np.quantile(blocks.slip, np.linspace(0, 1, SLIP_BINS + 1)[1:-1]))

@@ -20,7 +20,9 @@ from model.errors import DomainError, FitError
 from model.slip.law import Array
 
 MOVES = ((DEMove, 1.0),)
-"""The autocorrelation time is a quarter of the stretch move's in 12 dimensions.
+"""Moves of emcee with their shares, without jumps: differential evolution alone.
+
+In 12 dimensions its autocorrelation time is a quarter of the stretch move's.
 
 The snooker move is not used: emcee's, up to 3.1.6, lacks half of the exponent of its acceptance
 ratio and narrows every spread by 7 %.
@@ -35,11 +37,11 @@ class Chains:
 
     Attributes:
         z: Kept coordinates, shape (ensembles, steps, walkers, d).
-        log_density: Their log density, shape (ensembles, steps, walkers).
-        accepted: Fraction of proposals accepted, shape (ensembles,).
+        log_density: Log density at `z`, shape (ensembles, steps, walkers).
+        accepted: Fraction of proposals accepted so far, shape (ensembles,) [-].
         thin: Sampler moves for each kept step.
-        random_keys: State of each ensemble's random generator, shape (ensembles, 624).
-        random_positions: Place in that state, shape (ensembles,).
+        random_keys: State of each ensemble's Mersenne Twister, shape (ensembles, 624).
+        random_positions: Position in that state, shape (ensembles,).
     """
 
     z: Array
@@ -51,12 +53,12 @@ class Chains:
 
     @property
     def n_steps(self) -> int:
-        """Number of kept steps."""
+        """Number of kept steps, the start included."""
         return self.z.shape[1]
 
 
 def walker_count(d: int) -> int:
-    """Choose the number of walkers for d dimensions: even, three a dimension, at least 32."""
+    """Return the number of walkers for d dimensions: 3 d rounded up to even, at least 32."""
     return max(32, 2 * ((3 * d + 1) // 2))
 
 
@@ -68,20 +70,20 @@ def start_chains(
     thin: int,
     rng: np.random.Generator,
 ) -> Chains:
-    """Draw every walker's start from the widened Laplace approximations.
+    """Draw every walker's start from the mixture at the posterior's modes.
 
     Args:
         log_density: Log density of coordinates (w, d).
-        approximation: The approximation at the posterior's modes.
+        approximation: The mixture of Student-t distributions at the posterior's modes.
         ensembles: Number of independent ensembles.
         thin: Sampler moves for each kept step.
         rng: Source of randomness, of the starts and of each ensemble's seed.
 
     Returns:
-        Chains of one step.
+        Chains of one step, the starts.
 
     Raises:
-        FitError: Too few of the draws lie inside the support.
+        FitError: Fewer than one in eight draws lies inside the support.
     """
     d = len(approximation.modes[0].mode)
     walkers = walker_count(d)
@@ -121,8 +123,9 @@ def advance(
     Args:
         log_density: Log density of coordinates (w, d); numpy and numba release the GIL in it.
         chains: Chains so far.
-        steps: Kept steps to add.
-        approximation: Proposal of occasional jumps between modes; None for none.
+        steps: Number of kept steps to add, each of `chains.thin` moves.
+        approximation: Mixture that proposes `JUMP_SHARE` of the moves, so that walkers jump between
+            modes; None for no such moves.
         threads: Number of ensembles that are sampled at once.
 
     Returns:
@@ -162,6 +165,7 @@ def _walk(
     ensemble: int,
     steps: int,
 ) -> EnsembleSampler:
+    """Sample one ensemble for a number of kept steps from its last state; return its sampler."""
     _, _, walkers, d = chains.z.shape
     moves: list[tuple[Any, float]] = [  # a move has state: one for each ensemble
         (move(), share) for move, share in MOVES
@@ -186,7 +190,10 @@ def _walk(
 def _jump_to(
     approximation: LaplaceMixture,
 ) -> Callable[[Array, np.random.RandomState], tuple[Array, Array]]:
-    """Return an independence proposal: a draw of the approximation, weighted by its density."""
+    """Return a proposal function for emcee: draws of the mixture, independent of the walkers.
+
+    It returns the proposed coordinates and the logarithm of the Hastings factor.
+    """
 
     def propose(z: Array, rng: np.random.RandomState) -> tuple[Array, Array]:
         # A generator of its own: RandomState hides half a pair of normals from its state array.
@@ -197,13 +204,14 @@ def _jump_to(
 
 
 def _kept(stored: Array | None) -> Array:
+    """Return what the sampler stored; raise `FitError` if that is nothing."""
     if stored is None:
         raise FitError("the sampler kept no step although it was asked to store them")
     return stored
 
 
 def autocorrelation_times(z: Array) -> Array:
-    """Estimate each coordinate's integrated autocorrelation time, the longest of the ensembles.
+    """Estimate each coordinate's integrated autocorrelation time, the largest over the ensembles.
 
     Args:
         z: Coordinates, shape (ensembles, steps, walkers, d).

@@ -24,9 +24,9 @@ class SlipSamples:
         traction_force: Measured traction force, positive when driving, shape (n,) [N].
         run: Index into `run_names`, non-decreasing, shape (n,).
         run_names: Name of each run, as its user would recognise it.
-        definition: What the slip ratios are divided by.
-        time: Time of each sample, increasing within a run, shape (n,) [s]; None where samples
-            carry none (averages over a trial).
+        definition: Definition of the slip ratios: the speed that they are divided by.
+        time: Time of each sample, increasing within a run, shape (n,) [s]; None for samples
+            without times (averages over a trial).
     """
 
     slip: Array
@@ -47,6 +47,6 @@ class SlipSamples:
         return len(self.run_names)
 
     def slices(self) -> list[slice]:
-        """Return one slice a run."""
+        """Return the range of each run's samples, one slice a run, in the order of `run_names`."""
         edges = np.searchsorted(self.run, np.arange(self.n_runs + 1))
         return [slice(int(a), int(b)) for a, b in pairwise(edges)]

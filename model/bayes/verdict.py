@@ -12,11 +12,11 @@ from model.bayes.likelihood import predict_blocks
 from model.bayes.residuals import Residuals, largest_slips, load_levels
 from model.slip.law import Array, SlipLaw
 
-MAX_LAG_ONE = 0.05
-MIN_P = 0.01
+MAX_LAG_ONE = 0.05  # lag-1 correlation of whitened residuals
+MIN_P = 0.01  # p-value of the share of run means inside their intervals
 MAX_MISFIT = 0.05  # of the peak force
-MISFIT_P = 1e-3
-MAX_OFFSET_SHARE = 0.2
+MISFIT_P = 1e-3  # p-value below which a larger misfit fails the check
+MAX_OFFSET_SHARE = 0.2  # of the force variance, explained by run offsets
 MAX_OFFSET_RATIO = 3.0  # a half-normal exceeds three scales once in 370
 MIN_CONTRACTION = 0.75  # the posterior half as wide as the prior
 MIN_REACH = 2.5  # peak slips: where the curve has fallen clearly behind its peak
@@ -27,10 +27,10 @@ class Check:
     """One check of a fit.
 
     Attributes:
-        name: The claim that is checked.
-        passed: Whether it holds.
-        evidence: The figure and its limit.
-        advice: What to do when it does not hold.
+        name: Claim that is checked, as text.
+        passed: Whether the claim holds.
+        evidence: Measured value and its limit, as text.
+        advice: What to do when the claim does not hold, as text.
     """
 
     name: str
@@ -44,9 +44,9 @@ class Verdict:
     """Result of all checks of a fit.
 
     Attributes:
-        convergence: Checks of the sampler.
+        convergence: Checks of the sampler's convergence.
         trust: Checks of the model against the data.
-        weak: Parameters that the data hardly inform, by name, each with the reason.
+        weak: Reason and advice for each weakly identified parameter, by the parameter's name.
     """
 
     convergence: tuple[Check, ...]
@@ -55,16 +55,16 @@ class Verdict:
 
     @property
     def converged(self) -> bool:
-        """Whether the sampler has converged to the posterior."""
+        """Whether all checks of the sampler's convergence passed."""
         return all(check.passed for check in self.convergence)
 
     @property
     def trustworthy(self) -> bool:
-        """Whether the model describes the data."""
+        """Whether all checks, of convergence and of the model against the data, passed."""
         return self.converged and all(check.passed for check in self.trust)
 
     def headline(self) -> str:
-        """Return the verdict in one line."""
+        """Format the verdict as one line of text, with the weak parameters unless unconverged."""
         weak = f"; weakly identified: {', '.join(self.weak)}" if self.weak else ""
         if not self.converged:
             return "NOT CONVERGED: do not use these numbers"
@@ -73,7 +73,7 @@ class Verdict:
         return "converged and trustworthy" + weak
 
     def next_steps(self) -> tuple[str, ...]:
-        """List what to do next, most urgent first."""
+        """List the advice of failed checks, then the reasons of `weak`, without repetition."""
         failed = [c.advice for c in (*self.convergence, *self.trust) if not c.passed]
         return tuple(dict.fromkeys([*failed, *(reason for reason in self.weak.values())]))
 
@@ -88,7 +88,7 @@ def judge(
     residuals: Residuals,
     offset_scale: float,
 ) -> Verdict:
-    """Run all checks of a fit.
+    """Check convergence, residuals, run means, curve shape, run offsets and identification.
 
     Args:
         blocks: The block means.
@@ -113,6 +113,7 @@ def judge(
 
 
 def _convergence_checks(convergence: Convergence) -> tuple[Check, ...]:
+    """Return one failed check for each unmet criterion, or one passed check."""
     advice = "sample longer: --resume with a larger --max-steps"
     failures = convergence.failures()
     if failures:
@@ -121,6 +122,7 @@ def _convergence_checks(convergence: Convergence) -> tuple[Check, ...]:
 
 
 def _whiteness(residuals: Residuals, blocks: SlipBlocks) -> Check:
+    """Check that whitened residuals of successive blocks are hardly correlated."""
     name = "residuals are white"
     pairs = len(blocks) - blocks.n_runs
     if pairs == 0:
@@ -136,6 +138,7 @@ def _whiteness(residuals: Residuals, blocks: SlipBlocks) -> Check:
 
 
 def _run_means(residuals: Residuals, blocks: SlipBlocks) -> Check:
+    """Check that about 90 % of run means lie inside their predictive 90 % intervals."""
     return Check(
         "run means are predicted",
         residuals.inside_p > MIN_P,
@@ -147,6 +150,7 @@ def _run_means(residuals: Residuals, blocks: SlipBlocks) -> Check:
 
 
 def _shape(residuals: Residuals, values: Array, law: SlipLaw, blocks: SlipBlocks) -> Check:
+    """Check that the misfit that all runs share is small or not significant."""
     return Check(
         "the law fits the shape of the curve",
         not (residuals.misfit > MAX_MISFIT and residuals.misfit_p < MISFIT_P),
@@ -158,6 +162,7 @@ def _shape(residuals: Residuals, values: Array, law: SlipLaw, blocks: SlipBlocks
 
 
 def _offsets(blocks: SlipBlocks, law: SlipLaw, values: Array, scale: float) -> Check:
+    """Check that run offsets explain little variance and are within three prior scales [N]."""
     tau = float(values[:, -1].mean())
     # Also what varies within runs, as slip is swept: an offset cannot stand in for that.
     curve = float(np.std(predict_blocks(blocks, law, values).force.mean(axis=0)))
@@ -175,6 +180,11 @@ def _offsets(blocks: SlipBlocks, law: SlipLaw, values: Array, scale: float) -> C
 def _weak(
     blocks: SlipBlocks, law: SlipLaw, values: Array, contraction: Mapping[str, float]
 ) -> dict[str, str]:
+    """Return the law's weakly identified parameters by name, with the reason as text.
+
+    Weak are a contraction below `MIN_CONTRACTION` and, of a law with a shape factor, shape and
+    friction if `slip_reach` is below `MIN_REACH`.
+    """
     names = [parameter.name for parameter in law.parameters]
     weak = {
         name: f"{name}: the data narrow its prior by {max(contraction[name], 0):.0%} only; use "
@@ -194,12 +204,12 @@ def _weak(
 
 
 def slip_reach(blocks: SlipBlocks, law: SlipLaw, values: Array) -> float:
-    """Compute the largest tested slip over peak slip, at the load where it is largest [-].
+    """Compute the largest tested slip over the median peak slip, the largest of all loads [-].
 
     Args:
         blocks: The block means.
         law: The slip law, of k parameters.
-        values: Posterior draws, shape (w, k + 8).
+        values: Posterior draws of law and measurement parameters, shape (w, k + 8).
     """
     k = len(law.parameters)
     peak = np.median(law.peak_slip(load_levels(blocks), values[:, :k].T[:, :, None]), axis=0)

@@ -13,7 +13,7 @@ class RigidMotion(NamedTuple):
     """A rigid motion of the plane: rotation about the origin, then translation.
 
     Attributes:
-        rotation: Angle [rad].
+        rotation: Angle of the rotation, counter-clockwise [rad].
         translation: Shift, shape (2,) [m].
     """
 
@@ -22,17 +22,17 @@ class RigidMotion(NamedTuple):
 
 
 def align(predicted: Poses, tracked: Poses) -> RigidMotion:
-    r"""Find the motion that brings positions closest to those of the same instants.
+    r"""Compute the rigid motion that brings predicted positions closest to tracked ones.
 
     .. math::
         \min_{R, p} \sum_i |R x_i + p - y_i|^2
 
-    Least squares over SE(2), without scale (Umeyama 1991). Only positions count. It hides a wrong
-    start and a wrong heading, so aligned errors never stand alone.
+    Least squares over SE(2), without scale (Umeyama 1991); headings are not used. Alignment hides a
+    wrong start and a wrong heading, so aligned errors never stand alone.
 
     Args:
-        predicted: Poses to move.
-        tracked: Poses of the same instants.
+        predicted: Predicted poses x, one path.
+        tracked: Tracked poses y at the same times, one path.
     """
     x, y = predicted.position, tracked.position
     a, b = x - x.mean(axis=0), y - y.mean(axis=0)

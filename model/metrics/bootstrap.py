@@ -8,16 +8,16 @@ import numpy as np
 from model.errors import InsufficientData
 from model.slip.law import Array
 
-LEVEL = 0.9  # of the interval
+LEVEL = 0.9  # probability of the central interval
 
 
 class Interval(NamedTuple):
-    """A mean with its central interval.
+    """A mean with its central 90 % interval, in the unit of the values.
 
     Attributes:
         mean: Mean over runs.
-        low: Lower end.
-        high: Upper end.
+        low: 5 % quantile of the resampled means.
+        high: 95 % quantile of the resampled means.
     """
 
     mean: float
@@ -26,7 +26,7 @@ class Interval(NamedTuple):
 
 
 def bootstrap_mean(values: Array, *, rng: np.random.Generator, draws: int = 4000) -> Interval:
-    """Compute the mean over runs and its bootstrap interval, resampling whole runs.
+    """Compute the mean over runs and its bootstrap 90 % interval, resampling whole runs.
 
     Poses of one walk share its errors, so they are never separated. With three walks there are
     ten different resamples: the interval is then rough, and too narrow.

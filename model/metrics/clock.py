@@ -15,12 +15,12 @@ from model.poses import Poses
 from model.slip.law import Array
 
 STEP = 0.05  # s between offsets that are tried; refined by a parabola
-FEWEST = 6  # poses of a track
-BLOCKS = 5  # stretches of the track that are left out in turn
+FEWEST = 6  # least number of poses of a track
+BLOCKS = 5  # blocks of consecutive poses of the track that are left out in turn
 SHARE = 0.5  # of the track's poses and of its length that must lie within the path
 LARGEST_SD = 0.25  # s; a less certain estimate is refused
 AS_GOOD = 5.0  # times the least misfit: F of as many errors as there are blocks, two each, at 99 %
-NEAR = 7.0  # standard deviations within which a misfit of that size is the same minimum's
+NEAR = 7.0  # standard deviations within which such a misfit belongs to the same minimum
 
 
 @dataclass(frozen=True)
@@ -29,7 +29,7 @@ class ClockOffset:
 
     Attributes:
         value: The offset [s].
-        sd: Its standard deviation [s].
+        sd: Standard deviation of the offset [s].
     """
 
     value: float
@@ -37,24 +37,25 @@ class ClockOffset:
 
 
 def estimate_offset(track: Poses, path: Poses) -> ClockOffset:
-    r"""Estimate the clock offset at which the track, moved, turned and scaled, fits the path best.
+    r"""Estimate the clock offset at which the path, moved, turned and scaled, fits the track best.
 
     .. math::
         \hat\tau = \arg\min_\tau \min_{s, R, p}
             \frac{1}{2 n_\tau - 4} \sum_i |s R\,x(t_i + \tau) + p - y_i|^2
 
-    over the tracked poses :math:`y_i` whose shifted times lie within the path. The scale s absorbs
-    a wrong speed, which would otherwise appear as a clock offset. The standard deviation is the
-    larger of two: that of least squares with as many independent errors as there are blocks, since
-    errors of a predicted path are correlated in time, and the jackknife's, which leaves out each
-    block.
+    over the tracked poses :math:`y_i` whose shifted times lie within the path x. The scale s
+    absorbs a wrong speed, which would otherwise appear as a clock offset. The standard deviation is
+    the larger of two: by least squares with two independent errors a block, since errors of a
+    predicted path are correlated in time, and by the jackknife over `BLOCKS` blocks.
 
     Args:
-        track: The track.
+        track: The track, six poses or more.
         path: The path, sampled densely.
 
     Raises:
-        InsufficientData: There are too few poses, or the motion does not determine the offset.
+        InsufficientData: There are fewer than six poses, no offset brings enough of the track
+            within the path, the best offset is at the end of the search, its standard deviation is
+            `LARGEST_SD` or more, or another offset fits about as well.
     """
     if len(track) < FEWEST:
         raise InsufficientData(
@@ -83,9 +84,15 @@ def estimate_offset(track: Poses, path: Poses) -> ClockOffset:
 
 
 def _require_one(offsets: Array, misfit: Array, value: float, least: float) -> None:
-    """Check that no other offset fits as well with at least as many poses.
+    """Raise `InsufficientData` if a rival offset's misfit is below `AS_GOOD` times the least.
 
     Photographs every two seconds can miss whole strides.
+
+    Args:
+        offsets: Rival offsets away from the best, with at least as many poses within the path [s].
+        misfit: Misfit at each rival offset [m2].
+        value: The best offset [s].
+        least: Misfit at the best offset [m2].
     """
     if len(misfit) and misfit.min() < AS_GOOD * least:
         other = offsets[int(np.argmin(misfit))]
@@ -97,14 +104,18 @@ def _require_one(offsets: Array, misfit: Array, value: float, least: float) -> N
 
 
 def _possible(track: Poses, path: Poses) -> Array:
-    """Return offsets at which the middle of the track lies within the path."""
+    """Return offsets, `STEP` apart, that shift the track's middle time into the path's [s]."""
     middle = 0.5 * (track.t[0] + track.t[-1])
     reach = 0.5 * (path.t[-1] - path.t[0])
     return 0.5 * (path.t[0] + path.t[-1]) - middle + np.arange(-reach, reach + STEP, STEP)
 
 
 def _misfit(track: Poses, path: Poses, offset: float, *, share: float = SHARE) -> float:
-    """Return the mean square distance for each degree of freedom; infinite without overlap [m2]."""
+    """Compute the squared distances after the fit over the degrees of freedom at an offset [m2].
+
+    Infinite if fewer than four poses, or less than `share` of the track's poses or of its length,
+    lie within the path's times.
+    """
     at = track.t + offset
     inside = (at >= path.t[0]) & (at <= path.t[-1])
     seen = track.part(inside)
@@ -117,12 +128,16 @@ def _misfit(track: Poses, path: Poses, offset: float, *, share: float = SHARE) -
 
 
 def _centred(poses: Poses) -> NDArray[np.complex128]:
+    """Return positions x + iy of one path minus their mean, shape (n,) [m]."""
     place = poses.position[:, 0] + 1j * poses.position[:, 1]
     return place - place.mean()
 
 
 def _parabola(offsets: Array, misfit: Array, best: int) -> tuple[float, float]:
-    """Return the minimum, refined between the steps, and the second derivative [m2/s2]."""
+    """Fit a parabola at the least misfit; return its minimum [s] and second derivative [m2/s2].
+
+    Without a finite positive second derivative the offset at `best` and zero are returned.
+    """
     before, here, after = misfit[best - 1 : best + 2]
     second = (before - 2 * here + after) / STEP**2
     if not (np.isfinite(second) and second > 0):
@@ -131,12 +146,18 @@ def _parabola(offsets: Array, misfit: Array, best: int) -> tuple[float, float]:
 
 
 def _sd_of_fit(misfit: float, curvature: float) -> float:
-    """Return the standard deviation of least squares with two errors a block."""
+    """Compute the offset's standard deviation by least squares with two errors a block [s].
+
+    Infinite if the misfit's second derivative `curvature` is not positive.
+    """
     return float(np.sqrt(2 * misfit / (2 * BLOCKS * curvature))) if curvature > 0 else np.inf
 
 
 def _sd_of_blocks(track: Poses, path: Poses, offsets: Array) -> float:
-    """Return the jackknife's standard deviation over stretches of the track."""
+    """Compute the jackknife's standard deviation of the offset, leaving out each block [s].
+
+    Infinite if without some block the least misfit is at the end of `offsets`.
+    """
     found = []
     for block in np.array_split(np.arange(len(track)), BLOCKS):
         rest = track.part(np.delete(np.arange(len(track)), block))

@@ -17,19 +17,20 @@ from model.slip.law import Array
 
 STATISTICS = ("nees", "along", "cross", "yaw")
 FEWEST_DRAWS = 50
-LEVEL = 0.95  # of the intervals
+LEVEL = 0.95  # of the central intervals
 
 
 @dataclass(frozen=True)
 class Consistency:
-    """One statistic of a track against the same of the ensemble's own draws.
+    """One statistic of a track, with the interval of that statistic over the ensemble's draws.
 
     Attributes:
         name: One of `STATISTICS`.
-        value: The track's.
-        low: Lower end of the ensemble's central interval.
-        high: Upper end of it.
-        p_value: Two-sided share of draws at least as far out as the track [-].
+        value: The statistic of the track [-] for nees, [m] for along and cross, [rad] for yaw.
+        low: Lower end of the draws' central 95 % interval, in the same unit.
+        high: Upper end of the draws' central 95 % interval, in the same unit.
+        p_value: Two-sided p-value: twice the share of draws at least as far out as the track, on
+            the side with fewer of them, at most 1 [-].
     """
 
     name: str
@@ -40,7 +41,7 @@ class Consistency:
 
     @property
     def consistent(self) -> bool:
-        """Whether the track's value lies within the ensemble's interval."""
+        """Whether the track's value lies from `low` to `high`."""
         return self.low <= self.value <= self.high
 
 
@@ -51,24 +52,24 @@ def consistency(
     *,
     rng: np.random.Generator,
 ) -> tuple[Consistency, ...]:
-    r"""Compare statistics of a track with those of the ensemble's draws with tracker noise.
+    r"""Compare statistics of a track with the same statistics of draws with tracker noise.
 
     Statistics: the mean over time of the normalised error squared
     :math:`e_i^T P_i^{-1} e_i / k`, which is about 1, larger where the ensemble is too narrow and
-    smaller where it is too wide; and the signed mean over time of the error along, across and of
-    yaw, which distinguish a wrong speed from a wrong heading.
+    smaller where it is too wide; and the signed mean over time of the error (ensemble mean minus
+    track) along, across and of yaw, which distinguish a wrong speed from a wrong heading.
 
     Args:
         draws: x, y, yaw of every draw at the track's times, shape (m, n, 3) [m, m, rad].
-        observed: Tracked x, y, yaw; yaw NaN throughout where unknown, shape (n, 3).
+        observed: Tracked x, y, yaw, shape (n, 3) [m, m, rad]; with any yaw NaN, k is 2.
         covariance: The tracker's covariance at each time, shape (n, 3, 3).
-        rng: Source of randomness.
+        rng: Source of randomness of the tracker's noise.
 
     Returns:
-        One result a statistic; yaw is left out where it is not known.
+        One result a statistic, in the order of `STATISTICS`; without yaw if k is 2.
 
     Raises:
-        InsufficientData: There are too few draws for an interval.
+        InsufficientData: There are fewer than 50 draws.
     """
     if len(draws) < FEWEST_DRAWS:
         raise InsufficientData(
@@ -85,11 +86,11 @@ def consistency(
 
 
 def nees(points: Array, draws: Array) -> Array:
-    r"""Compute the normalised error squared of points against an ensemble, over its dimension.
+    r"""Compute the normalised error squared of points against an ensemble, over its dimension k.
 
     Args:
-        points: Points of p paths at n times, shape (p, n, k).
-        draws: The ensemble at the same times, shape (m, n, k).
+        points: Points (x, y and, if k = 3, yaw) of p paths at n times, shape (p, n, k).
+        draws: The ensemble's m draws of the points at the same times, shape (m, n, k).
 
     Returns:
         :math:`e^T P^{-1} e / k`, with mean and covariance P of the ensemble, shape (p, n) [-].
@@ -104,7 +105,12 @@ def nees(points: Array, draws: Array) -> Array:
 
 
 def _statistics(points: Array, draws: Array) -> Array:
-    """Return the statistics of each path, shape (statistics, p)."""
+    """Compute the statistics of p paths (p, n, k) against an ensemble (m, n, k).
+
+    Rows of the result, shape (k + 1, p): NEES over its dimension k [-]; mean over time of the
+    ensemble's mean minus the path along the mean's direction of travel and to the left of it [m];
+    mean over time of the ensemble's mean yaw minus the path's [rad], only if k = 3.
+    """
     mean = draws.mean(axis=0)
     n = len(mean)
     centre = Poses(np.arange(n, dtype=float), mean[:, :2], np.full(n, np.nan))
@@ -120,6 +126,7 @@ def _statistics(points: Array, draws: Array) -> Array:
 
 
 def _compared(name: str, value: float, own: Array) -> Consistency:
+    """Compute interval and p-value of a track's statistic from the draws' statistics `own`."""
     low, high = np.quantile(own, [(1 - LEVEL) / 2, (1 + LEVEL) / 2])
     below = (1 + np.sum(own <= value)) / (len(own) + 1)
     above = (1 + np.sum(own >= value)) / (len(own) + 1)

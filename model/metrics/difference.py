@@ -8,7 +8,7 @@ import numpy as np
 from model.errors import InsufficientData
 from model.slip.law import Array
 
-DRAWS = 4000  # of the difference
+DRAWS = 4000  # number of pairs from which quantiles of the difference are computed
 
 
 @dataclass(frozen=True)
@@ -16,10 +16,10 @@ class Difference:
     """Difference of two independently estimated quantities: the second minus the first.
 
     Attributes:
-        median: Its median.
-        low: Its 5 % quantile.
-        high: Its 95 % quantile.
-        probability: Probability that the second is the larger one [-].
+        median: Median of the difference, in the quantities' unit.
+        low: 5 % quantile of the difference.
+        high: 95 % quantile of the difference.
+        probability: Probability that the second quantity is larger than the first [-].
     """
 
     median: float
@@ -34,20 +34,20 @@ class Difference:
 
 
 def difference(first: Array, second: Array, *, rng: np.random.Generator) -> Difference:
-    r"""Compute the difference of two quantities from their draws.
+    r"""Compute quantiles of b - a, and the probability that it is positive, from draws of a and b.
 
     .. math::
         P(b > a) = \frac{1}{n m} \sum_{i, j} \left( [b_j > a_i] + \tfrac12 [b_j = a_i] \right)
 
-    over all pairs; quantiles are of differences of pairs drawn at random.
+    over all pairs; quantiles are of the differences of `DRAWS` pairs drawn at random.
 
     Args:
-        first: Draws of the first, shape (n,).
-        second: Draws of the second, shape (m,).
-        rng: Source of randomness.
+        first: Draws of a, shape (n,).
+        second: Draws of b, shape (m,), in the same unit.
+        rng: Source of randomness of the pairs.
 
     Raises:
-        InsufficientData: One has no draws, or draws that are not finite.
+        InsufficientData: A quantity has no draws, or a draw is not finite.
     """
     if not (len(first) and len(second)):
         raise InsufficientData("a quantity without draws has no difference")

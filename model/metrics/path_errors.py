@@ -12,9 +12,9 @@ from model.metrics.turning import fitted_radius, mean_yaw_rate
 from model.poses import Poses, overlap, relative, travel_direction, wrap
 from model.slip.law import Array
 
-DISTANCES = (0.25, 0.5, 1.0)  # m over which relative errors are taken
+DISTANCES = (0.25, 0.5, 1.0)  # distances travelled over which relative errors are computed [m]
 Indices: TypeAlias = NDArray[np.intp]
-CLOSE = 0.1  # of such a distance: pairs of poses further off it are not used
+CLOSE = 0.1  # share of such a distance by which a pair of poses may miss it
 
 
 @dataclass(frozen=True)
@@ -24,9 +24,9 @@ class PoseErrors:
     Attributes:
         t: Times, those of the track, shape (n,) [s].
         translation: Errors along the floor's axes, shape (n, 2) [m].
-        rotation: Errors of heading in [-pi, pi); NaN where one has none, shape (n,) [rad].
-        along: Errors in the direction the track travels, positive ahead, shape (n,) [m].
-        cross: Errors across it, positive to its left, shape (n,) [m].
+        rotation: Errors of heading in [-pi, pi); NaN where either pose has none, shape (n,) [rad].
+        along: Errors in the track's direction of travel, positive ahead, shape (n,) [m].
+        cross: Errors across the track's direction of travel, positive to the left, shape (n,) [m].
     """
 
     t: Array
@@ -47,9 +47,9 @@ class RelativeError:
 
     Attributes:
         distance: Distance travelled between the two poses of a pair [m].
-        pairs: Number of pairs that were found.
+        pairs: Number of pairs of poses that are this distance apart.
         position: Root mean square error of position [m]; NaN without pairs or headings.
-        yaw: Root mean square error of heading [rad].
+        yaw: Root mean square error of heading [rad]; NaN without pairs or headings.
     """
 
     distance: float
@@ -60,27 +60,27 @@ class RelativeError:
 
 @dataclass(frozen=True)
 class PathErrors:
-    """How far a predicted path lies from a tracked one.
+    """Summary errors of a predicted path against a tracked one, at the track's times.
 
     Attributes:
-        poses: Poses compared.
-        length: Length of the track [m].
-        length_ratio: Predicted over tracked length [-].
+        poses: Number of poses compared.
+        length: Length of the track between the first and the last of these poses [m].
+        length_ratio: Predicted over tracked length; NaN if the track has no length [-].
         ate: Root mean square distance, unaligned [m].
         x: Root mean square error of x [m].
         y: Root mean square error of y [m].
         along: Root mean square error along the track [m].
         cross: Root mean square error across the track [m].
-        yaw: Root mean square error of heading [rad].
-        largest: Largest distance [m].
-        final_distance: Distance of the last poses [m].
-        final_yaw: Error of the last heading, signed [rad].
+        yaw: Root mean square error of heading; NaN if a heading is missing [rad].
+        largest: Largest distance of a predicted from a tracked position [m].
+        final_distance: Distance of the last predicted from the last tracked position [m].
+        final_yaw: Last predicted minus last tracked heading, in [-pi, pi) [rad].
         ate_aligned: Root mean square distance after alignment over SE(2) [m].
-        alignment_yaw: The turn that alignment took, which the aligned error hides [rad].
-        alignment_shift: The distance by which it moved the first predicted pose [m].
-        relative: Relative errors by distance.
-        radius: Turning radius predicted and tracked [m].
-        yaw_rate: Mean yaw rate predicted and tracked [rad/s].
+        alignment_yaw: Angle by which alignment rotated the predicted path [rad].
+        alignment_shift: Distance by which alignment moved the first predicted pose [m].
+        relative: Relative pose errors, one for each of `DISTANCES`.
+        radius: Turning radius of the predicted and of the tracked path, positive to the left [m].
+        yaw_rate: Mean yaw rate of the predicted and of the tracked path [rad/s].
     """
 
     poses: int
@@ -104,12 +104,12 @@ class PathErrors:
 
     @property
     def ate_of_length(self) -> float:
-        """Unaligned error over the length of the track [-]."""
+        """Unaligned error `ate` over the length of the track; NaN if the length is zero [-]."""
         return self.ate / self.length if self.length > 0 else float("nan")
 
 
 def pose_errors(predicted: Poses, tracked: Poses) -> PoseErrors:
-    """Compare poses of the same instants, unaligned.
+    """Compute predicted minus tracked poses at the same times, without alignment.
 
     Args:
         predicted: Predicted poses at the track's times.
@@ -131,14 +131,14 @@ def path_errors(predicted: Poses, tracked: Poses) -> PathErrors:
     """Compute summary errors of a predicted path against a tracked one.
 
     The predicted path, sampled densely, is interpolated at the track's times; tracked poses
-    outside its time are left out.
+    outside the predicted path's times are left out.
 
     Args:
         predicted: Predicted path.
         tracked: Track, at any times of the same clock.
 
     Raises:
-        InsufficientData: Fewer than two tracked poses lie within the predicted time.
+        InsufficientData: Fewer than two tracked poses lie within the predicted path's times.
     """
     tracked = tracked.part(overlap(tracked, predicted))
     predicted = predicted.at(tracked.t)
@@ -169,7 +169,7 @@ def path_errors(predicted: Poses, tracked: Poses) -> PathErrors:
 
 
 def relative_error(predicted: Poses, tracked: Poses, *, distance: float) -> RelativeError:
-    r"""Compute the relative pose error over a distance, from every pose on.
+    r"""Compute the relative pose error over a distance, starting at every pose in turn.
 
     For poses i and j of the track about that distance apart along it, the error is that of
     :math:`(T_i^{-1} T_j)^{-1} \hat T_i^{-1} \hat T_j`, T tracked and :math:`\hat T` predicted.
@@ -189,14 +189,14 @@ def relative_error(predicted: Poses, tracked: Poses, *, distance: float) -> Rela
 
 
 def pairs_by_distance(travelled: Array, distance: float) -> tuple[Indices, Indices]:
-    """Find for each pose the later one nearest to a distance further on.
+    """Find for each pose the later pose whose distance travelled from there is nearest to a value.
 
     Args:
         travelled: Distance travelled up to each pose, shape (n,) [m].
         distance: Distance wanted [m]; pairs that miss it by more than a tenth are left out.
 
     Returns:
-        Indices of the first and the second pose of each pair.
+        Indices of the first and of the second pose of each pair, each of shape (pairs,).
     """
     gap = np.abs(travelled[None, :] - travelled[:, None] - distance)
     gap[np.tril_indices(len(travelled))] = np.inf
@@ -206,4 +206,5 @@ def pairs_by_distance(travelled: Array, distance: float) -> tuple[Indices, Indic
 
 
 def _rms(values: Array) -> float:
+    """Compute the root mean square of all elements."""
     return float(np.sqrt(np.mean(values**2)))

@@ -11,7 +11,7 @@ from model.errors import DomainError
 from model.poses import wrap
 from model.slip.law import Array
 
-LEVELS = (0.5, 0.9, 0.95)
+LEVELS = (0.5, 0.9, 0.95)  # probabilities of the central intervals
 
 
 @dataclass(frozen=True)
@@ -21,9 +21,11 @@ class EnsembleScores:
     Attributes:
         energy: Mean energy score of position [m].
         crps: Mean continuous ranked probability score of x, y [m] and yaw [rad], shape (3,).
-        levels: Levels of the central intervals [-].
-        coverage: Share of tracked values within them, shape (levels, 3) [-].
-        width: Mean width of the intervals, shape (levels, 3) [m, m, rad].
+        levels: Probabilities of the central intervals [-].
+        coverage: Share of tracked x, y and yaw within the intervals, shape (levels, 3) [-].
+        width: Mean width of the intervals of x, y and yaw, shape (levels, 3) [m, m, rad].
+
+    Scores and coverage of yaw are NaN if a tracked yaw is.
     """
 
     energy: float
@@ -34,14 +36,14 @@ class EnsembleScores:
 
 
 def centred(draws: Array, observed: Array) -> Array:
-    """Unwrap observed headings next to the ensemble's, so that turns do not count as errors.
+    """Shift observed headings by whole turns to within half a turn of the ensemble's mean heading.
 
     Args:
         draws: x, y, yaw of every draw at every time, shape (m, n, 3) [m, m, rad].
-        observed: Tracked x, y, yaw, shape (n, 3).
+        observed: Tracked x, y, yaw, shape (n, 3) [m, m, rad].
 
     Returns:
-        The observed values, yaw within half a turn of the ensemble's mean, shape (n, 3).
+        The observed values with shifted yaw, shape (n, 3) [m, m, rad].
     """
     mean = draws[..., 2].mean(axis=0)
     return np.column_stack([observed[:, :2], mean + wrap(observed[:, 2] - mean)])
@@ -51,9 +53,12 @@ def with_tracker_noise(draws: Array, covariance: Array, *, rng: np.random.Genera
     """Add random tracker noise to predicted poses.
 
     Args:
-        draws: x, y, yaw of every draw at every time, shape (m, n, 3).
+        draws: x, y, yaw of every draw at every time, shape (m, n, 3) [m, m, rad].
         covariance: The tracker's covariance at each time, shape (n, 3, 3).
         rng: Source of randomness.
+
+    Returns:
+        Draws, each with its own Gaussian noise, independent between times, shape (m, n, 3).
     """
     values, vectors = np.linalg.eigh(covariance)
     root = vectors * np.sqrt(np.maximum(values, 0.0))[:, None, :]
@@ -62,15 +67,15 @@ def with_tracker_noise(draws: Array, covariance: Array, *, rng: np.random.Genera
 
 
 def ensemble_scores(draws: Array, observed: Array) -> EnsembleScores:
-    """Score an ensemble against a track of the same times.
+    """Compute mean scores of an ensemble against a track at the same times.
 
-    Energy score and CRPS are the unbiased ("fair") estimates for a finite ensemble; those of a
-    single draw are its distance and absolute error.
+    Energy score and CRPS are the unbiased ("fair") estimates for a finite ensemble; for a single
+    draw they are its distance and absolute error.
 
     Args:
         draws: x, y, yaw of every draw at every time, the tracker's noise included where it is
             known, shape (m, n, 3) [m, m, rad].
-        observed: Tracked x, y, yaw; yaw NaN where it is not known, shape (n, 3).
+        observed: Tracked x, y, yaw; yaw NaN where it is not known, shape (n, 3) [m, m, rad].
 
     Raises:
         DomainError: Shapes do not match.
@@ -99,7 +104,7 @@ def crps(draws: Array, observed: Array) -> Array:
         observed: Observed values, shape (...).
 
     Returns:
-        Scores, shape (...), in the unit of the values.
+        Scores, shape (...), in the unit of the values; the absolute error for a single draw.
     """
     m = len(draws)
     error = np.abs(draws - observed).mean(axis=0)
@@ -118,7 +123,7 @@ def energy_score(draws: Array, observed: Array) -> Array:
         observed: Observed points, shape (n, d).
 
     Returns:
-        Scores, shape (n,), in the unit of the points.
+        Scores, shape (n,), in the unit of the points; the distance for a single draw.
     """
     error = np.linalg.norm(draws - observed, axis=-1).mean(axis=0)
     if len(draws) == 1:
@@ -129,15 +134,16 @@ def energy_score(draws: Array, observed: Array) -> Array:
 def interval_coverage(
     draws: Array, observed: Array, levels: Sequence[float]
 ) -> tuple[Array, Array]:
-    """Compute coverage and mean width of central intervals.
+    """Compute coverage and mean width of central intervals over n times, for each of k values.
 
     Args:
         draws: Values of every draw, shape (m, n, k).
         observed: Observed values; NaN where unknown, shape (n, k).
-        levels: Levels [-].
+        levels: Probabilities of the intervals [-].
 
     Returns:
-        Shares, NaN where nothing was observed, and widths, both of shape (levels, k).
+        Shares of observed values inside, NaN for values of which any is unknown, and mean widths,
+        both of shape (levels, k).
     """
     p = np.asarray(levels)
     low, high = np.quantile(draws, (1 - p) / 2, axis=0), np.quantile(draws, (1 + p) / 2, axis=0)

@@ -9,19 +9,19 @@ from numpy.typing import NDArray
 from model.errors import InsufficientData
 from model.slip.law import Array
 
-FEWEST = 10  # samples both must have
+FEWEST = 10  # least number of measurements within the walk
 
 
 @dataclass(frozen=True)
 class TiltErrors:
-    """Predicted minus measured roll and pitch; each array is of shape (2,), roll first [rad].
+    """Errors, predicted minus measured, of roll and pitch; arrays of shape (2,), roll first [rad].
 
     Attributes:
-        samples: Number of samples compared.
-        bias: Mean difference, of which the IMU's mounting angle is a part.
-        rms: Root mean square difference, bias included.
-        rms_unbiased: The same about the mean difference.
-        swing: Standard deviation of the measurement over time, the scale of what is predicted.
+        samples: Number of measurements compared.
+        bias: Mean error, of which the IMU's mounting angle is a part.
+        rms: Root mean square error, bias included.
+        rms_unbiased: Root mean square error after subtraction of the bias.
+        swing: Standard deviation of the measured angles over time, to compare errors with.
     """
 
     samples: int
@@ -34,19 +34,19 @@ class TiltErrors:
 def tilt_errors(
     t: Array, predicted: Array, measured_t: Array, measured: Array
 ) -> tuple[TiltErrors, NDArray[np.bool_]]:
-    """Compare roll and pitch at the times of measurements that lie within the walk.
+    """Compute errors of predicted roll and pitch at the measurements' times within the walk.
 
     Args:
         t: Times of the walk, increasing, shape (n,) [s].
-        predicted: Its roll and pitch, shape (n, 2) [rad].
+        predicted: Predicted roll and pitch, interpolated linearly, shape (n, 2) [rad].
         measured_t: Times of the measurements, shape (m,) [s].
-        measured: Roll and pitch measured, shape (m, 2) [rad].
+        measured: Measured roll and pitch, shape (m, 2) [rad].
 
     Returns:
-        The errors, and which measurements were compared, shape (m,).
+        The errors, and whether each measurement was compared, shape (m,).
 
     Raises:
-        InsufficientData: Walk and measurements share too little time.
+        InsufficientData: Fewer than ten measurements lie within the walk's times.
     """
     inside = (measured_t >= t[0]) & (measured_t <= t[-1])
     if inside.sum() < FEWEST:

@@ -5,11 +5,14 @@ import numpy as np
 
 from model.poses import Poses
 
-STRAIGHT = np.radians(5.0)  # of turn in all; below, a radius is mostly the tracker's noise
+STRAIGHT = np.radians(5.0)  # range of headings; below, a radius is mostly the tracker's noise
 
 
 def mean_yaw_rate(poses: Poses) -> float:
-    """Fit a straight line to heading over time and return its slope; NaN without yaw [rad/s]."""
+    """Fit a line to heading over time by least squares; return its slope, positive left [rad/s].
+
+    NaN if a heading is missing or there are fewer than two poses.
+    """
     if not poses.has_yaw or len(poses) < 2:
         return float("nan")
     t = poses.t - poses.t.mean()
@@ -17,21 +20,21 @@ def mean_yaw_rate(poses: Poses) -> float:
 
 
 def fitted_radius(poses: Poses) -> float:
-    r"""Fit the circle of a robot whose heading keeps one angle to its path.
+    r"""Compute the turning radius by a fitted circle, with a constant angle from heading to path.
 
     .. math::
         p_i = c + a (\sin\psi_i, -\cos\psi_i) + b (\cos\psi_i, \sin\psi_i)
 
     Linear least squares over centre c, a and b; the radius is :math:`\sqrt{a^2 + b^2}` with the
-    sign of a, and b is how far the robot crabs. Works for any turn, also beyond a full one, where
-    the chord between the first and the last pose says nothing.
+    sign of a, and b/a is the tangent of the angle from the heading to the path. Holds for any turn,
+    also beyond a full one, where the chord between the first and the last pose is of no use.
 
     Args:
-        poses: Poses, four or more.
+        poses: One path of four or more poses.
 
     Returns:
-        Radius, positive for a left turn; infinite for a path that turns less than 5 degrees;
-        NaN without headings or with fewer than four poses [m].
+        Radius, positive for a left turn; infinite if the headings span less than 5 degrees;
+        NaN if a heading is missing or there are fewer than four poses [m].
     """
     if not poses.has_yaw or len(poses) < 4:
         return float("nan")

@@ -2,11 +2,11 @@
 """Bayesian fit of leg offsets and floor to tracked walks.
 
 Two walks cannot identify six offsets unless most of them are small. The prior therefore states
-that every leg has a small offset, and that perhaps one leg has a large one, mounted wrong or
+that every leg has a small offset, and that perhaps one leg has a large offset, wrongly mounted or
 knocked before one walk. Each of these cases has its mode (`model.bayes.walks.modes`), around which
 draws are made and weighted (`model.bayes.walks.importance`), with steering and stride integrated
-out (`model.bayes.walks.terms`). Paths alone often cannot identify the wrong leg; the weights of
-the cases then show it.
+out (`model.bayes.walks.terms`). Paths alone often cannot identify the wrongly mounted leg; several
+cases then have similar weights.
 """
 
 from collections.abc import Callable, Sequence
@@ -43,14 +43,14 @@ def fit_walks(
     Args:
         robot: The robot as described.
         table: The slip law at the rig's posterior mean.
-        walks: The walks.
+        walks: The tracked walks, one or more.
         prior: The prior.
-        rng: Source of randomness, for leg angles that encoder counts leave undetermined.
+        rng: Source of randomness of all draws, also of leg angles between encoder counts.
         threads: Number of walks computed at once.
-        progress: Called with the fraction done.
+        progress: Called with the fraction done, 0 to 1.
 
     Raises:
-        InsufficientData: There is no walk.
+        InsufficientData: There is no walk, or IMU and walk share too little time.
         WalkError: A walk diverged.
     """
     if not walks:
@@ -71,7 +71,7 @@ def fit_walks(
 
 
 class _Density:
-    """Posterior density with steering and stride integrated out; stores the computed terms."""
+    """Posterior density with steering and stride integrated out; stores the terms of each call."""
 
     def __init__(self, misfits: Sequence[WalkMisfit], prior: WalkPrior, threads: int) -> None:
         self.misfits, self.prior, self.threads = misfits, prior, threads
@@ -79,17 +79,28 @@ class _Density:
         self.rounds: list[Terms] = []
 
     def __call__(self, z: Array, case: NDArray[np.intp]) -> Array:
-        """Compute the log density at m points of given cases, shape (m,)."""
+        """Compute the log posterior density up to a constant at m points, and store their terms.
+
+        Args:
+            z: Standard normal coordinates of the parameters `WALKED`, shape (m, 12).
+            case: Index into `cases` of each point, shape (m,).
+
+        Returns:
+            Log density, shape (m,).
+        """
         self.rounds.append(self.terms(z, case))
         return self.log_prior(z, case) + self.rounds[-1].log_likelihood()
 
     def log_prior(self, z: Array, case: NDArray[np.intp]) -> Array:
-        """Compute the log prior density up to a constant, shape (m,)."""
+        """Compute the log prior density at points z (m, 12) of cases (m,), up to a constant, (m,).
+
+        It includes the probability of each point's case.
+        """
         logs = [self.prior.log_probability(c, walks=len(self.misfits)) for c in self.cases]
         return np.array(logs)[case] - 0.5 * (z**2).sum(axis=1)
 
     def terms(self, z: Array, case: NDArray[np.intp]) -> Terms:
-        """Compute all walks at m points of given cases."""
+        """Compute all walks at points z (m, 12) of cases (m,); return their likelihood terms."""
         values = np.zeros((len(z), WRONG + 1))
         values[:, WALKED] = z * self.prior.scale[WALKED]
         steering, stride = self.prior.scale[LINEAR]
@@ -103,7 +114,7 @@ class _Density:
 
 
 class WalkFit:
-    """A finished fit: the posterior of all walks, and posteriors with one walk left out."""
+    """A finished fit: `posterior` of all walks, and posteriors with one walk left out."""
 
     def __init__(
         self,
@@ -117,19 +128,20 @@ class WalkFit:
         self.posterior = self._of(range(len(names)))
 
     def without(self, walk: int) -> WalkPosterior:
-        """Return the posterior of the other walks: the same draws, reweighted without one walk.
+        """Return the posterior of all walks but one: the same draws, with new weights.
 
         Args:
-            walk: The walk's index.
+            walk: Index of the walk that is left out.
 
         Raises:
-            InsufficientData: There is no other walk.
+            InsufficientData: The fit has only one walk.
         """
         if len(self._names) < 2:
             raise InsufficientData("one walk leaves none to predict it from; name two or more")
         return self._of([i for i in range(len(self._names)) if i != walk])
 
     def _of(self, keep: Sequence[int]) -> WalkPosterior:
+        """Compute the posterior of the walks with the indices `keep`, from the draws of the fit."""
         density, drawn = self._density, self._drawn
         terms = self._terms.only(keep)
         log_density = density.log_prior(drawn.z, drawn.case) + terms.log_likelihood()
@@ -154,7 +166,11 @@ class WalkFit:
         )
 
     def _values(self, z: Array, mean: Array, covariance: Array) -> Array:
-        """Draw steering and stride given all else; return all parameters, shape (m, 14)."""
+        """Draw steering and stride given all else; return all parameters, shape (m, 14).
+
+        `z` (m, 12), `mean` (m, 2) and `covariance` (m, 2, 2) are in standard normal coordinates;
+        the result is in the units of the prior.
+        """
         noise = self._rng.standard_normal((len(z), 2, 1))
         scale = self._density.prior.scale
         values = np.zeros((len(z), WRONG + 1))
@@ -165,10 +181,10 @@ class WalkFit:
         return values
 
     def _starts(self, weight: Array, case: int, densest: int) -> list[Array]:
-        """Return starting points of the optimisation: the prior mode and a case's best draw.
+        """Return two starting points z (14,) of a case's optimisation: zero, and its densest draw.
 
-        In the first, only a wrong leg's offset differs from zero. A scan over that offset has
-        several maxima, and its weighted draws show which of them is the highest.
+        In the first, a wrongly mounted leg's further offset is its weighted mean: a scan over the
+        offset has several maxima, and the draws show which of them is the highest.
         """
         plain, drawn = np.zeros(WRONG + 1), np.zeros(WRONG + 1)
         if self._density.cases[case] is not None:
@@ -179,11 +195,12 @@ class WalkFit:
     def _best(
         self, starts: Sequence[Array], case: int, keep: Sequence[int]
     ) -> tuple[Array, tuple[float, ...]]:
-        """Maximise a case's posterior; return the mode with every walk's misfit there.
+        """Maximise a case's posterior from several starts; return the mode and all walks' misfits.
 
-        The mean is not used. On a kink of the posterior it lies on the side on which the walk does
-        not change, and its walk differs from those of the draws. On a kink an optimisation may also
-        end early, so the best of several is taken.
+        The mean is not used. On a kink of the posterior the mean lies on the side on which the walk
+        does not change, and its walk differs from the draws' walks. On a kink an optimisation may
+        also end early, so the best of several is refined at the finer step. The mode is in the
+        prior's units; a misfit is the mean squared whitened residual [-].
         """
         density, which = self._density, self._density.cases[case]
         misfits = [density.misfits[w] for w in keep]

@@ -2,10 +2,10 @@
 r"""Adaptive importance sampling of the posterior of walks, from the Gaussians at its modes.
 
 The posterior of a gait whose legs take over from each other at equal heights has a kink: a common
-offset or a longer arc lengthens the steps to one side and has no effect to the other. The posterior
-is therefore not Gaussian. In each round draws are made from Student's t around each mode, then
-around the mean of the weighted draws of each case and around some of the draws themselves. They are
-weighted by the posterior density over that of the proposals,
+offset or a longer arc lengthens the steps in one direction and has no effect in the opposite one.
+The posterior is therefore not Gaussian. In the first round draws are made from Student's t around
+each mode, in later rounds around the mean of the weighted draws of each case and around some of the
+draws. All draws are weighted by the posterior density over the proposal density of all rounds,
 
 .. math::
     w_i \propto p(x_i) / \sum_k q_k(x_i) .
@@ -21,16 +21,16 @@ from scipy.linalg import solve_triangular
 from model.bayes.walks.prior import Case
 from model.slip.law import Array
 
-DRAWS = 200  # in a round
+DRAWS = 200  # draws in a round
 MOST_ROUNDS = 10
-WANTED = 150.0  # effective draws
+WANTED = 150.0  # effective draws at which sampling ends
 TAIL = 5  # degrees of freedom of the proposals
 ENOUGH = 60.0  # effective draws from which a round's Gaussians are estimated
-BEFORE = 2.0  # draws a dimension: weight of a case's last covariance in its new one
-PATIENCE = 3  # rounds of Gaussians alone, which are more efficient where they suffice
+BEFORE = 2.0  # draws a dimension that a case's former covariance counts as in its new one
+PATIENCE = 3  # rounds of proposals around modes alone, more efficient where they suffice
 CENTRES = 50  # draws that are centres of a round's narrower proposals
 WIDTHS = (0.6, 0.3)  # of the narrower proposals, in turn, in standard deviations of their case
-_LEAST = 1e-3  # least probability with which each case is drawn
+_LEAST = 1e-3  # added to each case's probability of being drawn
 
 
 @dataclass(frozen=True)
@@ -38,10 +38,10 @@ class Mode:
     """The posterior in one case as a Gaussian, in standard normal coordinates.
 
     Attributes:
-        case: Which leg is mounted wrong; None for no leg.
-        z: Its mode or mean, shape (d,).
-        covariance: Its covariance, shape (d, d).
-        log_evidence: Log of the case's probability times its evidence.
+        case: The wrongly mounted leg; None for no leg.
+        z: Mode or mean of the posterior in this case, shape (d,).
+        covariance: Covariance of the posterior in this case, shape (d, d).
+        log_evidence: Log of the case's prior probability times its evidence, up to a constant.
     """
 
     case: Case
@@ -50,20 +50,20 @@ class Mode:
     log_evidence: float
 
     def within(self, dimensions: Sequence[int]) -> "Mode":
-        """Return the marginal distribution in some dimensions."""
+        """Return the marginal Gaussian of the coordinates with the given indices."""
         keep = list(dimensions)
         return replace(self, z=self.z[keep], covariance=self.covariance[np.ix_(keep, keep)])
 
 
 @dataclass(frozen=True)
 class WeightedCaseDraws:
-    """Draws with importance weights.
+    """Draws of points and cases with importance weights.
 
     Attributes:
         z: Draws in standard normal coordinates, shape (n, d).
-        case: Index of each one's case, shape (n,).
-        weight: Their weights, with sum one, shape (n,).
-        log_proposal: Log proposal density of each up to a constant, shape (n,).
+        case: Index of each draw's case, shape (n,).
+        weight: Weight of each draw, with sum one, shape (n,) [-].
+        log_proposal: Log proposal density at each draw up to a constant, shape (n,).
     """
 
     z: Array
@@ -81,11 +81,13 @@ def weighted_draws(
 ) -> WeightedCaseDraws:
     """Draw weighted samples of the posterior by adaptive importance sampling.
 
+    Rounds of `DRAWS` draws are added until `WANTED` draws are effective, `MOST_ROUNDS` at most.
+
     Args:
-        modes: One a case, in the order that cases are counted.
-        log_density: Log posterior density at points of given cases.
+        modes: Gaussian of each case, in the order of the cases' indices.
+        log_density: Log posterior density at points (m, d) of cases (m,), shape (m,).
         rng: Source of randomness.
-        progress: Called with the fraction done.
+        progress: Called with the fraction of the largest number of rounds done.
     """
     rounds = [_around_modes(modes)]
     z, case = np.empty((0, len(modes[0].z))), np.empty(0, dtype=np.intp)
@@ -116,9 +118,10 @@ class _Bumps:
 
     Attributes:
         case: Index of the case.
-        means: The points, shape (k, d).
-        root: Lower triangular root of their covariance, shape (d, d).
-        shares: How often each is drawn from; those of a round are scaled to one, shape (k,).
+        means: Centres of the distributions, shape (k, d).
+        root: Lower Cholesky factor of the distributions' common scale matrix, shape (d, d).
+        shares: Probability of each distribution, up to a factor that all proposals of a round
+            share, shape (k,) [-].
     """
 
     case: int
@@ -128,7 +131,7 @@ class _Bumps:
 
 
 def _around_modes(modes: Sequence[Mode]) -> list[_Bumps]:
-    """Return one proposal around the mode of each case, with shares as in `_shares`."""
+    """Return one proposal around each case's mode or mean, with probabilities by `_shares`."""
     return [
         _Bumps(i, mode.z[None], _root(mode.covariance), np.array([share]))
         for i, (mode, share) in enumerate(zip(modes, _shares(modes), strict=True))
@@ -143,7 +146,16 @@ def _around_draws(
     width: float,
     rng: np.random.Generator,
 ) -> list[_Bumps]:
-    """Return narrower proposals around some weighted draws, to follow a kink of any shape."""
+    """Return narrower proposals around some draws, chosen by weight, to follow a kink.
+
+    Args:
+        modes: Gaussian of each case, which gives the shape of its proposals.
+        z: Draws, shape (n, d).
+        case: Index of each draw's case, shape (n,).
+        weight: Weight of each draw, with sum one, shape (n,).
+        width: Width of the proposals over the width of the case's Gaussian [-].
+        rng: Source of randomness.
+    """
     chosen = np.unique(rng.choice(len(z), size=CENTRES, p=weight))
     bumps = []
     for i in np.unique(case[chosen]):
@@ -154,11 +166,15 @@ def _around_draws(
 
 
 def _root(covariance: Array) -> Array:
+    """Return the lower Cholesky factor of a covariance, shape (d, d)."""
     return np.asarray(np.linalg.cholesky(covariance), dtype=float)
 
 
 def _draw(bumps: Sequence[_Bumps], rng: np.random.Generator) -> tuple[Array, NDArray[np.intp]]:
-    """Draw from the proposals: Student's t as a Gaussian over the root of a scaled chi-square."""
+    """Draw `DRAWS` points and the indices of their cases from the proposals of a round.
+
+    Student's t is a Gaussian over the root of a scaled chi-square.
+    """
     shares = np.concatenate([each.shares for each in bumps])
     means = np.concatenate([each.means for each in bumps])
     group = np.repeat(np.arange(len(bumps)), [len(each.means) for each in bumps])
@@ -171,7 +187,7 @@ def _draw(bumps: Sequence[_Bumps], rng: np.random.Generator) -> tuple[Array, NDA
 
 
 def _log_proposal(bumps: Sequence[_Bumps], z: Array, case: NDArray[np.intp]) -> Array:
-    """Compute the log proposal density at points of given cases, up to a constant."""
+    """Compute a round's log proposal density at points (n, d) of cases (n,), up to a constant."""
     log = np.full(len(z), -np.inf)
     total = sum(each.shares.sum() for each in bumps)
     d = z.shape[1]
@@ -190,7 +206,7 @@ def _log_proposal(bumps: Sequence[_Bumps], z: Array, case: NDArray[np.intp]) -> 
 
 
 def _shares(modes: Sequence[Mode]) -> Array:
-    """Return each case's share of the draws: its evidence, with a small minimum."""
+    """Return each case's share of the draws, by evidence plus a small constant, sum one."""
     log = np.array([mode.log_evidence for mode in modes])
     shares = np.exp(log - log.max())
     shares = shares / shares.sum() + _LEAST
@@ -198,11 +214,12 @@ def _shares(modes: Sequence[Mode]) -> Array:
 
 
 def _adapted(modes: Sequence[Mode], z: Array, case: NDArray[np.intp], weight: Array) -> list[Mode]:
-    """Update each case's Gaussian by its weighted draws, with a covariance shrunk to the former.
+    """Compute each case's Gaussian from its weighted draws, the covariance shrunk to the former.
 
-    A covariance from few draws is too narrow where none of them happened to lie, so that one draw
+    A covariance from few draws is too narrow where no draw happened to lie, so that one later draw
     there outweighs all others. The covariance of the round before therefore counts as a number of
-    further draws.
+    further draws. The log evidence becomes the log of the case's total weight, at least 1e-12; a
+    case without weight keeps mean and covariance.
     """
     adapted = []
     for i, mode in enumerate(modes):
@@ -221,7 +238,10 @@ def _adapted(modes: Sequence[Mode], z: Array, case: NDArray[np.intp], weight: Ar
 
 
 def _tempered(log: Array) -> Array:
-    """Temper weights until the effective number of draws suffices to estimate a Gaussian."""
+    """Raise weights exp(log) to the largest power up to 1 with over `ENOUGH` effective draws.
+
+    The weights returned have sum one, shape (n,).
+    """
     low, high = 0.0, 1.0
     for _ in range(20):
         power = 0.5 * (low + high)
@@ -231,5 +251,6 @@ def _tempered(log: Array) -> Array:
 
 
 def _weights(log: Array) -> Array:
+    """Return exp(log) scaled to sum one, shape (n,)."""
     weight = np.exp(log - log.max())
     return weight / weight.sum()

@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: MIT
 r"""Whitened residuals between a tracked walk and its prediction.
 
-Each walk is predicted from its leg angles and its first tracked pose. Differences from the other
-poses have the tracker's noise, that of the first pose, the spread that counted angles leave and the
-errors of the walking model: distance, curvature, and stiffness and damping of contacts. The last
-three are the same all along a walk, so its poses are strongly correlated,
+Each walk is predicted from its leg angles and its first tracked pose. Differences from the later
+poses contain the tracker's noise :math:`V` and, by the first pose, :math:`V_0`; the model's errors
+of distance (derivative d) and curvature (derivative c), and of stiffness and damping of contacts,
+:math:`H`; and the spread that counted angles leave, or else the time step's error, :math:`Q`. The
+model's errors are the same all along a walk, so the walk's poses are strongly correlated,
 
 .. math::
     r \sim N(0,\; V + J_0 V_0 J_0^T + \sigma_d^2\, d d^T + \sigma_c^2\, c c^T + H + Q) .
@@ -30,9 +31,10 @@ from model.walk.dynamics import DynamicsOptions
 from model.walk.ensemble import PlanarWalk, WalkDraw, walk_ensemble
 from model.walk.traction import TractionTable
 
-RECONSTRUCTIONS = 16  # draws of counted angles, for their spread; or walks at half the step
-LARGEST_STEP = 0.0025  # s; with a wrong leg 5 ms turns by 3 % more and saves a third of the time
-OFFSETS_SD = np.radians(0.2)  # standard deviation of the leg offsets in those walks [rad]
+RECONSTRUCTIONS = 16  # motions drawn from counted angles; or walks that show the step's error
+# s; with a wrongly mounted leg 5 ms turns by 3 % more and saves a third of the time
+LARGEST_STEP = 0.0025
+OFFSETS_SD = np.radians(0.2)  # sd of leg offsets in walks that show the step's error [rad]
 FEWEST_POSES = 3  # one to start from and two to compare
 SAMPLING = 0.05  # s between the poses kept of a path
 FINE_SAMPLING = 0.02  # s, where roll and pitch are compared
@@ -41,16 +43,16 @@ _BEND = 1e-3  # step in distance and curvature for finite differences
 
 @dataclass(frozen=True)
 class TrackedWalk:
-    """A walk that was tracked.
+    """A walk with its leg angles and its tracked poses.
 
     Attributes:
-        name: Its name.
-        legs: Its leg angles from time zero on.
-        t: Times of the tracked poses in the same clock, the first of which starts the prediction,
-            shape (n,) [s].
+        name: Name of the walk.
+        legs: Leg angles from time zero on.
+        t: Times of the tracked poses by the clock of the leg angles; the prediction starts from the
+            first pose, shape (n,) [s].
         states: Tracked x, y [m] and yaw [rad], shape (n, 3).
-        covariance: The tracker's covariance of each, shape (n, 3, 3).
-        tilt: Roll and pitch by the robot's IMU; None without one.
+        covariance: The tracker's covariance of each pose, shape (n, 3, 3).
+        tilt: Roll and pitch by the robot's IMU; None without an IMU.
 
     Raises:
         InsufficientData: There are fewer than three poses.
@@ -78,12 +80,12 @@ class WalkMisfit:
 
     Attributes:
         robot: The robot as described.
-        table: The slip law as the rig has it.
-        walk: The walk.
+        table: The slip law at the rig's posterior mean.
+        walk: The tracked walk, n poses.
         options: How walks are computed.
-        root: Whitening matrix, which turns differences into residuals of unit covariance, shape
-            (k, k).
-        tilt: Roll and pitch of the IMU; None without one.
+        root: Whitening matrix: inverse of the lower Cholesky factor of the covariance of the
+            differences, shape (k, k), with k = 3 (n - 1).
+        tilt: Roll and pitch by the IMU, for comparison with walks; None without an IMU.
     """
 
     robot: Robot
@@ -104,7 +106,7 @@ class WalkMisfit:
         rng: np.random.Generator,
         threads: int,
     ) -> "WalkMisfit":
-        """Compute the covariance of the differences of a walk from its prediction.
+        """Build the misfit of a walk: choose the time step and compute the whitening matrix.
 
         Args:
             robot: The robot as described.
@@ -116,6 +118,7 @@ class WalkMisfit:
 
         Raises:
             WalkError: A walk diverged.
+            InsufficientData: IMU and walk share too little time.
         """
         plain = WalkDraw(robot, middle(walk.legs), table)
         chosen = ensemble_step([plain], duration=float(walk.t[-1]))
@@ -129,28 +132,28 @@ class WalkMisfit:
         return replace(misfit, root=np.linalg.inv(np.linalg.cholesky(covariance)))
 
     def finer(self) -> "WalkMisfit":
-        """Return the same misfit with the finer time step of a single path."""
+        """Return the same misfit with walks computed by `model.predict.FINE`, and the same root."""
         return replace(self, options=FINE)
 
     @property
     def size(self) -> int:
-        """Number of residuals: of the poses, then of roll and pitch."""
+        """Number of residuals of the poses and of roll and pitch."""
         return len(self.root) + (0 if self.tilt is None else self.tilt.measured.size)
 
     @property
     def count(self) -> float:
-        """Effective number of independent residuals."""
+        """Effective number of independent residuals; roll and pitch count as one stride."""
         return len(self.root) + (0.0 if self.tilt is None else self.tilt.count)
 
     def residuals(self, state: LegState, *, threads: int) -> Array:
-        """Compute the whitened residuals of this walk for m states of the legs.
+        """Compute the whitened residuals, predicted minus tracked, for m states of the legs.
 
         Args:
             state: The m states.
-            threads: Number of threads that compute walks.
+            threads: Number of walks computed at once.
 
         Returns:
-            Residuals of unit covariance, shape (m, size).
+            Residuals of the poses, then of roll and pitch, shape (m, size) [-].
 
         Raises:
             WalkError: A walk diverged.
@@ -160,12 +163,12 @@ class WalkMisfit:
         return self._with_tilt(self._difference(paths) @ self.root.T, walked)
 
     def terms(self, state: LegState, *, steering: float, stride: float, threads: int) -> Terms:
-        """Compute residuals for m states of the legs, and their derivatives by steering and stride.
+        """Compute the likelihood terms of this walk for m states of the legs.
 
         Args:
-            state: The legs; its own steering and stride are ignored.
-            steering: Unit of steering [rad/m].
-            stride: Unit of stride [-].
+            state: The m states, whose steering and stride are ignored.
+            steering: Prior standard deviation of steering, its unit in the terms [rad/m].
+            stride: Prior standard deviation of stride, its unit in the terms [-].
             threads: Number of walks computed at once.
 
         Raises:
@@ -185,11 +188,13 @@ class WalkMisfit:
         return Terms.of(residuals, by_bend)
 
     def _with_tilt(self, residuals: Array, walked: PlanarWalk) -> Array:
+        """Append the residuals of roll and pitch, if any, to the poses' residuals (m, k)."""
         if self.tilt is None or walked.tilt is None:
             return residuals
         return np.concatenate([residuals, self.tilt.residuals(walked.tilt)], axis=1)
 
     def _walked_with(self, state: LegState, threads: int) -> PlanarWalk:
+        """Walk the middle leg angles with m states of the legs, without steering and stride."""
         legs = middle(self.walk.legs)
         draws = [
             WalkDraw(robot_in(self.robot, state, i), legs, law_in(self.table, state, i))
@@ -198,17 +203,22 @@ class WalkMisfit:
         return self._walked(draws, threads)
 
     def _walked(self, draws: Sequence[WalkDraw], threads: int) -> PlanarWalk:
+        """Walk every draw at `_times`; roll and pitch are returned if there is an IMU."""
         return walk_ensemble(
             draws, self._times(), options=self.options, threads=threads, tilt=self.tilt is not None
         )
 
     def _times(self) -> Array:
+        """Return evenly spaced times from 0 to the last tracked pose [s]; finer with an IMU."""
         end = float(self.walk.t[-1])
         step = SAMPLING if self.walk.tilt is None else FINE_SAMPLING
         return np.linspace(0.0, end, max(round(end / step), 2) + 1)
 
     def _difference(self, paths: Poses) -> Array:
-        """Subtract the tracked poses from paths started at the first; shape (m, 3 (n - 1))."""
+        """Start m paths at the first tracked pose; subtract the later ones, shape (m, 3 (n - 1)).
+
+        Columns are x, y [m] and wrapped yaw [rad] of one pose after the other.
+        """
         states = states_at(paths, self.walk.t)
         states = moved_onto(states, states[:, 0], self.walk.states[0])
         difference = states[:, 1:] - self.walk.states[1:]
@@ -216,6 +226,7 @@ class WalkMisfit:
         return difference.reshape(len(states), -1)
 
     def _covariance(self, spread: ModelSpread, rng: np.random.Generator, threads: int) -> Array:
+        """Compute the covariance (k, k) of predicted minus tracked poses: the module's equation."""
         several = motions(self.walk.legs, RECONSTRUCTIONS, rng)
         draws = [WalkDraw(self.robot, each, self.table) for each in several]
         paths = self._walked(draws, threads).poses
@@ -228,7 +239,10 @@ class WalkMisfit:
         return total + self._of_step(several[0], rng, threads)
 
     def _of_step(self, legs: LegReference, rng: np.random.Generator, threads: int) -> Array:
-        """Return the covariance of the error of the time step, which differs from path to path."""
+        """Compute the covariance of the time step's error from walks at the step and at half of it.
+
+        The walks have small random leg offsets, since the error differs from path to path.
+        """
         draws = [
             WalkDraw(replace(self.robot, leg_offset=self.robot.leg_offset + each), legs, self.table)
             for each in OFFSETS_SD * rng.standard_normal((RECONSTRUCTIONS, N_LEGS))
@@ -240,10 +254,10 @@ class WalkMisfit:
         return (coarse - fine).T @ (coarse - fine) / RECONSTRUCTIONS
 
     def _of_tracker(self, difference: Array) -> Array:
-        """Return the covariance of the tracker's noise, of the first pose and the others.
+        """Compute the covariance of tracker noise: of each pose, and of the first by its lever arm.
 
         Args:
-            difference: Predicted minus tracked, shape (3 n,).
+            difference: Predicted minus tracked poses after the first, shape (k,).
         """
         walk, n = self.walk, len(self.walk.t) - 1
         predicted = difference.reshape(n, 3) + walk.states[1:]
@@ -257,7 +271,10 @@ class WalkMisfit:
         return total
 
     def _of_model(self, path: Poses, spread: ModelSpread) -> Array:
-        """Return the covariance of the model's errors of distance and curvature."""
+        """Compute the covariance (k, k) due to the model's errors of distance and curvature.
+
+        Derivatives of the only draw of `path` are forward differences.
+        """
         no, small = np.zeros(1), np.full(1, _BEND)
         here = self._difference(path)[0]
         d = (self._difference(bent(path, distance=small, curvature=no))[0] - here) / _BEND
@@ -265,10 +282,11 @@ class WalkMisfit:
         return spread.distance**2 * np.outer(d, d) + spread.curvature**2 * np.outer(c, c)
 
     def _of_contacts(self, spread: ModelSpread, threads: int) -> Array:
-        """Return the covariance due to the uncertain stiffness and damping of contacts.
+        """Compute the covariance (k, k) due to uncertain stiffness and damping of contacts.
 
-        It depends on the gait: where four legs are on the ground, contact stiffness determines how
-        they share the load, and so the turn.
+        Each is moved by one standard deviation up and down. The effect depends on the gait: where
+        four legs are on the ground, contact stiffness determines how they share the load, and so
+        the turn.
         """
         factors = np.exp(spread.contacts * np.array([[1, 0], [-1, 0], [0, 1], [0, -1]]))
         plain = WalkDraw(self.robot, middle(self.walk.legs), self.table)
@@ -279,5 +297,5 @@ class WalkMisfit:
 
 
 def middle(legs: LegReference | QuantisedLog) -> LegReference:
-    """Return leg angles as they are, or the middle ones of those that encoder counts allow."""
+    """Return the middle motion that a quantised log allows; other leg angles as they are."""
     return legs.smooth() if isinstance(legs, QuantisedLog) else legs

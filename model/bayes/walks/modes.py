@@ -1,17 +1,18 @@
 # SPDX-License-Identifier: MIT
 r"""Modes of the posterior of legs and floor in every case, by Gauss-Newton and scans.
 
-Residuals are nearly linear in all parameters but a wrong leg's offset. The case without a wrong
-leg is therefore maximised first. There, and at the prior mode, a scan changes the offset of one leg
-at a time over its whole range, while all other parameters follow linearly,
+Residuals are nearly linear in all parameters but a wrongly mounted leg's offset. The posterior of
+the case without a wrongly mounted leg is therefore maximised first. At its mode, and at the prior
+mode, a scan changes the offset of one leg at a time over the whole range, while all other
+parameters follow linearly,
 
 .. math::
     -2 \log p(\delta) = r'^T (I + J J^T)^{-1} r' + (\delta / \sigma)^2, \quad
     r' = r(\delta) - J \hat z ,
 
-The scan finds every relevant case, however far its offset is from zero. The most probable cases are
-then maximised themselves, from both scans: at kinks an optimisation may end early, and the better
-of the two ends is taken.
+The scan finds every relevant case, however far its offset is from zero. The posterior of the most
+probable cases is then maximised from the results of both scans: at kinks an optimisation may end
+early, and the better of the two results is kept.
 """
 
 from collections.abc import Callable, Sequence
@@ -31,12 +32,12 @@ DIFFERENCE = np.array([
     np.radians(0.2),
 ])  # fmt: skip
 MOST_MOVES = 8
-SETTLED = 0.05  # of a prior's standard deviation
+SETTLED = 0.05  # of a prior's standard deviation: a smaller move ends the optimisation
 GAINED = 0.3  # of twice the log posterior density: a smaller gain ends the optimisation
 SCANNED = np.radians(np.linspace(-12.0, 12.0, 17))  # offsets at which walks are computed
 FINE = np.radians(np.linspace(-12.0, 12.0, 241))  # offsets to which residuals are interpolated
 CLIMBED = 4  # largest number of cases that are optimised after the scans
-UNLIKELY = 8.0  # below the best log evidence, with a margin for the scans: not optimised
+UNLIKELY = 8.0  # log evidence below the best at which a case is not optimised; margin for the scans
 
 
 def _evidence(mode: Mode) -> float:
@@ -47,10 +48,10 @@ class ModeSearch:
     """Residuals of all walks in standard normal coordinates, and the searches for modes.
 
     Args:
-        misfits: The walks.
+        misfits: Misfit of each walk.
         prior: The prior.
         threads: Number of walks computed at once.
-        numbers: Indices by which cases refer to these walks; in their order when None.
+        numbers: Index by which cases refer to each of these walks; 0, 1, ... when None.
     """
 
     def __init__(
@@ -65,10 +66,10 @@ class ModeSearch:
         self.ends = np.cumsum([misfit.size for misfit in misfits])
 
     def modes(self, *, progress: Callable[[float], None]) -> list[Mode]:
-        """Find the mode of every case, in the order of `all_cases`.
+        """Find the Gaussian of every case, in the order of `all_cases`, by scans and optimisation.
 
         Args:
-            progress: Called with the fraction done.
+            progress: Called with the fraction done, 0 to 1.
 
         Raises:
             WalkError: A walk diverged.
@@ -89,10 +90,10 @@ class ModeSearch:
         return modes
 
     def _scan_at_rest(self) -> list[Mode]:
-        """Scan about the prior mode.
+        """Estimate every case's Gaussian by a scan about the prior mode, in order of `all_cases`.
 
-        At the mode without a wrong leg the other parameters have already absorbed part of the
-        effect of a wrong leg.
+        At the mode of the first case the other parameters have already absorbed part of the effect
+        of a wrongly mounted leg. The log evidence of the first case is -inf.
         """
         rest = np.zeros(WRONG + 1)
         _, J = self._linearised(rest, None)
@@ -103,10 +104,10 @@ class ModeSearch:
 
         Args:
             z: Points in standard normal coordinates, shape (m, 14).
-            case: The leg that is mounted wrong, or None.
+            case: The wrongly mounted leg, or None.
 
         Returns:
-            Residuals, shape (m, n).
+            Residuals of one walk after the other, shape (m, n) [-].
         """
         values = z * self.prior.scale
         return np.concatenate(
@@ -122,7 +123,7 @@ class ModeSearch:
 
         Args:
             z: The point in standard normal coordinates, shape (14,).
-            case: The leg that is mounted wrong, or None.
+            case: The wrongly mounted leg, or None.
         """
         return float((self.residuals(z[None], case)[0] ** 2).sum() + z @ z)
 
@@ -130,11 +131,11 @@ class ModeSearch:
         """Find the mode of a case by Gauss-Newton with a line search.
 
         Args:
-            case: The leg that is mounted wrong, or None.
+            case: The wrongly mounted leg, or None.
             z: Starting point in standard normal coordinates, shape (14,).
 
         Returns:
-            The mode, and the Jacobian of the residuals there, shape (n, 14).
+            The mode as a Gaussian, and the Jacobian of the residuals at the mode, shape (n, 14).
         """
         r, J = self._linearised(z, case)
         for _ in range(MOST_MOVES):
@@ -156,14 +157,14 @@ class ModeSearch:
         return self._mode(case, z, covariance, float(evidence)), J
 
     def scan(self, plain: Mode, J: Array) -> list[Mode]:
-        """Estimate the mode of every case by a scan over the offset of one leg at a time.
+        """Estimate the Gaussian of every case by a scan over the offset of one leg at a time.
 
         Args:
-            plain: Mode of the case without a wrong leg, about which the scan is made.
-            J: Jacobian of the residuals at that mode, shape (n, 14).
+            plain: Point without a wrongly mounted leg about which the scan is made.
+            J: Jacobian of the residuals at that point, shape (n, 14).
 
         Returns:
-            The modes in the order of `all_cases`; the first is `plain`.
+            The Gaussians in the order of `all_cases`; the first is `plain`.
         """
         z = plain.z
         follow = np.linalg.inv(np.eye(len(J)) + J @ J.T)
@@ -181,18 +182,21 @@ class ModeSearch:
         return modes
 
     def _moved(self, leg: int, z: Array) -> Array:
-        """Return residuals with a leg moved to each of the fine offsets, shape (241, n)."""
+        """Compute residuals at z (14,) with a leg's further offset at each of `FINE`, (241, n).
+
+        Walks are computed at the offsets `SCANNED`; residuals are interpolated between them.
+        """
         points = np.tile(z, (len(SCANNED), 1))
         points[:, WRONG] = SCANNED / self.prior.wrong_sd
         walked = self.residuals(points, WrongLeg(leg))
         return np.stack([np.interp(FINE, SCANNED, column) for column in walked.T], axis=1)
 
     def _scanned(self, case: WrongLeg, r: Array, J: Array, follow: NDArray[np.floating]) -> Mode:
-        """Summarise one leg's scan as a Gaussian.
+        """Compute the Gaussian of a case, with its evidence, from one leg's scan.
 
         Args:
-            case: The wrong leg.
-            r: Residuals at each of the fine offsets, all else at zero by `J`, shape (241, n).
+            case: The wrongly mounted leg.
+            r: Residuals at each of the offsets `FINE`, all else moved to zero by `J`, (241, n).
             J: Jacobian of the residuals, shape (n, 14).
             follow: Inverse of I + J J^T, shape (n, n).
         """
@@ -213,13 +217,14 @@ class ModeSearch:
     def _mode(
         self, case: Case, z: Array, covariance: NDArray[np.floating], evidence: float
     ) -> Mode:
+        """Build a mode; `evidence` is its log evidence without the case's prior probability."""
         log_probability = self.prior.log_probability(case, walks=len(self.misfits))
         return Mode(case, z, np.asarray(covariance, dtype=float), evidence + log_probability)
 
     def _linearised(self, z: Array, case: Case) -> tuple[Array, Array]:
-        """Return residuals and their Jacobian by central differences, in one batch."""
+        """Compute residuals (n,) at z (14,), and their Jacobian (n, 14) by central differences."""
         step = DIFFERENCE / self.prior.scale
-        if case is None:  # without a wrong leg its offset moves nothing
+        if case is None:  # without a wrongly mounted leg its offset moves nothing
             step = step[:WRONG]
         steps = np.eye(len(step), len(z)) * step[:, None]
         rows = self.residuals(np.concatenate([z[None], z + steps, z - steps]), case)

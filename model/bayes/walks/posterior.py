@@ -20,16 +20,16 @@ from model.leg_state import LegState
 from model.robot import N_LEGS
 from model.slip.law import Array
 
-UNINFORMED = 0.1  # contraction of variance below which the walks do not inform a parameter
-FEW = 30  # effective draws; below, the posterior is not reliable
+UNINFORMED = 0.1  # contraction up to which a parameter counts as not constrained by the walks
+FEW = 30  # least effective sample size of a reliable posterior
 
 
 @dataclass(frozen=True)
 class Contraction:
-    """Prior against posterior of one parameter.
+    """Prior and posterior of one parameter; units are those of `model.bayes.walks.prior.UNITS`.
 
     Attributes:
-        name: One of `NAMES`; factors as logarithms.
+        name: One of `NAMES`; grip and slip stiffness are logarithms of factors.
         prior_sd: Prior standard deviation.
         mean: Posterior mean.
         sd: Posterior standard deviation.
@@ -42,25 +42,26 @@ class Contraction:
 
     @property
     def contraction(self) -> float:
-        """One minus posterior over prior variance; zero where the walks hold no information [-]."""
+        """1 minus posterior over prior variance; negative where the variance grew [-]."""
         return 1 - (self.sd / self.prior_sd) ** 2
 
     @property
     def informed(self) -> bool:
-        """Whether the walks inform this parameter."""
+        """Whether the walks reduce the parameter's variance by more than the share `UNINFORMED`."""
         return self.contraction > UNINFORMED
 
 
 @dataclass(frozen=True)
 class CaseFound:
-    """Posterior probability of a case.
+    """Posterior probability of a case, and the offset of its wrongly mounted leg.
 
     Attributes:
-        case: Which leg is wrong; None for no leg.
-        name: The case as text.
-        probability: Its posterior probability [-].
-        offset: The leg's whole offset, without the common one; zero for no leg [rad].
-        sd: Its standard deviation [rad].
+        case: The wrongly mounted leg; None for no leg.
+        name: The case as text, as by `describe`.
+        probability: Posterior probability of the case [-].
+        offset: Posterior mean of the leg's own plus further offset, without the offset that all
+            legs share; zero for no leg [rad].
+        sd: Posterior standard deviation of `offset` [rad].
     """
 
     case: Case
@@ -72,19 +73,20 @@ class CaseFound:
 
 @dataclass(frozen=True)
 class WalkPosterior:
-    """The posterior after tracked walks.
+    """The posterior of leg offsets and floor after tracked walks.
 
     Attributes:
         prior: The prior.
-        walks: Names of the walks, in the order that cases count them.
-        cases: The cases, each a leg that may be wrong or none.
-        values: Draws of the parameters in the order of `NAMES` and of the wrong leg's offset, shape
-            (n, 14) [rad, -].
-        case: Index of each draw's case, shape (n,).
+        walks: Names of the walks, in the order of the cases' walk indices.
+        cases: The cases: each a wrongly mounted leg, or None.
+        values: Draws of the parameters in the order of `NAMES`, then the further offset of a
+            wrongly mounted leg, shape (n, 14), in the prior's units.
+        case: Index into `cases` of each draw, shape (n,).
         weight: Weight of each draw, with sum one, shape (n,) [-].
-        best: The mode of the likeliest case, shape (14,).
-        best_case: That case.
-        misfit: Mean squared whitened residual of each walk there, at most about 1 [-].
+        best: Parameters at the mode of the likeliest case, in the order of `values`, shape (14,).
+        best_case: The likeliest case.
+        misfit: Mean squared whitened residual of each walk at `best`; about 1 or less if the model
+            holds [-].
     """
 
     prior: WalkPrior
@@ -99,33 +101,37 @@ class WalkPosterior:
 
     @property
     def effective(self) -> float:
-        """Effective sample size of the weighted draws."""
+        """Effective sample size of the weighted draws, 1 over the sum of squared weights [-]."""
         return float(1 / np.sum(self.weight**2))
 
     @property
     def reliable(self) -> bool:
-        """Whether the effective sample size suffices."""
+        """Whether the effective sample size is at least `FEW`."""
         return self.effective >= FEW
 
     def draw(self, n: int, *, rng: np.random.Generator, walk: int | None = None) -> LegState:
-        """Draw states of the legs for `model.predict.walk_draws`.
+        """Draw states of the legs for `model.predict.walk_draws`, by weight, with replacement.
 
         Args:
             n: Number of draws.
             rng: Source of randomness.
-            walk: Index of the walk they are for; None for a walk to come.
+            walk: Index of the walk that the states are for; None for a walk to come.
         """
         chosen = rng.choice(len(self.weight), size=n, p=self.weight)
         return state_in(self.values[chosen], self.case[chosen], self.cases, walk=walk)
 
     def most_likely(self, *, walk: int | None = None) -> LegState:
-        """Return the state of the legs at the mode of the likeliest case."""
+        """Return one state of the legs, at the mode of the likeliest case.
+
+        Args:
+            walk: Index of the walk that the state is for; None for a walk to come.
+        """
         return legs_of(self.best[None], self.best_case, walk=walk)
 
     def with_wrong_legs(self) -> Array:
-        """Return draws in the order of `NAMES`, shape (n, 13).
+        """Return all draws in the order of `NAMES`, shape (n, 13).
 
-        A leg's offset includes the further offset of a leg that is wrong in every walk.
+        A leg's offset includes the further offset of a leg that is wrongly mounted in every walk.
         """
         values = self.values[:, :WRONG].copy()
         for i, case in enumerate(self.cases):
@@ -134,7 +140,7 @@ class WalkPosterior:
         return values
 
     def contractions(self) -> tuple[Contraction, ...]:
-        """Compare prior and posterior of every parameter, over all cases."""
+        """Compute prior and posterior moments of every parameter over all cases, by `NAMES`."""
         values = self.with_wrong_legs()
         mean = self.weight @ values
         sd = np.sqrt(self.weight @ (values - mean) ** 2)
@@ -145,7 +151,7 @@ class WalkPosterior:
         )
 
     def found(self) -> list[CaseFound]:
-        """List the cases with non-zero weight, likeliest first."""
+        """Compute probability and leg offset of each case with non-zero weight, likeliest first."""
         rows = []
         for i, case in enumerate(self.cases):
             weight = np.where(self.case == i, self.weight, 0.0)
@@ -161,7 +167,14 @@ class WalkPosterior:
         return sorted(rows, key=lambda row: -row.probability)
 
     def of_floor_alone(self, *, rng: np.random.Generator) -> "WalkPosterior":
-        """Return draws for another robot on the same floor, with leg parameters from the prior."""
+        """Return the posterior for another robot on the same floor.
+
+        Only the parameters `FLOOR` keep their draws; all other parameters are drawn from the prior,
+        no leg is wrongly mounted, and `best` is zero but for `FLOOR`.
+
+        Args:
+            rng: Source of randomness of the prior's draws.
+        """
         keep = [NAMES.index(name) for name in FLOOR]
         values = rng.standard_normal(self.values.shape) * self.prior.scale
         best = np.zeros_like(self.best)
@@ -175,13 +188,13 @@ class WalkPosterior:
 def state_in(
     values: Array, case: NDArray[np.intp], cases: tuple[Case, ...], *, walk: int | None
 ) -> LegState:
-    """Convert draws of several cases to the state of the legs in a walk.
+    """Convert draws of several cases to m draws of the legs' state in a walk.
 
     Args:
-        values: Draws, shape (m, 14).
-        case: Index of each one's case, shape (m,).
-        cases: The cases.
-        walk: The walk's index; None for a walk to come.
+        values: Draws of the parameters, as those of `WalkPosterior`, shape (m, 14).
+        case: Index into `cases` of each draw, shape (m,).
+        cases: The cases: each a wrongly mounted leg, or None.
+        walk: Index of the walk; None for a walk to come.
     """
     state = legs_of(values, None, walk=walk)
     for i in np.unique(case):

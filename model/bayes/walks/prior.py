@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Prior of leg offsets and floor, and the cases of one leg that is mounted wrong."""
+"""Prior of leg offsets and floor, and the cases of one wrongly mounted leg."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
@@ -23,35 +23,39 @@ FALL, FALL_SD = 0.5, 0.5
 FALLS = (0.0, 1.5)
 NAMES = (*OFFSETS, *FLOOR, "common_offset", "leg_arc", "steering", "stride")
 UNITS = (*["rad"] * N_LEGS, "log", "log", "-", "rad", "rad", "rad/m", "-")
-WRONG = len(NAMES)  # index of the wrong leg's further offset, after the others
+WRONG = len(NAMES)  # index of a wrongly mounted leg's further offset, after `NAMES`
 LINEAR = [NAMES.index("steering"), NAMES.index("stride")]  # residuals are linear in them
 WALKED = [i for i in range(WRONG + 1) if i not in LINEAR]  # parameters that need a new walk
 
 
 @dataclass(frozen=True)
 class WrongLeg:
-    """A leg with a large constant offset.
+    """A wrongly mounted leg: one with a large constant offset.
 
     Attributes:
-        leg: Its index.
-        walk: Index of the only walk in which it is off, as after a knock; None when it is off in
-            all of them, as after an assembly.
+        leg: Index of the leg, from 0.
+        walk: Index of the only walk in which the leg has the offset, as after a knock; None when it
+            has the offset in all walks, as after an assembly.
     """
 
     leg: int
     walk: int | None = None
 
     def concerns(self, walk: int | None) -> bool:
-        """Return whether the leg is off in a walk; None stands for a walk to come."""
+        """Return whether the leg has the offset in walk number `walk`; None is a walk to come."""
         return self.walk is None or self.walk == walk
 
 
 Case: TypeAlias = WrongLeg | None
-"""A leg that is mounted wrong, or none."""
+"""A wrongly mounted leg, or None for none."""
 
 
 def wrong_legs(walks: int) -> tuple[WrongLeg, ...]:
-    """List the possible cases of one wrong leg: in all walks, or in one of them."""
+    """List the cases of one wrongly mounted leg: six in all walks, then six in each single walk.
+
+    Args:
+        walks: Number of walks; of fewer than two only the first six cases are listed.
+    """
     legs = range(N_LEGS)
     everywhere = tuple(WrongLeg(leg) for leg in legs)
     if walks < 2:  # with one walk both cases are the same
@@ -61,23 +65,21 @@ def wrong_legs(walks: int) -> tuple[WrongLeg, ...]:
 
 @dataclass(frozen=True)
 class WalkPrior:
-    """Prior before any walk.
+    """Gaussian prior of leg offsets and floor before any tracked walk; sd: standard deviation.
 
     Attributes:
-        offset_sd: Standard deviation of each leg's own offset [rad].
-        common_sd: That of the offset all share: whether counts are rounded or cut is half a count
-            [rad].
-        arc_sd: That of the legs' arc beyond the described one [rad].
-        wrong_sd: That of the further offset of a leg that is mounted wrong [rad].
-        wrong: Probability that one leg is mounted wrong [-].
-        grip_sd: Standard deviation of the logarithm of the factor on traction: floor and rig differ
-            [-].
-        stiffness_sd: That of the logarithm of the factor on slip stiffness [-].
-        fall_sd: That of the factor on the post-peak drop, about `FALL` [-].
-        steering_sd: Standard deviation of the constant curvature that the legs do not explain
-            [rad/m].
-        stride_sd: That of the relative error of distance [-].
-        spread: Errors of the walking model, drawn anew in each walk.
+        offset_sd: Sd of each leg's own offset, about zero [rad].
+        common_sd: Sd of the offset that all legs share: rounded and truncated encoder counts
+            differ by half a count [rad].
+        arc_sd: Sd of the angle of the legs' arc, about the described angle [rad].
+        wrong_sd: Sd of the further offset of a wrongly mounted leg [rad].
+        wrong: Probability that one leg is wrongly mounted [-].
+        grip_sd: Sd of the natural logarithm of the factor on traction: floor and rig differ [-].
+        stiffness_sd: Sd of the natural logarithm of the factor on slip stiffness [-].
+        fall_sd: Sd of the factor on the post-peak drop, about `FALL` [-].
+        steering_sd: Sd of the constant curvature that the legs do not explain [rad/m].
+        stride_sd: Sd of the relative error of distance [-].
+        spread: Standard deviations of the walking model's errors, drawn anew in each walk.
 
     Raises:
         DomainError: A standard deviation is not positive or `wrong` is not a probability.
@@ -111,17 +113,20 @@ class WalkPrior:
 
     @property
     def scale(self) -> Array:
-        """Standard deviations in the order of `NAMES`, and that of a wrong leg, shape (14,)."""
+        """Standard deviations in the order of `NAMES`, then `wrong_sd`, shape (14,)."""
         return np.array([
             *[self.offset_sd] * N_LEGS, self.grip_sd, self.stiffness_sd, self.fall_sd,
             self.common_sd, self.arc_sd, self.steering_sd, self.stride_sd, self.wrong_sd,
         ])  # fmt: skip
 
     def log_probability(self, case: Case, *, walks: int) -> float:
-        """Compute the log prior probability of a case.
+        """Compute the natural logarithm of the prior probability of a case.
+
+        Of two or more walks half of `wrong` is for a leg wrongly mounted in all walks, and half for
+        one in a single walk; all legs and walks are equally likely.
 
         Args:
-            case: The leg that is mounted wrong, or None.
+            case: The wrongly mounted leg, or None.
             walks: Number of walks.
         """
         if case is None:
@@ -132,7 +137,14 @@ class WalkPrior:
         return float(np.log(self.wrong / 2 / N_LEGS / among))
 
     def sd(self, walks: int) -> Array:
-        """Standard deviations in the order of `NAMES` over all cases, shape (13,)."""
+        """Compute standard deviations over all cases in the order of `NAMES`, shape (13,).
+
+        A leg's offset includes the further offset of a leg wrongly mounted in all walks, by its
+        probability.
+
+        Args:
+            walks: Number of walks.
+        """
         variance = self.scale[:WRONG] ** 2
         variance[:N_LEGS] += (
             np.exp(self.log_probability(WrongLeg(0), walks=walks)) * self.wrong_sd**2
@@ -141,17 +153,18 @@ class WalkPrior:
 
 
 def all_cases(walks: int) -> tuple[Case, ...]:
-    """List every case of a number of walks; no leg wrong comes first."""
+    """List every case of a number of walks: None (no wrongly mounted leg), then `wrong_legs`."""
     return (None, *wrong_legs(walks))
 
 
 def legs_of(values: Array, case: Case, *, walk: int | None = None) -> LegState:
-    """Convert parameters to the state of the legs in a walk.
+    """Convert parameter vectors to m draws of the legs' state in a walk.
 
     Args:
-        values: Parameters in the order of `NAMES` and that of a wrong leg, shape (m, 14).
-        case: The leg that is mounted wrong, or None.
-        walk: The walk's index; None for a walk to come.
+        values: Parameters in the order of `NAMES`, then the further offset of a wrongly mounted
+            leg, shape (m, 14); grip and slip stiffness as logarithms, post-peak drop about `FALL`.
+        case: The wrongly mounted leg, or None.
+        walk: Index of the walk; None for a walk to come.
     """
     offset = leg_offsets(values, case, walk=walk)
     grip, stiffness, fall, common, arc, steering, stride = values[:, N_LEGS:WRONG].T
@@ -167,11 +180,13 @@ def legs_of(values: Array, case: Case, *, walk: int | None = None) -> LegState:
 
 
 def leg_offsets(values: Array, case: Case, *, walk: int | None = None) -> Array:
-    """Compute each leg's own offset, without the common one.
+    """Compute each leg's own offset, a wrongly mounted leg's further offset included.
+
+    The offset that all legs share is not included.
 
     Args:
-        values: Parameter values in the order of `NAMES`, then that of a wrong leg, shape (m, 14).
-        case: The leg that is mounted wrong, or None.
+        values: Parameters in the order of `NAMES`, then the further offset, shape (m, 14).
+        case: The wrongly mounted leg, or None.
         walk: Index of the walk; None for a walk to come.
 
     Returns:
@@ -184,11 +199,11 @@ def leg_offsets(values: Array, case: Case, *, walk: int | None = None) -> Array:
 
 
 def describe(case: Case, walks: Sequence[str]) -> str:
-    """Describe a case as text.
+    """Format a case as text: number of the wrongly mounted leg, and the walk if in one only.
 
     Args:
-        case: The case.
-        walks: Names of the walks.
+        case: The wrongly mounted leg; None is formatted as "no leg".
+        walks: Names of the walks, by index.
 
     >>> describe(WrongLeg(2), ["a"])
     'leg 3'

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
 r"""Likelihood of tracked walks with steering and stride integrated out exactly.
 
-Steering bends a walked path and stride stretches it, so residuals are linear in the two. In
-standard normal coordinates y they are integrated out, and need not be drawn:
+Steering bends a path and stride stretches it, so residuals are linear in the two. In standard
+normal coordinates y, steering and stride are integrated out, and need not be drawn:
 
 .. math::
     r = r_0 + D y, \quad y \sim N(0, I): \qquad
@@ -24,6 +24,8 @@ from model.slip.law import Array
 class Terms:
     """Quadratic form of the residuals of walks in steering and stride, for m draws of all else.
 
+    The last axes are steering, then stride, in units of their prior standard deviations.
+
     Attributes:
         square: :math:`r_0^T r_0` of each walk, shape (m, walks).
         slope: :math:`D^T r_0`, shape (m, walks, 2).
@@ -40,7 +42,7 @@ class Terms:
 
         Args:
             residuals: Whitened residuals without steering and stride, shape (m, k).
-            bends: Their derivatives by the two, shape (m, k, 2).
+            bends: Derivatives of the residuals by steering and stride, shape (m, k, 2).
         """
         transposed = np.swapaxes(bends, 1, 2)
         return cls(
@@ -56,33 +58,37 @@ class Terms:
 
     @classmethod
     def concat_draws(cls, rounds: Sequence["Terms"]) -> "Terms":
-        """Concatenate the terms of the same walks at further draws."""
+        """Concatenate the terms of the same walks at several sets of draws."""
         return cls(*(np.concatenate(part, axis=0) for part in _parts(rounds)))
 
     def only(self, walks: Sequence[int]) -> "Terms":
-        """Return the terms of some of the walks."""
+        """Return the terms of the walks with the given indices, in their order."""
         keep = list(walks)
         return Terms(self.square[:, keep], self.slope[:, keep], self.curvature[:, keep])
 
     def log_likelihood(self) -> Array:
-        """Compute the log likelihood of each draw up to a constant, shape (m,)."""
+        """Compute the log likelihood of all walks at each draw, up to a constant, shape (m,).
+
+        Steering and stride are integrated out.
+        """
         A = np.eye(2) + self.curvature.sum(axis=1)
         b = self.slope.sum(axis=1)
         explained = (b * np.linalg.solve(A, b[..., None])[..., 0]).sum(axis=1)
         return -0.5 * (self.square.sum(axis=1) - explained) - 0.5 * np.linalg.slogdet(A)[1]
 
     def conditional(self) -> tuple[Array, Array]:
-        """Return mean (m, 2) and covariance (m, 2, 2) of steering and stride given all else."""
+        """Compute mean (m, 2) and covariance (m, 2, 2) of steering and stride given each draw."""
         covariance = np.linalg.inv(np.eye(2) + self.curvature.sum(axis=1))
         return -(covariance @ self.slope.sum(axis=1)[..., None])[..., 0], covariance
 
     def squares_at(self, y: Array) -> Array:
-        """Compute squared residuals of each walk at steering and stride y (m, 2): (m, walks)."""
+        """Compute each walk's sum of squared residuals (m, walks) at steering and stride (m, 2)."""
         linear = (self.slope * y[:, None]).sum(axis=2)
         return self.square + 2 * linear + np.einsum("mi,mwij,mj->mw", y, self.curvature, y)
 
 
 def _parts(terms: Sequence[Terms]) -> tuple[list[Array], list[Array], list[Array]]:
+    """Return lists of the terms' squares, slopes and curvatures."""
     return (
         [each.square for each in terms],
         [each.slope for each in terms],

@@ -1,14 +1,15 @@
 # SPDX-License-Identifier: MIT
-r"""Residuals of roll and pitch against an IMU, which identify a wrong leg where a path cannot.
+r"""Residuals of roll and pitch against an IMU, to identify a leg offset where a path cannot.
 
 A leg with an offset lifts or lowers its corner of the body while it carries load. Several legs bend
-a path alike, but no two of them tilt the body alike at the same time of a stride. Means over short
-times are compared, without their constant part, which depends on how the IMU is mounted,
+a path alike, but no two legs tilt the body alike at the same time of a stride. Means over intervals
+k of 0.1 s, predicted and measured, are compared without their constant part, which depends on how
+the IMU is mounted,
 
 .. math::
     r = \frac{(\hat a_k - \bar{\hat a}) - (a_k - \bar a)}{\sigma \sqrt{S}} .
 
-The model's error is the same in each of the S strides, so together they count as one.
+The model's error is the same in each of the S strides, so all strides together count as one.
 """
 
 from dataclasses import dataclass
@@ -21,10 +22,11 @@ from model.gait.quantised import QuantisedLog
 from model.gait.reference import LegReference
 from model.slip.law import Array
 
-# Of an IMU. The model errs by 0.02 degrees where a tripod carries, by 0.5 where four legs do.
+# Standard deviation of an IMU's means [rad]. The model errs by 0.02 degrees where a tripod carries,
+# by 0.5 where four legs do.
 SD = np.radians(0.3)
-TIME = 0.1  # s over which means are taken
-FEWEST = 10  # means of a walk
+TIME = 0.1  # s, length of the intervals over which angles are averaged
+FEWEST = 10  # least number of intervals with samples of both walk and IMU
 
 
 @dataclass(frozen=True)
@@ -42,12 +44,13 @@ class MeasuredTilt:
 
 @dataclass(frozen=True)
 class TiltMisfit:
-    """Roll and pitch of an IMU, averaged for comparison with paths.
+    """Roll and pitch of an IMU, averaged over k intervals for comparison with paths.
 
     Attributes:
-        mean: Averaging matrix of a path's samples, shape (k, n).
-        measured: Means of the measurement, about their own mean, shape (k, 2) [rad].
-        strides: Number of strides walked.
+        mean: Matrix that averages a path's n samples over the intervals, shape (k, n).
+        measured: Measured roll and pitch averaged over each interval, minus their mean over all
+            intervals, shape (k, 2) [rad].
+        strides: Number of strides walked, at least 1.
     """
 
     mean: Array
@@ -56,15 +59,15 @@ class TiltMisfit:
 
     @classmethod
     def of(cls, seen: MeasuredTilt, t: Array, legs: LegReference | QuantisedLog) -> "TiltMisfit":
-        """Average the measurement over short times.
+        """Average measured roll and pitch over the intervals that have samples of path and IMU.
 
         Args:
-            seen: Roll and pitch as measured.
+            seen: Measured roll and pitch.
             t: Times of the paths' samples, shape (n,) [s].
             legs: Leg angles, from which strides are counted.
 
         Raises:
-            InsufficientData: IMU and walk share too little time.
+            InsufficientData: IMU and walk share fewer than `FEWEST` intervals.
         """
         k = int(np.floor(t[-1] / TIME)) + 1
         path, imu = _means(t, k), _means(seen.t, k)
@@ -79,24 +82,31 @@ class TiltMisfit:
 
     @property
     def count(self) -> float:
-        """Effective number of independent residuals."""
+        """Effective number of independent residuals: those of one stride [-]."""
         return 2 * len(self.measured) / self.strides
 
     def residuals(self, tilt: Array) -> Array:
-        """Compare roll and pitch of m paths, shape (m, n, 2) [rad]; return shape (m, 2 k)."""
+        """Compute residuals (m, 2 k) [-], predicted minus measured, of m paths.
+
+        Args:
+            tilt: Roll and pitch of the paths, shape (m, n, 2) [rad].
+        """
         predicted = self.mean @ tilt
         away = predicted - predicted.mean(axis=1, keepdims=True) - self.measured
         return (away / (SD * np.sqrt(self.strides))).reshape(len(tilt), -1)
 
 
 def _means(t: Array, k: int) -> NDArray[np.float64]:
-    """Return the matrix of means of samples at times t over k equal intervals, shape (k, n)."""
+    """Return the matrix (k, n) that averages samples at times t (n,) over k intervals of `TIME`.
+
+    Intervals start at time zero; the row of an interval without samples is zero.
+    """
     within = np.floor(t / TIME + 1e-9).astype(int) == np.arange(k)[:, None]
     return within / np.maximum(within.sum(axis=1, keepdims=True), 1)
 
 
 def _strides(legs: LegReference | QuantisedLog, t: Array) -> float:
-    """Count the turns of the legs, averaged over the legs, at least one."""
+    """Compute the legs' turns between the first and last time, averaged over legs; at least 1."""
     angles = legs.smooth() if isinstance(legs, QuantisedLog) else legs
     first, last = angles.angles(t[[0, -1]])
     return max(float(np.abs(last - first).mean()) / (2 * np.pi), 1.0)

@@ -109,7 +109,7 @@ def judge(
     target = seen.part(slice(1, None) if anchor else slice(None))
     if len(target) < 2:
         raise InsufficientData(
-            f"{len(target)} pose is left to score, without the first if paths start from it; "
+            f"poses left to score, without the first if paths start from it: {len(target)}; "
             "expected two or more"
         )
     first, at = seen.states[0], float(seen.t[0])

@@ -51,8 +51,9 @@ def judge_run(
     inside = shared_time(track.poses, predicted.prediction.path, file=track.file)
     if inside.sum() - anchor < 2:
         raise DataError(
-            f"leaves {max(int(inside.sum()) - anchor, 0)} poses to score, without the first if "
-            "paths start from it; expected two or more: track more photographs, or try --no-anchor",
+            "poses left to score, without the first if paths start from it: "
+            f"{max(int(inside.sum()) - anchor, 0)}; expected two or more: track more photographs, or "
+            "try --no-anchor",
             file=track.file,
         )
     if anchor and not np.isfinite(track.poses.yaw[inside][0]):

@@ -60,7 +60,7 @@ def test_poses_outside_the_predicted_time_are_left_out_and_noted():
     found = judge(PATH.delayed(2.5))
     assert found.rows[0].errors.poses == 4
     assert found.notes[-1].startswith("5 tracked poses lie outside the predicted time")
-    with pytest.raises(DataError, match="fewer than two"):
+    with pytest.raises(DataError, match="start from it: 1; expected two or more"):
         judge(PATH.delayed(3.2), anchor=True)
 
 

@@ -36,6 +36,8 @@ _KEYS: Final = {StopCategory.SOFT: "s", StopCategory.SAFE: "ss", StopCategory.EM
 def next_stop(pending: StopCategory | None) -> StopCategory:
     """Return the stop that the next Ctrl-C requests: one category harder than the pending one.
 
+    Without a pending stop (None) it is the soft stop; after an emergency stop an emergency stop.
+
     >>> next_stop(StopCategory.SOFT)
     <StopCategory.SAFE: 2>
     """

@@ -27,11 +27,11 @@ class SampleSink(Protocol):
     """Non-blocking receiver of samples and events of devices."""
 
     def write(self, stream: str, samples: Sequence[Sample]) -> bool:
-        """Accept samples of a stream without blocking.
+        """Queue samples of a stream without blocking; drop them where there is no room.
 
         Args:
             stream: Name of the stream.
-            samples: Its samples, in order.
+            samples: Samples of the stream, in order.
 
         Returns:
             Whether there was room for them.
@@ -39,7 +39,7 @@ class SampleSink(Protocol):
         ...
 
     def event(self, text: str, *, level: int = ...) -> None:
-        """Accept an event that happened now.
+        """Queue an event that happened now, for the log.
 
         Args:
             text: Description of the event.

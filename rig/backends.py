@@ -63,7 +63,7 @@ def leg_link(profile: LegProfile, port: str, *, source: str = "real") -> SerialL
 
 
 def leg_driver(profile: LegProfile, link: Any, *, clock: Clock = SYSTEM_CLOCK) -> Any:
-    """Return the driver for the layout of a leg profile, over a given link.
+    """Return the driver for the layout of a leg profile over a given link, neither yet open.
 
     Args:
         profile: The profile.

@@ -134,14 +134,14 @@ class SilenceGuard:
         self._last_arrival = now
 
     def check(self, samples: Sequence[object], *, now: float) -> None:
-        """Check the time since the last sample.
+        """Check the time since samples last arrived; a read with samples always passes.
 
         Args:
             samples: Samples of the latest read, possibly none.
             now: Host time [s].
 
         Raises:
-            RigTimeout: No sample has arrived for longer than the limit.
+            RigTimeout: The read is empty, and no sample has arrived for longer than the limit.
         """
         if samples:
             self._last_arrival = now

@@ -48,7 +48,7 @@ class AgeGuard:
         self._limit = limit
 
     def check(self, taken: NDArray[np.float64], *, now: float) -> None:
-        """Check the age of the readings of one batch.
+        """Check the age of the oldest reading of one batch; an empty batch passes.
 
         Args:
             taken: Host time at which each reading was taken, shape (n,) [s].

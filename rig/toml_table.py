@@ -120,7 +120,7 @@ class TomlTable:
     def choice(
         self, key: str, choices: tuple[Choice, ...], default: Choice | None = None
     ) -> Choice:
-        """Read one of several allowed strings.
+        """Read a string that must be one of several allowed ones.
 
         Args:
             key: Name of the key.

@@ -101,7 +101,7 @@ class GuardedAcquisition:
 
     @property
     def wanted(self) -> tuple[float, float]:
-        """Set-points of leg and ground disc now [rad/s]."""
+        """Present set-points of leg and ground disc, interpolated on the latest ramp [rad/s]."""
         return self._ramp.at(self._clock.now())
 
     @property

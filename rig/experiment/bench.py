@@ -96,7 +96,11 @@ class Bench(ABC):
         self._ground.disarm()
 
     def require_healthy(self) -> None:
-        """Raise DeviceFault where a drive or the board reports an error."""
+        """Check the drives or the board by their latest status.
+
+        Raises:
+            DeviceFault: A drive or the board reports an error, or an armed drive left closed loop.
+        """
         self._motors.require_healthy()
 
     def __enter__(self) -> Self:
@@ -128,7 +132,7 @@ class BoardBench(Bench):
         """Do nothing: a board measures no further quantities; see `Bench.watch`."""
 
     def read(self) -> Batch:
-        """Return the samples that have arrived; see `Bench.read`."""
+        """Return the samples that have arrived, with the board's times converted to host time."""
         samples = self._board.read(0.0)
         forces, speeds = decode_board(self._board.profile, samples)
         taken = self._time.map(samples)
@@ -166,14 +170,17 @@ class DrivesBench(Bench):
         self._speeds = {"leg": np.empty((0, 2)), "ground": np.empty((0, 2))}
 
     def watch(self, limits: Collection[str]) -> None:
-        """Start to measure the guarded quantities besides the two forces; see `Bench.watch`."""
+        """Select the quantities of `Batch.further`; request temperatures if they are among them.
+
+        Requested temperatures are also checked for silence; see `Bench.watch`.
+        """
         self._further = frozenset(limits)
         if "temperature_celsius" in self._further:
             self.watched += ("temperature of the leg drive", "temperature of the ground drive")
             self._drives.request_temperatures()
 
     def read(self) -> Batch:
-        """Return the samples that have arrived; see `Bench.read`."""
+        """Return the samples that have arrived, speeds interpolated at the times of the forces."""
         turned, weighed = self._drives.read(0.0), self._cell.read(0.0)
         hot = self._drives.take_temperatures()
         forces = decode_forces(self._cell.profile, weighed)

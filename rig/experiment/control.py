@@ -97,7 +97,7 @@ class Control:
         self._notes.append(Note("resume", "requested"))
 
     def confirm(self) -> None:
-        """Confirm that the action requested by a prompt is done."""
+        """Store the confirmation that the action of a prompt is done, for `take_confirmation`."""
         self._confirmed = True
 
     def take_confirmation(self) -> bool:

@@ -218,7 +218,7 @@ def ground_speed(
     """Compute the speed of the ground disc for a material slip ratio, Eq. (4-44) [rad/s].
 
     Args:
-        slip: Slip ratio [-].
+        slip: Material slip ratio; 1 makes the ground disc stand [-].
         omega_leg: Speed of the leg disc [rad/s].
         radius_leg: Radius of the leg disc [m].
         radius_ground: Radius of the ground disc [m].

@@ -97,7 +97,7 @@ def run_plan(
 
 @dataclass
 class _Run:
-    """One run of a plan; see `run_plan`."""
+    """State and steps of one run of a plan; see `run_plan`."""
 
     _plan: Plan
     _bench: Bench

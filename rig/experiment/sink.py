@@ -52,7 +52,7 @@ class RunSink(Protocol):
         ...
 
     def close_run(self, verdict: PointVerdict | None, *, reason: str) -> None:
-        """End the run.
+        """End the recording that `open_run` began, and store the verdict.
 
         Args:
             verdict: Verdict on the point; None where the run was aborted.

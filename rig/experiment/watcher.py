@@ -34,7 +34,7 @@ class ExperimentWatcher:
         """
 
     def judged(self, point: Point, verdict: PointVerdict, *, attempt: int) -> None:
-        """Show the verdict on a point.
+        """Show the verdict on an attempt at a point.
 
         Args:
             point: The point.

@@ -104,7 +104,7 @@ def weigh(
 
 
 def check_gain(weighing: Weighing, *, weight_sd: float = 1e-3) -> GainCheck:
-    """Fit gain and zero of the normal channel by weighted linear regression.
+    """Fit gain and zero of the normal channel: readings on forces, weighted by 1 / error².
 
     Args:
         weighing: Readings under at least two different forces.

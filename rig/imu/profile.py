@@ -55,7 +55,7 @@ class ImuProfile:
         return struct.Struct(("<" if self.byte_order == "little" else ">") + f"{FIELDS}h")
 
     def possible(self, counts: tuple[float, ...]) -> bool:
-        """Return whether the quaternion has length 1, within `NORM_TOLERANCE`."""
+        """Return whether the quaternion (first four counts) has length 1 +/- `NORM_TOLERANCE`."""
         norm = sum(count * count for count in counts[:4]) ** 0.5 / self.quaternion_scale
         return abs(norm - 1) <= NORM_TOLERANCE
 

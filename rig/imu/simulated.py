@@ -21,7 +21,7 @@ STEP: Final = 1e-4
 
 
 def rocking(time: float) -> tuple[float, float, float]:
-    """Compute the attitude of a body that oscillates in roll and pitch as it turns left.
+    """Compute the attitude of a body that oscillates at 1 Hz in roll and pitch as it turns left.
 
     Args:
         time: Time since the beginning [s].

@@ -71,11 +71,11 @@ class CanLink:
         self._empty_at = self._since = clock.now()
 
     def open(self) -> None:
-        """Open the bus, for this program alone.
+        """Lock and open the bus, so that no other program uses it.
 
         Raises:
-            InUse: Another program has it; the message says which.
-            LinkError: There is no such bus, or no permission to open it.
+            InUse: Another program has the bus; the message says which.
+            LinkError: There is no such bus, its name is invalid, or permission is missing.
         """
         if self._lock is not None:
             self._lock.take()

@@ -68,7 +68,7 @@ class PacketStream(LinkedStream[ByteLink]):
 
     @property
     def counters(self) -> Counters:
-        """Counters of the stream so far."""
+        """Counters of the stream so far; packets of other kinds or lengths count as refused."""
         return Counters(
             received=self._received,
             lost=self._tracker.lost,

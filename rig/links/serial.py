@@ -49,11 +49,11 @@ class SerialLink:
         self._lock = device_lock(port)
 
     def open(self) -> None:
-        """Open the port, for this program alone.
+        """Lock and open the port, so that no other program uses it.
 
         Raises:
-            InUse: Another program has it; the message says which.
-            LinkError: There is no such port, or no permission to open it.
+            InUse: Another program has the port; the message says which.
+            LinkError: There is no such port, its name is invalid, or permission is missing.
         """
         self._lock.take()
         try:

@@ -50,10 +50,10 @@ class UdpLink:
         self._read_at = 0.0
 
     def open(self) -> None:
-        """Open the socket, for this program alone; the device need not be connected yet.
+        """Lock the device and open the socket; the device need not be connected yet.
 
         Raises:
-            InUse: Another program uses this device; the message says which.
+            InUse: Another program has the lock; the message says which.
             LinkError: The host name is unknown, or there is no network.
         """
         self._lock.take()

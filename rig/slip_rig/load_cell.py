@@ -87,7 +87,10 @@ class NetFtCell(LinkedStream[UdpLink]):
         )
 
     def read(self, timeout: float) -> SampleColumns:
-        """Return all samples that have arrived, waiting at most `timeout` for the first [s]."""
+        """Return all samples that have arrived, waiting at most `timeout` for the first [s].
+
+        To a cell that has been silent for `START_AGAIN_AFTER` the start request is sent again.
+        """
         datagrams = self._link.read(timeout)
         now = self._clock.now()
         samples = self._samples(datagrams, now)

@@ -50,7 +50,7 @@ FORCE_UNITS: Final = {"N": 1.0, "kN": 1e3, "lb": 4.4482216152605, "klb": 4448.22
 
 
 class Request(IntEnum):
-    """Requests to a cell.
+    """Requests to a cell, the second field of `REQUEST`; BIAS makes the present reading zero.
 
     START sends each record as soon as it is read. START_BUFFERED sends as many in a datagram as the
     cell is set to (`comrdtbsiz`, 1 to 40), as soon as the last of them is read.

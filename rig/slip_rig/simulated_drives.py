@@ -86,7 +86,7 @@ class SimulatedDrives:
                 self._fail(axis, error)
 
     def poll(self, now: float) -> None:
-        """Execute commands, check the watchdogs, and send the frames due up to a time [s]."""
+        """Execute commands, check watchdogs, simulate the rig, and send frames due at `now` [s]."""
         while (message := self._bus.recv(0.0)) is not None:
             node, command = split_id(message.arbitration_id)
             if node in self._axes and message.is_remote_frame:

@@ -89,7 +89,7 @@ class SimulatedLoadCell:
                 self._send(reading, values)
 
     def _counts(self, readings: "np.ndarray") -> "np.ndarray":
-        """Read the rig, shape (n, 6) [counts]."""
+        """Compute the counts of readings by their numbers, columns Fx to Tz, shape (n, 6)."""
         normal, traction = self._rig.forces(readings / self._profile.rate)
         counts = np.zeros((len(readings), 6))
         counts[:, 3 - self._profile.normal.index - self._profile.traction.index] = (

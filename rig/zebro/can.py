@@ -50,7 +50,7 @@ class CanLegs(LinkedStream[CanLink]):
 
     @property
     def counters(self) -> Counters:
-        """Counters of the stream so far; the bus's error frames count as damaged."""
+        """Counters of the stream so far; error and truncated frames of the bus count as damaged."""
         return Counters(
             received=self._received,
             lost=self._tracker.lost,

@@ -266,7 +266,7 @@ def _order(legs: TomlTable) -> tuple[int, ...]:
 
 
 def _by_channel(by_leg: tuple[Any, ...], order: tuple[int, ...]) -> tuple[Any, ...]:
-    """Reorder values listed by ascending leg number into the order of the channels."""
+    """Reorder values from ascending leg number to the order of the channels, `order`."""
     ascending = sorted(order)
     return tuple(by_leg[ascending.index(leg)] for leg in order)
 

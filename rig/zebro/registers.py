@@ -58,7 +58,7 @@ class DumpLegs(_RegisterStream):
 
     @property
     def counters(self) -> Counters:
-        """Counters of the stream so far."""
+        """Counters of the stream so far; there are no numbers, so that losses are not counted."""
         return Counters(
             received=self._received,
             damaged=self._framer.damaged,

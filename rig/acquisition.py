@@ -88,7 +88,7 @@ class Acquisition:
     Attributes:
         name: Name of the stream.
         counters: Counters of the stream, as of its last read.
-        tap: The newest samples, for viewers.
+        tap: Ring buffer of the newest samples, for viewers.
         clock_watch: Comparison of the device's clock with the host's.
         first: Host time of the first sample; None until a sample has arrived [s].
         failure: Exception that ended the reading early, or that says that the thread did not end

@@ -32,7 +32,7 @@ class RigTimeout(RigError, TimeoutError):
     """A device did not respond, or did not do what was commanded, within its timeout.
 
     Attributes:
-        waited: Time waited [s].
+        waited: Time for which the device was waited for [s].
     """
 
     def __init__(self, problem: str, *, waited: float) -> None:

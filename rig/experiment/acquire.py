@@ -60,7 +60,7 @@ class GuardedAcquisition:
 
     Args:
         bench: The rig, entered.
-        limits: Limits of the guards.
+        limits: Limits of the plan, at which the guards trip.
         control: Mailbox with requests to stop.
         sink: Receiver of notes, which also checks that data can still be stored.
         clock: Host time.

@@ -49,7 +49,7 @@ class Condition:
     """State of a run with its reason.
 
     Attributes:
-        state: The state.
+        state: State of the run.
         energised: Whether the drives of the discs are energised.
         why: Reason for the state; empty where there is none.
         pending: Hardest stop being carried out; None where there is none.

@@ -32,7 +32,7 @@ class Control:
     """Mailbox of commands to a run, which polls it continuously.
 
     Attributes:
-        stop: Requests to stop.
+        stop: Switch that collects requests to stop.
         status: Progress of the run in one line.
         paused: Whether the run holds after the present point.
         failure: First part of the run that failed; None without a failure.

@@ -103,10 +103,10 @@ class LoadAxis(Protocol):
 
 
 class DrivenShaft:
-    """Proportional control of a linear axis to a normal force.
+    """Proportional control of a linear axis to a normal force; velocity is `GAIN` times error.
 
     Args:
-        axis: The axis.
+        axis: Linear drive that presses the discs together.
         tolerance: Largest difference of the normal force from the target [N].
         patience: Timeout of setting a force, from `request` on [s].
         clock: Host time.

@@ -42,9 +42,9 @@ def settle(acquire: GuardedAcquisition, plan: Plan, point: Point, zero: Zero) ->
 
     Args:
         acquire: The rig, armed.
-        plan: The plan.
-        point: The point.
-        zero: Zero of the load cell.
+        plan: Plan with the speed of the leg disc and the criterion for a steady state.
+        point: Point to be measured.
+        zero: Zero of the load cell, subtracted from the forces.
 
     Returns:
         Whether the rig was steady, see `is_steady`, before the plan's timeout after the ramp.
@@ -81,9 +81,9 @@ def record(
     Args:
         acquire: The rig, at the point's set-points.
         sink: Recorder of the samples; its run is open.
-        plan: The plan.
-        point: The point.
-        zero: Zero of the load cell.
+        plan: Plan with the duration and the speed of the leg disc.
+        point: Point to be measured.
+        zero: Zero of the load cell, subtracted from the forces.
         clock: Host time.
 
     Returns:

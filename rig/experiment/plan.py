@@ -77,7 +77,7 @@ class SettleCriterion:
     ground disc changes the forces in every turn but hardly the friction.
 
     Attributes:
-        window: Length of the window [s].
+        window: Length of the window, whose halves are compared [s].
         speed: Largest difference of each disc's mean speed from its set-point, and between the
             mean speeds of both halves [rad/s].
         friction: Largest difference of the friction between both halves [-].
@@ -142,7 +142,7 @@ class RunLimits:
             a fault.
         speed_error: Largest difference of a disc's speed from its set-point [rad/s].
         speed_error_time: Longest duration of a speed error beyond that [s].
-        silence: Longest silence of a stream [s].
+        silence: Longest time for which a device may send no samples [s].
         reading_age: Largest age of a reading when it is checked [s].
         frozen: Longest time for which forces and speeds stay the same, bit for bit, while discs
             turn [s].
@@ -197,7 +197,7 @@ class Plan:
         load: How the normal force is set.
         settle: Criterion for a steady state.
         accept: Acceptance limits of a point.
-        controls: Zeros and check points.
+        controls: How often zeros and check points are measured.
         limits: Limits of the guards.
     """
 

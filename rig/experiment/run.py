@@ -36,7 +36,7 @@ class Outcome:
         reason: `completed`, or category and reason of the stop that ended the run.
         finished: Number of accepted points, those of an earlier run included.
         refused: Numbers of the points of which every attempt was rejected.
-        attempts: Number of attempts in this run.
+        attempts: Number of attempts at points in this run.
     """
 
     reason: str

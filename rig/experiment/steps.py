@@ -18,10 +18,10 @@ RISE: Final = 0.15
 
 @dataclass(frozen=True)
 class Tare:
-    """Take the zero of the load cell, unloaded and at standstill.
+    """Step that measures the zero of the load cell, unloaded and at standstill.
 
     Attributes:
-        number: Place in the plan, from 1.
+        number: Number of the step in the plan, from 1.
     """
 
     number: int
@@ -29,11 +29,11 @@ class Tare:
 
 @dataclass(frozen=True)
 class Point:
-    """Measurement at one load.
+    """Step that measures a slip ratio, or a sweep of slip ratios, at one load.
 
     Attributes:
-        number: Place in the plan, from 1.
-        load: Normal force [N].
+        number: Number of the step in the plan, from 1.
+        load: Commanded normal force [N].
         slips: Commanded slip ratio; for a sweep the values that it interpolates in order [-].
         kind: A `point` of the grid, a `sweep`, or a `check` point.
         repeat: Number of the pass through the load's slips, from 1.

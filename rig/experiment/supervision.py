@@ -33,7 +33,7 @@ def start_thread(work: Callable[[], None], *, name: str, control: Control) -> th
     """Start a daemon thread that a run depends on; an exception in it requests a safe stop.
 
     Args:
-        work: Function of the thread.
+        work: Function that the thread calls once.
         name: Name of the thread, for the message.
         control: Mailbox of the run.
 

@@ -24,7 +24,7 @@ class PointVerdict:
 
     Attributes:
         problems: Why the point must be repeated, one phrase each; empty where it is good.
-        samples: Number of samples.
+        samples: Number of recorded samples.
         slip: Mean slip ratio; NaN with too few samples [-].
         friction: Sum of the traction over sum of the normal force; NaN without load [-].
         normal_force: Median normal force; NaN with too few samples [N].
@@ -71,7 +71,7 @@ def is_steady(window: Readings, wanted: tuple[float, float], criterion: SettleCr
     Args:
         window: Readings of the latest `criterion.window`.
         wanted: Set-points of leg and ground disc [rad/s].
-        criterion: Tolerances.
+        criterion: Length of the window and tolerances.
 
     Returns:
         Whether they are; False also for fewer than 8 readings, or where the readings span less
@@ -103,9 +103,9 @@ def judge_point(
     Args:
         readings: Recorded samples, zero subtracted.
         point: Point with the commanded slip ratio.
-        accept: Acceptance limits.
+        accept: Largest deviations and drifts of an accepted point.
         settled: Whether the rig was steady when recording began.
-        duration: Duration of the recording [s].
+        duration: Intended duration of the recording [s].
         profile: Profile of the rig, with the radii of the discs.
 
     Returns:

@@ -79,7 +79,7 @@ def weigh(
         forces: Weights in the order in which they are hung [N].
         load: Setter of the load: the operator who hangs the weights.
         prompt: Called repeatedly with the instruction and the present normal force [N].
-        duration: Duration of each reading [s].
+        duration: Time over which each reading is averaged [s].
         clock: Host time.
         period: Polling period [s].
 

@@ -24,7 +24,7 @@ def rocking(time: float) -> tuple[float, float, float]:
     """Compute the attitude of a body that oscillates at 1 Hz in roll and pitch as it turns left.
 
     Args:
-        time: Time since the beginning [s].
+        time: Time since the unit was switched on [s].
 
     Returns:
         Roll, pitch and yaw [rad].

@@ -16,7 +16,7 @@ class MemoryLink:
 
     Args:
         twin: Simulated device at the other end.
-        clock: Host time, which is passed to the twin and slept on while waiting.
+        clock: Host time, which is passed to the twin and used for waiting.
     """
 
     def __init__(self, twin: ByteTwin, *, clock: Clock) -> None:

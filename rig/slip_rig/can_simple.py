@@ -98,7 +98,7 @@ def describe_error(error: int, firmware: str) -> str:
     """Describe the set bits of an axis error as text, joined by commas; empty for 0.
 
     Args:
-        error: Bit field of the axis error.
+        error: Axis error, a field of bits.
         firmware: Version of the firmware, a key of `ERRORS`.
 
     >>> describe_error(0x800, "0.5"), describe_error(0x10000000, "0.5")

@@ -101,8 +101,8 @@ class SimulatedRig:
         values: Values of the law's parameters.
         plan: Radii, and the sweep that the rig drives by itself for as long as no drive commands:
             its slips a `duration` apart, gliding from each to the next.
-        imperfections: Sensor errors, noise and bump.
-        dynamics: Dynamics of the discs.
+        imperfections: Sensor errors, noise, slip wander and bump of the ground disc.
+        dynamics: Dynamics of the discs and delay of the force channels.
         rng: Random generator.
 
     Attributes:

@@ -113,8 +113,8 @@ class GuardedAcquisition:
         """Energise at standstill, wait until no fault is reported, and start the silence guards.
 
         Raises:
-            RigError: A drive does not energise, or a fault is still reported after
-                `FAULT_CLEAR_TIME`; the drives are then de-energised.
+            RigError: A drive does not energise; or a fault is still reported after
+                `FAULT_CLEAR_TIME`, and both drives have been de-energised.
         """
         self._bench.read()  # discard what is in buffers
         self.energised = True
